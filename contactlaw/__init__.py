@@ -1,0 +1,30 @@
+"""Thickness-dependent restitution of beads on plates for particle simulations.
+
+The coefficient of restitution of a sphere that hits a plate falls with plastic flow at the contact
+and with the bending wave that runs away in the plate. The modified Zener model (Peng, Jin, Liu,
+Wei, Int. J. Solids Struct. 222-223 (2021) 111036) has both; this package answers from a table of
+its solutions. All quantities are in SI units.
+
+>>> import contactlaw as cl
+>>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+>>> model.restitution(speed=5.0, radius=0.9e-3, thickness=[0.5e-3, 1e-3, 3e-3]).round(3)
+array([0.682, 0.89 , 0.985])
+"""
+
+from contactlaw.impact import Rebound
+from contactlaw.materials import Material, material, materials
+from contactlaw.pair import Pair
+from contactlaw.provider import ImpactModel, restitution_sphere_sphere
+from contactlaw.validity import Validity, edge_distance
+
+__all__ = [
+    "ImpactModel",
+    "Material",
+    "Pair",
+    "Rebound",
+    "Validity",
+    "edge_distance",
+    "material",
+    "materials",
+    "restitution_sphere_sphere",
+]

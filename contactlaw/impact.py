@@ -1,0 +1,137 @@
+"""The bridge between SI units and the two numbers that rule an impact.
+
+A contact is a mass on a Hertzian spring in series with the plate's mobility. The time T_H that
+these three and the speed define turns everything into the dimensionless numbers that the table and
+the solver work with: the inelasticity lambda, and the yield compression y on Hertz's scale.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.laws import Law
+from contactlaw.materials import Material
+from contactlaw.pair import Pair
+from contactlaw.validity import Validity
+
+Array = NDArray[np.float64]
+
+
+class Contact(NamedTuple):
+    """What the bodies bring into an impact, whatever its speed; floats or arrays."""
+
+    mass: Array  # [kg], effective
+    stiffness: Array  # K in F = K d^1.5 [N/m^1.5]
+    mobility: Array  # alpha, speed of the plate per force [m/(s N)]
+    yield_compression: Array  # d_Y [m]
+
+
+class Scales(NamedTuple):
+    """One impact on Hertz's scale, and the units of that scale; floats or arrays."""
+
+    inelasticity: Array  # lambda
+    yield_ratio: Array  # y = d_Y/(V0 T_H)
+    time: Array  # T_H [s]
+    compression: Array  # V0 T_H [m]
+    force: Array  # m V0/T_H [N]
+
+
+def plate_mobility(plate: Material, thickness: Array) -> Array:
+    """Speed of an infinite plate under a point force, per force [m/(s N)]; 0 for a half-space.
+
+    alpha = sqrt(3 rho2 (1 - nu2^2)/E2)/(4 rho2 H^2) = 1/(8 sqrt(D rho2 H)), D = E2' H^3/12
+    (Zener 1941; Peng et al. 2021, below Eq. 1).
+    """
+    wave_speed = math.sqrt(plate.plane_modulus / plate.density)
+    mobility: Array = math.sqrt(3.0) / (4.0 * plate.density * wave_speed * np.square(thickness))
+    return mobility
+
+
+def _yield_compression(pair: Pair, radius: Array, law: Law) -> Array:
+    """c pi^2 sigma_Y^2 R*/E*^2 (Eq. 18) of the sphere's material; inf for a law that never yields."""
+    if law.yield_coefficient is None:
+        return np.full_like(radius, math.inf)
+    strength = pair.sphere.require_yield_strength(law.name)
+    strain = math.pi * strength / pair.effective_modulus
+    compression: Array = law.yield_coefficient * strain**2 * radius
+    return compression
+
+
+def _mass(material: Material, radius: Array) -> Array:
+    mass: Array = 4.0 / 3.0 * math.pi * material.density * radius**3
+    return mass
+
+
+def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Contact:
+    """Contact of a sphere with a large plate: R* = R, m* = m."""
+    return Contact(
+        mass=_mass(pair.sphere, radius),
+        stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius),
+        mobility=plate_mobility(pair.plate, thickness),
+        yield_compression=_yield_compression(pair, radius, law),
+    )
+
+
+def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -> Contact:
+    """Bulk limit of two spheres: R* = R1 R2/(R1 + R2), m* = m1 m2/(m1 + m2); the first yields."""
+    reduced = radius * other_radius / (radius + other_radius)
+    mass, other_mass = _mass(pair.sphere, radius), _mass(pair.plate, other_radius)
+    return Contact(
+        mass=mass * other_mass / (mass + other_mass),
+        stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(reduced),
+        mobility=np.zeros_like(reduced),
+        yield_compression=_yield_compression(pair, reduced, law),
+    )
+
+
+def scales(contact: Contact, speed: Array) -> Scales:
+    """Dimensionless numbers and units of impacts at the given speeds [m/s]."""
+    time = (contact.mass / (contact.stiffness * np.sqrt(speed))) ** 0.4
+    compression = speed * time
+    return Scales(
+        inelasticity=contact.mobility * contact.mass / time,
+        yield_ratio=contact.yield_compression / compression,
+        time=time,
+        compression=compression,
+        force=contact.mass * speed / time,
+    )
+
+
+@dataclass(frozen=True)
+class Rebound:
+    """Outcome of an impact, or of many: every field a float, or an array of one shape.
+
+    Attributes
+    ----------
+    restitution
+        Rebound speed over impact speed [-].
+    contact_time
+        Time from first touch to separation [s].
+    peak_force
+        Largest contact force [N].
+    peak_compression, residual_compression
+        Largest relative compression of the bodies, and what of it is left at separation [m].
+    plastic_fraction, wave_fraction
+        Shares of the initial kinetic energy lost to plastic flow and to the bending wave [-].
+        1 - restitution^2 is their sum.
+    inelasticity, overload
+        The dimensionless numbers lambda and chi of the impact [-].
+    flags
+        `Validity` limits that the impact exceeds; 0 is inside all of them.
+    """
+
+    restitution: float | Array
+    contact_time: float | Array
+    peak_force: float | Array
+    peak_compression: float | Array
+    residual_compression: float | Array
+    plastic_fraction: float | Array
+    wave_fraction: float | Array
+    inelasticity: float | Array
+    overload: float | Array
+    flags: Validity | NDArray[np.int64]

@@ -1,0 +1,108 @@
+"""Normal force laws in scaled form, one file each, chosen by name.
+
+A law knows no unit: compressions are in units of the yield compression d_Y, forces in units of
+F_Y = K d_Y^1.5, so that every law follows Hertz, F = d^1.5, up to d = 1. Forces are functions of
+the root compression q, sqrt(d) while loading and sqrt(d - residual) while unloading: it is to
+Hertz the radius of contact, and a force that is smooth in it is what the solver needs. A new law
+is a new module here that defines ``LAW``; nothing else has to be touched.
+"""
+
+from __future__ import annotations
+
+import difflib
+import functools
+import importlib
+import math
+import pkgutil
+from collections.abc import Callable
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """A normal force law, as four numba-jitted functions of scaled compressions.
+
+    Parameters
+    ----------
+    name : str
+        What users call it; the name of its module.
+    source : str
+        Where the formulas come from.
+    yield_coefficient : float or None
+        c in d_Y = c pi^2 sigma_Y^2 R* / E*^2; None for a law that never yields.
+    loading_kinks : tuple of float
+        Compressions [d_Y], rising, at which the loading curve changes its formula.
+    unloading_kinks : tuple of float
+        Largest compressions [d_Y], rising, at which the family of unloading curves does.
+    loading : callable
+        ``loading(q)``: force [F_Y] while the compression d = q^2 grows.
+    residual : callable
+        ``residual(dm)``: compression [d_Y] left after unloading from the largest one, dm.
+    unloading : callable
+        ``unloading(q, dm)``: force [F_Y] at d = residual(dm) + q^2 below dm; reloading follows
+        the same curve.
+    dissipation : callable
+        ``dissipation(dm)``: loading work minus unloading work [F_Y d_Y] of a contact that
+        reached dm.
+    """
+
+    name: str
+    source: str
+    yield_coefficient: float | None
+    loading_kinks: tuple[float, ...]
+    unloading_kinks: tuple[float, ...]
+    loading: Callable[[float], float]
+    residual: Callable[[float], float]
+    unloading: Callable[[float, float], float]
+    dissipation: Callable[[float], float]
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """All compressions [d_Y] at which an impact's outcome is not smooth; the first is 1."""
+        return tuple(sorted({*self.loading_kinks, *self.unloading_kinks}))
+
+    @property
+    def arguments(self) -> tuple[object, ...]:
+        """What the solver's kernels take of a law, in their order."""
+        return (
+            self.loading,
+            self.residual,
+            self.unloading,
+            self.dissipation,
+            (*self.loading_kinks, math.inf),
+        )
+
+
+@functools.cache
+def names() -> tuple[str, ...]:
+    """Names of all laws, sorted.
+
+    Examples
+    --------
+    >>> import contactlaw.laws
+    >>> contactlaw.laws.names()
+    ('hertz', 'myc')
+    """
+    return tuple(sorted(module.name for module in pkgutil.iter_modules(__path__)))
+
+
+def law(name: str) -> Law:
+    """Look up a law by its name.
+
+    Raises
+    ------
+    ValueError
+        If there is no such law; the message lists those there are.
+
+    Examples
+    --------
+    >>> from contactlaw.laws import law
+    >>> law("myc").yield_coefficient
+    0.68
+    """
+    if name not in names():
+        near = difflib.get_close_matches(str(name), names(), n=1)
+        hint = f"; did you mean {near[0]!r}?" if near else ""
+        raise ValueError(f"law: unknown law {name!r}{hint} Known laws: {', '.join(names())}.")
+    found: Law = importlib.import_module(f"{__name__}.{name}").LAW
+    return found

@@ -1,0 +1,238 @@
+"""Materials in SI units, and the catalogue in which every number has a source."""
+
+import difflib
+import functools
+import math
+import re
+import tomllib
+from dataclasses import dataclass
+from importlib.resources import files
+from numbers import Real
+from typing import Any
+
+# Two of our own bounds that find values in other units, wide enough for the softened beads of DEM.
+_SOFTEST = 2e3  # [Pa]: above diamond in GPa (1100), below a hydrogel bead (1e4 Pa)
+_FASTEST = 25e3  # [m/s]: bar wave speed sqrt(E / rho); diamond has 17e3, steel in g/cm3 162e3
+
+_LABELS = {
+    "youngs_modulus": ("Young's modulus", " Pa"),
+    "poissons_ratio": ("Poisson's ratio", ""),
+    "density": ("density", " kg/m3"),
+    "yield_strength": ("yield strength", " Pa"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """An isotropic, elastic-perfectly plastic material.
+
+    Parameters
+    ----------
+    name : str
+        Name, used in messages and results.
+    youngs_modulus : float
+        Young's modulus [Pa], positive.
+    poissons_ratio : float
+        Poisson's ratio [-], above -1 and up to 0.5.
+    density : float
+        Density of the bead or plate itself [kg/m3], positive; for a porous bead with its pores.
+    yield_strength : float, optional
+        Uniaxial yield strength [Pa], positive; None if the material is brittle or the value
+        unknown. Without it a bead can only be treated as elastic, with ``law="hertz"``.
+    source : str, optional
+        Where the numbers come from.
+
+    Raises
+    ------
+    ValueError
+        If a value is not a finite real number in its range, or clearly not in SI units.
+
+    Examples
+    --------
+    >>> from contactlaw.materials import Material
+    >>> steel = Material("steel", 207e9, 0.293, 7850, yield_strength=350e6)
+    >>> round(steel.plane_modulus / 1e9, 1)
+    226.4
+    """
+
+    name: str
+    youngs_modulus: float
+    poissons_ratio: float
+    density: float
+    yield_strength: float | None = None
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        """Check every value and store it as float."""
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise ValueError(f"name must be a non-empty string, got {self.name!r}")
+        if not isinstance(self.source, str):
+            raise ValueError(f"source must be a string, got {self.source!r}")
+        modulus = _positive(self.name, "youngs_modulus", self.youngs_modulus, "Pa")
+        density = _positive(self.name, "density", self.density, "kg/m3")
+        ratio = _finite(self.name, "poissons_ratio", self.poissons_ratio, "-")
+        if not (-1.0 < ratio <= 0.5):
+            raise ValueError(
+                f"poissons_ratio of {self.name!r} must be above -1 and up to 0.5, got {ratio!r}"
+            )
+        strength = self.yield_strength
+        if strength is not None:
+            strength = _positive(self.name, "yield_strength", strength, "Pa")
+        _check_units(self.name, modulus, density, strength)
+        # A frozen dataclass has no other way to store the converted values.
+        object.__setattr__(self, "youngs_modulus", modulus)
+        object.__setattr__(self, "poissons_ratio", ratio)
+        object.__setattr__(self, "density", density)
+        object.__setattr__(self, "yield_strength", strength)
+
+    @property
+    def plane_modulus(self) -> float:
+        """Plane-strain modulus E / (1 - nu^2) [Pa], what one body adds to a Hertz contact."""
+        return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
+
+    def require_yield_strength(self, law: str) -> float:
+        """Return the yield strength, or say what is missing.
+
+        Parameters
+        ----------
+        law : str
+            Name of the contact law that needs it.
+
+        Returns
+        -------
+        float
+            Yield strength [Pa].
+
+        Raises
+        ------
+        ValueError
+            If the material has none.
+
+        Examples
+        --------
+        >>> from contactlaw.materials import material
+        >>> material("gamma-alumina").require_yield_strength("myc")
+        472500000.0
+        """
+        if self.yield_strength is None:
+            raise ValueError(
+                f"law {law!r} needs a yield strength, and material {self.name!r} has none "
+                "(brittle, or no citable value): give one in Pa with "
+                "Material(..., yield_strength=...), or take the elastic-only answer with "
+                'law="hertz"'
+            )
+        return self.yield_strength
+
+
+def material(name: str) -> Material:
+    """Return a material of the catalogue.
+
+    Parameters
+    ----------
+    name : str
+        Name or alias; upper case, spaces and underscores are accepted.
+
+    Returns
+    -------
+    Material
+        The material, with the source of each number in ``source``.
+
+    Raises
+    ------
+    ValueError
+        If the catalogue has no such material; the message lists near matches.
+
+    Examples
+    --------
+    >>> from contactlaw.materials import material
+    >>> material("AISI 304").name
+    'stainless-steel-304'
+    """
+    if not isinstance(name, str):
+        raise ValueError(f"name must be a string such as 'glass', got {name!r}")
+    by_name, canonical = _catalogue()
+    key = re.sub(r"[\s_-]+", "-", name.strip().lower())
+    if key not in canonical:
+        # "steel" is part of a name rather than like one. Aliases of one material name it once.
+        near = [known for known in canonical if key and key in known]
+        near += difflib.get_close_matches(key, canonical, n=3, cutoff=0.6)
+        names = dict.fromkeys(canonical[match] for match in near)
+        hint = f"did you mean {' or '.join(map(repr, names))}? " if names else ""
+        raise ValueError(
+            f"unknown material {name!r}: {hint}contactlaw.materials() lists all; "
+            "Material(...) defines your own"
+        )
+    return by_name[canonical[key]]
+
+
+def materials() -> tuple[str, ...]:
+    """Return the names of all materials of the catalogue, sorted.
+
+    Examples
+    --------
+    >>> from contactlaw.materials import materials
+    >>> "gamma-alumina" in materials()
+    True
+    """
+    return tuple(sorted(_catalogue()[0]))
+
+
+@functools.cache
+def _catalogue() -> tuple[dict[str, Material], dict[str, str]]:
+    """Read the catalogue once: materials by name, and the name behind every name or alias."""
+    tables = tomllib.loads(files("contactlaw").joinpath("catalogue.toml").read_text("utf-8"))
+    references = tables.pop("references")
+    by_name = {name: _from_table(name, table, references) for name, table in tables.items()}
+    canonical = {name: name for name in by_name}
+    for name, table in tables.items():
+        canonical.update(dict.fromkeys(table.get("aliases", ()), name))
+    return by_name, canonical
+
+
+def _from_table(name: str, table: dict[str, Any], references: dict[str, str]) -> Material:
+    values = {field: table[field] for field in _LABELS if field in table}
+    parts = [table["grade"]]
+    for field, (label, unit) in _LABELS.items():
+        number = f" {values[field]:g}{unit}" if field in values else ""
+        parts.append(f"{label}{number}: {table['source'][field].format_map(references)}")
+    return Material(name, **values, source="; ".join(parts))
+
+
+def _finite(name: str, field: str, value: object, unit: str) -> float:
+    # bool is a Real to Python, but True is no measurement.
+    if not isinstance(value, Real) or isinstance(value, bool):
+        raise ValueError(f"{field} of {name!r} must be a number in [{unit}], got {value!r}")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise ValueError(f"{field} of {name!r} must be finite [{unit}], got {value!r}")
+    return number
+
+
+def _positive(name: str, field: str, value: object, unit: str) -> float:
+    number = _finite(name, field, value, unit)
+    if not (number > 0.0):
+        raise ValueError(f"{field} of {name!r} must be positive [{unit}], got {value!r}")
+    return number
+
+
+def _check_units(name: str, modulus: float, density: float, strength: float | None) -> None:
+    if not (modulus >= _SOFTEST):
+        raise ValueError(
+            f"youngs_modulus {modulus!r} of {name!r} is below {_SOFTEST:g} Pa, softer than any "
+            "bead: give it in Pa (not GPa)"
+        )
+    speed = math.sqrt(modulus / density)
+    if not (speed <= _FASTEST):
+        raise ValueError(
+            f"density {density!r} and youngs_modulus {modulus!r} of {name!r} give a wave speed of "
+            f"{speed:.3g} m/s, faster than in any solid: give density in kg/m3 (not g/cm3) and "
+            "youngs_modulus in Pa"
+        )
+    if strength is not None and not (strength < modulus):
+        raise ValueError(
+            f"yield_strength {strength!r} of {name!r} must be below youngs_modulus {modulus!r}: "
+            "give both in Pa"
+        )

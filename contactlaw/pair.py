@@ -1,0 +1,87 @@
+"""Two materials in contact: the sphere's and the plate's."""
+
+from __future__ import annotations
+
+import math
+
+from contactlaw.materials import Material, material
+
+_MYC_YIELD = 0.68  # Peng et al. 2021, Eq. 18; the law's file holds the same number, a test compares
+
+
+class Pair:
+    """Material of the sphere and material of the plate.
+
+    Parameters
+    ----------
+    sphere, plate : Material or str
+        Materials, or names from the catalogue (see `contactlaw.materials`). The sphere is the body
+        that yields, the plate stays elastic.
+
+    Raises
+    ------
+    ValueError
+        If a name is not in the catalogue.
+    TypeError
+        If an argument is neither a Material nor a name.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> pair = cl.Pair("gamma-alumina", "glass")
+    >>> round(pair.yield_speed, 3)
+    7.426
+    """
+
+    __slots__ = ("plate", "sphere")
+
+    sphere: Material
+    plate: Material
+
+    def __init__(self, sphere: Material | str, plate: Material | str) -> None:
+        self.sphere = _resolve("sphere", sphere)
+        self.plate = _resolve("plate", plate)
+
+    def __repr__(self) -> str:
+        return f"Pair({self.sphere.name!r}, {self.plate.name!r})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Pair):
+            return NotImplemented
+        return (self.sphere, self.plate) == (other.sphere, other.plate)
+
+    def __hash__(self) -> int:
+        return hash((self.sphere, self.plate))
+
+    @property
+    def effective_modulus(self) -> float:
+        """E* [Pa], 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, Eq. 4.20)."""
+        return 1.0 / (1.0 / self.sphere.plane_modulus + 1.0 / self.plate.plane_modulus)
+
+    @property
+    def yield_speed(self) -> float:
+        """Speed V_Y0 [m/s] from which a sphere yields on a half-space (Peng et al. 2021, Eq. 4).
+
+        That is 0.552 sqrt(pi^4 sigma_Y^5/(rho1 E*^4)), whatever the radius, with the yield
+        compression of the MYC law. A thinner plate gives way: see `ImpactModel.yield_speed`.
+
+        Raises
+        ------
+        ValueError
+            If the sphere's material has no yield strength.
+        """
+        strength = self.sphere.require_yield_strength("myc")
+        # V_Y0^2 = (4/5) K dY^2.5/m with K = (4/3) E* R^0.5, m = (4/3) pi rho1 R^3, dY as in Eq. 18
+        compression = _MYC_YIELD * (math.pi * strength / self.effective_modulus) ** 2  # d_Y/R
+        energy = 0.8 * self.effective_modulus * compression**2.5  # per (4/3) R^3
+        return math.sqrt(energy / (math.pi * self.sphere.density))
+
+
+def _resolve(argument: str, value: Material | str) -> Material:
+    if isinstance(value, Material):
+        return value
+    if isinstance(value, str):
+        return material(value)
+    raise TypeError(
+        f"{argument}: expected a Material or a name from contactlaw.materials(), got {value!r}"
+    )

@@ -1,0 +1,101 @@
+"""Where the modified Zener model may be trusted."""
+
+from __future__ import annotations
+
+import enum
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.materials import Material
+from contactlaw.pair import Pair
+
+Array = NDArray[np.float64]
+
+_THINNEST = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
+_FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
+_TRANSITS = 6.0  # contact time over H/c_L; Koller & Kolsky 1987 and Boettcher et al. 2017: 6 to 8
+
+
+class Validity(enum.IntFlag):
+    """Limits of the model that an impact exceeds; 0 is inside all of them.
+
+    What the model leaves out altogether (oblique impact, friction, adhesion, viscosity, strain
+    rate, coatings) raises no flag.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    >>> model.lookup(speed=5.0, radius=0.9e-3, thickness=0.3e-3).flags
+    <Validity.THIN_PLATE: 1>
+    """
+
+    THIN_PLATE = 1
+    """R/H > 1.8: the plate's deflection is no longer small (Peng et al. 2021, section 4.4)."""
+    FAST_IMPACT = 2
+    """V0 > 7 V_Y0: beyond the finite elements that the model was compared with."""
+    THICK_PLATE = 4
+    """Contact shorter than 6 thickness transits of the pressure wave: bending has no time to
+    develop. The inelasticity is small there and the COR near its bulk value all the same."""
+    SOFT_PLATE = 8
+    """The plate's yield strength is below the sphere's: the plate yields first, the law has the
+    sphere yield."""
+    CLAMPED = 16
+    """Outside the table; the value is that of the table's border (``outside="clamp"``)."""
+
+
+def limits_exceeded(
+    pair: Pair, radius: Array, thickness: Array, speed_ratio: Array, contact_time: Array
+) -> NDArray[np.int64]:
+    """`Validity` of impacts; speed_ratio is V0/V_Y0 of the law in use, 0 if it never yields."""
+    nu = pair.plate.poissons_ratio
+    # E (1 - nu)/((1 + nu)(1 - 2 nu)) is infinite for an incompressible plate: no transit time then
+    slowness = math.sqrt(
+        pair.plate.density / pair.plate.youngs_modulus * (1 + nu) * (1 - 2 * nu) / (1 - nu)
+    )
+    transits = np.where(np.isfinite(thickness), contact_time, math.inf)
+    strength = pair.plate.yield_strength
+    soft = strength is not None and strength < (pair.sphere.yield_strength or 0.0)
+    flags: NDArray[np.int64] = (
+        (radius > _THINNEST * thickness) * int(Validity.THIN_PLATE)
+        + (speed_ratio > _FASTEST) * int(Validity.FAST_IMPACT)
+        + (transits < _TRANSITS * np.where(np.isfinite(thickness), thickness, 0.0) * slowness)
+        * int(Validity.THICK_PLATE)
+        + int(soft) * int(Validity.SOFT_PLATE)
+    )
+    return flags
+
+
+def edge_distance(plate: Material, thickness: float, contact_time: float) -> float:
+    """Distance to the nearest edge from which no bending wave returns during the contact [m].
+
+    The model's plate is infinite; a wave that comes back from an edge would return energy to the
+    sphere. The wave travels at the group speed c_g = 2 (D w^2/(rho2 H))^(1/4) of bending waves at
+    the contact's own frequency w = pi/contact_time, there and back.
+
+    Parameters
+    ----------
+    plate : Material
+        Material of the plate.
+    thickness : float
+        Thickness of the plate [m].
+    contact_time : float
+        Duration of the contact [s], as in `Rebound.contact_time`.
+
+    Returns
+    -------
+    float
+        Distance [m].
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> round(cl.edge_distance(cl.material("glass"), 1e-3, 6e-6), 4)
+    0.0053
+    """
+    stiffness = plate.plane_modulus * thickness**3 / 12.0
+    frequency = math.pi / contact_time
+    group_speed = 2.0 * (stiffness * frequency**2 / (plate.density * thickness)) ** 0.25
+    return 0.5 * group_speed * contact_time

@@ -1,0 +1,296 @@
+"""The modified Zener model, solved: one impact of a sphere on a plate, without units.
+
+Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(m d_Y/F_Y).
+Hertz's scale, in which the results are given: speeds in V0, time in T_H, compressions in V0 T_H,
+forces in m V0/T_H.
+
+    d   compression, w in Hertz's scale      u      speed of the sphere towards the plate
+    f   contact force                        lam    inelasticity parameter lambda, Eq. 2
+    dm  largest compression, w_m             y      yield compression, d_Y/(V0 T_H)
+    q   root compression, sqrt(d - dr)       beta   plate mobility in the law's scale, lam y^(1/4)
+    dr  residual compression, Eq. 17         j      integral of f^2 dt; the wave took 2 beta j/u0^2
+
+The equation is Eq. 1 of Peng et al. 2021 in its first-order form,
+
+    du/dt = -f,    dd/dt = u - beta f,    d(0) = 0,  u(0) = u0 = y^(-5/4).
+
+A force that starts like d^1.5 has no second derivative at d = 0, where a Runge-Kutta method would
+lose its order. So q replaces d (dr = 0 while loading) and ds = dt/(2 q) replaces dt. Nothing is
+approximated, and for Hertz, f = q^3, the equation becomes polynomial:
+
+    dq/ds = u - beta f,    du/ds = -2 q f,    dt/ds = 2 q,    dj/ds = 2 q f^2
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from contactlaw._jit import kernel
+
+_MAX_STEPS = 200_000
+
+OK, TOO_MANY_STEPS, BAD_INPUT = 0, 1, 2  # status of a solution
+MESSAGES = {
+    TOO_MANY_STEPS: f"more than {_MAX_STEPS} steps; the plate is far thinner than the model allows",
+    BAD_INPUT: "lambda must be finite and >= 0, the yield compression finite and > 0",
+}
+
+_LANDED = 1e-9  # an event is met to this; compression and time are stationary there, so err by its square
+_TURN, _LEVEL = 0, 1  # events: end of loading; a root compression is reached
+
+_Function = Any  # a numba-jitted function, passed as a value
+
+
+class Solution(NamedTuple):
+    """One impact in Hertz's scale; energies as shares of the initial kinetic energy."""
+
+    status: int
+    steps: int
+    restitution: float
+    contact_time: float
+    peak_force: float
+    peak_compression: float
+    residual_compression: float
+    plastic_fraction: float
+    wave_fraction: float
+    wave_rate: float  # wave_fraction / lam, which has a limit at lam = 0
+
+
+class _State(NamedTuple):
+    q: float
+    u: float
+    t: float
+    j: float
+    steps: int
+
+
+class _Trial(NamedTuple):
+    q: float
+    u: float
+    t: float
+    j: float
+    rate: float
+    error: float
+
+
+class _Scale(NamedTuple):
+    """Size of q and u in one impact, against which errors and events are measured."""
+
+    q: float
+    u: float
+    tolerance: float
+
+
+@kernel
+def _rates(
+    loading: _Function, unloading: _Function, beta: float, dm: float, q: float, u: float
+) -> tuple[float, float, float]:
+    """dq/ds, du/ds and the force."""
+    f = loading(q) if dm == 0.0 else unloading(q, dm)
+    return u - beta * f, -2.0 * q * f, f
+
+
+@kernel
+def _step(
+    loading: _Function,
+    unloading: _Function,
+    beta: float,
+    dm: float,
+    state: _State,
+    h: float,
+    scale: _Scale,
+) -> _Trial:
+    """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19, Table 2."""
+    q, u = state.q, state.u
+    a1, b1, f1 = _rates(loading, unloading, beta, dm, q, u)
+    q2, u2 = q + h * (1 / 5 * a1), u + h * (1 / 5 * b1)
+    a2, b2, f2 = _rates(loading, unloading, beta, dm, q2, u2)
+    q3 = q + h * (3 / 40 * a1 + 9 / 40 * a2)
+    u3 = u + h * (3 / 40 * b1 + 9 / 40 * b2)
+    a3, b3, f3 = _rates(loading, unloading, beta, dm, q3, u3)
+    q4 = q + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3)
+    u4 = u + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3)
+    a4, b4, f4 = _rates(loading, unloading, beta, dm, q4, u4)
+    q5 = q + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
+    u5 = u + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4)
+    a5, b5, f5 = _rates(loading, unloading, beta, dm, q5, u5)
+    q6 = q + h * (
+        9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
+    )
+    u6 = u + h * (
+        9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5
+    )
+    a6, b6, f6 = _rates(loading, unloading, beta, dm, q6, u6)
+    w1, w3, w4, w5, w6 = h * 35 / 384, h * 500 / 1113, h * 125 / 192, h * -2187 / 6784, h * 11 / 84
+    q7 = q + w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6
+    u7 = u + w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6
+    a7, b7, _ = _rates(loading, unloading, beta, dm, q7, u7)
+    # 2 q f^2 is -f b
+    j = w1 * f1 * b1 + w3 * f3 * b3 + w4 * f4 * b4 + w5 * f5 * b5 + w6 * f6 * b6
+    error_q = (
+        71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6
+    ) - 1 / 40 * a7
+    error_u = (
+        71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6
+    ) - 1 / 40 * b7
+    return _Trial(
+        q7,
+        u7,
+        state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6),
+        state.j - j,
+        a7,
+        h * max(abs(error_q) / scale.q, abs(error_u) / scale.u),
+    )
+
+
+@kernel
+def _gap(event: int, q: float, rate: float, level: float, scale: _Scale) -> float:
+    """How far an event is off, in units of its scale; its sign changes there."""
+    return rate / scale.u if event == _TURN else (level - q) / scale.q
+
+
+@kernel
+def _land(
+    loading: _Function,
+    unloading: _Function,
+    beta: float,
+    dm: float,
+    state: _State,
+    h: float,
+    scale: _Scale,
+    event: int,
+    level: float,
+) -> tuple[_Trial, float, int]:
+    """Shorten the step h, which passes an event, until it ends there (Illinois method)."""
+    rate = _rates(loading, unloading, beta, dm, state.q, state.u)[0]
+    a, gap_a = 0.0, _gap(event, state.q, rate, level, scale)
+    trial = _step(loading, unloading, beta, dm, state, h, scale)
+    gap_h = _gap(event, trial.q, trial.rate, level, scale)
+    steps = 1
+    while abs(gap_h) > _LANDED and steps < 100:
+        x = h - gap_h * (h - a) / (gap_h - gap_a)
+        trial = _step(loading, unloading, beta, dm, state, x, scale)
+        gap_x = _gap(event, trial.q, trial.rate, level, scale)
+        if gap_x * gap_h < 0.0:
+            a, gap_a = h, gap_h
+        else:
+            gap_a *= 0.5
+        h, gap_h = x, gap_x
+        steps += 1
+    return trial, h, steps
+
+
+@kernel
+def _phase(
+    loading: _Function,
+    unloading: _Function,
+    beta: float,
+    dm: float,
+    state: _State,
+    h: float,
+    scale: _Scale,
+    level: float,
+) -> tuple[_State, int, float]:
+    """Integrate loading (dm = 0) to its end or to the kink `level`; unloading (dm > 0) to q = 0."""
+    steps = state.steps
+    while steps < _MAX_STEPS:
+        trial = _step(loading, unloading, beta, dm, state, h, scale)
+        steps += 1
+        ratio = 0.9 * (scale.tolerance / max(trial.error, 1e-30)) ** 0.2
+        if trial.error > scale.tolerance:
+            h *= max(0.2, ratio)
+            continue
+        turned = dm == 0.0 and trial.rate < 0.0
+        passed = trial.q > level if dm == 0.0 else trial.q < level
+        event = _TURN if turned else _LEVEL
+        if turned or passed:
+            trial, shorter, more = _land(
+                loading, unloading, beta, dm, state, h, scale, event, level
+            )
+            steps += more
+            if turned and trial.q > level:  # the step went over the kink before it turned
+                event = _LEVEL
+                trial, _, more = _land(
+                    loading, unloading, beta, dm, state, shorter, scale, event, level
+                )
+                steps += more
+            return _State(trial.q, trial.u, trial.t, trial.j, steps), event, h
+        state = _State(trial.q, trial.u, trial.t, trial.j, steps)
+        h *= min(5.0, ratio)
+    return _State(state.q, state.u, state.t, state.j, steps), _TURN, h
+
+
+@kernel
+def _load(
+    loading: _Function,
+    unloading: _Function,
+    kinks: tuple[float, ...],
+    beta: float,
+    scale: _Scale,
+    h: float,
+) -> tuple[_State, float]:
+    """From first touch to the largest compression, landing on each kink (the last is inf)."""
+    state = _State(0.0, scale.u, 0.0, 0.0, 0)
+    for kink in kinks:
+        state, event, h = _phase(loading, unloading, beta, 0.0, state, h, scale, math.sqrt(kink))
+        rate = _rates(loading, unloading, beta, 0.0, state.q, state.u)[0]
+        if event == _TURN or rate <= 0.0:
+            break
+    return state, h
+
+
+@kernel
+def _scale(y: float, rtol: float) -> tuple[_Scale, float]:
+    """Scales of an impact in the law's units, and a first step that the error control accepts."""
+    y4 = math.sqrt(math.sqrt(y))
+    return _Scale(1.0 / (y4 * y4), 1.0 / (y * y4), rtol), 0.7 * rtol**0.2 * y4**3
+
+
+@kernel
+def solve(
+    loading: _Function,
+    residual: _Function,
+    unloading: _Function,
+    dissipation: _Function,
+    kinks: tuple[float, ...],
+    lam: float,
+    y: float,
+    rtol: float,
+) -> Solution:
+    """One impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol the error allowed per step."""
+    if not (0.0 <= lam < math.inf and 0.0 < y < math.inf):
+        return Solution(BAD_INPUT, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    scale, h = _scale(y, rtol)
+    y4 = math.sqrt(math.sqrt(y))
+    beta = lam * y4
+    state, h = _load(loading, unloading, kinks, beta, scale, h)
+    dm = state.q * state.q
+    dr = residual(dm)
+    state = _State(math.sqrt(dm - dr), state.u, state.t, state.j, state.steps)
+    state, _, h = _phase(loading, unloading, beta, dm, state, h, scale, 0.0)
+    wave_rate = 2.0 * y4 * state.j / scale.u**2
+    return Solution(
+        OK if state.steps < _MAX_STEPS else TOO_MANY_STEPS,
+        state.steps,
+        -state.u / scale.u,
+        state.t / y4,
+        loading(math.sqrt(dm)) * y * math.sqrt(y),
+        dm * y,
+        dr * y,
+        2.0 * dissipation(dm) / scale.u**2,
+        lam * wave_rate,
+        wave_rate,
+    )
+
+
+@kernel
+def elastic_compression(
+    loading: _Function, unloading: _Function, lam: float, rtol: float
+) -> tuple[int, float]:
+    """Status and w_m(lam): largest compression [V0 T_H] under Hertz's law (Fig. 4 of the paper)."""
+    if not 0.0 <= lam < math.inf:
+        return BAD_INPUT, 0.0
+    scale, h = _scale(1.0, rtol)
+    state, _ = _load(loading, unloading, (math.inf,), lam, scale, h)
+    return (OK if state.steps < _MAX_STEPS else TOO_MANY_STEPS), state.q * state.q

@@ -1,0 +1,337 @@
+"""The catalogue's numbers, their sources, and the refusal of bad ones."""
+
+import dataclasses
+import math
+import pickle
+import subprocess
+import sys
+import tomllib
+from decimal import Decimal
+from fractions import Fraction
+from importlib.resources import files
+
+import numpy as np
+import pytest
+
+from contactlaw.materials import Material, material, materials
+
+NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength")
+REQUIRED = {
+    "gamma-alumina",
+    "glass",
+    "soda-lime-glass",
+    "carbon-steel-1020",
+    "stainless-steel-304",
+    "stainless-steel-316",
+    "bearing-steel-52100",
+    "aluminium-6061-t6",
+    "aluminium-2024-t3",
+    "titanium-ti-6al-4v",
+    "copper-c11000",
+    "brass-c26000",
+    "tungsten-carbide",
+    "alumina",
+    "zirconia",
+    "pmma",
+    "ptfe",
+    "nylon-66",
+    "hdpe",
+}
+BRITTLE = {
+    "glass",
+    "soda-lime-glass",
+    "tungsten-carbide",
+    "alumina",
+    "zirconia",
+    "silicon-nitride",
+    "polystyrene",
+}
+# Longitudinal sound speeds [m/s] of ASTM E494, Tables X3.1 and X3.2: measured by ultrasound, so
+# they know nothing of the tensile tests and handbooks behind the catalogue. Polymers are absent:
+# at ultrasonic rates they are much stiffer.
+ULTRASONIC = {
+    "carbon-steel-1020": 5900.0,
+    "bearing-steel-52100": 5900.0,
+    "stainless-steel-304": 5790.0,
+    "stainless-steel-316": 5790.0,
+    "aluminium-6061-t6": 6300.0,
+    "aluminium-2024-t3": 6300.0,
+    "titanium-ti-6al-4v": 6240.0,
+    "copper-c11000": 4700.0,
+    "brass-c26000": 4370.0,
+    "alumina": 10200.0,
+    "zirconia": 7040.0,
+    "silicon-nitride": 10800.0,
+}
+
+
+def raw_catalogue() -> dict[str, dict[str, object]]:
+    return tomllib.loads(files("contactlaw").joinpath("catalogue.toml").read_text("utf-8"))
+
+
+def sound_speeds(entry: Material) -> tuple[float, float]:
+    """Longitudinal and shear wave speed [m/s] in the bulk."""
+    modulus, nu, rho = entry.youngs_modulus, entry.poissons_ratio, entry.density
+    longitudinal = math.sqrt(modulus * (1 - nu) / (rho * (1 + nu) * (1 - 2 * nu)))
+    return longitudinal, math.sqrt(modulus / (2 * (1 + nu) * rho))
+
+
+def steel(**changes: object) -> Material:
+    values = {"youngs_modulus": 207e9, "poissons_ratio": 0.293, "density": 7850.0} | changes
+    return Material("steel", **values)  # type: ignore[arg-type]
+
+
+def test_paper_pair_is_as_printed() -> None:
+    bead, plate = material("gamma-alumina"), material("glass")
+    assert [getattr(bead, number) for number in NUMBERS] == [12.23e9, 0.21, 879.0, 472.5e6]
+    assert [getattr(plate, number) for number in NUMBERS] == [73e9, 0.21, 2500.0, None]
+    assert "111036, Table 1" in bead.source and "111036, Table 1" in plate.source
+
+
+def test_paper_pair_gives_the_papers_yield_speed() -> None:
+    # The paper's Eq. 4 and its 7.426 m/s, printed to three decimals.
+    bead, plate = material("gamma-alumina"), material("glass")
+    modulus = 1 / (1 / bead.plane_modulus + 1 / plate.plane_modulus)
+    strength = bead.require_yield_strength("myc")
+    speed = 0.552 * math.sqrt(math.pi**4 * strength**5 / (bead.density * modulus**4))
+    assert speed == pytest.approx(7.426, abs=5e-4)
+
+
+def test_catalogue_has_what_users_need() -> None:
+    assert set(materials()) >= REQUIRED
+    assert list(materials()) == sorted(set(materials()))
+
+
+@pytest.mark.parametrize("name", materials())
+def test_every_number_has_its_own_source(name: str) -> None:
+    table, source = raw_catalogue()[name], material(name).source
+    assert set(table["source"]) == set(NUMBERS)  # type: ignore[call-overload]
+    assert set(table) <= {*NUMBERS, "grade", "aliases", "source"}
+    assert "{" not in source, "a reference key was not expanded"
+    for number in NUMBERS:
+        own = table["source"][number]  # type: ignore[index]
+        if number in table:
+            # Without a {reference} key the text itself must be long enough to be a citation.
+            assert "{" in own or len(own) > 20
+            assert f" {table[number]:g}" in source
+        else:
+            assert own.startswith("none")
+
+
+def test_every_reference_is_used() -> None:
+    text = files("contactlaw").joinpath("catalogue.toml").read_text("utf-8")
+    assert [key for key in raw_catalogue()["references"] if f"{{{key}}}" not in text] == []
+
+
+@pytest.mark.parametrize("name", materials())
+def test_entry_is_physically_plausible(name: str) -> None:
+    entry = material(name)
+    # Bar wave speed: 300 m/s is below every unfilled plastic (PTFE 470), 20 km/s above diamond.
+    assert 300 < math.sqrt(entry.youngs_modulus / entry.density) < 20e3
+    assert 0.15 < entry.poissons_ratio < 0.48  # no cork, no rubber, nothing auxetic in the list
+    if entry.yield_strength is not None:
+        # Lead and pure aluminium yield near 2e-4; a perfect crystal, the limit, near 0.1.
+        assert 1e-4 < entry.yield_strength / entry.youngs_modulus < 0.1
+
+
+@pytest.mark.parametrize(("name", "measured"), ULTRASONIC.items())
+def test_modulus_ratio_and_density_agree_with_ultrasound(name: str, measured: float) -> None:
+    # 6 %: the table names "steel" or "aluminum", not the alloy, and its ceramics have some pores.
+    assert sound_speeds(material(name))[0] == pytest.approx(measured, rel=0.06)
+
+
+def test_tungsten_carbide_returns_the_speeds_it_was_computed_from() -> None:
+    # Half a unit in the last digit of nu = 0.206 moves the longitudinal speed by 0.03 %.
+    longitudinal, shear = sound_speeds(material("tungsten-carbide"))
+    assert longitudinal == pytest.approx(6853, rel=5e-4)
+    assert shear == pytest.approx(4171, rel=5e-4)
+
+
+def test_brittle_materials_have_no_yield_strength() -> None:
+    without = {name for name in materials() if material(name).yield_strength is None}
+    assert without == BRITTLE
+
+
+@pytest.mark.parametrize(
+    ("alias", "name"),
+    [
+        ("304", "stainless-steel-304"),
+        ("AISI 304", "stainless-steel-304"),
+        ("aisi_316", "stainless-steel-316"),
+        ("gamma-Al2O3", "gamma-alumina"),
+        ("  Gamma Alumina ", "gamma-alumina"),
+        ("100Cr6", "bearing-steel-52100"),
+        ("Ti-6Al-4V", "titanium-ti-6al-4v"),
+        ("6061-T6", "aluminium-6061-t6"),
+        ("aluminum 2024 t3", "aluminium-2024-t3"),
+        ("Y-TZP", "zirconia"),
+        ("PTFE", "ptfe"),
+        ("Nylon 6,6", "nylon-66"),
+        ("polyethylene", "hdpe"),
+        ("GLASS", "glass"),
+    ],
+)
+def test_names_are_found_however_they_are_typed(alias: str, name: str) -> None:
+    assert material(alias).name == name
+
+
+def test_no_alias_is_ambiguous_or_unreachable() -> None:
+    tables = raw_catalogue()
+    tables.pop("references")
+    spelt = [*tables, *(a for table in tables.values() for a in table.get("aliases", ()))]
+    assert len(spelt) == len(set(spelt))
+    for name, table in tables.items():
+        for alias in table.get("aliases", ()):
+            assert material(alias).name == name
+
+
+@pytest.mark.parametrize(
+    ("typed", "near"),
+    [
+        ("glas", "'glass'"),
+        ("gama-alumina", "'gamma-alumina'"),
+        ("stainless steel", "'stainless-steel-304'"),
+        ("berring steel", "'bearing-steel-52100'"),
+        ("steel", "'carbon-steel-1020' or 'stainless-steel-304' or 'stainless-steel-316'"),
+    ],
+)
+def test_unknown_name_lists_near_matches(typed: str, near: str) -> None:
+    with pytest.raises(ValueError, match="unknown material") as caught:
+        material(typed)
+    message = str(caught.value)
+    assert repr(typed) in message and near in message
+    assert "contactlaw.materials() lists all" in message
+
+
+def test_unknown_name_far_from_everything_suggests_nothing() -> None:
+    with pytest.raises(ValueError, match=r"'qqqq': contactlaw\.materials\(\) lists all"):
+        material("qqqq")
+
+
+@pytest.mark.parametrize("name", [None, 304, "", b"glass", "references"])
+def test_material_refuses_what_is_no_name(name: object) -> None:
+    with pytest.raises(ValueError, match="name must be a string|unknown material"):
+        material(name)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("field", NUMBERS)
+@pytest.mark.parametrize(
+    "value",
+    [math.nan, math.inf, -math.inf, 10**400, "207e9", True, np.True_, 1j, [1.0], Decimal(1)],
+)
+def test_what_is_no_finite_number_is_refused(field: str, value: object) -> None:
+    with pytest.raises(ValueError, match=f"^{field} of 'steel' must be") as caught:
+        steel(**{field: value})
+    assert repr(value) in str(caught.value)
+
+
+@pytest.mark.parametrize("field", ["youngs_modulus", "density", "yield_strength"])
+@pytest.mark.parametrize("value", [0, 0.0, -0.0, -1.0, np.float32(-7850)])
+def test_what_is_not_positive_is_refused(field: str, value: object) -> None:
+    with pytest.raises(ValueError, match=f"^{field} of 'steel' must be positive"):
+        steel(**{field: value})
+
+
+@pytest.mark.parametrize("field", ["youngs_modulus", "poissons_ratio", "density"])
+def test_none_is_refused_where_a_number_is_needed(field: str) -> None:
+    with pytest.raises(ValueError, match=f"^{field} of 'steel' must be a number.*None"):
+        steel(**{field: None})
+
+
+@pytest.mark.parametrize("ratio", [-1.0, -2.0, 0.5000001, 29.3])
+def test_poissons_ratio_outside_its_range_is_refused(ratio: float) -> None:
+    with pytest.raises(ValueError, match="^poissons_ratio of 'steel' must be above -1"):
+        steel(poissons_ratio=ratio)
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.0, -0.99])
+def test_poissons_ratio_limits_are_accepted(ratio: float) -> None:
+    assert steel(poissons_ratio=ratio).poissons_ratio == ratio
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        {"youngs_modulus": 207.0},  # GPa
+        {"density": 7.85},  # g/cm3
+        {"youngs_modulus": 207.0, "density": 7.85, "yield_strength": 0.35},  # both
+        {"youngs_modulus": 207e3, "yield_strength": 350e6},  # MPa
+        {"yield_strength": 350e15},
+    ],
+)
+def test_mixed_units_are_refused_with_the_right_ones(values: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match=r"in Pa"):
+        steel(**values)
+
+
+def test_soft_and_light_beads_are_accepted() -> None:
+    assert Material("hydrogel", 2e4, 0.5, 1000.0).youngs_modulus == 2e4
+    assert Material("expanded polystyrene", 5e6, 0.1, 20.0).density == 20.0
+    assert Material("softened for DEM", 1e6, 0.3, 2500.0).youngs_modulus == 1e6
+
+
+@pytest.mark.parametrize("name", ["", "  ", None, 1])
+def test_a_material_needs_a_name(name: object) -> None:
+    with pytest.raises(ValueError, match="^name must be a non-empty string"):
+        Material(name, 207e9, 0.3, 7850)  # type: ignore[arg-type]
+
+
+def test_a_source_is_text() -> None:
+    with pytest.raises(ValueError, match="^source must be a string, got 42"):
+        steel(source=42)
+
+
+def test_numbers_of_any_real_type_become_floats() -> None:
+    entry = steel(
+        youngs_modulus=207 * 10**9,
+        poissons_ratio=Fraction(3, 10),
+        density=np.int64(7850),
+        yield_strength=np.float32(350e6),
+    )
+    values = [getattr(entry, number) for number in NUMBERS]
+    assert values == [207e9, 0.3, 7850.0, 350e6]
+    assert {type(value) for value in values} == {float}
+
+
+def test_plane_modulus_is_e_over_one_minus_nu_squared() -> None:
+    assert steel(youngs_modulus=75e9, poissons_ratio=0.5).plane_modulus == 100e9
+
+
+def test_missing_yield_strength_says_what_to_do() -> None:
+    with pytest.raises(ValueError, match="yield strength") as caught:
+        material("glass").require_yield_strength("myc")
+    message = str(caught.value)
+    for part in ("'myc'", "'glass'", "Material(..., yield_strength=...)", 'law="hertz"', "Pa"):
+        assert part in message
+
+
+def test_yield_strength_is_returned_where_there_is_one() -> None:
+    assert steel(yield_strength=350e6).require_yield_strength("myc") == 350e6
+
+
+@pytest.mark.parametrize("field", [*NUMBERS, "name", "source"])
+def test_materials_cannot_be_changed(field: str) -> None:
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        setattr(material("glass"), field, 1.0)
+
+
+def test_materials_take_no_further_attributes() -> None:
+    assert not hasattr(material("glass"), "__dict__")
+
+
+@pytest.mark.parametrize("name", ["glass", "gamma-alumina"])
+def test_pickle_round_trip(name: str) -> None:
+    copy = pickle.loads(pickle.dumps(material(name)))
+    assert copy == material(name) and hash(copy) == hash(material(name))
+
+
+def test_replace_checks_again() -> None:
+    with pytest.raises(ValueError, match="^density of 'glass' must be positive"):
+        dataclasses.replace(material("glass"), density=-1.0)
+
+
+def test_import_reads_no_catalogue() -> None:
+    # In a fresh process, since this one has long read it.
+    code = "import contactlaw.materials as m; print(m._catalogue.cache_info().currsize)"
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert ran.stdout.strip() == "0"
