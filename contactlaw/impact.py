@@ -53,7 +53,7 @@ def plate_mobility(plate: Material, thickness: Array) -> Array:
 
 
 def _yield_compression(pair: Pair, radius: Array, law: Law) -> Array:
-    """c pi^2 sigma_Y^2 R*/E*^2 (Eq. 18) of the sphere's material; inf for a law that never yields."""
+    """Yield compression of the sphere's material, Eq. 18; inf for a law that never yields."""
     if law.yield_coefficient is None:
         return np.full_like(radius, math.inf)
     strength = pair.sphere.require_yield_strength(law.name)

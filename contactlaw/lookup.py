@@ -67,7 +67,7 @@ def spline_coefficients(values: Array) -> Array:
     matrix[0, :5] = matrix[-1, -5:] = (-1.0, 4.0, -6.0, 4.0, -1.0)
     right = np.zeros((n + 2, *values.shape[1:]))
     right[1:-1] = values
-    flat = np.linalg.solve(matrix, right.reshape(n + 2, -1))
+    flat = np.asarray(np.linalg.solve(matrix, right.reshape(n + 2, -1)), dtype=np.float64)
     return flat.reshape(right.shape)
 
 
@@ -88,7 +88,8 @@ def log_elastic_compression(splines: Splines, lam: float) -> float:
     i = min(int(position), splines.log_elastic.size - 4)
     w0, w1, w2, w3 = _weights(position - i)
     c = splines.log_elastic
-    return w0 * c[i] + w1 * c[i + 1] + w2 * c[i + 2] + w3 * c[i + 3]
+    value: float = w0 * c[i] + w1 * c[i + 1] + w2 * c[i + 2] + w3 * c[i + 3]
+    return value
 
 
 @kernel(cache=True)
@@ -113,12 +114,16 @@ def restitution_at(splines: Splines, lam: float, log_chi: float) -> float:
     a0, a1, a2, a3 = _weights(s)
     b0, b1, b2, b3 = _weights(t)
     c = splines.restitution
-    return (
+    value: float = (
         a0 * (b0 * c[i, j] + b1 * c[i, j + 1] + b2 * c[i, j + 2] + b3 * c[i, j + 3])
-        + a1 * (b0 * c[i + 1, j] + b1 * c[i + 1, j + 1] + b2 * c[i + 1, j + 2] + b3 * c[i + 1, j + 3])
-        + a2 * (b0 * c[i + 2, j] + b1 * c[i + 2, j + 1] + b2 * c[i + 2, j + 2] + b3 * c[i + 2, j + 3])
-        + a3 * (b0 * c[i + 3, j] + b1 * c[i + 3, j + 1] + b2 * c[i + 3, j + 2] + b3 * c[i + 3, j + 3])
+        + a1
+        * (b0 * c[i + 1, j] + b1 * c[i + 1, j + 1] + b2 * c[i + 1, j + 2] + b3 * c[i + 1, j + 3])
+        + a2
+        * (b0 * c[i + 2, j] + b1 * c[i + 2, j + 1] + b2 * c[i + 2, j + 2] + b3 * c[i + 2, j + 3])
+        + a3
+        * (b0 * c[i + 3, j] + b1 * c[i + 3, j + 1] + b2 * c[i + 3, j + 2] + b3 * c[i + 3, j + 3])
     )
+    return value
 
 
 @kernel(cache=True)

@@ -155,7 +155,7 @@ def material(name: str) -> Material:
     if key not in canonical:
         # "steel" is part of a name rather than like one. Aliases of one material name it once.
         near = [known for known in canonical if key and key in known]
-        near += difflib.get_close_matches(key, canonical, n=3, cutoff=0.6)
+        near += difflib.get_close_matches(key, canonical, n=3, cutoff=0.45)
         names = dict.fromkeys(canonical[match] for match in near)
         hint = f"did you mean {' or '.join(map(repr, names))}? " if names else ""
         raise ValueError(

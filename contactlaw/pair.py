@@ -30,7 +30,7 @@ class Pair:
     >>> import contactlaw as cl
     >>> pair = cl.Pair("gamma-alumina", "glass")
     >>> round(pair.yield_speed, 3)
-    7.426
+    7.43
     """
 
     __slots__ = ("plate", "sphere")
@@ -55,7 +55,7 @@ class Pair:
 
     @property
     def effective_modulus(self) -> float:
-        """E* [Pa], 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson, Contact Mechanics, Eq. 4.20)."""
+        """E* [Pa]: 1/E* = (1 - nu1^2)/E1 + (1 - nu2^2)/E2 (Johnson 1985, Eq. 4.20)."""
         return 1.0 / (1.0 / self.sphere.plane_modulus + 1.0 / self.plate.plane_modulus)
 
     @property

@@ -64,7 +64,7 @@ def _fill(file: h5py.File, table: Table) -> None:
     )
     file["elastic_compression"] = table.elastic_compression
     file["elastic_compression"].attrs["description"] = (
-        "w_m at lambda = c x/(1 - x), x uniform from lambda = 0 to the largest, c = stretch [V0 T_H]"
+        "w_m at lambda = c x/(1 - x), c = stretch, x uniform, lambda from 0 to the largest [V0 T_H]"
     )
     for name, values in table.fields.items():
         file.create_dataset(f"fields/{name}", data=values, compression="gzip", shuffle=True)

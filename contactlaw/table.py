@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import zener
-from contactlaw._jit import kernel
 from contactlaw.laws import Law
 from contactlaw.laws import law as find_law
 from contactlaw.lookup import Splines, spline_coefficients
@@ -137,42 +136,6 @@ def _segments(law: Law, settings: Settings) -> tuple[Array, ...]:
     )
 
 
-@kernel
-def _sweep_row(
-    loading: Callable[[float], float],
-    residual: Callable[[float], float],
-    unloading: Callable[[float, float], float],
-    dissipation: Callable[[float], float],
-    kinks: tuple[float, ...],
-    lam: float,
-    log_chi: Array,
-    rtol: float,
-    out: Array,
-) -> tuple[int, int]:
-    """Solve one row of nodes into out (4, n); status and column of the first failure."""
-    status, w_m = zener.elastic_compression(loading, unloading, lam, rtol)
-    if status != zener.OK:
-        return status, 0
-    for j in range(log_chi.size):
-        one = zener.solve(
-            loading,
-            residual,
-            unloading,
-            dissipation,
-            kinks,
-            lam,
-            w_m / math.exp(log_chi[j]),
-            rtol,
-        )
-        if one.status != zener.OK:
-            return one.status, j
-        out[0, j] = one.restitution
-        out[1, j] = one.contact_time
-        out[2, j] = one.wave_rate
-        out[3, j] = one.peak_compression / w_m
-    return zener.OK, 0
-
-
 def _no_progress(rows: Iterator[Array], total: int) -> Iterable[Array]:
     return rows
 
@@ -205,30 +168,28 @@ def build(
     if not chosen.kinks:
         raise ValueError(f"law: {law!r} never yields; the edge chi = 1 of any table serves it")
     settings = settings or Settings()
-    elastic = find_law("hertz")
+    functions, hertz = chosen.functions, find_law("hertz").functions
     lam = _inelasticity_nodes(settings, settings.inelasticity_nodes)
     segments = _segments(chosen, settings)
     log_chi = np.concatenate(segments)
 
+    def elastic_peak(value: float) -> float:
+        status, w_m = zener.elastic_compression(hertz, value, settings.rtol)
+        if status != zener.OK:
+            raise RuntimeError(f"w_m({value:.6g}) did not solve: {zener.MESSAGES[status]}")
+        return float(w_m)
+
     def row(value: float) -> Array:
-        out = np.empty((len(FIELDS), log_chi.size))
-        status, j = _sweep_row(*chosen.arguments, value, log_chi, settings.rtol, out)
+        y = elastic_peak(value) / np.exp(log_chi)
+        out = np.empty((len(FIELDS) + 1, y.size))
+        lams = np.full_like(y, value)
+        status, j = zener.solve_all(functions, hertz, lams, y, settings.rtol, out)
         if status != zener.OK:
             raise RuntimeError(
                 f"table for law {law!r}: the node lambda = {value:.6g}, chi = "
                 f"{math.exp(log_chi[j]):.6g} did not solve: {zener.MESSAGES[status]}"
             )
-        return out
-
-    def elastic_peak(value: float) -> float:
-        status, w_m = zener.elastic_compression(
-            elastic.loading, elastic.unloading, value, settings.rtol
-        )
-        if status != zener.OK:
-            raise RuntimeError(
-                f"w_m({value:.6g}) did not solve: {zener.MESSAGES[status]}"
-            )
-        return float(w_m)
+        return out[:-1]
 
     row(lam[0])  # compile once, before the threads ask for it
     with ThreadPoolExecutor(os.cpu_count()) as pool:

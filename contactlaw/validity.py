@@ -49,7 +49,7 @@ class Validity(enum.IntFlag):
 def limits_exceeded(
     pair: Pair, radius: Array, thickness: Array, speed_ratio: Array, contact_time: Array
 ) -> NDArray[np.int64]:
-    """`Validity` of impacts; speed_ratio is V0/V_Y0 of the law in use, 0 if it never yields."""
+    """Flag impacts; speed_ratio is V0/V_Y0 of the law in use, 0 if it never yields."""
     nu = pair.plate.poissons_ratio
     # E (1 - nu)/((1 + nu)(1 - 2 nu)) is infinite for an incompressible plate: no transit time then
     slowness = math.sqrt(
@@ -93,9 +93,9 @@ def edge_distance(plate: Material, thickness: float, contact_time: float) -> flo
     --------
     >>> import contactlaw as cl
     >>> round(cl.edge_distance(cl.material("glass"), 1e-3, 6e-6), 4)
-    0.0053
+    0.0055
     """
     stiffness = plate.plane_modulus * thickness**3 / 12.0
     frequency = math.pi / contact_time
-    group_speed = 2.0 * (stiffness * frequency**2 / (plate.density * thickness)) ** 0.25
+    group_speed = 2.0 * math.sqrt(frequency * math.sqrt(stiffness / (plate.density * thickness)))
     return 0.5 * group_speed * contact_time

@@ -24,9 +24,15 @@ approximated, and for Hertz, f = q^3, the equation becomes polynomial:
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from contactlaw.laws import Functions
+
+Array = NDArray[np.float64]
 
 _MAX_STEPS = 200_000
 
@@ -36,10 +42,10 @@ MESSAGES = {
     BAD_INPUT: "lambda must be finite and >= 0, the yield compression finite and > 0",
 }
 
-_LANDED = 1e-9  # an event is met to this; compression and time are stationary there, so err by its square
+_LANDED = (
+    1e-9  # an event is met to this; compression and time are stationary there, so err by its square
+)
 _TURN, _LEVEL = 0, 1  # events: end of loading; a root compression is reached
-
-_Function = Any  # a numba-jitted function, passed as a value
 
 
 class Solution(NamedTuple):
@@ -84,48 +90,47 @@ class _Scale(NamedTuple):
 
 @kernel
 def _rates(
-    loading: _Function, unloading: _Function, beta: float, dm: float, q: float, u: float
+    law: Functions, beta: float, dm: float, q: float, u: float
 ) -> tuple[float, float, float]:
     """dq/ds, du/ds and the force."""
-    f = loading(q) if dm == 0.0 else unloading(q, dm)
+    f = law.loading(q) if dm == 0.0 else law.unloading(q, dm)
     return u - beta * f, -2.0 * q * f, f
 
 
 @kernel
 def _step(
-    loading: _Function,
-    unloading: _Function,
+    law: Functions,
     beta: float,
     dm: float,
     state: _State,
     h: float,
     scale: _Scale,
 ) -> _Trial:
-    """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19, Table 2."""
+    """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19."""
     q, u = state.q, state.u
-    a1, b1, f1 = _rates(loading, unloading, beta, dm, q, u)
+    a1, b1, f1 = _rates(law, beta, dm, q, u)
     q2, u2 = q + h * (1 / 5 * a1), u + h * (1 / 5 * b1)
-    a2, b2, f2 = _rates(loading, unloading, beta, dm, q2, u2)
+    a2, b2, f2 = _rates(law, beta, dm, q2, u2)
     q3 = q + h * (3 / 40 * a1 + 9 / 40 * a2)
     u3 = u + h * (3 / 40 * b1 + 9 / 40 * b2)
-    a3, b3, f3 = _rates(loading, unloading, beta, dm, q3, u3)
+    a3, b3, f3 = _rates(law, beta, dm, q3, u3)
     q4 = q + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3)
     u4 = u + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3)
-    a4, b4, f4 = _rates(loading, unloading, beta, dm, q4, u4)
+    a4, b4, f4 = _rates(law, beta, dm, q4, u4)
     q5 = q + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
     u5 = u + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4)
-    a5, b5, f5 = _rates(loading, unloading, beta, dm, q5, u5)
+    a5, b5, f5 = _rates(law, beta, dm, q5, u5)
     q6 = q + h * (
         9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
     )
     u6 = u + h * (
         9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5
     )
-    a6, b6, f6 = _rates(loading, unloading, beta, dm, q6, u6)
+    a6, b6, f6 = _rates(law, beta, dm, q6, u6)
     w1, w3, w4, w5, w6 = h * 35 / 384, h * 500 / 1113, h * 125 / 192, h * -2187 / 6784, h * 11 / 84
     q7 = q + w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6
     u7 = u + w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6
-    a7, b7, _ = _rates(loading, unloading, beta, dm, q7, u7)
+    a7, b7, _ = _rates(law, beta, dm, q7, u7)
     # 2 q f^2 is -f b
     j = w1 * f1 * b1 + w3 * f3 * b3 + w4 * f4 * b4 + w5 * f5 * b5 + w6 * f6 * b6
     error_q = (
@@ -152,8 +157,7 @@ def _gap(event: int, q: float, rate: float, level: float, scale: _Scale) -> floa
 
 @kernel
 def _land(
-    loading: _Function,
-    unloading: _Function,
+    law: Functions,
     beta: float,
     dm: float,
     state: _State,
@@ -163,14 +167,14 @@ def _land(
     level: float,
 ) -> tuple[_Trial, float, int]:
     """Shorten the step h, which passes an event, until it ends there (Illinois method)."""
-    rate = _rates(loading, unloading, beta, dm, state.q, state.u)[0]
+    rate = _rates(law, beta, dm, state.q, state.u)[0]
     a, gap_a = 0.0, _gap(event, state.q, rate, level, scale)
-    trial = _step(loading, unloading, beta, dm, state, h, scale)
+    trial = _step(law, beta, dm, state, h, scale)
     gap_h = _gap(event, trial.q, trial.rate, level, scale)
     steps = 1
     while abs(gap_h) > _LANDED and steps < 100:
         x = h - gap_h * (h - a) / (gap_h - gap_a)
-        trial = _step(loading, unloading, beta, dm, state, x, scale)
+        trial = _step(law, beta, dm, state, x, scale)
         gap_x = _gap(event, trial.q, trial.rate, level, scale)
         if gap_x * gap_h < 0.0:
             a, gap_a = h, gap_h
@@ -183,8 +187,7 @@ def _land(
 
 @kernel
 def _phase(
-    loading: _Function,
-    unloading: _Function,
+    law: Functions,
     beta: float,
     dm: float,
     state: _State,
@@ -195,7 +198,7 @@ def _phase(
     """Integrate loading (dm = 0) to its end or to the kink `level`; unloading (dm > 0) to q = 0."""
     steps = state.steps
     while steps < _MAX_STEPS:
-        trial = _step(loading, unloading, beta, dm, state, h, scale)
+        trial = _step(law, beta, dm, state, h, scale)
         steps += 1
         ratio = 0.9 * (scale.tolerance / max(trial.error, 1e-30)) ** 0.2
         if trial.error > scale.tolerance:
@@ -205,15 +208,11 @@ def _phase(
         passed = trial.q > level if dm == 0.0 else trial.q < level
         event = _TURN if turned else _LEVEL
         if turned or passed:
-            trial, shorter, more = _land(
-                loading, unloading, beta, dm, state, h, scale, event, level
-            )
+            trial, shorter, more = _land(law, beta, dm, state, h, scale, event, level)
             steps += more
             if turned and trial.q > level:  # the step went over the kink before it turned
                 event = _LEVEL
-                trial, _, more = _land(
-                    loading, unloading, beta, dm, state, shorter, scale, event, level
-                )
+                trial, _, more = _land(law, beta, dm, state, shorter, scale, event, level)
                 steps += more
             return _State(trial.q, trial.u, trial.t, trial.j, steps), event, h
         state = _State(trial.q, trial.u, trial.t, trial.j, steps)
@@ -223,18 +222,16 @@ def _phase(
 
 @kernel
 def _load(
-    loading: _Function,
-    unloading: _Function,
-    kinks: tuple[float, ...],
+    law: Functions,
     beta: float,
     scale: _Scale,
     h: float,
 ) -> tuple[_State, float]:
     """From first touch to the largest compression, landing on each kink (the last is inf)."""
     state = _State(0.0, scale.u, 0.0, 0.0, 0)
-    for kink in kinks:
-        state, event, h = _phase(loading, unloading, beta, 0.0, state, h, scale, math.sqrt(kink))
-        rate = _rates(loading, unloading, beta, 0.0, state.q, state.u)[0]
+    for kink in law.kinks:
+        state, event, h = _phase(law, beta, 0.0, state, h, scale, math.sqrt(kink))
+        rate = _rates(law, beta, 0.0, state.q, state.u)[0]
         if event == _TURN or rate <= 0.0:
             break
     return state, h
@@ -249,11 +246,7 @@ def _scale(y: float, rtol: float) -> tuple[_Scale, float]:
 
 @kernel
 def solve(
-    loading: _Function,
-    residual: _Function,
-    unloading: _Function,
-    dissipation: _Function,
-    kinks: tuple[float, ...],
+    law: Functions,
     lam: float,
     y: float,
     rtol: float,
@@ -264,33 +257,70 @@ def solve(
     scale, h = _scale(y, rtol)
     y4 = math.sqrt(math.sqrt(y))
     beta = lam * y4
-    state, h = _load(loading, unloading, kinks, beta, scale, h)
+    state, h = _load(law, beta, scale, h)
     dm = state.q * state.q
-    dr = residual(dm)
+    dr = law.residual(dm)
     state = _State(math.sqrt(dm - dr), state.u, state.t, state.j, state.steps)
-    state, _, h = _phase(loading, unloading, beta, dm, state, h, scale, 0.0)
+    state, _, h = _phase(law, beta, dm, state, h, scale, 0.0)
     wave_rate = 2.0 * y4 * state.j / scale.u**2
     return Solution(
         OK if state.steps < _MAX_STEPS else TOO_MANY_STEPS,
         state.steps,
         -state.u / scale.u,
         state.t / y4,
-        loading(math.sqrt(dm)) * y * math.sqrt(y),
+        law.loading(math.sqrt(dm)) * y * math.sqrt(y),
         dm * y,
         dr * y,
-        2.0 * dissipation(dm) / scale.u**2,
+        2.0 * law.dissipation(dm) / scale.u**2,
         lam * wave_rate,
         wave_rate,
     )
 
 
 @kernel
-def elastic_compression(
-    loading: _Function, unloading: _Function, lam: float, rtol: float
-) -> tuple[int, float]:
+def elastic_compression(hertz: Functions, lam: float, rtol: float) -> tuple[int, float]:
     """Status and w_m(lam): largest compression [V0 T_H] under Hertz's law (Fig. 4 of the paper)."""
     if not 0.0 <= lam < math.inf:
         return BAD_INPUT, 0.0
     scale, h = _scale(1.0, rtol)
-    state, _ = _load(loading, unloading, (math.inf,), lam, scale, h)
+    state, _ = _load(hertz, lam, scale, h)
     return (OK if state.steps < _MAX_STEPS else TOO_MANY_STEPS), state.q * state.q
+
+
+@kernel
+def solve_all(
+    law: Functions, hertz: Functions, lam: Array, y: Array, rtol: float, out: Array
+) -> tuple[int, int]:
+    """Many impacts into out (5, n); status and index of the first failure.
+
+    Rows: COR, contact time, wave rate, largest compression over w_m, w_m. An elastic law has
+    y = inf.
+    """
+    for n in range(lam.size):
+        scale = y[n] if y[n] < math.inf else 1.0  # the law's scale: any does for an elastic one
+        one = solve(law, lam[n], scale, rtol)
+        status, w_m = one.status, one.peak_compression
+        if status == OK and w_m > law.kinks[0] * scale:  # loading left Hertz's curve
+            status, w_m = elastic_compression(hertz, lam[n], rtol)
+        if status != OK:
+            return status, n
+        out[0, n] = one.restitution
+        out[1, n] = one.contact_time
+        out[2, n] = one.wave_rate
+        out[3, n] = one.peak_compression / w_m
+        out[4, n] = w_m
+    return OK, 0
+
+
+@kernel
+def contact_state(law: Functions, w: Array, y: Array, out: Array) -> None:
+    """Peak force, residual compression and plastic share at largest compressions w, into (3, n)."""
+    for n in range(w.size):
+        if w[n] <= y[n]:  # every law is Hertz's below yield; y may be inf here
+            out[0, n], out[1, n], out[2, n] = w[n] * math.sqrt(w[n]), 0.0, 0.0
+            continue
+        dm = w[n] / y[n]
+        y_root = math.sqrt(y[n])
+        out[0, n] = law.loading(math.sqrt(dm)) * y[n] * y_root
+        out[1, n] = law.residual(dm) * y[n]
+        out[2, n] = 2.0 * law.dissipation(dm) * y[n] * y[n] * y_root

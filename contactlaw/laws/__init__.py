@@ -16,6 +16,17 @@ import math
 import pkgutil
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
+
+
+class Functions(NamedTuple):
+    """A law as kernels take it: numba-jitted functions and plain numbers. See `Law`."""
+
+    loading: Callable[[float], float]
+    residual: Callable[[float], float]
+    unloading: Callable[[float, float], float]
+    dissipation: Callable[[float], float]
+    kinks: tuple[float, ...]  # of the loading curve; the last is inf, so there always is one
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +73,9 @@ class Law:
         return tuple(sorted({*self.loading_kinks, *self.unloading_kinks}))
 
     @property
-    def arguments(self) -> tuple[object, ...]:
-        """What the solver's kernels take of a law, in their order."""
-        return (
+    def functions(self) -> Functions:
+        """The law as the solver's kernels take it."""
+        return Functions(
             self.loading,
             self.residual,
             self.unloading,

@@ -1,4 +1,4 @@
-"""Hertz: elastic contact at every compression (Hertz 1882; Johnson, Contact Mechanics, Eq. 4.23)."""
+"""Hertz: elastic at every compression (Johnson, Contact Mechanics, 1985, Eq. 4.23)."""
 
 from __future__ import annotations
 

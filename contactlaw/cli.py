@@ -1,0 +1,132 @@
+"""Command line: ``contactlaw cor``, ``contactlaw materials``, ``contactlaw table``."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+
+from contactlaw import laws, store, table
+from contactlaw.impact import Rebound
+from contactlaw.materials import material, materials
+from contactlaw.pair import Pair
+from contactlaw.provider import ImpactModel
+from contactlaw.validity import Validity
+
+_UNITS = {
+    "contact_time": "s",
+    "peak_force": "N",
+    "peak_compression": "m",
+    "residual_compression": "m",
+}
+_DONE, _REFUSED = 0, 1  # argparse itself exits with 2 on wrong usage
+
+
+def _cor(arguments: argparse.Namespace) -> None:
+    model = ImpactModel(
+        Pair(arguments.sphere, arguments.plate), law=arguments.law, outside=arguments.outside
+    )
+    impact = (arguments.speed, arguments.radius, arguments.thickness)
+    rebound = model.solve(*impact) if arguments.solve else model.lookup(*impact)
+    yield_speed = model.yield_speed(arguments.radius, arguments.thickness)
+    if arguments.json:
+        print(json.dumps(_as_json(rebound, float(yield_speed)), indent=2))
+        return
+    for name, value in asdict(rebound).items():
+        if name != "flags":
+            print(f"{name:21s} {value:.6g} {_UNITS.get(name, '')}".rstrip())
+    print(f"{'yield_speed':21s} {yield_speed:.6g} m/s")
+    print(f"{'flags':21s} {', '.join(_flag_names(rebound)) or 'none: inside every limit'}")
+
+
+def _flag_names(rebound: Rebound) -> list[str]:
+    return [str(flag.name) for flag in Validity(int(rebound.flags))]
+
+
+def _as_json(rebound: Rebound, yield_speed: float) -> dict[str, object]:
+    """Field names carry no unit: all values are SI. An infinite yield speed is null in JSON."""
+    values: dict[str, object] = asdict(rebound)
+    values["yield_speed"] = yield_speed if yield_speed < float("inf") else None
+    values["flags"] = _flag_names(rebound)
+    return values
+
+
+def _materials(arguments: argparse.Namespace) -> None:
+    entries = [material(name) for name in ([arguments.name] if arguments.name else materials())]
+    if arguments.json:
+        print(json.dumps([asdict(entry) for entry in entries], indent=2))
+        return
+    print(
+        f"{'name':24s} {'E [GPa]':>9s} {'nu [-]':>7s} {'rho [kg/m3]':>12s} {'sigma_Y [MPa]':>14s}"
+    )
+    for entry in entries:
+        strength = "-" if entry.yield_strength is None else f"{entry.yield_strength / 1e6:.1f}"
+        print(
+            f"{entry.name:24s} {entry.youngs_modulus / 1e9:9.3f} {entry.poissons_ratio:7.3f} "
+            f"{entry.density:12.0f} {strength:>14s}"
+        )
+    if arguments.name:
+        print(entries[0].source)
+
+
+def _table_build(arguments: argparse.Namespace) -> None:
+    out = Path(arguments.out or f"{arguments.law}.h5")
+    store.write(table.build(arguments.law), out)
+    print(out)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="contactlaw",
+        description="Restitution of a bead that hits a thin plate. All quantities in SI units.",
+    )
+    commands = parser.add_subparsers(required=True, metavar="command")
+
+    cor = commands.add_parser("cor", help="one impact: coefficient of restitution and more")
+    cor.set_defaults(run=_cor)
+    cor.add_argument("--sphere", required=True, help="material of the bead, from the catalogue")
+    cor.add_argument("--plate", required=True, help="material of the plate")
+    cor.add_argument("--radius", required=True, type=float, help="radius of the bead [m]")
+    cor.add_argument("--thickness", required=True, type=float, help="of the plate [m]; inf: bulk")
+    cor.add_argument("--speed", required=True, type=float, help="normal approach speed [m/s]")
+    cor.add_argument("--law", default="myc", help=f"one of {', '.join(laws.names())}")
+    cor.add_argument("--outside", default="raise", choices=["raise", "solve", "clamp"])
+    cor.add_argument("--solve", action="store_true", help="integrate instead of looking up")
+    cor.add_argument("--json", action="store_true", help="machine-readable output")
+
+    listing = commands.add_parser("materials", help="the catalogue, with the source of each number")
+    listing.set_defaults(run=_materials)
+    listing.add_argument("name", nargs="?", help="one material, with its sources")
+    listing.add_argument("--json", action="store_true", help="machine-readable output")
+
+    tables = commands.add_parser("table", help="build lookup tables").add_subparsers(
+        required=True, metavar="action"
+    )
+    build = tables.add_parser("build", help="solve the equation at every node of a table")
+    build.set_defaults(run=_table_build)
+    build.add_argument("--law", default="myc")
+    build.add_argument("--out", help="file to write (default: LAW.h5)")
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; 0 done, 1 refused with a message on stderr, 2 wrong usage.
+
+    Examples
+    --------
+    >>> main(["cor", "--sphere", "glass", "--plate", "glass", "--radius", "1e-3",
+    ...       "--thickness", "1e-3", "--speed", "1", "--law", "hertz", "--json"])
+    ... # doctest: +ELLIPSIS
+    {
+      "restitution": 0.7...
+    """
+    arguments = _parser().parse_args(argv)
+    try:
+        arguments.run(arguments)
+    except (ValueError, RuntimeError, OSError) as error:
+        print(f"contactlaw: {error}", file=sys.stderr)
+        return _REFUSED
+    return _DONE

@@ -1,0 +1,146 @@
+"""From the dimensionless numbers of impacts to answers in SI units: by table or by integration."""
+
+from __future__ import annotations
+
+import functools
+import math
+import os
+from typing import Literal, NamedTuple, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import laws, lookup, store, zener
+from contactlaw.arguments import shaped
+from contactlaw.impact import Contact, Rebound, Scales, scales
+from contactlaw.laws import Law
+from contactlaw.pair import Pair
+from contactlaw.table import Table
+from contactlaw.validity import Validity, limits_exceeded
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.int64]
+Outside = Literal["raise", "solve", "clamp"]
+
+_ELASTIC_EDGE = "myc"  # a law that never yields is the edge chi = 1 of any table; this one ships
+_RTOL = 1e-10  # of the integration that stands in outside the table
+
+
+class Impact(NamedTuple):
+    """Flat arrays of what the user asked for, and the shape of the answer (None: scalars)."""
+
+    speed: Array
+    radius: Array
+    thickness: Array
+    shape: tuple[int, ...] | None
+
+
+@functools.cache
+def _packaged(law: str) -> lookup.Splines:
+    return store.packaged(law).splines()
+
+
+def splines_of(law: Law, table: Table | str | os.PathLike[str] | None) -> lookup.Splines:
+    """Splines of the table that serves a law: the user's, or the packaged one."""
+    name = law.name if law.kinks else _ELASTIC_EDGE
+    if table is None:
+        return _packaged(name)
+    if not isinstance(table, Table):
+        table = store.read(table)
+    if table.law != name:
+        raise ValueError(f"table: it belongs to law {table.law!r}, the model needs one of {name!r}")
+    return table.splines()
+
+
+def factors(contact: Contact) -> lookup.Factors:
+    """Factors of the powers of speed: lambda and ln(chi/w_m) at 1 m/s."""
+    units = scales(contact, np.ones(()))
+    return lookup.Factors(units.inelasticity.item(), -math.log(units.yield_ratio.item()))
+
+
+def _coordinates(units: Scales) -> tuple[Array, Array]:
+    lam, y = np.broadcast_arrays(units.inelasticity, units.yield_ratio, units.time)[:2]
+    return np.ascontiguousarray(lam), np.ascontiguousarray(y)
+
+
+def solved(law: Law, units: Scales, rtol: float) -> Array:
+    """Fields (5, n) of `zener.solve_all` by integration."""
+    lam, y = _coordinates(units)
+    out = np.empty((5, lam.size))
+    hertz = laws.law("hertz").functions
+    status, n = zener.solve_all(law.functions, hertz, lam, y, rtol, out)
+    if status != zener.OK:
+        raise RuntimeError(
+            f"the equation did not solve at lambda = {lam[n]:.6g}, d_Y/(V0 T_H) = {y[n]:.6g} "
+            f"(element {n}): {zener.MESSAGES[status]}"
+        )
+    return out
+
+
+def tabulated(
+    law: Law, splines: lookup.Splines, units: Scales, outside: Outside
+) -> tuple[Array, Flags]:
+    """Fields (5, n) as `solved` gives them, and Validity.CLAMPED where the border was taken."""
+    lam, y = _coordinates(units)
+    out = np.empty((5, lam.size))
+    clamped = np.zeros(lam.size, dtype=np.int64)
+    if not lookup.fields(splines, lam, y, False, out):
+        return out, clamped
+    beyond = np.isnan(out[0])
+    if outside == "raise":
+        n = int(np.argmax(beyond))
+        _refuse(splines, float(lam[n]), float(y[n]), n)
+    if outside == "solve":
+        part = Scales(*(np.broadcast_to(value, lam.shape)[beyond] for value in units))
+        out[:, beyond] = solved(law, part, _RTOL)
+    else:
+        lookup.fields(splines, lam, y, True, out)
+        clamped[beyond] = int(Validity.CLAMPED)
+    return out, clamped
+
+
+def _refuse(splines: lookup.Splines, lam: float, y: float, n: int) -> NoReturn:
+    if not lam <= splines.lam_max:
+        what = (
+            f"its inelasticity lambda = {lam:.4g} is above {splines.lam_max:g}: the plate is too "
+            "thin for the bead"
+        )
+    else:
+        chi = math.exp(lookup.log_elastic_compression(splines, lam)) / y
+        limit = math.exp(splines.log_chi_max)
+        what = f"its overload chi = {chi:.4g} is above {limit:.4g}: the impact is too fast"
+    raise ValueError(
+        f"speed, radius, thickness: impact {n} is outside the table, {what}. "
+        'ImpactModel(..., outside="solve") integrates the equation there, "clamp" takes the '
+        "value at the table's border."
+    )
+
+
+def rebound(
+    pair: Pair, law: Law, units: Scales, fields: Array, impact: Impact, flags: Flags | int = 0
+) -> Rebound:
+    """Give fields (5, n) their units back and add what follows from them."""
+    restitution, time, wave_rate, ratio, w_m = fields
+    lam, y = _coordinates(units)
+    compression = ratio * w_m
+    state = np.empty((3, compression.size))
+    zener.contact_state(law.functions, compression, y, state)
+    force, residual, plastic = state
+    contact_time = time * units.time
+    speed_ratio = math.sqrt(1.25) * y**-1.25  # V0/V_Y0: a half-space impact at V_Y0 has w_m = y
+    flags = flags | limits_exceeded(
+        pair, impact.radius, impact.thickness, speed_ratio, contact_time
+    )
+    shape = impact.shape
+    return Rebound(
+        restitution=shaped(restitution, shape),
+        contact_time=shaped(contact_time, shape),
+        peak_force=shaped(force * units.force, shape),
+        peak_compression=shaped(compression * units.compression, shape),
+        residual_compression=shaped(residual * units.compression, shape),
+        plastic_fraction=shaped(plastic, shape),
+        wave_fraction=shaped(lam * wave_rate, shape),
+        inelasticity=shaped(lam, shape),
+        overload=shaped(w_m / y, shape),
+        flags=Validity(int(flags[0])) if shape is None else flags.reshape(shape),
+    )

@@ -1,0 +1,65 @@
+"""The modified Zener model by scipy alone; shares no code with contactlaw.
+
+First-order form of Eq. (1) of Peng et al. 2021 with the MYC law of Eqs. 16-18, on Hertz's scale:
+w' = u - lam f(w), u' = -f(w), w(0) = 0, u(0) = 1; d_Y = y there.
+"""
+
+import math
+
+from scipy.integrate import solve_ivp
+
+RATIO = 2.14 / 0.68  # d_P/d_Y
+OPTIONS = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13}
+
+
+def yield_ratio(speed_ratio):
+    """d_Y/(V0 T_H) at v = V0/V_Y0: the elastic half-space impact at v = 1 just reaches d_Y."""
+    return (5 / 4) ** 0.4 * speed_ratio**-0.8
+
+
+def loading(w, y):
+    p = RATIO * y
+    return w**1.5 if w < p else p**1.5 + 1.5 * math.sqrt(p) * (w - p)
+
+
+def impact(lam, y, law="myc"):
+    """COR, contact time and largest compression of one impact."""
+
+    def force(w):
+        w = max(w, 0.0)
+        return loading(w, y) if law == "myc" else w**1.5
+
+    def turned(t, s):
+        return s[1] - lam * force(s[0])
+
+    def reached_kink(t, s):
+        return s[0] - RATIO * y
+
+    turned.terminal, turned.direction = True, -1
+    reached_kink.terminal, reached_kink.direction = True, 1
+
+    def rise(t, s):
+        f = force(s[0])
+        return [s[1] - lam * f, -f]
+
+    # the linear branch starts with a jump of F'': stop there, so that the method keeps its order
+    run = solve_ivp(rise, [0, 100], [0, 1], events=[turned, reached_kink], **OPTIONS)
+    if run.t_events[1].size:
+        run = solve_ivp(rise, [run.t[-1], 100], run.y[:, -1], events=[turned], **OPTIONS)
+    t, wm, u = run.t[-1], run.y[0, -1], run.y[1, -1]
+
+    plastic = law == "myc" and wm >= y
+    left = wm - y * math.sqrt(2 * wm / y - 1) if plastic else 0.0
+    fm = force(wm)
+
+    def fall(t, s):
+        f = fm * (max(s[0] - left, 0.0) / (wm - left)) ** 1.5
+        return [s[1] - lam * f, -f]
+
+    def parted(t, s):
+        return s[0] - left
+
+    parted.terminal, parted.direction = True, -1
+    run = solve_ivp(fall, [t, t + 1000], [wm, u], events=[parted], **OPTIONS)
+    assert run.t_events[0].size == 1
+    return -run.y[1, -1], run.t[-1], wm

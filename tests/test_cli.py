@@ -1,0 +1,108 @@
+"""The command line: what it prints, and its exit status."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+import contactlaw as cl
+from contactlaw.cli import main
+
+COR = ["cor", "--sphere", "gamma-alumina", "--plate", "glass"]
+IMPACT = [*COR, "--radius", "0.9e-3", "--thickness", "1e-3", "--speed", "12"]
+
+
+def test_cor_json_holds_every_field(model, capsys):
+    assert main([*IMPACT, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    hit = model.lookup(12.0, 0.9e-3, 1e-3)
+    assert set(printed) == {*cl.Rebound.__dataclass_fields__, "yield_speed"}
+    assert printed["restitution"] == hit.restitution
+    assert printed["contact_time"] == hit.contact_time
+    assert printed["yield_speed"] == model.yield_speed(0.9e-3, 1e-3)
+    assert printed["flags"] == []
+
+
+def test_cor_text_has_units(capsys):
+    assert main(IMPACT) == 0
+    out = capsys.readouterr().out
+    assert "restitution           0.871554\n" in out
+    assert "contact_time          4.04768e-06 s\n" in out
+    assert "inside every limit" in out
+
+
+def test_cor_names_the_limits_exceeded(capsys):
+    assert main([*COR, "--radius", "1e-3", "--thickness", "0.5e-3", "--speed", "70"]) == 0
+    assert "THIN_PLATE, FAST_IMPACT" in capsys.readouterr().out
+
+
+def test_cor_can_integrate(model, capsys):
+    assert main([*IMPACT, "--solve", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["restitution"] == model.solve(12.0, 0.9e-3, 1e-3).restitution
+
+
+def test_an_infinite_yield_speed_is_valid_json(capsys):
+    assert main([*IMPACT, "--law", "hertz", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["yield_speed"] is None
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (["--speed", "-1"], "speed: got"),
+        (["--speed", "nan"], "speed: got"),
+        (["--radius", "0"], "radius: got"),
+        (["--thickness=-inf"], "thickness: got"),
+        (["--sphere", "gamma-alumnia"], "gamma-alumina"),
+        (["--sphere", "glass"], "hertz"),
+        (["--law", "herz"], "did you mean 'hertz'"),
+        (["--speed", "1e4"], "outside the table"),
+    ],
+)
+def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):
+    assert main([*IMPACT, *change]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("contactlaw: ")
+    assert message in captured.err
+
+
+@pytest.mark.parametrize(
+    "argv", [[], ["core"], COR, [*IMPACT, "--speed", "fast"], [*IMPACT, "--outside", "x"]]
+)
+def test_wrong_usage_is_status_2(argv, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(argv)
+    assert stop.value.code == 2
+    assert "usage:" in capsys.readouterr().err
+
+
+def test_materials(capsys):
+    assert main(["materials"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines[1:]] == list(cl.materials())
+    assert main(["materials", "--json"]) == 0
+    listed = json.loads(capsys.readouterr().out)
+    glass = next(entry for entry in listed if entry["name"] == "glass")
+    assert (glass["youngs_modulus"], glass["yield_strength"]) == (73e9, None)
+    assert main(["materials", "glass"]) == 0
+    assert "Table 1" in capsys.readouterr().out
+    assert main(["materials", "glas"]) == 1
+    assert "glass" in capsys.readouterr().err
+
+
+def test_table_build(tmp_path, capsys):
+    assert main(["table", "build", "--law", "hertz", "--out", str(tmp_path / "t.h5")]) == 1
+    assert list(tmp_path.iterdir()) == []
+    assert main(["table", "build", "--out", str(tmp_path / "missing" / "t.h5")]) == 1
+    assert "missing" in capsys.readouterr().err
+
+
+def test_as_a_module():
+    done = subprocess.run(
+        [sys.executable, "-m", "contactlaw", *IMPACT, "--json"], capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(done.stdout)["flags"] == []

@@ -1,0 +1,52 @@
+"""Pairs of materials, and the paper's yield speed."""
+
+import math
+
+import pytest
+
+import contactlaw as cl
+from contactlaw import laws, pair
+
+
+def test_effective_modulus():
+    # two equal bodies: half of E/(1 - nu^2)
+    steel = cl.material("stainless-steel-304")
+    assert cl.Pair(steel, steel).effective_modulus == pytest.approx(
+        steel.youngs_modulus / (1 - steel.poissons_ratio**2) / 2, rel=1e-15
+    )
+
+
+def test_yield_speed_of_the_paper(pair):
+    """Eq. 4 with its printed, rounded factor 0.552 gives the paper's 7.426 m/s.
+
+    The definition, V_Y0^2 = (4/5) K dY^2.5/m, has sqrt(0.8) 0.68^1.25 = 0.55229 in its place.
+    """
+    alumina = pair.sphere
+    rest = math.sqrt(
+        math.pi**4 * alumina.yield_strength**5 / (alumina.density * pair.effective_modulus**4)
+    )
+    assert 0.552 * rest == pytest.approx(7.426, abs=5e-4)
+    assert pair.yield_speed == pytest.approx(math.sqrt(0.8) * 0.68**1.25 * rest, rel=1e-14)
+    assert pair.yield_speed == pytest.approx(7.426, rel=0.0005 / 0.552)  # the factor's rounding
+
+
+def test_yield_compression_is_that_of_the_law():
+    assert laws.law("myc").yield_coefficient == pair._MYC_YIELD
+
+
+def test_yield_speed_needs_a_yield_strength():
+    with pytest.raises(ValueError, match="glass.*yield.strength.*hertz"):
+        _ = cl.Pair("glass", "glass").yield_speed
+
+
+def test_names_and_materials_are_taken():
+    assert cl.Pair("glass", "glass") == cl.Pair(cl.material("glass"), "glass")
+    assert len({cl.Pair("glass", "glass"), cl.Pair("glass", "glass")}) == 1
+    assert cl.Pair("gamma-alumina", "glass") != cl.Pair("glass", "gamma-alumina")
+
+
+def test_anything_else_is_refused():
+    with pytest.raises(TypeError, match="plate: expected a Material or a name.*42"):
+        cl.Pair("glass", 42)
+    with pytest.raises(ValueError, match="glas"):
+        cl.Pair("glas", "glass")

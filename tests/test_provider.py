@@ -1,0 +1,318 @@
+"""ImpactModel: SI in, SI out, from the table and from the solver."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import contactlaw as cl
+from contactlaw import table
+
+R, H = 0.9e-3, 1e-3
+FIELDS = (
+    "contact_time",
+    "peak_force",
+    "peak_compression",
+    "residual_compression",
+    "plastic_fraction",
+    "wave_fraction",
+    "inelasticity",
+    "overload",
+)
+NOT_POSITIVE = [
+    -1.0,
+    0.0,
+    math.nan,
+    -math.inf,
+    "5",
+    "five",
+    None,
+    True,
+    1j,
+    [1.0, -1.0],
+]
+
+
+@pytest.fixture(scope="module")
+def small_table():
+    return table.build(
+        "myc",
+        table.Settings(
+            largest_inelasticity=1.0,
+            largest_overload=5.0,
+            inelasticity_nodes=21,
+            log_overload_step=0.1,
+            elastic_nodes=81,
+        ),
+    )
+
+
+def test_lookup_agrees_with_solve(model):
+    rng = np.random.default_rng(11)
+    speed = model.pair.yield_speed * np.exp(rng.uniform(np.log(0.05), np.log(100), 2000))
+    radius = rng.uniform(0.1e-3, 5e-3, 2000)
+    thickness = radius / rng.uniform(0.0, 4.0, 2000)
+    looked, solved = (f(speed, radius, thickness) for f in (model.lookup, model.solve))
+    np.testing.assert_allclose(looked.restitution, solved.restitution, rtol=0, atol=1e-6)
+    for name in FIELDS:
+        ours, exact = getattr(looked, name), getattr(solved, name)
+        np.testing.assert_allclose(ours, exact, rtol=1e-5, atol=1e-300, err_msg=name)
+    np.testing.assert_array_equal(looked.flags, solved.flags)
+    # powers of speed here, a division by T_H there: lambda and chi agree to rounding
+    fast = model.restitution(speed, radius, thickness)
+    np.testing.assert_allclose(fast, looked.restitution, rtol=1e-13)
+
+
+def test_half_space_is_eq_21(model):
+    v = np.array([1.2, 2.0, 4.0])
+    e = model.restitution(v * model.pair.yield_speed, R, math.inf)
+    assert e == pytest.approx((1 - (1 - v**-0.8) ** 2) ** 0.25, abs=1e-6)
+
+
+def test_below_yield_no_plasticity_remains(model):
+    for thickness in (0.5e-3, H, math.inf):
+        v_y = model.yield_speed(R, thickness)
+        assert model.lookup(0.999 * v_y, R, thickness).plastic_fraction == 0.0
+        assert model.lookup(1.001 * v_y, R, thickness).plastic_fraction > 0.0
+        assert model.solve(0.999 * v_y, R, thickness).residual_compression == 0.0
+
+
+def test_at_the_yield_speed_the_compression_is_the_yield_compression(model):
+    radius, thickness = np.array([0.5e-3, 0.9e-3, 2e-3]), np.array([0.5e-3, 0.5e-3, 5e-3])
+    hit = model.solve(model.yield_speed(radius, thickness), radius, thickness)
+    strain = math.pi * model.pair.sphere.yield_strength / model.pair.effective_modulus
+    # the table's w_m is good to 3e-11
+    assert hit.peak_compression == pytest.approx(0.68 * strain**2 * radius, rel=1e-9)
+    assert hit.overload == pytest.approx(1.0, rel=1e-9)
+
+
+def test_yield_speed_is_near_eq_14(model):
+    # Eq. 14, with eta as Eq. 1 gives it, claims 1.2 % up to R/H = 1.8
+    v_y0 = model.pair.yield_speed
+    eta = model.lookup(v_y0, R, R).inelasticity
+    for ratio in (0.2, 0.6, 1.0, 1.8):
+        q = eta * (5 / 4) ** 0.6 * ratio**2
+        assert model.yield_speed(R, R / ratio) / v_y0 == pytest.approx(
+            q + (1 + q) ** -0.2, rel=0.012
+        )
+    assert model.yield_speed(R, math.inf) == pytest.approx(v_y0, rel=1e-9)
+
+
+def test_momentum_and_force_scale(model):
+    # peak force of the elastic half-space impact, Hertz: F = K (5 m V^2/(4 K))^(3/5)
+    hit = model.solve(3.0, R, math.inf)
+    mass = 4 / 3 * math.pi * R**3 * model.pair.sphere.density
+    k = 4 / 3 * model.pair.effective_modulus * math.sqrt(R)
+    peak = (5 / 4 * mass * 3.0**2 / k) ** 0.4
+    assert hit.peak_compression == pytest.approx(peak, rel=1e-9)
+    assert hit.peak_force == pytest.approx(k * peak**1.5, rel=1e-9)
+
+
+@settings(deadline=None, max_examples=200)
+@given(
+    speed=st.floats(1e-6, 500),
+    radius=st.floats(1e-5, 1e-2),
+    ratio=st.floats(0, 5),
+)
+def test_energy_is_shared_out(speed, radius, ratio):
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    thickness = radius / ratio if ratio > 1e-6 else math.inf
+    hit = model.lookup(speed, radius, thickness)
+    assert 0.0 < hit.restitution <= 1.0 + 1e-6
+    # the fields are interpolated one by one, so they add up to the table's 1e-5
+    total = hit.restitution**2 + hit.plastic_fraction + hit.wave_fraction
+    assert total == pytest.approx(1.0, abs=1e-5)
+
+
+def test_shapes(model):
+    assert isinstance(model.restitution(5.0, R, H), float)
+    assert isinstance(model.restitution(5, np.float64(R), np.array(H)), float)
+    assert model.restitution([5.0], R, H).shape == (1,)
+    assert model.restitution(np.ones((3, 1)), [R, R], H).shape == (3, 2)
+    assert model.restitution(np.float32([5.0]), R, H).dtype == np.float64
+    assert model.restitution(np.empty(0), R, H).shape == (0,)
+    hit = model.lookup([[5.0], [6.0]], R, H)
+    assert {np.shape(getattr(hit, name)) for name in (*FIELDS, "restitution", "flags")} == {(2, 1)}
+    assert isinstance(model.lookup(5.0, R, H).flags, cl.Validity)
+
+
+def test_strided_input_is_taken_as_it_reads(model):
+    speed = np.arange(1.0, 21.0)[::-2]
+    each = [model.restitution(v, R, H) for v in speed]
+    np.testing.assert_array_equal(model.restitution(speed, R, H), each)
+
+
+@pytest.mark.parametrize("method", ["restitution", "lookup", "solve"])
+@pytest.mark.parametrize("bad", NOT_POSITIVE, ids=repr)
+@pytest.mark.parametrize("name", ["speed", "radius", "thickness"])
+def test_bad_numbers_are_refused_by_name(model, method, name, bad):
+    good = {"speed": 5.0, "radius": R, "thickness": H}
+    with pytest.raises(ValueError, match=f"^{name}: .*"):
+        getattr(model, method)(**{**good, name: bad})
+
+
+@pytest.mark.parametrize("method", ["restitution", "lookup", "solve"])
+@pytest.mark.parametrize(
+    ("name", "bad"),
+    [
+        ("speed", 1e6),
+        ("speed", math.inf),
+        ("radius", 1e6),
+        ("radius", math.inf),
+        ("radius", 1e-12),
+        ("thickness", 1e-12),
+    ],
+)
+def test_huge_and_tiny_numbers_are_refused(model, method, name, bad):
+    good = {"speed": 5.0, "radius": R, "thickness": H}
+    with pytest.raises(ValueError, match=rf"^{name}: got .*must lie .*m"):
+        getattr(model, method)(**{**good, name: bad})
+
+
+def test_the_element_at_fault_is_named(model):
+    with pytest.raises(ValueError, match=r"speed: got .*-3.0.* \(element 2\)"):
+        model.restitution([1.0, 2.0, -3.0], R, H)
+
+
+def test_shapes_that_do_not_broadcast(model):
+    with pytest.raises(ValueError, match=r"do not broadcast: speed \(3,\), radius \(2,\)"):
+        model.restitution(np.ones(3), np.full(2, R), H)
+
+
+def test_outside_raise(model):
+    with pytest.raises(ValueError, match=r"lambda = .* above 5.*too thin.*outside=\"solve\""):
+        model.restitution(5.0, 5e-3, 0.3e-3)
+    with pytest.raises(ValueError, match=r"chi = .* above 40.*too fast"):
+        model.lookup(1e4, R, H)
+
+
+def test_outside_solve(pair, small_table):
+    model = cl.ImpactModel(pair, table=small_table, outside="solve")
+    inside, thin, fast = (5.0, R, H), (5.0, R, R / 8), (200.0, R, H)
+    arrays = [np.array(column) for column in zip(inside, thin, fast, strict=True)]
+    exact = model.solve(*arrays)
+    assert exact.inelasticity[1] > 1.0
+    assert exact.overload[2] > 5.0
+    np.testing.assert_array_equal(model.lookup(*arrays).restitution[1:], exact.restitution[1:])
+    np.testing.assert_array_equal(model.restitution(*arrays)[1:], exact.restitution[1:])
+    assert model.curve(R, H)(200.0) == exact.restitution[2]
+
+
+def test_outside_clamp_is_counted_and_flagged(pair, small_table):
+    model = cl.ImpactModel(pair, table=small_table, outside="clamp")
+    hit = model.lookup([5.0, 200.0], R, H)
+    assert [bool(f & cl.Validity.CLAMPED) for f in hit.flags] == [False, True]
+    assert model.clamped == 1
+    # the border value: the largest speed inside the table has chi = 5
+    top = cl.ImpactModel(pair, table=small_table)
+    speeds = np.linspace(20, 200, 2001)
+    inside = speeds[top.solve(speeds, R, math.inf).overload < 5.0]
+    border = top.restitution(inside[-1], R, math.inf)
+    assert model.restitution(300.0, R, math.inf) == pytest.approx(border, abs=1e-3)
+    assert model.clamped == 2
+
+
+def test_hertz_needs_no_yield_strength(model):
+    elastic = cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")
+    hit = elastic.lookup(50.0, R, H)
+    assert hit.plastic_fraction == 0.0
+    assert hit.overload == 0.0
+    assert hit.restitution == pytest.approx(elastic.solve(50.0, R, H).restitution, abs=1e-6)
+    assert elastic.yield_speed(R, H) == math.inf
+    # below yield the two laws are one
+    same = cl.ImpactModel(model.pair, law="hertz")
+    assert same.restitution(2.0, R, H) == model.restitution(2.0, R, H)
+
+
+def test_a_bead_without_yield_strength_is_refused():
+    with pytest.raises(ValueError, match=r"glass.*yield_strength.*law=\"hertz\""):
+        cl.ImpactModel(cl.Pair("glass", "stainless-steel-304"))
+    cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"))  # the plate may be brittle
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"law": "mcy"}, "law: unknown law 'mcy'; did you mean 'myc'"),
+        ({"outside": "ignore"}, "outside: must be 'raise', 'solve' or 'clamp', got 'ignore'"),
+    ],
+)
+def test_wrong_options(pair, arguments, message):
+    with pytest.raises(ValueError, match=message):
+        cl.ImpactModel(pair, **arguments)
+
+
+def test_the_table_of_another_law_is_refused(pair, small_table):
+    import dataclasses
+
+    other = dataclasses.replace(small_table, law="thornton")
+    with pytest.raises(ValueError, match="belongs to law 'thornton'"):
+        cl.ImpactModel(pair, table=other)
+
+
+def test_a_pair_is_needed():
+    with pytest.raises(TypeError, match="pair: expected a contactlaw.Pair"):
+        cl.ImpactModel(("gamma-alumina", "glass"))
+
+
+def test_a_table_file_is_taken(pair, small_table, tmp_path):
+    from contactlaw import store
+
+    store.write(small_table, tmp_path / "t.h5")
+    ours = cl.ImpactModel(pair, table=tmp_path / "t.h5").restitution(5.0, R, H)
+    assert ours == cl.ImpactModel(pair, table=small_table).restitution(5.0, R, H)
+
+
+@pytest.mark.parametrize("rtol", [0.0, 1e-3, math.nan, -1e-8])
+def test_solve_refuses_a_tolerance_out_of_range(model, rtol):
+    with pytest.raises(ValueError, match="rtol: must lie between"):
+        model.solve(5.0, R, H, rtol=rtol)
+
+
+def test_solve_says_when_the_plate_is_hopelessly_thin(model):
+    with pytest.raises(RuntimeError, match=r"lambda = .*did not solve|did not solve at lambda"):
+        model.solve(5.0, 1.0, 1e-5)
+
+
+def test_curve_is_restitution(model):
+    curve = model.curve(R, H)
+    for speed in (0.1, 5.0, 7.8, 30.0, 70.0):
+        assert curve(speed) == pytest.approx(model.restitution(speed, R, H), rel=1e-13)
+    for bad in (0.0, -1.0, math.nan):
+        with pytest.raises(ValueError, match="^speed: got"):
+            curve(bad)
+    with pytest.raises(ValueError, match="radius"):
+        model.curve(-1.0, H)
+
+
+def test_sphere_on_sphere(model):
+    bead = model.pair.sphere
+    # by hand: bulk impact, v = V/V_Y0 with R* = R/2, m* = m/2 and E* of the twins
+    twins = cl.Pair(bead, bead)
+    strain = math.pi * bead.yield_strength / twins.effective_modulus
+    k = 4 / 3 * twins.effective_modulus * math.sqrt(R / 2)
+    mass = 4 / 3 * math.pi * R**3 * bead.density / 2
+    v_y0 = math.sqrt(0.8 * k * (0.68 * strain**2 * R / 2) ** 2.5 / mass)
+    v = np.array([0.5, 1.5, 4.0])
+    expected = np.where(v < 1, 1.0, (1 - (1 - np.maximum(v, 1) ** -0.8) ** 2) ** 0.25)
+    e = cl.restitution_sphere_sphere(bead, bead, v * v_y0, R, R)
+    assert e == pytest.approx(expected, abs=1e-6)
+    hit = model.lookup_sphere_sphere(v * v_y0, R, R)
+    np.testing.assert_array_equal(hit.restitution, e)
+    assert hit.plastic_fraction == pytest.approx(1 - expected**2, abs=2e-6)
+    assert (hit.wave_fraction == 0).all()
+    assert model.sphere_sphere_curve(R, R)(1.5 * v_y0) == e[1]
+
+
+def test_sphere_on_sphere_is_symmetric():
+    arguments = ("gamma-alumina", "glass", 20.0, 1e-3, 2e-3)
+    swapped = ("glass", "gamma-alumina", 20.0, 2e-3, 1e-3)
+    ours = cl.restitution_sphere_sphere(*arguments)
+    assert 0 < ours < 1
+    assert cl.restitution_sphere_sphere(*swapped) == ours
+    with pytest.raises(ValueError, match="yield"):
+        cl.restitution_sphere_sphere("glass", "glass", 5.0, R, R)
+    with pytest.raises(ValueError, match="other_radius: got"):
+        cl.restitution_sphere_sphere("gamma-alumina", "glass", 5.0, R, -R)

@@ -1,0 +1,148 @@
+"""The table and its splines against the solver that they stand for."""
+
+import math
+
+import numpy as np
+import pytest
+
+from contactlaw import laws, lookup, store, table, zener
+
+HERTZ = laws.law("hertz").functions
+YIELDING = [name for name in laws.names() if laws.law(name).kinks]
+SMALL = table.Settings(inelasticity_nodes=21, log_overload_step=0.15, elastic_nodes=161)
+
+
+def solve(law, lam, chi, rtol=1e-12):
+    w_m = zener.elastic_compression(HERTZ, lam, 1e-13)[1]
+    return zener.solve(laws.law(law).functions, lam, w_m / chi, rtol), w_m
+
+
+def random_points(law, count, settings, seed):
+    """Inelasticities and overloads, half of the latter between first yield and the last kink."""
+    rng = np.random.default_rng(seed)
+    lam = settings.largest_inelasticity * rng.uniform(0, 1, count) ** 2
+    ends = np.log([1.0, laws.law(law).kinks[-1], settings.largest_overload])
+    low, high = rng.uniform(*ends[:2], count // 2), rng.uniform(*ends[1:], count - count // 2)
+    return lam, np.exp(np.concatenate([low, high]))
+
+
+def errors(law, splines, lam, chi):
+    """COR's error, and relative ones of contact time, wave share and largest compression."""
+    worst = np.zeros(4)
+    for one_lam, one_chi in zip(lam, chi, strict=True):
+        exact, w_m = solve(law, one_lam, one_chi)
+        out = np.empty((5, 1))
+        lookup.fields(splines, np.array([one_lam]), np.array([w_m / one_chi]), False, out)
+        e, time, wave, ratio, w = out[:, 0]
+        worst = np.maximum(
+            worst,
+            [
+                abs(e - exact.restitution),
+                abs(time / exact.contact_time - 1),
+                abs(wave / exact.wave_rate - 1),
+                abs(ratio * w / exact.peak_compression - 1),
+            ],
+        )
+    return worst
+
+
+@pytest.mark.parametrize("law", YIELDING)
+def test_packaged_table_against_the_solver(law):
+    splines = store.packaged(law).splines()
+    worst = errors(law, splines, *random_points(law, 2000, table.Settings(), seed=7))
+    assert worst[0] < 1e-6  # the design's target for COR
+    assert (worst[1:] < 1e-5).all()  # and, relatively, for the rest
+
+
+def test_spline_error_falls_with_the_fourth_power():
+    # between the kinks, where the surface is smooth; just above chi = d_P/d_Y it has a term in
+    # (chi - d_P/d_Y)^(5/2), since the time spent beyond d_P grows as a square root, and the order
+    # there is between 2 and 3
+    rng = np.random.default_rng(2)
+    lam = 5 * rng.uniform(0, 1, 400) ** 2
+    chi = np.exp(rng.uniform(0, math.log(2.14 / 0.68), 400))
+    coarse, fine = (
+        errors("myc", table.build("myc", settings).splines(), lam, chi)[0]
+        for settings in (
+            table.Settings(inelasticity_nodes=41, log_overload_step=0.075, elastic_nodes=641),
+            table.Settings(inelasticity_nodes=81, log_overload_step=0.0375, elastic_nodes=641),
+        )
+    )
+    assert math.log2(coarse / fine) == pytest.approx(4, abs=0.2)
+
+
+def test_nodes_lie_on_both_kinks():
+    segments = table.build("myc", SMALL).segments
+    assert segments[0][0] == 0.0
+    assert segments[0][-1] == segments[1][0] == math.log(2.14 / 0.68)
+    assert segments[1][-1] == math.log(SMALL.largest_overload)
+
+
+def test_nodes_hold_what_the_solver_says():
+    built = table.build("myc", SMALL)
+    log_chi = np.concatenate(built.segments)
+    for i, j in ((0, 0), (5, 3), (20, -1)):
+        exact, w_m = solve("myc", built.inelasticity[i], math.exp(log_chi[j]))
+        assert built.fields["restitution"][i, j] == pytest.approx(exact.restitution, abs=1e-11)
+        ratio = built.fields["compression_ratio"][i, j]
+        assert ratio * w_m == pytest.approx(exact.peak_compression, rel=1e-10)
+
+
+def test_largest_speed_of_the_target_is_inside():
+    # v = 100 on a half-space: chi = v^(4/5)
+    assert table.Settings().largest_overload >= 100**0.8
+
+
+def test_restitution_falls_with_overload_and_with_inelasticity():
+    splines = store.packaged("myc").splines()
+    lam = np.linspace(0, 5, 201)
+    log_chi = np.linspace(-0.5, math.log(40), 300)
+    e = np.array([[lookup.restitution_at(splines, a, b) for b in log_chi] for a in lam])
+    assert ((e >= 0) & (e <= 1)).all()
+    # the spline may ripple by its error, 3e-7, where the surface is flat
+    assert (np.diff(e, axis=0) <= 1e-7).all()
+    assert (np.diff(e, axis=1) <= 1e-7).all()
+
+
+def test_packaged_table_is_what_this_version_builds():
+    packaged, built = store.packaged("myc"), table.build("myc")
+    assert packaged.settings == built.settings
+    for name, values in built.fields.items():
+        np.testing.assert_allclose(packaged.fields[name], values, rtol=1e-9, err_msg=name)
+
+
+def test_splines_reproduce_cubics():
+    x = np.arange(9.0)
+    c = lookup.spline_coefficients(x**3 - 4 * x**2 + 2)
+    for position in (0.0, 0.3, 3.7, 7.99):
+        i = int(position)
+        value = sum(w * c[i + k] for k, w in enumerate(lookup._weights(position - i)))
+        assert value == pytest.approx(position**3 - 4 * position**2 + 2, abs=1e-12)
+
+
+def test_a_spline_needs_five_nodes():
+    with pytest.raises(ValueError, match="at least 5 nodes, got 4"):
+        lookup.spline_coefficients(np.ones(4))
+
+
+def test_an_elastic_law_needs_no_table():
+    with pytest.raises(ValueError, match="'hertz' never yields"):
+        table.build("hertz")
+
+
+def test_a_node_that_does_not_solve_fails_the_build(monkeypatch):
+    monkeypatch.setattr(zener, "solve_all", lambda *arguments: (zener.TOO_MANY_STEPS, 3))
+    with pytest.raises(RuntimeError, match=r"node lambda = .*, chi = .* did not solve"):
+        table.build("myc", SMALL)
+
+
+def test_progress_sees_every_row():
+    seen = []
+
+    def watch(rows, total):
+        for row in rows:
+            seen.append(total)
+            yield row
+
+    table.build("myc", SMALL, progress=watch)
+    assert seen == [SMALL.inelasticity_nodes] * SMALL.inelasticity_nodes

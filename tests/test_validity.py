@@ -1,0 +1,65 @@
+"""Each limit is flagged on its far side and not on its near side."""
+
+import math
+
+import pytest
+
+import contactlaw as cl
+from contactlaw import Validity
+
+R = 0.9e-3
+
+
+def flags(model, speed=2.0, radius=R, thickness=1e-3):
+    return model.lookup(speed, radius, thickness).flags
+
+
+def test_inside_every_limit(model):
+    assert flags(model) == Validity(0)
+
+
+def test_thin_plate(model):
+    assert flags(model, thickness=R / 1.79) == Validity(0)
+    assert flags(model, thickness=R / 1.81) == Validity.THIN_PLATE
+
+
+def test_fast_impact(model):
+    assert flags(model, speed=6.99 * model.pair.yield_speed) == Validity(0)
+    assert flags(model, speed=7.01 * model.pair.yield_speed) == Validity.FAST_IMPACT
+
+
+def test_thick_plate(model):
+    glass = model.pair.plate
+    nu = glass.poissons_ratio
+    # pressure wave speed of an elastic solid, sqrt((lambda + 2 mu)/rho)
+    mu = glass.youngs_modulus / 2 / (1 + nu)
+    lame = glass.youngs_modulus * nu / (1 + nu) / (1 - 2 * nu)
+    wave_speed = math.sqrt((lame + 2 * mu) / glass.density)
+    limit = model.lookup(2.0, R, 8e-3).contact_time * wave_speed / 6
+    assert flags(model, thickness=0.99 * limit) == Validity(0)
+    assert flags(model, thickness=1.01 * limit) == Validity.THICK_PLATE
+    assert flags(model, thickness=math.inf) == Validity(0)  # no thickness to cross
+
+
+def test_soft_plate():
+    bearing, mild = "bearing-steel-52100", "carbon-steel-1020"
+    soft = cl.ImpactModel(cl.Pair(bearing, mild))
+    assert soft.lookup(0.5, 1e-3, 2e-3).flags & Validity.SOFT_PLATE
+    hard = cl.ImpactModel(cl.Pair(mild, bearing), outside="clamp")
+    assert not hard.lookup(0.005, 1e-3, 2e-3).flags & Validity.SOFT_PLATE
+
+
+def test_flags_of_arrays(model):
+    both = model.lookup(2.0, R, [1e-3, 0.4e-3]).flags
+    assert both.tolist() == [0, int(Validity.THIN_PLATE)]
+
+
+def test_edge_distance_is_the_group_speed_times_half_the_time():
+    glass = cl.material("glass")
+    h, time = 1e-3, 5e-6
+    # c_g = d(omega)/dk by differences, with omega = k^2 sqrt(D/(rho h))
+    root = math.sqrt(glass.plane_modulus * h**2 / 12 / glass.density)
+    k = math.sqrt(math.pi / time / root)
+    group_speed = ((1.001 * k) ** 2 - (0.999 * k) ** 2) * root / (0.002 * k)
+    expected = group_speed * time / 2
+    assert cl.edge_distance(glass, h, time) == pytest.approx(expected, rel=1e-9)

@@ -1,0 +1,173 @@
+"""The solver against closed forms, limits, invariants and an independent integration."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from oracle import RATIO, impact, yield_ratio
+from scipy.integrate import quad
+
+from contactlaw import laws, zener
+
+HERTZ = laws.law("hertz").functions
+LAWS = [laws.law(name) for name in laws.names()]
+
+
+def elastic(lam, rtol=1e-11):
+    return zener.solve(HERTZ, lam, 1.0, rtol)
+
+
+@pytest.mark.parametrize(("lam", "e"), [(0.1, 0.84334), (0.5, 0.43690), (1.0, 0.18412)])
+def test_elastic_values(lam, e):
+    assert elastic(lam).restitution == pytest.approx(e, abs=5e-6)  # all printed digits
+
+
+def test_slope_at_small_inelasticity():
+    # a difference quotient; Richardson's extrapolation removes its term of order lam
+    h = 1e-4
+    near, far = (elastic(lam, 1e-13).restitution - 1 for lam in (h, 2 * h))
+    assert (4 * near - far) / (2 * h) == pytest.approx(-1.7302, abs=5e-5)
+
+
+def test_slope_from_the_lossless_contact():
+    # to first order the wave takes 2 lam j, j the integral of f^2 dt over the lossless contact, so
+    # e = 1 - lam j; there u^2 = 1 - (w/wm)^2.5, and j is twice the integral of w^3/u dw (w = x^2)
+    wm = (5 / 4) ** 0.4
+    half, _ = quad(
+        lambda x: 2 * x * (wm - x * x) ** 3 / math.sqrt(1 - (1 - x * x / wm) ** 2.5),
+        1e-9,
+        math.sqrt(wm),
+    )
+    assert elastic(0.0).wave_rate == pytest.approx(2 * 2 * half, rel=1e-8)
+    assert half * 2 == pytest.approx(1.7302, abs=5e-5)
+
+
+def test_lossless_contact():
+    one = elastic(0.0)
+    assert one.restitution == pytest.approx(1.0, abs=1e-10)
+    assert one.contact_time == pytest.approx(3.2181, abs=5e-5)
+    # Hertz: t = 2 w_m sqrt(pi) Gamma(7/5)/Gamma(9/10) (Johnson, Eq. 11.24)
+    wm = (5 / 4) ** 0.4
+    exact = 2 * wm * math.sqrt(math.pi) * math.gamma(1.4) / math.gamma(0.9)
+    assert one.contact_time == pytest.approx(exact, rel=1e-10)
+    assert one.peak_compression == pytest.approx(wm, rel=1e-10)
+    assert one.peak_force == pytest.approx(wm**1.5, rel=1e-10)
+
+
+@pytest.mark.parametrize("v", [1.0, 1.5, 3.0, 4.19])
+def test_half_space_is_eq_21(v):
+    # exact as long as loading follows Hertz's curve, to v = (d_P/d_Y)^(5/4) = 4.19
+    one = zener.solve(laws.law("myc").functions, 0.0, yield_ratio(v), 1e-12)
+    assert one.restitution == pytest.approx((1 - (1 - v**-0.8) ** 2) ** 0.25, abs=1e-10)
+
+
+def test_against_an_independent_integration():
+    # 200 points over lambda 0 to 3 and v 0.05 to 20; scipy at 1e-11 is good to about 1e-9
+    rng = np.random.default_rng(20210326)
+    lams, speeds = rng.uniform(0, 3, 200), np.exp(rng.uniform(*np.log([0.05, 20]), 200))
+    functions = laws.law("myc").functions
+    worst = np.zeros(3)
+    for lam, v in zip(lams, speeds, strict=True):
+        y = yield_ratio(v)
+        one = zener.solve(functions, lam, y, 1e-10)
+        e, time, peak = impact(lam, y)
+        errors = one.restitution - e, one.contact_time / time - 1, one.peak_compression / peak - 1
+        worst = np.maximum(worst, np.abs(errors))
+    assert worst[0] < 1e-7
+    assert worst[1] < 1e-7
+    assert worst[2] < 1e-7
+
+
+def test_linear_branch_is_an_oscillator():
+    # beyond d_P the loading is k (w + s): a damped harmonic oscillator; its peak in closed form
+    lam, y = 0.3, yield_ratio(12.0)
+    p = RATIO * y
+    k = 1.5 * math.sqrt(p)
+    shift = p / 3  # F = k (w - p/3)
+    # state at w = p from the solver of the elastic stretch alone: scipy, stopped at p
+    from scipy.integrate import solve_ivp
+
+    def at_p(t, s):
+        return s[0] - p
+
+    at_p.terminal = True
+    run = solve_ivp(
+        lambda t, s: [s[1] - lam * max(s[0], 0) ** 1.5, -(max(s[0], 0) ** 1.5)],
+        [0, 10],
+        [0, 1],
+        events=at_p,
+        method="DOP853",
+        rtol=1e-12,
+        atol=1e-14,
+    )
+    x0, rate0 = p - shift, run.y[1, -1] - lam * p**1.5
+    damping, omega = lam * k / 2, math.sqrt(k - (lam * k / 2) ** 2)
+    b = (rate0 + damping * x0) / omega
+    # x = exp(-damping t)(x0 cos + b sin); its first maximum
+    t = math.atan2(omega * b - damping * x0, omega * x0 + damping * b) / omega
+    peak = math.exp(-damping * t) * (x0 * math.cos(omega * t) + b * math.sin(omega * t)) + shift
+    one = zener.solve(laws.law("myc").functions, lam, y, 1e-12)
+    assert one.peak_compression == pytest.approx(peak, rel=1e-10)
+
+
+@pytest.mark.parametrize("law", LAWS, ids=lambda law: law.name)
+@settings(deadline=None, max_examples=100)
+@given(lam=st.floats(0, 10), v=st.floats(1e-3, 100))
+def test_energy_balance_and_bounds(law, lam, v):
+    one = zener.solve(law.functions, lam, yield_ratio(v), 1e-10)
+    assert one.status == zener.OK
+    assert 0.0 < one.restitution <= 1.0 + 1e-10
+    balance = 1 - one.restitution**2 - one.plastic_fraction - one.wave_fraction
+    assert abs(balance) < 1e-8
+    assert 0.0 <= one.plastic_fraction < 1.0
+    assert 0.0 <= one.wave_fraction < 1.0
+
+
+def test_error_follows_the_tolerance():
+    # an adaptive 5(4) pair keeps its error in proportion to the tolerance: slope 1 in log-log,
+    # 0.2 less or more (STYLE's band for an observed order)
+    functions, y = laws.law("myc").functions, yield_ratio(6.0)
+    exact = zener.solve(functions, 0.4, y, 1e-13).restitution
+    rtols = np.array([1e-5, 1e-6, 1e-7, 1e-8, 1e-9])
+    errors = [abs(zener.solve(functions, 0.4, y, r).restitution - exact) for r in rtols]
+    slope = np.polyfit(np.log(rtols), np.log(errors), 1)[0]
+    assert slope == pytest.approx(1.0, abs=0.2)
+
+
+@pytest.mark.parametrize("factor", [1 - 1e-9, 1.0, 1 + 1e-9, 1 + 1e-6])
+@pytest.mark.parametrize("kink", [1.0, RATIO])
+def test_peak_on_a_kink(kink, factor):
+    # the largest compression falls on the kink itself, or a hair from it
+    lam = 0.2
+    _, w_m = zener.elastic_compression(HERTZ, lam, 1e-13)
+    one = zener.solve(laws.law("myc").functions, lam, w_m / (kink * factor), 1e-11)
+    assert one.status == zener.OK
+    # the linear branch leaves Hertz's curve along its tangent, so the peak differs by O(step^2)
+    assert one.peak_compression == pytest.approx(w_m, rel=1e-10)
+
+
+def test_large_inelasticity_decays_as_the_fifth_power():
+    # f = u/lam to leading order until w ~ lam^-4, where the sphere lets go: e ~ lam^-5
+    lams = np.array([20.0, 40.0])
+    e = [elastic(lam, 1e-12).restitution for lam in lams]
+    assert np.diff(np.log(e))[0] / math.log(2) == pytest.approx(-5, abs=0.05)
+
+
+def test_far_below_yield_is_elastic():
+    one = zener.solve(laws.law("myc").functions, 0.3, yield_ratio(1e-6), 1e-11)
+    assert one.restitution == pytest.approx(elastic(0.3).restitution, abs=1e-10)
+    assert one.plastic_fraction == 0.0
+
+
+@pytest.mark.parametrize(
+    ("lam", "y"),
+    [(-0.1, 1.0), (math.nan, 1.0), (math.inf, 1.0), (0.1, 0.0), (0.1, -1.0), (0.1, math.nan)],
+)
+def test_bad_input_is_a_status(lam, y):
+    assert zener.solve(HERTZ, lam, y, 1e-10).status == zener.BAD_INPUT
+
+
+def test_too_thin_is_a_status():
+    assert zener.solve(HERTZ, 1e4, 1.0, 1e-10).status == zener.TOO_MANY_STEPS
