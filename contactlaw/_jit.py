@@ -21,7 +21,7 @@ def kernel(function: _F | None = None, *, cache: bool = False) -> _F | Callable[
     so every jitted callee has to be in that file too; functions passed as values cannot be cached.
     """
     # error_model "numpy": a division by zero gives inf, which the callers' range tests refuse; the
-    # default raises, and a raise in nogil code is costly. fastmath stays off: under it isnan(nan)
-    # is False, and NaN would pass every test for it.
-    compiled: Any = numba.njit(error_model="numpy", nogil=True, cache=cache)
+    # default raises, and a raise in nogil code is costly. Of fastmath only "contract", which fuses
+    # a product with a sum: under all of it isnan(nan) is False, and NaN would pass every test.
+    compiled: Any = numba.njit(error_model="numpy", nogil=True, cache=cache, fastmath={"contract"})
     return compiled if function is None else compiled(function)  # type: ignore[no-any-return]

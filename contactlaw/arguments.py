@@ -13,7 +13,7 @@ from contactlaw import lookup
 Array = NDArray[np.float64]
 
 _LIMITS = {
-    "speed": (math.ulp(0.0), lookup.V_MAX, "m/s, positive: the approach speed along the normal"),
+    "speed": (lookup.V_MIN, lookup.V_MAX, "m/s, positive: the approach speed along the normal"),
     "radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
     "other_radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
     "thickness": (lookup.R_MIN, math.inf, "metres; inf is the half-space"),

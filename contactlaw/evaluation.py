@@ -36,12 +36,12 @@ class Impact(NamedTuple):
 
 
 @functools.cache
-def _packaged(law: str) -> lookup.Splines:
-    return store.packaged(law).splines()
+def _packaged(law: str) -> Array:
+    return store.packaged(law).packed()
 
 
-def splines_of(law: Law, table: Table | str | os.PathLike[str] | None) -> lookup.Splines:
-    """Splines of the table that serves a law: the user's, or the packaged one."""
+def packed_table(law: Law, table: Table | str | os.PathLike[str] | None) -> Array:
+    """Table that serves a law, packed for the kernels: the user's, or the packaged one."""
     name = law.name if law.kinks else _ELASTIC_EDGE
     if table is None:
         return _packaged(name)
@@ -49,13 +49,13 @@ def splines_of(law: Law, table: Table | str | os.PathLike[str] | None) -> lookup
         table = store.read(table)
     if table.law != name:
         raise ValueError(f"table: it belongs to law {table.law!r}, the model needs one of {name!r}")
-    return table.splines()
+    return table.packed()
 
 
-def factors(contact: Contact) -> lookup.Factors:
-    """Factors of the powers of speed: lambda and ln(chi/w_m) at 1 m/s."""
+def factors(contact: Contact) -> tuple[float, float]:
+    """c_lam and c_chi of `lookup`: lambda and ln(chi/w_m) at 1 m/s."""
     units = scales(contact, np.ones(()))
-    return lookup.Factors(units.inelasticity.item(), -math.log(units.yield_ratio.item()))
+    return units.inelasticity.item(), -math.log(units.yield_ratio.item())
 
 
 def _coordinates(units: Scales) -> tuple[Array, Array]:
@@ -77,37 +77,36 @@ def solved(law: Law, units: Scales, rtol: float) -> Array:
     return out
 
 
-def tabulated(
-    law: Law, splines: lookup.Splines, units: Scales, outside: Outside
-) -> tuple[Array, Flags]:
+def tabulated(law: Law, table: Array, units: Scales, outside: Outside) -> tuple[Array, Flags]:
     """Fields (5, n) as `solved` gives them, and Validity.CLAMPED where the border was taken."""
     lam, y = _coordinates(units)
     out = np.empty((5, lam.size))
     clamped = np.zeros(lam.size, dtype=np.int64)
-    if not lookup.fields(splines, lam, y, False, out):
+    if not lookup.fields(table, lam, y, False, out):
         return out, clamped
     beyond = np.isnan(out[0])
     if outside == "raise":
         n = int(np.argmax(beyond))
-        _refuse(splines, float(lam[n]), float(y[n]), n)
+        _refuse(table, float(lam[n]), float(y[n]), n)
     if outside == "solve":
         part = Scales(*(np.broadcast_to(value, lam.shape)[beyond] for value in units))
         out[:, beyond] = solved(law, part, _RTOL)
     else:
-        lookup.fields(splines, lam, y, True, out)
+        lookup.fields(table, lam, y, True, out)
         clamped[beyond] = int(Validity.CLAMPED)
     return out, clamped
 
 
-def _refuse(splines: lookup.Splines, lam: float, y: float, n: int) -> NoReturn:
-    if not lam <= splines.lam_max:
+def _refuse(table: Array, lam: float, y: float, n: int) -> NoReturn:
+    limit = lookup.lam_max(table)
+    if lam > limit:
         what = (
-            f"its inelasticity lambda = {lam:.4g} is above {splines.lam_max:g}: the plate is too "
-            "thin for the bead"
+            f"its inelasticity lambda = {lam:.4g} is above {limit:.4g}: the plate is too thin for "
+            "the bead"
         )
     else:
-        chi = math.exp(lookup.log_elastic_compression(splines, lam)) / y
-        limit = math.exp(splines.log_chi_max)
+        chi = math.exp(lookup.log_elastic_compression(table, lam)) / y
+        limit = lookup.chi_max(table)
         what = f"its overload chi = {chi:.4g} is above {limit:.4g}: the impact is too fast"
     raise ValueError(
         f"speed, radius, thickness: impact {n} is outside the table, {what}. "

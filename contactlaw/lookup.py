@@ -3,17 +3,30 @@
 A table holds functions of the inelasticity lambda and of ln chi, the logarithm of the overload.
 Along lambda the nodes are uniform in x = lambda/(lambda + c); along ln chi they are uniform within
 each segment between two kinks, and each segment has a spline of its own, so no spline runs across
-a kink. Splines are kept as coefficients of uniform cubic B-splines: two more than there are nodes.
-Where ln chi < 0 the contact is elastic and the values at ln chi = 0 hold.
+a kink. Splines are kept as coefficients of uniform cubic B-splines, two more than there are nodes:
+they need the least memory, and a table that stays in the cache is a fast one. Where ln chi < 0 the
+contact is elastic and the values at ln chi = 0 hold. ln w_m is a polynomial in x.
 
-Legend: lam inelasticity, chi overload, w_m largest elastic compression [V0 T_H], c_* the factors
-that a pair of materials puts before the powers of speed, radius and thickness.
+All of it is packed into one array of float64, because a kernel that takes one array and a few
+numbers is called from Python in a third of a microsecond. The array begins with a header:
+
+    _STRETCH      c                        _COLUMNS   columns of coefficients, all segments
+    _X_MAX        x of the largest lambda  _SEGMENTS  number of segments n
+    _LOG_CHI_MAX  largest ln chi           _COR       where the coefficients of COR begin
+    _NODES_PER_X  1/(distance of nodes)    _OTHERS    where those of the other fields begin
+    _LAST_ROW     cells along x, less one
+
+then, at _HEADER, the polynomial's coefficients and n blocks (first ln chi, nodes per unit of
+ln chi, last cell, first column).
+
+Legend: v speed, lam inelasticity, chi overload, w_m largest elastic compression [V0 T_H]. Powers:
+lam = c_lam V^(1/5), ln chi = c_chi + (4/5) ln V + ln w_m; c_lam and c_chi come with SI units from
+`contactlaw.evaluation`, for spheres on plates with R/H = 1.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,37 +34,21 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.int32]
+Bits = NDArray[np.int64]
 
-# Input beyond these is a mistake: no continuum below 1 nm, no bead above 1 km [m], and no contact
-# is quasi-static above the speed of every wave in a solid [m/s].
+# Input beyond these is a mistake: no continuum below 1 nm, no bead above 1 km [m], no contact that
+# is quasi-static above the speed of every wave in a solid [m/s]; subnormals have no exponent.
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
+V_MIN = float(np.finfo(np.float64).tiny)
 
+OTHERS = ("contact_time", "wave_rate", "compression_ratio")
 
-class Splines(NamedTuple):
-    """A table made ready for interpolation; plain numbers and arrays that a kernel can take."""
-
-    stretch: float  # c in x = lam/(lam + c)
-    nodes_per_x: float
-    lam_max: float
-    elastic_per_x: float
-    starts: Array  # ln chi at which the segments begin
-    nodes_per_log: Array  # nodes per unit of ln chi in each segment
-    cells: NDArray[np.int64]  # cells of each segment
-    columns: NDArray[np.int64]  # first coefficient of each segment
-    log_chi_max: float
-    log_elastic: Array  # (m + 2,) coefficients of ln w_m
-    restitution: Array  # (n + 2, columns)
-    others: Array  # (n + 2, columns, 3): contact time, wave rate, compression ratio
-
-
-class Factors(NamedTuple):
-    """What a contact brings into an impact beside its speed V [m/s].
-
-    lam = inelasticity V^(1/5);  ln chi = log_overload + (4/5) ln V + ln w_m(lam).
-    """
-
-    inelasticity: float
-    log_overload: float
+_STRETCH, _X_MAX, _LOG_CHI_MAX, _NODES_PER_X, _LAST_ROW = range(5)
+_COLUMNS, _SEGMENTS, _COR, _OTHERS, _HEADER = range(5, 10)
+_DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
+_START, _PER_LOG, _LAST_CELL, _COLUMN, _BLOCK = range(5)
+_CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
 def spline_coefficients(values: Array) -> Array:
@@ -71,142 +68,316 @@ def spline_coefficients(values: Array) -> Array:
     return flat.reshape(right.shape)
 
 
+def pack(
+    stretch: float,
+    lam_max: float,
+    segments: tuple[Array, ...],
+    elastic_compression: Array,
+    fields: dict[str, Array],
+) -> Array:
+    """Fit splines through the values of a table's nodes and pack them into one array."""
+    lengths = np.array([len(nodes) for nodes in segments])
+    first_columns = np.cumsum(lengths + 2) - (lengths + 2)
+    coefficients = {}
+    for name, values in fields.items():
+        parts = np.split(spline_coefficients(values), np.cumsum(lengths)[:-1], axis=1)
+        coefficients[name] = np.hstack([spline_coefficients(part.T).T for part in parts])
+    x_max = lam_max / (lam_max + stretch)
+    x = np.linspace(-1.0, 1.0, len(elastic_compression))
+    polynomial = np.polynomial.Chebyshev.fit(x, np.log(elastic_compression), _DEGREE)
+    power_series = polynomial.convert(kind=np.polynomial.Polynomial).coef
+    blocks = [
+        (nodes[0], (len(nodes) - 1) / (nodes[-1] - nodes[0]), len(nodes) - 2, column)
+        for nodes, column in zip(segments, first_columns, strict=True)
+    ]
+    cor = coefficients["restitution"]
+    others = np.stack([coefficients[name] for name in OTHERS], axis=-1)
+    header = np.empty(_HEADER)
+    header[[_STRETCH, _X_MAX, _LOG_CHI_MAX]] = stretch, x_max, segments[-1][-1]
+    header[[_NODES_PER_X, _LAST_ROW]] = (len(cor) - 3) / x_max, len(cor) - 4
+    header[[_COLUMNS, _SEGMENTS]] = cor.shape[1], len(segments)
+    start = _HEADER + power_series.size + _BLOCK * len(blocks)
+    header[[_COR, _OTHERS]] = start, start + cor.size
+    return np.concatenate([header, power_series, np.ravel(blocks), cor.ravel(), others.ravel()])
+
+
+@kernel(cache=True)
+def lam_max(table: Array) -> float:
+    """Largest inelasticity of a table."""
+    value: float = table[_STRETCH] * table[_X_MAX] / (1.0 - table[_X_MAX])
+    return value
+
+
+@kernel(cache=True)
+def chi_max(table: Array) -> float:
+    """Largest overload of a table."""
+    return math.exp(table[_LOG_CHI_MAX])
+
+
 @kernel(cache=True)
 def _weights(t: float) -> tuple[float, float, float, float]:
-    """Uniform cubic B-splines at t in [0, 1] of a cell (de Boor, A Practical Guide to Splines)."""
-    s = 1.0 - t
-    w0 = s * s * s / 6.0
-    w3 = t * t * t / 6.0
-    w1 = 2.0 / 3.0 - 0.5 * t * t * (1.0 + s)
-    return w0, w1, 1.0 - w0 - w1 - w3, w3
+    """Six times the uniform cubic B-splines at t in [0, 1] (de Boor 1978, chapter IX).
+
+    All four with the same operations, zeros and all, so that one vector instruction does four.
+    """
+    return (
+        ((-1.0 * t + 3.0) * t - 3.0) * t + 1.0,
+        ((3.0 * t - 6.0) * t + 0.0) * t + 4.0,
+        ((-3.0 * t + 3.0) * t + 3.0) * t + 1.0,
+        ((1.0 * t + 0.0) * t + 0.0) * t + 0.0,
+    )
 
 
 @kernel(cache=True)
-def log_elastic_compression(splines: Splines, lam: float) -> float:
-    """Logarithm of w_m."""
-    position = lam / (lam + splines.stretch) * splines.elastic_per_x
-    i = min(int(position), splines.log_elastic.size - 4)
-    w0, w1, w2, w3 = _weights(position - i)
-    c = splines.log_elastic
-    value: float = w0 * c[i] + w1 * c[i + 1] + w2 * c[i + 2] + w3 * c[i + 3]
+def _log_elastic(table: Array, x: float) -> float:
+    """Logarithm of w_m at x."""
+    t = 2.0 / table[_X_MAX] * x - 1.0
+    value: float = table[_HEADER + _DEGREE]
+    for k in range(_DEGREE - 1, -1, -1):
+        value = value * t + table[_HEADER + k]
     return value
 
 
 @kernel(cache=True)
-def _locate(splines: Splines, lam: float, log_chi: float) -> tuple[int, float, int, float]:
-    """Row and column of the first of 4 x 4 coefficients, and the place within the cell."""
-    x = lam / (lam + splines.stretch) * splines.nodes_per_x
-    i = min(int(x), splines.restitution.shape[0] - 4)
-    segment = 0
-    while segment + 1 < splines.starts.size and log_chi > splines.starts[segment + 1]:
-        segment += 1
-    y = max(0.0, log_chi - splines.starts[segment]) * splines.nodes_per_log[segment]
-    j = min(int(y), splines.cells[segment] - 1)
-    return i, x - i, splines.columns[segment] + j, y - j
+def log_elastic_compression(table: Array, lam: float) -> float:
+    """Logarithm of w_m at an inelasticity inside the table."""
+    return _log_elastic(table, lam / (lam + table[_STRETCH]))
 
 
 @kernel(cache=True)
-def restitution_at(splines: Splines, lam: float, log_chi: float) -> float:
-    """COR; NaN outside the table."""
-    if not (0.0 <= lam <= splines.lam_max and log_chi <= splines.log_chi_max):
-        return math.nan
-    i, s, j, t = _locate(splines, lam, log_chi)
+def _locate(table: Array, x: float, log_chi: float) -> tuple[int, float, float]:
+    """Index of the first of 4 x 4 coefficients, and the place within the cell."""
+    last_row = int(table[_LAST_ROW])
+    block = _HEADER + _DEGREE + 1
+    for k in range(1, int(table[_SEGMENTS])):
+        if log_chi > table[_HEADER + _DEGREE + 1 + k * _BLOCK + _START]:
+            block = _HEADER + _DEGREE + 1 + k * _BLOCK
+    across = x * table[_NODES_PER_X]
+    along = max(0.0, log_chi - table[block + _START]) * table[block + _PER_LOG]
+    row = min(int(across), last_row)
+    cell = min(int(along), int(table[block + _LAST_CELL]))
+    first = row * int(table[_COLUMNS]) + int(table[block + _COLUMN]) + cell
+    return first, across - row, along - cell
+
+
+@kernel(cache=True)
+def _cor(table: Array, first: int, s: float, t: float) -> float:
+    """COR from its 16 coefficients; four neighbours along ln chi share each instruction."""
     a0, a1, a2, a3 = _weights(s)
     b0, b1, b2, b3 = _weights(t)
-    c = splines.restitution
-    value: float = (
-        a0 * (b0 * c[i, j] + b1 * c[i, j + 1] + b2 * c[i, j + 2] + b3 * c[i, j + 3])
-        + a1
-        * (b0 * c[i + 1, j] + b1 * c[i + 1, j + 1] + b2 * c[i + 1, j + 2] + b3 * c[i + 1, j + 3])
-        + a2
-        * (b0 * c[i + 2, j] + b1 * c[i + 2, j + 1] + b2 * c[i + 2, j + 2] + b3 * c[i + 2, j + 3])
-        + a3
-        * (b0 * c[i + 3, j] + b1 * c[i + 3, j + 1] + b2 * c[i + 3, j + 2] + b3 * c[i + 3, j + 3])
-    )
+    step = np.uint64(table[_COLUMNS])  # unsigned: no test for a negative index
+    p = np.uint64(table[_COR]) + np.uint64(first)
+    q = p + step
+    r = q + step
+    o = r + step
+    i, j, k = np.uint64(1), np.uint64(2), np.uint64(3)
+    c0 = a0 * table[p] + a1 * table[q] + a2 * table[r] + a3 * table[o]
+    c1 = a0 * table[p + i] + a1 * table[q + i] + a2 * table[r + i] + a3 * table[o + i]
+    c2 = a0 * table[p + j] + a1 * table[q + j] + a2 * table[r + j] + a3 * table[o + j]
+    c3 = a0 * table[p + k] + a1 * table[q + k] + a2 * table[r + k] + a3 * table[o + k]
+    value: float = (b0 * c0 + b1 * c1 + b2 * c2 + b3 * c3) * (1.0 / 36.0)
     return value
 
 
 @kernel(cache=True)
-def others_at(splines: Splines, lam: float, log_chi: float) -> tuple[float, float, float]:
-    """Contact time [T_H], wave rate and compression over w_m; lam and ln chi inside the table."""
-    i, s, j, t = _locate(splines, lam, log_chi)
-    a = _weights(s)
-    b = _weights(t)
+def _other_fields(table: Array, first: int, s: float, t: float) -> tuple[float, float, float]:
+    """Contact time [T_H], wave rate and compression ratio."""
+    a, b = _weights(s), _weights(t)
     time = wave = ratio = 0.0
     for k in range(4):
+        start = int(table[_OTHERS]) + 3 * (first + k * int(table[_COLUMNS]))
         for n in range(4):
             weight = a[k] * b[n]
-            time += weight * splines.others[i + k, j + n, 0]
-            wave += weight * splines.others[i + k, j + n, 1]
-            ratio += weight * splines.others[i + k, j + n, 2]
-    return time, wave, ratio
+            time += weight * table[start + 3 * n]
+            wave += weight * table[start + 3 * n + 1]
+            ratio += weight * table[start + 3 * n + 2]
+    return time / 36.0, wave / 36.0, ratio / 36.0
 
 
 @kernel(cache=True)
-def restitution(splines: Splines, factors: Factors, speed: float) -> float:
+def restitution(table: Array, c_lam: float, c_chi: float, speed: float) -> float:
     """COR at one speed; NaN where the speed is no positive number and outside the table."""
-    if not 0.0 < speed <= V_MAX:
+    if not V_MIN <= speed <= V_MAX:
         return math.nan
     log_speed = math.log(speed)
-    lam = factors.inelasticity * math.exp(0.2 * log_speed)
-    if not 0.0 <= lam <= splines.lam_max:
+    lam = c_lam * math.exp(0.2 * log_speed)
+    x = lam / (lam + table[_STRETCH])
+    if not x <= table[_X_MAX]:
         return math.nan
-    log_chi = factors.log_overload + 0.8 * log_speed + log_elastic_compression(splines, lam)
-    return restitution_at(splines, lam, log_chi)
+    log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
+    if not log_chi <= table[_LOG_CHI_MAX]:
+        return math.nan
+    first, s, t = _locate(table, x, log_chi)
+    return _cor(table, first, s, t)
+
+
+@kernel(cache=True)
+def restitution_on_plate(
+    table: Array, c_lam: float, c_chi: float, speed: float, radius: float, thickness: float
+) -> float:
+    """COR of one sphere on a plate; NaN for bad input and outside the table."""
+    if not (R_MIN <= radius <= R_MAX and thickness >= R_MIN):
+        return math.nan
+    ratio = radius / thickness
+    return restitution(table, c_lam * ratio * ratio, c_chi, speed)
+
+
+@kernel(cache=True)
+def _logs_and_roots(speed: Array, bits: Bits, log: Array, root: Array, scratch: Bits) -> None:
+    """Fill in ln V and V^(1/5) to 2e-11, without a call: the loops become vector instructions.
+
+    V = 2^k m with m within [sqrt(1/2), sqrt(2)); ln m by the series of artanh, V^(1/5) by that of
+    exp. bits are those of the speeds, which must be normal positive numbers.
+    """
+    n = speed.size
+    for i in range(n):
+        exponent = (bits[i] - 0x3FE6A09E667F3BCD) >> 52  # the bits of sqrt(1/2)
+        scratch[i] = bits[i] - (exponent << 52)
+        log[i] = exponent
+    mantissa = scratch.view(np.float64)
+    for i in range(n):
+        z = (mantissa[i] - 1.0) / (mantissa[i] + 1.0)  # |z| < 0.172: the next term is 1e-13
+        w = z * z
+        series = 2 / 9 + w * (2 / 11 + w * (2 / 13 + w * (2 / 15)))
+        series = 2.0 + w * (2 / 3 + w * (2 / 5 + w * (2 / 7 + w * series)))
+        log[i] = log[i] * math.log(2.0) + z * series
+    for i in range(n):
+        power = log[i] * (0.2 / math.log(2.0))
+        whole = (power + 6755399441055744.0) - 6755399441055744.0  # 1.5 2^52: rounds to nearest
+        f = (power - whole) * math.log(2.0)  # |f| < 0.347: the next term is 7e-12
+        series = 1 / 120 + f * (1 / 720 + f * (1 / 5040 + f * (1 / 40320 + f * (1 / 362880))))
+        root[i] = 1.0 + f * (1.0 + f * (1 / 2 + f * (1 / 6 + f * (1 / 24 + f * series))))
+        scratch[i] = np.int64(whole)
+    root_bits = root.view(np.int64)
+    for i in range(n):
+        root_bits[i] += scratch[i] << 52
+
+
+@kernel(cache=True)
+def _coordinates(
+    table: Array,
+    c_lam: float,
+    c_chi: float,
+    speed: Array,
+    radius: Array,
+    thickness: Array,
+    log: Array,
+    root: Array,
+    out: Array,
+) -> None:
+    """Put ln chi over ln V and x over V^(1/5); out: 0, or NaN for an impact that has no place."""
+    stretch, x_max, scale = table[_STRETCH], table[_X_MAX], 2.0 / table[_X_MAX]
+    for i in range(out.size):
+        # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
+        above = c_lam * root[i] * radius[i] * radius[i]
+        root[i] = above / (above + stretch * (thickness[i] * thickness[i]))
+    for i in range(out.size):
+        t = scale * root[i] - 1.0
+        value = table[_HEADER + _DEGREE]
+        for k in range(_DEGREE - 1, -1, -1):
+            value = value * t + table[_HEADER + k]
+        log[i] = c_chi + 0.8 * log[i] + value
+    for i in range(out.size):
+        good = (speed[i] >= V_MIN) & (speed[i] <= V_MAX) & (thickness[i] >= R_MIN)
+        good &= (radius[i] >= R_MIN) & (radius[i] <= R_MAX)
+        good &= (root[i] <= x_max) & (log[i] <= table[_LOG_CHI_MAX])
+        out[i] = 0.0 if good else math.nan
+        root[i] = root[i] if good else 0.0
+        log[i] = max(log[i], 0.0) if good else 0.0
+
+
+@kernel(cache=True)
+def _cells(
+    table: Array, x: Array, log_chi: Array, first: Integers, along: Array, column: Integers
+) -> None:
+    """Index of the first of 4 x 4 coefficients; places within the cell over x and into along."""
+    columns, last_row = np.int32(table[_COLUMNS]), np.int32(table[_LAST_ROW])
+    for i in range(x.size):
+        across = x[i] * table[_NODES_PER_X]
+        row = min(np.int32(across), last_row)
+        x[i] = across - row
+        first[i] = row * columns
+    for k in range(int(table[_SEGMENTS])):
+        block = _HEADER + _DEGREE + 1 + k * _BLOCK
+        start, per_log = table[block + _START], table[block + _PER_LOG]
+        last, offset = np.int32(table[block + _LAST_CELL]), np.int32(table[block + _COLUMN])
+        for i in range(x.size):
+            place = max(0.0, log_chi[i] - start) * per_log
+            cell = min(np.int32(place), last)
+            here = (log_chi[i] > start) | (k == 0)
+            along[i] = place - cell if here else along[i]
+            column[i] = offset + cell if here else column[i]
+    for i in range(x.size):
+        first[i] += column[i]
 
 
 @kernel(cache=True)
 def restitutions(
-    splines: Splines, factors: Factors, speed: Array, radius: Array, thickness: Array, out: Array
+    table: Array,
+    c_lam: float,
+    c_chi: float,
+    speed: Array,
+    radius: Array,
+    thickness: Array,
+    out: Array,
 ) -> int:
-    """COR of many spheres on plates; factors hold for R/H = 1. Returns how many are NaN."""
+    """COR of many spheres on plates into out; how many are NaN."""
+    log, root, along = np.empty(_CHUNK), np.empty(_CHUNK), np.empty(_CHUNK)
+    scratch = np.empty(_CHUNK, dtype=np.int64)
+    first, column = np.empty(_CHUNK, dtype=np.int32), np.empty(_CHUNK, dtype=np.int32)
     bad = 0
-    for n in range(out.size):
-        ratio = radius[n] / thickness[n]
-        one = Factors(factors.inelasticity * ratio * ratio, factors.log_overload)
-        out[n] = restitution(splines, one, speed[n])
-        if not (R_MIN <= radius[n] <= R_MAX and thickness[n] >= R_MIN):
-            out[n] = math.nan
-        bad += math.isnan(out[n])
+    for start in range(0, out.size, _CHUNK):
+        stop = min(start + _CHUNK, out.size)
+        n = stop - start
+        v, values = speed[start:stop], out[start:stop]
+        _logs_and_roots(v, v.view(np.int64), log[:n], root[:n], scratch[:n])
+        r, h = radius[start:stop], thickness[start:stop]
+        _coordinates(table, c_lam, c_chi, v, r, h, log[:n], root[:n], values)
+        _cells(table, root[:n], log[:n], first[:n], along[:n], column[:n])
+        for i in range(n):
+            values[i] += _cor(table, first[i], root[i], along[i])
+        for i in range(n):
+            bad += values[i] != values[i]
     return bad
 
 
 @kernel(cache=True)
-def fields(splines: Splines, lam: Array, yield_ratio: Array, clamp: bool, out: Array) -> int:
+def fields(table: Array, lam: Array, yield_ratio: Array, clamp: bool, out: Array) -> int:
     """COR, contact time, wave rate, compression ratio, w_m into out (5, n); how many are outside.
 
-    yield_ratio is y = w_m/chi. Outside the table, `clamp` takes the border, else COR is NaN.
+    yield_ratio is y = w_m/chi. Outside the table, `clamp` takes the border, else all are NaN.
     """
     outside = 0
     for n in range(lam.size):
-        inside_lam = min(lam[n], splines.lam_max)
-        log_w = log_elastic_compression(splines, inside_lam)
+        x = lam[n] / (lam[n] + table[_STRETCH])
+        inside_x = min(x, table[_X_MAX])
+        log_w = _log_elastic(table, inside_x)
         log_chi = log_w - math.log(yield_ratio[n])
-        inside_chi = min(log_chi, splines.log_chi_max)
-        if not (inside_lam == lam[n] and inside_chi == log_chi):
+        inside_chi = min(log_chi, table[_LOG_CHI_MAX])
+        if not (inside_x == x and inside_chi == log_chi):
             outside += 1
             if not clamp:
                 out[:, n] = math.nan
                 continue
-        out[0, n] = restitution_at(splines, inside_lam, inside_chi)
-        out[1, n], out[2, n], out[3, n] = others_at(splines, inside_lam, inside_chi)
+        first, s, t = _locate(table, inside_x, inside_chi)
+        out[0, n] = _cor(table, first, s, t)
+        out[1, n], out[2, n], out[3, n] = _other_fields(table, first, s, t)
         out[4, n] = math.exp(log_w)
     return outside
 
 
 @kernel(cache=True)
-def yield_speeds(splines: Splines, inelasticity: Array, log_overload: float, out: Array) -> None:
+def yield_speeds(table: Array, c_lam: Array, c_chi: float, out: Array) -> None:
     """Speeds at which chi = 1 into out; NaN where lambda leaves the table before.
 
-    inelasticity is lambda at unit speed. d(ln chi)/d(ln V) lies between 2/3 and 4/5, so a step
-    with slope 3/4 contracts by 0.12 at least.
+    d(ln chi)/d(ln V) lies between 2/3 and 4/5, so a step with slope 3/4 contracts by 0.12 at least.
     """
     for n in range(out.size):
-        log_speed = -1.25 * log_overload
+        log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
-            lam = inelasticity[n] * math.exp(0.2 * log_speed)
-            if not lam <= splines.lam_max:
+            lam = c_lam[n] * math.exp(0.2 * log_speed)
+            x = lam / (lam + table[_STRETCH])
+            if not x <= table[_X_MAX]:
                 break
-            log_chi = log_overload + 0.8 * log_speed + log_elastic_compression(splines, lam)
-            log_speed -= log_chi / 0.75
-        out[n] = math.exp(log_speed) if lam <= splines.lam_max else math.nan
+            log_speed -= (c_chi + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
+        out[n] = math.exp(log_speed) if x <= table[_X_MAX] else math.nan

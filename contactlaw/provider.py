@@ -19,9 +19,9 @@ from contactlaw.evaluation import (
     Impact,
     Outside,
     factors,
+    packed_table,
     rebound,
     solved,
-    splines_of,
     tabulated,
 )
 from contactlaw.impact import Contact, Rebound, Scales, scales, sphere_on_plate, sphere_on_sphere
@@ -92,8 +92,10 @@ class ImpactModel:
             pair.sphere.require_yield_strength(law)
         self.outside: Outside = outside
         self.clamped = 0
-        self._splines = splines_of(self._law, table)
-        self._factors = factors(sphere_on_plate(pair, self._law, np.ones(()), np.ones(())))
+        self._table = packed_table(self._law, table)
+        self._c_lam, self._c_chi = factors(
+            sphere_on_plate(pair, self._law, np.ones(()), np.ones(()))
+        )
 
     def __repr__(self) -> str:
         return f"ImpactModel({self.pair!r}, law={self.law!r}, outside={self.outside!r})"
@@ -140,7 +142,7 @@ class ImpactModel:
         """
         v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
         out = np.empty(v.size)
-        if lookup.restitutions(self._splines, self._factors, v, r, h, out):
+        if lookup.restitutions(self._table, self._c_lam, self._c_chi, v, r, h, out):
             check(speed=v, radius=r, thickness=h)
             wrong = np.isnan(out)
             contact = sphere_on_plate(self.pair, self._law, r[wrong], h[wrong])
@@ -273,14 +275,13 @@ class ImpactModel:
         check(radius=r, thickness=h)
         out = np.full(r.size, math.inf)
         if self._law.kinks:
-            inelasticity = self._factors.inelasticity * (r / h) ** 2
-            lookup.yield_speeds(self._splines, inelasticity, self._factors.log_overload, out)
+            lookup.yield_speeds(self._table, self._c_lam * (r / h) ** 2, self._c_chi, out)
             if np.isnan(out).any():
                 n = int(np.argmax(np.isnan(out)))
                 raise ValueError(
                     f"thickness: at {h[n]:g} m under a bead of radius {r[n]:g} m the inelasticity "
-                    f"at yield is beyond the table's {self._splines.lam_max:g}; the plate is too "
-                    "thin for the model"
+                    f"at yield is beyond the table's {lookup.lam_max(self._table):.4g}; the plate "
+                    "is too thin for the model"
                 )
         return shaped(out, shape)
 
@@ -328,11 +329,12 @@ class ImpactModel:
         return self._curve(sphere_on_sphere(twins, self._law, r, o))
 
     def _curve(self, contact: Contact) -> Callable[[float], float]:
-        splines, powers, at = self._splines, factors(contact), lookup.restitution
+        table, at = self._table, lookup.restitution
+        c_lam, c_chi = factors(contact)
 
         def restitution(speed: float) -> float:
-            value = at(splines, powers, speed)
-            if math.isnan(value):
+            value = at(table, c_lam, c_chi, speed)
+            if value != value:  # NaN; half the time of a call of isnan
                 v, _ = broadcast(speed=speed)
                 check(speed=v)
                 return float(self._fields(scales(contact, v))[0][0, 0])
@@ -346,7 +348,7 @@ class ImpactModel:
         return rebound(self.pair, self._law, units, fields, impact, clamped)
 
     def _fields(self, units: Scales) -> tuple[Array, NDArray[np.int64]]:
-        fields, flags = tabulated(self._law, self._splines, units, self.outside)
+        fields, flags = tabulated(self._law, self._table, units, self.outside)
         self.clamped += int(np.count_nonzero(flags))
         return fields, flags
 

@@ -16,10 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import zener
+from contactlaw import lookup, zener
 from contactlaw.laws import Law
 from contactlaw.laws import law as find_law
-from contactlaw.lookup import Splines, spline_coefficients
 
 Array = NDArray[np.float64]
 
@@ -77,46 +76,15 @@ class Table:
         """Nodes along lambda."""
         return _inelasticity_nodes(self.settings, self.settings.inelasticity_nodes)
 
-    def splines(self) -> Splines:
-        """Fit the splines that the lookup kernels read."""
-        lengths = [len(nodes) for nodes in self.segments]
-        splits = np.cumsum(lengths)[:-1]
-        coefficients = {
-            name: np.concatenate(
-                [
-                    _fit_columns(spline_coefficients(part))
-                    for part in np.split(values, splits, axis=1)
-                ],
-                axis=1,
-            )
-            for name, values in self.fields.items()
-        }
-        x_max = self.settings.largest_inelasticity / (
-            self.settings.largest_inelasticity + self.settings.stretch
+    def packed(self) -> Array:
+        """Pack splines through the values for the lookup kernels."""
+        return lookup.pack(
+            self.settings.stretch,
+            self.settings.largest_inelasticity,
+            self.segments,
+            self.elastic_compression,
+            self.fields,
         )
-        return Splines(
-            stretch=self.settings.stretch,
-            nodes_per_x=(self.settings.inelasticity_nodes - 1) / x_max,
-            lam_max=self.settings.largest_inelasticity,
-            elastic_per_x=(self.settings.elastic_nodes - 1) / x_max,
-            starts=np.array([nodes[0] for nodes in self.segments]),
-            nodes_per_log=np.array(
-                [(len(nodes) - 1) / (nodes[-1] - nodes[0]) for nodes in self.segments]
-            ),
-            cells=np.array([length - 1 for length in lengths]),
-            columns=np.cumsum([0, *(length + 2 for length in lengths[:-1])]),
-            log_chi_max=float(self.segments[-1][-1]),
-            log_elastic=spline_coefficients(np.log(self.elastic_compression)),
-            restitution=np.ascontiguousarray(coefficients["restitution"]),
-            others=np.stack(
-                [coefficients[n] for n in ("contact_time", "wave_rate", "compression_ratio")],
-                axis=-1,
-            ),
-        )
-
-
-def _fit_columns(values: Array) -> Array:
-    return spline_coefficients(values.T).T
 
 
 def _inelasticity_nodes(settings: Settings, count: int) -> Array:

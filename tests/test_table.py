@@ -1,4 +1,4 @@
-"""The table and its splines against the solver that they stand for."""
+"""The table and its packed against the solver that they stand for."""
 
 import math
 
@@ -26,13 +26,13 @@ def random_points(law, count, settings, seed):
     return lam, np.exp(np.concatenate([low, high]))
 
 
-def errors(law, splines, lam, chi):
+def errors(law, packed, lam, chi):
     """COR's error, and relative ones of contact time, wave share and largest compression."""
     worst = np.zeros(4)
     for one_lam, one_chi in zip(lam, chi, strict=True):
         exact, w_m = solve(law, one_lam, one_chi)
         out = np.empty((5, 1))
-        lookup.fields(splines, np.array([one_lam]), np.array([w_m / one_chi]), False, out)
+        lookup.fields(packed, np.array([one_lam]), np.array([w_m / one_chi]), False, out)
         e, time, wave, ratio, w = out[:, 0]
         worst = np.maximum(
             worst,
@@ -48,8 +48,8 @@ def errors(law, splines, lam, chi):
 
 @pytest.mark.parametrize("law", YIELDING)
 def test_packaged_table_against_the_solver(law):
-    splines = store.packaged(law).splines()
-    worst = errors(law, splines, *random_points(law, 2000, table.Settings(), seed=7))
+    packed = store.packaged(law).packed()
+    worst = errors(law, packed, *random_points(law, 2000, table.Settings(), seed=7))
     assert worst[0] < 1e-6  # the design's target for COR
     assert (worst[1:] < 1e-5).all()  # and, relatively, for the rest
 
@@ -62,7 +62,7 @@ def test_spline_error_falls_with_the_fourth_power():
     lam = 5 * rng.uniform(0, 1, 400) ** 2
     chi = np.exp(rng.uniform(0, math.log(2.14 / 0.68), 400))
     coarse, fine = (
-        errors("myc", table.build("myc", settings).splines(), lam, chi)[0]
+        errors("myc", table.build("myc", settings).packed(), lam, chi)[0]
         for settings in (
             table.Settings(inelasticity_nodes=41, log_overload_step=0.075, elastic_nodes=641),
             table.Settings(inelasticity_nodes=81, log_overload_step=0.0375, elastic_nodes=641),
@@ -94,10 +94,16 @@ def test_largest_speed_of_the_target_is_inside():
 
 
 def test_restitution_falls_with_overload_and_with_inelasticity():
-    splines = store.packaged("myc").splines()
+    packed = store.packaged("myc").packed()
     lam = np.linspace(0, 5, 201)
     log_chi = np.linspace(-0.5, math.log(40), 300)
-    e = np.array([[lookup.restitution_at(splines, a, b) for b in log_chi] for a in lam])
+    rows = []
+    for value in lam:
+        w_m = np.exp(lookup.log_elastic_compression(packed, value))
+        out = np.empty((5, log_chi.size))
+        lookup.fields(packed, np.full_like(log_chi, value), w_m / np.exp(log_chi), True, out)
+        rows.append(out[0])
+    e = np.array(rows)
     assert ((e >= 0) & (e <= 1)).all()
     # the spline may ripple by its error, 3e-7, where the surface is flat
     assert (np.diff(e, axis=0) <= 1e-7).all()
@@ -116,7 +122,7 @@ def test_splines_reproduce_cubics():
     c = lookup.spline_coefficients(x**3 - 4 * x**2 + 2)
     for position in (0.0, 0.3, 3.7, 7.99):
         i = int(position)
-        value = sum(w * c[i + k] for k, w in enumerate(lookup._weights(position - i)))
+        value = sum(w / 6 * c[i + k] for k, w in enumerate(lookup._weights(position - i)))
         assert value == pytest.approx(position**3 - 4 * position**2 + 2, abs=1e-12)
 
 
