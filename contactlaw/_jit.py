@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable
 from typing import Any, TypeVar, overload
 
 import numba
 
 _F = TypeVar("_F", bound=Callable[..., Any])
+_cached: list[Any] = []
 
 
 @overload
@@ -20,8 +22,30 @@ def kernel(function: _F | None = None, *, cache: bool = False) -> _F | Callable[
     `cache` keeps the machine code on disk. Numba notices an edit in the function's own file only,
     so every jitted callee has to be in that file too; functions passed as values cannot be cached.
     """
-    # error_model "numpy": a division by zero gives inf, which the callers' range tests refuse; the
-    # default raises, and a raise in nogil code is costly. Of fastmath only "contract", which fuses
-    # a product with a sum: under all of it isnan(nan) is False, and NaN would pass every test.
-    compiled: Any = numba.njit(error_model="numpy", nogil=True, cache=cache, fastmath={"contract"})
-    return compiled if function is None else compiled(function)  # type: ignore[no-any-return]
+
+    def compiled(python_function: _F) -> _F:
+        # error_model "numpy": a division by zero gives inf, which the callers' range tests refuse;
+        # the default raises, and a raise in nogil code is costly. Of fastmath only "contract",
+        # which fuses a product with a sum: under all of it isnan(nan) is False.
+        dispatcher: Any = numba.njit(error_model="numpy", nogil=True, fastmath={"contract"})(
+            python_function
+        )
+        if cache:
+            _cached.append(dispatcher)
+        return dispatcher  # type: ignore[no-any-return]
+
+    return compiled if function is None else compiled(function)
+
+
+@functools.cache
+def enable_caching() -> None:
+    """Let the kernels that asked for it use numba's disk cache, from now on.
+
+    Not when they are defined: numba then makes a cache folder, and raises where it finds none that
+    is writable; an import should do neither.
+    """
+    for dispatcher in _cached:
+        try:
+            dispatcher.enable_caching()
+        except RuntimeError:  # no writable folder anywhere: compile in every process
+            return

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws, lookup, store, zener
+from contactlaw._jit import enable_caching
 from contactlaw.arguments import shaped
 from contactlaw.impact import Contact, Rebound, Scales, scales
 from contactlaw.laws import Law
@@ -42,6 +43,7 @@ def _packaged(law: str) -> Array:
 
 def packed_table(law: Law, table: Table | str | os.PathLike[str] | None) -> Array:
     """Table that serves a law, packed for the kernels: the user's, or the packaged one."""
+    enable_caching()
     name = law.name if law.kinks else _ELASTIC_EDGE
     if table is None:
         return _packaged(name)

@@ -27,15 +27,17 @@ lam = c_lam V^(1/5), ln chi = c_chi + (4/5) ln V + ln w_m; c_lam and c_chi come 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
+from numba.core import types
+from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
-Bits = NDArray[np.int64]
 
 # Input beyond these is a mistake: no continuum below 1 nm, no bead above 1 km [m], no contact that
 # is quasi-static above the speed of every wave in a solid [m/s]; subnormals have no exponent.
@@ -114,6 +116,51 @@ def chi_max(table: Array) -> float:
     return math.exp(table[_LOG_CHI_MAX])
 
 
+@intrinsic
+def _bits(typing_context: Any, value: Any) -> Any:
+    """Bits of a float64 as an int64."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.bitcast(arguments[0], context.get_value_type(types.int64))
+
+    return types.int64(types.float64), generate
+
+
+@intrinsic
+def _from_bits(typing_context: Any, value: Any) -> Any:
+    """Float64 with the bits of an int64."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return builder.bitcast(arguments[0], context.get_value_type(types.double))
+
+    return types.float64(types.int64), generate
+
+
+@kernel(cache=True)
+def _log_and_root(v: float) -> tuple[float, float]:
+    """Ln v and v^(1/5) to 2e-11 for a normal positive v, without a call: loops can be vectorised.
+
+    v = 2^k m with m within [sqrt(1/2), sqrt(2)); ln m by the series of artanh, the root by that of
+    exp.
+    """
+    bits: int = _bits(v)  # type: ignore[call-arg]
+    # k + 1024, from the exponent of v/sqrt(1/2); unsigned, since vectors have no signed shift
+    biased = np.int64(np.uint64(bits - 0x3FE6A09E667F3BCD + (1024 << 52)) >> np.uint64(52))
+    exponent = _from_bits(biased + (0x433 << 52)) - (2.0**52 + 1024.0)  # as a float
+    m = _from_bits(bits - ((biased - 1024) << 52))
+    z = (m - 1.0) / (m + 1.0)  # |z| < 0.172: the next term is 1e-13
+    w = z * z
+    series = 2 / 9 + w * (2 / 11 + w * (2 / 13 + w * (2 / 15)))
+    series = 2.0 + w * (2 / 3 + w * (2 / 5 + w * (2 / 7 + w * series)))
+    log = exponent * math.log(2.0) + z * series
+    power = log * (0.2 / math.log(2.0))
+    shifted = power + 1.5 * 2.0**52  # rounds; the integer is left in the lowest bits
+    f = (power - (shifted - 1.5 * 2.0**52)) * math.log(2.0)  # |f| < 0.347: next term 7e-12
+    series = 1 / 120 + f * (1 / 720 + f * (1 / 5040 + f * (1 / 40320 + f * (1 / 362880))))
+    root = 1.0 + f * (1.0 + f * (1 / 2 + f * (1 / 6 + f * (1 / 24 + f * series))))
+    return log, _from_bits(_bits(root) + (_bits(shifted) << 52))
+
+
 @kernel(cache=True)
 def _weights(t: float) -> tuple[float, float, float, float]:
     """Six times the uniform cubic B-splines at t in [0, 1] (de Boor 1978, chapter IX).
@@ -129,13 +176,34 @@ def _weights(t: float) -> tuple[float, float, float, float]:
 
 
 @kernel(cache=True)
+def _power_series(table: Array) -> tuple[float, ...]:
+    """Coefficients of ln w_m, as a tuple: no later write to an array can change them."""
+    c, k = table, _HEADER
+    return (
+        (c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], c[k + 6])
+        + (c[k + 7], c[k + 8], c[k + 9], c[k + 10], c[k + 11], c[k + 12], c[k + 13])
+        + (c[k + 14], c[k + 15], c[k + 16], c[k + 17], c[k + 18], c[k + 19], c[k + 20])
+    )
+
+
+@kernel(cache=True)
+def _evaluate(c: tuple[float, ...], t: float) -> float:
+    """Power series of degree 20 by Estrin's scheme: 7 products deep where Horner's has 20."""
+    t2 = t * t
+    t4 = t2 * t2
+    t8 = t4 * t4
+    p0 = (c[0] + c[1] * t) + (c[2] + c[3] * t) * t2
+    p1 = (c[4] + c[5] * t) + (c[6] + c[7] * t) * t2
+    p2 = (c[8] + c[9] * t) + (c[10] + c[11] * t) * t2
+    p3 = (c[12] + c[13] * t) + (c[14] + c[15] * t) * t2
+    p4 = (c[16] + c[17] * t) + (c[18] + c[19] * t) * t2 + c[20] * t4
+    return (p0 + p1 * t4) + ((p2 + p3 * t4) + p4 * t8) * t8
+
+
+@kernel(cache=True)
 def _log_elastic(table: Array, x: float) -> float:
     """Logarithm of w_m at x."""
-    t = 2.0 / table[_X_MAX] * x - 1.0
-    value: float = table[_HEADER + _DEGREE]
-    for k in range(_DEGREE - 1, -1, -1):
-        value = value * t + table[_HEADER + k]
-    return value
+    return _evaluate(_power_series(table), 2.0 / table[_X_MAX] * x - 1.0)
 
 
 @kernel(cache=True)
@@ -161,12 +229,13 @@ def _locate(table: Array, x: float, log_chi: float) -> tuple[int, float, float]:
 
 
 @kernel(cache=True)
-def _cor(table: Array, first: int, s: float, t: float) -> float:
-    """COR from its 16 coefficients; four neighbours along ln chi share each instruction."""
+def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
+    """COR from its 16 coefficients, which begin at p; four along ln chi share each instruction.
+
+    Indices are unsigned: no test for a negative one.
+    """
     a0, a1, a2, a3 = _weights(s)
     b0, b1, b2, b3 = _weights(t)
-    step = np.uint64(table[_COLUMNS])  # unsigned: no test for a negative index
-    p = np.uint64(table[_COR]) + np.uint64(first)
     q = p + step
     r = q + step
     o = r + step
@@ -199,8 +268,8 @@ def restitution(table: Array, c_lam: float, c_chi: float, speed: float) -> float
     """COR at one speed; NaN where the speed is no positive number and outside the table."""
     if not V_MIN <= speed <= V_MAX:
         return math.nan
-    log_speed = math.log(speed)
-    lam = c_lam * math.exp(0.2 * log_speed)
+    log_speed, root = _log_and_root(speed)
+    lam = c_lam * root
     x = lam / (lam + table[_STRETCH])
     if not x <= table[_X_MAX]:
         return math.nan
@@ -208,7 +277,8 @@ def restitution(table: Array, c_lam: float, c_chi: float, speed: float) -> float
     if not log_chi <= table[_LOG_CHI_MAX]:
         return math.nan
     first, s, t = _locate(table, x, log_chi)
-    return _cor(table, first, s, t)
+    start, step = np.int64(table[_COR]), np.int64(table[_COLUMNS])
+    return _cor(table, np.uint64(start + first), np.uint64(step), s, t)
 
 
 @kernel(cache=True)
@@ -223,37 +293,6 @@ def restitution_on_plate(
 
 
 @kernel(cache=True)
-def _logs_and_roots(speed: Array, bits: Bits, log: Array, root: Array, scratch: Bits) -> None:
-    """Fill in ln V and V^(1/5) to 2e-11, without a call: the loops become vector instructions.
-
-    V = 2^k m with m within [sqrt(1/2), sqrt(2)); ln m by the series of artanh, V^(1/5) by that of
-    exp. bits are those of the speeds, which must be normal positive numbers.
-    """
-    n = speed.size
-    for i in range(n):
-        exponent = (bits[i] - 0x3FE6A09E667F3BCD) >> 52  # the bits of sqrt(1/2)
-        scratch[i] = bits[i] - (exponent << 52)
-        log[i] = exponent
-    mantissa = scratch.view(np.float64)
-    for i in range(n):
-        z = (mantissa[i] - 1.0) / (mantissa[i] + 1.0)  # |z| < 0.172: the next term is 1e-13
-        w = z * z
-        series = 2 / 9 + w * (2 / 11 + w * (2 / 13 + w * (2 / 15)))
-        series = 2.0 + w * (2 / 3 + w * (2 / 5 + w * (2 / 7 + w * series)))
-        log[i] = log[i] * math.log(2.0) + z * series
-    for i in range(n):
-        power = log[i] * (0.2 / math.log(2.0))
-        whole = (power + 6755399441055744.0) - 6755399441055744.0  # 1.5 2^52: rounds to nearest
-        f = (power - whole) * math.log(2.0)  # |f| < 0.347: the next term is 7e-12
-        series = 1 / 120 + f * (1 / 720 + f * (1 / 5040 + f * (1 / 40320 + f * (1 / 362880))))
-        root[i] = 1.0 + f * (1.0 + f * (1 / 2 + f * (1 / 6 + f * (1 / 24 + f * series))))
-        scratch[i] = np.int64(whole)
-    root_bits = root.view(np.int64)
-    for i in range(n):
-        root_bits[i] += scratch[i] << 52
-
-
-@kernel(cache=True)
 def _coordinates(
     table: Array,
     c_lam: float,
@@ -261,29 +300,29 @@ def _coordinates(
     speed: Array,
     radius: Array,
     thickness: Array,
-    log: Array,
-    root: Array,
+    log_chi: Array,
+    x: Array,
     out: Array,
 ) -> None:
-    """Put ln chi over ln V and x over V^(1/5); out: 0, or NaN for an impact that has no place."""
+    """Coordinates ln chi and x of impacts; out: 0, or NaN for one that has no place."""
     stretch, x_max, scale = table[_STRETCH], table[_X_MAX], 2.0 / table[_X_MAX]
+    power_series = _power_series(table)
+    log_chi_max = table[_LOG_CHI_MAX]
+    for i in range(out.size):
+        log_chi[i], x[i] = _log_and_root(speed[i])
     for i in range(out.size):
         # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
-        above = c_lam * root[i] * radius[i] * radius[i]
-        root[i] = above / (above + stretch * (thickness[i] * thickness[i]))
+        above = c_lam * x[i] * radius[i] * radius[i]
+        x[i] = above / (above + stretch * (thickness[i] * thickness[i]))
     for i in range(out.size):
-        t = scale * root[i] - 1.0
-        value = table[_HEADER + _DEGREE]
-        for k in range(_DEGREE - 1, -1, -1):
-            value = value * t + table[_HEADER + k]
-        log[i] = c_chi + 0.8 * log[i] + value
+        log_chi[i] = c_chi + 0.8 * log_chi[i] + _evaluate(power_series, scale * x[i] - 1.0)
     for i in range(out.size):
         good = (speed[i] >= V_MIN) & (speed[i] <= V_MAX) & (thickness[i] >= R_MIN)
         good &= (radius[i] >= R_MIN) & (radius[i] <= R_MAX)
-        good &= (root[i] <= x_max) & (log[i] <= table[_LOG_CHI_MAX])
+        good &= (x[i] <= x_max) & (log_chi[i] <= log_chi_max)
         out[i] = 0.0 if good else math.nan
-        root[i] = root[i] if good else 0.0
-        log[i] = max(log[i], 0.0) if good else 0.0
+        x[i] = x[i] if good else 0.0
+        log_chi[i] = max(log_chi[i], 0.0) if good else 0.0
 
 
 @kernel(cache=True)
@@ -292,11 +331,12 @@ def _cells(
 ) -> None:
     """Index of the first of 4 x 4 coefficients; places within the cell over x and into along."""
     columns, last_row = np.int32(table[_COLUMNS]), np.int32(table[_LAST_ROW])
+    nodes_per_x, cor = table[_NODES_PER_X], np.int32(table[_COR])
     for i in range(x.size):
-        across = x[i] * table[_NODES_PER_X]
+        across = x[i] * nodes_per_x
         row = min(np.int32(across), last_row)
         x[i] = across - row
-        first[i] = row * columns
+        first[i] = cor + row * columns
     for k in range(int(table[_SEGMENTS])):
         block = _HEADER + _DEGREE + 1 + k * _BLOCK
         start, per_log = table[block + _START], table[block + _PER_LOG]
@@ -322,20 +362,19 @@ def restitutions(
     out: Array,
 ) -> int:
     """COR of many spheres on plates into out; how many are NaN."""
-    log, root, along = np.empty(_CHUNK), np.empty(_CHUNK), np.empty(_CHUNK)
-    scratch = np.empty(_CHUNK, dtype=np.int64)
+    log_chi, x, along = np.empty(_CHUNK), np.empty(_CHUNK), np.empty(_CHUNK)
     first, column = np.empty(_CHUNK, dtype=np.int32), np.empty(_CHUNK, dtype=np.int32)
+    step = np.uint64(np.int64(table[_COLUMNS]))
     bad = 0
     for start in range(0, out.size, _CHUNK):
         stop = min(start + _CHUNK, out.size)
         n = stop - start
         v, values = speed[start:stop], out[start:stop]
-        _logs_and_roots(v, v.view(np.int64), log[:n], root[:n], scratch[:n])
         r, h = radius[start:stop], thickness[start:stop]
-        _coordinates(table, c_lam, c_chi, v, r, h, log[:n], root[:n], values)
-        _cells(table, root[:n], log[:n], first[:n], along[:n], column[:n])
+        _coordinates(table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n], values)
+        _cells(table, x[:n], log_chi[:n], first[:n], along[:n], column[:n])
         for i in range(n):
-            values[i] += _cor(table, first[i], root[i], along[i])
+            values[i] += _cor(table, np.uint64(first[i]), step, x[i], along[i])
         for i in range(n):
             bad += values[i] != values[i]
     return bad
@@ -348,6 +387,7 @@ def fields(table: Array, lam: Array, yield_ratio: Array, clamp: bool, out: Array
     yield_ratio is y = w_m/chi. Outside the table, `clamp` takes the border, else all are NaN.
     """
     outside = 0
+    start, step = np.int64(table[_COR]), np.uint64(np.int64(table[_COLUMNS]))
     for n in range(lam.size):
         x = lam[n] / (lam[n] + table[_STRETCH])
         inside_x = min(x, table[_X_MAX])
@@ -360,7 +400,7 @@ def fields(table: Array, lam: Array, yield_ratio: Array, clamp: bool, out: Array
                 out[:, n] = math.nan
                 continue
         first, s, t = _locate(table, inside_x, inside_chi)
-        out[0, n] = _cor(table, first, s, t)
+        out[0, n] = _cor(table, np.uint64(start + first), step, s, t)
         out[1, n], out[2, n], out[3, n] = _other_fields(table, first, s, t)
         out[4, n] = math.exp(log_w)
     return outside
