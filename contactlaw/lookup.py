@@ -302,27 +302,24 @@ def _coordinates(
     thickness: Array,
     log_chi: Array,
     x: Array,
-    out: Array,
-) -> None:
-    """Coordinates ln chi and x of impacts; out: 0, or NaN for one that has no place."""
+) -> bool:
+    """Coordinates ln chi and x of impacts, and whether all of them are valid and in the table."""
     stretch, x_max, scale = table[_STRETCH], table[_X_MAX], 2.0 / table[_X_MAX]
-    power_series = _power_series(table)
-    log_chi_max = table[_LOG_CHI_MAX]
-    for i in range(out.size):
+    power_series, log_chi_max = _power_series(table), table[_LOG_CHI_MAX]
+    for i in range(x.size):
         log_chi[i], x[i] = _log_and_root(speed[i])
-    for i in range(out.size):
+    for i in range(x.size):
         # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
         above = c_lam * x[i] * radius[i] * radius[i]
         x[i] = above / (above + stretch * (thickness[i] * thickness[i]))
-    for i in range(out.size):
+    for i in range(x.size):
         log_chi[i] = c_chi + 0.8 * log_chi[i] + _evaluate(power_series, scale * x[i] - 1.0)
-    for i in range(out.size):
-        good = (speed[i] >= V_MIN) & (speed[i] <= V_MAX) & (thickness[i] >= R_MIN)
-        good &= (radius[i] >= R_MIN) & (radius[i] <= R_MAX)
-        good &= (x[i] <= x_max) & (log_chi[i] <= log_chi_max)
-        out[i] = 0.0 if good else math.nan
-        x[i] = x[i] if good else 0.0
-        log_chi[i] = max(log_chi[i], 0.0) if good else 0.0
+    good = 0
+    for i in range(x.size):
+        valid = (speed[i] >= V_MIN) & (speed[i] <= V_MAX) & (thickness[i] >= R_MIN)
+        valid &= (radius[i] >= R_MIN) & (radius[i] <= R_MAX)
+        good += valid & (x[i] <= x_max) & (log_chi[i] <= log_chi_max)
+    return good == x.size
 
 
 @kernel(cache=True)
@@ -369,14 +366,20 @@ def restitutions(
     for start in range(0, out.size, _CHUNK):
         stop = min(start + _CHUNK, out.size)
         n = stop - start
-        v, values = speed[start:stop], out[start:stop]
-        r, h = radius[start:stop], thickness[start:stop]
-        _coordinates(table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n], values)
-        _cells(table, x[:n], log_chi[:n], first[:n], along[:n], column[:n])
-        for i in range(n):
-            values[i] += _cor(table, np.uint64(first[i]), step, x[i], along[i])
-        for i in range(n):
-            bad += values[i] != values[i]
+        v, r, h, values = (
+            speed[start:stop],
+            radius[start:stop],
+            thickness[start:stop],
+            out[start:stop],
+        )
+        if _coordinates(table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n]):
+            _cells(table, x[:n], log_chi[:n], first[:n], along[:n], column[:n])
+            for i in range(n):
+                values[i] = _cor(table, np.uint64(first[i]), step, x[i], along[i])
+        else:  # one by one; such chunks are rare
+            for i in range(n):
+                values[i] = restitution_on_plate(table, c_lam, c_chi, v[i], r[i], h[i])
+                bad += values[i] != values[i]
     return bad
 
 

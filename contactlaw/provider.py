@@ -353,7 +353,7 @@ class ImpactModel:
         ... def rebound_speeds(speed, radius, thickness):
         ...     return [cor(v, radius, thickness) * v for v in speed]
         >>> [round(u, 3) for u in rebound_speeds((1.0, 5.0), 0.9e-3, 1e-3)]
-        [0.933, 4.541]
+        [0.932, 4.541]
         """
         table, c_lam, c_chi = self._table, self._c_lam, self._c_chi
         on_plate = lookup.restitution_on_plate
