@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import secrets
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from contactlaw import laws, store, table
+from contactlaw import cache, laws, store, table
 from contactlaw.impact import Rebound
 from contactlaw.materials import material, materials
 from contactlaw.pair import Pair
@@ -74,8 +75,46 @@ def _materials(arguments: argparse.Namespace) -> None:
 
 def _table_build(arguments: argparse.Namespace) -> None:
     out = Path(arguments.out or f"{arguments.law}.h5")
-    store.write(table.build(arguments.law), out)
+    built = table.build(arguments.law, progress=cache.progress_bar)
+    store.write(built, out)
+    _print_certificate(built.certificate)
     print(out)
+
+
+def _stored(arguments: argparse.Namespace) -> table.Table:
+    if arguments.file:
+        return store.read(arguments.file)
+    return store.packaged(arguments.law) or cache.cached(arguments.law)
+
+
+def _table_info(arguments: argparse.Namespace) -> None:
+    found = _stored(arguments)
+    print(f"law {found.law}: {laws.law(found.law).source}")
+    lam, chi = found.settings.largest_inelasticity, found.settings.largest_overload
+    print(f"inelasticity 0 to {lam:g}, overload to {chi:g}, {found.fields['restitution'].shape}")
+    for name, value in asdict(found.settings).items():
+        print(f"  {name:22s} {value:g}")
+    _print_certificate(found.certificate)
+
+
+def _table_check(arguments: argparse.Namespace) -> None:
+    seed = secrets.randbits(32) if arguments.seed is None else arguments.seed
+    certificate = table.certify(_stored(arguments), arguments.points, seed)
+    _print_certificate(certificate)
+    if certificate.exceeded:
+        raise ValueError(f"the table exceeds its bounds: {certificate.exceeded} (seed {seed})")
+
+
+def _print_certificate(certificate: table.Certificate | None) -> None:
+    if certificate is None:
+        print("no certificate")
+        return
+    print(f"errors at {certificate.points} random points, seed {certificate.seed}:")
+    print(f"  {'field':22s} {'median':>9s} {'99 %':>9s} {'largest':>9s} {'bound':>9s}")
+    for name, bound in table.BOUNDS.items():
+        values = (certificate.median, certificate.percentile_99, certificate.largest)
+        figures = " ".join(f"{value[name]:9.1e}" for value in values)
+        print(f"  {name:22s} {figures} {bound:9.0e}")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -102,9 +141,19 @@ def _parser() -> argparse.ArgumentParser:
     listing.add_argument("name", nargs="?", help="one material, with its sources")
     listing.add_argument("--json", action="store_true", help="machine-readable output")
 
-    tables = commands.add_parser("table", help="build lookup tables").add_subparsers(
+    tables = commands.add_parser("table", help="lookup tables: build, info, check").add_subparsers(
         required=True, metavar="action"
     )
+    for name, run, purpose in (
+        ("info", _table_info, "extent, settings and certificate of a table"),
+        ("check", _table_check, "certify a table at fresh random points; fail above the bounds"),
+    ):
+        action = tables.add_parser(name, help=purpose)
+        action.set_defaults(run=run)
+        action.add_argument("file", nargs="?", help="a table (default: the one in use for LAW)")
+        action.add_argument("--law", default="myc")
+    action.add_argument("--points", type=int, default=10_000)
+    action.add_argument("--seed", type=int, help="of the points (default: a fresh one)")
     build = tables.add_parser("build", help="solve the equation at every node of a table")
     build.set_defaults(run=_table_build)
     build.add_argument("--law", default="myc")

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from contactlaw import laws, lookup, store, zener
 from contactlaw._jit import enable_caching
 from contactlaw.arguments import shaped
+from contactlaw.cache import cached
 from contactlaw.impact import Contact, Rebound, Scales, scales
 from contactlaw.laws import Law
 from contactlaw.pair import Pair
@@ -37,8 +38,9 @@ class Impact(NamedTuple):
 
 
 @functools.cache
-def _packaged(law: str) -> Array:
-    return store.packaged(law).packed()
+def _default(law: str) -> Array:
+    """Pack the table that ships with the package, or that of the user's cache."""
+    return (store.packaged(law) or cached(law)).packed()
 
 
 def packed_table(law: Law, table: Table | str | os.PathLike[str] | None) -> Array:
@@ -46,7 +48,7 @@ def packed_table(law: Law, table: Table | str | os.PathLike[str] | None) -> Arra
     enable_caching()
     name = law.name if law.kinks else _ELASTIC_EDGE
     if table is None:
-        return _packaged(name)
+        return _default(name)
     if not isinstance(table, Table):
         table = store.read(table)
     if table.law != name:

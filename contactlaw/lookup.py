@@ -54,20 +54,44 @@ _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level ca
 
 
 def spline_coefficients(values: Array) -> Array:
-    """Coefficients of the cubic B-spline through uniform nodes along axis 0, not-a-knot ends."""
+    """Coefficients of the cubic B-spline through uniform nodes along axis 0, not-a-knot ends.
+
+    With v = (c[i-1] + 4 c[i] + c[i+1])/6 at each node and no jump of the third derivative next to
+    the ends, c is known there; a tridiagonal system is left between. Solved without LAPACK, whose
+    threads would fight for the cores with those of an MPI run.
+    """
     n = len(values)
     if n < 5:
         raise ValueError(f"values: a spline with not-a-knot ends needs at least 5 nodes, got {n}")
-    matrix = np.zeros((n + 2, n + 2))
-    rows = np.arange(1, n + 1)
-    for offset, weight in ((-1, 1 / 6), (0, 4 / 6), (1, 1 / 6)):
-        matrix[rows, rows + offset] = weight
-    # not-a-knot: the third derivative does not jump at the node next to the end
-    matrix[0, :5] = matrix[-1, -5:] = (-1.0, 4.0, -6.0, 4.0, -1.0)
-    right = np.zeros((n + 2, *values.shape[1:]))
-    right[1:-1] = values
-    flat = np.asarray(np.linalg.solve(matrix, right.reshape(n + 2, -1)), dtype=np.float64)
-    return flat.reshape(right.shape)
+    c = np.empty((n + 2, *values.shape[1:]))
+    c[2], c[n - 1] = ((8.0 * values[k] - values[k - 1] - values[k + 1]) / 6.0 for k in (1, n - 2))
+    gain = np.zeros(n + 2)
+    for k in range(3, n - 1):
+        gain[k] = 1.0 / (4.0 - gain[k - 1])
+        c[k] = (6.0 * values[k - 1] - c[k - 1]) * gain[k]
+    for k in range(n - 2, 2, -1):
+        c[k] -= gain[k] * c[k + 1]
+    for edge, inwards in ((1, 1), (n, -1)):
+        node = edge - 1
+        c[edge] = 6.0 * values[node + inwards] - 4.0 * c[edge + inwards] - c[edge + 2 * inwards]
+        c[edge - inwards] = 6.0 * values[node] - 4.0 * c[edge] - c[edge + inwards]
+    return c
+
+
+def chebyshev_nodes(count: int) -> Array:
+    """Places in [0, 1] at which ln w_m is given along x/x_max."""
+    nodes: Array = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
+    return nodes
+
+
+def _power_series_of(log_elastic: Array) -> Array:
+    """Fit a polynomial in t = 2 x/x_max - 1 to values at `chebyshev_nodes`."""
+    t = 2.0 * chebyshev_nodes(log_elastic.size) - 1.0
+    basis = np.polynomial.chebyshev.chebvander(t, _DEGREE)
+    # the nodes make the basis orthogonal, so no system is to be solved
+    coefficients = (basis * log_elastic[:, None]).sum(axis=0) * (2.0 / log_elastic.size)
+    coefficients[0] /= 2.0
+    return np.asarray(np.polynomial.chebyshev.cheb2poly(coefficients))
 
 
 def pack(
@@ -80,20 +104,17 @@ def pack(
     """Fit splines through the values of a table's nodes and pack them into one array."""
     lengths = np.array([len(nodes) for nodes in segments])
     first_columns = np.cumsum(lengths + 2) - (lengths + 2)
-    coefficients = {}
-    for name, values in fields.items():
-        parts = np.split(spline_coefficients(values), np.cumsum(lengths)[:-1], axis=1)
-        coefficients[name] = np.hstack([spline_coefficients(part.T).T for part in parts])
+    names = ("restitution", *OTHERS)
+    across = spline_coefficients(np.stack([fields[name] for name in names], axis=-1))
+    parts = np.split(across.swapaxes(0, 1), np.cumsum(lengths)[:-1])
+    both = np.concatenate([spline_coefficients(part) for part in parts]).swapaxes(0, 1)
+    cor, others = both[..., 0], both[..., 1:]
     x_max = lam_max / (lam_max + stretch)
-    x = np.linspace(-1.0, 1.0, len(elastic_compression))
-    polynomial = np.polynomial.Chebyshev.fit(x, np.log(elastic_compression), _DEGREE)
-    power_series = polynomial.convert(kind=np.polynomial.Polynomial).coef
+    power_series = _power_series_of(np.log(elastic_compression))
     blocks = [
         (nodes[0], (len(nodes) - 1) / (nodes[-1] - nodes[0]), len(nodes) - 2, column)
         for nodes, column in zip(segments, first_columns, strict=True)
     ]
-    cor = coefficients["restitution"]
-    others = np.stack([coefficients[name] for name in OTHERS], axis=-1)
     header = np.empty(_HEADER)
     header[[_STRETCH, _X_MAX, _LOG_CHI_MAX]] = stretch, x_max, segments[-1][-1]
     header[[_NODES_PER_X, _LAST_ROW]] = (len(cor) - 3) / x_max, len(cor) - 4

@@ -1,9 +1,18 @@
-"""Tables on disk: one HDF5 file per law, readable without this package."""
+"""Tables on disk: one HDF5 file per law, which any HDF5 program reads.
+
+The file begins with a user block, which HDF5 leaves to applications: one line with the SHA-256 of
+all that follows. A reader checks it before HDF5 sees a byte, so a file that was cut short or
+altered is refused with a sentence, whatever HDF5 would have made of it.
+"""
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import hashlib
 import importlib.metadata
+import io
+import json
 import os
 import tempfile
 from dataclasses import asdict
@@ -14,10 +23,15 @@ import h5py
 import numpy as np
 
 from contactlaw import laws
-from contactlaw.table import FIELDS, Settings, Table
+from contactlaw.table import FIELDS, Certificate, Settings, Table
 
 FORMAT = "contactlaw table"
 SCHEMA = 1
+_BLOCK = 512  # bytes; the smallest user block of HDF5
+
+
+class DamagedTableError(ValueError):
+    """A file that is no complete and unaltered table of this version."""
 
 
 def write(table: Table, path: str | os.PathLike[str]) -> None:
@@ -29,18 +43,38 @@ def write(table: Table, path: str | os.PathLike[str]) -> None:
         What `contactlaw.table.build` returned.
     path : path-like
         Where to; an existing file is replaced.
+
+    Raises
+    ------
+    OSError
+        If the folder does not exist, is not writable or full; nothing is left behind then.
     """
     path = Path(path)
+    content = _serialise(table)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    os.close(handle)
     try:
-        with h5py.File(name, "w") as file:
-            _fill(file, table)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())  # or a power cut could leave the name without the content
         os.chmod(name, 0o644)  # mkstemp makes it private; a table is for everyone
         os.replace(name, path)
     except BaseException:
-        os.unlink(name)
+        with contextlib.suppress(FileNotFoundError):
+            os.unlink(name)
         raise
+
+
+def _serialise(table: Table) -> bytes:
+    image = io.BytesIO()
+    with h5py.File(image, "w", userblock_size=_BLOCK) as file:
+        _fill(file, table)
+    return _sign(image.getvalue()[_BLOCK:])
+
+
+def _sign(content: bytes) -> bytes:
+    digest = hashlib.sha256(content).hexdigest()
+    return f"{FORMAT} sha256 {digest}\n".encode().ljust(_BLOCK, b"\0") + content
 
 
 def _fill(file: h5py.File, table: Table) -> None:
@@ -53,57 +87,75 @@ def _fill(file: h5py.File, table: Table) -> None:
         contactlaw_version=importlib.metadata.version("contactlaw"),
         **asdict(table.settings),
     )
-    file["inelasticity"] = table.inelasticity
-    file["inelasticity"].attrs["description"] = "lambda of the rows of fields/ [-]"
-    file["kinks"] = law.kinks
-    file["kinks"].attrs["description"] = "compressions at which the law is not smooth [d_Y]"
-    for k, nodes in enumerate(table.segments):
-        file[f"log_overload/{k}"] = nodes
-    file["log_overload"].attrs["description"] = (
-        "ln chi of the columns of fields/, one segment between two kinks after the other [-]"
-    )
-    file["elastic_compression"] = table.elastic_compression
-    file["elastic_compression"].attrs["description"] = (
-        "w_m at lambda = c x/(1 - x), c = stretch, x uniform, lambda from 0 to the largest [V0 T_H]"
-    )
-    for name, values in table.fields.items():
-        file.create_dataset(f"fields/{name}", data=values, compression="gzip", shuffle=True)
-        file[f"fields/{name}"].attrs["description"] = FIELDS[name]
+    datasets = {
+        "inelasticity": (table.inelasticity, "lambda of the rows of fields/ [-]"),
+        "kinks": (law.kinks, "compressions at which the law is not smooth [d_Y]"),
+        "elastic_inelasticity": (table.elastic_inelasticity, "lambda of elastic_compression [-]"),
+        "elastic_compression": (table.elastic_compression, "w_m, of an elastic impact [V0 T_H]"),
+        **{
+            f"log_overload/{k}": (nodes, "ln chi of columns of fields/, from kink to kink [-]")
+            for k, nodes in enumerate(table.segments)
+        },
+        **{f"fields/{name}": (table.fields[name], FIELDS[name]) for name in FIELDS},
+    }
+    for name, (values, description) in datasets.items():
+        file[name] = values
+        file[name].attrs["description"] = description
+    if table.certificate is not None:
+        file.attrs["certificate"] = json.dumps(asdict(table.certificate))
     file.attrs["complete"] = True  # last: a file cut short opens without complaint
 
 
 def read(path: str | os.PathLike[str]) -> Table:
-    """Read a table.
+    """Read a table and verify it: checksum, schema, completeness, finiteness.
+
+    Parameters
+    ----------
+    path : path-like
+
+    Returns
+    -------
+    Table
 
     Raises
     ------
     FileNotFoundError
         If there is no such file.
-    ValueError
-        If the file is no table, is incomplete, has another schema or holds a value that is not
-        finite; the message says how to rebuild it.
+    DamagedTableError
+        If the file is no table, was altered or cut short, has another schema or holds a value
+        that is not finite; the message says how to rebuild it.
     """
     path = Path(path)
     remedy = "Build it again with: contactlaw table build --out FILE"
-    if not path.exists():
-        raise FileNotFoundError(f"table: no file {path}. {remedy}")
     try:
-        with h5py.File(path, "r") as file:
-            found = {key: file.attrs.get(key) for key in ("format", "schema", "complete")}
-            if found != {"format": FORMAT, "schema": SCHEMA, "complete": True}:
-                raise ValueError(f"not a complete table of schema {SCHEMA}: {found}")
-            table = _parse(file)
-    except (OSError, KeyError, ValueError) as error:
-        raise ValueError(f"table: cannot use {path}: {error}. {remedy}") from error
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise FileNotFoundError(f"table: there is no file {path}. {remedy}") from None
+    try:
+        return _parse(content)
+    except (OSError, KeyError, ValueError, TypeError) as error:
+        raise DamagedTableError(f"table: cannot use {path}: {error}. {remedy}") from error
+
+
+def _parse(content: bytes) -> Table:
+    head = content[:_BLOCK].rstrip(b"\0").decode("ascii", "replace").split()
+    if head[:-1] != [*FORMAT.split(), "sha256"]:
+        raise ValueError("it is not a table, or its first bytes were altered")
+    if head[-1] != hashlib.sha256(content[_BLOCK:]).hexdigest():
+        raise ValueError("its checksum does not fit: it was cut short or altered")
+    with h5py.File(io.BytesIO(content), "r") as file:
+        found = {key: file.attrs.get(key) for key in ("format", "schema", "complete")}
+        if found != {"format": FORMAT, "schema": SCHEMA, "complete": True}:
+            raise ValueError(f"it is not a complete table of schema {SCHEMA}, but {found}")
+        table = _from_file(file)
     arrays = [*table.segments, table.elastic_compression, *table.fields.values()]
     if not all(np.isfinite(values).all() for values in arrays):
-        raise ValueError(f"table: {path} holds values that are not finite. {remedy}")
+        raise ValueError("it holds values that are not finite")
     return table
 
 
-def _parse(file: h5py.File) -> Table:
-    defaults = asdict(Settings())
-    settings = Settings(**{k: type(v)(file.attrs[k]) for k, v in defaults.items()})
+def _from_file(file: h5py.File) -> Table:
+    settings = Settings(**{k: type(v)(file.attrs[k]) for k, v in asdict(Settings()).items()})
     segments = tuple(file[f"log_overload/{k}"][()] for k in range(len(file["log_overload"])))
     fields = {name: file[f"fields/{name}"][()] for name in FIELDS}
     shape = (settings.inelasticity_nodes, sum(map(len, segments)))
@@ -112,21 +164,32 @@ def _parse(file: h5py.File) -> Table:
         raise ValueError(f"its fields do not have the shape {shape} of its axes")
     if elastic.shape != (settings.elastic_nodes,):
         raise ValueError(f"its elastic_compression has the shape {elastic.shape}")
+    certificate = file.attrs.get("certificate")
     return Table(
         law=str(file.attrs["law"]),
         settings=settings,
         segments=segments,
         elastic_compression=elastic,
         fields=fields,
+        certificate=None if certificate is None else Certificate(**json.loads(certificate)),
     )
 
 
 @functools.cache
-def packaged(law: str) -> Table:
-    """Table of a law that ships with the package; built in memory for a law without one."""
-    with resources.as_file(resources.files("contactlaw") / "data" / f"{law}.h5") as path:
-        if path.exists():
-            return read(path)
-    from contactlaw.table import build
+def packaged(law: str) -> Table | None:
+    """Read the table of a law that ships with the package; None for a law without one.
 
-    return build(law)
+    Raises
+    ------
+    DamagedTableError
+        If the installed file is damaged.
+    """
+    with resources.as_file(resources.files("contactlaw") / "data" / f"{law}.h5") as path:
+        if not path.exists():
+            return None
+        try:
+            return read(path)
+        except DamagedTableError as error:
+            raise DamagedTableError(
+                f"the installed package is damaged, reinstall contactlaw: {error}"
+            ) from error

@@ -1,4 +1,4 @@
-"""The table of one contact law: solve the equation at every node, in parallel.
+"""The table of one contact law: solve the equation at every node, and certify the result.
 
 Axes: the inelasticity lambda, and ln chi, the logarithm of the overload. Nodes are uniform in
 x = lambda/(lambda + c) and, between two kinks of the law, in ln chi; a kink is a node twice, once
@@ -7,6 +7,7 @@ as the end of a segment and once as the beginning of the next. See `contactlaw.l
 
 from __future__ import annotations
 
+import dataclasses
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -21,6 +22,7 @@ from contactlaw.laws import Law
 from contactlaw.laws import law as find_law
 
 Array = NDArray[np.float64]
+Progress = Callable[[Iterator[Array], int], Iterable[Array]]
 
 FIELDS = {
     "restitution": "rebound speed over impact speed [-]",
@@ -28,6 +30,48 @@ FIELDS = {
     "wave_rate": "share of the initial energy in the bending wave, over lambda [-]",
     "compression_ratio": "largest compression over the elastic one, d_m/(chi d_Y) [-]",
 }
+
+
+# The bounds of a certificate: COR absolutely, the other fields relatively.
+BOUNDS = {
+    "restitution": 1e-6,
+    "contact_time": 1e-5,
+    "peak_force": 1e-5,
+    "peak_compression": 1e-5,
+    "residual_compression": 1e-5,
+    "plastic_fraction": 1e-5,
+    "wave_fraction": 1e-5,
+}
+# Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2: no number of digits
+# of chi gives them relatively there. Below this they count absolutely (chi - 1 < 2e-6).
+_SMALLEST = 1e-12
+_NEAR_KINK = 0.01  # in ln chi; a share of the certificate's points lies this near on either side
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """How far lookups are from the solver, at random points off the grid.
+
+    Errors of COR are absolute, those of the other fields relative.
+
+    Parameters
+    ----------
+    points, seed : int
+        Number of points and seed of their generator.
+    median, percentile_99, largest : dict of str to float
+        Errors, by field.
+    """
+
+    points: int
+    seed: int
+    median: dict[str, float]
+    percentile_99: dict[str, float]
+    largest: dict[str, float]
+
+    @property
+    def exceeded(self) -> dict[str, float]:
+        """Largest errors above the bound of their field."""
+        return {name: e for name, e in self.largest.items() if not e <= BOUNDS[name]}
 
 
 @dataclass(frozen=True)
@@ -45,7 +89,7 @@ class Settings:
     log_overload_step : float
         Largest distance of two nodes in ln chi.
     elastic_nodes : int
-        Nodes along lambda of the one-dimensional w_m(lambda).
+        Chebyshev nodes along lambda of the one-dimensional w_m(lambda).
     stretch : float
         c in x = lambda/(lambda + c), in which the nodes along lambda are uniform.
     rtol : float
@@ -55,10 +99,27 @@ class Settings:
     largest_inelasticity: float = 5.0
     largest_overload: float = 40.0
     inelasticity_nodes: int = 81
-    log_overload_step: float = 0.03
-    elastic_nodes: int = 641
+    log_overload_step: float = 0.02
+    elastic_nodes: int = 48
     stretch: float = 2.0
     rtol: float = 1e-12
+
+    def __post_init__(self) -> None:
+        for name, (low, high) in _RANGES.items():
+            value = getattr(self, name)
+            if not low <= value <= high:
+                raise ValueError(f"{name}: must lie between {low:g} and {high:g}, got {value!r}")
+
+
+_RANGES = {
+    "largest_inelasticity": (1e-3, 100.0),  # 100: COR is 1e-10 there
+    "largest_overload": (1.1, 1e6),
+    "inelasticity_nodes": (5, 100_000),  # 5: not-a-knot ends
+    "log_overload_step": (1e-4, 1.0),
+    "elastic_nodes": (24, 1000),  # 24: enough for a polynomial of degree 20
+    "stretch": (1e-3, 1e3),
+    "rtol": (1e-13, 1e-4),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +129,19 @@ class Table:
     law: str
     settings: Settings
     segments: tuple[Array, ...]  # ln chi of the nodes of each segment
-    elastic_compression: Array  # w_m at the elastic nodes [V0 T_H]
+    elastic_compression: Array  # w_m at `elastic_inelasticity` [V0 T_H]
     fields: dict[str, Array]  # name -> (inelasticity nodes, nodes of all segments)
+    certificate: Certificate | None = None
 
     @property
     def inelasticity(self) -> Array:
         """Nodes along lambda."""
-        return _inelasticity_nodes(self.settings, self.settings.inelasticity_nodes)
+        return _rows(self.settings)
+
+    @property
+    def elastic_inelasticity(self) -> Array:
+        """Nodes along lambda of w_m."""
+        return _elastic_nodes(self.settings)
 
     def packed(self) -> Array:
         """Pack splines through the values for the lookup kernels."""
@@ -87,12 +154,21 @@ class Table:
         )
 
 
-def _inelasticity_nodes(settings: Settings, count: int) -> Array:
-    x_max = settings.largest_inelasticity / (settings.largest_inelasticity + settings.stretch)
-    x = np.linspace(0.0, x_max, count)
-    nodes = settings.stretch * x / (1.0 - x)
+def _rows(settings: Settings) -> Array:
+    nodes = _inelasticity(settings, np.linspace(0.0, 1.0, settings.inelasticity_nodes))
     nodes[-1] = settings.largest_inelasticity  # not one rounding error beyond
     return nodes
+
+
+def _elastic_nodes(settings: Settings) -> Array:
+    return _inelasticity(settings, lookup.chebyshev_nodes(settings.elastic_nodes))
+
+
+def _inelasticity(settings: Settings, share: Array) -> Array:
+    """Inelasticity lambda at shares of the largest x = lambda/(lambda + c)."""
+    c = settings.stretch
+    x = share * settings.largest_inelasticity / (settings.largest_inelasticity + c)
+    return np.asarray(c * x / (1.0 - x))
 
 
 def _segments(law: Law, settings: Settings) -> tuple[Array, ...]:
@@ -112,9 +188,9 @@ def build(
     law: str,
     settings: Settings | None = None,
     *,
-    progress: Callable[[Iterator[Array], int], Iterable[Array]] = _no_progress,
+    progress: Progress = _no_progress,
 ) -> Table:
-    """Sweep the equation over all nodes, on all cores.
+    """Sweep the equation over all nodes, on all cores, and certify the table.
 
     Parameters
     ----------
@@ -124,6 +200,11 @@ def build(
         Extent and fineness.
     progress : callable, optional
         ``progress(rows, total)`` wraps the iterator over finished rows, as ``tqdm`` does.
+
+    Returns
+    -------
+    Table
+        With its certificate.
 
     Raises
     ------
@@ -136,38 +217,114 @@ def build(
     if not chosen.kinks:
         raise ValueError(f"law: {law!r} never yields; the edge chi = 1 of any table serves it")
     settings = settings or Settings()
-    functions, hertz = chosen.functions, find_law("hertz").functions
-    lam = _inelasticity_nodes(settings, settings.inelasticity_nodes)
+    lam = _rows(settings)
     segments = _segments(chosen, settings)
-    log_chi = np.concatenate(segments)
+    chi = np.exp(np.concatenate(segments))
+    grid = np.repeat(lam, chi.size), np.tile(chi, lam.size)
+    values = _solve(chosen, *grid, settings.rtol, lam.size, progress)
+    fields = {
+        name: row.reshape(lam.size, chi.size) for name, row in zip(FIELDS, values, strict=False)
+    }
+    elastic = _elastic(_elastic_nodes(settings), settings.rtol)
+    table = Table(law, settings, segments, elastic, fields)
+    return dataclasses.replace(table, certificate=certify(table))
 
-    def elastic_peak(value: float) -> float:
-        status, w_m = zener.elastic_compression(hertz, value, settings.rtol)
-        if status != zener.OK:
-            raise RuntimeError(f"w_m({value:.6g}) did not solve: {zener.MESSAGES[status]}")
-        return float(w_m)
 
-    def row(value: float) -> Array:
-        y = elastic_peak(value) / np.exp(log_chi)
-        out = np.empty((len(FIELDS) + 1, y.size))
-        lams = np.full_like(y, value)
-        status, j = zener.solve_all(functions, hertz, lams, y, settings.rtol, out)
+def _solve(
+    law: Law,
+    lam: Array,
+    chi: Array,
+    rtol: float,
+    parts: int,
+    progress: Progress = _no_progress,
+) -> Array:
+    """Fields (5, n) of `zener.solve_overloads` at many points, in parallel parts."""
+    functions, hertz = law.functions, find_law("hertz").functions
+
+    def solve(part: tuple[Array, Array]) -> Array:
+        out = np.empty((5, part[0].size))
+        status, n = zener.solve_overloads(functions, hertz, *part, rtol, out)
         if status != zener.OK:
             raise RuntimeError(
-                f"table for law {law!r}: the node lambda = {value:.6g}, chi = "
-                f"{math.exp(log_chi[j]):.6g} did not solve: {zener.MESSAGES[status]}"
+                f"table for law {law.name!r}: the node lambda = {part[0][n]:.6g}, chi = "
+                f"{part[1][n]:.6g} did not solve: {zener.MESSAGES[status]}"
             )
-        return out[:-1]
+        return out
 
-    row(lam[0])  # compile once, before the threads ask for it
+    solve((lam[:1], chi[:1]))  # compile once, before the threads ask for it
+    pieces = zip(np.array_split(lam, parts), np.array_split(chi, parts), strict=True)
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        values = np.stack(list(progress(pool.map(row, lam), len(lam))), axis=1)
-    return Table(
-        law=law,
-        settings=settings,
-        segments=segments,
-        elastic_compression=np.array(
-            [elastic_peak(v) for v in _inelasticity_nodes(settings, settings.elastic_nodes)]
-        ),
-        fields=dict(zip(FIELDS, values, strict=True)),
+        return np.concatenate(list(progress(pool.map(solve, pieces), parts)), axis=1)
+
+
+def _elastic(lam: Array, rtol: float) -> Array:
+    """Largest elastic compressions w_m."""
+    hertz = find_law("hertz").functions
+    out = np.empty_like(lam)
+    for n, value in enumerate(lam):
+        status, out[n] = zener.elastic_compression(hertz, value, rtol)
+        if status != zener.OK:
+            raise RuntimeError(f"w_m({value:.6g}) did not solve: {zener.MESSAGES[status]}")
+    return out
+
+
+def certify(table: Table, points: int = 10_000, seed: int = 0) -> Certificate:
+    """Compare lookups with the solver at random points off the grid.
+
+    The points fall into equal shares: below yield, each segment between two kinks, and the close
+    neighbourhood of each kink on either side.
+
+    Parameters
+    ----------
+    table : Table
+    points : int, optional
+        Number of points, at least 100.
+    seed : int, optional
+        Seed of their generator.
+
+    Returns
+    -------
+    Certificate
+    """
+    if points < 100:
+        raise ValueError(f"points: at least 100 are needed for a percentile, got {points!r}")
+    law = find_law(table.law)
+    lam, chi = _points(table, points, np.random.default_rng(seed))
+    exact = _solve(law, lam, chi, max(table.settings.rtol / 10, 1e-13), 2 * (os.cpu_count() or 1))
+    looked = np.empty_like(exact)
+    y = exact[4] / chi
+    lookup.fields(table.packed(), lam, y, True, looked)
+    errors = {}
+    both = (_outcome(law, lam, y, values) for values in (looked, exact))
+    for name, ours, truth in zip(BOUNDS, *both, strict=True):
+        scale = 1.0 if name == "restitution" else np.maximum(np.abs(truth), _SMALLEST)
+        errors[name] = np.abs(ours - truth) / scale
+    return Certificate(
+        points=lam.size,
+        seed=seed,
+        median={name: float(np.median(e)) for name, e in errors.items()},
+        percentile_99={name: float(np.percentile(e, 99)) for name, e in errors.items()},
+        largest={name: float(np.max(e)) for name, e in errors.items()},
     )
+
+
+def _points(table: Table, count: int, generator: np.random.Generator) -> tuple[Array, Array]:
+    kinks = [nodes[0] for nodes in table.segments]
+    strata = [(-2.0, 0.0), *((nodes[0], nodes[-1]) for nodes in table.segments)]
+    strata += [(kink - _NEAR_KINK, kink) for kink in kinks]
+    strata += [(kink, kink + _NEAR_KINK) for kink in kinks]
+    share = -(-count // len(strata))
+    log_chi = np.concatenate([generator.uniform(low, high, share) for low, high in strata])
+    # uniform in the root: COR changes most where lambda is small
+    root = generator.uniform(0.0, math.sqrt(table.settings.largest_inelasticity), log_chi.size)
+    return root**2, np.exp(log_chi)
+
+
+def _outcome(law: Law, lam: Array, y: Array, fields: Array) -> tuple[Array, ...]:
+    """Fields of `BOUNDS` from those of `zener.solve_all`, as `contactlaw.evaluation` has them."""
+    restitution, time, wave_rate, ratio, w_m = fields
+    compression = ratio * w_m
+    state = np.empty((3, lam.size))
+    zener.contact_state(law.functions, compression, y, state)
+    force, residual, plastic = state
+    return restitution, time, force, compression, residual, plastic, lam * wave_rate

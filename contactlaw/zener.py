@@ -45,7 +45,7 @@ MESSAGES = {
 _LANDED = (
     1e-9  # an event is met to this; compression and time are stationary there, so err by its square
 )
-_TURN, _LEVEL = 0, 1  # events: end of loading; a root compression is reached
+_NONE, _TURN, _LEVEL = 0, 1, 2  # events: end of loading; a root compression is reached
 
 
 class Solution(NamedTuple):
@@ -64,20 +64,15 @@ class Solution(NamedTuple):
 
 
 class _State(NamedTuple):
+    """A point of the trajectory, with the rates there."""
+
     q: float
     u: float
     t: float
     j: float
-    steps: int
-
-
-class _Trial(NamedTuple):
-    q: float
-    u: float
-    t: float
-    j: float
-    rate: float
-    error: float
+    dq: float  # dq/ds
+    du: float  # du/ds
+    f: float
 
 
 class _Scale(NamedTuple):
@@ -85,30 +80,29 @@ class _Scale(NamedTuple):
 
     q: float
     u: float
-    tolerance: float
+    per_q: float  # 1/(q tolerance)
+    per_u: float  # 1/(u tolerance)
 
 
 @kernel
 def _rates(
     law: Functions, beta: float, dm: float, q: float, u: float
 ) -> tuple[float, float, float]:
-    """dq/ds, du/ds and the force."""
+    """dq/ds, du/ds and the force; dm = 0 while loading."""
     f = law.loading(q) if dm == 0.0 else law.unloading(q, dm)
     return u - beta * f, -2.0 * q * f, f
 
 
 @kernel
 def _step(
-    law: Functions,
-    beta: float,
-    dm: float,
-    state: _State,
-    h: float,
-    scale: _Scale,
-) -> _Trial:
-    """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19."""
+    law: Functions, beta: float, dm: float, state: _State, h: float, scale: _Scale
+) -> tuple[_State, float]:
+    """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19.
+
+    Its last rates are the first ones of the next step. The error is in units of the tolerance.
+    """
     q, u = state.q, state.u
-    a1, b1, f1 = _rates(law, beta, dm, q, u)
+    a1, b1, f1 = state.dq, state.du, state.f
     q2, u2 = q + h * (1 / 5 * a1), u + h * (1 / 5 * b1)
     a2, b2, f2 = _rates(law, beta, dm, q2, u2)
     q3 = q + h * (3 / 40 * a1 + 9 / 40 * a2)
@@ -128,146 +122,135 @@ def _step(
     )
     a6, b6, f6 = _rates(law, beta, dm, q6, u6)
     w1, w3, w4, w5, w6 = h * 35 / 384, h * 500 / 1113, h * 125 / 192, h * -2187 / 6784, h * 11 / 84
-    q7 = q + w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6
-    u7 = u + w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6
-    a7, b7, _ = _rates(law, beta, dm, q7, u7)
-    # 2 q f^2 is -f b
-    j = w1 * f1 * b1 + w3 * f3 * b3 + w4 * f4 * b4 + w5 * f5 * b5 + w6 * f6 * b6
+    q7 = q + (w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6)
+    u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
+    a7, b7, f7 = _rates(law, beta, dm, q7, u7)
+    t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
+    # dj/ds = 2 q f^2 is -f du/ds
+    j = state.j - (w1 * f1 * b1 + w3 * f3 * b3 + w4 * f4 * b4 + w5 * f5 * b5 + w6 * f6 * b6)
     error_q = (
         71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6
     ) - 1 / 40 * a7
     error_u = (
         71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6
     ) - 1 / 40 * b7
-    return _Trial(
-        q7,
-        u7,
-        state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6),
-        state.j - j,
-        a7,
-        h * max(abs(error_q) / scale.q, abs(error_u) / scale.u),
-    )
+    error = h * max(abs(error_q) * scale.per_q, abs(error_u) * scale.per_u)
+    return _State(q7, u7, t, j, a7, b7, f7), error
 
 
 @kernel
-def _gap(event: int, q: float, rate: float, level: float, scale: _Scale) -> float:
+def _gap(event: int, state: _State, level: float, scale: _Scale) -> float:
     """How far an event is off, in units of its scale; its sign changes there."""
-    return rate / scale.u if event == _TURN else (level - q) / scale.q
+    return state.dq / scale.u if event == _TURN else (level - state.q) / scale.q
 
 
 @kernel
-def _land(
-    law: Functions,
-    beta: float,
-    dm: float,
-    state: _State,
-    h: float,
-    scale: _Scale,
-    event: int,
-    level: float,
-) -> tuple[_Trial, float, int]:
-    """Shorten the step h, which passes an event, until it ends there (Illinois method)."""
-    rate = _rates(law, beta, dm, state.q, state.u)[0]
-    a, gap_a = 0.0, _gap(event, state.q, rate, level, scale)
-    trial = _step(law, beta, dm, state, h, scale)
-    gap_h = _gap(event, trial.q, trial.rate, level, scale)
-    steps = 1
-    while abs(gap_h) > _LANDED and steps < 100:
-        x = h - gap_h * (h - a) / (gap_h - gap_a)
-        trial = _step(law, beta, dm, state, x, scale)
-        gap_x = _gap(event, trial.q, trial.rate, level, scale)
-        if gap_x * gap_h < 0.0:
-            a, gap_a = h, gap_h
-        else:
-            gap_a *= 0.5
-        h, gap_h = x, gap_x
-        steps += 1
-    return trial, h, steps
+def _guess(event: int, state: _State, trial: _State, h: float, level: float) -> float:
+    """Step to an event between two points, by the cubic through q and dq/ds at both."""
+    rise = trial.q - state.q
+    c1, c2 = h * state.dq, 3.0 * rise - h * (2.0 * state.dq + trial.dq)
+    c3 = h * (state.dq + trial.dq) - 2.0 * rise
+    if event == _TURN:  # root of c1 + 2 c2 x + 3 c3 x^2, without cancellation
+        return h * c1 / (math.sqrt(max(0.0, c2 * c2 - 3.0 * c1 * c3)) - c2)
+    x = (level - state.q) / rise
+    for _ in range(3):
+        x -= (((c3 * x + c2) * x + c1) * x - (level - state.q)) / ((3 * c3 * x + 2 * c2) * x + c1)
+    return h * x
 
 
 @kernel
 def _phase(
-    law: Functions,
-    beta: float,
-    dm: float,
-    state: _State,
-    h: float,
-    scale: _Scale,
-    level: float,
-) -> tuple[_State, int, float]:
-    """Integrate loading (dm = 0) to its end or to the kink `level`; unloading (dm > 0) to q = 0."""
-    steps = state.steps
-    while steps < _MAX_STEPS:
-        trial = _step(law, beta, dm, state, h, scale)
-        steps += 1
-        ratio = 0.9 * (scale.tolerance / max(trial.error, 1e-30)) ** 0.2
-        if trial.error > scale.tolerance:
-            h *= max(0.2, ratio)
-            continue
-        turned = dm == 0.0 and trial.rate < 0.0
-        passed = trial.q > level if dm == 0.0 else trial.q < level
-        event = _TURN if turned else _LEVEL
-        if turned or passed:
-            trial, shorter, more = _land(law, beta, dm, state, h, scale, event, level)
-            steps += more
-            if turned and trial.q > level:  # the step went over the kink before it turned
+    law: Functions, beta: float, dm: float, state: _State, h: float, scale: _Scale, level: float
+) -> tuple[_State, int, float, int]:
+    """Integrate loading (dm = 0) to its end or to the kink `level`; unloading (dm > 0) to q = 0.
+
+    Returns the point reached, the event, a step to go on with and the number of steps. An event
+    is met by shortening the step that passes it: regula falsi with Illinois' weights.
+    """
+    event, following = _NONE, h
+    a = b = gap_a = gap_b = 0.0  # steps on either side of the event, and how far off they end
+    for steps in range(1, _MAX_STEPS):
+        trial, error = _step(law, beta, dm, state, h, scale)
+        if event == _NONE:
+            if error > 1.0:
+                h *= max(0.2, 0.9 / math.sqrt(math.sqrt(error)))  # a power is slower than a step
+                continue
+            if dm == 0.0 and trial.dq < 0.0:
+                event = _TURN
+            elif (trial.q > level) if dm == 0.0 else (trial.q < level):
                 event = _LEVEL
-                trial, _, more = _land(law, beta, dm, state, shorter, scale, event, level)
-                steps += more
-            return _State(trial.q, trial.u, trial.t, trial.j, steps), event, h
-        state = _State(trial.q, trial.u, trial.t, trial.j, steps)
-        h *= min(5.0, ratio)
-    return _State(state.q, state.u, state.t, state.j, steps), _TURN, h
+            else:
+                state = trial
+                h *= min(5.0, 0.9 / math.sqrt(math.sqrt(max(error, 1e-30))))
+                continue
+            following = h
+        else:
+            gap = _gap(event, trial, level, scale)
+            if abs(gap) > _LANDED:
+                if gap * gap_b < 0.0:
+                    a, gap_a = b, gap_b
+                else:
+                    gap_a *= 0.5
+                b, gap_b = h, gap
+                h = b - gap_b * (b - a) / (gap_b - gap_a)
+                continue
+            if event == _LEVEL or trial.q <= level:
+                return trial, event, following, steps
+            event = _LEVEL  # the step went over the kink before it turned: land there instead
+        a, gap_a = 0.0, _gap(event, state, level, scale)
+        b, gap_b = h, _gap(event, trial, level, scale)
+        h = _guess(event, state, trial, h, level)
+    return state, event, h, _MAX_STEPS
 
 
 @kernel
-def _load(
-    law: Functions,
-    beta: float,
-    scale: _Scale,
-    h: float,
-) -> tuple[_State, float]:
+def _touch(law: Functions, beta: float, scale: _Scale) -> _State:
+    """First touch."""
+    dq, du, f = _rates(law, beta, 0.0, 0.0, scale.u)
+    return _State(0.0, scale.u, 0.0, 0.0, dq, du, f)
+
+
+@kernel
+def _load(law: Functions, beta: float, scale: _Scale, h: float) -> tuple[_State, float, int]:
     """From first touch to the largest compression, landing on each kink (the last is inf)."""
-    state = _State(0.0, scale.u, 0.0, 0.0, 0)
+    state, steps = _touch(law, beta, scale), 0
     for kink in law.kinks:
-        state, event, h = _phase(law, beta, 0.0, state, h, scale, math.sqrt(kink))
-        rate = _rates(law, beta, 0.0, state.q, state.u)[0]
-        if event == _TURN or rate <= 0.0:
+        state, event, h, more = _phase(law, beta, 0.0, state, h, scale, math.sqrt(kink))
+        steps += more
+        if event == _TURN or state.dq <= 0.0:
             break
-    return state, h
+    return state, h, steps
 
 
 @kernel
 def _scale(y: float, rtol: float) -> tuple[_Scale, float]:
     """Scales of an impact in the law's units, and a first step that the error control accepts."""
     y4 = math.sqrt(math.sqrt(y))
-    return _Scale(1.0 / (y4 * y4), 1.0 / (y * y4), rtol), 0.7 * rtol**0.2 * y4**3
+    q, u = 1.0 / (y4 * y4), 1.0 / (y * y4)
+    return _Scale(q, u, 1.0 / (q * rtol), 1.0 / (u * rtol)), 0.7 * rtol**0.2 * y4**3
 
 
 @kernel
-def solve(
-    law: Functions,
-    lam: float,
-    y: float,
-    rtol: float,
-) -> Solution:
+def solve(law: Functions, lam: float, y: float, rtol: float) -> Solution:
     """One impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol the error allowed per step."""
     if not (0.0 <= lam < math.inf and 0.0 < y < math.inf):
         return Solution(BAD_INPUT, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     scale, h = _scale(y, rtol)
     y4 = math.sqrt(math.sqrt(y))
     beta = lam * y4
-    state, h = _load(law, beta, scale, h)
-    dm = state.q * state.q
+    top, h, steps = _load(law, beta, scale, h)
+    dm = top.q * top.q
     dr = law.residual(dm)
-    state = _State(math.sqrt(dm - dr), state.u, state.t, state.j, state.steps)
-    state, _, h = _phase(law, beta, dm, state, h, scale, 0.0)
-    wave_rate = 2.0 * y4 * state.j / scale.u**2
+    q = math.sqrt(dm - dr)
+    dq, du, f = _rates(law, beta, dm, q, top.u)
+    top = _State(q, top.u, top.t, top.j, dq, du, f)
+    end, _, _, more = _phase(law, beta, dm, top, h, scale, 0.0)
+    wave_rate = 2.0 * y4 * end.j / scale.u**2
     return Solution(
-        OK if state.steps < _MAX_STEPS else TOO_MANY_STEPS,
-        state.steps,
-        -state.u / scale.u,
-        state.t / y4,
+        OK if max(steps, more) < _MAX_STEPS else TOO_MANY_STEPS,
+        steps + more,
+        -end.u / scale.u,
+        end.t / y4,
         law.loading(math.sqrt(dm)) * y * math.sqrt(y),
         dm * y,
         dr * y,
@@ -283,8 +266,18 @@ def elastic_compression(hertz: Functions, lam: float, rtol: float) -> tuple[int,
     if not 0.0 <= lam < math.inf:
         return BAD_INPUT, 0.0
     scale, h = _scale(1.0, rtol)
-    state, _ = _load(hertz, lam, scale, h)
-    return (OK if state.steps < _MAX_STEPS else TOO_MANY_STEPS), state.q * state.q
+    state, _, steps = _load(hertz, lam, scale, h)
+    return (OK if steps < _MAX_STEPS else TOO_MANY_STEPS), state.q * state.q
+
+
+@kernel
+def _fields(one: Solution, w_m: float, out: Array, n: int) -> None:
+    """Put an impact into column n of out (5, :)."""
+    out[0, n] = one.restitution
+    out[1, n] = one.contact_time
+    out[2, n] = one.wave_rate
+    out[3, n] = one.peak_compression / w_m
+    out[4, n] = w_m
 
 
 @kernel
@@ -304,11 +297,25 @@ def solve_all(
             status, w_m = elastic_compression(hertz, lam[n], rtol)
         if status != OK:
             return status, n
-        out[0, n] = one.restitution
-        out[1, n] = one.contact_time
-        out[2, n] = one.wave_rate
-        out[3, n] = one.peak_compression / w_m
-        out[4, n] = w_m
+        _fields(one, w_m, out, n)
+    return OK, 0
+
+
+@kernel
+def solve_overloads(
+    law: Functions, hertz: Functions, lam: Array, chi: Array, rtol: float, out: Array
+) -> tuple[int, int]:
+    """`solve_all` at given overloads chi = w_m/y; equal neighbours in lam share their w_m."""
+    status, w_m = OK, 0.0
+    for n in range(lam.size):
+        if n == 0 or lam[n] != lam[n - 1]:
+            status, w_m = elastic_compression(hertz, lam[n], rtol)
+        if status != OK:
+            return status, n
+        one = solve(law, lam[n], w_m / chi[n], rtol)
+        if one.status != OK:
+            return one.status, n
+        _fields(one, w_m, out, n)
     return OK, 0
 
 

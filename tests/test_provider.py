@@ -44,7 +44,6 @@ def small_table():
             largest_overload=5.0,
             inelasticity_nodes=21,
             log_overload_step=0.1,
-            elastic_nodes=81,
         ),
     )
 

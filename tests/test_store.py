@@ -1,12 +1,14 @@
 """Table files: what is written comes back, and nothing else is accepted."""
 
+import io
+
 import h5py
 import numpy as np
 import pytest
 
 from contactlaw import store, table
 
-SMALL = table.Settings(inelasticity_nodes=9, log_overload_step=0.5, elastic_nodes=9)
+SMALL = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
 
 
 @pytest.fixture(scope="module")
@@ -41,8 +43,11 @@ def test_file_explains_itself(path):
 
 
 def edit(path, change):
-    with h5py.File(path, "r+") as file:
+    """Change a file as a program of another version would: with a checksum that fits."""
+    image = io.BytesIO(path.read_bytes())
+    with h5py.File(image, "r+") as file:
         change(file)
+    path.write_bytes(store._sign(image.getvalue()[store._BLOCK :]))
 
 
 def put_nan(file):
@@ -67,10 +72,44 @@ def test_a_wrong_file_is_refused(path, change, message):
     assert "contactlaw table build" in str(error.value)
 
 
-def test_not_hdf5_is_refused(tmp_path):
-    (tmp_path / "x.h5").write_text("no table")
-    with pytest.raises(ValueError, match="cannot use"):
+@pytest.mark.parametrize("content", [b"", b"no table", b"\x89HDF\r\n\x1a\n" * 100])
+def test_what_is_no_table_is_refused(tmp_path, content):
+    (tmp_path / "x.h5").write_bytes(content)
+    with pytest.raises(store.DamagedTableError, match="cannot use .*x.h5: it is not a table"):
         store.read(tmp_path / "x.h5")
+
+
+def test_any_altered_byte_is_found(path):
+    content = path.read_bytes()
+    rng = np.random.default_rng(3)
+    for place in rng.integers(len(content), size=300):
+        altered = bytearray(content)
+        altered[place] ^= int(rng.integers(1, 256))
+        path.write_bytes(altered)
+        try:
+            read = store.read(path)
+        except store.DamagedTableError:
+            continue
+        # the padding behind the checksum, which says nothing, is all that may change
+        assert 93 < place < store._BLOCK
+        assert read.law == "myc"
+
+
+def test_any_truncation_is_found(path):
+    content = path.read_bytes()
+    for length in [*range(0, len(content), 997), len(content) - 1]:
+        path.write_bytes(content[:length])
+        with pytest.raises(store.DamagedTableError):
+            store.read(path)
+
+
+def test_hdf5_programs_read_it(path):
+    with h5py.File(path) as file:
+        assert file.attrs["complete"]
+        assert file["fields/restitution"].shape == (
+            SMALL.inelasticity_nodes,
+            sum(len(nodes) for nodes in file["log_overload"].values()),
+        )
 
 
 def test_a_missing_file_is_named(tmp_path):
@@ -92,9 +131,20 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(built, path, monkey
     assert path.read_bytes() == before
 
 
-def test_a_law_without_a_packaged_table_is_built(monkeypatch, tmp_path):
-    monkeypatch.setattr(store.resources, "files", lambda package: tmp_path)
-    monkeypatch.setattr(table, "build", lambda law: f"built {law}")
+def test_a_folder_that_is_not_there(built, tmp_path):
+    with pytest.raises(FileNotFoundError, match="missing"):
+        store.write(built, tmp_path / "missing" / "t.h5")
+
+
+def test_packaged(monkeypatch, path):
     store.packaged.cache_clear()
-    assert store.packaged("myc") == "built myc"
+    (path.parent / "data").mkdir()
+    monkeypatch.setattr(store.resources, "files", lambda package: path.parent)
+    assert store.packaged("thornton") is None
+    path.rename(path.parent / "data" / "myc.h5")
+    assert store.packaged("myc").law == "myc"
+    store.packaged.cache_clear()
+    (path.parent / "data" / "myc.h5").write_bytes(b"damaged")
+    with pytest.raises(store.DamagedTableError, match="reinstall contactlaw"):
+        store.packaged("myc")
     store.packaged.cache_clear()

@@ -1,15 +1,17 @@
 """The table and its packed against the solver that they stand for."""
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
+import contactlaw as cl
 from contactlaw import laws, lookup, store, table, zener
 
 HERTZ = laws.law("hertz").functions
 YIELDING = [name for name in laws.names() if laws.law(name).kinks]
-SMALL = table.Settings(inelasticity_nodes=21, log_overload_step=0.15, elastic_nodes=161)
+SMALL = table.Settings(inelasticity_nodes=21, log_overload_step=0.15)
 
 
 def solve(law, lam, chi, rtol=1e-12):
@@ -64,8 +66,8 @@ def test_spline_error_falls_with_the_fourth_power():
     coarse, fine = (
         errors("myc", table.build("myc", settings).packed(), lam, chi)[0]
         for settings in (
-            table.Settings(inelasticity_nodes=41, log_overload_step=0.075, elastic_nodes=641),
-            table.Settings(inelasticity_nodes=81, log_overload_step=0.0375, elastic_nodes=641),
+            table.Settings(inelasticity_nodes=41, log_overload_step=0.075),
+            table.Settings(inelasticity_nodes=81, log_overload_step=0.0375),
         )
     )
     assert math.log2(coarse / fine) == pytest.approx(4, abs=0.2)
@@ -110,6 +112,68 @@ def test_restitution_falls_with_overload_and_with_inelasticity():
     assert (np.diff(e, axis=1) <= 1e-7).all()
 
 
+def test_the_certificate_is_honest():
+    """Its figures are those of an independent comparison, through the public model."""
+    packaged = store.packaged("myc")
+    assert packaged.certificate.exceeded == {}
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    rng = np.random.default_rng(5)
+    speed = model.pair.yield_speed * np.exp(rng.uniform(np.log(0.5), np.log(90), 3000))
+    radius, thickness = np.full(3000, 1e-3), 1e-3 / rng.uniform(0.0, 5.0, 3000)
+    looked = model.lookup(speed, radius, thickness)
+    exact = model.solve(speed, radius, thickness, rtol=1e-12)
+    for name, largest in packaged.certificate.largest.items():
+        ours, truth = getattr(looked, name), getattr(exact, name)
+        scale = 1.0 if name == "restitution" else np.maximum(truth, 1e-12)
+        # 3000 points may find a place that 10 000 others missed, by a little
+        assert np.max(np.abs(ours - truth) / scale) < 1.2 * largest, name
+
+
+def test_fresh_points_certify_the_packaged_table():
+    certificate = table.certify(store.packaged("myc"), points=5000, seed=99)
+    assert certificate.exceeded == {}
+    assert certificate.points >= 5000
+    for name in table.BOUNDS:
+        assert (
+            0
+            <= certificate.median[name]
+            <= certificate.percentile_99[name]
+            <= certificate.largest[name]
+        )
+
+
+def test_a_bad_table_is_found():
+    coarse = table.build("myc", SMALL)
+    assert "restitution" in coarse.certificate.exceeded
+    values = store.packaged("myc").fields["restitution"].copy()
+    values[40, 90] += 1e-5
+    wrong = dataclasses.replace(
+        store.packaged("myc"), fields={**store.packaged("myc").fields, "restitution": values}
+    )
+    assert "restitution" in table.certify(wrong, points=20_000).exceeded
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"largest_inelasticity": -1.0},
+        {"largest_overload": math.nan},
+        {"inelasticity_nodes": 3},
+        {"log_overload_step": 0.0},
+        {"rtol": 1.0},
+    ],
+    ids=str,
+)
+def test_settings_out_of_range(wrong):
+    with pytest.raises(ValueError, match=f"{next(iter(wrong))}: must lie between"):
+        table.Settings(**wrong)
+
+
+def test_a_certificate_needs_points():
+    with pytest.raises(ValueError, match="points: at least 100"):
+        table.certify(store.packaged("myc"), points=10)
+
+
 def test_packaged_table_is_what_this_version_builds():
     packaged, built = store.packaged("myc"), table.build("myc")
     assert packaged.settings == built.settings
@@ -137,7 +201,7 @@ def test_an_elastic_law_needs_no_table():
 
 
 def test_a_node_that_does_not_solve_fails_the_build(monkeypatch):
-    monkeypatch.setattr(zener, "solve_all", lambda *arguments: (zener.TOO_MANY_STEPS, 3))
+    monkeypatch.setattr(zener, "solve_overloads", lambda *arguments: (zener.TOO_MANY_STEPS, 0))
     with pytest.raises(RuntimeError, match=r"node lambda = .*, chi = .* did not solve"):
         table.build("myc", SMALL)
 

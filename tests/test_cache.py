@@ -1,0 +1,248 @@
+"""The table cache under what happens to caches: races, kills, damage, full and read-only disks."""
+
+import contextlib
+import errno
+import multiprocessing
+import os
+import resource
+import signal
+import time
+import warnings
+
+import filelock
+import numpy as np
+import platformdirs
+import pytest
+import tqdm
+
+from contactlaw import cache, laws, store, table, zener
+
+SMALL = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
+# children are forked, so that they need not compile the solver again; what they import lazily is
+# loaded here, since a child that gave up its rights may not read the packages any more
+FORK = multiprocessing.get_context("fork")
+LOADED = filelock, platformdirs, tqdm
+
+
+@pytest.fixture(scope="module")
+def expected():
+    return table.build("myc", SMALL)
+
+
+@pytest.fixture(autouse=True)
+def place(tmp_path, monkeypatch, expected):
+    """Cache folder of one test."""
+    monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(tmp_path / "cache"))
+    cache.cached.cache_clear()
+    yield tmp_path / "cache"
+    cache.cached.cache_clear()
+
+
+@pytest.fixture
+def path(place):
+    return place / cache.file_name("myc", SMALL)
+
+
+def same(one, other):
+    return all(np.array_equal(one.fields[name], other.fields[name]) for name in other.fields)
+
+
+def in_child(function, *arguments):
+    """Run a function in a forked process and return what it returned, or raise what it raised."""
+    receive, send = FORK.Pipe(duplex=False)
+
+    def run():
+        try:
+            send.send(function(*arguments))
+        except BaseException as error:
+            send.send(error)
+
+    process = FORK.Process(target=run)
+    process.start()
+    result = receive.recv()
+    process.join()
+    if isinstance(result, BaseException):
+        raise result
+    return result
+
+
+def test_a_table_is_built_once_and_kept(path, expected, monkeypatch):
+    assert same(cache.cached("myc", SMALL), expected)
+    assert path.exists()
+    cache.cached.cache_clear()
+    monkeypatch.setattr(table, "build", None)  # a second build would fail
+    assert same(cache.cached("myc", SMALL), expected)
+
+
+def test_the_name_depends_on_all_that_the_content_does(monkeypatch):
+    names = {cache.file_name("myc", SMALL), cache.file_name("myc", table.Settings())}
+    monkeypatch.setattr(store, "SCHEMA", 99)
+    names.add(cache.file_name("myc", SMALL))
+    changed = laws.Law(**{**vars(laws.law("myc")), "yield_coefficient": 0.7})
+    monkeypatch.setattr(laws, "law", lambda name: changed)
+    names.add(cache.file_name("myc", SMALL))
+    monkeypatch.setattr(cache.inspect, "getsource", lambda module: "another solver")
+    names.add(cache.file_name("myc", SMALL))
+    assert len(names) == 5
+
+
+def test_folder(monkeypatch, tmp_path):
+    assert cache.folder() == tmp_path / "cache"
+    monkeypatch.delenv("CONTACTLAW_CACHE_DIR")
+    assert cache.folder() == platformdirs.user_cache_path("contactlaw", appauthor=False)
+    monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
+    assert cache.folder() is None
+
+
+def test_switched_off_writes_nothing(place, expected, monkeypatch):
+    monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
+    assert same(cache.cached("myc", SMALL), expected)
+    assert not place.exists()
+
+
+def other_schema(path):
+    path.write_bytes(store._sign(path.read_bytes()[store._BLOCK :].replace(b"schema", b"schama")))
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda path: path.write_bytes(b""),
+        lambda path: path.write_bytes(path.read_bytes()[:-1000]),
+        lambda path: path.write_bytes(path.read_bytes().replace(b"\x3f", b"\x40", 1)),
+        other_schema,
+    ],
+    ids=["zero length", "truncated", "flipped bits", "another schema"],
+)
+def test_a_damaged_file_is_rebuilt(path, expected, damage):
+    cache.cached("myc", SMALL)
+    damage(path)
+    cache.cached.cache_clear()
+    assert same(cache.cached("myc", SMALL), expected)
+    assert same(store.read(path), expected)  # and the file is whole again
+
+
+def test_two_processes_build_one_table(place, path, expected):
+    barrier, builds = FORK.Barrier(2), FORK.Value("i", 0)
+    real = table.build
+
+    def counted(*arguments, **options):
+        with builds.get_lock():
+            builds.value += 1
+        time.sleep(0.2)  # both are inside before either has finished
+        return real(*arguments, **options)
+
+    def child(results):
+        table.build = counted
+        barrier.wait()
+        results.put(same(cache.cached("myc", SMALL), expected))
+
+    results = FORK.Queue()
+    children = [FORK.Process(target=child, args=(results,)) for _ in range(2)]
+    for process in children:
+        process.start()
+    assert [results.get(timeout=60) for _ in children] == [True, True]
+    for process in children:
+        process.join()
+    assert builds.value == 1
+    assert {p.name for p in place.iterdir()} == {path.name, path.with_suffix(".lock").name}
+
+
+def test_a_writer_killed_at_any_moment_leaves_a_whole_file_or_none(place, path, expected):
+    place.mkdir()
+    rng = np.random.default_rng(1)
+
+    def write_for_ever():
+        while True:
+            store.write(expected, path)
+
+    interrupted = 0
+    for _ in range(60):
+        writer = FORK.Process(target=write_for_ever)
+        writer.start()
+        time.sleep(rng.uniform(0.0, 0.03))
+        os.kill(writer.pid, signal.SIGKILL)
+        writer.join()
+        with contextlib.suppress(FileNotFoundError):  # killed before the first rename
+            assert same(store.read(path), expected)
+        interrupted += bool(list(place.glob("*.part")) or list(place.glob(".*.part")))
+    assert interrupted > 5  # the kills did hit writes
+    path.unlink(missing_ok=True)
+    assert same(cache.cached("myc", SMALL), expected)
+    assert not list(place.glob(".*.part"))  # what the killed ones left is gone
+
+
+def test_a_builder_killed_with_the_lock_does_not_block_the_next(place, path, expected):
+    started = FORK.Event()
+
+    def child():
+        table.build = lambda *a, **k: (started.set(), time.sleep(60))
+        cache.cached("myc", SMALL)
+
+    builder = FORK.Process(target=child)
+    builder.start()
+    assert started.wait(30)
+    os.kill(builder.pid, signal.SIGKILL)
+    builder.join()
+    before = time.monotonic()
+    assert same(cache.cached("myc", SMALL), expected)
+    assert time.monotonic() - before < 30  # the lock went with its process
+
+
+def warned(change):
+    """Messages of the warnings of two lookups after a change of the process's circumstances."""
+    change()
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        tables = [cache.cached("myc", SMALL) for _ in range(2)]
+    return tables[1].fields["restitution"], [str(w.message) for w in caught]
+
+
+def check_one_warning(result, expected, *words):
+    values, messages = result
+    assert np.array_equal(values, expected.fields["restitution"])
+    assert len(messages) == 1
+    for word in (*words, "CONTACTLAW_CACHE_DIR"):
+        assert word in messages[0]
+
+
+def test_a_folder_without_write_permission(place, expected):
+    place.mkdir(mode=0o555)
+
+    def give_up_rights():
+        if os.geteuid() == 0:  # permissions do not bind root
+            os.setuid(65534)
+
+    os.chmod(place.parent, 0o755)
+    check_one_warning(in_child(warned, give_up_rights), expected, "cannot be kept")
+    assert list(place.iterdir()) == []
+
+
+def test_a_full_disk(place, expected):
+    def fill():
+        place.mkdir()
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+    check_one_warning(in_child(warned, fill), expected, os.strerror(errno.EFBIG))
+    assert [p.suffix for p in place.iterdir()] == [".lock"]  # no table, no half of one
+
+
+def test_a_file_where_the_folder_should_be(place, expected):
+    place.write_text("in the way")
+    check_one_warning(in_child(warned, lambda: None), expected, "cannot be kept")
+
+
+def test_a_lock_that_is_held_for_ever(place, path, expected, monkeypatch):
+    monkeypatch.setattr(cache, "_PATIENCE", 0.2)
+    place.mkdir()
+    with filelock.FileLock(path.with_suffix(".lock")):
+        check_one_warning(in_child(warned, lambda: None), expected, "lock")
+
+
+def test_progress_is_quiet_without_a_terminal(capfd):
+    assert list(cache.progress_bar(iter([1, 2]), 2)) == [1, 2]
+    assert capfd.readouterr() == ("", "")
+
+
+def test_the_solver_is_named_by_its_source():
+    assert "Dormand" in cache.inspect.getsource(zener)
