@@ -14,10 +14,10 @@ numbers is called from Python in a third of a microsecond. The array begins with
     _X_MAX        x of the largest lambda  _SEGMENTS  number of segments n
     _LOG_CHI_MAX  largest ln chi           _COR       where the coefficients of COR begin
     _NODES_PER_X  1/(distance of nodes)    _OTHERS    where those of the other fields begin
-    _LAST_ROW     cells along x, less one
 
 then, at _HEADER, the polynomial's coefficients and n blocks (first ln chi, nodes per unit of
-ln chi, last cell, first column).
+ln chi, first column). A last row and a last column are there twice: at the very end of the table a
+kernel reads one coefficient too many, with the weight 0, and needs no test.
 
 Legend: v speed, lam inelasticity, chi overload, w_m largest elastic compression [V0 T_H]. Powers:
 lam = c_lam V^(1/5), ln chi = c_chi + (4/5) ln V + ln w_m; c_lam and c_chi come with SI units from
@@ -46,10 +46,10 @@ V_MIN = float(np.finfo(np.float64).tiny)
 
 OTHERS = ("contact_time", "wave_rate", "compression_ratio")
 
-_STRETCH, _X_MAX, _LOG_CHI_MAX, _NODES_PER_X, _LAST_ROW = range(5)
-_COLUMNS, _SEGMENTS, _COR, _OTHERS, _HEADER = range(5, 10)
+_STRETCH, _X_MAX, _LOG_CHI_MAX, _NODES_PER_X = range(4)
+_COLUMNS, _SEGMENTS, _COR, _OTHERS, _HEADER = range(4, 9)
 _DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
-_START, _PER_LOG, _LAST_CELL, _COLUMN, _BLOCK = range(5)
+_START, _PER_LOG, _COLUMN, _BLOCK = range(4)
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
@@ -108,16 +108,17 @@ def pack(
     across = spline_coefficients(np.stack([fields[name] for name in names], axis=-1))
     parts = np.split(across.swapaxes(0, 1), np.cumsum(lengths)[:-1])
     both = np.concatenate([spline_coefficients(part) for part in parts]).swapaxes(0, 1)
-    cor, others = both[..., 0], both[..., 1:]
+    padded = np.pad(both, ((0, 1), (0, 1), (0, 0)), mode="edge")
+    cor, others = padded[..., 0], padded[..., 1:]
     x_max = lam_max / (lam_max + stretch)
     power_series = _power_series_of(np.log(elastic_compression))
     blocks = [
-        (nodes[0], (len(nodes) - 1) / (nodes[-1] - nodes[0]), len(nodes) - 2, column)
+        (nodes[0], (len(nodes) - 1) / (nodes[-1] - nodes[0]), column)
         for nodes, column in zip(segments, first_columns, strict=True)
     ]
     header = np.empty(_HEADER)
     header[[_STRETCH, _X_MAX, _LOG_CHI_MAX]] = stretch, x_max, segments[-1][-1]
-    header[[_NODES_PER_X, _LAST_ROW]] = (len(cor) - 3) / x_max, len(cor) - 4
+    header[_NODES_PER_X] = (len(across) - 3) / x_max
     header[[_COLUMNS, _SEGMENTS]] = cor.shape[1], len(segments)
     start = _HEADER + power_series.size + _BLOCK * len(blocks)
     header[[_COR, _OTHERS]] = start, start + cor.size
@@ -157,29 +158,43 @@ def _from_bits(typing_context: Any, value: Any) -> Any:
     return types.float64(types.int64), generate
 
 
+def _root_series() -> tuple[float, ...]:
+    """Taylor coefficients of f(z) = ((1 + z)/(1 - z))^(1/5), from (1 - z^2) f' = (2/5) f."""
+    c = [1.0, 0.4]
+    for n in range(1, 12):
+        c.append((0.4 * c[n] + (n - 1) * c[n - 1]) / (n + 1))
+    return tuple(c)
+
+
+_ROOT = _root_series()
+_ROOTS_OF_TWO = 2.0 ** (np.arange(-1024, 3072) / 5)  # 2^(k/5), for any 12 bits of an exponent
+
+
 @kernel(cache=True)
 def _log_and_root(v: float) -> tuple[float, float]:
-    """Ln v and v^(1/5) to 2e-11 for a normal positive v, without a call: loops can be vectorised.
+    """Logarithm and fifth root to 2e-11, for V_MIN <= v <= V_MAX; garbage, but no crash, elsewhere.
 
-    v = 2^k m with m within [sqrt(1/2), sqrt(2)); ln m by the series of artanh, the root by that of
-    exp.
+    v = 2^k m with m within [sqrt(1/2), sqrt(2)) and z = (m - 1)/(m + 1), |z| < 0.172: the series of
+    2 artanh z = ln m and of m^(1/5) do not wait for each other, and contain no call, so that loops
+    over them become vector instructions.
     """
     bits: int = _bits(v)  # type: ignore[call-arg]
     # k + 1024, from the exponent of v/sqrt(1/2); unsigned, since vectors have no signed shift
-    biased = np.int64(np.uint64(bits - 0x3FE6A09E667F3BCD + (1024 << 52)) >> np.uint64(52))
-    exponent = _from_bits(biased + (0x433 << 52)) - (2.0**52 + 1024.0)  # as a float
-    m = _from_bits(bits - ((biased - 1024) << 52))
-    z = (m - 1.0) / (m + 1.0)  # |z| < 0.172: the next term is 1e-13
+    biased = np.uint64(bits - 0x3FE6A09E667F3BCD + (1024 << 52)) >> np.uint64(52)
+    signed = np.int64(biased)
+    exponent = _from_bits(signed + (0x433 << 52)) - (2.0**52 + 1024.0)  # k as a float
+    m = _from_bits(bits - ((signed - 1024) << 52))
+    z = (m - 1.0) / (m + 1.0)
     w = z * z
-    series = 2 / 9 + w * (2 / 11 + w * (2 / 13 + w * (2 / 15)))
-    series = 2.0 + w * (2 / 3 + w * (2 / 5 + w * (2 / 7 + w * series)))
-    log = exponent * math.log(2.0) + z * series
-    power = log * (0.2 / math.log(2.0))
-    shifted = power + 1.5 * 2.0**52  # rounds; the integer is left in the lowest bits
-    f = (power - (shifted - 1.5 * 2.0**52)) * math.log(2.0)  # |f| < 0.347: next term 7e-12
-    series = 1 / 120 + f * (1 / 720 + f * (1 / 5040 + f * (1 / 40320 + f * (1 / 362880))))
-    root = 1.0 + f * (1.0 + f * (1 / 2 + f * (1 / 6 + f * (1 / 24 + f * series))))
-    return log, _from_bits(_bits(root) + (_bits(shifted) << 52))
+    w2 = w * w
+    w4 = w2 * w2
+    odd = (2.0 + w * (2 / 3)) + (2 / 5 + w * (2 / 7)) * w2  # next term of ln m: 1e-13
+    odd += ((2 / 9 + w * (2 / 11)) + (2 / 13 + w * (2 / 15)) * w2) * w4
+    c = _ROOT  # next term of the root: 5e-12
+    root = (c[0] + c[1] * z) + (c[2] + c[3] * z) * w
+    root += ((c[4] + c[5] * z) + (c[6] + c[7] * z) * w) * w2
+    root += ((c[8] + c[9] * z) + (c[10] + c[11] * z) * w + c[12] * w2) * w4
+    return exponent * math.log(2.0) + z * odd, root * _ROOTS_OF_TWO[biased]
 
 
 @kernel(cache=True)
@@ -236,15 +251,13 @@ def log_elastic_compression(table: Array, lam: float) -> float:
 @kernel(cache=True)
 def _locate(table: Array, x: float, log_chi: float) -> tuple[int, float, float]:
     """Index of the first of 4 x 4 coefficients, and the place within the cell."""
-    last_row = int(table[_LAST_ROW])
     block = _HEADER + _DEGREE + 1
     for k in range(1, int(table[_SEGMENTS])):
-        if log_chi > table[_HEADER + _DEGREE + 1 + k * _BLOCK + _START]:
-            block = _HEADER + _DEGREE + 1 + k * _BLOCK
+        # counted, not branched: half of the branches would be predicted wrongly
+        block += _BLOCK * (log_chi > table[_HEADER + _DEGREE + 1 + k * _BLOCK + _START])
     across = x * table[_NODES_PER_X]
     along = max(0.0, log_chi - table[block + _START]) * table[block + _PER_LOG]
-    row = min(int(across), last_row)
-    cell = min(int(along), int(table[block + _LAST_CELL]))
+    row, cell = int(across), int(along)
     first = row * int(table[_COLUMNS]) + int(table[block + _COLUMN]) + cell
     return first, across - row, along - cell
 
@@ -285,13 +298,15 @@ def _other_fields(table: Array, first: int, s: float, t: float) -> tuple[float, 
 
 
 @kernel(cache=True)
-def restitution(table: Array, c_lam: float, c_chi: float, speed: float) -> float:
-    """COR at one speed; NaN where the speed is no positive number and outside the table."""
+def _restitution(
+    table: Array, c_lam: float, c_chi: float, speed: float, radius_2: float, thickness_2: float
+) -> float:
+    """COR for lam = c_lam V^(1/5) R^2/H^2; NaN outside the table."""
     if not V_MIN <= speed <= V_MAX:
         return math.nan
     log_speed, root = _log_and_root(speed)
-    lam = c_lam * root
-    x = lam / (lam + table[_STRETCH])
+    above = c_lam * root * radius_2
+    x = above / (above + table[_STRETCH] * thickness_2)
     if not x <= table[_X_MAX]:
         return math.nan
     log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
@@ -303,14 +318,19 @@ def restitution(table: Array, c_lam: float, c_chi: float, speed: float) -> float
 
 
 @kernel(cache=True)
+def restitution(table: Array, c_lam: float, c_chi: float, speed: float) -> float:
+    """COR at one speed; NaN where the speed is no positive number and outside the table."""
+    return _restitution(table, c_lam, c_chi, speed, 1.0, 1.0)
+
+
+@kernel(cache=True)
 def restitution_on_plate(
     table: Array, c_lam: float, c_chi: float, speed: float, radius: float, thickness: float
 ) -> float:
     """COR of one sphere on a plate; NaN for bad input and outside the table."""
     if not (R_MIN <= radius <= R_MAX and thickness >= R_MIN):
         return math.nan
-    ratio = radius / thickness
-    return restitution(table, c_lam * ratio * ratio, c_chi, speed)
+    return _restitution(table, c_lam, c_chi, speed, radius * radius, thickness * thickness)
 
 
 @kernel(cache=True)
@@ -348,20 +368,20 @@ def _cells(
     table: Array, x: Array, log_chi: Array, first: Integers, along: Array, column: Integers
 ) -> None:
     """Index of the first of 4 x 4 coefficients; places within the cell over x and into along."""
-    columns, last_row = np.int32(table[_COLUMNS]), np.int32(table[_LAST_ROW])
-    nodes_per_x, cor = table[_NODES_PER_X], np.int32(table[_COR])
+    nodes_per_x = table[_NODES_PER_X]
+    columns, cor = np.int32(table[_COLUMNS]), np.int32(table[_COR])
     for i in range(x.size):
         across = x[i] * nodes_per_x
-        row = min(np.int32(across), last_row)
+        row = np.int32(across)
         x[i] = across - row
         first[i] = cor + row * columns
     for k in range(int(table[_SEGMENTS])):
         block = _HEADER + _DEGREE + 1 + k * _BLOCK
         start, per_log = table[block + _START], table[block + _PER_LOG]
-        last, offset = np.int32(table[block + _LAST_CELL]), np.int32(table[block + _COLUMN])
+        offset = np.int32(table[block + _COLUMN])
         for i in range(x.size):
             place = max(0.0, log_chi[i] - start) * per_log
-            cell = min(np.int32(place), last)
+            cell = np.int32(place)
             here = (log_chi[i] > start) | (k == 0)
             along[i] = place - cell if here else along[i]
             column[i] = offset + cell if here else column[i]

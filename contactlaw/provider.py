@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw import laws, lookup
-from contactlaw._jit import kernel
+from contactlaw._jit import direct, kernel
 from contactlaw.arguments import broadcast, check, shaped
 from contactlaw.evaluation import (
     Impact,
@@ -95,7 +95,7 @@ class ImpactModel:
         if self._law.kinks:
             pair.sphere.require_yield_strength(law)
         self.outside: Outside = outside
-        self._on_plate = lookup.restitution_on_plate
+        self._on_plate, self._at = _entries()
         self.clamped = 0
         self._table = packed_table(self._law, table)
         self._c_lam, self._c_chi = factors(
@@ -145,7 +145,8 @@ class ImpactModel:
         >>> model.restitution([2.0, 10.0], radius=0.9e-3, thickness=0.5e-3).round(4)
         array([0.7293, 0.6476])
         """
-        if type(speed) is type(radius) is type(thickness) is float:  # per collision, from Python
+        scalars = isinstance(speed, float) and isinstance(radius, float)
+        if scalars and isinstance(thickness, float):  # per collision, from Python
             value = self._on_plate(self._table, self._c_lam, self._c_chi, speed, radius, thickness)
             if value == value:  # not NaN
                 return value
@@ -388,11 +389,11 @@ class ImpactModel:
         return int(self._c_function.address)
 
     def _curve(self, contact: Contact) -> Callable[[float], float]:
-        table, at = self._table, lookup.restitution
+        table, at = self._table, self._at
         c_lam, c_chi = factors(contact)
 
         def restitution(speed: float) -> float:
-            value = at(table, c_lam, c_chi, speed)
+            value = at(table, c_lam, c_chi, speed) if isinstance(speed, float) else math.nan
             if value != value:  # NaN; half the time of a call of isnan
                 v, _ = broadcast(speed=speed)
                 check(speed=v)
@@ -410,6 +411,15 @@ class ImpactModel:
         fields, flags = tabulated(self._law, self._table, units, self.outside)
         self.clamped += int(np.count_nonzero(flags))
         return fields, flags
+
+
+@functools.cache
+def _entries() -> tuple[Callable[..., float], Callable[..., float]]:
+    """Entries of the scalar kernels for calls from Python; each argument must be a float."""
+    return (
+        direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8, f8)"),
+        direct(lookup.restitution, "float64(float64[::1], f8, f8, f8)"),
+    )
 
 
 def restitution_sphere_sphere(
