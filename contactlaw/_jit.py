@@ -57,6 +57,7 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
     It skips the dispatcher's look at the types of the arguments, a third of the time of a call
     that takes half a microsecond: every argument has to be what the signature says.
     """
+    enable_caching()
     dispatcher: Any = function
     dispatcher.compile(signature)
     types, _ = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]

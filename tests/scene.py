@@ -1,0 +1,94 @@
+"""Spaces with beads and plates for the tests of the pymunk adapter, and models to go with them."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pymunk
+
+from contactlaw.engines.pymunk import attach
+
+R = 0.9e-3
+G = 9.81
+DT = 1e-4
+# pymunk solves for a velocity: a few roundings of numbers of the size of the speed.
+EXACT = 1e-12
+
+
+class Stub:
+    """A model that answers with a constant or a function, and remembers what it was asked."""
+
+    def __init__(self, answer=0.7):
+        self.answer = answer if callable(answer) else lambda speed: answer
+        self.curves = []
+        self.speeds = []
+
+    def _ask(self, speed):
+        self.speeds.append(speed)
+        return self.answer(speed)
+
+    def curve(self, radius, thickness):
+        self.curves.append((radius, thickness))
+        return self._ask
+
+    def sphere_sphere_curve(self, radius, other_radius):
+        self.curves.append((radius, other_radius))
+        return self._ask
+
+
+class Full(Stub):
+    """With the parts that fill the whole record: numbers that can be told apart."""
+
+    pair = SimpleNamespace(sphere=SimpleNamespace(density=1000.0))
+
+    def lookup(self, speed, radius, thickness):
+        return SimpleNamespace(
+            contact_time=radius,
+            peak_force=thickness,
+            plastic_fraction=np.full_like(speed, self.answer(speed)),
+            wave_fraction=np.full_like(speed, 0.125),
+        )
+
+    def lookup_sphere_sphere(self, speed, radius, other_radius):
+        return self.lookup(speed, radius, other_radius)
+
+
+def make_space(gravity=G):
+    space = pymunk.Space()
+    space.gravity = (0, -gravity)
+    return space
+
+
+def make_bead(space, position, velocity=(0, 0), radius=R, density=879.0):
+    mass = 4 / 3 * math.pi * radius**3 * density
+    body = pymunk.Body(mass, 0.4 * mass * radius**2)
+    body.position, body.velocity = position, velocity
+    circle = pymunk.Circle(body, radius)
+    space.add(body, circle)
+    return circle
+
+
+def make_plate(space, a=(-1, 0), b=(1, 0), body=None, radius=0.0):
+    segment = pymunk.Segment(body or space.static_body, a, b, radius)
+    space.add(segment)
+    return segment
+
+
+def drop(model, speed=2.0, gravity=G, gap=0.02 * R, **plate):
+    """One bead just above one plate, on its way down."""
+    space = make_space(gravity)
+    circle = make_bead(space, (0, R + gap), (0, -speed))
+    impacts = attach(space, model)
+    impacts.add_bead(circle)
+    impacts.add_plate(make_plate(space, **plate), 1e-3)
+    return space, circle.body, impacts
+
+
+def step_to_impact(space, impacts, body, dt=DT, steps=1000):
+    """Velocity of the body before and after the step with the first impact."""
+    for _ in range(steps):
+        before = body.velocity
+        space.step(dt)
+        if len(impacts.collisions()):
+            return before, body.velocity
+    raise AssertionError("no impact")

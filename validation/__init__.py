@@ -1,0 +1,1 @@
+"""Comparisons of contactlaw with what could disagree, and its benchmarks."""

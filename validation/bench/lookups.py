@@ -1,0 +1,96 @@
+"""Lookups: many at once, one by one from Python, and inside compiled loops."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Iterator
+
+import numba
+import numpy as np
+from scipy.interpolate import RectBivariateSpline, interpn
+
+import contactlaw as cl
+from contactlaw import store
+
+from .row import Row, per_call, seconds
+
+N = 1_000_000
+_INPUT_AND_OUTPUT = 4 * 8  # bytes per impact: speed, radius, thickness in, COR out
+
+
+def impacts(model: cl.ImpactModel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Random impacts all over the table: speed, radius, thickness."""
+    rng = np.random.default_rng(0)
+    speed = model.pair.yield_speed * np.exp(rng.uniform(np.log(0.05), np.log(50), N))
+    radius = rng.uniform(0.2e-3, 5e-3, N)
+    return speed, radius, radius / rng.uniform(0.05, 4.0, N)
+
+
+def rows() -> Iterator[Row]:
+    """Measure lookups."""
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    v, r, h = impacts(model)
+    batch = seconds(lambda: model.restitution(v, r, h)) / N
+    spline, cubic = scipy_peers(model, v, r, h)
+    log_exp = seconds(lambda: np.exp(np.log(v))) / N
+    copied = np.empty_like(v)
+    bandwidth = 2 * 8 / (seconds(lambda: np.copyto(copied, v)) / N)
+    limit = _INPUT_AND_OUTPUT / bandwidth
+    yield Row(
+        "batch, SI in, COR out", batch * 1e9, "ns", 20, "RectBivariateSpline.ev", spline / batch,
+        8, f"memory alone would take {limit * 1e9:.1f} ns ({bandwidth / 1e9:.0f} GB/s): "
+        f"{batch / limit:.0f}x; numpy's exp(log(v)) takes {log_exp * 1e9:.1f} ns",
+    )  # fmt: skip
+    yield Row("the same", batch * 1e9, "ns", None, "interpn cubic", cubic / batch)
+    full = seconds(lambda: model.lookup(v, r, h)) / N
+    yield Row("batch, all fields of Rebound", full * 1e9, "ns", note="no target")
+    yield from one_by_one(model, v, r, h)
+
+
+def scipy_peers(
+    model: cl.ImpactModel, v: np.ndarray, r: np.ndarray, h: np.ndarray
+) -> tuple[float, float]:
+    """Time per point of scipy's interpolators on the same nodes, coordinates given."""
+    table = store.packaged("myc")
+    assert table is not None
+    nodes = np.concatenate([table.segments[0], table.segments[1][1:]])
+    at_kink = len(table.segments[0])
+    values = np.delete(table.fields["restitution"], at_kink, axis=1)
+    c = table.settings.stretch
+    x_nodes = table.inelasticity / (table.inelasticity + c)
+    # the peers are spared the way from SI units to the table's coordinates
+    some = slice(0, N, 10)
+    hit = model.lookup(v[some], r[some], h[some])
+    x = hit.inelasticity / (hit.inelasticity + c)
+    y = np.maximum(np.log(hit.overload), 0.0)
+    spline = RectBivariateSpline(x_nodes, nodes, values, s=0)
+    points = np.stack([x, y], axis=1)
+    few = points[:2000]  # interpn refits its splines in every call
+    at_spline = seconds(lambda: spline.ev(x, y), 3) / x.size
+    at_cubic = seconds(lambda: interpn((x_nodes, nodes), values, few, "cubic"), 1) / len(few)
+    return at_spline, at_cubic
+
+
+def one_by_one(model: cl.ImpactModel, v: np.ndarray, r: np.ndarray, h: np.ndarray) -> Iterator[Row]:
+    """Scalar calls: from Python, inside a jitted loop, through the C function."""
+    scalar = per_call(lambda: model.restitution(5.0, 0.9e-3, 1e-3))
+    yield Row("scalar, from Python", scalar * 1e6, "us", 2)
+    curve = model.curve(0.9e-3, 1e-3)
+    yield Row("model.curve, from Python", per_call(lambda: curve(5.0)) * 1e6, "us", 0.4)
+    cor = model.kernel
+
+    @numba.njit
+    def loop(v: np.ndarray, r: np.ndarray, h: np.ndarray, out: np.ndarray) -> None:
+        for i in range(v.size):
+            out[i] = cor(v[i], r[i], h[i])
+
+    out = np.empty_like(v)
+    inside = seconds(lambda: loop(v, r, h, out)) / N
+    yield Row(
+        "model.kernel in a jitted loop", inside * 1e9, "ns", 40,
+        note="limited by the latency of its chain of operations, not by memory",
+    )  # fmt: skip
+    double = ctypes.c_double
+    pointer = ctypes.CFUNCTYPE(double, double, double, double)(model.address)
+    through = per_call(lambda: pointer(5.0, 0.9e-3, 1e-3))
+    yield Row("model.address, through ctypes", through * 1e6, "us", note="ctypes' own overhead")

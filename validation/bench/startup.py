@@ -1,0 +1,45 @@
+"""The first answer of a fresh process, with numba's cache warm and cold."""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+
+from .row import Row
+
+FIRST = """
+import contactlaw as cl
+model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+model.restitution({arguments})
+"""
+SCALAR, BATCH = "5.0, 0.9e-3, 1e-3", "[5.0, 6.0], 0.9e-3, 1e-3"
+
+
+def run(code: str, folder: str) -> float:
+    """Wall time of a fresh process [s]."""
+    start = time.perf_counter()
+    environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
+    return time.perf_counter() - start
+
+
+def rows() -> Iterator[Row]:
+    """Measure whole processes, the interpreter's own start included."""
+    with tempfile.TemporaryDirectory() as folder:
+        empty = min(run("pass", folder) for _ in range(3))
+        numba = min(run("import numba, h5py", folder) for _ in range(3))
+        code = FIRST.format(arguments=SCALAR)
+        cold = run(code, folder)
+        warm = min(run(code, folder) for _ in range(3))
+        run(FIRST.format(arguments=BATCH), folder)
+        batch = min(run(FIRST.format(arguments=BATCH), folder) for _ in range(3))
+    memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+    note = f"python alone {empty:.2f} s, import of numba and h5py {numba:.2f} s"
+    yield Row("first answer, warm cache", warm, "s", 1, note=note)
+    yield Row("first batch, warm cache", batch, "s", 1)
+    yield Row("first answer, cold cache", cold, "s", 6, note=f"largest process {memory:.0f} MB")
