@@ -10,7 +10,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import hashlib
-import importlib.metadata
 import io
 import json
 import os
@@ -78,13 +77,15 @@ def _sign(content: bytes) -> bytes:
 
 
 def _fill(file: h5py.File, table: Table) -> None:
+    from importlib.metadata import version  # 20 ms that a reader need not wait for
+
     law = laws.law(table.law)
     file.attrs.update(
         format=FORMAT,
         schema=SCHEMA,
         law=table.law,
         law_source=law.source,
-        contactlaw_version=importlib.metadata.version("contactlaw"),
+        contactlaw_version=version("contactlaw"),
         **asdict(table.settings),
     )
     datasets = {

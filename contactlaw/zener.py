@@ -75,6 +75,14 @@ class _State(NamedTuple):
     f: float
 
 
+class _Branch(NamedTuple):
+    """Loading, or the unloading curve with the parameters a and b."""
+
+    loading: bool
+    a: float
+    b: float
+
+
 class _Scale(NamedTuple):
     """Size of q and u in one impact, against which errors and events are measured."""
 
@@ -86,16 +94,16 @@ class _Scale(NamedTuple):
 
 @kernel
 def _rates(
-    law: Functions, beta: float, dm: float, q: float, u: float
+    law: Functions, beta: float, branch: _Branch, q: float, u: float
 ) -> tuple[float, float, float]:
-    """dq/ds, du/ds and the force; dm = 0 while loading."""
-    f = law.loading(q) if dm == 0.0 else law.unloading(q, dm)
+    """dq/ds, du/ds and the force."""
+    f = law.loading(q) if branch.loading else law.unloading(q, branch.a, branch.b)
     return u - beta * f, -2.0 * q * f, f
 
 
 @kernel
 def _step(
-    law: Functions, beta: float, dm: float, state: _State, h: float, scale: _Scale
+    law: Functions, beta: float, branch: _Branch, state: _State, h: float, scale: _Scale
 ) -> tuple[_State, float]:
     """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19.
 
@@ -104,27 +112,27 @@ def _step(
     q, u = state.q, state.u
     a1, b1, f1 = state.dq, state.du, state.f
     q2, u2 = q + h * (1 / 5 * a1), u + h * (1 / 5 * b1)
-    a2, b2, f2 = _rates(law, beta, dm, q2, u2)
+    a2, b2, f2 = _rates(law, beta, branch, q2, u2)
     q3 = q + h * (3 / 40 * a1 + 9 / 40 * a2)
     u3 = u + h * (3 / 40 * b1 + 9 / 40 * b2)
-    a3, b3, f3 = _rates(law, beta, dm, q3, u3)
+    a3, b3, f3 = _rates(law, beta, branch, q3, u3)
     q4 = q + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3)
     u4 = u + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3)
-    a4, b4, f4 = _rates(law, beta, dm, q4, u4)
+    a4, b4, f4 = _rates(law, beta, branch, q4, u4)
     q5 = q + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
     u5 = u + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4)
-    a5, b5, f5 = _rates(law, beta, dm, q5, u5)
+    a5, b5, f5 = _rates(law, beta, branch, q5, u5)
     q6 = q + h * (
         9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
     )
     u6 = u + h * (
         9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5
     )
-    a6, b6, f6 = _rates(law, beta, dm, q6, u6)
+    a6, b6, f6 = _rates(law, beta, branch, q6, u6)
     w1, w3, w4, w5, w6 = h * 35 / 384, h * 500 / 1113, h * 125 / 192, h * -2187 / 6784, h * 11 / 84
     q7 = q + (w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6)
     u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
-    a7, b7, f7 = _rates(law, beta, dm, q7, u7)
+    a7, b7, f7 = _rates(law, beta, branch, q7, u7)
     t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
     # dj/ds = 2 q f^2 is -f du/ds
     j = state.j - (w1 * f1 * b1 + w3 * f3 * b3 + w4 * f4 * b4 + w5 * f5 * b5 + w6 * f6 * b6)
@@ -160,9 +168,15 @@ def _guess(event: int, state: _State, trial: _State, h: float, level: float) -> 
 
 @kernel
 def _phase(
-    law: Functions, beta: float, dm: float, state: _State, h: float, scale: _Scale, level: float
+    law: Functions,
+    beta: float,
+    branch: _Branch,
+    state: _State,
+    h: float,
+    scale: _Scale,
+    level: float,
 ) -> tuple[_State, int, float, int]:
-    """Integrate loading (dm = 0) to its end or to the kink `level`; unloading (dm > 0) to q = 0.
+    """Integrate loading to its end or to the kink `level`; unloading to q = level = 0.
 
     Returns the point reached, the event, a step to go on with and the number of steps. An event
     is met by shortening the step that passes it: regula falsi with Illinois' weights.
@@ -170,14 +184,14 @@ def _phase(
     event, following = _NONE, h
     a = b = gap_a = gap_b = 0.0  # steps on either side of the event, and how far off they end
     for steps in range(1, _MAX_STEPS):
-        trial, error = _step(law, beta, dm, state, h, scale)
+        trial, error = _step(law, beta, branch, state, h, scale)
         if event == _NONE:
             if error > 1.0:
                 h *= max(0.2, 0.9 / math.sqrt(math.sqrt(error)))  # a power is slower than a step
                 continue
-            if dm == 0.0 and trial.dq < 0.0:
+            if branch.loading and trial.dq < 0.0:
                 event = _TURN
-            elif (trial.q > level) if dm == 0.0 else (trial.q < level):
+            elif (trial.q > level) if branch.loading else (trial.q < level):
                 event = _LEVEL
             else:
                 state = trial
@@ -206,7 +220,7 @@ def _phase(
 @kernel
 def _touch(law: Functions, beta: float, scale: _Scale) -> _State:
     """First touch."""
-    dq, du, f = _rates(law, beta, 0.0, 0.0, scale.u)
+    dq, du, f = _rates(law, beta, _Branch(True, 0.0, 0.0), 0.0, scale.u)
     return _State(0.0, scale.u, 0.0, 0.0, dq, du, f)
 
 
@@ -215,7 +229,9 @@ def _load(law: Functions, beta: float, scale: _Scale, h: float) -> tuple[_State,
     """From first touch to the largest compression, landing on each kink (the last is inf)."""
     state, steps = _touch(law, beta, scale), 0
     for kink in law.kinks:
-        state, event, h, more = _phase(law, beta, 0.0, state, h, scale, math.sqrt(kink))
+        state, event, h, more = _phase(
+            law, beta, _Branch(True, 0.0, 0.0), state, h, scale, math.sqrt(kink)
+        )
         steps += more
         if event == _TURN or state.dq <= 0.0:
             break
@@ -242,9 +258,10 @@ def solve(law: Functions, lam: float, y: float, rtol: float) -> Solution:
     dm = top.q * top.q
     dr = law.residual(dm)
     q = math.sqrt(dm - dr)
-    dq, du, f = _rates(law, beta, dm, q, top.u)
+    branch = _Branch(False, *law.unloading_curve(dm))
+    dq, du, f = _rates(law, beta, branch, q, top.u)
     top = _State(q, top.u, top.t, top.j, dq, du, f)
-    end, _, _, more = _phase(law, beta, dm, top, h, scale, 0.0)
+    end, _, _, more = _phase(law, beta, branch, top, h, scale, 0.0)
     wave_rate = 2.0 * y4 * end.j / scale.u**2
     return Solution(
         OK if max(steps, more) < _MAX_STEPS else TOO_MANY_STEPS,

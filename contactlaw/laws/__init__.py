@@ -24,14 +24,15 @@ class Functions(NamedTuple):
 
     loading: Callable[[float], float]
     residual: Callable[[float], float]
-    unloading: Callable[[float, float], float]
+    unloading_curve: Callable[[float], tuple[float, float]]
+    unloading: Callable[[float, float, float], float]
     dissipation: Callable[[float], float]
     kinks: tuple[float, ...]  # of the loading curve; the last is inf, so there always is one
 
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """A normal force law, as four numba-jitted functions of scaled compressions.
+    """A normal force law, as numba-jitted functions of scaled compressions.
 
     Parameters
     ----------
@@ -49,8 +50,11 @@ class Law:
         ``loading(q)``: force [F_Y] while the compression d = q^2 grows.
     residual : callable
         ``residual(dm)``: compression [d_Y] left after unloading from the largest one, dm.
+    unloading_curve : callable
+        ``unloading_curve(dm)``: the two numbers a, b that single out the unloading curve from
+        dm, computed once per impact.
     unloading : callable
-        ``unloading(q, dm)``: force [F_Y] at d = residual(dm) + q^2 below dm; reloading follows
+        ``unloading(q, a, b)``: force [F_Y] at d = residual(dm) + q^2 below dm; reloading follows
         the same curve.
     dissipation : callable
         ``dissipation(dm)``: loading work minus unloading work [F_Y d_Y] of a contact that
@@ -64,7 +68,8 @@ class Law:
     unloading_kinks: tuple[float, ...]
     loading: Callable[[float], float]
     residual: Callable[[float], float]
-    unloading: Callable[[float, float], float]
+    unloading_curve: Callable[[float], tuple[float, float]]
+    unloading: Callable[[float, float, float], float]
     dissipation: Callable[[float], float]
 
     @property
@@ -78,6 +83,7 @@ class Law:
         return Functions(
             self.loading,
             self.residual,
+            self.unloading_curve,
             self.unloading,
             self.dissipation,
             (*self.loading_kinks, math.inf),

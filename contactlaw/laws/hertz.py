@@ -17,7 +17,12 @@ def _residual(dm: float) -> float:
 
 
 @kernel
-def _unloading(q: float, dm: float) -> float:
+def _unloading_curve(dm: float) -> tuple[float, float]:
+    return 0.0, 0.0
+
+
+@kernel
+def _unloading(q: float, _a: float, _b: float) -> float:
     return q * q * q
 
 
@@ -34,6 +39,7 @@ LAW = Law(
     unloading_kinks=(),
     loading=_loading,
     residual=_residual,
+    unloading_curve=_unloading_curve,
     unloading=_unloading,
     dissipation=_dissipation,
 )

@@ -39,10 +39,16 @@ def _residual(dm: float) -> float:
 
 
 @kernel
-def _unloading(q: float, dm: float) -> float:
-    """Eq. 16, unloading phases 1 and 2, at d = dr + q^2."""
+def _unloading_curve(dm: float) -> tuple[float, float]:
+    """Stiffness fm/(dm - dr)^1.5; no second parameter."""
     span = dm - _residual(dm)
-    return _loading(math.sqrt(dm)) / (span * math.sqrt(span)) * (q * q * q)
+    return _loading(math.sqrt(dm)) / (span * math.sqrt(span)), 0.0
+
+
+@kernel
+def _unloading(q: float, stiffness: float, _: float) -> float:
+    """Eq. 16, unloading phases 1 and 2, at d = dr + q^2."""
+    return stiffness * (q * q * q)
 
 
 @kernel
@@ -64,6 +70,7 @@ LAW = Law(
     unloading_kinks=(1.0,),
     loading=_loading,
     residual=_residual,
+    unloading_curve=_unloading_curve,
     unloading=_unloading,
     dissipation=_dissipation,
 )

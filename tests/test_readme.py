@@ -1,0 +1,60 @@
+"""What the README shows is what the code does."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+
+README = (Path(__file__).parent.parent / "README.md").read_text()
+BLOCKS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
+
+
+def run(blocks, compare):
+    """Run code blocks in one namespace; compare every line that states numbers in a comment."""
+    names, compared = {}, 0
+    for block in blocks:
+        exec(compile(block, "README.md", "exec"), names)
+        for line in block.splitlines():
+            code, _, comment = line.partition("  # ")
+            stated = NUMBER.findall(comment)
+            if stated and not re.match(r"\s|\w+ = ", code):
+                compare(eval(code, names), [float(number) for number in stated])
+                compared += 1
+    return names, compared
+
+
+def check(value, stated):
+    # as many digits as are printed
+    assert np.ravel(value) == pytest.approx(stated[: np.size(value)], rel=2e-3)
+
+
+def test_the_library_section():
+    names, compared = run(BLOCKS[:2], check)
+    assert compared >= 8
+    assert names["hit"].flags == cl.Validity(0)
+
+
+def test_the_pymunk_section():
+    names, _ = run(BLOCKS[2:3], check)
+    rows = names["impacts"].collisions()
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    assert rows["approach_speed"][0] == pytest.approx((2 * 9.81 * (0.1 - 0.9e-3)) ** 0.5, rel=1e-3)
+    expected = model.restitution(rows["approach_speed"], 0.9e-3, 1e-3)
+    assert rows["restitution"] == pytest.approx(expected, abs=1e-9)
+
+
+def test_nothing_else_is_unchecked():
+    assert len(BLOCKS) == 3
+
+
+def test_the_stated_accuracy_is_that_of_the_certificate():
+    from contactlaw import store
+
+    largest = dict(store.packaged("myc").certificate.largest)
+    assert "within 1e-7 of the integrated equation in COR and within 5e-6" in README
+    assert largest.pop("restitution") < 1e-7
+    assert max(largest.values()) < 5e-6
