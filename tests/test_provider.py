@@ -1,6 +1,9 @@
 """ImpactModel: SI in, SI out, from the table and from the solver."""
 
+import ctypes
 import math
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -315,3 +318,84 @@ def test_sphere_on_sphere_is_symmetric():
         cl.restitution_sphere_sphere("glass", "glass", 5.0, R, R)
     with pytest.raises(ValueError, match="other_radius: got"):
         cl.restitution_sphere_sphere("gamma-alumina", "glass", 5.0, R, -R)
+
+
+def test_kernel_is_restitution(model):
+    cor = model.kernel
+    for speed, thickness in ((0.1, 0.6e-3), (8.0, H), (60.0, math.inf)):
+        expected = model.restitution(speed, R, thickness)
+        assert cor(speed, R, thickness) == pytest.approx(expected, abs=1e-15)
+    for bad in ((-1.0, R, H), (math.nan, R, H), (5.0, 0.0, H), (5.0, R, -H), (1e4, R, H)):
+        assert math.isnan(cor(*bad))  # what it is documented to give where it cannot raise
+
+
+def test_kernel_in_a_parallel_loop(model):
+    import numba
+
+    cor = model.kernel
+
+    @numba.njit(parallel=True)
+    def rebounds(speed, out):
+        for i in numba.prange(speed.size):
+            out[i] = cor(speed[i], 0.9e-3, 1e-3)
+
+    speed = np.linspace(0.1, 60, 1000)
+    out = np.empty_like(speed)
+    rebounds(speed, out)
+    np.testing.assert_allclose(out, model.restitution(speed, R, H), rtol=0, atol=1e-15)
+
+
+def test_address_through_ctypes(model):
+    double = ctypes.c_double
+    f = ctypes.CFUNCTYPE(double, double, double, double)(model.address)
+    for speed in (0.1, 8.0, 60.0):
+        assert f(speed, R, H) == model.kernel(speed, R, H)
+    assert math.isnan(f(-1.0, R, H))
+
+
+PROGRAM = """
+/* What an engine in C does with the pointer: the mean COR of a row of impacts. */
+double mean(double (*cor)(double, double, double), const double *speed, int n,
+            double radius, double thickness)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; i++)
+        sum += cor(speed[i], radius, thickness);
+    return sum / n;
+}
+"""
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler on this machine")
+def test_address_from_c(model, tmp_path):
+    (tmp_path / "mean.c").write_text(PROGRAM)
+    library = tmp_path / "mean.so"
+    command = ["cc", "-O2", "-shared", "-fPIC", str(tmp_path / "mean.c"), "-o", str(library)]
+    subprocess.run(command, check=True)
+    mean = ctypes.CDLL(str(library)).mean
+    mean.restype = ctypes.c_double
+    speed = np.linspace(0.5, 60.0, 500)
+    result = mean(
+        ctypes.c_void_p(model.address),
+        speed.ctypes.data_as(ctypes.c_void_p),
+        speed.size,
+        ctypes.c_double(R),
+        ctypes.c_double(H),
+    )
+    assert result == pytest.approx(np.mean(model.restitution(speed, R, H)), rel=1e-12)
+
+
+def test_batches_of_every_length(model):
+    # the batch works in chunks; one bad impact sends its chunk another way
+    rng = np.random.default_rng(4)
+    speed = rng.uniform(0.1, 60, 1100)
+    exact = model.lookup(speed, R, H).restitution
+    for n in (1, 511, 512, 513, 1100):
+        np.testing.assert_allclose(model.restitution(speed[:n], R, H), exact[:n], atol=2e-11)
+    solving = cl.ImpactModel(model.pair, outside="solve")
+    speed[700] = 9000.0
+    mixed = solving.restitution(speed, R, math.inf)
+    assert mixed[700] == solving.solve(9000.0, R, math.inf).restitution
+    others = np.arange(1100) != 700
+    fine = model.restitution(speed[others], R, math.inf)
+    np.testing.assert_allclose(mixed[others], fine, rtol=0, atol=2e-11)
