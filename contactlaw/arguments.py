@@ -28,19 +28,22 @@ def broadcast(**arguments: ArrayLike) -> Any:
         if array.dtype.kind not in "iuf":
             raise ValueError(f"{name}: expected a number or an array of numbers, got {value!r}")
         arrays.append(array.astype(np.float64, copy=False))
+    if not any(array.ndim for array in arrays):  # the usual call of an engine: broadcasting is slow
+        return *(array.reshape(1) for array in arrays), None
     try:
         together = np.broadcast_arrays(*arrays)
     except ValueError:
         shapes = ", ".join(f"{n} {np.shape(v)}" for n, v in arguments.items())
         raise ValueError(f"{next(iter(arguments))}: shapes do not broadcast: {shapes}") from None
-    shape = together[0].shape
-    return *(np.ravel(a) for a in together), None if shape == () else shape
+    return *(np.ravel(array) for array in together), together[0].shape
 
 
 def check(**arrays: Array) -> None:
     """Refuse values outside the range of the argument of that name."""
     for name, values in arrays.items():
         low, high, unit = _LIMITS[name]
+        if values.size == 1 and low <= values[0] <= high:
+            continue
         wrong = ~((low <= values) & (values <= high))
         if wrong.any():
             n = int(np.argmax(wrong))

@@ -279,7 +279,7 @@ def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> flo
     c2 = a0 * table[p + j] + a1 * table[q + j] + a2 * table[r + j] + a3 * table[o + j]
     c3 = a0 * table[p + k] + a1 * table[q + k] + a2 * table[r + k] + a3 * table[o + k]
     value: float = (b0 * c0 + b1 * c1 + b2 * c2 + b3 * c3) * (1.0 / 36.0)
-    return value
+    return min(max(value, 0.0), 1.0)  # the spline may pass 1 by its error, and engines refuse that
 
 
 @kernel(cache=True)

@@ -318,7 +318,12 @@ class ImpactModel:
         """
         r, h, _ = broadcast(radius=radius, thickness=thickness)
         check(radius=r, thickness=h)
-        return self._curve(sphere_on_plate(self.pair, self._law, r, h))
+        ratio = r.item() / h.item()
+        return self._curve(
+            self._c_lam * ratio * ratio,
+            self._c_chi,
+            lambda: sphere_on_plate(self.pair, self._law, r, h),
+        )
 
     def sphere_sphere_curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
         """COR of two beads of the pair's sphere material, as a fast function of approach speed.
@@ -336,7 +341,8 @@ class ImpactModel:
         r, o, _ = broadcast(radius=radius, other_radius=other_radius)
         check(radius=r, other_radius=o)
         twins = Pair(self.pair.sphere, self.pair.sphere)
-        return self._curve(sphere_on_sphere(twins, self._law, r, o))
+        contact = sphere_on_sphere(twins, self._law, r, o)
+        return self._curve(*factors(contact), lambda: contact)
 
     @functools.cached_property
     def kernel(self) -> Callable[[float, float, float], float]:
@@ -388,16 +394,17 @@ class ImpactModel:
         """
         return int(self._c_function.address)
 
-    def _curve(self, contact: Contact) -> Callable[[float], float]:
+    def _curve(
+        self, c_lam: float, c_chi: float, contact: Callable[[], Contact]
+    ) -> Callable[[float], float]:
         table, at = self._table, self._at
-        c_lam, c_chi = factors(contact)
 
         def restitution(speed: float) -> float:
             value = at(table, c_lam, c_chi, speed) if isinstance(speed, float) else math.nan
             if value != value:  # NaN; half the time of a call of isnan
                 v, _ = broadcast(speed=speed)
                 check(speed=v)
-                return float(self._fields(scales(contact, v))[0][0, 0])
+                return float(self._fields(scales(contact(), v))[0][0, 0])
             return value
 
         return restitution

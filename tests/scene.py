@@ -42,6 +42,7 @@ class Full(Stub):
     pair = SimpleNamespace(sphere=SimpleNamespace(density=1000.0))
 
     def lookup(self, speed, radius, thickness):
+        self.speeds.append(speed.tolist())
         return SimpleNamespace(
             contact_time=radius,
             peak_force=thickness,

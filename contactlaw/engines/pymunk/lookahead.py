@@ -1,0 +1,198 @@
+"""What the pymunk adapter checks before every step: finite numbers, and no jump over a plate."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.engines.pymunk.registry import Bead, Plate
+
+if TYPE_CHECKING:
+    import pymunk
+    import pymunk.batch
+
+Array = NDArray[np.float64]
+
+
+class TunnellingError(RuntimeError):
+    """A bead would pass, or has passed, through a plate without an impact.
+
+    Attributes
+    ----------
+    bead, plate : int
+        Indices in the record of impacts.
+    time : float
+        Time at the end of the step in question [s].
+    speed : float
+        Normal speed of the bead relative to the plate [m/s].
+    safe_step : float or None
+        Steps below this would have been safe [s]. None if the bead was pressed through the plate
+        bit by bit: then overlaps or too few iterations are to blame.
+    """
+
+    bead: int
+    plate: int
+    time: float
+    speed: float
+    safe_step: float | None
+
+
+class Line(NamedTuple):
+    """Centre line of a plate in the plane, and its rigid motion."""
+
+    start: tuple[float, float]  # ends [m]
+    end: tuple[float, float]
+    pivot: tuple[float, float]  # centre of rotation [m]
+    velocity: tuple[float, float]  # of the pivot [m/s]
+    spin: float  # [rad/s]
+
+
+class LookAhead:
+    """Checks of one space; `reach`, the radius of the smallest bead, is kept by the caller."""
+
+    def __init__(
+        self, space: pymunk.Space, beads: dict[int, Bead], plates: dict[Any, Plate]
+    ) -> None:
+        from pymunk.batch import BodyFields, Buffer
+
+        self.reach = math.inf
+        self._space = space
+        self._beads = beads  # by id of the body
+        self._plates = plates
+        self._buffer = Buffer()
+        self._motion = BodyFields.POSITION | BodyFields.VELOCITY
+        self._body_id = BodyFields.BODY_ID
+
+    def check(self, dt: float, time: float) -> None:
+        """Raise if the step from `time` on would lose an impact, or starts from a NaN."""
+        plate_speed = max((plate.watch(dt) for plate in self._plates.values()), default=0.0)
+        reach = self.reach - plate_speed * dt
+        self._read(self._motion)
+        motion = np.frombuffer(self._buffer.float_buf()).reshape(-1, 4)
+        if not len(motion):
+            return
+        # No speed exceeds sqrt(2) times the largest number in there. With a NaN this is false.
+        if math.sqrt(2) * dt * max(motion.max(), -motion.min()) < reach:
+            return
+        travel = (np.hypot(motion[:, 2], motion[:, 3]) + plate_speed) * dt
+        finite = np.isfinite(motion)
+        if finite.all() and travel.max() < self.reach:
+            return
+        motion = motion.copy()  # the next line reuses the buffer
+        self._read(self._body_id)
+        ids = np.frombuffer(self._buffer.int_buf(), np.uintp).tolist()
+        for n in np.flatnonzero(~finite.all(axis=1)):
+            self._refuse(ids[n], motion[n])
+        fast = [n for n in np.flatnonzero(travel >= self.reach) if ids[n] in self._beads]
+        if fast:
+            self._cross([self._beads[ids[n]] for n in fast], motion[fast], dt, time)
+
+    def _read(self, fields: pymunk.batch.BodyFields) -> None:
+        from pymunk.batch import get_space_bodies
+
+        self._buffer.clear()
+        get_space_bodies(self._space, fields, self._buffer)
+
+    def _refuse(self, key: int, motion: Array) -> None:
+        """Raise for a bead or plate that is nowhere; other bodies are not the adapter's."""
+        names = [f"plate {plate.index}" for plate in self._plates.values() if plate.body.id == key]
+        names += [f"bead {self._beads[key].index}"] if key in self._beads else []
+        if names:
+            x, y, vx, vy = motion.tolist()
+            raise ValueError(f"{names[0]}: not finite: position ({x}, {y}), velocity ({vx}, {vy})")
+
+    def _cross(self, beads: list[Bead], motion: Array, dt: float, time: float) -> None:
+        """Raise for the bead that needs the smallest step."""
+        found = []
+        for plate in self._plates.values():
+            line = _line(plate)
+            distance, speed = approach(motion[:, :2], motion[:, 2:], line, dt)
+            for n in np.flatnonzero(speed):
+                if self._collide(beads[n].circle, plate.segment):
+                    reach = beads[n].radius + plate.segment.radius
+                    safe_step = min(reach, distance[n]) / speed[n]
+                    found.append((safe_step, beads[n].index, plate.index, speed[n]))
+        if found:
+            safe_step, bead, plate_index, velocity = min(found)
+            raise tunnelling(bead, plate_index, time + dt, float(velocity), float(safe_step))
+
+    def _collide(self, circle: pymunk.Circle, segment: pymunk.Segment) -> bool:
+        """Whether both are in the space, and their filters let them meet."""
+        a, b = circle.filter, segment.filter
+        grouped = a.group != 0 and a.group == b.group
+        masked = not (a.categories & b.mask and b.categories & a.mask)
+        return circle.space is segment.space is self._space and not grouped and not masked
+
+
+def _line(plate: Plate) -> Line:
+    import pymunk
+
+    body, segment = plate.body, plate.segment
+    still = body.body_type == pymunk.Body.STATIC  # the engine never moves it, whatever its speed
+    start, end = body.local_to_world(segment.a), body.local_to_world(segment.b)
+    pivot = body.local_to_world(body.center_of_gravity)
+    velocity, spin = ((0.0, 0.0), 0.0) if still else (body.velocity, body.angular_velocity)
+    return Line(start, end, pivot, velocity, spin)
+
+
+def tunnelling(
+    bead: int, plate: int, time: float, speed: float, safe_step: float | None
+) -> TunnellingError:
+    """Make the error with its message and attributes."""
+    if safe_step is None:
+        text = "was pressed through", "use smaller steps, or more space.iterations"
+    else:
+        text = "would pass unnoticed through", f"use steps below {safe_step:.3g} s"
+    error = TunnellingError(
+        f"bead {bead} {text[0]} plate {plate} in the step to t = {time:.9g} s, "
+        f"at a normal speed of {speed:.6g} m/s: {text[1]}"
+    )
+    error.bead, error.plate, error.time = bead, plate, time
+    error.speed, error.safe_step = speed, safe_step
+    return error
+
+
+def approach(positions: Array, velocities: Array, line: Line, dt: float) -> tuple[Array, Array]:
+    """Who crosses a plate's centre line within a step, and how.
+
+    Parameters
+    ----------
+    positions, velocities : array (n, 2)
+        Centres of the beads at the start of the step [m], and their velocities [m/s].
+    line : Line
+        The plate at the start of the step.
+    dt : float
+        Length of the step [s].
+
+    Returns
+    -------
+    distance, speed : array (n,)
+        Distance from the line at the start of the step [m] and mean normal speed in it [m/s];
+        speed 0 for those that do not cross the line between its two ends.
+
+    Examples
+    --------
+    >>> plate = Line((-1.0, 0.0), (1.0, 0.0), pivot=(0.0, 0.0), velocity=(0.0, 0.0), spin=0.0)
+    >>> distance, speed = approach(np.array([[0.0, 0.1]]), np.array([[0.0, -3.0]]), plate, dt=0.1)
+    >>> distance.tolist(), speed.round(6).tolist()
+    ([0.1], [3.0])
+    """
+    (ax, ay), (bx, by), (px, py), (vx, vy), spin = line
+    length = math.hypot(bx - ax, by - ay)
+    tx, ty = (bx - ax) / length, (by - ay) / length
+    x, y = positions.T
+    before = tx * (y - ay) - ty * (x - ax)  # signed distance: positive on the left
+    # Seen from the plate only the bead moves: its end point with the plate's motion undone.
+    dx, dy = x + (velocities[:, 0] - vx) * dt - px, y + (velocities[:, 1] - vy) * dt - py
+    c, s = math.cos(spin * dt), math.sin(spin * dt)
+    end_x, end_y = px + c * dx + s * dy, py - s * dx + c * dy
+    after = tx * (end_y - ay) - ty * (end_x - ax)
+    crosses = (before != 0.0) & (before * after <= 0.0)
+    if crosses.any():
+        share = before / np.where(crosses, before - after, 1.0)
+        place = tx * (x + share * (end_x - x) - ax) + ty * (y + share * (end_y - y) - ay)
+        crosses &= (place >= 0.0) & (place <= length)
+    return np.abs(before), np.where(crosses, np.abs(before - after) / dt, 0.0)

@@ -1,0 +1,170 @@
+"""Tunnelling, and numbers that are not finite, are found before the step."""
+
+import math
+import pickle
+
+import numpy as np
+import pymunk
+import pytest
+from scene import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space, step_to_impact
+
+from contactlaw.engines.pymunk import TunnellingError, attach
+from contactlaw.engines.pymunk.lookahead import Line, approach
+
+
+@pytest.mark.parametrize("ratio", [0.5, 0.99, 1.5, 3.0, 50.0])
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("offset", [0.01, 0.3, 0.6, 0.99])
+def test_a_fast_bead_rebounds_or_is_reported(ratio, side, offset):
+    """Speed x dt from half a radius to fifty, the first contact anywhere within the step."""
+    speed = ratio * R / DT
+    space, body, impacts = drop(Stub(0.7), speed=0, gravity=0.0)
+    body.position = (0, side * (R + offset * speed * DT))
+    body.velocity = (0.1, -side * speed)
+    depth = (1 - offset) * ratio  # how far the first overlapping step goes in, in radii
+    if depth < 1:
+        before, after = step_to_impact(space, impacts, body)
+        assert after.y == pytest.approx(-0.7 * before.y, abs=EXACT * speed)
+        return
+    state = body.position, body.velocity
+    with pytest.raises(TunnellingError, match="bead 0 would pass unnoticed") as caught:
+        space.step(DT)
+    error = caught.value
+    assert (error.bead, error.plate) == (0, 0)
+    assert error.time == pytest.approx(DT, rel=EXACT)
+    assert error.speed == pytest.approx(speed, rel=EXACT)
+    assert error.safe_step == pytest.approx(R / speed, rel=EXACT)
+    # The space is as it was: the same bead rebounds with a step below the safe one. (At 0.99999
+    # of it the centre ends at 1e-8 m from the line, where roundings tilt the normal.)
+    assert (body.position, body.velocity) == state and impacts.time == 0.0
+    before, after = step_to_impact(space, impacts, body, dt=0.99 * error.safe_step)
+    assert after.y == pytest.approx(-0.7 * before.y, abs=EXACT * speed)
+    assert pickle.loads(pickle.dumps(error)).safe_step == error.safe_step
+
+
+def test_safe_step_of_a_bead_that_overlaps_already():
+    space, body, _ = drop(Stub(), speed=1.2 * R / DT, gravity=0.0, gap=-0.5 * R)
+    with pytest.raises(TunnellingError) as caught:
+        space.step(DT)
+    assert caught.value.safe_step == pytest.approx(0.5 / 1.2 * DT, rel=EXACT)
+
+
+def test_a_fast_plate_is_reported():
+    space = make_space(0.0)
+    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    body.position, body.angular_velocity = (-1, 0), 100.0
+    space.add(body)
+    impacts = attach(space, Stub())
+    impacts.add_plate(make_plate(space, (0, 0), (1.5, 0), body=body), 1e-3)
+    impacts.add_bead(make_bead(space, (0, 0.003)))
+    # At a distance of 1 m the plate sweeps over 10 mm a step.
+    with pytest.raises(TunnellingError) as caught:
+        space.step(DT)
+    assert caught.value.speed == pytest.approx(100.0, rel=1e-2)  # the arc against its chord
+
+
+def test_the_worst_of_several_is_named():
+    space = make_space(0.0)
+    impacts = attach(space, Stub())
+    impacts.add_plate(make_plate(space, (-1, 0), (-0.1, 0)), 1e-3)
+    impacts.add_plate(make_plate(space, (0, 0), (1, 0), radius=R), 1e-3)
+    for x, speed in ((-0.5, 30), (0.5, 90), (0.6, 30)):
+        impacts.add_bead(make_bead(space, (x, 2.1 * R), (0, -speed)))
+    with pytest.raises(TunnellingError) as caught:
+        space.step(DT)
+    error = caught.value
+    assert (error.bead, error.plate) == (1, 1)
+    assert error.safe_step == pytest.approx(2 * R / 90, rel=EXACT)  # the plate has a radius too
+
+
+def test_the_smallest_bead_sets_the_pace():
+    space, body, impacts = drop(Stub(), speed=1.5 * R / DT, gravity=0.0)
+    impacts.add_bead(make_bead(space, (0.5, 0.5), radius=10 * R))
+    with pytest.raises(TunnellingError):
+        space.step(DT)
+
+
+def test_what_is_no_tunnelling():
+    space = make_space(0.0)
+    impacts = attach(space, Stub())
+    plate, gone = make_plate(space, (0, 0), (1, 0)), make_plate(space, (2, 0), (3, 0))
+    for segment in (plate, gone):
+        impacts.add_plate(segment, 1e-3)
+    beside = make_bead(space, (-2 * R, 1.5 * R), (0, -50))
+    along = make_bead(space, (0.5, 1.1 * R), (50, 0))
+    filtered = make_bead(space, (0.2, 1.5 * R), (0, -50))
+    over_nothing = make_bead(space, (2.5, 1.5 * R), (0, -50))
+    removed = make_bead(space, (0.7, 1.5 * R), (0, -50))
+    grouped = make_bead(space, (0.3, 1.5 * R), (0, -50))
+    leaving = make_bead(space, (0.9, 0), (0, 50))  # put on the line, and off
+    for circle in (beside, along, filtered, over_nothing, removed, grouped, leaving):
+        impacts.add_bead(circle)
+    filtered.filter = pymunk.ShapeFilter(categories=2)
+    grouped.filter = pymunk.ShapeFilter(group=5)
+    plate.filter = pymunk.ShapeFilter(group=5, mask=pymunk.ShapeFilter.ALL_MASKS() ^ 2)
+    space.remove(gone, removed)
+    space.step(DT)
+    assert all(circle.body.position.y < 0 for circle in (filtered, removed, grouped))
+    assert len(impacts.collisions()) == 0
+
+
+def test_a_bead_that_is_pressed_through_is_reported():
+    space, body, impacts = drop(Stub(), speed=0, gravity=0.0, gap=-0.95 * R)
+    space.step(DT)  # rests, deep in the plate: 0.05 R before its middle
+    body.velocity = (0, -0.1 * R / DT)
+    with pytest.raises(TunnellingError, match="pressed through plate 0") as caught:
+        space.step(DT)
+    assert caught.value.safe_step is None
+
+
+def test_approach_to_a_turning_line_against_the_plates_own_frame():
+    """The same geometry written down differently: rotate everything into the plate's frame."""
+    rng = np.random.default_rng(1)
+    dt = 0.1
+    positions, velocities = rng.uniform(-1, 1, (2, 2000, 2))
+    velocities *= 20
+    ends = [(-0.6, 0.2), (0.7, -0.1)]
+    pivot, velocity, spin = (0.3, 0.4), (2.0, -1.0), 5.0
+    distance, speed = approach(positions, velocities, Line(*ends, pivot, velocity, spin), dt)
+    turn = complex(math.cos(spin * dt), math.sin(spin * dt))
+    a, b, c, v = (complex(*vector) for vector in (*ends, pivot, velocity))
+    crossing = 0
+    for p, u, found in zip(positions, velocities, speed, strict=True):
+        start = (complex(*p) - a) / (b - a)  # the plate is the real axis from 0 to 1
+        moved = (complex(*p) + complex(*u) * dt - (c + v * dt)) / turn + c
+        end = (moved - a) / (b - a)
+        hit = start.imag * end.imag < 0
+        if hit:
+            share = start.imag / (start.imag - end.imag)
+            hit = 0 < (start + share * (end - start)).real < 1
+        crossing += hit
+        expected = abs((start - end).imag) * abs(b - a) / dt if hit else 0.0
+        assert found == pytest.approx(expected, rel=1e-9)  # 1e-16 over the least share
+    assert 100 < crossing < 1900
+
+
+@pytest.mark.parametrize("name", ["position", "velocity"])
+@pytest.mark.parametrize("value", [math.nan, math.inf])
+def test_numbers_that_are_not_finite_are_found_before_the_step(name, value):
+    space, body, impacts = drop(Stub())
+    bad = make_bead(space, (10 * R, 1))
+    impacts.add_bead(bad)
+    setattr(bad.body, name, (0, value))
+    before = body.position
+    with pytest.raises(ValueError, match=f"bead 1: not finite: .*{name} .*{value}"):
+        space.step(DT)
+    assert (impacts.time, body.position) == (0.0, before)
+    space.remove(bad, bad.body)
+    space.step(DT)
+
+
+def test_a_plate_that_is_not_finite():
+    space = make_space()
+    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(body)
+    impacts = attach(space, Stub())
+    impacts.add_plate(make_plate(space, body=body), 1e-3)
+    impacts.add_bead(make_bead(space, (0, 1)))
+    body.velocity = (0, math.nan)
+    with pytest.raises(ValueError, match="plate 0: not finite"):
+        space.step(DT)

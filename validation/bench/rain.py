@@ -1,0 +1,60 @@
+"""The rain of the demo in pymunk: what the model costs an engine."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from unittest import mock
+
+import pymunk
+
+import contactlaw as cl
+from dem_demo import nozzles, rain_pymunk
+from dem_demo.baseline import ConstantRestitution
+
+from .row import Row
+
+BEADS, COR, REPEAT = 1000, 0.9, 2
+DURATION = 0.6  # [s]; beads come during the first third, all have hit by the end
+
+
+class _Elasticities:
+    """pymunk as it comes: a constant COR, no adapter, no records."""
+
+    def __init__(self, space: pymunk.Space, model: ConstantRestitution) -> None:
+        self.each = model.restitution**0.5  # pymunk multiplies the two
+
+    def add_plate(self, segment: pymunk.Segment, thickness: float) -> None:
+        segment.elasticity = self.each
+
+    def add_bead(self, circle: pymunk.Circle) -> None:
+        circle.elasticity = self.each
+
+
+def rows() -> Iterator[Row]:
+    """Measure the same rain three ways, in turn."""
+    pair = cl.Pair("gamma-alumina", "glass")
+    scene = nozzles.rain(beads=BEADS, duration=DURATION)
+    constant = ConstantRestitution(pair, COR)
+    times: dict[str, list[float]] = {"model": [], "adapter": [], "plain": []}
+    for _ in range(REPEAT):
+        times["model"].append(_run(scene, cl.ImpactModel(pair)))
+        times["adapter"].append(_run(scene, constant))
+        with mock.patch.object(rain_pymunk.adapter, "attach", _Elasticities):
+            times["plain"].append(_run(scene, constant))
+    least = {name: min(values) for name, values in times.items()}
+    yield Row(
+        f"rain, {BEADS} beads, over plain pymunk", least["model"] / least["plain"], "x", 1.25,
+        note=f"{least['model']:.2f} s; plain pymunk, one COR, no records: {least['plain']:.2f} s",
+    )  # fmt: skip
+    yield Row(
+        "the same over the adapter with one COR", least["model"] / least["adapter"], "x", 1.25
+    )
+
+
+def _run(scene: nozzles.Scene, model: cl.ImpactModel | ConstantRestitution) -> float:
+    rain = rain_pymunk._Rain(scene, model)  # type: ignore[arg-type]
+    start = time.perf_counter()
+    for _ in range(scene.frames):
+        rain.advance(scene.steps_per_frame)
+    return time.perf_counter() - start
