@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
 
-.PHONY: demo test lint clean
+.PHONY: demo test lint package bench clean
 
 demo: .venv/demo.done  ## rain beads on thin plates; figures and data in rain/
 	$(BIN)/dem-demo rain --out rain
@@ -16,8 +16,20 @@ lint: .venv/dev.done  ## check style and types
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 
+package: .venv/dev.done  ## build the wheel and use it in an environment of its own
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist
+	$(PYTHON) -m venv dist/env
+	dist/env/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
+	cd dist && env/bin/contactlaw cor --sphere gamma-alumina --plate glass \
+	  --radius 0.9e-3 --thickness 1e-3 --speed 12
+	cd dist && env/bin/contactlaw table check
+
+bench: .venv/bench.done  ## measure every target beside a peer
+	$(BIN)/python -m validation.bench
+
 clean:  ## forget the environment
-	rm -rf .venv
+	rm -rf .venv dist
 
 # One stamp per extra: it is newer than pyproject.toml when what it stands for is installed.
 .venv/%.done: pyproject.toml | .venv/bin/python
