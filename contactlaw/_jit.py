@@ -15,21 +15,27 @@ _cached: list[Any] = []
 @overload
 def kernel(function: _F) -> _F: ...
 @overload
-def kernel(*, cache: bool) -> Callable[[_F], _F]: ...
-def kernel(function: _F | None = None, *, cache: bool = False) -> _F | Callable[[_F], _F]:
+def kernel(*, cache: bool = False, inline: bool = False) -> Callable[[_F], _F]: ...
+def kernel(
+    function: _F | None = None, *, cache: bool = False, inline: bool = False
+) -> _F | Callable[[_F], _F]:
     """Compile a function on its first call; to a type checker it stays what it was.
 
     `cache` keeps the machine code on disk. Numba notices an edit in the function's own file only,
     so every jitted callee has to be in that file too; functions passed as values cannot be cached.
+    `inline` copies the function into its callers, where LLVM finds it too large to do so.
     """
 
     def compiled(python_function: _F) -> _F:
         # error_model "numpy": a division by zero gives inf, which the callers' range tests refuse;
         # the default raises, and a raise in nogil code is costly. Of fastmath only "contract",
         # which fuses a product with a sum: under all of it isnan(nan) is False.
-        dispatcher: Any = numba.njit(error_model="numpy", nogil=True, fastmath={"contract"})(
-            python_function
-        )
+        dispatcher: Any = numba.njit(
+            error_model="numpy",
+            nogil=True,
+            fastmath={"contract"},
+            inline="always" if inline else "never",
+        )(python_function)
         if cache:
             _cached.append(dispatcher)
         return dispatcher  # type: ignore[no-any-return]

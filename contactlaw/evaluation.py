@@ -17,7 +17,7 @@ from contactlaw.cache import cached
 from contactlaw.impact import Contact, Rebound, Scales, scales
 from contactlaw.laws import Law
 from contactlaw.pair import Pair
-from contactlaw.table import Table
+from contactlaw.table import Settings, Table
 from contactlaw.validity import Validity, limits_exceeded
 
 Array = NDArray[np.float64]
@@ -43,13 +43,15 @@ def _default(law: str) -> Array:
     return (store.packaged(law) or cached(law)).packed()
 
 
-def packed_table(law: Law, table: Table | str | os.PathLike[str] | None) -> Array:
+def packed_table(law: Law, table: Table | Settings | str | os.PathLike[str] | None) -> Array:
     """Table that serves a law, packed for the kernels: the user's, or the packaged one."""
     enable_caching()
     name = law.name if law.kinks else _ELASTIC_EDGE
     if table is None:
         return _default(name)
-    if not isinstance(table, Table):
+    if isinstance(table, Settings):
+        table = cached(name, table)
+    elif not isinstance(table, Table):
         table = store.read(table)
     if table.law != name:
         raise ValueError(f"table: it belongs to law {table.law!r}, the model needs one of {name!r}")

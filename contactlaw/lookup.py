@@ -262,7 +262,7 @@ def _locate(table: Array, x: float, log_chi: float) -> tuple[int, float, float]:
     return first, across - row, along - cell
 
 
-@kernel(cache=True)
+@kernel(cache=True, inline=True)
 def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
     """COR from its 16 coefficients, which begin at p; four along ln chi share each instruction.
 
@@ -297,7 +297,7 @@ def _other_fields(table: Array, first: int, s: float, t: float) -> tuple[float, 
     return time / 36.0, wave / 36.0, ratio / 36.0
 
 
-@kernel(cache=True)
+@kernel(cache=True, inline=True)
 def _restitution(
     table: Array, c_lam: float, c_chi: float, speed: float, radius_2: float, thickness_2: float
 ) -> float:

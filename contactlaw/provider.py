@@ -31,7 +31,7 @@ from contactlaw.evaluation import (
 from contactlaw.impact import Contact, Rebound, Scales, scales, sphere_on_plate, sphere_on_sphere
 from contactlaw.materials import Material
 from contactlaw.pair import Pair
-from contactlaw.table import Table
+from contactlaw.table import Settings, Table
 
 Array = NDArray[np.float64]
 
@@ -49,8 +49,9 @@ class ImpactModel:
     law : str, optional
         Normal force law: ``"myc"`` (elastic-plastic) or ``"hertz"`` (elastic, needs no yield
         strength).
-    table : Table or path-like, optional
-        A table to use in place of the packaged one.
+    table : Table, path-like or Settings, optional
+        A table to use in place of the packaged one; `contactlaw.table.Settings` of a larger or
+        finer one are built (in seconds) and kept in the user's cache folder.
     outside : {"raise", "solve", "clamp"}, optional
         What to do outside the table: refuse, integrate the equation, or take the value at the
         border (each such impact is counted in `clamped` and flagged in `Rebound.flags`).
@@ -83,7 +84,7 @@ class ImpactModel:
         self,
         pair: Pair,
         law: str = "myc",
-        table: Table | str | os.PathLike[str] | None = None,
+        table: Table | Settings | str | os.PathLike[str] | None = None,
         outside: Outside = "raise",
     ) -> None:
         if not isinstance(pair, Pair):

@@ -2,6 +2,7 @@
 
 import ast
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -81,3 +82,35 @@ def test_import_and_models_write_nothing_but_the_cache_of_the_compiler(tmp_path)
     code += "; cl.ImpactModel(cl.Pair('gamma-alumina', 'glass')).restitution(5.0, 1e-3, 1e-3)"
     subprocess.run([sys.executable, "-c", code], check=True, env=environment)
     assert {path.name for path in tmp_path.iterdir()} == {"numba"}
+
+
+def test_only_self_contained_modules_are_cached():
+    """Numba's cache does not see an edit of a callee in another file."""
+    for path in ROOT.rglob("*.py"):
+        if "kernel(cache=True" in path.read_text():
+            own = {name for name in imported(path) if name.startswith("contactlaw")}
+            assert own == {"contactlaw._jit", "contactlaw._jit.kernel"}, path
+
+
+def test_a_changed_source_never_yields_an_old_result(tmp_path):
+    package = tmp_path / "contactlaw"
+    shutil.copytree(ROOT, package, ignore=shutil.ignore_patterns("__pycache__", "engines"))
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "numba")}
+    code = (
+        "import contactlaw as cl; model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'))\n"
+        "print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0])"
+    )
+
+    def answers():
+        command = [sys.executable, "-c", code]
+        run = subprocess.run(
+            command, check=True, cwd=tmp_path, env=environment, capture_output=True, text=True
+        )
+        return [float(word) for word in run.stdout.split()]
+
+    before = answers()
+    assert answers() == before  # from the cache
+    source = (package / "lookup.py").read_text()
+    assert source.count("* (1.0 / 36.0)") == 1
+    (package / "lookup.py").write_text(source.replace("* (1.0 / 36.0)", "* (0.5 / 36.0)"))
+    assert answers() == [pytest.approx(0.5 * e, rel=1e-12) for e in before]

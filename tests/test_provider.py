@@ -267,6 +267,25 @@ def test_a_table_file_is_taken(pair, small_table, tmp_path):
     assert ours == cl.ImpactModel(pair, table=small_table).restitution(5.0, R, H)
 
 
+def test_settings_of_a_finer_table_are_taken(pair, model, tmp_path, monkeypatch):
+    monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(tmp_path))
+    wide = table.Settings(largest_overload=100.0, inelasticity_nodes=21, log_overload_step=0.1)
+    speed = 240 * pair.yield_speed
+    with pytest.raises(ValueError, match="outside the table"):
+        model.restitution(speed, R, math.inf)
+    ours = cl.ImpactModel(pair, table=wide).restitution(speed, R, math.inf)
+    assert ours == pytest.approx(model.solve(speed, R, math.inf).restitution, abs=1e-5)
+    assert [path.suffix for path in tmp_path.glob("*.h5")] == [".h5"]
+
+
+def test_restitution_falls_with_speed(model):
+    speed = np.geomspace(1e-3, 400, 4000)
+    for thickness in (0.4e-3, 0.9e-3, 3e-3, 30e-3, math.inf):
+        e = model.restitution(speed, R, thickness)
+        assert (np.diff(e) <= 1e-9).all()  # rounding and ripple where COR is 1
+        assert ((0 <= e) & (e <= 1)).all()
+
+
 @pytest.mark.parametrize("rtol", [0.0, 1e-3, math.nan, -1e-8])
 def test_solve_refuses_a_tolerance_out_of_range(model, rtol):
     with pytest.raises(ValueError, match="rtol: must lie between"):

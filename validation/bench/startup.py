@@ -32,6 +32,19 @@ def run(code: str, folder: str) -> float:
     return time.perf_counter() - start
 
 
+def imports() -> tuple[float, str, None, str, None, None, str]:
+    """Time of the import by the interpreter's own account, and who takes it."""
+    command = [sys.executable, "-X", "importtime", "-c", "import contactlaw"]
+    lines = subprocess.run(command, check=True, capture_output=True, text=True).stderr.splitlines()
+    times = {
+        parts[2].strip(): int(parts[1]) / 1e6
+        for line in lines
+        if len(parts := line.split("|")) == 3 and parts[1].strip().isdigit()
+    }
+    note = ", ".join(f"{name} {times[name]:.2f} s" for name in ("numpy", "numba", "h5py"))
+    return times["contactlaw"], "s", None, "", None, None, f"of it {note}"
+
+
 def rows() -> Iterator[Row]:
     """Measure whole processes, the interpreter's own start included."""
     with tempfile.TemporaryDirectory() as folder:
@@ -46,6 +59,7 @@ def rows() -> Iterator[Row]:
         batch = min(run(FIRST.format(arguments=BATCH), folder) for _ in range(3))
     memory = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
     note = f"python {empty:.2f} s, numba and h5py {numba:.2f} s, any kernel {any_kernel:.2f} s"
+    yield Row("import contactlaw", *imports())
     yield Row("first answer, warm cache", warm, "s", 1, note=note)
     yield Row("first batch, warm cache", batch, "s", 1)
     yield Row("first answer, cold cache", cold, "s", 6, note=f"largest process {memory:.0f} MB")
