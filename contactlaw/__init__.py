@@ -14,7 +14,8 @@ array([0.685, 0.908, 0.989])
 from contactlaw.impact import Rebound
 from contactlaw.materials import Material, material, materials
 from contactlaw.pair import Pair
-from contactlaw.provider import ImpactModel, restitution_sphere_sphere
+from contactlaw.provider import ImpactModel
+from contactlaw.spheres import restitution_sphere_sphere
 from contactlaw.validity import Validity, edge_distance
 
 __all__ = [

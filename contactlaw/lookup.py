@@ -1,4 +1,4 @@
-"""Interpolation in the table: cubic splines on uniform nodes, and the kernels that read them.
+"""Interpolation in the table: the kernels that read its splines.
 
 A table holds functions of the inelasticity lambda and of ln chi, the logarithm of the overload.
 Along lambda the nodes are uniform in x = lambda/(lambda + c); along ln chi they are uniform within
@@ -10,14 +10,14 @@ contact is elastic and the values at ln chi = 0 hold. ln w_m is a polynomial in 
 All of it is packed into one array of float64, because a kernel that takes one array and a few
 numbers is called from Python in a third of a microsecond. The array begins with a header:
 
-    _STRETCH      c                        _COLUMNS   columns of coefficients, all segments
-    _X_MAX        x of the largest lambda  _SEGMENTS  number of segments n
-    _LOG_CHI_MAX  largest ln chi           _COR       where the coefficients of COR begin
-    _NODES_PER_X  1/(distance of nodes)    _OTHERS    where those of the other fields begin
+    STRETCH      c                        COLUMNS    columns of coefficients, all segments
+    X_MAX        x of the largest lambda  SEGMENTS   number of segments n
+    LOG_CHI_MAX  largest ln chi           COR_AT     where the coefficients of COR begin
+    NODES_PER_X  1/(distance of nodes)    OTHERS_AT  where those of the other fields begin
 
-then, at _HEADER, the polynomial's coefficients and n blocks (first ln chi, nodes per unit of
-ln chi, first column). A last row and a last column are there twice: at the very end of the table a
-kernel reads one coefficient too many, with the weight 0, and needs no test.
+then, at HEADER, the polynomial's coefficients and n blocks (first ln chi, nodes per unit of
+ln chi, first column). `contactlaw.packing` makes it; the constants are here, because numba's cache
+does not see an edit of a constant in another file.
 
 Legend: v speed, lam inelasticity, chi overload, w_m largest elastic compression [V0 T_H]. Powers:
 lam = c_lam V^(1/5), ln chi = c_chi + (4/5) ln V + ln w_m; c_lam and c_chi come with SI units from
@@ -44,98 +44,24 @@ Integers = NDArray[np.int32]
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = float(np.finfo(np.float64).tiny)
 
-OTHERS = ("contact_time", "wave_rate", "compression_ratio")
-
-_STRETCH, _X_MAX, _LOG_CHI_MAX, _NODES_PER_X = range(4)
-_COLUMNS, _SEGMENTS, _COR, _OTHERS, _HEADER = range(4, 9)
-_DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
-_START, _PER_LOG, _COLUMN, _BLOCK = range(4)
+STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X = range(4)
+COLUMNS, SEGMENTS, COR_AT, OTHERS_AT, HEADER = range(4, 9)
+DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
+START, PER_LOG, COLUMN, BLOCK = range(4)
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
-
-
-def spline_coefficients(values: Array) -> Array:
-    """Coefficients of the cubic B-spline through uniform nodes along axis 0, not-a-knot ends.
-
-    With v = (c[i-1] + 4 c[i] + c[i+1])/6 at each node and no jump of the third derivative next to
-    the ends, c is known there; a tridiagonal system is left between. Solved without LAPACK, whose
-    threads would fight for the cores with those of an MPI run.
-    """
-    n = len(values)
-    if n < 5:
-        raise ValueError(f"values: a spline with not-a-knot ends needs at least 5 nodes, got {n}")
-    c = np.empty((n + 2, *values.shape[1:]))
-    c[2], c[n - 1] = ((8.0 * values[k] - values[k - 1] - values[k + 1]) / 6.0 for k in (1, n - 2))
-    gain = np.zeros(n + 2)
-    for k in range(3, n - 1):
-        gain[k] = 1.0 / (4.0 - gain[k - 1])
-        c[k] = (6.0 * values[k - 1] - c[k - 1]) * gain[k]
-    for k in range(n - 2, 2, -1):
-        c[k] -= gain[k] * c[k + 1]
-    for edge, inwards in ((1, 1), (n, -1)):
-        node = edge - 1
-        c[edge] = 6.0 * values[node + inwards] - 4.0 * c[edge + inwards] - c[edge + 2 * inwards]
-        c[edge - inwards] = 6.0 * values[node] - 4.0 * c[edge] - c[edge + inwards]
-    return c
-
-
-def chebyshev_nodes(count: int) -> Array:
-    """Places in [0, 1] at which ln w_m is given along x/x_max."""
-    nodes: Array = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    return nodes
-
-
-def _power_series_of(log_elastic: Array) -> Array:
-    """Fit a polynomial in t = 2 x/x_max - 1 to values at `chebyshev_nodes`."""
-    t = 2.0 * chebyshev_nodes(log_elastic.size) - 1.0
-    basis = np.polynomial.chebyshev.chebvander(t, _DEGREE)
-    # the nodes make the basis orthogonal, so no system is to be solved
-    coefficients = (basis * log_elastic[:, None]).sum(axis=0) * (2.0 / log_elastic.size)
-    coefficients[0] /= 2.0
-    return np.asarray(np.polynomial.chebyshev.cheb2poly(coefficients))
-
-
-def pack(
-    stretch: float,
-    lam_max: float,
-    segments: tuple[Array, ...],
-    elastic_compression: Array,
-    fields: dict[str, Array],
-) -> Array:
-    """Fit splines through the values of a table's nodes and pack them into one array."""
-    lengths = np.array([len(nodes) for nodes in segments])
-    first_columns = np.cumsum(lengths + 2) - (lengths + 2)
-    names = ("restitution", *OTHERS)
-    across = spline_coefficients(np.stack([fields[name] for name in names], axis=-1))
-    parts = np.split(across.swapaxes(0, 1), np.cumsum(lengths)[:-1])
-    both = np.concatenate([spline_coefficients(part) for part in parts]).swapaxes(0, 1)
-    padded = np.pad(both, ((0, 1), (0, 1), (0, 0)), mode="edge")
-    cor, others = padded[..., 0], padded[..., 1:]
-    x_max = lam_max / (lam_max + stretch)
-    power_series = _power_series_of(np.log(elastic_compression))
-    blocks = [
-        (nodes[0], (len(nodes) - 1) / (nodes[-1] - nodes[0]), column)
-        for nodes, column in zip(segments, first_columns, strict=True)
-    ]
-    header = np.empty(_HEADER)
-    header[[_STRETCH, _X_MAX, _LOG_CHI_MAX]] = stretch, x_max, segments[-1][-1]
-    header[_NODES_PER_X] = (len(across) - 3) / x_max
-    header[[_COLUMNS, _SEGMENTS]] = cor.shape[1], len(segments)
-    start = _HEADER + power_series.size + _BLOCK * len(blocks)
-    header[[_COR, _OTHERS]] = start, start + cor.size
-    return np.concatenate([header, power_series, np.ravel(blocks), cor.ravel(), others.ravel()])
 
 
 @kernel(cache=True)
 def lam_max(table: Array) -> float:
     """Largest inelasticity of a table."""
-    value: float = table[_STRETCH] * table[_X_MAX] / (1.0 - table[_X_MAX])
+    value: float = table[STRETCH] * table[X_MAX] / (1.0 - table[X_MAX])
     return value
 
 
 @kernel(cache=True)
 def chi_max(table: Array) -> float:
     """Largest overload of a table."""
-    return math.exp(table[_LOG_CHI_MAX])
+    return math.exp(table[LOG_CHI_MAX])
 
 
 @intrinsic
@@ -214,7 +140,7 @@ def _weights(t: float) -> tuple[float, float, float, float]:
 @kernel(cache=True)
 def _power_series(table: Array) -> tuple[float, ...]:
     """Coefficients of ln w_m, as a tuple: no later write to an array can change them."""
-    c, k = table, _HEADER
+    c, k = table, HEADER
     return (
         (c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], c[k + 6])
         + (c[k + 7], c[k + 8], c[k + 9], c[k + 10], c[k + 11], c[k + 12], c[k + 13])
@@ -239,26 +165,26 @@ def _evaluate(c: tuple[float, ...], t: float) -> float:
 @kernel(cache=True)
 def _log_elastic(table: Array, x: float) -> float:
     """Logarithm of w_m at x."""
-    return _evaluate(_power_series(table), 2.0 / table[_X_MAX] * x - 1.0)
+    return _evaluate(_power_series(table), 2.0 / table[X_MAX] * x - 1.0)
 
 
 @kernel(cache=True)
 def log_elastic_compression(table: Array, lam: float) -> float:
     """Logarithm of w_m at an inelasticity inside the table."""
-    return _log_elastic(table, lam / (lam + table[_STRETCH]))
+    return _log_elastic(table, lam / (lam + table[STRETCH]))
 
 
 @kernel(cache=True)
 def _locate(table: Array, x: float, log_chi: float) -> tuple[int, float, float]:
     """Index of the first of 4 x 4 coefficients, and the place within the cell."""
-    block = _HEADER + _DEGREE + 1
-    for k in range(1, int(table[_SEGMENTS])):
+    block = HEADER + DEGREE + 1
+    for k in range(1, int(table[SEGMENTS])):
         # counted, not branched: half of the branches would be predicted wrongly
-        block += _BLOCK * (log_chi > table[_HEADER + _DEGREE + 1 + k * _BLOCK + _START])
-    across = x * table[_NODES_PER_X]
-    along = max(0.0, log_chi - table[block + _START]) * table[block + _PER_LOG]
+        block += BLOCK * (log_chi > table[HEADER + DEGREE + 1 + k * BLOCK + START])
+    across = x * table[NODES_PER_X]
+    along = max(0.0, log_chi - table[block + START]) * table[block + PER_LOG]
     row, cell = int(across), int(along)
-    first = row * int(table[_COLUMNS]) + int(table[block + _COLUMN]) + cell
+    first = row * int(table[COLUMNS]) + int(table[block + COLUMN]) + cell
     return first, across - row, along - cell
 
 
@@ -288,7 +214,7 @@ def _other_fields(table: Array, first: int, s: float, t: float) -> tuple[float, 
     a, b = _weights(s), _weights(t)
     time = wave = ratio = 0.0
     for k in range(4):
-        start = int(table[_OTHERS]) + 3 * (first + k * int(table[_COLUMNS]))
+        start = int(table[OTHERS_AT]) + 3 * (first + k * int(table[COLUMNS]))
         for n in range(4):
             weight = a[k] * b[n]
             time += weight * table[start + 3 * n]
@@ -306,14 +232,14 @@ def _restitution(
         return math.nan
     log_speed, root = _log_and_root(speed)
     above = c_lam * root * radius_2
-    x = above / (above + table[_STRETCH] * thickness_2)
-    if not x <= table[_X_MAX]:
+    x = above / (above + table[STRETCH] * thickness_2)
+    if not x <= table[X_MAX]:
         return math.nan
     log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
-    if not log_chi <= table[_LOG_CHI_MAX]:
+    if not log_chi <= table[LOG_CHI_MAX]:
         return math.nan
     first, s, t = _locate(table, x, log_chi)
-    start, step = np.int64(table[_COR]), np.int64(table[_COLUMNS])
+    start, step = np.int64(table[COR_AT]), np.int64(table[COLUMNS])
     return _cor(table, np.uint64(start + first), np.uint64(step), s, t)
 
 
@@ -345,8 +271,8 @@ def _coordinates(
     x: Array,
 ) -> bool:
     """Coordinates ln chi and x of impacts, and whether all of them are valid and in the table."""
-    stretch, x_max, scale = table[_STRETCH], table[_X_MAX], 2.0 / table[_X_MAX]
-    power_series, log_chi_max = _power_series(table), table[_LOG_CHI_MAX]
+    stretch, x_max, scale = table[STRETCH], table[X_MAX], 2.0 / table[X_MAX]
+    power_series, log_chi_max = _power_series(table), table[LOG_CHI_MAX]
     for i in range(x.size):
         log_chi[i], x[i] = _log_and_root(speed[i])
     for i in range(x.size):
@@ -368,17 +294,17 @@ def _cells(
     table: Array, x: Array, log_chi: Array, first: Integers, along: Array, column: Integers
 ) -> None:
     """Index of the first of 4 x 4 coefficients; places within the cell over x and into along."""
-    nodes_per_x = table[_NODES_PER_X]
-    columns, cor = np.int32(table[_COLUMNS]), np.int32(table[_COR])
+    nodes_per_x = table[NODES_PER_X]
+    columns, cor = np.int32(table[COLUMNS]), np.int32(table[COR_AT])
     for i in range(x.size):
         across = x[i] * nodes_per_x
         row = np.int32(across)
         x[i] = across - row
         first[i] = cor + row * columns
-    for k in range(int(table[_SEGMENTS])):
-        block = _HEADER + _DEGREE + 1 + k * _BLOCK
-        start, per_log = table[block + _START], table[block + _PER_LOG]
-        offset = np.int32(table[block + _COLUMN])
+    for k in range(int(table[SEGMENTS])):
+        block = HEADER + DEGREE + 1 + k * BLOCK
+        start, per_log = table[block + START], table[block + PER_LOG]
+        offset = np.int32(table[block + COLUMN])
         for i in range(x.size):
             place = max(0.0, log_chi[i] - start) * per_log
             cell = np.int32(place)
@@ -402,7 +328,7 @@ def restitutions(
     """COR of many spheres on plates into out; how many are NaN."""
     log_chi, x, along = np.empty(_CHUNK), np.empty(_CHUNK), np.empty(_CHUNK)
     first, column = np.empty(_CHUNK, dtype=np.int32), np.empty(_CHUNK, dtype=np.int32)
-    step = np.uint64(np.int64(table[_COLUMNS]))
+    step = np.uint64(np.int64(table[COLUMNS]))
     bad = 0
     for start in range(0, out.size, _CHUNK):
         stop = min(start + _CHUNK, out.size)
@@ -431,13 +357,13 @@ def fields(table: Array, lam: Array, yield_ratio: Array, clamp: bool, out: Array
     yield_ratio is y = w_m/chi. Outside the table, `clamp` takes the border, else all are NaN.
     """
     outside = 0
-    start, step = np.int64(table[_COR]), np.uint64(np.int64(table[_COLUMNS]))
+    start, step = np.int64(table[COR_AT]), np.uint64(np.int64(table[COLUMNS]))
     for n in range(lam.size):
-        x = lam[n] / (lam[n] + table[_STRETCH])
-        inside_x = min(x, table[_X_MAX])
+        x = lam[n] / (lam[n] + table[STRETCH])
+        inside_x = min(x, table[X_MAX])
         log_w = _log_elastic(table, inside_x)
         log_chi = log_w - math.log(yield_ratio[n])
-        inside_chi = min(log_chi, table[_LOG_CHI_MAX])
+        inside_chi = min(log_chi, table[LOG_CHI_MAX])
         if not (inside_x == x and inside_chi == log_chi):
             outside += 1
             if not clamp:
@@ -460,8 +386,8 @@ def yield_speeds(table: Array, c_lam: Array, c_chi: float, out: Array) -> None:
         log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
             lam = c_lam[n] * math.exp(0.2 * log_speed)
-            x = lam / (lam + table[_STRETCH])
-            if not x <= table[_X_MAX]:
+            x = lam / (lam + table[STRETCH])
+            if not x <= table[X_MAX]:
                 break
             log_speed -= (c_chi + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
-        out[n] = math.exp(log_speed) if x <= table[_X_MAX] else math.nan
+        out[n] = math.exp(log_speed) if x <= table[X_MAX] else math.nan

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import lookup, zener
+from contactlaw import lookup, packing, zener
 from contactlaw.laws import Law
 from contactlaw.laws import law as find_law
 
@@ -145,7 +145,7 @@ class Table:
 
     def packed(self) -> Array:
         """Pack splines through the values for the lookup kernels."""
-        return lookup.pack(
+        return packing.pack(
             self.settings.stretch,
             self.settings.largest_inelasticity,
             self.segments,
@@ -161,7 +161,7 @@ def _rows(settings: Settings) -> Array:
 
 
 def _elastic_nodes(settings: Settings) -> Array:
-    return _inelasticity(settings, lookup.chebyshev_nodes(settings.elastic_nodes))
+    return _inelasticity(settings, packing.chebyshev_nodes(settings.elastic_nodes))
 
 
 def _inelasticity(settings: Settings, share: Array) -> Array:

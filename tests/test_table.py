@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import laws, lookup, store, table, zener
+from contactlaw import laws, lookup, packing, store, table, zener
 
 HERTZ = laws.law("hertz").functions
 YIELDING = [name for name in laws.names() if laws.law(name).kinks]
@@ -183,7 +183,7 @@ def test_packaged_table_is_what_this_version_builds():
 
 def test_splines_reproduce_cubics():
     x = np.arange(9.0)
-    c = lookup.spline_coefficients(x**3 - 4 * x**2 + 2)
+    c = packing.spline_coefficients(x**3 - 4 * x**2 + 2)
     for position in (0.0, 0.3, 3.7, 7.99):
         i = int(position)
         value = sum(w / 6 * c[i + k] for k, w in enumerate(lookup._weights(position - i)))
@@ -192,7 +192,7 @@ def test_splines_reproduce_cubics():
 
 def test_a_spline_needs_five_nodes():
     with pytest.raises(ValueError, match="at least 5 nodes, got 4"):
-        lookup.spline_coefficients(np.ones(4))
+        packing.spline_coefficients(np.ones(4))
 
 
 def test_an_elastic_law_needs_no_table():
