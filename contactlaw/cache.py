@@ -65,7 +65,7 @@ def progress_bar(rows: Iterator[Array], total: int) -> Iterable[Array]:
     """Show a bar once a build has taken a second; nothing where stderr is no terminal."""
     from tqdm import tqdm
 
-    bar: Iterable[Array] = tqdm(rows, "contactlaw: building a table", total, delay=1, disable=None)
+    bar: Iterable[Array] = tqdm(rows, "contactlaw: solving", total, delay=1, disable=None)
     return bar
 
 

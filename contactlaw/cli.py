@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import secrets
 import sys
 from collections.abc import Sequence
@@ -23,7 +24,7 @@ _UNITS = {
     "peak_compression": "m",
     "residual_compression": "m",
 }
-_DONE, _REFUSED = 0, 1  # argparse itself exits with 2 on wrong usage
+_DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage
 
 
 def _cor(arguments: argparse.Namespace) -> None:
@@ -99,7 +100,8 @@ def _table_info(arguments: argparse.Namespace) -> None:
 
 def _table_check(arguments: argparse.Namespace) -> None:
     seed = secrets.randbits(32) if arguments.seed is None else arguments.seed
-    certificate = table.certify(_stored(arguments), arguments.points, seed)
+    stored, bar = _stored(arguments), cache.progress_bar
+    certificate = table.certify(stored, arguments.points, seed, progress=bar)
     _print_certificate(certificate)
     if certificate.exceeded:
         raise ValueError(f"the table exceeds its bounds: {certificate.exceeded} (seed {seed})")
@@ -162,7 +164,12 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; 0 done, 1 refused with a message on stderr, 2 wrong usage.
+    """Run the command line.
+
+    Returns
+    -------
+    int
+        0 done, 1 refused with a message on stderr, 130 interrupted; wrong usage exits with 2.
 
     Examples
     --------
@@ -175,6 +182,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     arguments = _parser().parse_args(argv)
     try:
         arguments.run(arguments)
+        sys.stdout.flush()  # here, where a reader that has gone can be dealt with
+    except KeyboardInterrupt:
+        print("contactlaw: interrupted; nothing was written", file=sys.stderr)
+        return _INTERRUPTED
+    except BrokenPipeError:  # the reader has seen enough, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return _DONE
     except (ValueError, RuntimeError, OSError) as error:
         print(f"contactlaw: {error}", file=sys.stderr)
         return _REFUSED

@@ -132,7 +132,8 @@ def rebound(
     zener.contact_state(law.functions, compression, y, state)
     force, residual, plastic = state
     contact_time = time * units.time
-    speed_ratio = math.sqrt(1.25) * y**-1.25  # V0/V_Y0: a half-space impact at V_Y0 has w_m = y
+    # V0/V_Y0 = (5/4)^(1/2) y^(-5/4): a half-space impact at V_Y0 has w_m = y = (5/4)^(2/5)
+    speed_ratio = math.sqrt(1.25) / (y * np.sqrt(np.sqrt(y)))
     flags = flags | limits_exceeded(
         pair, impact.radius, impact.thickness, speed_ratio, contact_time
     )

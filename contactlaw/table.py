@@ -45,6 +45,7 @@ BOUNDS = {
 # Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2: no number of digits
 # of chi gives them relatively there. Below this they count absolutely (chi - 1 < 2e-6).
 _SMALLEST = 1e-12
+_PART = 1000  # points of a certificate that a thread solves at a time, 0.1 s
 _NEAR_KINK = 0.01  # in ln chi; a share of the certificate's points lies this near on either side
 
 
@@ -253,8 +254,11 @@ def _solve(
 
     solve((lam[:1], chi[:1]))  # compile once, before the threads ask for it
     pieces = zip(np.array_split(lam, parts), np.array_split(chi, parts), strict=True)
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
         return np.concatenate(list(progress(pool.map(solve, pieces), parts)), axis=1)
+    finally:  # on Ctrl-C, wait for the parts that run and start no others
+        pool.shutdown(cancel_futures=True)
 
 
 def _elastic(lam: Array, rtol: float) -> Array:
@@ -268,7 +272,9 @@ def _elastic(lam: Array, rtol: float) -> Array:
     return out
 
 
-def certify(table: Table, points: int = 10_000, seed: int = 0) -> Certificate:
+def certify(
+    table: Table, points: int = 10_000, seed: int = 0, *, progress: Progress = _no_progress
+) -> Certificate:
     """Compare lookups with the solver at random points off the grid.
 
     The points fall into equal shares: below yield, each segment between two kinks, and the close
@@ -281,16 +287,24 @@ def certify(table: Table, points: int = 10_000, seed: int = 0) -> Certificate:
         Number of points, at least 100.
     seed : int, optional
         Seed of their generator.
+    progress : callable, optional
+        As in `build`.
 
     Returns
     -------
     Certificate
+
+    Raises
+    ------
+    ValueError
+        If there are too few points.
     """
     if points < 100:
         raise ValueError(f"points: at least 100 are needed for a percentile, got {points!r}")
     law = find_law(table.law)
     lam, chi = _points(table, points, np.random.default_rng(seed))
-    exact = _solve(law, lam, chi, max(table.settings.rtol / 10, 1e-13), 2 * (os.cpu_count() or 1))
+    rtol = max(table.settings.rtol / 10, _RANGES["rtol"][0])
+    exact = _solve(law, lam, chi, rtol, -(-lam.size // _PART), progress)
     looked = np.empty_like(exact)
     y = exact[4] / chi
     lookup.fields(table.packed(), lam, y, True, looked)

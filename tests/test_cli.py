@@ -1,12 +1,15 @@
 """The command line: what it prints, and its exit status."""
 
 import json
+import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
 import contactlaw as cl
+from contactlaw import store, table
 from contactlaw.cli import main
 
 COR = ["cor", "--sphere", "gamma-alumina", "--plate", "glass"]
@@ -98,6 +101,40 @@ def test_table_build(tmp_path, capsys):
     assert list(tmp_path.iterdir()) == []
     assert main(["table", "build", "--out", str(tmp_path / "missing" / "t.h5")]) == 1
     assert "missing" in capsys.readouterr().err
+
+
+def test_table_info_and_check(capsys):
+    assert main(["table", "info"]) == 0
+    info = capsys.readouterr().out
+    assert "law myc" in info
+    assert "restitution" in info
+    assert main(["table", "check", "--points", "1000", "--seed", "5"]) == 0
+    assert "seed 5" in capsys.readouterr().out
+    assert main(["table", "check", "--points", "5"]) == 1
+    assert "points: at least 100" in capsys.readouterr().err
+
+
+def test_table_check_fails_above_the_bounds(tmp_path, capsys):
+    coarse = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
+    store.write(table.build("myc", coarse), tmp_path / "coarse.h5")
+    assert main(["table", "check", str(tmp_path / "coarse.h5"), "--points", "500"]) == 1
+    assert "exceeds its bounds" in capsys.readouterr().err
+
+
+def test_ctrl_c_leaves_a_sentence_and_nothing_else(tmp_path):
+    command = [sys.executable, "-m", "contactlaw", "table", "check", "--points", "10000000"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE, text=True)
+    time.sleep(12)  # well into the solving: the import and the compiler take up to 8 s
+    process.send_signal(signal.SIGINT)
+    assert "contactlaw: interrupted" in process.communicate(timeout=30)[1]
+    assert process.returncode == 130
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_reader_that_goes_away():
+    command = f"{sys.executable} -m contactlaw materials | head -1"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_as_a_module():
