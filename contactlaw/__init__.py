@@ -11,6 +11,7 @@ its solutions. All quantities are in SI units.
 array([0.685, 0.908, 0.989])
 """
 
+from contactlaw._version import VERSION as __version__
 from contactlaw.impact import Rebound
 from contactlaw.materials import Material, material, materials
 from contactlaw.pair import Pair
@@ -24,6 +25,7 @@ __all__ = [
     "Pair",
     "Rebound",
     "Validity",
+    "__version__",
     "edge_distance",
     "material",
     "materials",

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import functools
+import warnings
 from collections.abc import Callable
 from typing import Any, TypeVar, overload
 
 import numba
+from numba.extending import intrinsic
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _cached: list[Any] = []
@@ -55,6 +57,40 @@ def enable_caching() -> None:
             dispatcher.enable_caching()
         except RuntimeError:  # no writable folder anywhere: compile in every process
             return
+        store = dispatcher._cache
+        store.save_overload = functools.partial(_save, store.save_overload)
+
+
+def _save(save: Callable[[Any, Any], None], signature: Any, data: Any) -> None:
+    """Let an answer go before its machine code: numba raises if it cannot keep it."""
+    try:
+        save(signature, data)
+    except OSError as error:
+        _warn_once(str(error))
+
+
+@functools.cache
+def _warn_once(reason: str) -> None:
+    warnings.warn(
+        f"numba cannot keep compiled code on disk ({reason}), so each process compiles it anew; "
+        "set NUMBA_CACHE_DIR to a writable folder with some megabytes left",
+        stacklevel=2,
+    )
+
+
+@intrinsic
+def uncached(typing_context: Any) -> Any:
+    """Nonzero, and known only to this process: numba keeps no caller of it on disk.
+
+    A kernel that holds a table as a constant looks the same to numba's cache whatever the table is,
+    so a user's own ``@njit(cache=True)`` loop would go on with that of an earlier process.
+    """
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        pointer = context.add_dynamic_addr(builder, 1, info="contactlaw: a table in memory")
+        return builder.ptrtoint(pointer, context.get_value_type(numba.types.intp))
+
+    return numba.types.intp(), generate
 
 
 def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:

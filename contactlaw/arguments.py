@@ -13,29 +13,50 @@ from contactlaw import lookup
 Array = NDArray[np.float64]
 
 _LIMITS = {
-    "speed": (lookup.V_MIN, lookup.V_MAX, "m/s, positive: the approach speed along the normal"),
+    "speed": (lookup.V_MIN, lookup.V_MAX, "m/s, the approach speed"),
     "radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
     "other_radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
     "thickness": (lookup.R_MIN, math.inf, "metres; inf is the half-space"),
+    "contact_time": (1e-12, 1e6, "seconds"),
 }
 
 
 def broadcast(**arguments: ArrayLike) -> Any:
     """Flat float64 arrays of one length, and their common shape (None for scalars)."""
-    arrays = []
-    for name, value in arguments.items():
-        array = np.asarray(value)
-        if array.dtype.kind not in "iuf":
-            raise ValueError(f"{name}: expected a number or an array of numbers, got {value!r}")
-        arrays.append(array.astype(np.float64, copy=False))
-    if not any(array.ndim for array in arrays):  # the usual call of an engine: broadcasting is slow
-        return *(array.reshape(1) for array in arrays), None
+    arrays = [_numbers(name, value) for name, value in arguments.items()]
     try:
-        together = np.broadcast_arrays(*arrays)
+        shape = np.broadcast_shapes(*(array.shape for array in arrays))
     except ValueError:
         shapes = ", ".join(f"{n} {np.shape(v)}" for n, v in arguments.items())
         raise ValueError(f"{next(iter(arguments))}: shapes do not broadcast: {shapes}") from None
-    return *(np.ravel(array) for array in together), together[0].shape
+    return *(_flat(array, shape) for array in arrays), shape or None
+
+
+def _numbers(name: str, value: ArrayLike) -> Array:
+    try:
+        array = np.asarray(value)
+    except ValueError:  # rows of different lengths
+        array = np.asarray(None)
+    if array.dtype.kind not in "iuf" or isinstance(value, np.ma.MaskedArray):
+        raise ValueError(f"{name}: expected a number or an array of numbers, got {value!r}")
+    return array.astype(np.float64, copy=False)
+
+
+def _flat(array: Array, shape: tuple[int, ...]) -> Array:
+    """Ravel without a copy where there is one writeable value for each; kernels take no others."""
+    if array.shape == shape and array.flags.writeable:
+        return np.ravel(array)
+    return np.broadcast_to(array, shape).flatten()
+
+
+def scalars(**arguments: float) -> tuple[Array, ...]:
+    """Check single numbers and return them as arrays of one element."""
+    for name, value in arguments.items():
+        if np.ndim(value) > 0:
+            raise ValueError(f"{name}: expected one number, got {value!r}")
+    *arrays, _ = broadcast(**arguments)
+    check(**dict(zip(arguments, arrays, strict=True)))
+    return tuple(arrays)
 
 
 def check(**arrays: Array) -> None:
@@ -48,8 +69,10 @@ def check(**arrays: Array) -> None:
         if wrong.any():
             n = int(np.argmax(wrong))
             where = f" (element {n})" if values.size > 1 else ""
-            bounds = f"between {low:g} and {high:g}" if name != "speed" else f"above 0, to {high:g}"
-            raise ValueError(f"{name}: got {values[n]!r}{where}; must lie {bounds} {unit}")
+            raise ValueError(
+                f"{name}: got {float(values[n])!r}{where}; "
+                f"must lie between {low:g} and {high:g} {unit}"
+            )
 
 
 def shaped(values: Array, shape: tuple[int, ...] | None) -> float | Array:

@@ -18,8 +18,10 @@ import warnings
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
 from pathlib import Path
+from types import ModuleType
 
-from contactlaw import laws, store, table, zener
+from contactlaw import _jit, laws, packing, store, table, zener
+from contactlaw._version import VERSION
 from contactlaw.table import Array, Settings, Table
 
 _PATIENCE = 60.0  # [s]: a build takes a few; a lock held for longer belongs to a process that hangs
@@ -27,11 +29,11 @@ _PATIENCE = 60.0  # [s]: a build takes a few; a lock held for longer belongs to 
 
 def folder() -> Path | None:
     """Folder of the cache; None if it is switched off."""
-    if os.environ.get("CONTACTLAW_NO_CACHE", "") not in ("", "0"):
+    if os.environ.get("CONTACTLAW_NO_CACHE", "").lower() not in ("", "0", "no", "off", "false"):
         return None
     chosen = os.environ.get("CONTACTLAW_CACHE_DIR")
     if chosen:
-        return Path(chosen)
+        return Path(chosen).expanduser()
     import platformdirs
 
     return platformdirs.user_cache_path("contactlaw", appauthor=False)
@@ -53,12 +55,23 @@ def file_name(law: str, settings: Settings) -> str:
         "parameters": [chosen.yield_coefficient, *chosen.kinks],
         "settings": asdict(settings),
         "schema": store.SCHEMA,
-        # the source stands for the version: an edit that forgot to raise a number still counts
-        "solver": inspect.getsource(zener),
-        "law_source": inspect.getsource(sys.modules[chosen.loading.__module__]),
+        "version": VERSION,
+        "sources": [_source(module) for module in _sources(chosen)],
     }
     digest = hashlib.sha256(json.dumps(ingredients, sort_keys=True).encode()).hexdigest()
     return f"{law}-{digest[:16]}.h5"
+
+
+def _sources(law: laws.Law) -> tuple[ModuleType, ...]:
+    """Modules whose edit may change a table: a number that was not raised is no excuse."""
+    return _jit, laws, sys.modules[law.loading.__module__], zener, packing, table
+
+
+def _source(module: ModuleType) -> str:
+    try:
+        return inspect.getsource(module)
+    except OSError:  # an installation without sources; the version has to do
+        return module.__name__
 
 
 def progress_bar(rows: Iterator[Array], total: int) -> Iterable[Array]:
@@ -82,12 +95,14 @@ def cached(law: str, settings: Settings | None = None) -> Table:
     path = place / file_name(law, settings)
     built: Table | None = None
     try:
-        found = _usable(path)
+        found = _usable(path, law, settings)
         if found is not None:
             return found
         place.mkdir(parents=True, exist_ok=True)
         with _locked(path):
-            found = _usable(path)  # another process may have built it while this one waited
+            found = _usable(
+                path, law, settings
+            )  # another process may have built it while this one waited
             if found is not None:
                 return found
             built = table.build(law, settings, progress=progress_bar)
@@ -102,12 +117,13 @@ def cached(law: str, settings: Settings | None = None) -> Table:
     return built or table.build(law, settings, progress=progress_bar)
 
 
-def _usable(path: Path) -> Table | None:
-    """Table in a cache file; None where there is none or it is damaged: it is built anew then."""
+def _usable(path: Path, law: str, settings: Settings) -> Table | None:
+    """Table in a cache file; None where there is none, or a damaged or another one: built anew."""
     try:
-        return store.read(path)
+        found = store.read(path)
     except (FileNotFoundError, store.DamagedTableError):
         return None
+    return found if (found.law, found.settings) == (law, settings) else None
 
 
 @contextlib.contextmanager

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import secrets
 import sys
@@ -33,14 +34,18 @@ def _cor(arguments: argparse.Namespace) -> None:
     )
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     rebound = model.solve(*impact) if arguments.solve else model.lookup(*impact)
-    yield_speed = model.yield_speed(arguments.radius, arguments.thickness)
+    try:
+        yield_speed = float(model.yield_speed(arguments.radius, arguments.thickness))
+    except ValueError:  # so thin a plate that V_Y is beyond the table; the impact need not be
+        yield_speed = math.inf
     if arguments.json:
-        print(json.dumps(_as_json(rebound, float(yield_speed)), indent=2))
+        print(json.dumps(_as_json(rebound, yield_speed), indent=2))
         return
     for name, value in asdict(rebound).items():
         if name != "flags":
             print(f"{name:21s} {value:.6g} {_UNITS.get(name, '')}".rstrip())
-    print(f"{'yield_speed':21s} {yield_speed:.6g} m/s")
+    beyond = "none within the table" if yield_speed == math.inf else f"{yield_speed:.6g} m/s"
+    print(f"{'yield_speed':21s} {beyond}")
     print(f"{'flags':21s} {', '.join(_flag_names(rebound)) or 'none: inside every limit'}")
 
 
@@ -49,9 +54,9 @@ def _flag_names(rebound: Rebound) -> list[str]:
 
 
 def _as_json(rebound: Rebound, yield_speed: float) -> dict[str, object]:
-    """Field names carry no unit: all values are SI. An infinite yield speed is null in JSON."""
+    """Field names carry no unit: all values are SI. No yield speed is null."""
     values: dict[str, object] = asdict(rebound)
-    values["yield_speed"] = yield_speed if yield_speed < float("inf") else None
+    values["yield_speed"] = yield_speed if yield_speed < math.inf else None
     values["flags"] = _flag_names(rebound)
     return values
 
@@ -76,6 +81,8 @@ def _materials(arguments: argparse.Namespace) -> None:
 
 def _table_build(arguments: argparse.Namespace) -> None:
     out = Path(arguments.out or f"{arguments.law}.h5")
+    if not out.parent.is_dir():
+        raise ValueError(f"--out: there is no folder {out.parent}")
     built = table.build(arguments.law, progress=cache.progress_bar)
     store.write(built, out)
     _print_certificate(built.certificate)
@@ -184,7 +191,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments.run(arguments)
         sys.stdout.flush()  # here, where a reader that has gone can be dealt with
     except KeyboardInterrupt:
-        print("contactlaw: interrupted; nothing was written", file=sys.stderr)
+        print("contactlaw: interrupted", file=sys.stderr)
         return _INTERRUPTED
     except BrokenPipeError:  # the reader has seen enough, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import os
+import warnings
 from typing import Literal, NamedTuple, NoReturn
 
 import numpy as np
@@ -17,7 +18,7 @@ from contactlaw.cache import cached
 from contactlaw.impact import Contact, Rebound, Scales, scales
 from contactlaw.laws import Law
 from contactlaw.pair import Pair
-from contactlaw.table import Settings, Table
+from contactlaw.table import BOUNDS, Settings, Table
 from contactlaw.validity import Validity, limits_exceeded
 
 Array = NDArray[np.float64]
@@ -53,6 +54,12 @@ def packed_table(law: Law, table: Table | Settings | str | os.PathLike[str] | No
         table = cached(name, table)
     elif not isinstance(table, Table):
         table = store.read(table)
+    if table.certificate is not None and table.certificate.exceeded:
+        warnings.warn(
+            f"the table is less accurate than contactlaw promises; its largest errors "
+            f"{table.certificate.exceeded} are above {BOUNDS}: take finer Settings",
+            stacklevel=3,
+        )
     if table.law != name:
         raise ValueError(f"table: it belongs to law {table.law!r}, the model needs one of {name!r}")
     return table.packed()
@@ -70,11 +77,12 @@ def _coordinates(units: Scales) -> tuple[Array, Array]:
 
 
 def solved(law: Law, units: Scales, rtol: float) -> Array:
-    """Fields (5, n) of `zener.solve_all` by integration."""
+    """Fields (7, n) by integration: those of `zener.solve_all`, lambda and y."""
     lam, y = _coordinates(units)
-    out = np.empty((5, lam.size))
+    out = np.empty((7, lam.size))
+    out[5:] = lam, y
     hertz = laws.law("hertz").functions
-    status, n = zener.solve_all(law.functions, hertz, lam, y, rtol, out)
+    status, n = zener.solve_all(law.functions, hertz, lam, y, rtol, out[:5])
     if status != zener.OK:
         raise RuntimeError(
             f"the equation did not solve at lambda = {lam[n]:.6g}, d_Y/(V0 T_H) = {y[n]:.6g} "
@@ -84,11 +92,15 @@ def solved(law: Law, units: Scales, rtol: float) -> Array:
 
 
 def tabulated(law: Law, table: Array, units: Scales, outside: Outside) -> tuple[Array, Flags]:
-    """Fields (5, n) as `solved` gives them, and Validity.CLAMPED where the border was taken."""
+    """Fields (7, n): those of `solved`, and the lambda and y that they belong to.
+
+    Beside them Validity.CLAMPED where the border of the table was taken.
+    """
     lam, y = _coordinates(units)
-    out = np.empty((5, lam.size))
+    out = np.empty((7, lam.size))
+    out[5:] = lam, y
     clamped = np.zeros(lam.size, dtype=np.int64)
-    if not lookup.fields(table, lam, y, False, out):
+    if not lookup.fields(table, out[5], out[6], False, out[:5]):
         return out, clamped
     beyond = np.isnan(out[0])
     if outside == "raise":
@@ -98,7 +110,7 @@ def tabulated(law: Law, table: Array, units: Scales, outside: Outside) -> tuple[
         part = Scales(*(np.broadcast_to(value, lam.shape)[beyond] for value in units))
         out[:, beyond] = solved(law, part, _RTOL)
     else:
-        lookup.fields(table, lam, y, True, out)
+        lookup.fields(table, out[5], out[6], True, out[:5])
         clamped[beyond] = int(Validity.CLAMPED)
     return out, clamped
 
@@ -124,16 +136,16 @@ def _refuse(table: Array, lam: float, y: float, n: int) -> NoReturn:
 def rebound(
     pair: Pair, law: Law, units: Scales, fields: Array, impact: Impact, flags: Flags | int = 0
 ) -> Rebound:
-    """Give fields (5, n) their units back and add what follows from them."""
-    restitution, time, wave_rate, ratio, w_m = fields
-    lam, y = _coordinates(units)
+    """Give fields (7, n) their units back and add what follows from them."""
+    restitution, time, wave_rate, ratio, w_m, lam, y = fields
     compression = ratio * w_m
     state = np.empty((3, compression.size))
     zener.contact_state(law.functions, compression, y, state)
     force, residual, plastic = state
     contact_time = time * units.time
+    asked_lam, asked_y = _coordinates(units)  # others than lam and y where those were clamped
     # V0/V_Y0 = (5/4)^(1/2) y^(-5/4): a half-space impact at V_Y0 has w_m = y = (5/4)^(2/5)
-    speed_ratio = math.sqrt(1.25) / (y * np.sqrt(np.sqrt(y)))
+    speed_ratio = math.sqrt(1.25) / (asked_y * np.sqrt(np.sqrt(asked_y)))
     flags = flags | limits_exceeded(
         pair, impact.radius, impact.thickness, speed_ratio, contact_time
     )
@@ -146,7 +158,7 @@ def rebound(
         residual_compression=shaped(residual * units.compression, shape),
         plastic_fraction=shaped(plastic, shape),
         wave_fraction=shaped(lam * wave_rate, shape),
-        inelasticity=shaped(lam, shape),
-        overload=shaped(w_m / y, shape),
+        inelasticity=shaped(asked_lam, shape),
+        overload=shaped(w_m / asked_y, shape),
         flags=Validity(int(flags[0])) if shape is None else flags.reshape(shape),
     )

@@ -48,7 +48,9 @@ def plate_mobility(plate: Material, thickness: Array) -> Array:
     (Zener 1941; Peng et al. 2021, below Eq. 1).
     """
     wave_speed = math.sqrt(plate.plane_modulus / plate.density)
-    mobility: Array = math.sqrt(3.0) / (4.0 * plate.density * wave_speed * np.square(thickness))
+    with np.errstate(over="ignore"):  # a plate of 1e200 m is a half-space
+        area = np.square(thickness)
+    mobility: Array = math.sqrt(3.0) / (4.0 * plate.density * wave_speed * area)
     return mobility
 
 

@@ -40,9 +40,10 @@ Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
 
 # Input beyond these is a mistake: no continuum below 1 nm, no bead above 1 km [m], no contact that
-# is quasi-static above the speed of every wave in a solid [m/s]; subnormals have no exponent.
+# is quasi-static above the speed of every wave in a solid, nor an impact below 1e-30 m/s, where
+# squares begin to underflow [m/s].
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
-V_MIN = float(np.finfo(np.float64).tiny)
+V_MIN = 1e-30
 
 STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X = range(4)
 COLUMNS, SEGMENTS, COR_AT, OTHERS_AT, HEADER = range(4, 9)
@@ -354,7 +355,8 @@ def restitutions(
 def fields(table: Array, lam: Array, yield_ratio: Array, clamp: bool, out: Array) -> int:
     """COR, contact time, wave rate, compression ratio, w_m into out (5, n); how many are outside.
 
-    yield_ratio is y = w_m/chi. Outside the table, `clamp` takes the border, else all are NaN.
+    yield_ratio is y = w_m/chi. Outside the table all fields are NaN, unless `clamp` takes the
+    nearest point of its border, and puts that point's coordinates over lam and yield_ratio.
     """
     outside = 0
     start, step = np.int64(table[COR_AT]), np.uint64(np.int64(table[COLUMNS]))
@@ -369,6 +371,8 @@ def fields(table: Array, lam: Array, yield_ratio: Array, clamp: bool, out: Array
             if not clamp:
                 out[:, n] = math.nan
                 continue
+            lam[n] = inside_x * table[STRETCH] / (1.0 - inside_x)
+            yield_ratio[n] = math.exp(log_w - inside_chi)
         first, s, t = _locate(table, inside_x, inside_chi)
         out[0, n] = _cor(table, np.uint64(start + first), step, s, t)
         out[1, n], out[2, n], out[3, n] = _other_fields(table, first, s, t)

@@ -20,9 +20,11 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlaw import laws
-from contactlaw.table import FIELDS, Certificate, Settings, Table
+from contactlaw._version import VERSION
+from contactlaw.table import FIELDS, Certificate, Settings, Table, axes
 
 FORMAT = "contactlaw table"
 SCHEMA = 1
@@ -77,15 +79,13 @@ def _sign(content: bytes) -> bytes:
 
 
 def _fill(file: h5py.File, table: Table) -> None:
-    from importlib.metadata import version  # 20 ms that a reader need not wait for
-
     law = laws.law(table.law)
     file.attrs.update(
         format=FORMAT,
         schema=SCHEMA,
         law=table.law,
         law_source=law.source,
-        contactlaw_version=version("contactlaw"),
+        contactlaw_version=VERSION,
         **asdict(table.settings),
     )
     datasets = {
@@ -152,6 +152,8 @@ def _parse(content: bytes) -> Table:
     arrays = [*table.segments, table.elastic_compression, *table.fields.values()]
     if not all(np.isfinite(values).all() for values in arrays):
         raise ValueError("it holds values that are not finite")
+    if not ((table.fields["restitution"] >= 0.0) & (table.fields["restitution"] <= 1.0)).all():
+        raise ValueError("it holds a COR outside 0 to 1")
     return table
 
 
@@ -165,6 +167,7 @@ def _from_file(file: h5py.File) -> Table:
         raise ValueError(f"its fields do not have the shape {shape} of its axes")
     if elastic.shape != (settings.elastic_nodes,):
         raise ValueError(f"its elastic_compression has the shape {elastic.shape}")
+    _compare_axes(file, settings, segments)
     certificate = file.attrs.get("certificate")
     return Table(
         law=str(file.attrs["law"]),
@@ -174,6 +177,19 @@ def _from_file(file: h5py.File) -> Table:
         fields=fields,
         certificate=None if certificate is None else Certificate(**json.loads(certificate)),
     )
+
+
+def _compare_axes(
+    file: h5py.File, settings: Settings, segments: tuple[NDArray[np.float64], ...]
+) -> None:
+    """Refuse a table of another form of the law, or whose axes are not those of its settings."""
+    law = laws.law(str(file.attrs["law"]))
+    if not np.array_equal(file["kinks"][()], law.kinks):
+        raise ValueError(f"its kinks {file['kinks'][()]} are not those of the law, {law.kinks}")
+    expected = axes(law, settings)
+    stored = (file["inelasticity"][()], *segments)
+    if not all(np.array_equal(*pair) for pair in zip(stored, expected, strict=True)):
+        raise ValueError("its axes are not those of its settings")
 
 
 @functools.cache
@@ -192,5 +208,5 @@ def packaged(law: str) -> Table | None:
             return read(path)
         except DamagedTableError as error:
             raise DamagedTableError(
-                f"the installed package is damaged, reinstall contactlaw: {error}"
+                f"the installed package is damaged, reinstall contactlaw: {error.__cause__}"
             ) from error

@@ -113,7 +113,7 @@ class Settings:
 
 
 _RANGES = {
-    "largest_inelasticity": (1e-3, 100.0),  # 100: COR is 1e-10 there
+    "largest_inelasticity": (1e-3, 10.0),  # 10: COR is 7e-6 there
     "largest_overload": (1.1, 1e6),
     "inelasticity_nodes": (5, 100_000),  # 5: not-a-knot ends
     "log_overload_step": (1e-4, 1.0),
@@ -181,6 +181,11 @@ def _segments(law: Law, settings: Settings) -> tuple[Array, ...]:
     )
 
 
+def axes(law: Law, settings: Settings) -> tuple[Array, ...]:
+    """Nodes along lambda, then those along ln chi of each segment."""
+    return (_rows(settings), *_segments(law, settings))
+
+
 def _no_progress(rows: Iterator[Array], total: int) -> Iterable[Array]:
     return rows
 
@@ -218,8 +223,7 @@ def build(
     if not chosen.kinks:
         raise ValueError(f"law: {law!r} never yields; the edge chi = 1 of any table serves it")
     settings = settings or Settings()
-    lam = _rows(settings)
-    segments = _segments(chosen, settings)
+    lam, *segments = axes(chosen, settings)
     chi = np.exp(np.concatenate(segments))
     grid = np.repeat(lam, chi.size), np.tile(chi, lam.size)
     values = _solve(chosen, *grid, settings.rtol, lam.size, progress)
@@ -227,7 +231,7 @@ def build(
         name: row.reshape(lam.size, chi.size) for name, row in zip(FIELDS, values, strict=False)
     }
     elastic = _elastic(_elastic_nodes(settings), settings.rtol)
-    table = Table(law, settings, segments, elastic, fields)
+    table = Table(law, settings, tuple(segments), elastic, fields)
     return dataclasses.replace(table, certificate=certify(table))
 
 
@@ -297,10 +301,12 @@ def certify(
     Raises
     ------
     ValueError
-        If there are too few points.
+        If there are too few or too many points, or the seed is negative.
     """
-    if points < 100:
-        raise ValueError(f"points: at least 100 are needed for a percentile, got {points!r}")
+    if not 100 <= points <= 10_000_000:
+        raise ValueError(f"points: at least 100 and at most 10 000 000 are taken, got {points!r}")
+    if seed < 0:
+        raise ValueError(f"seed: must not be negative, got {seed!r}")
     law = find_law(table.law)
     lam, chi = _points(table, points, np.random.default_rng(seed))
     rtol = max(table.settings.rtol / 10, _RANGES["rtol"][0])

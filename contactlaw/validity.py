@@ -6,8 +6,9 @@ import enum
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from contactlaw.arguments import broadcast, check, shaped
 from contactlaw.materials import Material
 from contactlaw.pair import Pair
 
@@ -68,7 +69,7 @@ def limits_exceeded(
     return flags
 
 
-def edge_distance(plate: Material, thickness: float, contact_time: float) -> float:
+def edge_distance(plate: Material, thickness: ArrayLike, contact_time: ArrayLike) -> float | Array:
     """Distance to the nearest edge from which no bending wave returns during the contact [m].
 
     The model's plate is infinite; a wave that comes back from an edge would return energy to the
@@ -79,15 +80,24 @@ def edge_distance(plate: Material, thickness: float, contact_time: float) -> flo
     ----------
     plate : Material
         Material of the plate.
-    thickness : float
+    thickness : array_like
         Thickness of the plate [m].
-    contact_time : float
+    contact_time : array_like
         Duration of the contact [s], as in `Rebound.contact_time`.
 
     Returns
     -------
-    float
-        Distance [m].
+    float or ndarray of float64
+        Distance [m]; ``inf`` for a half-space, which has no bending waves.
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive.
+
+    Notes
+    -----
+    Dispersion of thin plates, as in Cremer, Heckl, Structure-Borne Sound, chapter II.
 
     Examples
     --------
@@ -95,7 +105,8 @@ def edge_distance(plate: Material, thickness: float, contact_time: float) -> flo
     >>> round(cl.edge_distance(cl.material("glass"), 1e-3, 6e-6), 4)
     0.0055
     """
-    stiffness = plate.plane_modulus * thickness**3 / 12.0
-    frequency = math.pi / contact_time
-    group_speed = 2.0 * math.sqrt(frequency * math.sqrt(stiffness / (plate.density * thickness)))
-    return 0.5 * group_speed * contact_time
+    h, time, shape = broadcast(thickness=thickness, contact_time=contact_time)
+    check(thickness=h, contact_time=time)
+    # c_g t/2 with w = pi/t, and D/(rho2 H) = E2' H^2/(12 rho2)
+    wave_speed = math.sqrt(plate.plane_modulus / plate.density)
+    return shaped(np.sqrt(math.pi * time * wave_speed * h / math.sqrt(12.0)), shape)

@@ -266,7 +266,7 @@ def solve(law: Functions, lam: float, y: float, rtol: float) -> Solution:
     return Solution(
         OK if max(steps, more) < _MAX_STEPS else TOO_MANY_STEPS,
         steps + more,
-        -end.u / scale.u,
+        min(-end.u / scale.u, 1.0),  # the error of a step may lift it above
         end.t / y4,
         law.loading(math.sqrt(dm)) * y * math.sqrt(y),
         dm * y,

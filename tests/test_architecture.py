@@ -15,8 +15,9 @@ ROOT = Path(contactlaw.__file__).parent
 KERNELS = [ROOT / "lookup.py", ROOT / "zener.py", *sorted((ROOT / "laws").glob("[a-z]*.py"))]
 # from the bottom to the top; a module imports from the left of itself only
 ORDER = [
-    "_jit", "laws", "lookup", "packing", "zener", "materials", "pair", "validity", "table", "store",
-    "cache", "impact", "arguments", "evaluation", "provider", "spheres", "engines", "cli",
+    "_version", "_jit", "laws", "lookup", "packing", "zener", "arguments", "materials", "pair",
+    "validity", "table", "store", "cache", "impact", "evaluation", "provider", "spheres",
+    "engines", "cli",
 ]  # fmt: skip
 
 

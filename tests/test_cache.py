@@ -122,6 +122,22 @@ def test_a_damaged_file_is_rebuilt(path, expected, damage):
     assert same(store.read(path), expected)  # and the file is whole again
 
 
+def test_another_table_under_the_name_is_rebuilt(place, path, expected):
+    place.mkdir()
+    store.write(
+        table.build("myc", table.Settings(inelasticity_nodes=5, log_overload_step=0.5)), path
+    )
+    assert same(cache.cached("myc", SMALL), expected)
+
+
+def test_an_installation_without_sources(path, expected, monkeypatch):
+    def no_source(module):
+        raise OSError("could not get source code")
+
+    monkeypatch.setattr(cache.inspect, "getsource", no_source)
+    assert same(cache.cached("myc", SMALL), expected)
+
+
 def test_two_processes_build_one_table(place, path, expected):
     barrier, builds = FORK.Barrier(2), FORK.Value("i", 0)
     real = table.build

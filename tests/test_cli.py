@@ -51,6 +51,16 @@ def test_an_infinite_yield_speed_is_valid_json(capsys):
     assert json.loads(capsys.readouterr().out)["yield_speed"] is None
 
 
+def test_cor_of_a_plate_too_thin_for_a_yield_speed(capsys):
+    thin = [*COR, "--radius", "0.9e-3", "--thickness", "0.05e-3", "--speed", "5"]
+    assert main(thin) == 1
+    assert "outside the table" in capsys.readouterr().err
+    assert main([*thin, "--outside", "solve"]) == 0
+    assert "none within the table" in capsys.readouterr().out
+    assert main([*thin, "--solve", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["yield_speed"] is None
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

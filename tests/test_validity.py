@@ -63,3 +63,13 @@ def test_edge_distance_is_the_group_speed_times_half_the_time():
     group_speed = ((1.001 * k) ** 2 - (0.999 * k) ** 2) * root / (0.002 * k)
     expected = group_speed * time / 2
     assert cl.edge_distance(glass, h, time) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("bad", [0.0, -1e-3, math.nan, "thick"])
+def test_edge_distance_refuses(bad):
+    glass = cl.material("glass")
+    with pytest.raises(ValueError, match="^thickness: "):
+        cl.edge_distance(glass, bad, 5e-6)
+    with pytest.raises(ValueError, match="^contact_time: "):
+        cl.edge_distance(glass, 1e-3, bad)
+    assert cl.edge_distance(glass, [1e-3, 4e-3], 5e-6).shape == (2,)

@@ -119,7 +119,7 @@ def law(name: str) -> Law:
     """
     if name not in names():
         near = difflib.get_close_matches(str(name), names(), n=1)
-        hint = f"; did you mean {near[0]!r}?" if near else ""
-        raise ValueError(f"law: unknown law {name!r}{hint} Known laws: {', '.join(names())}.")
+        hint = f"did you mean {near[0]!r}? " if near else ""
+        raise ValueError(f"law: unknown law {name!r}; {hint}known laws: {', '.join(names())}")
     found: Law = importlib.import_module(f"{__name__}.{name}").LAW
     return found
