@@ -1,0 +1,49 @@
+"""The baseline: one coefficient of restitution for every contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from contactlaw import Pair
+
+
+class ConstantRestitution:
+    """What a user would type in without contactlaw; engines take it in place of an `ImpactModel`.
+
+    It has no ``lookup``: a constant tells nothing about contact time, force or where energy goes.
+
+    Parameters
+    ----------
+    pair : Pair
+        Materials; only the mass of the beads follows from them.
+    restitution : float
+        Coefficient of restitution of every contact [-], between 0 and 1.
+
+    Raises
+    ------
+    ValueError
+        If the restitution is not between 0 and 1.
+
+    Examples
+    --------
+    >>> from contactlaw import Pair
+    >>> same = ConstantRestitution(Pair("gamma-alumina", "glass"), 0.9)
+    >>> same.curve(radius=0.9e-3, thickness=0.5e-3)(12.0)
+    0.9
+    """
+
+    law = "constant"
+
+    def __init__(self, pair: Pair, restitution: float) -> None:
+        if not 0.0 <= restitution <= 1.0:
+            raise ValueError(f"constant COR: must lie between 0 and 1, got {restitution!r}")
+        self.pair = pair
+        self.restitution = restitution
+
+    def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
+        """COR as a function of speed, whatever radius and thickness [m]."""
+        return lambda speed: self.restitution
+
+    def sphere_sphere_curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
+        """COR of bead on bead as a function of speed, whatever the radii [m]."""
+        return lambda speed: self.restitution

@@ -1,0 +1,12 @@
+"""The default rain, our own choice: speeds span the yield speed, and something is to be seen.
+
+No imports, so that the command line can show these numbers at once.
+"""
+
+BEADS = 600
+THICKNESSES = (0.5e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3)  # [m]
+RADIUS = (0.5e-3, 0.9e-3)  # [m]; R/H is at most 1.8, where the model is known to hold
+SPEED = (0.5, 15.0)  # [m/s], downwards; gamma-alumina on glass yields from 7.4 m/s
+DURATION = 2.4  # [s]
+SEED = 1
+SPHERE, PLATE = "gamma-alumina", "glass"

@@ -1,0 +1,71 @@
+"""How high beads rebound, measured on their flight, per plate."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from dem_demo.figures import _style
+from dem_demo.measure import first_rebounds
+from dem_demo.reader import Run
+from dem_demo.recorder import CONSTANT
+from dem_demo.report import label
+
+
+def draw(run: Run) -> Figure:
+    """Draw a column per plate; within it beads are sorted from slow to fast."""
+    constant = run.law == CONSTANT
+    figure = _style.figure(
+        10.5,
+        6.2,
+        "A constant COR sends every bead back to the same share of its height"
+        if constant
+        else "How high beads rebound depends on the plate and on speed",
+        f"{_style.source(run)}; first impact of each bead, in each column from slow (left) to fast "
+        "(right)",
+    )
+    axes = figure.add_subplot()
+    fastest = float(np.max(run.collisions["approach_speed"], initial=1.0))
+    for n in range(len(run.scene.plates)):
+        _column(axes, run, n, fastest)
+    _constant_line(axes, run)
+    _style.thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
+    axes.set_ylabel("rebound height / impact height  $v^2/2g$")
+    axes.set_ylim(0.0, 1.05)
+    axes.legend(loc="lower right")
+    return figure
+
+
+def _column(axes: Axes, run: Run, plate: int, fastest: float) -> None:
+    speed, ratio = first_rebounds(run, plate)
+    first = plate == 0
+    x = plate + 0.8 * (speed / fastest - 0.5)
+    axes.scatter(
+        x, ratio, s=16, color=_style.BLUE, alpha=0.6, linewidths=0,
+        label="measured in the run" if first else None,
+    )  # fmt: skip
+    radius = run.scene.beads.radius
+    v = np.linspace(0.02, 1.0, 100) * fastest
+    x = plate + 0.8 * (v / fastest - 0.5)
+    for r in (radius.min(), radius.max()):
+        e = run.model.restitution(v, r, run.scene.plates[plate].thickness)
+        axes.plot(
+            x, np.square(e), color=_style.INK, linewidth=1.4,
+            label="model, smallest and largest bead" if first and r == radius.min() else None,
+        )  # fmt: skip
+
+
+def _constant_line(axes: Axes, run: Run) -> None:
+    """Draw what one COR for all plates would give: the baseline's own, or the run's mean."""
+    if run.constant_cor is not None:
+        cor, text = run.constant_cor, "constant COR {:.2f}"
+    else:
+        on_plates = run.collisions["plate"] >= 0
+        if not on_plates.any():
+            return
+        cor = float(run.collisions["restitution"][on_plates].mean())
+        text = "one COR for all: the run's mean, {:.2f}"
+    axes.axhline(
+        cor**2, color=_style.VERMILION, linestyle="--", linewidth=2.0, label=text.format(cor)
+    )

@@ -1,0 +1,83 @@
+"""COR against impact speed, one panel per plate: impacts of the run on the model's curves."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from dem_demo.figures import _style
+from dem_demo.measure import on_plate
+from dem_demo.reader import Run
+from dem_demo.recorder import CONSTANT
+from dem_demo.report import label
+
+_PER_ROW = 5
+_COLOURS = "cividis"
+
+
+def draw(run: Run) -> Figure:
+    """Draw a panel per plate with a common scale."""
+    plates = run.scene.plates
+    rows = math.ceil(len(plates) / _PER_ROW)
+    constant = run.law == CONSTANT
+    figure = _style.figure(
+        13.0,
+        1.6 + 3.8 * rows,
+        f"One constant COR, {run.constant_cor:g}, misses every plate's curve"
+        if constant
+        else "The COR depends on thickness, bead size and speed",
+        f"{_style.source(run)}; points: impacts of the run, lines: model for the smallest, middle "
+        "and largest bead, triangle: yield speed",
+    )
+    grid = figure.subplots(
+        rows, min(_PER_ROW, len(plates)), sharex=True, sharey=True, squeeze=False
+    )
+    panels = list(grid.flat)
+    radius = run.scene.beads.radius * 1e3
+    colours = ScalarMappable(
+        Normalize(radius.min(), max(radius.max(), radius.min() + 1e-6)), _COLOURS
+    )
+    for n, axes in enumerate(panels):
+        if n < len(plates):
+            _panel(axes, run, n, colours)
+        else:
+            axes.set_visible(False)
+    for axes in grid[:, 0]:
+        axes.set_ylabel("coefficient of restitution")
+    figure.supxlabel("normal impact speed [m/s]", fontsize=13, color=_style.INK)
+    figure.colorbar(colours, ax=panels, pad=0.01, fraction=0.02).set_label("bead radius [mm]")
+    return figure
+
+
+def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
+    thickness = run.scene.plates[plate].thickness
+    axes.set_title(label(thickness), fontweight="bold")
+    radius = run.scene.beads.radius
+    speed = np.linspace(0.2, 1.05 * _fastest(run), 200)
+    ends = radius.min(), 0.5 * (radius.min() + radius.max()), radius.max()
+    for r in ends:
+        colour = colours.to_rgba(r * 1e3)
+        axes.plot(speed, run.model.restitution(speed, r, thickness), color=colour, linewidth=1.6)
+        yields = float(run.model.yield_speed(r, thickness))
+        at = run.model.restitution(yields, r, thickness)
+        axes.plot(yields, at, marker="v", color=colour, markersize=9, markeredgecolor="white")
+    rows = on_plate(run, plate)
+    axes.scatter(
+        rows["approach_speed"],
+        rows["restitution"],
+        c=list(colours.to_rgba(radius[rows["bead"]] * 1e3)),
+        s=12,
+        linewidths=0,
+        alpha=0.8,
+    )
+    axes.set_xlim(0.0, 1.05 * _fastest(run))
+
+
+def _fastest(run: Run) -> float:
+    rows = run.collisions[run.collisions["plate"] >= 0]
+    return float(rows["approach_speed"].max(initial=1.0))

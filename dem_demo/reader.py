@@ -1,0 +1,124 @@
+"""Reading rain.h5 back: everything that the figures and the report need is in the file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import ImpactModel, Material, Pair
+from dem_demo.recorder import CONSTANT, FORMAT, SCHEMA
+from dem_demo.scene import Beads, Floats, Plate, Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One recorded rain.
+
+    Attributes
+    ----------
+    scene : Scene
+        What fell on what.
+    law : str
+        Contact law, "constant" in the baseline.
+    constant_cor : float or None
+        The COR of every contact, in the baseline.
+    engine : str
+        Engine that ran it.
+    collisions : structured ndarray
+        One row per collision; the columns are those of the file.
+    time, position, velocity, status : ndarray
+        Frames (T,) [s], (T, N, 2) [m], (T, N, 2) [m/s], (T, N).
+    """
+
+    scene: Scene
+    law: str
+    constant_cor: float | None
+    engine: str
+    collisions: NDArray[np.void]
+    time: Floats
+    position: NDArray[np.float32]
+    velocity: NDArray[np.float32]
+    status: NDArray[np.uint8]
+
+    @cached_property
+    def model(self) -> ImpactModel:
+        """The impact model; for the baseline the one that it is to be compared with."""
+        pair = Pair(self.scene.sphere_material, self.scene.plate_material)
+        return ImpactModel(pair) if self.law == CONSTANT else ImpactModel(pair, self.law)
+
+
+def read(path: Path) -> Run:
+    """Read a file that `dem-demo rain` has written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    ValueError
+        If the file is something else, of another schema, or incomplete.
+    """
+    with h5py.File(path, "r") as file:
+        attributes = dict(file.attrs)
+        found = attributes.get("format"), attributes.get("schema"), attributes.get("complete")
+        if found != (FORMAT, SCHEMA, True):
+            raise ValueError(
+                f"{path}: not a complete file of format {FORMAT!r}, schema {SCHEMA}, but "
+                f"format {found[0]!r}, schema {found[1]}, complete {found[2]}: run the rain again"
+            )
+        frames = {name: dataset[()] for name, dataset in file["trajectories"].items()}
+        return Run(
+            scene=_scene(file),
+            law=attributes["law"],
+            constant_cor=attributes.get("constant_cor"),
+            engine=attributes["engine"],
+            collisions=_table(file["collisions"]),
+            **frames,
+        )
+
+
+def _scene(file: h5py.File) -> Scene:
+    plates = [file[f"plates/{name}"][()].tolist() for name in ("thickness", "x0", "x1", "y")]
+    fields = ("radius", "emission_time", "position", "velocity")
+    return Scene(
+        beads=Beads(**{name: file[f"beads/{name}"][()] for name in fields}),
+        plates=[Plate(*values) for values in zip(*plates, strict=True)],
+        sphere_material=_material(file["materials/sphere"]),
+        plate_material=_material(file["materials/plate"]),
+        duration=float(file.attrs["duration"]),
+        seed=int(file.attrs["seed"]),
+        frame_rate=float(file.attrs["frame_rate"]),
+    )
+
+
+def _material(group: h5py.Group) -> Material:
+    values = group.attrs
+    strength = values.get("yield_strength")
+    return Material(
+        name=values["name"],
+        youngs_modulus=float(values["youngs_modulus"]),
+        poissons_ratio=float(values["poissons_ratio"]),
+        density=float(values["density"]),
+        yield_strength=None if strength is None else float(strength),
+        source=values["source"],
+    )
+
+
+def _table(group: h5py.Group) -> NDArray[np.void]:
+    columns = {name: dataset[()] for name, dataset in group.items()}
+    kinds = [(name, column.dtype) for name, column in columns.items()]
+    table = np.empty(columns["time"].size, dtype=kinds)
+    for name, column in columns.items():
+        table[name] = column
+    return table

@@ -1,0 +1,191 @@
+"""rain.h5: written frame by frame while it rains, read back by the figures and the report."""
+
+from __future__ import annotations
+
+import datetime
+import platform
+from collections.abc import Mapping
+from importlib.metadata import version
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple, Self
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import Material
+from dem_demo.scene import Floats, Scene
+
+FORMAT, SCHEMA = "contactlaw-rain", 1
+WAITING, FLYING, GONE = 0, 1, 2
+CONSTANT = "constant"  # the law's name where every contact has the same COR
+
+_COLUMNS = {
+    "time": ("s", "end of the engine's step that resolved the impact"),
+    "bead": ("1", "row of the bead in /beads"),
+    "plate": ("1", "row of the plate in /plates, -1: bead on bead"),
+    "other": ("1", "row of the other bead in /beads, -1: bead on plate"),
+    "x": ("m", "contact point, horizontal"),
+    "y": ("m", "contact point, vertical, upwards"),
+    "approach_speed": ("m/s", "normal speed of approach"),
+    "restitution": ("1", "coefficient of restitution"),
+    # What only a model of the impact knows; absent where every contact has the same COR.
+    "contact_time": ("s", "duration of the contact"),
+    "peak_force": ("N", "largest contact force"),
+    "plastic_energy": ("J", "energy lost to plastic flow at the contact"),
+    "wave_energy": ("J", "energy carried off by the bending wave in the plate"),
+}
+
+
+class Frame(NamedTuple):
+    """One instant: position (N, 2) [m], velocity (N, 2) [m/s] and status (N,) of every bead."""
+
+    position: Floats
+    velocity: Floats
+    status: NDArray[np.uint8]
+
+
+class Recorder:
+    """Writes one rain to an HDF5 file; a context manager.
+
+    Parameters
+    ----------
+    path : Path
+        File to create.
+    scene : Scene
+        What is recorded.
+    law : str
+        Name of the contact law, or "constant".
+    engine : tuple of str
+        Name and version of the engine.
+    command : str
+        Command line that made the file.
+    constant_cor : float, optional
+        The COR of every contact, in the baseline.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        scene: Scene,
+        *,
+        law: str,
+        engine: tuple[str, str],
+        command: str,
+        constant_cor: float | None = None,
+    ) -> None:
+        self._file = h5py.File(path, "x")
+        self._frames = 0
+        self._file.attrs.update(_provenance(engine, command))
+        self._file.attrs.update({"law": law, "seed": scene.seed, "duration": scene.duration})
+        self._file.attrs.update({"frame_rate": scene.frame_rate, "time_step": scene.time_step})
+        if constant_cor is not None:
+            self._file.attrs["constant_cor"] = constant_cor
+        _write_scene(self._file, scene)
+        self._trajectories = _create_trajectories(self._file, scene)
+
+    def __enter__(self) -> Self:
+        """Return the recorder."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        """Close the file, and declare it complete if nothing went wrong."""
+        if kind is None:
+            self._file.attrs["complete"] = True
+        self._file.close()
+
+    def frame(self, frame: Frame) -> None:
+        """Append one frame."""
+        for name, values in frame._asdict().items():
+            self._trajectories[name][self._frames] = values
+        self._frames += 1
+
+    def collisions(self, table: NDArray[np.void]) -> None:
+        """Write all collisions, a structured array with the columns of the engine's adapter."""
+        group = self._file.create_group("collisions")
+        for name in table.dtype.names or ():
+            _write(group, name, table[name], *_COLUMNS[name])
+
+
+def _provenance(engine: tuple[str, str], command: str) -> dict[str, object]:
+    return {
+        "format": FORMAT,
+        "schema": SCHEMA,
+        "complete": False,
+        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        "command": command,
+        "engine": engine[0],
+        f"version_{engine[0]}": engine[1],
+        "version_contactlaw": version("contactlaw"),
+        "version_numpy": np.__version__,
+        "version_python": platform.python_version(),
+        "units": "SI: metres, seconds, kilograms, newtons, joules; each dataset names its own",
+    }
+
+
+def _write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
+    data = np.asarray(values)
+    dataset = group.create_dataset(name, data=data, compression="gzip" if data.size else None)
+    dataset.attrs.update({"units": units, "description": description})
+
+
+def _write_scene(file: h5py.File, scene: Scene) -> None:
+    for part, material in (("sphere", scene.sphere_material), ("plate", scene.plate_material)):
+        file.create_group(f"materials/{part}").attrs.update(_attributes(material))
+    plates = file.create_group("plates")
+    for name, description in (
+        ("thickness", "thickness, inf: half-space"),
+        ("x0", "left end"),
+        ("x1", "right end"),
+        ("y", "height of the upper face"),
+    ):
+        _write(plates, name, [getattr(plate, name) for plate in scene.plates], "m", description)
+    beads = file.create_group("beads")
+    for name, units, description in (
+        ("radius", "m", "radius"),
+        ("emission_time", "s", "time at which the bead leaves its nozzle"),
+        ("position", "m", "centre (x, y) at emission"),
+        ("velocity", "m/s", "velocity (x, y) at emission"),
+    ):
+        _write(beads, name, getattr(scene.beads, name), units, description)
+    mass = scene.beads.mass(scene.sphere_material.density)
+    _write(beads, "mass", mass, "kg", "mass of the sphere")
+
+
+def _attributes(material: Material) -> Mapping[str, object]:
+    values: dict[str, object] = {
+        "name": material.name,
+        "youngs_modulus": material.youngs_modulus,
+        "poissons_ratio": material.poissons_ratio,
+        "density": material.density,
+        "source": material.source,
+        "units": "Pa (moduli, strength), kg/m3",
+    }
+    if material.yield_strength is not None:
+        values["yield_strength"] = material.yield_strength
+    return values
+
+
+def _create_trajectories(file: h5py.File, scene: Scene) -> h5py.Group:
+    """Datasets of their final size; frames are written into them one by one."""
+    group = file.create_group("trajectories")
+    frames, beads = scene.frames + 1, scene.beads.radius.size
+    time = np.arange(frames) / scene.frame_rate
+    _write(group, "time", time, "s", "time of the frame")
+    for name, kind, size, units, description in (
+        ("position", "f4", (2,), "m", "centre (x, y); of a bead that is gone: where it left"),
+        ("velocity", "f4", (2,), "m/s", "velocity (x, y); of a bead that is gone: 0"),
+        ("status", "u1", (), "1", "0 waiting for its emission, 1 flying, 2 gone"),
+    ):
+        shape = (frames, beads, *size)
+        dataset = group.create_dataset(
+            name, shape, kind, chunks=(1, beads, *size), compression="gzip"
+        )
+        dataset.attrs.update({"units": units, "description": description})
+    return group

@@ -1,0 +1,278 @@
+"""`dem-demo rain`: its file, its physics, its figures, and what it leaves when it fails."""
+
+import signal
+import subprocess
+import sys
+
+import h5py
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+import contactlaw as cl
+from dem_demo import cli, figures, nozzles
+from dem_demo.measure import plate_rows
+from dem_demo.reader import read
+from dem_demo.scene import GRAVITY
+
+SMALL = ["rain", "--beads", "40", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.3"]
+FILES = {"rain.h5", "summary.txt", *(f"{name}.png" for name in figures.names())}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A small rain, shared by the tests that only read."""
+    out = tmp_path_factory.mktemp("rain") / "out"
+    assert cli.main([*SMALL, "--out", str(out)]) == 0
+    return out
+
+
+@pytest.fixture(scope="module")
+def run(folder):
+    return read(folder / "rain.h5")
+
+
+@pytest.fixture(scope="module")
+def baseline(tmp_path_factory):
+    out = tmp_path_factory.mktemp("baseline") / "out"
+    assert cli.main([*SMALL, "--constant-cor", "0.9", "--out", str(out)]) == 0
+    return out
+
+
+def test_all_files_are_there_and_nothing_else(folder):
+    assert {path.name for path in folder.iterdir()} == FILES
+    assert [path.name for path in folder.parent.iterdir()] == ["out"]
+
+
+def test_file_explains_itself(folder):
+    with h5py.File(folder / "rain.h5") as file:
+        assert file.attrs["format"] == "contactlaw-rain"
+        assert file.attrs["seed"] == 1
+        assert file.attrs["law"] == "myc"
+        for name in ("pymunk", "contactlaw", "numpy", "python"):
+            assert file.attrs[f"version_{name}"]
+        assert "--beads 40" in file.attrs["command"]
+        assert "Table 1" in file["materials/sphere"].attrs["source"]
+        assert np.isinf(file["plates/thickness"][-1])
+        seen = []
+
+        def visit(name, item):
+            if isinstance(item, h5py.Dataset):
+                seen.append(name)
+                assert item.attrs["units"], name
+                assert item.attrs["description"], name
+                assert not np.isnan(item[()]).any(), name
+
+        file.visititems(visit)
+    assert {"collisions/wave_energy", "trajectories/position", "beads/mass"} <= set(seen)
+
+
+def test_each_collision_has_the_cor_of_the_model(run):
+    rows, radius = run.collisions, run.scene.beads.radius
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    on = rows[rows["plate"] >= 0]
+    assert on.size > 30
+    thickness = np.array([plate.thickness for plate in run.scene.plates])[on["plate"]]
+    expected = model.restitution(on["approach_speed"], radius[on["bead"]], thickness)
+    np.testing.assert_allclose(on["restitution"], expected, rtol=0, atol=1e-10)
+    pairs = rows[rows["other"] >= 0]
+    bead = run.scene.sphere_material
+    both = [
+        cl.restitution_sphere_sphere(bead, bead, v, radius[i], radius[j])
+        for v, i, j in zip(pairs["approach_speed"], pairs["bead"], pairs["other"], strict=True)
+    ]
+    np.testing.assert_allclose(pairs["restitution"], both, rtol=0, atol=1e-10)
+
+
+def test_impacts_lie_on_both_sides_of_the_yield_speed(run):
+    speed = run.collisions["approach_speed"][run.collisions["plate"] >= 0]
+    assert (speed < 7.4).any()
+    assert (speed > 9.1).any()
+
+
+def test_energy_is_shared_out(run):
+    rows = run.collisions[run.collisions["plate"] >= 0]
+    mass = run.scene.beads.mass(run.scene.sphere_material.density)[rows["bead"]]
+    energy = 0.5 * mass * rows["approach_speed"] ** 2
+    lost = rows["plastic_energy"] + rows["wave_energy"]
+    np.testing.assert_allclose(lost / energy + rows["restitution"] ** 2, 1.0, atol=1e-5)
+    assert (lost >= 0).all()
+
+
+def test_summary_is_that_of_the_file(folder, run):
+    text = (folder / "summary.txt").read_text()
+    for n, row in enumerate(plate_rows(run)):
+        mine = run.collisions[run.collisions["plate"] == n]
+        assert row.impacts == mine.size
+        assert row.speed == pytest.approx(np.mean(mine["approach_speed"]))
+        assert row.restitution == pytest.approx(np.mean(mine["restitution"]))
+        assert f"{row.impacts:9d} {row.speed:6.2f} m/s      {row.restitution:.3f}" in text
+        assert row.kept + row.wave + row.plastic == pytest.approx(1.0, abs=1e-5)
+    assert "half-space" in text
+
+
+def test_beads_fly_on_parabolas(run):
+    """Between two frames without a collision a bead does what Newton says."""
+    hits = np.sort(run.collisions["time"])
+    checked = 0
+    for k in range(run.time.size - 1):
+        t0, t1 = run.time[k], run.time[k + 1]
+        if np.searchsorted(hits, t0) != np.searchsorted(hits, t1):
+            continue
+        free = (run.status[k] == 1) & (run.status[k + 1] == 1)
+        dt = t1 - t0
+        fall = run.velocity[k, free, 1] * dt - 0.5 * GRAVITY * dt**2
+        moved = run.position[k + 1, free] - run.position[k, free]
+        # the engine's Euler steps fall behind by g dt step/2, below 1e-6 m; float32 rounds at 2e-8
+        np.testing.assert_allclose(moved[:, 1], fall, rtol=0, atol=2e-6)
+        np.testing.assert_allclose(moved[:, 0], run.velocity[k, free, 0] * dt, rtol=0, atol=1e-7)
+        checked += int(free.sum())
+    assert checked > 100
+
+
+def test_the_same_seed_gives_the_same_rain(run, tmp_path):
+    for seed, same in (("1", True), ("2", False)):
+        out = tmp_path / seed
+        assert cli.main([*SMALL, "--seed", seed, "--out", str(out)]) == 0
+        again = read(out / "rain.h5").collisions
+        assert (again.tobytes() == run.collisions.tobytes()) is same
+
+
+def test_baseline(baseline):
+    run = read(baseline / "rain.h5")
+    assert (run.collisions["restitution"] == 0.9).all()
+    assert not {"wave_energy", "plastic_energy"} & set(run.collisions.dtype.names)
+    assert run.constant_cor == 0.9
+    assert "COR 0.9 everywhere" in (baseline / "summary.txt").read_text()
+    assert {path.name for path in baseline.iterdir()} == FILES
+
+
+@pytest.mark.parametrize("which", ["folder", "baseline"])
+@pytest.mark.parametrize("name", figures.names())
+def test_figures_are_pictures(request, which, name):
+    picture = imread(request.getfixturevalue(which) / f"{name}.png")
+    height, width, _ = picture.shape
+    assert width > 1200
+    assert height > 600
+    colours = np.unique(picture[::7, ::7, :3].reshape(-1, 3), axis=0)
+    assert len(colours) > 10  # not blank
+
+
+@pytest.mark.parametrize(
+    ("flags", "message"),
+    [
+        (["--sphere", "gamma-alumnia"], "gamma-alumina"),
+        (["--plate", "no-such-thing"], "unknown material"),
+        (["--sphere", "glass"], "no yield strength"),
+        (["--plates", "-1e-3"], "plates: thickness must be positive"),
+        (["--plates", "0"], "plates: thickness must be positive"),
+        (["--plates", "nan"], "plates: thickness must be positive"),
+        (["--plates", "1e-5"], "too thin"),
+        (["--speed", "nan,5"], "speed: needs MIN,MAX"),
+        (["--speed", "5,1e4"], "outside the table"),
+        (["--radius", "0,1e-3"], "radius: needs MIN,MAX"),
+        (["--beads", "0"], "beads: at least one"),
+        (["--beads", "100000"], "emitted into each other"),
+        (["--seed", "-1"], "seed"),
+        (["--duration", "-1"], "duration"),
+        (["--constant-cor", "1.5"], "between 0 and 1"),
+        (["--constant-cor", "nan"], "between 0 and 1"),
+    ],
+    ids=" ".join,
+)
+def test_refused_physics_is_one_sentence(flags, message, tmp_path, capsys):
+    # as one word, or argparse takes a negative number for an option
+    flags = [f"{flags[0]}={flags[1]}"]
+    assert cli.main([*SMALL, *flags, "--out", str(tmp_path / "out")]) == 1
+    captured = capsys.readouterr()
+    assert captured.err.startswith("dem-demo: ")
+    assert message in captured.err
+    assert captured.out == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [[], ["snow"], ["rain", "--plates", "thin"], ["rain", "--radius", "1e-3"], ["rain", "--x"]],
+    ids=" ".join,
+)
+def test_wrong_usage_is_status_2(argv, capsys):
+    with pytest.raises(SystemExit) as stop:
+        cli.main(argv)
+    assert stop.value.code == 2
+    assert "usage:" in capsys.readouterr().err
+
+
+def test_a_file_in_the_way(tmp_path, capsys):
+    (tmp_path / "out").write_text("mine")
+    assert cli.main([*SMALL, "--out", str(tmp_path / "out")]) == 1
+    assert "is a file" in capsys.readouterr().err
+    assert (tmp_path / "out").read_text() == "mine"
+
+
+@pytest.mark.parametrize("where", ["dem_demo.rain_pymunk.run", "dem_demo.figures.draw_all"])
+def test_a_failure_leaves_the_old_result(where, monkeypatch, tmp_path):
+    old = tmp_path / "out"
+    old.mkdir()
+    (old / "rain.h5").write_text("old")
+
+    def fail(*arguments):
+        raise RuntimeError("in the middle")
+
+    monkeypatch.setattr(where, fail)
+    with pytest.raises(RuntimeError, match="in the middle"):
+        cli.main([*SMALL, "--out", str(old)])
+    assert [path.name for path in tmp_path.rglob("*")] == ["out", "rain.h5"]
+    assert (old / "rain.h5").read_text() == "old"
+
+
+# Says when it is inside the step that is to be interrupted, and stays there.
+SLOW = """
+import sys, time
+import dem_demo.{module} as module
+from dem_demo import cli
+def slow(*arguments):
+    real(*arguments)
+    print("inside", flush=True)
+    time.sleep(60)
+real, module.{function} = module.{function}, slow
+sys.exit(cli.main({argv!r}))
+"""
+
+
+@pytest.mark.parametrize(("module", "function"), [("rain_pymunk", "run"), ("figures", "draw_all")])
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_an_interrupt_leaves_nothing(module, function, number, status, tmp_path):
+    code = SLOW.format(module=module, function=function, argv=[*SMALL, "--out", "out"])
+    process = subprocess.Popen(
+        [sys.executable, "-c", code],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stdout.readline() == "inside\n"
+    assert len(list(tmp_path.iterdir())) == 1  # a temporary folder is being filled
+    process.send_signal(number)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == status
+    assert "interrupted; nothing was written" in errors
+    assert "Traceback" not in errors
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_quiet_without_a_terminal(tmp_path):
+    command = [sys.executable, "-m", "dem_demo", *SMALL, "--out", str(tmp_path / "out")]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "Written to" in done.stdout
+
+
+def test_scene_spreads_over_its_ranges():
+    scene = nozzles.rain(beads=500, seed=7)
+    radius, speed = scene.beads.radius, -scene.beads.velocity[:, 1]
+    assert radius.min() == pytest.approx(0.5e-3, rel=0.05)
+    assert radius.max() == pytest.approx(0.9e-3, rel=0.05)
+    assert speed.max() > 14
+    assert (np.diff(scene.beads.emission_time) >= 0).all()
+    assert scene.top_speed * scene.time_step < radius.min() / 2
