@@ -419,7 +419,10 @@ class ImpactModel:
         table, at = self._table, self._at
 
         def restitution(speed: float) -> float:
-            value = at(table, c_lam, c_chi, speed) if isinstance(speed, float) else math.nan
+            try:
+                value = at(table, c_lam, c_chi, speed)
+            except TypeError:  # no number; said properly below
+                value = math.nan
             if value != value:  # NaN; half the time of a call of isnan
                 (v,) = scalars(speed=speed)
                 return float(self._fields(scales(contact(), v))[0][0, 0])

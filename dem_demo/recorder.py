@@ -123,6 +123,7 @@ def _provenance(engine: tuple[str, str], command: str) -> dict[str, object]:
         "engine": engine[0],
         f"version_{engine[0]}": engine[1],
         "version_contactlaw": version("contactlaw"),
+        "version_numba": version("numba"),
         "version_numpy": np.__version__,
         "version_python": platform.python_version(),
         "units": "SI: metres, seconds, kilograms, newtons, joules; each dataset names its own",

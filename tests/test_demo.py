@@ -49,7 +49,7 @@ def test_file_explains_itself(folder):
         assert file.attrs["format"] == "contactlaw-rain"
         assert file.attrs["seed"] == 1
         assert file.attrs["law"] == "myc"
-        for name in ("pymunk", "contactlaw", "numpy", "python"):
+        for name in ("pymunk", "contactlaw", "numba", "numpy", "python"):
             assert file.attrs[f"version_{name}"]
         assert "--beads 40" in file.attrs["command"]
         assert "Table 1" in file["materials/sphere"].attrs["source"]
