@@ -12,13 +12,12 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw import laws, lookup
-from contactlaw._jit import direct, kernel, uncached
 from contactlaw.arguments import broadcast, check, scalars, shaped
+from contactlaw.compiled import c_function, entries, jitted
 from contactlaw.evaluation import (
     Impact,
     Outside,
@@ -94,7 +93,7 @@ class ImpactModel:
         if self._law.kinks:
             pair.sphere.require_yield_strength(law)
         self._outside: Outside = outside
-        self._on_plate, self._at = _entries()
+        self._on_plate, self._at = entries()
         self.clamped = 0
         self._given_table = table
         self._table = packed_table(self._law, table)
@@ -379,21 +378,11 @@ class ImpactModel:
         >>> [round(u, 3) for u in rebound_speeds((1.0, 5.0), 0.9e-3, 1e-3)]
         [0.932, 4.541]
         """
-        table, c_lam, c_chi = self._table, self._c_lam, self._c_chi
-        on_plate = lookup.restitution_on_plate
-
-        @kernel
-        def cor(speed: float, radius: float, thickness: float) -> float:
-            if uncached() == 0:  # type: ignore[call-arg]  # never so, but the call has to be there
-                return math.nan
-            return on_plate(table, c_lam, c_chi, speed, radius, thickness)
-
-        return cor
+        return jitted(self._table, self._c_lam, self._c_chi)
 
     @functools.cached_property
     def _c_function(self) -> Any:
-        signature = numba.float64(numba.float64, numba.float64, numba.float64)
-        return numba.cfunc(signature)(self.kernel.py_func)  # type: ignore[attr-defined]
+        return c_function(self.kernel)
 
     @property
     def address(self) -> int:
@@ -439,12 +428,3 @@ class ImpactModel:
         fields, flags = tabulated(self._law, self._table, units, self.outside)
         self.clamped += int(np.count_nonzero(flags))
         return fields, flags
-
-
-@functools.cache
-def _entries() -> tuple[Callable[..., float], Callable[..., float]]:
-    """Entries of the scalar kernels for calls from Python; each argument must be a float."""
-    return (
-        direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8, f8)"),
-        direct(lookup.restitution, "float64(float64[::1], f8, f8, f8)"),
-    )
