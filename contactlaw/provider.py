@@ -175,7 +175,10 @@ class ImpactModel:
     def lookup(self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Rebound:
         """Everything about the impact, from the table.
 
-        Parameters, errors and broadcasting are those of `restitution`.
+        Parameters
+        ----------
+        speed, radius, thickness : array_like
+            As in `restitution`.
 
         Returns
         -------
@@ -183,6 +186,11 @@ class ImpactModel:
             Within 1e-5 of `solve`, relatively; its restitution within 1e-6. Just above yield, where
             plastic share and residual compression begin as (chi - 1)^2, that takes a `solve` with
             an rtol below 1e-5 (chi - 1).
+
+        Raises
+        ------
+        ValueError
+            As in `restitution`.
 
         Examples
         --------
@@ -351,7 +359,14 @@ class ImpactModel:
         Returns
         -------
         callable
-            ``curve(speed)`` [m/s] -> COR.
+            ``curve(speed)`` [m/s] -> COR; it raises the same errors as `restitution`.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> round(model.sphere_sphere_curve(1e-3, 1e-3)(20.0), 4)
+        0.9608
         """
         r, o = scalars(radius=radius, other_radius=other_radius)
         twins = Pair(self.pair.sphere, self.pair.sphere)

@@ -115,3 +115,17 @@ def test_a_changed_source_never_yields_an_old_result(tmp_path):
     assert source.count("* (1.0 / 36.0)") == 1
     (package / "lookup.py").write_text(source.replace("* (1.0 / 36.0)", "* (0.5 / 36.0)"))
     assert answers() == [pytest.approx(0.5 * e, rel=1e-12) for e in before]
+
+
+def test_a_full_disk_under_numbas_cache_costs_a_warning_only(tmp_path):
+    code = (
+        "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
+        "import contactlaw as cl; model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'))\n"
+        "print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0])"
+    )
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
+    )
+    assert [float(word) for word in done.stdout.split()] == pytest.approx([0.908113] * 2, abs=1e-6)
+    assert done.stderr.count("numba cannot keep compiled code on disk") == 1
