@@ -12,6 +12,7 @@ array([0.685, 0.908, 0.989])
 """
 
 from contactlaw._version import VERSION as __version__
+from contactlaw.history import ForceHistory
 from contactlaw.impact import Rebound
 from contactlaw.materials import Material, material, materials
 from contactlaw.pair import Pair
@@ -20,6 +21,7 @@ from contactlaw.spheres import restitution_sphere_sphere
 from contactlaw.validity import Validity, edge_distance
 
 __all__ = [
+    "ForceHistory",
     "ImpactModel",
     "Material",
     "Pair",

@@ -20,7 +20,7 @@ from dataclasses import asdict
 from pathlib import Path
 from types import ModuleType
 
-from contactlaw import _jit, laws, packing, store, table, zener
+from contactlaw import _jit, laws, packing, shapes, store, table, zener
 from contactlaw._version import VERSION
 from contactlaw.table import Array, Settings, Table
 
@@ -64,7 +64,7 @@ def file_name(law: str, settings: Settings) -> str:
 
 def _sources(law: laws.Law) -> tuple[ModuleType, ...]:
     """Modules whose edit may change a table: a number that was not raised is no excuse."""
-    return _jit, laws, sys.modules[law.loading.__module__], zener, packing, table
+    return _jit, laws, sys.modules[law.loading.__module__], zener, packing, shapes, table
 
 
 def _source(module: ModuleType) -> str:

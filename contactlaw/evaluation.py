@@ -26,7 +26,7 @@ Flags = NDArray[np.int64]
 Outside = Literal["raise", "solve", "clamp"]
 
 _ELASTIC_EDGE = "myc"  # a law that never yields is the edge chi = 1 of any table; this one ships
-_RTOL = 1e-10  # of the integration that stands in outside the table
+RTOL = 1e-10  # of an integration for which the user names no other
 
 
 class Impact(NamedTuple):
@@ -39,13 +39,13 @@ class Impact(NamedTuple):
 
 
 @functools.cache
-def _default(law: str) -> Array:
-    """Pack the table that ships with the package, or that of the user's cache."""
-    return (store.packaged(law) or cached(law)).packed()
+def _default(law: str) -> Table:
+    """Table that ships with the package, or that of the user's cache."""
+    return store.packaged(law) or cached(law)
 
 
-def packed_table(law: Law, table: Table | Settings | str | os.PathLike[str] | None) -> Array:
-    """Table that serves a law, packed for the kernels: the user's, or the packaged one."""
+def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None) -> Table:
+    """Table that serves a law: the user's, or the packaged one."""
     enable_caching()
     name = law.name if law.kinks else _ELASTIC_EDGE
     if table is None:
@@ -62,7 +62,7 @@ def packed_table(law: Law, table: Table | Settings | str | os.PathLike[str] | No
         )
     if table.law != name:
         raise ValueError(f"table: it belongs to law {table.law!r}, the model needs one of {name!r}")
-    return table.packed()
+    return table
 
 
 def factors(contact: Contact) -> tuple[float, float]:
@@ -108,7 +108,7 @@ def tabulated(law: Law, table: Array, units: Scales, outside: Outside) -> tuple[
         _refuse(table, float(lam[n]), float(y[n]), n)
     if outside == "solve":
         part = Scales(*(np.broadcast_to(value, lam.shape)[beyond] for value in units))
-        out[:, beyond] = solved(law, part, _RTOL)
+        out[:, beyond] = solved(law, part, RTOL)
     else:
         lookup.fields(table, out[5], out[6], True, out[:5])
         clamped[beyond] = int(Validity.CLAMPED)

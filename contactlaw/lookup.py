@@ -125,7 +125,7 @@ def _log_and_root(v: float) -> tuple[float, float]:
 
 
 @kernel(cache=True)
-def _weights(t: float) -> tuple[float, float, float, float]:
+def weights(t: float) -> tuple[float, float, float, float]:
     """Six times the uniform cubic B-splines at t in [0, 1] (de Boor 1978, chapter IX).
 
     All four with the same operations, zeros and all, so that one vector instruction does four.
@@ -195,8 +195,8 @@ def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> flo
 
     Indices are unsigned: no test for a negative one.
     """
-    a0, a1, a2, a3 = _weights(s)
-    b0, b1, b2, b3 = _weights(t)
+    a0, a1, a2, a3 = weights(s)
+    b0, b1, b2, b3 = weights(t)
     q = p + step
     r = q + step
     o = r + step
@@ -212,7 +212,7 @@ def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> flo
 @kernel(cache=True)
 def _other_fields(table: Array, first: int, s: float, t: float) -> tuple[float, float, float]:
     """Contact time [T_H], wave rate and compression ratio."""
-    a, b = _weights(s), _weights(t)
+    a, b = weights(s), weights(t)
     time = wave = ratio = 0.0
     for k in range(4):
         start = int(table[OTHERS_AT]) + 3 * (first + k * int(table[COLUMNS]))

@@ -49,6 +49,14 @@ def spline_coefficients(values: Array) -> Array:
     return c
 
 
+def surface(values: Array, lengths: NDArray[np.int64]) -> Array:
+    """Coefficients of bicubic splines along axes 0 and 1; along 1, one for each segment."""
+    across = spline_coefficients(values).swapaxes(0, 1)
+    parts = np.split(across, np.cumsum(lengths)[:-1])
+    both = np.concatenate([spline_coefficients(part) for part in parts])
+    return both.swapaxes(0, 1)
+
+
 def chebyshev_nodes(count: int) -> Array:
     """Places in [0, 1] at which ln w_m is given along x/x_max."""
     nodes: Array = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
@@ -75,9 +83,7 @@ def pack(
     """Fit splines through the values of a table's nodes and pack them into one array."""
     lengths = np.array([len(nodes) for nodes in segments])
     first_columns = np.cumsum(lengths + 2) - (lengths + 2)
-    across = spline_coefficients(np.stack([fields[name] for name in FIELDS], axis=-1))
-    parts = np.split(across.swapaxes(0, 1), np.cumsum(lengths)[:-1])
-    both = np.concatenate([spline_coefficients(part) for part in parts]).swapaxes(0, 1)
+    both = surface(np.stack([fields[name] for name in FIELDS], axis=-1), lengths)
     # a kernel reads one coefficient too many at the very end, with the weight 0, and needs no test
     padded = np.pad(both, ((0, 1), (0, 1), (0, 0)), mode="edge")
     cor, others = padded[..., 0], padded[..., 1:]
@@ -89,7 +95,7 @@ def pack(
     ]
     header = np.empty(HEADER)
     header[[STRETCH, X_MAX, LOG_CHI_MAX]] = stretch, x_max, segments[-1][-1]
-    header[NODES_PER_X] = (len(across) - 3) / x_max
+    header[NODES_PER_X] = (len(both) - 3) / x_max
     header[[COLUMNS, SEGMENTS]] = cor.shape[1], len(segments)
     start = HEADER + power_series.size + BLOCK * len(blocks)
     header[[COR_AT, OTHERS_AT]] = start, start + cor.size

@@ -10,28 +10,32 @@ import functools
 import math
 import os
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw import laws, lookup
+from contactlaw import history, laws, lookup
 from contactlaw.arguments import broadcast, check, scalars, shaped
 from contactlaw.compiled import c_function, entries, jitted
 from contactlaw.evaluation import (
+    RTOL,
     Impact,
     Outside,
     factors,
-    packed_table,
     rebound,
     solved,
+    table_for,
     tabulated,
 )
+from contactlaw.history import ForceHistory
 from contactlaw.impact import Contact, Rebound, Scales, scales, sphere_on_plate, sphere_on_sphere
 from contactlaw.pair import Pair
 from contactlaw.table import Settings, Table
 
 Array = NDArray[np.float64]
+
+_MOST_SAMPLES = 1_000_000
 
 
 class ImpactModel:
@@ -96,7 +100,8 @@ class ImpactModel:
         self._on_plate, self._at = entries()
         self.clamped = 0
         self._given_table = table
-        self._table = packed_table(self._law, table)
+        self._whole_table = table_for(self._law, table)
+        self._table = self._whole_table.packed
         self._c_lam, self._c_chi = factors(
             sphere_on_plate(pair, self._law, np.ones(()), np.ones(()))
         )
@@ -276,6 +281,65 @@ class ImpactModel:
         units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
         fields = solved(self._law, units, rtol)
         return rebound(self.pair, self._law, units, fields, Impact(v, r, h, shape))
+
+    def force_history(
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        samples: int = 256,
+        method: Literal["table", "solve"] = "table",
+    ) -> ForceHistory:
+        """Force, compression and displacement of the plate over one contact, or over many.
+
+        Parameters
+        ----------
+        speed, radius, thickness : array_like
+            As in `restitution`.
+        samples : int, optional
+            Number of even times from first touch to separation, at least 2.
+        method : {"table", "solve"}, optional
+            Shapes of contacts kept in the table, or integration of the equation.
+
+        Returns
+        -------
+        ForceHistory
+            Arrays with the samples along the last axis. By ``"table"`` within 1e-4 of the peak
+            force of those by ``"solve"``.
+
+        Raises
+        ------
+        ValueError
+            As in `restitution`; too few samples, or an unknown method.
+
+        Notes
+        -----
+        The integral of the force is the change of the sphere's momentum, m V0 (1 + e).
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> contact = model.force_history(speed=12.0, radius=0.9e-3, thickness=1e-3, samples=5)
+        >>> contact.force.round(1)
+        array([ 0. , 18.5, 26.4, 12.4,  0. ])
+        >>> model.force_history([5.0, 12.0, 15.0], 0.9e-3, 1e-3).time.shape
+        (3, 256)
+        """
+        if not (isinstance(samples, int | np.integer) and 2 <= samples <= _MOST_SAMPLES):
+            raise ValueError(f"samples: must be an integer from 2 to 1 000 000, got {samples!r}")
+        if method not in ("table", "solve"):
+            raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
+        v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
+        check(speed=v, radius=r, thickness=h)
+        units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
+        if method == "solve":
+            fields = solved(self._law, units, RTOL)
+            contacts = history.solved(self._law, fields, samples, RTOL)
+        else:
+            fields, _ = self._fields(units)
+            contacts = history.tabulated(self._law, self._whole_table, fields, samples, RTOL)
+        return history.with_units(contacts, units, shape)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | Array:
         """Speed V_Y [m/s] from which the bead yields on this plate; ``inf`` for an elastic law.

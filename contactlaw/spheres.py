@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw import laws
 from contactlaw.arguments import broadcast, check, shaped
-from contactlaw.evaluation import packed_table, tabulated
+from contactlaw.evaluation import table_for, tabulated
 from contactlaw.impact import scales, sphere_on_sphere
 from contactlaw.materials import Material
 from contactlaw.pair import Pair
@@ -67,5 +67,5 @@ def restitution_sphere_sphere(
         pair, r, o = Pair(pair.plate, pair.sphere), o, r
     chosen = laws.law(law)
     units = scales(sphere_on_sphere(pair, chosen, r, o), v)
-    fields, _ = tabulated(chosen, packed_table(chosen, None), units, "raise")
+    fields, _ = tabulated(chosen, table_for(chosen, None).packed, units, "raise")
     return shaped(fields[0], shape)

@@ -22,12 +22,12 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import laws
+from contactlaw import laws, shapes
 from contactlaw._version import VERSION
-from contactlaw.table import FIELDS, Certificate, Settings, Table, axes
+from contactlaw.table import FIELDS, Certificate, Settings, Table, axes, shape_axes
 
 FORMAT = "contactlaw table"
-SCHEMA = 1
+SCHEMA = 2
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 
 
@@ -88,6 +88,7 @@ def _fill(file: h5py.File, table: Table) -> None:
         contactlaw_version=VERSION,
         **asdict(table.settings),
     )
+    rows, *columns = shape_axes(law, table.settings)
     datasets = {
         "inelasticity": (table.inelasticity, "lambda of the rows of fields/ [-]"),
         "kinks": (law.kinks, "compressions at which the law is not smooth [d_Y]"),
@@ -98,6 +99,10 @@ def _fill(file: h5py.File, table: Table) -> None:
             for k, nodes in enumerate(table.segments)
         },
         **{f"fields/{name}": (table.fields[name], FIELDS[name]) for name in FIELDS},
+        "shapes/inelasticity": (rows, "lambda of the rows of shapes/states [-]"),
+        "shapes/log_overload": (np.concatenate(columns), "ln chi of its columns [-]"),
+        "shapes/shares": (shapes.SHARES, "of the largest root compression, up and down again [-]"),
+        "shapes/states": (table.shapes, "when it passes them: times [T_H], speeds [V0]"),
     }
     for name, (values, description) in datasets.items():
         file[name] = values
@@ -149,7 +154,7 @@ def _parse(content: bytes) -> Table:
         if found != {"format": FORMAT, "schema": SCHEMA, "complete": True}:
             raise ValueError(f"it is not a complete table of schema {SCHEMA}, but {found}")
         table = _from_file(file)
-    arrays = [*table.segments, table.elastic_compression, *table.fields.values()]
+    arrays = [*table.segments, table.elastic_compression, *table.fields.values(), table.shapes]
     if not all(np.isfinite(values).all() for values in arrays):
         raise ValueError("it holds values that are not finite")
     if not ((table.fields["restitution"] >= 0.0) & (table.fields["restitution"] <= 1.0)).all():
@@ -168,6 +173,8 @@ def _from_file(file: h5py.File) -> Table:
     if elastic.shape != (settings.elastic_nodes,):
         raise ValueError(f"its elastic_compression has the shape {elastic.shape}")
     _compare_axes(file, settings, segments)
+    states = file["shapes/states"][()]
+    _compare_shapes(file, settings, states)
     certificate = file.attrs.get("certificate")
     return Table(
         law=str(file.attrs["law"]),
@@ -175,6 +182,7 @@ def _from_file(file: h5py.File) -> Table:
         segments=segments,
         elastic_compression=elastic,
         fields=fields,
+        shapes=states,
         certificate=None if certificate is None else Certificate(**json.loads(certificate)),
     )
 
@@ -190,6 +198,23 @@ def _compare_axes(
     stored = (file["inelasticity"][()], *segments)
     if not all(np.array_equal(*pair) for pair in zip(stored, expected, strict=True)):
         raise ValueError("its axes are not those of its settings")
+
+
+def _compare_shapes(
+    file: h5py.File, settings: Settings, states: NDArray[np.float32]
+) -> None:
+    """Refuse shapes on another grid than that of the settings and this version."""
+    rows, *columns = shape_axes(laws.law(str(file.attrs["law"])), settings)
+    expected = {
+        "inelasticity": rows,
+        "log_overload": np.concatenate(columns),
+        "shares": shapes.SHARES,
+    }
+    for name, values in expected.items():
+        if not np.array_equal(file[f"shapes/{name}"][()], values):
+            raise ValueError(f"its shapes/{name} is not that of its settings")
+    if states.shape != (rows.size, expected["log_overload"].size, 2, shapes.SIZE):
+        raise ValueError(f"its shapes/states has the shape {states.shape}")
 
 
 @functools.cache

@@ -2,12 +2,14 @@
 
 Axes: the inelasticity lambda, and ln chi, the logarithm of the overload. Nodes are uniform in
 x = lambda/(lambda + c) and, between two kinks of the law, in ln chi; a kink is a node twice, once
-as the end of a segment and once as the beginning of the next. See `contactlaw.lookup`.
+as the end of a segment and once as the beginning of the next. See `contactlaw.lookup`. Shapes of
+force histories have a coarser grid of the same kind, see `contactlaw.shapes`.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import functools
 import math
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -17,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import lookup, packing, zener
+from contactlaw import lookup, packing, shapes, zener
 from contactlaw.laws import Law
 from contactlaw.laws import law as find_law
 
@@ -32,7 +34,7 @@ FIELDS = {
 }
 
 
-# The bounds of a certificate: COR absolutely, the other fields relatively.
+# The bounds of a certificate: COR absolutely, a force history by its peak, the others relatively.
 BOUNDS = {
     "restitution": 1e-6,
     "contact_time": 1e-5,
@@ -41,11 +43,13 @@ BOUNDS = {
     "residual_compression": 1e-5,
     "plastic_fraction": 1e-5,
     "wave_fraction": 1e-5,
+    "force_history": 1e-4,
 }
 # Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2: no number of digits
 # of chi gives them relatively there. Below this they count absolutely (chi - 1 < 2e-6).
 _SMALLEST = 1e-12
 _PART = 1000  # points of a certificate that a thread solves at a time, 0.1 s
+_SAMPLES = 33  # of a force history that is compared
 _NEAR_KINK = 0.01  # in ln chi; a share of the certificate's points lies this near on either side
 
 
@@ -53,7 +57,8 @@ _NEAR_KINK = 0.01  # in ln chi; a share of the certificate's points lies this ne
 class Certificate:
     """How far lookups are from the solver, at random points off the grid.
 
-    Errors of COR are absolute, those of the other fields relative.
+    Errors of COR are absolute, those of force histories (the largest at any time) in terms of the
+    peak force, those of the other fields relative.
 
     Parameters
     ----------
@@ -132,20 +137,29 @@ class Table:
     segments: tuple[Array, ...]  # ln chi of the nodes of each segment
     elastic_compression: Array  # w_m at `elastic_inelasticity` [V0 T_H]
     fields: dict[str, Array]  # name -> (inelasticity nodes, nodes of all segments)
+    shapes: NDArray[np.float32]  # on `shape_axes`: (rows, columns, 2, states)
     certificate: Certificate | None = None
 
     @property
     def inelasticity(self) -> Array:
         """Nodes along lambda."""
-        return _rows(self.settings)
+        return axes(find_law(self.law), self.settings)[0]
 
     @property
     def elastic_inelasticity(self) -> Array:
         """Nodes along lambda of w_m."""
         return _elastic_nodes(self.settings)
 
+    @functools.cached_property
+    def packed_shapes(self) -> shapes.Shapes:
+        """Splines through the shapes of force histories."""
+        lam_max = self.settings.largest_inelasticity
+        _, *segments = shape_axes(find_law(self.law), self.settings)
+        return shapes.pack(self.settings.stretch, lam_max, tuple(segments), self.shapes)
+
+    @functools.cached_property
     def packed(self) -> Array:
-        """Pack splines through the values for the lookup kernels."""
+        """Splines through the values, for the lookup kernels."""
         return packing.pack(
             self.settings.stretch,
             self.settings.largest_inelasticity,
@@ -155,8 +169,8 @@ class Table:
         )
 
 
-def _rows(settings: Settings) -> Array:
-    nodes = _inelasticity(settings, np.linspace(0.0, 1.0, settings.inelasticity_nodes))
+def _rows(settings: Settings, count: int) -> Array:
+    nodes = _inelasticity(settings, np.linspace(0.0, 1.0, count))
     nodes[-1] = settings.largest_inelasticity  # not one rounding error beyond
     return nodes
 
@@ -172,18 +186,24 @@ def _inelasticity(settings: Settings, share: Array) -> Array:
     return np.asarray(c * x / (1.0 - x))
 
 
-def _segments(law: Law, settings: Settings) -> tuple[Array, ...]:
+def _segments(law: Law, settings: Settings, step: float) -> tuple[Array, ...]:
     bounds = [math.log(kink) for kink in law.kinks if kink < settings.largest_overload]
     bounds.append(math.log(settings.largest_overload))
     return tuple(
-        np.linspace(low, high, max(5, 1 + math.ceil((high - low) / settings.log_overload_step)))
+        np.linspace(low, high, max(5, 1 + math.ceil((high - low) / step)))
         for low, high in zip(bounds[:-1], bounds[1:], strict=True)
     )
 
 
 def axes(law: Law, settings: Settings) -> tuple[Array, ...]:
     """Nodes along lambda, then those along ln chi of each segment."""
-    return (_rows(settings), *_segments(law, settings))
+    rows = _rows(settings, settings.inelasticity_nodes)
+    return (rows, *_segments(law, settings, settings.log_overload_step))
+
+
+def shape_axes(law: Law, settings: Settings) -> tuple[Array, ...]:
+    """Nodes of the shapes along lambda, then those along ln chi of each segment."""
+    return (_rows(settings, shapes.ROWS), *_segments(law, settings, shapes.STEP))
 
 
 def _no_progress(rows: Iterator[Array], total: int) -> Iterable[Array]:
@@ -231,7 +251,8 @@ def build(
         name: row.reshape(lam.size, chi.size) for name, row in zip(FIELDS, values, strict=False)
     }
     elastic = _elastic(_elastic_nodes(settings), settings.rtol)
-    table = Table(law, settings, tuple(segments), elastic, fields)
+    outlines = _shapes(chosen, settings)
+    table = Table(law, settings, tuple(segments), elastic, fields, outlines)
     return dataclasses.replace(table, certificate=certify(table))
 
 
@@ -246,8 +267,8 @@ def _solve(
     """Fields (5, n) of `zener.solve_overloads` at many points, in parallel parts."""
     functions, hertz = law.functions, find_law("hertz").functions
 
-    def solve(part: tuple[Array, Array]) -> Array:
-        out = np.empty((5, part[0].size))
+    def solve(part: Array) -> Array:
+        out = np.empty((5, part.shape[1]))
         status, n = zener.solve_overloads(functions, hertz, *part, rtol, out)
         if status != zener.OK:
             raise RuntimeError(
@@ -256,13 +277,41 @@ def _solve(
             )
         return out
 
-    solve((lam[:1], chi[:1]))  # compile once, before the threads ask for it
-    pieces = zip(np.array_split(lam, parts), np.array_split(chi, parts), strict=True)
+    return _in_parts(solve, np.stack((lam, chi)), parts, progress)
+
+
+def _in_parts(
+    function: Callable[[Array], Array], points: Array, parts: int, progress: Progress
+) -> Array:
+    """Apply a function that lets other threads run to columns of points, on all cores."""
+    function(points[:, :1])  # compile once, before the threads ask for it
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
-        return np.concatenate(list(progress(pool.map(solve, pieces), parts)), axis=1)
+        pieces = pool.map(function, np.array_split(points, parts, axis=1))
+        return np.concatenate(list(progress(pieces, parts)), axis=-1)
     finally:  # on Ctrl-C, wait for the parts that run and start no others
         pool.shutdown(cancel_futures=True)
+
+
+def _shapes(law: Law, settings: Settings) -> NDArray[np.float32]:
+    """Shapes at the nodes of `shape_axes`; their error is far above that of single precision."""
+    lam, *segments = shape_axes(law, settings)
+    chi = np.exp(np.concatenate(segments))
+    out = np.empty((lam.size, chi.size, 2, shapes.SIZE), dtype=np.float32)
+    states = np.empty((2, shapes.SIZE + 1))
+    for row, w_m in enumerate(_elastic(lam, settings.rtol)):
+        for column in range(chi.size):
+            y = w_m / chi[column]
+            status = zener.shape(
+                law.functions, lam[row], y, settings.rtol, shapes.SHARES, states
+            )
+            if status != zener.OK:
+                raise RuntimeError(
+                    f"table for law {law.name!r}: the shape at lambda = {lam[row]:.6g}, chi = "
+                    f"{chi[column]:.6g} did not solve: {zener.MESSAGES[status]}"
+                )
+            out[row, column] = states[:, :-1]
+    return out
 
 
 def _elastic(lam: Array, rtol: float) -> Array:
@@ -310,15 +359,24 @@ def certify(
     law = find_law(table.law)
     lam, chi = _points(table, points, np.random.default_rng(seed))
     rtol = max(table.settings.rtol / 10, _RANGES["rtol"][0])
-    exact = _solve(law, lam, chi, rtol, -(-lam.size // _PART), progress)
+    parts = -(-lam.size // _PART)
+    exact = _solve(law, lam, chi, rtol, parts, progress)
     looked = np.empty_like(exact)
     y = exact[4] / chi
-    lookup.fields(table.packed(), lam, y, True, looked)
+    lookup.fields(table.packed, lam, y, True, looked)
     errors = {}
     both = (_outcome(law, lam, y, values) for values in (looked, exact))
-    for name, ours, truth in zip(BOUNDS, *both, strict=True):
+    for name, ours, truth in zip(BOUNDS, *both, strict=False):
         scale = 1.0 if name == "restitution" else np.maximum(np.abs(truth), _SMALLEST)
         errors[name] = np.abs(ours - truth) / scale
+
+    def deviations(fields: Array) -> Array:
+        out = np.empty(fields.shape[1])
+        shapes.deviations(law.functions, table.packed_shapes, fields, rtol, _SAMPLES, out)
+        return out
+
+    fields = np.concatenate((looked, [lam, y]))
+    errors["force_history"] = _in_parts(deviations, fields, parts, _no_progress)
     return Certificate(
         points=lam.size,
         seed=seed,

@@ -45,7 +45,8 @@ MESSAGES = {
 _LANDED = (
     1e-9  # an event is met to this; compression and time are stationary there, so err by its square
 )
-_NONE, _TURN, _LEVEL = 0, 1, 2  # events: end of loading; a root compression is reached
+# events: end of loading; a root compression is reached; a time is
+_NONE, _TURN, _LEVEL, _TIME = 0, 1, 2, 3
 
 
 class Solution(NamedTuple):
@@ -54,6 +55,7 @@ class Solution(NamedTuple):
     status: int
     steps: int
     restitution: float
+    loading_time: float  # until the largest compression
     contact_time: float
     peak_force: float
     peak_compression: float
@@ -84,10 +86,11 @@ class _Branch(NamedTuple):
 
 
 class _Scale(NamedTuple):
-    """Size of q and u in one impact, against which errors and events are measured."""
+    """Size of q, u and t in one impact, against which errors and events are measured."""
 
     q: float
     u: float
+    t: float
     per_q: float  # 1/(q tolerance)
     per_u: float  # 1/(u tolerance)
 
@@ -147,22 +150,29 @@ def _step(
 
 
 @kernel
-def _gap(event: int, state: _State, level: float, scale: _Scale) -> float:
+def _gap(event: int, state: _State, level: float, until: float, scale: _Scale) -> float:
     """How far an event is off, in units of its scale; its sign changes there."""
-    return state.dq / scale.u if event == _TURN else (level - state.q) / scale.q
+    if event == _TURN:
+        return state.dq / scale.u
+    return (level - state.q) / scale.q if event == _LEVEL else (until - state.t) / scale.t
 
 
 @kernel
-def _guess(event: int, state: _State, trial: _State, h: float, level: float) -> float:
-    """Step to an event between two points, by the cubic through q and dq/ds at both."""
-    rise = trial.q - state.q
-    c1, c2 = h * state.dq, 3.0 * rise - h * (2.0 * state.dq + trial.dq)
-    c3 = h * (state.dq + trial.dq) - 2.0 * rise
+def _guess(
+    event: int, state: _State, trial: _State, h: float, level: float, until: float
+) -> float:
+    """Step to an event between two points, by the cubic through q or t and its rate at both."""
+    value, rise, rate, last = state.q, trial.q - state.q, state.dq, trial.dq
+    if event == _TIME:  # dt/ds = 2 q
+        value, rise, rate, last = state.t, trial.t - state.t, 2.0 * state.q, 2.0 * trial.q
+        level = until
+    c1, c2 = h * rate, 3.0 * rise - h * (2.0 * rate + last)
+    c3 = h * (rate + last) - 2.0 * rise
     if event == _TURN:  # root of c1 + 2 c2 x + 3 c3 x^2, without cancellation
         return h * c1 / (math.sqrt(max(0.0, c2 * c2 - 3.0 * c1 * c3)) - c2)
-    x = (level - state.q) / rise
+    x = (level - value) / rise
     for _ in range(3):
-        x -= (((c3 * x + c2) * x + c1) * x - (level - state.q)) / ((3 * c3 * x + 2 * c2) * x + c1)
+        x -= (((c3 * x + c2) * x + c1) * x - (level - value)) / ((3 * c3 * x + 2 * c2) * x + c1)
     return h * x
 
 
@@ -175,10 +185,11 @@ def _phase(
     h: float,
     scale: _Scale,
     level: float,
+    until: float = math.inf,
 ) -> tuple[_State, int, float, int]:
     """Integrate loading to its end or to the kink `level`; unloading to q = level = 0.
 
-    Returns the point reached, the event, a step to go on with and the number of steps. An event
+    Or to the time `until`, if that is before. Returns the point reached, the event, a step to go on with and the number of steps. An event
     is met by shortening the step that passes it: regula falsi with Illinois' weights.
     """
     event, following = _NONE, h
@@ -193,13 +204,15 @@ def _phase(
                 event = _TURN
             elif (trial.q > level) if branch.loading else (trial.q < level):
                 event = _LEVEL
+            elif trial.t > until:
+                event = _TIME
             else:
                 state = trial
                 h *= min(5.0, 0.9 / math.sqrt(math.sqrt(max(error, 1e-30))))
                 continue
             following = h
         else:
-            gap = _gap(event, trial, level, scale)
+            gap = _gap(event, trial, level, until, scale)
             if abs(gap) > _LANDED:
                 if gap * gap_b < 0.0:
                     a, gap_a = b, gap_b
@@ -208,12 +221,15 @@ def _phase(
                 b, gap_b = h, gap
                 h = b - gap_b * (b - a) / (gap_b - gap_a)
                 continue
-            if event == _LEVEL or trial.q <= level:
+            if event == _TURN and trial.q > level:
+                event = _LEVEL  # the step went over the kink before it turned: land there instead
+            elif event != _TIME and trial.t > until:
+                event = _TIME
+            else:
                 return trial, event, following, steps
-            event = _LEVEL  # the step went over the kink before it turned: land there instead
-        a, gap_a = 0.0, _gap(event, state, level, scale)
-        b, gap_b = h, _gap(event, trial, level, scale)
-        h = _guess(event, state, trial, h, level)
+        a, gap_a = 0.0, _gap(event, state, level, until, scale)
+        b, gap_b = h, _gap(event, trial, level, until, scale)
+        h = _guess(event, state, trial, h, level, until)
     return state, event, h, _MAX_STEPS
 
 
@@ -239,42 +255,126 @@ def _load(law: Functions, beta: float, scale: _Scale, h: float) -> tuple[_State,
 
 
 @kernel
+def _turn(law: Functions, beta: float, top: _State) -> tuple[_Branch, _State]:
+    """Unloading curve from the largest compression, and the state with its root compression."""
+    dm = top.q * top.q
+    q = math.sqrt(dm - law.residual(dm))
+    branch = _Branch(False, *law.unloading_curve(dm))
+    dq, du, f = _rates(law, beta, branch, q, top.u)
+    return branch, _State(q, top.u, top.t, top.j, dq, du, f)
+
+
+@kernel
 def _scale(y: float, rtol: float) -> tuple[_Scale, float]:
     """Scales of an impact in the law's units, and a first step that the error control accepts."""
     y4 = math.sqrt(math.sqrt(y))
     q, u = 1.0 / (y4 * y4), 1.0 / (y * y4)
-    return _Scale(q, u, 1.0 / (q * rtol), 1.0 / (u * rtol)), 0.7 * rtol**0.2 * y4**3
+    return _Scale(q, u, y4, 1.0 / (q * rtol), 1.0 / (u * rtol)), 0.7 * rtol**0.2 * y4**3
 
 
 @kernel
 def solve(law: Functions, lam: float, y: float, rtol: float) -> Solution:
     """One impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol the error allowed per step."""
     if not (0.0 <= lam < math.inf and 0.0 < y < math.inf):
-        return Solution(BAD_INPUT, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Solution(BAD_INPUT, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     scale, h = _scale(y, rtol)
     y4 = math.sqrt(math.sqrt(y))
     beta = lam * y4
     top, h, steps = _load(law, beta, scale, h)
     dm = top.q * top.q
-    dr = law.residual(dm)
-    q = math.sqrt(dm - dr)
-    branch = _Branch(False, *law.unloading_curve(dm))
-    dq, du, f = _rates(law, beta, branch, q, top.u)
-    top = _State(q, top.u, top.t, top.j, dq, du, f)
+    branch, top = _turn(law, beta, top)
     end, _, _, more = _phase(law, beta, branch, top, h, scale, 0.0)
     wave_rate = 2.0 * y4 * end.j / scale.u**2
     return Solution(
         OK if max(steps, more) < _MAX_STEPS else TOO_MANY_STEPS,
         steps + more,
         min(-end.u / scale.u, 1.0),  # the error of a step may lift it above
+        top.t / y4,
         end.t / y4,
         law.loading(math.sqrt(dm)) * y * math.sqrt(y),
         dm * y,
-        dr * y,
+        law.residual(dm) * y,
         2.0 * law.dissipation(dm) / scale.u**2,
         lam * wave_rate,
         wave_rate,
     )
+
+
+@kernel
+def history(
+    law: Functions, lam: float, y: float, rtol: float, time: Array, out: Array
+) -> None:
+    """Contact at rising times [T_H] into out (3, n): force, compression, speed of the sphere.
+
+    For lam and y that `solve` has solved. After the end of contact the state at its end holds.
+    """
+    scale, h = _scale(y, rtol)
+    beta = lam * scale.t
+    branch, state, kink, residual = _Branch(True, 0.0, 0.0), _touch(law, beta, scale), 0, 0.0
+    for n in range(time.size):
+        until, event = time[n] * scale.t, _NONE
+        while event != _TIME and state.t < until:
+            level = math.sqrt(law.kinks[kink]) if branch.loading else 0.0
+            state, event, h, _ = _phase(law, beta, branch, state, h, scale, level, until)
+            if branch.loading and event == _LEVEL and state.dq > 0.0:
+                kink += 1
+            elif branch.loading and event != _TIME:
+                residual = law.residual(state.q * state.q)
+                branch, state = _turn(law, beta, state)
+            elif event == _LEVEL:
+                break  # parted
+        out[0, n] = state.f * y * math.sqrt(y)
+        out[1, n] = (residual + state.q * state.q) * y
+        out[2, n] = state.u / scale.u
+
+
+@kernel
+def histories(
+    law: Functions, duration: Array, lam: Array, y: Array, rtol: float, out: Array
+) -> None:
+    """Contacts at even times into out (4, n, samples): see `contactlaw.shapes.sample`."""
+    last = out.shape[2] - 1
+    states = np.empty((3, last + 1))
+    for n in range(lam.size):
+        for i in range(last + 1):
+            out[0, n, i] = i * duration[n] / last
+        # an elastic law has y = inf; any scale does for it
+        history(law, lam[n], y[n] if y[n] < math.inf else 1.0, rtol, out[0, n], states)
+        out[1, n], out[2, n] = states[0], states[1]
+        out[3, n] = lam[n] * (1.0 - states[2])
+        out[1, n, last] = 0.0
+
+
+@kernel
+def shape(law: Functions, lam: float, y: float, rtol: float, shares: Array, out: Array) -> int:
+    """Times [T_H] and speeds [V0] at which q passes given shares of its largest value.
+
+    Into out (2, 2 n): up the rising shares, of which the last is 1, and down to 0, separation.
+    """
+    if not (0.0 <= lam < math.inf and 0.0 < y < math.inf):
+        return BAD_INPUT
+    scale, h = _scale(y, rtol)
+    beta = lam * scale.t
+    top, _, steps = _load(law, beta, scale, h)
+    branch, state, kink = _Branch(True, 0.0, 0.0), _touch(law, beta, scale), 0
+    for n in range(shares.size - 1):
+        q = shares[n] * top.q
+        while state.q < q and steps < _MAX_STEPS:
+            level = min(q, math.sqrt(law.kinks[kink]))
+            state, _, h, more = _phase(law, beta, branch, state, h, scale, level)
+            kink += level < q
+            steps += more
+        out[0, n], out[1, n] = state.t / scale.t, state.u / scale.u
+    last = shares.size - 1
+    out[0, last], out[1, last] = top.t / scale.t, top.u / scale.u
+    branch, state = _turn(law, beta, top)
+    whole = state.q
+    for n in range(last, -1, -1):
+        q = shares[n - 1] * whole if n > 0 else 0.0
+        state, _, h, more = _phase(law, beta, branch, state, h, scale, q)
+        steps += more
+        out[0, 2 * last + 1 - n], out[1, 2 * last + 1 - n] = state.t / scale.t, state.u / scale.u
+    return OK if steps < _MAX_STEPS else TOO_MANY_STEPS
 
 
 @kernel

@@ -15,8 +15,8 @@ ROOT = Path(contactlaw.__file__).parent
 KERNELS = [ROOT / "lookup.py", ROOT / "zener.py", *sorted((ROOT / "laws").glob("[a-z]*.py"))]
 # from the bottom to the top; a module imports from the left of itself only
 ORDER = [
-    "_version", "_jit", "laws", "lookup", "packing", "zener", "compiled", "arguments", "materials",
-    "pair", "validity", "table", "store", "cache", "impact", "evaluation", "provider", "spheres",
+    "_version", "_jit", "laws", "lookup", "packing", "zener", "shapes", "compiled", "arguments", "materials",
+    "pair", "validity", "table", "store", "cache", "impact", "evaluation", "history", "provider", "spheres",
     "engines", "cli",
 ]  # fmt: skip
 

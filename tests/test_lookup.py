@@ -34,4 +34,4 @@ def test_weights_are_the_b_splines():
         # the uniform cubic B-spline on [0, 4]; each weight is one of its four pieces
         spline = BSpline.basis_element(np.arange(5.0), extrapolate=False)
         expected = [float(spline(3.0 - k + t)) if 3.0 - k + t < 4.0 else 0.0 for k in range(4)]
-        assert np.array(lookup._weights(t)) / 6 == pytest.approx(expected, abs=1e-15)
+        assert np.array(lookup.weights(t)) / 6 == pytest.approx(expected, abs=1e-15)

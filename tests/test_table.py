@@ -50,7 +50,7 @@ def errors(law, packed, lam, chi):
 
 @pytest.mark.parametrize("law", YIELDING)
 def test_packaged_table_against_the_solver(law):
-    packed = store.packaged(law).packed()
+    packed = store.packaged(law).packed
     worst = errors(law, packed, *random_points(law, 2000, table.Settings(), seed=7))
     assert worst[0] < 1e-6  # the design's target for COR
     assert (worst[1:] < 1e-5).all()  # and, relatively, for the rest
@@ -64,7 +64,7 @@ def test_spline_error_falls_with_the_fourth_power():
     lam = 5 * rng.uniform(0, 1, 400) ** 2
     chi = np.exp(rng.uniform(0, math.log(2.14 / 0.68), 400))
     coarse, fine = (
-        errors("myc", table.build("myc", settings).packed(), lam, chi)[0]
+        errors("myc", table.build("myc", settings).packed, lam, chi)[0]
         for settings in (
             table.Settings(inelasticity_nodes=41, log_overload_step=0.075),
             table.Settings(inelasticity_nodes=81, log_overload_step=0.0375),
@@ -96,7 +96,7 @@ def test_largest_speed_of_the_target_is_inside():
 
 
 def test_restitution_falls_with_overload_and_with_inelasticity():
-    packed = store.packaged("myc").packed()
+    packed = store.packaged("myc").packed
     lam = np.linspace(0, 5, 201)
     log_chi = np.linspace(-0.5, math.log(40), 300)
     rows = []
@@ -186,7 +186,7 @@ def test_splines_reproduce_cubics():
     c = packing.spline_coefficients(x**3 - 4 * x**2 + 2)
     for position in (0.0, 0.3, 3.7, 7.99):
         i = int(position)
-        value = sum(w / 6 * c[i + k] for k, w in enumerate(lookup._weights(position - i)))
+        value = sum(w / 6 * c[i + k] for k, w in enumerate(lookup.weights(position - i)))
         assert value == pytest.approx(position**3 - 4 * position**2 + 2, abs=1e-12)
 
 

@@ -50,7 +50,7 @@ def rows() -> Iterator[Row]:
     table.build("myc")
     yield Row("table build and certificate", time.perf_counter() - start, "s", 10)
     path = Path(cl.__file__).parent / "data" / "myc.h5"
-    loading = seconds(lambda: store.read(path).packed())
+    loading = seconds(lambda: store.read(path).packed)
     yield Row("table: read, verify, fit splines", loading * 1e3, "ms", 10)
     yield Row("table: size", path.stat().st_size / 1e6, "MB", 2)
 
