@@ -14,6 +14,7 @@ array([0.685, 0.908, 0.989])
 from contactlaw._version import VERSION as __version__
 from contactlaw.history import ForceHistory
 from contactlaw.impact import Rebound
+from contactlaw.loads import LoadSignal, load_signal
 from contactlaw.materials import Material, material, materials
 from contactlaw.pair import Pair
 from contactlaw.provider import ImpactModel
@@ -23,12 +24,14 @@ from contactlaw.validity import Validity, edge_distance
 __all__ = [
     "ForceHistory",
     "ImpactModel",
+    "LoadSignal",
     "Material",
     "Pair",
     "Rebound",
     "Validity",
     "__version__",
     "edge_distance",
+    "load_signal",
     "material",
     "materials",
     "restitution_sphere_sphere",

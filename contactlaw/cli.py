@@ -1,4 +1,4 @@
-"""Command line: ``contactlaw cor``, ``contactlaw materials``, ``contactlaw table``."""
+"""Command line: ``contactlaw cor | history | materials | table``."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 
-from contactlaw import cache, laws, store, table
+import numpy as np
+
+from contactlaw import cache, laws, plots, store, table
 from contactlaw.impact import Rebound
 from contactlaw.materials import material, materials
 from contactlaw.pair import Pair
@@ -28,10 +30,13 @@ _UNITS = {
 _DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage
 
 
+def _model(arguments: argparse.Namespace) -> ImpactModel:
+    pair = Pair(arguments.sphere, arguments.plate)
+    return ImpactModel(pair, law=arguments.law, outside=arguments.outside)
+
+
 def _cor(arguments: argparse.Namespace) -> None:
-    model = ImpactModel(
-        Pair(arguments.sphere, arguments.plate), law=arguments.law, outside=arguments.outside
-    )
+    model = _model(arguments)
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     rebound = model.solve(*impact) if arguments.solve else model.lookup(*impact)
     try:
@@ -59,6 +64,26 @@ def _as_json(rebound: Rebound, yield_speed: float) -> dict[str, object]:
     values["yield_speed"] = yield_speed if yield_speed < math.inf else None
     values["flags"] = _flag_names(rebound)
     return values
+
+
+def _history(arguments: argparse.Namespace) -> None:
+    contact = _model(arguments).force_history(
+        arguments.speed,
+        arguments.radius,
+        arguments.thickness,
+        samples=arguments.samples,
+        method="solve" if arguments.solve else "table",
+    )
+    if arguments.plot is not None:
+        title = (
+            f"{arguments.sphere} on {arguments.plate}: radius {arguments.radius * 1e3:g} mm, "
+            f"plate {arguments.thickness * 1e3:g} mm, {arguments.speed:g} m/s"
+        )
+        plots.save_history(contact, title, arguments.plot)
+        print(arguments.plot)
+        return
+    print("time_s,force_N,compression_m,plate_displacement_m")
+    np.savetxt(sys.stdout, np.column_stack(contact), fmt="%.9g", delimiter=",")
 
 
 def _materials(arguments: argparse.Namespace) -> None:
@@ -135,15 +160,21 @@ def _parser() -> argparse.ArgumentParser:
 
     cor = commands.add_parser("cor", help="one impact: coefficient of restitution and more")
     cor.set_defaults(run=_cor)
-    cor.add_argument("--sphere", required=True, help="material of the bead, from the catalogue")
-    cor.add_argument("--plate", required=True, help="material of the plate")
-    cor.add_argument("--radius", required=True, type=float, help="radius of the bead [m]")
-    cor.add_argument("--thickness", required=True, type=float, help="of the plate [m]; inf: bulk")
-    cor.add_argument("--speed", required=True, type=float, help="normal approach speed [m/s]")
-    cor.add_argument("--law", default="myc", help=f"one of {', '.join(laws.names())}")
-    cor.add_argument("--outside", default="raise", choices=["raise", "solve", "clamp"])
-    cor.add_argument("--solve", action="store_true", help="integrate instead of looking up")
+    history = commands.add_parser("history", help="one impact: force over time, as CSV or a plot")
+    history.set_defaults(run=_history)
+    for impact in (cor, history):
+        add = impact.add_argument
+        add("--sphere", required=True, help="material of the bead, from the catalogue")
+        add("--plate", required=True, help="material of the plate")
+        add("--radius", required=True, type=float, help="radius of the bead [m]")
+        add("--thickness", required=True, type=float, help="of the plate [m]; inf: bulk")
+        add("--speed", required=True, type=float, help="normal approach speed [m/s]")
+        add("--law", default="myc", help=f"one of {', '.join(laws.names())}")
+        add("--outside", default="raise", choices=["raise", "solve", "clamp"])
+        add("--solve", action="store_true", help="integrate instead of looking up")
     cor.add_argument("--json", action="store_true", help="machine-readable output")
+    history.add_argument("--samples", type=int, default=256, help="number of times")
+    history.add_argument("--plot", metavar="FILE", help="draw into FILE (PNG, SVG, PDF)")
 
     listing = commands.add_parser("materials", help="the catalogue, with the source of each number")
     listing.set_defaults(run=_materials)
@@ -196,7 +227,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     except BrokenPipeError:  # the reader has seen enough, as `head` does
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return _DONE
-    except (ValueError, RuntimeError, OSError) as error:
+    except (ValueError, RuntimeError, OSError, ImportError) as error:
         print(f"contactlaw: {error}", file=sys.stderr)
         return _REFUSED
     return _DONE

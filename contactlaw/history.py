@@ -67,9 +67,7 @@ def solved(law: Law, fields: Array, samples: int, rtol: float) -> Array:
     return out
 
 
-def with_units(
-    histories: Array, units: Scales, shape: tuple[int, ...] | None
-) -> ForceHistory:
+def with_units(histories: Array, units: Scales, shape: tuple[int, ...] | None) -> ForceHistory:
     """Give histories (4, n, samples) their units and the shape of the answer."""
     scale = np.stack((units.time, units.force, units.compression, units.compression))
     histories *= scale[..., None]

@@ -369,7 +369,8 @@ def fields(table: Array, lam: Array, yield_ratio: Array, clamp: bool, out: Array
         if not (inside_x == x and inside_chi == log_chi):
             outside += 1
             if not clamp:
-                out[:, n] = math.nan
+                for k in range(len(out)):  # a slice would take the compiler a second
+                    out[k, n] = math.nan
                 continue
             lam[n] = inside_x * table[STRETCH] / (1.0 - inside_x)
             yield_ratio[n] = math.exp(log_w - inside_chi)

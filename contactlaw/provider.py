@@ -322,7 +322,7 @@ class ImpactModel:
         >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
         >>> contact = model.force_history(speed=12.0, radius=0.9e-3, thickness=1e-3, samples=5)
         >>> contact.force.round(1)
-        array([ 0. , 18.5, 26.4, 12.4,  0. ])
+        array([ 0. , 16.3, 27.4, 15. ,  0. ])
         >>> model.force_history([5.0, 12.0, 15.0], 0.9e-3, 1e-3).time.shape
         (3, 256)
         """

@@ -17,6 +17,7 @@ import tempfile
 from dataclasses import asdict
 from importlib import resources
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -102,7 +103,7 @@ def _fill(file: h5py.File, table: Table) -> None:
         "shapes/inelasticity": (rows, "lambda of the rows of shapes/states [-]"),
         "shapes/log_overload": (np.concatenate(columns), "ln chi of its columns [-]"),
         "shapes/shares": (shapes.SHARES, "of the largest root compression, up and down again [-]"),
-        "shapes/states": (table.shapes, "when it passes them: times [T_H], speeds [V0]"),
+        "shapes/states": (table.states, "when it passes them: times [T_H], speeds [V0]"),
     }
     for name, (values, description) in datasets.items():
         file[name] = values
@@ -154,8 +155,9 @@ def _parse(content: bytes) -> Table:
         if found != {"format": FORMAT, "schema": SCHEMA, "complete": True}:
             raise ValueError(f"it is not a complete table of schema {SCHEMA}, but {found}")
         table = _from_file(file)
-    arrays = [*table.segments, table.elastic_compression, *table.fields.values(), table.shapes]
-    if not all(np.isfinite(values).all() for values in arrays):
+    arrays: list[NDArray[Any]] = [*table.segments, *table.fields.values()]
+    arrays += [table.elastic_compression, table.states]
+    if not all(bool(np.isfinite(values).all()) for values in arrays):
         raise ValueError("it holds values that are not finite")
     if not ((table.fields["restitution"] >= 0.0) & (table.fields["restitution"] <= 1.0)).all():
         raise ValueError("it holds a COR outside 0 to 1")
@@ -182,7 +184,7 @@ def _from_file(file: h5py.File) -> Table:
         segments=segments,
         elastic_compression=elastic,
         fields=fields,
-        shapes=states,
+        states=states,
         certificate=None if certificate is None else Certificate(**json.loads(certificate)),
     )
 
@@ -200,9 +202,7 @@ def _compare_axes(
         raise ValueError("its axes are not those of its settings")
 
 
-def _compare_shapes(
-    file: h5py.File, settings: Settings, states: NDArray[np.float32]
-) -> None:
+def _compare_shapes(file: h5py.File, settings: Settings, states: NDArray[np.float32]) -> None:
     """Refuse shapes on another grid than that of the settings and this version."""
     rows, *columns = shape_axes(laws.law(str(file.attrs["law"])), settings)
     expected = {

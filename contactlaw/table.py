@@ -137,7 +137,7 @@ class Table:
     segments: tuple[Array, ...]  # ln chi of the nodes of each segment
     elastic_compression: Array  # w_m at `elastic_inelasticity` [V0 T_H]
     fields: dict[str, Array]  # name -> (inelasticity nodes, nodes of all segments)
-    shapes: NDArray[np.float32]  # on `shape_axes`: (rows, columns, 2, states)
+    states: NDArray[np.float32]  # of the shapes, on `shape_axes`: (rows, columns, 2, SIZE)
     certificate: Certificate | None = None
 
     @property
@@ -155,7 +155,7 @@ class Table:
         """Splines through the shapes of force histories."""
         lam_max = self.settings.largest_inelasticity
         _, *segments = shape_axes(find_law(self.law), self.settings)
-        return shapes.pack(self.settings.stretch, lam_max, tuple(segments), self.shapes)
+        return shapes.pack(self.settings.stretch, lam_max, tuple(segments), self.states)
 
     @functools.cached_property
     def packed(self) -> Array:
@@ -251,8 +251,8 @@ def build(
         name: row.reshape(lam.size, chi.size) for name, row in zip(FIELDS, values, strict=False)
     }
     elastic = _elastic(_elastic_nodes(settings), settings.rtol)
-    outlines = _shapes(chosen, settings)
-    table = Table(law, settings, tuple(segments), elastic, fields, outlines)
+    states = _states(chosen, settings)
+    table = Table(law, settings, tuple(segments), elastic, fields, states)
     return dataclasses.replace(table, certificate=certify(table))
 
 
@@ -269,11 +269,11 @@ def _solve(
 
     def solve(part: Array) -> Array:
         out = np.empty((5, part.shape[1]))
-        status, n = zener.solve_overloads(functions, hertz, *part, rtol, out)
+        status, n = zener.solve_overloads(functions, hertz, part[0], part[1], rtol, out)
         if status != zener.OK:
             raise RuntimeError(
-                f"table for law {law.name!r}: the node lambda = {part[0][n]:.6g}, chi = "
-                f"{part[1][n]:.6g} did not solve: {zener.MESSAGES[status]}"
+                f"table for law {law.name!r}: the node lambda = {part[0, n]:.6g}, chi = "
+                f"{part[1, n]:.6g} did not solve: {zener.MESSAGES[status]}"
             )
         return out
 
@@ -293,7 +293,7 @@ def _in_parts(
         pool.shutdown(cancel_futures=True)
 
 
-def _shapes(law: Law, settings: Settings) -> NDArray[np.float32]:
+def _states(law: Law, settings: Settings) -> NDArray[np.float32]:
     """Shapes at the nodes of `shape_axes`; their error is far above that of single precision."""
     lam, *segments = shape_axes(law, settings)
     chi = np.exp(np.concatenate(segments))
@@ -302,9 +302,7 @@ def _shapes(law: Law, settings: Settings) -> NDArray[np.float32]:
     for row, w_m in enumerate(_elastic(lam, settings.rtol)):
         for column in range(chi.size):
             y = w_m / chi[column]
-            status = zener.shape(
-                law.functions, lam[row], y, settings.rtol, shapes.SHARES, states
-            )
+            status = zener.shape(law.functions, lam[row], y, settings.rtol, shapes.SHARES, states)
             if status != zener.OK:
                 raise RuntimeError(
                     f"table for law {law.name!r}: the shape at lambda = {lam[row]:.6g}, chi = "

@@ -158,9 +158,7 @@ def _gap(event: int, state: _State, level: float, until: float, scale: _Scale) -
 
 
 @kernel
-def _guess(
-    event: int, state: _State, trial: _State, h: float, level: float, until: float
-) -> float:
+def _guess(event: int, state: _State, trial: _State, h: float, level: float, until: float) -> float:
     """Step to an event between two points, by the cubic through q or t and its rate at both."""
     value, rise, rate, last = state.q, trial.q - state.q, state.dq, trial.dq
     if event == _TIME:  # dt/ds = 2 q
@@ -185,12 +183,13 @@ def _phase(
     h: float,
     scale: _Scale,
     level: float,
-    until: float = math.inf,
+    until: float,
 ) -> tuple[_State, int, float, int]:
     """Integrate loading to its end or to the kink `level`; unloading to q = level = 0.
 
-    Or to the time `until`, if that is before. Returns the point reached, the event, a step to go on with and the number of steps. An event
-    is met by shortening the step that passes it: regula falsi with Illinois' weights.
+    Or to the time `until`, if that is before. Returns the point reached, the event, a step to go
+    on with and the number of steps. An event is met by shortening the step that passes it: regula
+    falsi with Illinois' weights.
     """
     event, following = _NONE, h
     a = b = gap_a = gap_b = 0.0  # steps on either side of the event, and how far off they end
@@ -246,7 +245,7 @@ def _load(law: Functions, beta: float, scale: _Scale, h: float) -> tuple[_State,
     state, steps = _touch(law, beta, scale), 0
     for kink in law.kinks:
         state, event, h, more = _phase(
-            law, beta, _Branch(True, 0.0, 0.0), state, h, scale, math.sqrt(kink)
+            law, beta, _Branch(True, 0.0, 0.0), state, h, scale, math.sqrt(kink), math.inf
         )
         steps += more
         if event == _TURN or state.dq <= 0.0:
@@ -283,7 +282,7 @@ def solve(law: Functions, lam: float, y: float, rtol: float) -> Solution:
     top, h, steps = _load(law, beta, scale, h)
     dm = top.q * top.q
     branch, top = _turn(law, beta, top)
-    end, _, _, more = _phase(law, beta, branch, top, h, scale, 0.0)
+    end, _, _, more = _phase(law, beta, branch, top, h, scale, 0.0, math.inf)
     wave_rate = 2.0 * y4 * end.j / scale.u**2
     return Solution(
         OK if max(steps, more) < _MAX_STEPS else TOO_MANY_STEPS,
@@ -301,9 +300,7 @@ def solve(law: Functions, lam: float, y: float, rtol: float) -> Solution:
 
 
 @kernel
-def history(
-    law: Functions, lam: float, y: float, rtol: float, time: Array, out: Array
-) -> None:
+def history(law: Functions, lam: float, y: float, rtol: float, time: Array, out: Array) -> None:
     """Contact at rising times [T_H] into out (3, n): force, compression, speed of the sphere.
 
     For lam and y that `solve` has solved. After the end of contact the state at its end holds.
@@ -347,9 +344,10 @@ def histories(
 
 @kernel
 def shape(law: Functions, lam: float, y: float, rtol: float, shares: Array, out: Array) -> int:
-    """Times [T_H] and speeds [V0] at which q passes given shares of its largest value.
+    """Find when, and how fast, q passes given shares of its largest value.
 
-    Into out (2, 2 n): up the rising shares, of which the last is 1, and down to 0, separation.
+    Times [T_H] and speeds [V0] into out (2, 2 n): up the rising shares, of which the last is 1, and
+    down to 0, separation.
     """
     if not (0.0 <= lam < math.inf and 0.0 < y < math.inf):
         return BAD_INPUT
@@ -361,7 +359,7 @@ def shape(law: Functions, lam: float, y: float, rtol: float, shares: Array, out:
         q = shares[n] * top.q
         while state.q < q and steps < _MAX_STEPS:
             level = min(q, math.sqrt(law.kinks[kink]))
-            state, _, h, more = _phase(law, beta, branch, state, h, scale, level)
+            state, _, h, more = _phase(law, beta, branch, state, h, scale, level, math.inf)
             kink += level < q
             steps += more
         out[0, n], out[1, n] = state.t / scale.t, state.u / scale.u
@@ -371,7 +369,7 @@ def shape(law: Functions, lam: float, y: float, rtol: float, shares: Array, out:
     whole = state.q
     for n in range(last, -1, -1):
         q = shares[n - 1] * whole if n > 0 else 0.0
-        state, _, h, more = _phase(law, beta, branch, state, h, scale, q)
+        state, _, h, more = _phase(law, beta, branch, state, h, scale, q, math.inf)
         steps += more
         out[0, 2 * last + 1 - n], out[1, 2 * last + 1 - n] = state.t / scale.t, state.u / scale.u
     return OK if steps < _MAX_STEPS else TOO_MANY_STEPS

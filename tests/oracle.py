@@ -6,6 +6,7 @@ w' = u - lam f(w), u' = -f(w), w(0) = 0, u(0) = 1; d_Y = y there.
 
 import math
 
+import numpy as np
 from scipy.integrate import solve_ivp
 
 RATIO = 2.14 / 0.68  # d_P/d_Y
@@ -24,6 +25,16 @@ def loading(w, y):
 
 def impact(lam, y, law="myc"):
     """COR, contact time and largest compression of one impact."""
+    return _integrated(lam, y, law)[:3]
+
+
+def force_history(lam, y, share):
+    """Force and speed of the sphere at shares of the contact time."""
+    _, end, _, at = _integrated(lam, y, "myc", dense_output=True)
+    return np.array([at(t) for t in end * share]).T
+
+
+def _integrated(lam, y, law, **options):
 
     def force(w):
         w = max(w, 0.0)
@@ -43,23 +54,36 @@ def impact(lam, y, law="myc"):
         return [s[1] - lam * f, -f]
 
     # the linear branch starts with a jump of F'': stop there, so that the method keeps its order
-    run = solve_ivp(rise, [0, 100], [0, 1], events=[turned, reached_kink], **OPTIONS)
+    options |= OPTIONS
+    run = solve_ivp(rise, [0, 100], [0, 1], events=[turned, reached_kink], **options)
+    parts = [(run, force)]
     if run.t_events[1].size:
-        run = solve_ivp(rise, [run.t[-1], 100], run.y[:, -1], events=[turned], **OPTIONS)
+        run = solve_ivp(rise, [run.t[-1], 100], run.y[:, -1], events=[turned], **options)
+        parts.append((run, force))
     t, wm, u = run.t[-1], run.y[0, -1], run.y[1, -1]
 
     plastic = law == "myc" and wm >= y
     left = wm - y * math.sqrt(2 * wm / y - 1) if plastic else 0.0
     fm = force(wm)
 
+    def unloading(w):
+        return fm * (max(w - left, 0.0) / (wm - left)) ** 1.5
+
     def fall(t, s):
-        f = fm * (max(s[0] - left, 0.0) / (wm - left)) ** 1.5
+        f = unloading(s[0])
         return [s[1] - lam * f, -f]
 
     def parted(t, s):
         return s[0] - left
 
     parted.terminal, parted.direction = True, -1
-    run = solve_ivp(fall, [t, t + 1000], [wm, u], events=[parted], **OPTIONS)
+    run = solve_ivp(fall, [t, t + 1000], [wm, u], events=[parted], **options)
+    parts.append((run, unloading))
     assert run.t_events[0].size == 1
-    return -run.y[1, -1], run.t[-1], wm
+
+    def at(time):
+        part, law_there = next(p for p in parts if time <= p[0].t[-1] or p is parts[-1])
+        w, speed = part.sol(time)
+        return law_there(w), speed
+
+    return -run.y[1, -1], run.t[-1], wm, at

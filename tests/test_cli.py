@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import contactlaw as cl
@@ -170,3 +171,26 @@ def test_as_a_module():
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout)["flags"] == []
+
+
+def test_history_prints_csv(capsys, model):
+    assert main(["history", *IMPACT[1:], "--samples", "5"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "time_s,force_N,compression_m,plate_displacement_m"
+    printed = np.array([[float(value) for value in line.split(",")] for line in lines[1:]])
+    contact = model.force_history(12.0, 0.9e-3, 1e-3, samples=5)
+    assert printed == pytest.approx(np.column_stack(contact), rel=1e-8)
+
+
+def test_history_draws(tmp_path, capsys):
+    picture = tmp_path / "contact.png"
+    assert main(["history", *IMPACT[1:], "--solve", "--plot", str(picture)]) == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert main(["history", *IMPACT[1:], "--plot", str(tmp_path / "contact.xyz")]) == 1
+    assert "xyz" in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["contact.png"]
+
+
+def test_history_refuses(capsys):
+    assert main(["history", *IMPACT[1:], "--samples", "1"]) == 1
+    assert "samples: must be an integer from 2" in capsys.readouterr().err

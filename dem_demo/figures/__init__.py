@@ -19,7 +19,7 @@ def names() -> list[str]:
     Examples
     --------
     >>> names()
-    ['energy', 'rebound_height', 'restitution', 'snapshot']
+    ['energy', 'load', 'rebound_height', 'restitution', 'snapshot']
     """
     return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
 

@@ -1,0 +1,126 @@
+"""What a plate feels of many impacts: the load over time, as a sensor samples it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.arguments import broadcast, check
+
+if TYPE_CHECKING:
+    from contactlaw.provider import ImpactModel
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 65  # of one contact: its momentum comes out to 2e-5
+_CHUNK = 4096  # contacts at a time, so that their histories need no more than 10 MB
+_LONGEST = 1_000_000_000  # samples of a signal; beyond, the rate is in the wrong unit
+
+
+class LoadSignal(NamedTuple):
+    """Load on a plate at even times.
+
+    Attributes
+    ----------
+    time
+        Middle of each sampling interval [s].
+    force
+        Mean force over the interval [N].
+    """
+
+    time: Array
+    force: Array
+
+
+def load_signal(
+    times: ArrayLike,
+    speed: ArrayLike,
+    radius: ArrayLike,
+    thickness: ArrayLike,
+    *,
+    model: ImpactModel,
+    rate: float,
+    duration: float | None = None,
+) -> LoadSignal:
+    """Superpose the force histories of recorded impacts on a plate.
+
+    Parameters
+    ----------
+    times : array_like
+        When each impact begins [s]; not sorted, if need be. What falls before 0 or after
+        `duration` is cut off.
+    speed, radius, thickness : array_like
+        As in `ImpactModel.restitution`, for each impact.
+    model : ImpactModel
+        Where the force histories come from.
+    rate : float
+        Samples per second [1/s].
+    duration : float, optional
+        Length of the signal [s]; by default it ends with the last contact.
+
+    Returns
+    -------
+    LoadSignal
+        Each sample is the mean force over its interval, as an integrating sensor or one behind an
+        anti-aliasing filter gives it: contacts of microseconds lose none of their momentum at any
+        rate.
+
+    Raises
+    ------
+    ValueError
+        A rate or a duration that is not positive, a time that is not finite, and what
+        `ImpactModel.force_history` refuses.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    >>> load = cl.load_signal([1e-4, 3e-4], [5.0, 8.0], 0.9e-3, 1e-3, model=model, rate=1e4)
+    >>> load.force.round(3)
+    array([0.   , 0.256, 0.   , 0.408])
+    """
+    start, v, r, h, _ = broadcast(times=times, speed=speed, radius=radius, thickness=thickness)
+    check(speed=v, radius=r, thickness=h)
+    if not np.isfinite(start).all():
+        raise ValueError(f"times: must be finite [s], got {start[~np.isfinite(start)][0]}")
+    if not 0.0 < rate < math.inf:
+        raise ValueError(f"rate: must be positive and finite [1/s], got {rate!r}")
+    if duration is None:
+        ends = start + np.ravel(model.lookup(v, r, h).contact_time)
+        duration = max(float(ends.max(initial=0.0)), 1.0 / rate)
+    if not 0.0 < duration * rate <= _LONGEST:
+        raise ValueError(
+            f"duration: must be positive and at most {_LONGEST} samples at rate {rate:g} /s, "
+            f"got {duration!r} s"
+        )
+    force = np.zeros(math.ceil(duration * rate))
+    for n in range(0, start.size, _CHUNK):
+        part = slice(n, n + _CHUNK)
+        contacts = model.force_history(v[part], r[part], h[part], samples=_SAMPLES)
+        _add(start[part], contacts.time, contacts.force, rate, force)
+    return LoadSignal(np.arange(0.5, force.size) / rate, force)
+
+
+@kernel
+def _add(start: Array, time: Array, force: Array, rate: float, out: Array) -> None:
+    """Add the momentum that contacts bring to each interval, over its length."""
+    for n in range(start.size):
+        span = time[n, 1]
+        i, passed, before, until = 0, 0.0, 0.0, 0.0  # passed: momentum until sample i
+        k = math.floor(start[n] * rate)
+        while until < time[n, -1] and k < out.size:
+            until = min((k + 1) / rate - start[n], time[n, -1])
+            while i < time.shape[1] - 2 and until > time[n, i + 1]:
+                passed += 0.5 * span * (force[n, i] + force[n, i + 1])
+                i += 1
+            rest = (until - time[n, i]) / span  # the force is linear between samples
+            slope = 0.5 * (force[n, i + 1] - force[n, i])
+            momentum = passed + span * rest * (force[n, i] + slope * rest)
+            if k >= 0:
+                out[k] += (momentum - before) * rate
+            before = momentum
+            k += 1

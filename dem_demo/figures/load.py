@@ -1,0 +1,60 @@
+"""What a force sensor under each plate would see."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from contactlaw import load_signal
+from dem_demo.figures import _style
+from dem_demo.measure import on_plate
+from dem_demo.reader import Run
+from dem_demo.recorder import CONSTANT
+from dem_demo.report import label
+from dem_demo.scene import Floats
+
+_RATE = 1e3  # [1/s]: single impacts can be told apart, and weigh what they bring
+
+
+def draw(run: Run) -> Figure:
+    """Draw a row per plate: the load over the whole run, and the hardest contact."""
+    plates = run.scene.plates
+    constant = run.law == CONSTANT
+    figure = _style.figure(
+        13.0,
+        1.9 + 1.25 * len(plates),
+        "What a force sensor on each plate would see",
+        f"{_style.source(run)}; left: mean force over each {1e3 / _RATE:g} ms, right: hardest "
+        "contact" + ("; forces by contactlaw for the run's impacts" if constant else ""),
+    )
+    grid = figure.subplots(
+        len(plates), 2, sharex="col", sharey="col", squeeze=False, width_ratios=(4.0, 1.0)
+    )
+    for n, (left, right) in enumerate(grid):
+        rows = on_plate(run, n)
+        impacts = rows["approach_speed"], run.scene.beads.radius[rows["bead"]], plates[n].thickness
+        load = load_signal(
+            rows["time"], *impacts, model=run.model, rate=_RATE, duration=run.scene.duration
+        )
+        left.fill_between(load.time, load.force, step="mid", color=_style.BLUE, linewidth=0.6)
+        left.set_title(label(plates[n].thickness), loc="left", fontweight="bold", pad=3.0)
+        if rows.size:
+            _hardest(right, run, *impacts)
+    for axes in grid[:, 1]:
+        axes.yaxis.set_label_position("right")
+        axes.yaxis.tick_right()
+    grid[0, 0].set_ylim(0.0, None)
+    grid[0, 1].set(xlim=(0.0, None), ylim=(0.0, None))
+    grid[0, 0].set_xlim(0.0, run.scene.duration)
+    grid[len(plates) // 2, 0].set_ylabel("load [N]")
+    grid[len(plates) // 2, 1].set_ylabel("contact force [N]")
+    grid[-1, 0].set_xlabel("time [s]")
+    grid[-1, 1].set_xlabel("time since touch [µs]")
+    return figure
+
+
+def _hardest(axes: Axes, run: Run, speed: Floats, radius: Floats, thickness: float) -> None:
+    n = int(np.argmax(run.model.lookup(speed, radius, thickness).peak_force))
+    contact = run.model.force_history(speed[n], radius[n], thickness)
+    axes.plot(contact.time * 1e6, contact.force, color=_style.VERMILION, linewidth=2.0)

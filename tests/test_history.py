@@ -1,0 +1,175 @@
+"""Force histories: the solver against scipy, the table against the solver, both against laws."""
+
+import math
+
+import numpy as np
+import oracle
+import pytest
+
+import contactlaw as cl
+from contactlaw import laws, zener
+from contactlaw.impact import plate_mobility
+
+R = 0.9e-3
+MYC = laws.law("myc").functions
+
+
+def mass(model, radius=R):
+    return 4 / 3 * math.pi * model.pair.sphere.density * radius**3
+
+
+def impacts(model, count, seed):
+    """Speeds, radii and thicknesses all over the table."""
+    rng = np.random.default_rng(seed)
+    speed = model.pair.yield_speed * np.exp(rng.uniform(np.log(0.05), np.log(60), count))
+    radius = rng.uniform(0.1e-3, 5e-3, count)
+    return speed, radius, radius / rng.uniform(0.0, 4.0, count)
+
+
+@pytest.mark.parametrize("chi_over", ["below yield", "just above", "linear branch", "far above"])
+@pytest.mark.parametrize("lam", [0.0, 0.3, 2.0])
+def test_solver_against_scipy(lam, chi_over):
+    speed_ratio = {"below yield": 0.3, "just above": 1.6, "linear branch": 8.0, "far above": 80.0}
+    y = oracle.yield_ratio(speed_ratio[chi_over])
+    share = np.linspace(0.01, 0.99, 23)
+    force, speed = oracle.force_history(lam, y, share)
+    solution = zener.solve(MYC, lam, y, 1e-11)
+    out = np.empty((3, share.size))
+    zener.history(MYC, lam, y, 1e-11, share * solution.contact_time, out)
+    assert out[0] == pytest.approx(force, abs=1e-7 * solution.peak_force)
+    assert out[2] == pytest.approx(speed, abs=1e-7)
+
+
+def test_solver_follows_its_own_rebound(model):
+    speed, radius, thickness = impacts(model, 50, seed=1)
+    contact = model.force_history(speed, radius, thickness, samples=4001, method="solve")
+    rebound = model.solve(speed, radius, thickness)
+    assert contact.time[:, -1] == pytest.approx(rebound.contact_time, rel=1e-12)
+    assert contact.force.max(axis=1) == pytest.approx(rebound.peak_force, rel=1e-5)
+    assert contact.compression.max(axis=1) == pytest.approx(rebound.peak_compression, rel=1e-5)
+    assert (
+        contact.compression[:, -1] - rebound.residual_compression
+    ) / rebound.peak_compression == (pytest.approx(0.0, abs=1e-9))
+
+
+@pytest.mark.parametrize(
+    "case", ["everywhere", "elastic limit", "just above yield", "at the second kink", "thin plate"]
+)
+def test_table_within_a_ten_thousandth_of_the_peak(model, case):
+    speed, radius, thickness = impacts(model, 300, seed=2)
+    yields = model.yield_speed(radius, thickness)
+    if case == "elastic limit":
+        speed = yields * np.linspace(0.999, 1.0, speed.size)
+    elif case == "just above yield":
+        speed = yields * (1 + np.geomspace(1e-6, 1e-2, speed.size))
+    elif case == "at the second kink":  # chi = d_P/d_Y, to a few per cent
+        speed = 4.19 * yields * np.linspace(0.95, 1.05, speed.size)
+    elif case == "thin plate":  # lambda up to 5
+        thickness = radius / np.linspace(6.0, 8.3, speed.size)
+        speed = np.minimum(speed, 5.0)
+    table, solved = (
+        model.force_history(speed, radius, thickness, samples=101, method=method)
+        for method in ("table", "solve")
+    )
+    for ours, exact in zip(table, solved, strict=True):
+        scale = np.abs(exact).max(axis=1, keepdims=True)
+        error = np.abs(ours - exact) / np.where(scale > 0, scale, 1.0)
+        assert error.max() < 1e-4
+    if case == "thin plate":
+        assert np.max(model.lookup(speed, radius, thickness).inelasticity) > 4.0
+
+
+def test_momentum(model):
+    speed, radius, thickness = impacts(model, 500, seed=3)
+    contact = model.force_history(speed, radius, thickness)
+    expected = mass(model, radius) * speed * (1 + model.restitution(speed, radius, thickness))
+    assert np.trapezoid(contact.force, contact.time) == pytest.approx(expected, rel=1e-4)
+
+
+def test_energy(model):
+    """Work on the contact is the plastic share, work on the plate that of the wave."""
+    speed, radius, thickness = impacts(model, 200, seed=4)
+    contact = model.force_history(speed, radius, thickness, samples=2001)
+    rebound = model.lookup(speed, radius, thickness)
+    energy = 0.5 * mass(model, radius) * speed**2
+    for way, share in (
+        (contact.compression, rebound.plastic_fraction),
+        (contact.plate_displacement, rebound.wave_fraction),
+    ):
+        assert np.trapezoid(contact.force, way) / energy == pytest.approx(share, abs=2e-4)
+
+
+def test_plate_displacement_is_the_integral_of_mobility_times_force(model):
+    thickness = 0.7e-3
+    contact = model.force_history(12.0, R, thickness, samples=2001)
+    momentum = np.concatenate(
+        ([0.0], np.cumsum(0.5 * np.diff(contact.time) * (contact.force[1:] + contact.force[:-1])))
+    )
+    mobility = plate_mobility(model.pair.plate, np.array(thickness))
+    end = contact.plate_displacement[-1]
+    assert contact.plate_displacement == pytest.approx(mobility * momentum, abs=1e-5 * end)
+
+
+def test_half_space_stays_where_it_is_and_elastic_contact_is_symmetric():
+    glass = cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")
+    contact = glass.force_history(3.0, 1e-3, math.inf)
+    assert not contact.plate_displacement.any()
+    assert contact.force == pytest.approx(contact.force[::-1], abs=1e-6 * contact.force.max())
+    # Johnson 1985, Eq. 11.24: largest force from the energy, and F = K d^1.5 on the way
+    stiffness = 4 / 3 * glass.pair.effective_modulus * math.sqrt(1e-3)
+    assert contact.force == pytest.approx(stiffness * contact.compression**1.5, abs=1e-9)
+    assert contact.compression.max() == pytest.approx(
+        (1.25 * mass(glass, 1e-3) * 3.0**2 / stiffness) ** 0.4, rel=1e-4
+    )
+
+
+@pytest.mark.parametrize("method", ["table", "solve"])
+def test_shapes_of_the_answer(model, method):
+    one = model.force_history(5.0, R, 1e-3, method=method)
+    assert {values.shape for values in one} == {(256,)}
+    many = model.force_history([5.0, 20.0], R, [[1e-3], [2e-3], [3e-3]], 10, method)
+    assert {values.shape for values in many} == {(3, 2, 10)}
+    assert many.force[0, 0] == pytest.approx(
+        np.interp(many.time[0, 0], one.time, one.force), rel=1e-3
+    )
+    two = model.force_history(5.0, R, 1e-3, samples=2, method=method)
+    assert two.force.tolist() == [0.0, 0.0]
+    assert two.time.tolist() == [0.0, pytest.approx(one.time[-1], rel=1e-6)]
+    assert model.force_history([], R, 1e-3, method=method).force.shape == (0, 256)
+
+
+def test_nothing_pulls(model):
+    contact = model.force_history(*impacts(model, 2000, seed=5), samples=64)
+    for values in contact:
+        assert np.isfinite(values).all()
+        assert (values >= 0.0).all()
+
+
+def test_outside_the_table(model):
+    beyond = (4000.0, R, 1e-3)  # overload 66
+    inside = (5.0, R, 1e-3)
+    with pytest.raises(ValueError, match="outside the table, its overload"):
+        model.force_history(*beyond)
+    both = [np.array(values) for values in zip(inside, beyond, strict=True)]
+    solving = cl.ImpactModel(model.pair, outside="solve").force_history(*both)
+    assert solving.force[1] == pytest.approx(
+        model.force_history(*beyond, method="solve").force, rel=1e-9
+    )
+    assert (solving.force[0] == model.force_history(*inside).force).all()
+    clamping = cl.ImpactModel(model.pair, outside="clamp")
+    assert np.isfinite(clamping.force_history(*both).force).all()
+    assert clamping.clamped == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"samples": 1}, "samples: must be an integer from 2 to 1 000 000, got 1"),
+        ({"samples": 10.0}, "samples: must be an integer"),
+        ({"method": "spline"}, "method: must be 'table' or 'solve', got 'spline'"),
+        ({"speed": math.nan}, "speed: got nan"),
+    ],
+)
+def test_wrong_arguments(model, arguments, message):
+    with pytest.raises(ValueError, match=message):
+        model.force_history(**({"speed": 5.0, "radius": R, "thickness": 1e-3} | arguments))
