@@ -65,8 +65,8 @@ def largest_error(model, law, thickness, speed, steps):
 
 @pytest.mark.parametrize(("thickness", "speed"), CASES)
 def test_drops_have_the_restitution_of_the_solver(model, law, thickness, speed):
-    assert largest_error(model, law, thickness, speed, 50) < 2e-4
-    assert largest_error(model, law, thickness, speed, 40) < 5e-4
+    assert largest_error(model, law, thickness, speed, 20) < 5e-4
+    assert largest_error(model, law, thickness, speed, 50) < 1e-4
 
 
 @pytest.mark.parametrize(("thickness", "speed"), [(math.inf, 3.0), (0.5e-3, 20.0), (0.2e-3, 3.0)])
@@ -86,7 +86,7 @@ def test_second_order_in_the_step(model, law, thickness, speed):
         for n in (40, 160, 640)
     ]
     orders = np.log2(np.array(errors[:-1]) / errors[1:]) / 2
-    assert (orders > 1.8).all(), (errors, orders)
+    assert (orders > 2.2).all(), (errors, orders)  # 2.5: contact begins and ends inside a step
 
 
 def test_the_relaxation_of_the_plate_moves_no_restitution(model, law):
@@ -97,4 +97,4 @@ def test_the_relaxation_of_the_plate_moves_no_restitution(model, law):
             drop(law, one, 3.0, hit.contact_time / 200, 0.5)
             for one in (spring, spring._replace(relaxation=math.inf))
         ]
-        assert 0.0 < abs(pair[1] - pair[0]) < 1e-4
+        assert 0.0 < abs(pair[1] - pair[0]) < 2e-5
