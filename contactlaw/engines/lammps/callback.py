@@ -26,7 +26,8 @@ from contactlaw.engines.lammps.plate import ROW
 from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, advance, resized
 
 # What a slot holds. The plate's number counts from 1 and is negative if the bead is on the side
-# from which the normal points away; 0 is an empty slot.
+# from which the normal points away; 0 is an empty slot. START counts steps, so that it has the same
+# bits however a run is cut into pieces; LAMMPS's clock has not.
 PLATE, U2, LARGEST, FORCE, START, SPEED, WAVE, TOLD, SPRING = range(9)
 SLOT = 8  # columns without friction, which takes three more
 SLOTS = 3  # plates that a bead may touch at once; a corner has three
@@ -126,7 +127,9 @@ def callback(law_name: str, extract_address: int) -> Any:
     extract = _EXTRACT(extract_address)
 
     @kernel
-    def record(shared, row, at, step, now, bead, plate, r, place, rebound, state, spring):  # type: ignore[no-untyped-def]
+    def record(
+        shared, row, at, step, ended, step_zero, dt, bead, plate, place, rebound, state, spring
+    ):  # type: ignore[no-untyped-def]
         """Put a contact that has ended into the record."""
         unit = spring.stiffness * spring.scale * math.sqrt(spring.scale)  # F_Y
         dm = state.largest_compression / spring.scale
@@ -137,18 +140,18 @@ def callback(law_name: str, extract_address: int) -> Any:
                 return
             out = carray(_pointer(shared.records), (shared.capacity, len(RECORD)), np.float64)
             line = out[shared.count]
-            line[0], line[1], line[2] = row[at + START], bead, plate
+            line[0], line[1], line[2] = (row[at + START] - step_zero) * dt, bead, plate
             line[3], line[4], line[5] = place
             line[6], line[7] = row[at + SPEED], rebound / row[at + SPEED]
-            line[8], line[9] = now - row[at + START], law.loading(math.sqrt(dm)) * unit
+            line[8], line[9] = (ended - row[at + START]) * dt, law.loading(math.sqrt(dm)) * unit
             line[10], line[11] = lost - row[at + TOLD], row[at + WAVE]
             shared.count += 1
         row[at + TOLD] = lost
 
     @kernel
-    def begin(shared, row, at, step, now, bead, plate, r, mass, x, u, dt, spring):  # type: ignore[no-untyped-def]
+    def begin(shared, row, at, step, bead, plate, mass, x, u, dt, spring):  # type: ignore[no-untyped-def]
         """Start a contact, or the next one of a bead that comes back before it has parted."""
-        row[at + START] = now - (x / u if u > 0.0 and row[at + LARGEST] == 0.0 else 0.0)
+        row[at + START] = step - (x / (u * dt) if u > 0.0 and row[at + LARGEST] == 0.0 else 0.0)
         row[at + SPEED], row[at + WAVE] = u, 0.0
         if not abs(mass - spring.mass) <= _SOLID * spring.mass:
             _complain(shared, row, WRONG_MASS, step, bead, plate, mass, spring.mass)
@@ -188,7 +191,22 @@ def callback(law_name: str, extract_address: int) -> Any:
 
     @kernel
     def touch(
-        shared, plates, p, i, step, now, advancing, bead, dt, x, v, omega, torque, r, mass, row, f
+        shared,
+        plates,
+        p,
+        step,
+        step_zero,
+        advancing,
+        bead,
+        dt,
+        x,
+        v,
+        omega,
+        torque,
+        r,
+        mass,
+        row,
+        f,
     ):  # type: ignore[no-untyped-def]  # noqa: E501
         """Bead i and plate p, which are near each other."""
         plate = plates[p]
@@ -238,15 +256,15 @@ def callback(law_name: str, extract_address: int) -> Any:
             row[at] = side
             new = advance(law, spring, old, overlap, dt)
             if new.force > 0.0 and old.force == 0.0:
-                begin(shared, row, at, step, now, bead, p, r, mass, overlap, u, dt, spring)
+                begin(shared, row, at, step, bead, p, mass, overlap, u, dt, spring)
             square = old.force * old.force + new.force * new.force
             row[at + WAVE] += 0.5 * dt * spring.mobility * square
             if new.force == 0.0 and old.force > 0.0:
                 left = law.residual(old.largest_compression / spring.scale) * spring.scale
                 gap = left - (overlap - old.plate_displacement)
-                ended = now - min(max(gap / -u, 0.0), dt) if u < 0.0 else now
+                ended = step - (min(max(gap / (-u * dt), 0.0), 1.0) if u < 0.0 else 0.0)
                 place = (x[0] - distance * nx, x[1] - distance * ny, x[2] - distance * nz)
-                record(shared, row, at, step, ended, bead, p, r, place, -u, old, spring)
+                record(shared, row, at, step, ended, step_zero, dt, bead, p, place, -u, old, spring)
             row[at + U2], row[at + LARGEST], row[at + FORCE] = new
             if overlap <= 0.0:
                 row[at : at + shared.width] = 0.0
@@ -279,7 +297,7 @@ def callback(law_name: str, extract_address: int) -> Any:
         f = carray(forces[0], (n, 3))
         dt = carray(_pointer(shared.dt), 1, np.float64)[0]
         atime = carray(_pointer(shared.atime), 1, np.float64)[0]
-        now = atime + (step - carray(_pointer(shared.atimestep), 1, np.int64)[0]) * dt
+        step_zero = carray(_pointer(shared.atimestep), 1, np.int64)[0] - atime / dt
         plates = carray(_pointer(shared.plates), shared.plate_count, ROW)
         # local numbers: the compiler cannot know that writing forces leaves `shared` as it is
         count = shared.plate_count
@@ -304,7 +322,7 @@ def callback(law_name: str, extract_address: int) -> Any:
             ):
                 continue
             for p in range(count):
-                touch(shared, plates, p, i, step, now, advancing, tags[i], dt, x[i], v[i],
+                touch(shared, plates, p, step, step_zero, advancing, tags[i], dt, x[i], v[i],
                       omega[i], torque[i], radius[i], rmass[i], history[i], f[i])  # fmt: skip
 
     return numba.cfunc(SIGNATURE, error_model="numpy")(each_step)

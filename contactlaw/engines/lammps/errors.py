@@ -10,18 +10,20 @@ def message(code: int, step: int, bead: int, plate: int, value: float, limit: fl
     where = f"bead {bead}" + (f" on plate {plate}" if plate >= 0 else "") + f" at step {step}"
     what = {
         codes.STEP_TOO_LARGE: (
-            f"timestep: too large for an impact at {value:.4g} m/s, which needs {codes.FEWEST_STEPS} "
-            f"steps; take {limit:.2g} s or less"
+            f"timestep: too large for an impact at {value:.4g} m/s, which needs "
+            f"{codes.FEWEST_STEPS} steps; take {limit:.2g} s or less"
         ),
         codes.STARTS_INSIDE: (
-            f"the first touch finds it {value:.4g} m deep in the plate; place it outside, or take a "
-            f"shorter timestep, so that this is below {limit:.2g} m"
+            f"the first touch finds it {value:.4g} m deep in the plate; place it outside, or take "
+            f"a shorter timestep, so that this is below {limit:.2g} m"
         ),
         codes.CROSSED: (
             f"its centre went through the plate at {value:.4g} m/s; something pushed it there that "
             "is stronger than the contact: take a shorter timestep, or remove the load"
         ),
-        codes.TOO_MANY_PLATES: f"it touches more than {limit:.0f} plates at once; join some of them",
+        codes.TOO_MANY_PLATES: (
+            f"plates: it touches more than {limit:.0f} of them at once; join some"
+        ),
         codes.WRONG_MASS: (
             f"density: its mass is {value:.6g} kg, a sphere of the model's material has "
             f"{limit:.6g} kg; 'set group all density' to that of model.pair.sphere"
