@@ -353,5 +353,5 @@ def time_step(
     if not 2e-5 <= error <= 1e-2:
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
-    time = float(model.lookup(v, r, h).contact_time[0])  # type: ignore[index]
+    time: float = np.asarray(model.lookup(v, r, h).contact_time).item()
     return time / max(FEWEST_STEPS, (_ERROR / error) ** 0.4)

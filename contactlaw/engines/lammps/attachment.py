@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines.lammps import callback as compiled
+from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
+from contactlaw.engines.lammps.memory import RECORD, SHARED, history_shape
 from contactlaw.engines.lammps.plate import Plate, bounds, checked, rows
 from contactlaw.provider import ImpactModel
 
@@ -23,7 +24,7 @@ _HALT_EVERY = 100  # steps; the search for errors adds one reduction over all ra
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
 COLUMNS = np.dtype(
     [("time", "f8"), ("bead", "i8"), ("plate", "i8"), ("other", "i8")]
-    + [(name, "f8") for name in compiled.RECORD if name not in ("time", "bead", "plate")]
+    + [(name, "f8") for name in RECORD if name not in ("time", "bead", "plate")]
 )
 
 
@@ -120,6 +121,16 @@ def _check_simulation(lmp: lammps) -> None:
         raise RuntimeError("lmp: has plates attached already; detach() them first")
 
 
+def _address(lmp: lammps, name: str) -> int:
+    """Address of a function of LAMMPS's C interface."""
+    return ctypes.cast(getattr(lmp.lib, name), ctypes.c_void_p).value or 0
+
+
+def _c_function(lmp: lammps, name: str, result: Any, arguments: int) -> Any:
+    """Take a function of LAMMPS's C interface, with plain pointers for arguments."""
+    return ctypes.CFUNCTYPE(result, *[ctypes.c_void_p] * arguments)(_address(lmp, name))
+
+
 class LammpsPlates:
     """The plates of one simulation and the impacts on them; made by `attach`."""
 
@@ -136,9 +147,9 @@ class LammpsPlates:
         self._model = model
         self._attached = True
         self._parts: list[NDArray[np.float64]] = []
-        self._records = np.empty((records, len(compiled.RECORD)))  # pages are used when written
+        self._records = np.empty((records, len(RECORD)))  # pages are used when written
         self._rows = rows(plates, model)
-        slots, width, columns = compiled.history_columns(len(plates), friction > 0.0)
+        slots, width, columns = history_shape(len(plates), friction > 0.0)
         for command in (
             f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} ghost no",
             f"fix {HISTORY}_force all external pf/callback 1 1",
@@ -156,10 +167,7 @@ class LammpsPlates:
 
     def _share(self, slots: int, width: int, columns: int, friction: float) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
-        library = self._lmp.lib
-        locate = ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_void_p, ctypes.c_char_p)(
-            ctypes.cast(library.lammps_extract_global, ctypes.c_void_p).value
-        )
+        locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
         handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
         self._names = {
             field: ctypes.create_string_buffer(name.encode())
@@ -168,7 +176,7 @@ class LammpsPlates:
                 ("history", f"d2_{HISTORY}"),
             )
         }
-        shared = np.zeros(1, compiled.SHARED)
+        shared = np.zeros(1, SHARED)
         shared["lammps"] = handle
         for field, buffer in self._names.items():
             shared[field] = ctypes.addressof(buffer)
@@ -177,22 +185,19 @@ class LammpsPlates:
         shared["plates"], shared["plate_count"] = self._rows.ctypes.data, len(self._rows)
         shared["slots"], shared["width"], shared["columns"] = slots, width, columns
         shared["last_step"] = -2  # so that the first call is a set-up
-        shared["records"], shared["capacity"] = self._records.ctypes.data, len(self._records)
+        shared["records"] = self._records.ctypes.data
+        shared["record_capacity"] = len(self._records)
         shared["friction"] = friction
         shared["low"], shared["high"] = bounds(self._rows)
         return shared
 
     def _register(self) -> None:
         """Hand the C function to LAMMPS, without Python in between."""
-        library = self._lmp.lib
-        extract = ctypes.cast(library.lammps_extract_atom, ctypes.c_void_p).value or 0
-        self._callback = compiled.callback(self._model.law, extract)
-        setter = ctypes.CFUNCTYPE(
-            None, ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_void_p
-        )(ctypes.cast(library.lammps_set_fix_external_callback, ctypes.c_void_p).value)
+        self._callback = callback(self._model.law, _address(self._lmp, "lammps_extract_atom"))
+        setter = _c_function(self._lmp, "lammps_set_fix_external_callback", None, 4)
         setter(
-            ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value,
-            f"{HISTORY}_force".encode(),
+            ctypes.cast(self._lmp.lmp, ctypes.c_void_p),
+            ctypes.c_char_p(f"{HISTORY}_force".encode()),
             self._callback.address,
             self._shared.ctypes.data,
         )
@@ -209,11 +214,11 @@ class LammpsPlates:
         return run
 
     def _after_command(self) -> None:
-        count = int(self._shared["count"][0])
+        count = int(self._shared["record_count"][0])
         if count:
             self._parts.append(self._records[:count].copy())
-            self._shared["count"] = 0
-        names = [n for n in compiled.SHARED.names or () if n.startswith("error")]
+            self._shared["record_count"] = 0
+        names = [n for n in SHARED.names or () if n.startswith("error")]
         own = self._shared[names][0].item() if self._shared["error"][0] else None
         errors = [error for error in self._comm.allgather(own) if error]
         if errors:
@@ -239,10 +244,10 @@ class LammpsPlates:
             plastic_energy and wave_energy [J]; all as they happened in the engine. A bead that
             rests makes no row until it leaves.
         """
-        raw = np.concatenate([np.empty((0, len(compiled.RECORD))), *self._parts])
+        raw = np.concatenate([np.empty((0, len(RECORD))), *self._parts])
         out = np.zeros(len(raw), COLUMNS)
         out["other"] = -1
-        for name, column in zip(compiled.RECORD, raw.T, strict=True):
+        for name, column in zip(RECORD, raw.T, strict=True):
             out[name] = column
         return out
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contactlaw.engines.lammps import callback as codes
+from contactlaw.engines.lammps import memory as codes
+from contactlaw.softsphere import FEWEST_STEPS
 
 
 def message(code: int, step: int, bead: int, plate: int, value: float, limit: float) -> str:
@@ -11,7 +12,7 @@ def message(code: int, step: int, bead: int, plate: int, value: float, limit: fl
     what = {
         codes.STEP_TOO_LARGE: (
             f"timestep: too large for an impact at {value:.4g} m/s, which needs "
-            f"{codes.FEWEST_STEPS} steps; take {limit:.2g} s or less"
+            f"{FEWEST_STEPS} steps; take {limit:.2g} s or less"
         ),
         codes.STARTS_INSIDE: (
             f"the first touch finds it {value:.4g} m deep in the plate; place it outside, or take "

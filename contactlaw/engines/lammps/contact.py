@@ -1,0 +1,235 @@
+"""One bead near one plate in one time step: geometry, force, friction, record.
+
+Legend: r radius, x overlap of the sphere with the undeformed plate, u speed towards the plate,
+n normal from the plate to the bead, s height over the plate's plane.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlaw._jit import kernel
+from contactlaw.engines.lammps import memory
+from contactlaw.engines.lammps.memory import (
+    DISPLACEMENT,
+    FORCE,
+    LARGEST,
+    PLATE,
+    SPEED,
+    SPRING,
+    START,
+    TOLD,
+    WAVE,
+    array_at,
+    complain,
+    slot_of,
+)
+from contactlaw.laws import Functions
+from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, advance, resized
+
+NEAR = 2.0  # [r] from the plate: from here on a bead's history is kept up to date
+_DEEP = 0.1  # [r] of overlap at first touch: no step that is short enough gets there
+_SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
+_RECORD_COLUMNS = len(memory.RECORD)
+
+
+class Clock(NamedTuple):
+    """Where the simulation is."""
+
+    step: int
+    zero: float  # the step at which LAMMPS's time would have been 0, with its fraction
+    dt: float  # [s]
+    advancing: bool  # else a set-up, which asks for the forces of the last step again
+
+
+class Bead(NamedTuple):
+    """A bead: views of LAMMPS's arrays."""
+
+    tag: int
+    x: Any
+    v: Any
+    omega: Any
+    torque: Any
+    force: Any
+    history: Any
+    r: float
+    mass: float
+
+
+class Touch(NamedTuple):
+    """Where a bead is with respect to a plate."""
+
+    x: float
+    s: float
+    nx: float
+    ny: float
+    nz: float
+    face: bool  # else the nearest point is on an edge
+
+
+@kernel
+def _geometry(plate: Any, bead: Bead) -> Touch:
+    """Overlap and normal at the plate's nearest point; an overlap of -r where it is not near."""
+    corner, a, b, normal = plate.corner, plate.a, plate.b, plate.normal
+    px, py, pz = bead.x[0] - corner[0], bead.x[1] - corner[1], bead.x[2] - corner[2]
+    s = px * normal[0] + py * normal[1] + pz * normal[2]
+    if not abs(s) < NEAR * bead.r:
+        return Touch(-bead.r, s, 0.0, 0.0, 0.0, False)
+    along_a = px * a[0] + py * a[1] + pz * a[2]
+    along_b = px * b[0] + py * b[1] + pz * b[2]
+    at_a = min(max(along_a, 0.0), plate.length_a)
+    at_b = min(max(along_b, 0.0), plate.length_b)
+    if at_a == along_a and at_b == along_b:
+        sign = math.copysign(1.0, s)
+        return Touch(bead.r - abs(s), s, sign * normal[0], sign * normal[1], sign * normal[2], True)
+    dx = px - at_a * a[0] - at_b * b[0]
+    dy = py - at_a * a[1] - at_b * b[1]
+    dz = pz - at_a * a[2] - at_b * b[2]
+    distance = math.sqrt(dx * dx + dy * dy + dz * dz)
+    return Touch(bead.r - distance, s, dx / distance, dy / distance, dz / distance, False)
+
+
+@kernel
+def _begin(
+    shared: Any, clock: Clock, bead: Bead, p: int, at: int, spring: Spring, x: float, u: float
+) -> None:
+    """Start a contact, or the next one of a bead that comes back before it has parted."""
+    row, dt = bead.history, clock.dt
+    first = u > 0.0 and row[at + LARGEST] == 0.0
+    row[at + START] = clock.step - (x / (u * dt) if first else 0.0)
+    row[at + SPEED], row[at + WAVE] = u, 0.0
+    if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
+        complain(shared, clock.step, bead.tag, row, memory.WRONG_MASS, p, bead.mass, spring.mass)
+    if u > 0.0:
+        shortest = CONTACT_TIME * (spring.mass / (spring.stiffness * math.sqrt(u))) ** 0.4
+        limit = shortest / FEWEST_STEPS
+        if dt > limit:
+            complain(shared, clock.step, bead.tag, row, memory.STEP_TOO_LARGE, p, u, limit)
+
+
+@kernel
+def _end(
+    law: Functions,
+    shared: Any,
+    clock: Clock,
+    bead: Bead,
+    p: int,
+    at: int,
+    spring: Spring,
+    last: State,
+    touch: Touch,
+    u: float,
+) -> None:
+    """Put a contact whose force has ended in this step into the record."""
+    row, dt, scale = bead.history, clock.dt, spring.scale
+    unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
+    dm = last.largest_compression / scale
+    lost = law.dissipation(dm) * unit * scale if dm > 1.0 else 0.0
+    told, row[at + TOLD] = row[at + TOLD], lost
+    if not row[at + SPEED] > 0.0:  # it was put there and then left
+        return
+    n = shared.record_count
+    if n == shared.record_capacity:
+        complain(shared, clock.step, bead.tag, row, memory.TOO_MANY_RECORDS, p, 0.0, n)
+        return
+    ended = float(clock.step)
+    if u < 0.0:  # between the steps, where the compression was down to the residual one
+        gap = law.residual(dm) * scale + last.plate_displacement - touch.x
+        ended -= min(max(gap / (-u * dt), 0.0), 1.0)
+    line = array_at(shared.records, (shared.record_capacity, _RECORD_COLUMNS), np.float64)[n]
+    reach = bead.r - touch.x
+    line[0], line[1], line[2] = (row[at + START] - clock.zero) * dt, bead.tag, p
+    line[3] = bead.x[0] - reach * touch.nx
+    line[4] = bead.x[1] - reach * touch.ny
+    line[5] = bead.x[2] - reach * touch.nz
+    line[6], line[7] = row[at + SPEED], -u / row[at + SPEED]
+    line[8], line[9] = (ended - row[at + START]) * dt, law.loading(math.sqrt(dm)) * unit
+    line[10], line[11] = lost - told, row[at + WAVE]
+    shared.record_count = n + 1
+
+
+@kernel
+def _normal(
+    law: Functions, shared: Any, clock: Clock, bead: Bead, plate: Any, p: int, at: int, touch: Touch
+) -> None:
+    """Advance a contact by a step; its slot is empty afterwards if the bodies have parted."""
+    row = bead.history
+    u = -(bead.v[0] * touch.nx + bead.v[1] * touch.ny + bead.v[2] * touch.nz)
+    side = math.copysign(p + 1.0, touch.s)
+    if row[at + PLATE] == 0.0:
+        if touch.x > _DEEP * bead.r:
+            complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, p, touch.x,
+                     _DEEP * bead.r)  # fmt: skip
+    elif touch.face and side != row[at + PLATE]:
+        complain(shared, clock.step, bead.tag, row, memory.CROSSED, p, u, 0.0)
+    unit = Spring(plate.mass, plate.stiffness, plate.mobility, plate.scale, plate.relaxation)
+    spring = resized(unit, bead.r)
+    last = State(row[at + DISPLACEMENT], row[at + LARGEST], row[at + FORCE])
+    state = advance(law, spring, last, touch.x, clock.dt)
+    if state.force > 0.0 and last.force == 0.0:
+        _begin(shared, clock, bead, p, at, spring, touch.x, u)
+    square = last.force * last.force + state.force * state.force
+    row[at + WAVE] += 0.5 * clock.dt * spring.mobility * square
+    if state.force == 0.0 and last.force > 0.0:
+        _end(law, shared, clock, bead, p, at, spring, last, touch, u)
+    row[at + PLATE] = side
+    row[at + DISPLACEMENT] = state.plate_displacement
+    row[at + LARGEST] = state.largest_compression
+    row[at + FORCE] = state.force
+    if touch.x <= 0.0:
+        row[at : at + shared.width] = 0.0
+
+
+@kernel
+def _slide(
+    clock: Clock, bead: Bead, friction: float, touch: Touch, at: int, modulus: float
+) -> None:
+    """Add a spring's tangential force, k = 8 G* sqrt(r d) with Coulomb's limit."""
+    nx, ny, nz, r, v, omega = touch.nx, touch.ny, touch.nz, bead.r, bead.v, bead.omega
+    row = bead.history
+    spring = row[at + SPRING : at + SPRING + 3]
+    k = modulus * math.sqrt(r * max(touch.x - row[at + DISPLACEMENT], 0.0))
+    if clock.advancing:
+        # the sphere's point of contact is at -r n from its centre
+        gx = spring[0] + clock.dt * (v[0] - r * (omega[1] * nz - omega[2] * ny))
+        gy = spring[1] + clock.dt * (v[1] - r * (omega[2] * nx - omega[0] * nz))
+        gz = spring[2] + clock.dt * (v[2] - r * (omega[0] * ny - omega[1] * nx))
+        along = gx * nx + gy * ny + gz * nz
+        gx, gy, gz = gx - along * nx, gy - along * ny, gz - along * nz
+        pull, most = k * math.sqrt(gx * gx + gy * gy + gz * gz), friction * row[at + FORCE]
+        share = most / pull if pull > most else 1.0
+        spring[0], spring[1], spring[2] = share * gx, share * gy, share * gz
+    tx, ty, tz = -k * spring[0], -k * spring[1], -k * spring[2]
+    bead.force[0] += tx
+    bead.force[1] += ty
+    bead.force[2] += tz
+    bead.torque[0] -= r * (ny * tz - nz * ty)
+    bead.torque[1] -= r * (nz * tx - nx * tz)
+    bead.torque[2] -= r * (nx * ty - ny * tx)
+
+
+@kernel
+def interact(law: Functions, shared: Any, clock: Clock, plate: Any, p: int, bead: Bead) -> None:
+    """Add the force of plate p to a bead, and keep the bead's history."""
+    touch = _geometry(plate, bead)
+    if not touch.x > (1.0 - NEAR) * bead.r:
+        return
+    at = slot_of(bead.history, shared, p)
+    if at == 0:
+        if touch.x > 0.0:
+            complain(shared, clock.step, bead.tag, bead.history, memory.TOO_MANY_PLATES, p, 0.0,
+                     shared.slots)  # fmt: skip
+        return
+    if bead.history[at + PLATE] == 0.0 and (touch.x <= 0.0 or not clock.advancing):
+        return
+    if clock.advancing:
+        _normal(law, shared, clock, bead, plate, p, at, touch)
+    force = bead.history[at + FORCE]
+    bead.force[0] += force * touch.nx
+    bead.force[1] += force * touch.ny
+    bead.force[2] += force * touch.nz
+    if shared.friction > 0.0:
+        _slide(clock, bead, shared.friction, touch, at, plate.tangential)
