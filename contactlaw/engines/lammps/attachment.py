@@ -207,7 +207,12 @@ class LammpsPlates:
 
         @functools.wraps(function)
         def run(*arguments: Any, **keywords: Any) -> Any:
-            result = function(*arguments, **keywords)
+            try:
+                result = function(*arguments, **keywords)
+            except Exception as error:
+                if self._shared["error"][0]:  # LAMMPS has stumbled over what was found before
+                    raise RuntimeError(message(*self._own_error())) from error
+                raise
             self._after_command()
             return result
 
@@ -218,8 +223,7 @@ class LammpsPlates:
         if count:
             self._parts.append(self._records[:count].copy())
             self._shared["record_count"] = 0
-        names = [n for n in SHARED.names or () if n.startswith("error")]
-        own = self._shared[names][0].item() if self._shared["error"][0] else None
+        own = self._own_error() if self._shared["error"][0] else None
         errors = [error for error in self._comm.allgather(own) if error]
         if errors:
             self._shared["error"] = 0
@@ -227,6 +231,10 @@ class LammpsPlates:
             if history is not None:
                 history[:, 0] = 0.0
             raise RuntimeError(message(*min(errors, key=lambda error: error[1:3])))
+
+    def _own_error(self) -> Any:
+        names = [name for name in SHARED.names or () if name.startswith("error")]
+        return self._shared[names][0].item()
 
     def _history(self) -> NDArray[np.float64] | None:
         n = self._lmp.extract_setting("nlocal")

@@ -1,0 +1,60 @@
+"""Bead on bead: LAMMPS's own contact, told what contactlaw knows of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from contactlaw.arguments import scalars
+from contactlaw.materials import Material, material
+from contactlaw.spheres import restitution_sphere_sphere
+
+
+def pair_coeff(
+    sphere: Material | str, *, radius: float, speed: float, friction: float = 0.0
+) -> str:
+    """Write LAMMPS's ``pair_coeff`` line for ``pair_style granular``, for beads of one material.
+
+    Parameters
+    ----------
+    sphere : Material or str
+        Material of the beads.
+    radius : float
+        Radius of a typical bead [m]; the bead's COR does not depend on it.
+    speed : float
+        Typical approach speed of two beads [m/s]: LAMMPS takes one COR for all speeds, this is the
+        one that holds there.
+    friction : float, optional
+        Coulomb's coefficient of friction between beads [-].
+
+    Returns
+    -------
+    str
+        A command for ``lmp.command``, after ``pair_style granular``.
+
+    Raises
+    ------
+    ValueError
+        As `contactlaw.restitution_sphere_sphere`; a friction that is negative or not finite.
+
+    Notes
+    -----
+    ``hertz/material`` takes the Young's modulus of a bead and pairs it with the other's itself, and
+    its ``coeff_restitution`` gives the COR that it is asked for. Normal and tangential springs as
+    in LAMMPS's manual; the beads' own plastic flow is in the COR alone.
+
+    Examples
+    --------
+    >>> from contactlaw.engines.lammps import pair_coeff
+    >>> pair_coeff("gamma-alumina", radius=0.9e-3, speed=40.0).split(" tangential")[0]
+    'pair_coeff * * hertz/material 1.223e+10 0.873432 0.21'
+    """
+    one = material(sphere) if isinstance(sphere, str) else sphere
+    scalars(radius=radius, speed=speed)
+    if not 0.0 <= friction < np.inf:
+        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
+    restitution = restitution_sphere_sphere(one, one, speed, radius, radius)
+    tangential = f"mindlin NULL 0 {friction:g}" if friction else "linear_nohistory 0 0"
+    return (
+        f"pair_coeff * * hertz/material {one.youngs_modulus:g} {restitution:.6g} "
+        f"{one.poissons_ratio:g} tangential {tangential} damping coeff_restitution"
+    )

