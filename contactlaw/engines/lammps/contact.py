@@ -17,6 +17,7 @@ from contactlaw.engines.lammps.memory import (
     DISPLACEMENT,
     FORCE,
     LARGEST,
+    OWNER,
     PLATE,
     SPEED,
     SPRING,
@@ -217,6 +218,9 @@ def interact(law: Functions, shared: Any, clock: Clock, plate: Any, p: int, bead
     touch = _geometry(plate, bead)
     if not touch.x > (1.0 - NEAR) * bead.r:
         return
+    if bead.history[OWNER] != bead.tag:
+        bead.history[:] = 0.0
+        bead.history[OWNER] = bead.tag
     at = slot_of(bead.history, shared, p)
     if at == 0:
         if touch.x > 0.0:

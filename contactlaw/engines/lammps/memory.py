@@ -13,12 +13,14 @@ from contactlaw._jit import kernel
 
 carray: Any = numba.carray  # type: ignore[attr-defined]
 
-# A bead's history is the code of an error, then slots for the plates that it touches. A slot holds:
+# A bead's history is the code of an error, the bead's ID, and slots for the plates that it touches.
+# (LAMMPS gives a new bead the row that another one has left behind: by the ID it is known.) A slot:
 # the plate's number, counted from 1, negative if the bead is on the side from which the normal
 # points away, 0 if the slot is empty; the state of the contact; the step of first touch, with its
 # fraction (LAMMPS's clock has other bits when a run is cut into pieces); approach speed [m/s];
 # energy to the wave, and energy to plastic flow that is in the record already [J]; with friction,
 # the three components of the tangential spring [m].
+ERROR, OWNER, _FIRST = range(3)
 PLATE, DISPLACEMENT, LARGEST, FORCE, START, SPEED, WAVE, TOLD, SPRING = range(9)
 _SLOTS = 3  # plates that a bead may touch at once; a corner has three
 
@@ -44,7 +46,7 @@ SHARED = np.dtype(
 def history_shape(plates: int, friction: bool) -> tuple[int, int, int]:
     """Slots per bead, columns of a slot, and columns of the history."""
     slots, width = min(plates, _SLOTS), SPRING + 3 * friction
-    return slots, width, 1 + slots * width
+    return slots, width, _FIRST + slots * width
 
 
 @intrinsic
@@ -74,7 +76,7 @@ def slot_of(row: Any, shared: Any, plate: int) -> Any:
     """First column of the plate's slot, else of an empty one, else 0."""
     empty = 0
     for k in range(shared.slots):
-        at = 1 + k * shared.width
+        at = _FIRST + k * shared.width
         if abs(row[at]) == plate + 1:
             return at
         if row[at] == 0.0 and empty == 0:
@@ -87,7 +89,7 @@ def complain(
     shared: Any, step: int, tag: int, row: Any, code: int, plate: int, value: float, limit: float
 ) -> None:
     """Keep the first error of a rank, and mark the bead, which stops the run on all ranks."""
-    row[0] = code
+    row[ERROR] = code
     if shared.error == 0:
         shared.error, shared.error_step, shared.error_bead = code, step, tag
         shared.error_plate, shared.error_value, shared.error_limit = plate, value, limit
