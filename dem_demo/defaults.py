@@ -8,5 +8,7 @@ THICKNESSES = (0.5e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3)  # [m]
 RADIUS = (0.5e-3, 0.9e-3)  # [m]; R/H is at most 1.8, where the model is known to hold
 SPEED = (0.5, 15.0)  # [m/s], downwards; gamma-alumina on glass yields from 7.4 m/s
 DURATION = 2.4  # [s]
+LAMMPS_DURATION = 0.1  # [s]: it takes some 20 steps for a contact of microseconds
+LAMMPS_FRAME_RATE = 2000.0  # [1/s]
 SEED = 1
 SPHERE, PLATE = "gamma-alumina", "glass"

@@ -14,8 +14,13 @@ from dem_demo.baseline import ConstantRestitution
 from dem_demo.recorder import FLYING, GONE, WAITING, Frame, Recorder
 from dem_demo.scene import GRAVITY, Scene
 
-NAME = "pymunk"
-VERSION = version("pymunk")
+NAME, VERSION, DIMENSIONS = "pymunk", version("pymunk"), 2
+RANK = 0  # of this process among those that share the work
+
+
+def time_step(scene: Scene, model: ImpactModel | ConstantRestitution) -> float:
+    """Step [s] in which no bead jumps through a plate."""
+    return scene.time_step
 
 
 class _Rain:

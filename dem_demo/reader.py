@@ -33,6 +33,8 @@ class Run:
         One row per collision; the columns are those of the file.
     time, position, velocity, status : ndarray
         Frames (T,) [s], (T, N, 2) [m], (T, N, 2) [m/s], (T, N).
+    depth : ndarray or None
+        Third coordinate (T, N) [m], if the engine has one.
     """
 
     scene: Scene
@@ -44,6 +46,7 @@ class Run:
     position: NDArray[np.float32]
     velocity: NDArray[np.float32]
     status: NDArray[np.uint8]
+    depth: NDArray[np.float32] | None = None
 
     @cached_property
     def model(self) -> ImpactModel:

@@ -22,12 +22,13 @@ WAITING, FLYING, GONE = 0, 1, 2
 CONSTANT = "constant"  # the law's name where every contact has the same COR
 
 _COLUMNS = {
-    "time": ("s", "end of the engine's step that resolved the impact"),
+    "time": ("s", "impact; where an engine resolves it in one step, the end of that step"),
     "bead": ("1", "row of the bead in /beads"),
     "plate": ("1", "row of the plate in /plates, -1: bead on bead"),
     "other": ("1", "row of the other bead in /beads, -1: bead on plate"),
     "x": ("m", "contact point, horizontal"),
     "y": ("m", "contact point, vertical, upwards"),
+    "z": ("m", "contact point, depth; in three dimensions only"),
     "approach_speed": ("m/s", "normal speed of approach"),
     "restitution": ("1", "coefficient of restitution"),
     # What only a model of the impact knows; absent where every contact has the same COR.
@@ -39,11 +40,15 @@ _COLUMNS = {
 
 
 class Frame(NamedTuple):
-    """One instant: position (N, 2) [m], velocity (N, 2) [m/s] and status (N,) of every bead."""
+    """One instant of every bead: position (N, 2) [m], velocity (N, 2) [m/s] and status (N,).
+
+    In three dimensions also depth (N,) [m], the coordinate that the figures look along.
+    """
 
     position: Floats
     velocity: Floats
     status: NDArray[np.uint8]
+    depth: Floats | None = None
 
 
 class Recorder:
@@ -61,6 +66,10 @@ class Recorder:
         Name and version of the engine.
     command : str
         Command line that made the file.
+    time_step : float
+        The engine's step [s].
+    dimensions : int
+        Of the engine, 2 or 3.
     constant_cor : float, optional
         The COR of every contact, in the baseline.
     """
@@ -73,17 +82,20 @@ class Recorder:
         law: str,
         engine: tuple[str, str],
         command: str,
+        time_step: float,
+        dimensions: int,
         constant_cor: float | None = None,
     ) -> None:
+        self.folder = path.parent
         self._file = h5py.File(path, "x")
         self._frames = 0
         self._file.attrs.update(_provenance(engine, command))
         self._file.attrs.update({"law": law, "seed": scene.seed, "duration": scene.duration})
-        self._file.attrs.update({"frame_rate": scene.frame_rate, "time_step": scene.time_step})
+        self._file.attrs.update({"frame_rate": scene.frame_rate, "time_step": time_step})
         if constant_cor is not None:
             self._file.attrs["constant_cor"] = constant_cor
         _write_scene(self._file, scene)
-        self._trajectories = _create_trajectories(self._file, scene)
+        self._trajectories = _create_trajectories(self._file, scene, dimensions)
 
     def __enter__(self) -> Self:
         """Return the recorder."""
@@ -103,7 +115,8 @@ class Recorder:
     def frame(self, frame: Frame) -> None:
         """Append one frame."""
         for name, values in frame._asdict().items():
-            self._trajectories[name][self._frames] = values
+            if values is not None:
+                self._trajectories[name][self._frames] = values
         self._frames += 1
 
     def collisions(self, table: NDArray[np.void]) -> None:
@@ -173,7 +186,7 @@ def _attributes(material: Material) -> Mapping[str, object]:
     return values
 
 
-def _create_trajectories(file: h5py.File, scene: Scene) -> h5py.Group:
+def _create_trajectories(file: h5py.File, scene: Scene, dimensions: int) -> h5py.Group:
     """Datasets of their final size; frames are written into them one by one."""
     group = file.create_group("trajectories")
     frames, beads = scene.frames + 1, scene.beads.radius.size
@@ -183,6 +196,7 @@ def _create_trajectories(file: h5py.File, scene: Scene) -> h5py.Group:
         ("position", "f4", (2,), "m", "centre (x, y); of a bead that is gone: where it left"),
         ("velocity", "f4", (2,), "m/s", "velocity (x, y); of a bead that is gone: 0"),
         ("status", "u1", (), "1", "0 waiting for its emission, 1 flying, 2 gone"),
+        *[("depth", "f4", (), "m", "third coordinate of the centre")][: dimensions - 2],
     ):
         shape = (frames, beads, *size)
         dataset = group.create_dataset(

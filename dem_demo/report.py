@@ -69,6 +69,8 @@ def _plate_line(row: PlateRow) -> str:
 
 def _bead_line(run: Run) -> str:
     rows = bead_on_bead(run)
+    if run.engine == "lammps":
+        return "Bead on bead: LAMMPS's own contact, not recorded"
     if not rows.size:
         return "Bead on bead: no impacts"
     speed, cor = rows["approach_speed"], rows["restitution"]

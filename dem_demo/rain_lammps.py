@@ -1,0 +1,195 @@
+"""The rain in LAMMPS: three dimensions, bead on bead by its own contact, one rank or many.
+
+The scene's x and height become LAMMPS's x and z; the plates, and the rows of nozzles above them,
+are as deep as a plate is wide. Bead on bead is not recorded.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import version
+
+import numpy as np
+from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+from contactlaw import ImpactModel
+from contactlaw.engines import lammps as adapter
+from contactlaw.softsphere import time_step as longest_step
+from dem_demo.recorder import FLYING, GONE, WAITING, Frame, Recorder
+from dem_demo.scene import GRAVITY, Floats, Scene
+
+from lammps import lammps  # isort: skip
+
+NAME, VERSION, DIMENSIONS = "lammps", version("lammps"), 3
+RANK = MPI.COMM_WORLD.rank  # of this process among those that share the work
+DUMP = "rain.lammpstrj"
+
+_DEPTH = 0.06  # [m] of the plates
+_MARGIN = 0.012  # [m]: as in `nozzles`, nothing falls on an edge to begin with
+_AROUND = 0.1  # [m] beside and above the scene, in which beads still fly
+_RESERVE = 1.3  # beads get faster than the fastest that falls by hits from others
+_COLUMNS = "id type x y z vx vy vz radius " + " ".join(f"d2_contactlaw[{n}]" for n in range(3, 7))
+
+
+def time_step(scene: Scene, model: ImpactModel) -> float:
+    """Largest step [s] that the hardest impacts allow, and that divides a frame."""
+    speed, radius = _RESERVE * scene.top_speed, float(scene.beads.radius.min())
+    least = min(longest_step(model, speed, radius, plate.thickness) for plate in scene.plates)
+    frame = 1.0 / scene.frame_rate
+    return float(frame / np.ceil(frame / least))
+
+
+class _Rain:
+    """A scene in a LAMMPS box; every rank has one."""
+
+    def __init__(self, scene: Scene, model: ImpactModel, dump: str) -> None:
+        self.scene, self.density = scene, model.pair.sphere.density
+        self.step = time_step(scene, model)
+        self.steps = round(1.0 / (scene.frame_rate * self.step))
+        self.comm = MPI.COMM_WORLD
+        self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+        self.lmp.commands_string(self._input(model))
+        plates = [
+            adapter.Plate(
+                (p.x0, -0.5 * _DEPTH, p.y), (p.x1 - p.x0, 0, 0), (0, _DEPTH, 0), p.thickness
+            )
+            for p in scene.plates
+        ]
+        self.plates = adapter.attach(self.lmp, model, plates)
+        self.lmp.command(f"dump rain all custom {self.steps} {dump} {_COLUMNS}")
+        self.lmp.command("dump_modify rain sort id first yes")
+        n = scene.beads.radius.size
+        spread = 0.5 * _DEPTH - _MARGIN
+        self.depth = np.random.default_rng((scene.seed, 1)).uniform(-spread, spread, n)
+        self.emitted = 0
+        self.frames = 0
+        self.now = Frame(
+            scene.beads.position.copy(),
+            scene.beads.velocity.copy(),
+            np.full(n, WAITING, np.uint8),
+            self.depth.copy(),
+        )
+
+    def _input(self, model: ImpactModel) -> str:
+        scene, radius = self.scene, self.scene.beads.radius
+        left = min(plate.x0 for plate in scene.plates) - _AROUND
+        right = max(plate.x1 for plate in scene.plates) + _AROUND
+        top = float(scene.beads.position[:, 1].max()) + _AROUND
+        size = float(radius.max())
+        bead_on_bead = adapter.pair_coeff(
+            model.pair.sphere, radius=float(radius.mean()), speed=0.5 * scene.top_speed
+        )
+        return f"""
+            units si
+            atom_style sphere
+            boundary f f f
+            comm_modify vel yes
+            region box block {left} {right} {-_AROUND} {_AROUND} {scene.floor} {top} units box
+            create_box 1 box
+            neighbor {0.5 * size} bin
+            neigh_modify delay 0 every 10 check yes
+            pair_style granular
+            {bead_on_bead}
+            fix move all nve/sphere
+            fix weight all gravity {GRAVITY} vector 0 0 -1
+            thermo 1000000
+            thermo_modify lost ignore
+            timestep {self.step!r}
+            """
+
+    def advance(self) -> None:
+        """Go on by one frame; the beads emitted in it appear at its end, where they are then."""
+        self.lmp.command(f"run {self.steps} post no")
+        self.frames += 1
+        beads, time = self.scene.beads, self.frames / self.scene.frame_rate
+        until = int(np.searchsorted(beads.emission_time, time, side="right"))
+        new = slice(self.emitted, until)
+        age = time - beads.emission_time[new]
+        x, height = (beads.position[new] + beads.velocity[new] * age[:, None]).T
+        height = height - 0.5 * GRAVITY * age**2
+        u, w = beads.velocity[new].T
+        position = np.column_stack((x, self.depth[new], height))
+        velocity = np.column_stack((u, np.zeros_like(u), w - GRAVITY * age))
+        self._create(np.arange(self.emitted, until), position, velocity)
+        self.now.status[new] = FLYING
+        self.emitted = until
+
+    def _create(self, index: NDArray[np.int64], position: Floats, velocity: Floats) -> None:
+        n = index.size
+        if not n:
+            return
+        ids = (index + 1).tolist()
+        self.lmp.create_atoms(n, ids, [1] * n, position.ravel().tolist(), velocity.ravel().tolist())
+        here = self.lmp.extract_setting("nlocal")
+        bead = self.lmp.numpy.extract_atom("id")[:here] - 1 if here else np.empty(0, int)
+        fresh = bead >= index[0]
+        radius = self.scene.beads.radius
+        if fresh.any():
+            self.lmp.numpy.extract_atom("radius")[:here][fresh] = radius[bead[fresh]]
+            mass = self.scene.beads.mass(self.density)
+            self.lmp.numpy.extract_atom("rmass")[:here][fresh] = mass[bead[fresh]]
+
+    def look(self) -> Frame | None:
+        """Gather the beads of all ranks: on rank 0, None on the others."""
+        here = self.lmp.extract_setting("nlocal")
+        columns = [np.empty((0, 7))]
+        if here:
+            names = ("id", "x", "v")
+            arrays = [self.lmp.numpy.extract_atom(name)[:here] for name in names]
+            columns.append(np.column_stack(arrays))
+        parts = self.comm.gather(np.concatenate(columns))
+        if parts is None:
+            return None
+        rows = np.concatenate(parts)
+        bead, now = rows[:, 0].astype(int) - 1, self.now
+        gone = now.status != WAITING
+        gone[bead] = False
+        now.status[gone] = GONE
+        now.velocity[gone] = 0.0
+        now.position[bead], now.velocity[bead] = rows[:, [1, 3]], rows[:, [4, 6]]
+        assert now.depth is not None
+        now.depth[bead] = rows[:, 2]
+        return now
+
+    def collisions(self) -> NDArray[np.void] | None:
+        """Impacts on plates, with the scene's axes and the beads' rows, on rank 0."""
+        rows = self.plates.gather()
+        if rows is not None:
+            rows["bead"] -= 1
+            rows["y"], rows["z"] = rows["z"].copy(), rows["y"].copy()
+        return rows
+
+
+def run(scene: Scene, model: ImpactModel, recorder: Recorder | None) -> None:
+    """Let it rain, and record it.
+
+    Parameters
+    ----------
+    scene : Scene
+        What falls on what.
+    model : ImpactModel
+        The law of the plates, and the COR of bead on bead.
+    recorder : Recorder or None
+        Gets every frame, and all collisions at the end; None on all ranks but 0. The file for
+        OVITO goes beside it.
+    """
+    folder = MPI.COMM_WORLD.bcast(None if recorder is None else recorder.folder)
+    rain = _Rain(scene, model, str(folder / DUMP))
+    frames = range(scene.frames)
+    if recorder is not None:
+        frames = tqdm(frames, desc="rain", unit="frame", disable=None)
+    _record(rain, recorder)
+    for _ in frames:
+        rain.advance()
+        _record(rain, recorder)
+    rows = rain.collisions()
+    if recorder is not None and rows is not None:
+        recorder.collisions(rows)
+    rain.lmp.close()
+
+
+def _record(rain: _Rain, recorder: Recorder | None) -> None:
+    frame = rain.look()
+    if recorder is not None and frame is not None:
+        recorder.frame(frame)
