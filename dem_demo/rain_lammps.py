@@ -28,6 +28,8 @@ DUMP = "rain.lammpstrj"
 _DEPTH = 0.06  # [m] of the plates
 _MARGIN = 0.012  # [m]: as in `nozzles`, nothing falls on an edge to begin with
 _AROUND = 0.1  # [m] beside and above the scene, in which beads still fly
+# Bins of LAMMPS's own choice would be millions, nearly all of them empty: 30 ms per neighbour list.
+_BIN = 6.0  # [largest radius]
 _RESERVE = 1.3  # beads get faster than the fastest that falls by hits from others
 _COLUMNS = "id type x y z vx vy vz radius " + " ".join(f"d2_contactlaw[{n}]" for n in range(3, 7))
 
@@ -88,7 +90,7 @@ class _Rain:
             region box block {left} {right} {-_AROUND} {_AROUND} {scene.floor} {top} units box
             create_box 1 box
             neighbor {0.5 * size} bin
-            neigh_modify delay 0 every 10 check yes
+            neigh_modify delay 0 every 10 check yes binsize {_BIN * size}
             pair_style granular
             {bead_on_bead}
             fix move all nve/sphere

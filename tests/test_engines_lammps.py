@@ -18,6 +18,9 @@ import box  # noqa: E402
 from box import PLATE, R, flat, make, shower, state  # noqa: E402
 
 from contactlaw.engines.lammps import Plate, attach, pair_coeff  # noqa: E402
+from dem_demo import cli, figures, reader  # noqa: E402
+from dem_demo.recorder import FLYING  # noqa: E402
+from dem_demo.scene import GRAVITY  # noqa: E402
 
 # thickness [m], speed [m/s]: below and above yield (7.4 m/s on a half-space), lambda to 1.2
 DROPS = [(math.inf, 3.0), (math.inf, 12.0), (3e-3, 5.0), (3e-3, 15.0), (1e-3, 1.0), (1e-3, 5.0)]
@@ -102,6 +105,52 @@ def test_two_ranks_give_the_same_bits(whole_shower, two_ranks):
             assert np.array_equal(values, out[name]), name
         for name in ("bead", "plate", "restitution", "peak_force"):
             assert np.array_equal(out["rows"][name], whole_shower[1][name]), name
+
+
+def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path):
+    """Too few beads to meet each other: the same bits."""
+    assert cli.main([*box.RAIN, "--out", str(tmp_path / "rain")]) == 0
+    one, two = (
+        reader.read(path / "rain.h5")
+        for path in (tmp_path / "rain", two_ranks[1].with_name("rain"))
+    )
+    assert {file.name for file in (tmp_path / "rain").iterdir()} == {
+        "rain.h5",
+        "rain.lammpstrj",
+        "summary.txt",
+        *(f"{name}.png" for name in figures.names()),
+    }
+    assert np.array_equal(one.position, two.position)
+    assert np.array_equal(one.depth, two.depth)
+    rows = one.collisions
+    assert len(rows) > 8 and set(rows["plate"]) == {0, 1}
+    for name in ("bead", "plate", "restitution"):
+        assert np.array_equal(rows[name], two.collisions[name])
+    radius = one.scene.beads.radius[rows["bead"]]
+    thickness = np.array([0.5e-3, math.inf])[rows["plate"]]
+    expected = one.model.restitution(rows["approach_speed"], radius, thickness)
+    assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
+    assert (np.diff(rows["time"]) >= 0).all()
+    assert one.depth.shape == one.position.shape[:2] and abs(one.depth).max() < 0.03
+    # before the first impact: a parabola, whatever the frame in which it was emitted
+    frame, bead = np.argwhere(one.status == FLYING)[0]
+    age = one.time[frame] - one.scene.beads.emission_time[bead]
+    start, speed = one.scene.beads.position[bead], one.scene.beads.velocity[bead]
+    fallen = start + speed * age - [0, 0.5 * GRAVITY * age**2]
+    assert one.position[frame, bead] == pytest.approx(fallen, rel=1e-6)
+
+
+def test_the_dump_is_one_that_ovito_opens(two_ranks):
+    """Its text format: a header for each frame, then one row per bead."""
+    lines = (two_ranks[1].with_name("rain") / "rain.lammpstrj").read_text().splitlines()
+    heads = [n for n, line in enumerate(lines) if line == "ITEM: TIMESTEP"]
+    assert len(heads) == 31  # frames of 1 ms, and the start
+    for head in heads:
+        assert lines[head + 2] == "ITEM: NUMBER OF ATOMS"
+        beads = int(lines[head + 3])
+        assert lines[head + 8].startswith("ITEM: ATOMS id type x y z vx vy vz radius d2_contactlaw")
+        rows = [line.split() for line in lines[head + 9 : head + 9 + beads]]
+        assert all(len(row) == 13 for row in rows)
 
 
 def test_an_error_on_one_rank_reaches_both(two_ranks):
