@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -14,18 +16,19 @@ from dem_demo.recorder import CONSTANT
 from dem_demo.report import label
 from dem_demo.scene import Floats
 
-_RATE = 1e3  # [1/s]: single impacts can be told apart, and weigh what they bring
+_SAMPLES = 1000  # at least, at a rate of 10^n per second: single impacts can be told apart
 
 
 def draw(run: Run) -> Figure:
     """Draw a row per plate: the load over the whole run, and the hardest contact."""
     plates = run.scene.plates
     constant = run.law == CONSTANT
+    rate = 10.0 ** math.ceil(math.log10(_SAMPLES / run.scene.duration))
     figure = _style.figure(
         13.0,
         1.9 + 1.25 * len(plates),
         "What a force sensor on each plate would see",
-        f"{_style.source(run)}; left: mean force over each {1e3 / _RATE:g} ms, right: hardest "
+        f"{_style.source(run)}; left: mean force over each {1e3 / rate:g} ms, right: hardest "
         "contact" + ("; forces by contactlaw for the run's impacts" if constant else ""),
     )
     grid = figure.subplots(
@@ -35,7 +38,7 @@ def draw(run: Run) -> Figure:
         rows = on_plate(run, n)
         impacts = rows["approach_speed"], run.scene.beads.radius[rows["bead"]], plates[n].thickness
         load = load_signal(
-            rows["time"], *impacts, model=run.model, rate=_RATE, duration=run.scene.duration
+            rows["time"], *impacts, model=run.model, rate=rate, duration=run.scene.duration
         )
         left.fill_between(load.time, load.force, step="mid", color=_style.BLUE, linewidth=0.6)
         left.set_title(label(plates[n].thickness), loc="left", fontweight="bold", pad=3.0)
