@@ -278,8 +278,8 @@ def test_detach_gives_the_simulation_back(one):
     walls.detach()
     walls.detach()
     assert "command" not in vars(lmp)
-    assert not [name for kind in ("fix", "compute", "variable")
-                for name in lmp.available_ids(kind) if "contactlaw" in name]  # fmt: skip
+    assert not [name for kind in ("fix", "compute", "variable", "group")
+                for name in lmp.available_ids(kind) if name and "contactlaw" in name]  # fmt: skip
     lmp.command("run 2000")
     assert state_without_history(lmp)[2] == pytest.approx(-5.0, rel=1e-12)  # through the plate
 

@@ -8,7 +8,7 @@ import sys
 
 from tqdm import tqdm
 
-SUBJECTS = ("lookups", "histories", "solver", "startup", "rain")
+SUBJECTS = ("lookups", "histories", "solver", "startup", "rain", "lammps")
 
 
 def main(names: list[str]) -> int:

@@ -152,7 +152,8 @@ class LammpsPlates:
         slots, width, columns = history_shape(len(plates), friction > 0.0)
         for command in (
             f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} ghost no",
-            f"fix {HISTORY}_force all external pf/callback 1 1",
+            f"group {HISTORY} empty",
+            f"fix {HISTORY}_force {HISTORY} external pf/callback 1 1",
             f"compute {HISTORY}_errors all property/atom d2_{HISTORY}[1]",
             f"compute {HISTORY}_error all reduce max c_{HISTORY}_errors",
             f"variable {HISTORY}_error equal c_{HISTORY}_error",
@@ -172,7 +173,7 @@ class LammpsPlates:
         self._names = {
             field: ctypes.create_string_buffer(name.encode())
             for field, name in (
-                *((name, name) for name in ("v", "radius", "rmass", "omega", "torque")),
+                *((name, name) for name in ("v", "f", "radius", "rmass", "omega", "torque")),
                 ("history", f"d2_{HISTORY}"),
             )
         }
@@ -283,6 +284,7 @@ class LammpsPlates:
             f"uncompute {HISTORY}_error",
             f"uncompute {HISTORY}_errors",
             f"unfix {HISTORY}_force",
+            f"group {HISTORY} delete",
             f"unfix {HISTORY}",
         ):
             self._lmp.command(command)

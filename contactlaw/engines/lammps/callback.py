@@ -1,7 +1,9 @@
 """What runs in every time step: a C function made by numba, which LAMMPS calls by its address.
 
-LAMMPS hands over positions and the array for the forces; the other arrays are fetched through its C
-interface, every time, for they move.
+LAMMPS hands over the positions; the other arrays are fetched through its C interface, every time,
+for they move. Forces are added to LAMMPS's own, and only for beads that touch a plate: the array
+which ``fix external`` offers for them would be written, read and added for all beads in every step,
+and that takes longer than all the rest.
 """
 
 from __future__ import annotations
@@ -38,7 +40,7 @@ _SIGNATURE = types.void(
     types.int32,  # beads of this rank
     _pointer(types.int32),  # their IDs
     _pointer(_pointer(types.float64)),  # positions
-    _pointer(_pointer(types.float64)),  # forces, to be filled
+    _pointer(_pointer(types.float64)),  # forces that the fix would add; its group is empty
 )
 _EXTRACT = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_ssize_t, ctypes.c_ssize_t)  # addresses
 
@@ -92,14 +94,13 @@ def callback(law_name: str, extract_address: int) -> Any:
             torque = matrix_at(extract(shared.lammps, shared.torque), n, 3)
         if step % _EVERY == 0:
             _look_for_jumps(shared, clock, tags, v, radius, history)
-        x, force = carray(positions[0], (n, 3)), carray(forces[0], (n, 3))
+        x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared.lammps, shared.f), n, 3)
         plates = array_at(shared.plates, shared.plate_count, ROW)
-        # Local numbers: the compiler cannot know that writing forces leaves `shared` as it is.
+        # Local numbers: the compiler cannot know that nothing below changes `shared`.
         count = shared.plate_count
         x0, y0, z0 = shared.low[0], shared.low[1], shared.low[2]
         x1, y1, z1 = shared.high[0], shared.high[1], shared.high[2]
         for i in range(n):
-            force[i, 0] = force[i, 1] = force[i, 2] = 0.0
             reach = NEAR * radius[i]
             if (
                 x[i, 2] > z1 + reach

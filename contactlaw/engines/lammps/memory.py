@@ -32,7 +32,7 @@ RECORD = ("time", "bead", "plate", "x", "y", "z", "approach_speed", "restitution
 
 # Integers from "lammps" to "records" are addresses.
 SHARED = np.dtype(
-    [(name, "i8") for name in ("lammps", "v", "radius", "rmass", "omega", "torque", "history")]
+    [(name, "i8") for name in ("lammps", "v", "f", "radius", "rmass", "omega", "torque", "history")]
     + [(name, "i8") for name in ("dt", "atime", "atimestep", "plates", "records")]
     + [(name, "i8") for name in ("plate_count", "slots", "width", "columns", "last_step")]
     + [(name, "i8") for name in ("record_capacity", "record_count")]

