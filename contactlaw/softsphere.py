@@ -39,7 +39,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw import laws
 from contactlaw._jit import kernel
 from contactlaw.arguments import broadcast, check, scalars
-from contactlaw.impact import sphere_on_plate
+from contactlaw.impact import scales, sphere_on_plate
 from contactlaw.laws import Functions
 from contactlaw.provider import ImpactModel
 
@@ -334,8 +334,9 @@ def time_step(
     Returns
     -------
     float
-        Step [s]: the contact in (0.9/error)^0.4 steps, and at least 20. Measured for lambda to 2
-        and speeds to 7 times the yield speed.
+        Step [s]: the contact, or an elastic one with a half-space if that is shorter, in
+        (0.9/error)^0.4 steps and at least 20. Measured for lambda to 2 and speeds to 7 times the
+        yield speed.
 
     Raises
     ------
@@ -353,6 +354,7 @@ def time_step(
     if not 2e-5 <= error <= 1e-2:
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
-    time = np.asarray(model.lookup(v, r, h).contact_time)
+    units = scales(sphere_on_plate(model.pair, laws.law(model.law), r, h), v)
+    time = np.minimum(model.lookup(v, r, h).contact_time, CONTACT_TIME * units.time)
     steps: float = (_ERROR / error) ** 0.4
     return float(time[0]) / max(FEWEST_STEPS, steps)

