@@ -10,6 +10,7 @@ import dataclasses
 import importlib
 import shlex
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
@@ -59,6 +60,8 @@ def _stopped(status: int) -> int:
     """Stop the other ranks too, which would wait for this one for ever."""
     mpi = sys.modules.get("mpi4py.MPI")
     if mpi is not None and mpi.COMM_WORLD.size > 1:
+        if mpi.COMM_WORLD.rank > 0:
+            time.sleep(5.0)  # rank 0 takes its files away before it ends everything
         mpi.COMM_WORLD.Abort(status)
     return status
 
