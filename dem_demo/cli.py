@@ -166,6 +166,7 @@ def _plan(arguments: argparse.Namespace) -> tuple[Scene, ImpactModel | ConstantR
             seed=arguments.seed,
             sphere=arguments.sphere,
             plate=arguments.plate,
+            dimensions=3 if lammps else 2,
         )
         if lammps:
             scene = dataclasses.replace(scene, frame_rate=defaults.LAMMPS_FRAME_RATE)

@@ -13,6 +13,7 @@ from dem_demo.scene import GRAVITY, Beads, Floats, Plate, Scene
 
 # Our own choices, made so that the figures show something.
 WIDTH, GAP = 0.060, 0.020  # [m], of a plate and between two
+DEPTH = 0.060  # [m], of a plate in three dimensions
 MARGIN = 0.012  # [m]: nozzles keep off the edges, whose reflected waves the model leaves out
 HEIGHT = 0.2  # [m], of the nozzles above the plates
 SIDEWAYS = 0.05  # [m/s], largest sideways speed: beads wander over to the next plate or the gap
@@ -33,6 +34,7 @@ def rain(
     seed: int = defaults.SEED,
     sphere: Material | str = defaults.SPHERE,
     plate: Material | str = defaults.PLATE,
+    dimensions: int = 2,
 ) -> Scene:
     """Draw a rain of beads on a row of plates.
 
@@ -50,6 +52,8 @@ def rain(
         The same seed gives the same rain.
     sphere, plate : Material or str, optional
         Materials of beads and plates.
+    dimensions : int, optional
+        Of the engine; in 3 there are as many rows of nozzles, one behind the other, as fit.
 
     Returns
     -------
@@ -78,8 +82,25 @@ def rain(
     plate_material = plate if isinstance(plate, Material) else material(plate)
     if not 0.0 < duration < math.inf:
         raise ValueError(f"duration: must be positive and finite [s], got {duration!r}")
-    drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed)
-    return Scene(drops, plates, sphere_material, plate_material, duration, seed)
+    rows = max(1, int((DEPTH - 2.0 * MARGIN) / (2.2 * radius[1]))) if dimensions == 3 else 1
+    drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed, rows)
+    return Scene(drops, plates, sphere_material, plate_material, duration, seed, rows=rows)
+
+
+def depths(scene: Scene) -> Floats:
+    """Third coordinate of each bead at its emission [m], from the middle of the plates.
+
+    The rows take turns.
+
+    Examples
+    --------
+    >>> scene = rain(beads=40, dimensions=3)
+    >>> scene.rows, depths(scene).round(4)[[0, 1, 18]]
+    (18, array([-0.017, -0.015, -0.017]))
+    """
+    row = np.arange(scene.beads.radius.size) % scene.rows
+    depth: Floats = (DEPTH - 2.0 * MARGIN) * ((row + 0.5) / scene.rows - 0.5)
+    return depth
 
 
 def _check_range(name: str, limits: tuple[float, float], unit: str, *, positive: bool) -> None:
@@ -98,13 +119,14 @@ def _draw(
     speed: tuple[float, float],
     period: float,
     seed: int,
+    rows: int,
 ) -> Beads:
     """Beads at seeded times, places, sizes and speeds, none emitted into another."""
-    _check_crowd(n, plates, radius[1], speed[0], period)
+    _check_crowd(n, plates, radius[1], speed[0], period, rows)
     rng = np.random.default_rng(seed)
     time = (np.arange(n) + rng.random(n)) * (period / n)
     # Multiples of the golden ratio: beads that are close in time are far apart in space.
-    place = (rng.random() + GOLDEN * np.arange(n)) % 1.0 * plates
+    place = (rng.random() + GOLDEN * (np.arange(n) // rows)) % 1.0 * plates
     plate = np.minimum(np.floor(place), plates - 1)
     x = plate * (WIDTH + GAP) + MARGIN + (place - plate) * (WIDTH - 2.0 * MARGIN)
     down = rng.uniform(*speed, n)
@@ -113,12 +135,14 @@ def _draw(
     return Beads(size, time, np.column_stack((x, np.full(n, HEIGHT))), velocity)
 
 
-def _check_crowd(n: int, plates: int, radius: float, speed: float, period: float) -> None:
+def _check_crowd(
+    n: int, plates: int, radius: float, speed: float, period: float, rows: int
+) -> None:
     """Refuse more beads than the nozzles can let go without overlap."""
     fall = 2.0 * radius
     clear = (math.sqrt(speed**2 + 2.0 * GRAVITY * fall) - speed) / GRAVITY
     together = SPACING * plates * (WIDTH - 2.0 * MARGIN) / fall
-    most = math.floor((together - 2.0) * period / clear)
+    most = rows * max(0, math.floor((together - 2.0) * period / clear))
     if n > most:
         raise ValueError(
             f"beads: {n} within {period:g} s would be emitted into each other; at most {most} of "

