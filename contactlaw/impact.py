@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw import laws
 from contactlaw.laws import Law
 from contactlaw.materials import Material
 from contactlaw.pair import Pair
@@ -39,6 +40,23 @@ class Scales(NamedTuple):
     time: Array  # T_H [s]
     compression: Array  # V0 T_H [m]
     force: Array  # m V0/T_H [N]
+
+
+def law_of(pair: Pair, name: str) -> Law:
+    """Law of a name, with the numbers that it takes from the pair (`contactlaw.laws.parameters`).
+
+    Raises
+    ------
+    ValueError
+        If there is no such law, or the sphere has no yield strength where the law needs one.
+    """
+    if not laws.parameters(name):
+        return laws.law(name)
+    return laws.law(
+        name,
+        modulus_ratio=pair.effective_modulus / pair.sphere.require_yield_strength(name),
+        poissons_ratio=pair.sphere.poissons_ratio,
+    )
 
 
 def plate_mobility(plate: Material, thickness: Array) -> Array:

@@ -15,7 +15,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw import history, laws, lookup
+from contactlaw import history, lookup
 from contactlaw.arguments import broadcast, check, scalars, shaped
 from contactlaw.compiled import c_function, entries, jitted
 from contactlaw.evaluation import (
@@ -29,7 +29,15 @@ from contactlaw.evaluation import (
     tabulated,
 )
 from contactlaw.history import ForceHistory
-from contactlaw.impact import Contact, Rebound, Scales, scales, sphere_on_plate, sphere_on_sphere
+from contactlaw.impact import (
+    Contact,
+    Rebound,
+    Scales,
+    law_of,
+    scales,
+    sphere_on_plate,
+    sphere_on_sphere,
+)
 from contactlaw.pair import Pair
 from contactlaw.table import Settings, Table
 
@@ -49,8 +57,9 @@ class ImpactModel:
     pair : Pair
         Materials of sphere and plate.
     law : str, optional
-        Normal force law: ``"myc"`` (elastic-plastic) or ``"hertz"`` (elastic, needs no yield
-        strength).
+        Normal force law: ``"myc"`` (elastic-plastic), ``"hertz"`` (elastic, needs no yield
+        strength), or another of `contactlaw.laws.names`, whose table is built when it is first
+        needed and kept in the user's cache folder.
     table : Table, path-like or Settings, optional
         A table to use in place of the packaged one; `contactlaw.table.Settings` of a larger or
         finer one are built (in seconds) and kept in the user's cache folder.
@@ -93,7 +102,7 @@ class ImpactModel:
         if outside not in ("raise", "solve", "clamp"):
             raise ValueError(f"outside: must be 'raise', 'solve' or 'clamp', got {outside!r}")
         self._pair = pair
-        self._law = laws.law(law)
+        self._law = law_of(pair, law)
         if self._law.kinks:
             pair.sphere.require_yield_strength(law)
         self._outside: Outside = outside
@@ -238,7 +247,7 @@ class ImpactModel:
         """
         v, r, o, shape = broadcast(speed=speed, radius=radius, other_radius=other_radius)
         check(speed=v, radius=r, other_radius=o)
-        twins = Pair(self.pair.sphere, self.pair.sphere)
+        twins = self._twins()
         contact = sphere_on_sphere(twins, self._law, r, o)
         return self._lookup(twins, contact, Impact(v, r, np.full_like(r, math.inf), shape))
 
@@ -433,7 +442,7 @@ class ImpactModel:
         0.9608
         """
         r, o = scalars(radius=radius, other_radius=other_radius)
-        twins = Pair(self.pair.sphere, self.pair.sphere)
+        twins = self._twins()
         contact = sphere_on_sphere(twins, self._law, r, o)
         return self._curve(*factors(contact), lambda: contact)
 
@@ -480,6 +489,15 @@ class ImpactModel:
         0.9081
         """
         return int(self._c_function.address)
+
+    def _twins(self) -> Pair:
+        twins = Pair(self.pair.sphere, self.pair.sphere)
+        if law_of(twins, self.law.partition("(")[0]).name != self.law:
+            raise ValueError(
+                f"law: {self.law!r} holds for E* of {self.pair!r}, and two of its spheres have "
+                "another one: contactlaw.restitution_sphere_sphere(..., law=...) has a law of them"
+            )
+        return twins
 
     def _curve(
         self, c_lam: float, c_chi: float, contact: Callable[[], Contact]

@@ -7,10 +7,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw import laws
 from contactlaw.arguments import broadcast, check, shaped
 from contactlaw.evaluation import table_for, tabulated
-from contactlaw.impact import scales, sphere_on_sphere
+from contactlaw.impact import law_of, scales, sphere_on_sphere
 from contactlaw.materials import Material
 from contactlaw.pair import Pair
 
@@ -65,7 +64,7 @@ def restitution_sphere_sphere(
     check(speed=v, radius=r, other_radius=o)
     if (pair.plate.yield_strength or math.inf) < (pair.sphere.yield_strength or math.inf):
         pair, r, o = Pair(pair.plate, pair.sphere), o, r
-    chosen = laws.law(law)
+    chosen = law_of(pair, law)
     units = scales(sphere_on_sphere(pair, chosen, r, o), v)
     fields, _ = tabulated(chosen, table_for(chosen, None).packed, units, "raise")
     return shaped(fields[0], shape)

@@ -1,4 +1,4 @@
-"""The modified Zener model by scipy alone; shares no code with contactlaw.
+"""The modified Zener model by scipy alone; `impact` shares no code with contactlaw.
 
 First-order form of Eq. (1) of Peng et al. 2021 with the MYC law of Eqs. 16-18, on Hertz's scale:
 w' = u - lam f(w), u' = -f(w), w(0) = 0, u(0) = 1; d_Y = y there.
@@ -9,7 +9,12 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from contactlaw import laws
+
 RATIO = 2.14 / 0.68  # d_P/d_Y
+# what laws take from the pair beside d_Y: those of gamma-alumina on glass
+NUMBERS = {"modulus_ratio": 23.1922, "poissons_ratio": 0.21}
+ALL_LAWS = [laws.law(name, **NUMBERS) for name in laws.names()]
 OPTIONS = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13}
 
 
@@ -87,3 +92,39 @@ def _integrated(lam, y, law, **options):
         return law_there(w), speed
 
     return -run.y[1, -1], run.t[-1], wm, at
+
+
+def impact_of(law, lam, y):
+    """COR, contact time and largest compression under any law's force, in terms of w."""
+    scale = y * math.sqrt(y)  # F_Y and d_Y on Hertz's scale
+
+    def event(function, direction):
+        function.terminal, function.direction = True, direction
+        return function
+
+    def follow(force, t, s, events):
+        def rates(t, s):
+            f = force(s[0])
+            return [s[1] - lam * f, -f]
+
+        return solve_ivp(rates, [t, t + 1000], s, events=events, **OPTIONS)
+
+    def up(w):
+        return scale * law.loading(math.sqrt(max(w, 0.0) / y))
+
+    t, state = 0.0, [0.0, 1.0]
+    turned = event(lambda t, s: s[1] - lam * up(s[0]), -1)
+    for kink in (*law.loading_kinks, math.inf):  # the method keeps its order between kinks
+        run = follow(up, t, state, [turned, event(lambda t, s, k=kink: s[0] - k * y, 1)])
+        t, state = run.t[-1], run.y[:, -1]
+        if run.t_events[0].size:
+            break
+    largest = state[0]
+    left, curve = law.residual(largest / y), law.unloading_curve(largest / y)
+
+    def down(w):
+        return scale * law.unloading(math.sqrt(max(w / y - left, 0.0)), *curve)
+
+    run = follow(down, t, state, [event(lambda t, s: s[0] - left * y, -1)])
+    assert run.t_events[0].size == 1
+    return -run.y[1, -1], run.t[-1], largest

@@ -5,6 +5,10 @@ F_Y = K d_Y^1.5, so that every law follows Hertz, F = d^1.5, up to d = 1. Forces
 the root compression q, sqrt(d) while loading and sqrt(d - residual) while unloading: it is to
 Hertz the radius of contact, and a force that is smooth in it is what the solver needs. A new law
 is a new module here that defines ``LAW``; nothing else has to be touched.
+
+A law whose scaled form depends on more than the compression defines ``PARAMETERS`` instead, their
+names, and a function ``law`` of them. Their values are part of its name, ``"kogut_etsion(0.3)"``,
+so that each set has a table of its own wherever tables are kept by the name of their law.
 """
 
 from __future__ import annotations
@@ -14,9 +18,13 @@ import functools
 import importlib
 import math
 import pkgutil
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import ModuleType
 from typing import NamedTuple
+
+_BRACKETS = re.compile(r"[a-z_]+\([-+.,0-9e]+\)")
 
 
 class Functions(NamedTuple):
@@ -98,28 +106,83 @@ def names() -> tuple[str, ...]:
     --------
     >>> import contactlaw.laws
     >>> contactlaw.laws.names()
-    ('hertz', 'myc')
+    ('hertz', 'jackson_green', 'kogut_etsion', 'myc', 'stronge', 'thornton')
     """
-    return tuple(sorted(module.name for module in pkgutil.iter_modules(__path__)))
+    found = (module.name for module in pkgutil.iter_modules(__path__))
+    return tuple(sorted(name for name in found if not name.startswith("_")))
 
 
-def law(name: str) -> Law:
+def parameters(name: str) -> tuple[str, ...]:
+    """Names of the numbers, beside d_Y, that a law takes from the pair of materials.
+
+    Parameters
+    ----------
+    name : str
+        As `law` takes it; none are missing where it gives them.
+
+    Returns
+    -------
+    tuple of str
+        Some of ``"modulus_ratio"``, E*/sigma_Y, and ``"poissons_ratio"``, that of the sphere.
+
+    Examples
+    --------
+    >>> import contactlaw.laws
+    >>> contactlaw.laws.parameters("kogut_etsion")
+    ('poissons_ratio',)
+    >>> contactlaw.laws.parameters("kogut_etsion(0.3)")
+    ()
+    """
+    return () if "(" in str(name) else tuple(getattr(_module(name), "PARAMETERS", ()))
+
+
+def law(name: str, **numbers: float) -> Law:
     """Look up a law by its name.
+
+    Parameters
+    ----------
+    name : str
+        One of `names`; for a law with `parameters` with or without their values in brackets.
+    **numbers : float
+        Their values, where the name has none; six digits count. A law takes what it needs.
 
     Raises
     ------
     ValueError
-        If there is no such law; the message lists those there are.
+        If there is no such law, the message lists those there are; or if a number is missing.
 
     Examples
     --------
     >>> from contactlaw.laws import law
     >>> law("myc").yield_coefficient
     0.68
+    >>> law("kogut_etsion", poissons_ratio=0.3).name
+    'kogut_etsion(0.3)'
     """
-    if name not in names():
-        near = difflib.get_close_matches(str(name), names(), n=1)
-        hint = f"did you mean {near[0]!r}? " if near else ""
+    module = _module(name)
+    wanted = getattr(module, "PARAMETERS", None)
+    if wanted is None:
+        found: Law = module.LAW
+        return found
+    values = _values(name, wanted, numbers)
+    made: Law = module.law(*values)
+    return made
+
+
+def _module(name: str) -> ModuleType:
+    bare = str(name).partition("(")[0]
+    if bare not in names() or ("(" in str(name) and not _BRACKETS.fullmatch(name)):
+        near = difflib.get_close_matches(bare, names(), n=1)
+        hint = f"did you mean {near[0]!r}? " if near and near[0] != name else ""
         raise ValueError(f"law: unknown law {name!r}; {hint}known laws: {', '.join(names())}")
-    found: Law = importlib.import_module(f"{__name__}.{name}").LAW
-    return found
+    return importlib.import_module(f"{__name__}.{bare}")
+
+
+def _values(name: str, wanted: tuple[str, ...], numbers: dict[str, float]) -> list[float]:
+    given = name[:-1].partition("(")[2].split(",") if "(" in name else None
+    if given is None and numbers.keys() >= set(wanted):
+        given = [f"{numbers[parameter]:.6g}" for parameter in wanted]
+    if given is None or len(given) != len(wanted):
+        form = f"{name.partition('(')[0]}({','.join(wanted)})"
+        raise ValueError(f"law: {name!r} needs its numbers, got none or others: name it as {form}")
+    return [float(value) for value in given]
