@@ -64,7 +64,8 @@ def file_name(law: str, settings: Settings) -> str:
 
 def _sources(law: laws.Law) -> tuple[ModuleType, ...]:
     """Modules whose edit may change a table: a number that was not raised is no excuse."""
-    return _jit, laws, sys.modules[law.loading.__module__], zener, packing, shapes, table
+    own = {function.__module__ for function in law.functions[:-1]}  # a law may share functions
+    return _jit, laws, *(sys.modules[name] for name in sorted(own)), zener, packing, shapes, table
 
 
 def _source(module: ModuleType) -> str:
