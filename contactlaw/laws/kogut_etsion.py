@@ -26,8 +26,8 @@ from contactlaw.laws import Law, _etsion
 
 PARAMETERS = ("poissons_ratio",)
 
-_FIRST = 1.03 ** (1 / 0.075)
-_SECOND = (1.40 / 1.03) ** (1 / 0.162)
+_FIRST: float = 1.03 ** (1 / 0.075)
+_SECOND: float = (1.40 / 1.03) ** (1 / 0.162)
 _ROOT_FIRST, _ROOT_SECOND = _FIRST**0.5, _SECOND**0.5
 # integrals of the branches before each kink, less what the branch after it would have there
 _AT_FIRST = 0.4 * _FIRST**2.5 - 1.03 / 2.425 * _FIRST**2.425
