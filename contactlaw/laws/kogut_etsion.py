@@ -30,8 +30,8 @@ _FIRST: float = 1.03 ** (1 / 0.075)
 _SECOND: float = (1.40 / 1.03) ** (1 / 0.162)
 _ROOT_FIRST, _ROOT_SECOND = _FIRST**0.5, _SECOND**0.5
 # integrals of the branches before each kink, less what the branch after it would have there
-_AT_FIRST = 0.4 * _FIRST**2.5 - 1.03 / 2.425 * _FIRST**2.425
-_AT_SECOND = _AT_FIRST + 1.03 / 2.425 * _SECOND**2.425 - 1.40 / 2.263 * _SECOND**2.263
+_AT_FIRST: float = 0.4 * _FIRST**2.5 - 1.03 / 2.425 * _FIRST**2.425
+_AT_SECOND: float = _AT_FIRST + 1.03 / 2.425 * _SECOND**2.425 - 1.40 / 2.263 * _SECOND**2.263
 
 
 @kernel
