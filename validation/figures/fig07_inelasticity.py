@@ -1,0 +1,67 @@
+"""Fig. 7: COR against lambda: the elastic models, and impacts of the paper's pair.
+
+Below yield all impacts lie on one curve (Zener's); Mueller's and Raman's formulas are near it.
+Above yield they leave it: at small lambda (thick plates) the elastic models are 30 % high at 7 V_Y0.
+Points of finite elements join where they exist.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from contactlaw.closed_form import mueller, raman, zener
+from contactlaw.impact import scales as scales_of
+from contactlaw.impact import sphere_on_plate
+from contactlaw.laws import law
+from validation.figures import _fem, _style
+from validation.paper import PAIR, RADIUS, impacts
+
+_SPEEDS = (0.5, 1.0, 2.0, 3.5, 7.0)
+
+
+def draw() -> tuple[Figure, dict[str, float]]:
+    """Draw models and impacts."""
+    figure = _style.figure(
+        11.0,
+        6.2,
+        "Elastic models hold below yield only",
+        "COR against Zener's inelasticity; points: gamma-alumina on glass plates of R/H 0.05 to 2.2 "
+        "at multiples of V$_{Y0}$, modified Zener model",
+    )
+    axes = figure.subplots()
+    lam = np.linspace(0.0, 0.6, 241)
+    axes.plot(lam, zener(lam), color=_style.INK, linewidth=2.4, label="Zener (solved)")
+    axes.plot(lam, mueller(lam), "--", color=_style.VERMILION, label="Mueller, Eq. 3")
+    axes.plot(lam, raman(lam), "-.", color=_style.ORANGE, label="Raman's form, exact slope")
+    ratio = np.linspace(0.05, 2.2, 20)
+    colours = (_style.SKY, _style.BLUE, _style.GREEN, _style.PURPLE, _style.VERMILION)
+    for v, colour in zip(_SPEEDS, colours, strict=True):
+        one = impacts(v, ratio)
+        axes.plot(
+            one.inelasticity, one.restitution, "o", color=colour, markersize=5,
+            label=f"{v:g} V$_{{Y0}}$",
+        )  # fmt: skip
+    points = _fem.read("impacts")
+    if points is not None:
+        contact = sphere_on_plate(PAIR, law("myc"), np.array(RADIUS), points["thickness"])
+        axes.plot(
+            scales_of(contact, points["speed"]).inelasticity, points["restitution"], "x",
+            color=_style.INK, label="finite elements",
+        )  # fmt: skip
+    axes.set(xlabel=r"inelasticity  $\lambda$", ylabel="coefficient of restitution")
+    axes.set(xlim=(0, 0.6), ylim=(0.25, 1.01))
+    axes.legend(ncols=3, loc="upper right")
+    thick = impacts(7.0, 0.2)
+    compare = lam[lam <= 0.5]
+    return figure, {
+        "Zener over the model at 7 V_Y0, R/H = 0.2, less 1": float(
+            zener(thick.inelasticity) / thick.restitution - 1
+        ),
+        "largest error of Mueller up to lambda 0.5": float(
+            np.abs(mueller(compare) / zener(compare) - 1).max()
+        ),
+        "largest error of Raman's form up to lambda 0.5": float(
+            np.abs(raman(compare) / zener(compare) - 1).max()
+        ),
+    }

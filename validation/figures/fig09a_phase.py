@@ -1,0 +1,60 @@
+"""Fig. 9A: which loss rules where, over speed and R/H.
+
+Region I is elastic; in II the bending wave takes more than plastic flow, in III less. Eq. 23 is the
+border of II and III to within 10 % in speed, worst near R/H = 0.25. Of the three cited experiments
+the paper gives materials and regions, but neither thickness nor speed, so there are no points to
+draw. It puts Kharaz and Gorham's, on plastic loss, into region II, where the wave rules; on thick
+plates that region is a sliver, so III may be meant.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from contactlaw.closed_form import border, yield_speed_ratio
+from validation.figures import _style
+from validation.paper import ETA, borderline, impacts
+
+
+def draw() -> tuple[Figure, dict[str, float]]:
+    """Draw the share of plastic loss, both isolines and Eq. 23."""
+    figure = _style.figure(
+        10.0,
+        6.6,
+        "Wave or plastic flow: which loss is larger?",
+        "share of the energy loss that is plastic, gamma-alumina on glass; black: the isolines 0 "
+        "and 1/2 of the model, dashed: Eq. 23",
+    )
+    axes = figure.subplots()
+    v, ratio = np.linspace(0.05, 10.0, 200), np.linspace(0.01, 1.8, 120)
+    one = impacts(v, ratio[:, None])
+    lost = 1.0 - np.asarray(one.restitution) ** 2
+    share = np.asarray(one.plastic_fraction) / lost
+    filled = axes.contourf(v, ratio, share, levels=np.linspace(0, 1, 11), cmap="cividis")
+    figure.colorbar(filled, ax=axes, label="plastic share of the loss")
+    axes.plot(yield_speed_ratio(ETA * ratio**2), ratio, color="black", linewidth=2.2)
+    half = np.linspace(0.05, 1.2, 24)
+    exact = np.array([borderline(x) for x in half])
+    axes.plot(exact, half, color="black", linewidth=2.2)
+    axes.plot(border(half), half, "--", color="white", linewidth=2.2)
+    for x, y, text in (
+        (0.25, 1.0, "I\nelastic"),
+        (2.4, 1.45, "II\nwave"),
+        (7.0, 0.4, "III\nplastic"),
+    ):
+        axes.text(
+            x, y, text, fontsize=15, fontweight="bold", ha="center" if x > 1 else "left",
+            color="white" if x < 5 else "black",
+        )  # fmt: skip
+    axes.set(xlabel="impact speed  V$_0$ / V$_{Y0}$", ylabel="R / H", xlim=(0, 10), ylim=(0, 1.8))
+    axes.grid(visible=False)
+    x2 = half[half >= 0.1] ** 2
+    coefficient = float(((exact[half >= 0.1] ** 0.4 - 1) * x2).sum() / (x2**2).sum())
+    return figure, {
+        "coefficient of Eq. 23, fitted over R/H 0.1 to 1.2": coefficient,
+        "speed at which plastic loss overtakes at R/H = 1.2": borderline(1.2),
+        "largest error of Eq. 23 in speed, R/H 0.05 to 1.2": float(
+            np.abs(border(half) / exact - 1).max()
+        ),
+    }
