@@ -18,6 +18,7 @@ from contactlaw.loads import LoadSignal, load_signal
 from contactlaw.materials import Material, material, materials
 from contactlaw.pair import Pair
 from contactlaw.provider import ImpactModel
+from contactlaw.sensitivity import Sensitivity
 from contactlaw.spheres import restitution_sphere_sphere
 from contactlaw.validity import Validity, edge_distance
 
@@ -28,6 +29,7 @@ __all__ = [
     "Material",
     "Pair",
     "Rebound",
+    "Sensitivity",
     "Validity",
     "__version__",
     "edge_distance",

@@ -39,6 +39,7 @@ from contactlaw.impact import (
     sphere_on_sphere,
 )
 from contactlaw.pair import Pair
+from contactlaw.sensitivity import Sensitivity, elasticities, gradient
 from contactlaw.table import Settings, Table
 
 Array = NDArray[np.float64]
@@ -391,6 +392,42 @@ class ImpactModel:
                     "is too thin for the model"
                 )
         return shaped(out, shape)
+
+    def sensitivity(self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Sensitivity:
+        """How much the COR moves with each input: elasticities d ln e/d ln x.
+
+        Parameters
+        ----------
+        speed, radius, thickness : array_like
+            As in `restitution`.
+
+        Returns
+        -------
+        Sensitivity
+            By how many per cent the COR rises with one per cent of each input [-]; an input that is
+            known to 10 % leaves the COR uncertain by ten times that. From the table's derivatives,
+            within 1e-4 for lambda up to 1. A law's own numbers (E*/sigma_Y of `jackson_green`) are
+            held fixed.
+
+        Raises
+        ------
+        ValueError
+            As in `restitution`; outside the table whatever `outside` says.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> moved = model.sensitivity(speed=12.0, radius=0.9e-3, thickness=1e-3)
+        >>> round(moved.thickness, 3), round(moved.yield_strength, 3)
+        (0.219, 0.237)
+        """
+        v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
+        check(speed=v, radius=r, thickness=h)
+        units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
+        fields, _ = tabulated(self._law, self._table, units, "raise")
+        by_lam, by_y = gradient(self._table, fields[5], fields[6])
+        return elasticities(self.pair, fields[0], by_lam, by_y, shape)
 
     def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
         """COR of one bead class on one plate, as a fast function of speed.

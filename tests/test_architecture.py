@@ -18,8 +18,8 @@ KERNELS += sorted((ROOT / "laws").glob("[a-z]*.py"))
 ORDER = [
     "_version", "_jit", "laws", "lookup", "packing", "zener", "shapes", "compiled", "arguments",
     "materials", "pair", "validity", "table", "store", "cache", "impact", "evaluation", "history",
-    "provider", "loads", "spheres", "softsphere", "closed_form", "turning_point", "engines",
-    "plots", "cli",
+    "sensitivity", "provider", "loads", "spheres", "softsphere", "closed_form", "turning_point",
+    "engines", "plots", "cli",
 ]  # fmt: skip
 
 
