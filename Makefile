@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
 
-.PHONY: demo test lint package bench clean
+.PHONY: demo test lint package validation bench clean
 
 demo: .venv/demo.done  ## rain beads on thin plates; figures and data in rain/
 	$(BIN)/dem-demo rain --out rain
@@ -24,6 +24,9 @@ package: .venv/dev.done  ## build the wheel and use it in an environment of its 
 	cd dist && env/bin/contactlaw cor --sphere gamma-alumina --plate glass \
 	  --radius 0.9e-3 --thickness 1e-3 --speed 12
 	cd dist && env/bin/contactlaw table check
+
+validation: .venv/validation.done  ## reproduce the paper; the report is validation/report/index.html
+	$(BIN)/python -m validation
 
 bench: .venv/bench.done  ## measure every target beside a peer
 	$(BIN)/python -m validation.bench

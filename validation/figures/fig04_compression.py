@@ -22,8 +22,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         11.0,
         5.6,
         "The slope of Eq. 6 is 0.91 to 0.93, not 1.00",
-        "largest compression of an elastic impact on Hertz's scale; right: how far the two formulas "
-        "for $w_m$ are from the solver",
+        "largest compression of an elastic impact on Hertz's scale; right: error of the two "
+        "formulas for $w_m$",
     )
     left, right = figure.subplots(1, 2)
     lam = np.linspace(0.0, 2.0, 81)

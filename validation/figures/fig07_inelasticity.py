@@ -1,8 +1,8 @@
 """Fig. 7: COR against lambda: the elastic models, and impacts of the paper's pair.
 
 Below yield all impacts lie on one curve (Zener's); Mueller's and Raman's formulas are near it.
-Above yield they leave it: at small lambda (thick plates) the elastic models are 30 % high at 7 V_Y0.
-Points of finite elements join where they exist.
+Above yield they leave it: at small lambda (thick plates) the elastic models are 30 % high at
+7 V_Y0. Points of finite elements join where they exist.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         11.0,
         6.2,
         "Elastic models hold below yield only",
-        "COR against Zener's inelasticity; points: gamma-alumina on glass plates of R/H 0.05 to 2.2 "
+        "COR against Zener's inelasticity; points: gamma-alumina on glass, R/H 0.05 to 2.2, "
         "at multiples of V$_{Y0}$, modified Zener model",
     )
     axes = figure.subplots()

@@ -1,0 +1,137 @@
+"""The reproduction of the paper: a number of each figure, the verdict on each claim, the report."""
+
+import re
+
+import pytest
+
+from validation import figures
+from validation.__main__ import main
+from validation.claims import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, claims
+from validation.figures import _style
+
+# one number of each figure, at least; as they were printed and looked at
+NUMBERS = {
+    "fig03_force": {
+        "Stronge over MYC at 4.77 d_Y (7 V_Y0), less 1": 0.423,
+        "Thornton over MYC at 4.77 d_Y (7 V_Y0), less 1": -0.573,
+    },
+    "fig04_compression": {"least-squares slope over 0 to 2": 0.929},
+    "fig05_surface": {"COR at R/H = 1.8 and 7 V_Y0": 0.414},
+    "fig06_yield_speed": {"largest error of Eq. 14 up to R/H = 1.8": 0.0121},
+    "fig07_inelasticity": {"Zener over the model at 7 V_Y0, R/H = 0.2, less 1": 0.301},
+    "fig08_speed": {"largest error, printed": 0.555, "largest error, continuous": 0.0405},
+    "fig09a_phase": {"coefficient of Eq. 23, fitted over R/H 0.1 to 1.2": 1.015},
+    "fig09b_energy": {"plastic overtakes wave at R/H = 1.2": 9.98},
+    "fig10_contact_time": {"largest shortening by plastic flow up to 7 V_Y0": 0.0927},
+    "fig11_turning_point": {"largest error": 0.00536},
+    "fig12_sensitivity": {"thickness, R/H = 1.8, 2 V_Y0": 0.886},
+}
+VERDICTS = {
+    HOLDS: (
+        "lambda power", "Mueller's range", "factor of Davies", "factor of Eq. 4", "V_Y0, MYC",
+        "V_Y0, Thornton", "Stronge", "c2", "bound of Eq. 13", "place of the bound",
+        "error of Eq. 14", "Eq. 14 against the model", "monotone", "Eq. 21",
+        "c of Eq. 22, with their g", "error of Eq. 22, continuous", "overestimate", "0.556",
+        "Eq. 23", "R/H = 1.2", "R/H = 0.5", "R/H = 0.2", "Hertz's time", "thin plates",
+        "plasticity and time",
+    ),
+    MISPRINT: (
+        "exponent of Eq. 2", "Eq. 16, Hertz", "Eq. 8", "eta", "Eq. 12", "Eq. 20",
+        "c of Eq. 22, as printed", "error of Eq. 22, as printed",
+    ),
+    LIMITED: (
+        "bulk power", "Thornton", "Eq. 21 beyond 4.19", "c of Eq. 22, continuous",
+        "Eq. 23, error",
+    ),
+    FAILS: ("c1", "Kharaz and Gorham"),
+    OPEN: (
+        "wave in a half-space", "MYC", "14 %", "Mueller, Patil and Higgs", "plastic strain",
+        "no reflection",
+    ),
+}  # fmt: skip
+EXPECTED = {name: verdict for verdict, group in VERDICTS.items() for name in group}
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    """Numbers of all figures, and the folder of the report."""
+    out = tmp_path_factory.mktemp("report")
+    numbers = {}
+    original = figures.module
+
+    class Watched:
+        def __init__(self, name):
+            self.name, self.module = name, original(name)
+            self.__doc__ = self.module.__doc__
+
+        def draw(self):
+            figure, numbers[self.name] = self.module.draw()
+            return figure, numbers[self.name]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(figures, "module", Watched)
+        assert main(["--out", str(out)]) == 0
+    return numbers, out
+
+
+def test_every_figure_is_drawn_and_checked(drawn):
+    numbers, out = drawn
+    assert set(numbers) == set(NUMBERS) == set(figures.names())
+    assert {path.stem for path in out.glob("*.png")} == set(NUMBERS)
+
+
+@pytest.mark.parametrize("name", NUMBERS)
+def test_numbers_of_figures(drawn, name):
+    for key, value in NUMBERS[name].items():
+        assert drawn[0][name][key] == pytest.approx(value, rel=2e-3), key
+
+
+def test_bounds_that_figures_show(drawn):
+    numbers = drawn[0]
+    assert numbers["fig05_surface"]["largest rise of COR with speed or R/H"] <= 0.0
+    assert numbers["fig09b_energy"]["energy not accounted for"] < 1e-6
+    assert numbers["fig11_turning_point"]["largest error"] < 0.01  # the aim
+    assert numbers["fig12_sensitivity"]["largest difference to the solver, speed"] < 1e-4
+
+
+@pytest.mark.parametrize("claim", claims(), ids=lambda claim: claim.name)
+def test_verdicts(claim):
+    assert claim.verdict == EXPECTED[claim.name]
+    assert claim.note or claim.verdict == HOLDS  # whatever does not hold says why
+
+
+def test_no_claim_is_lost():
+    names = [claim.name for claim in claims()]
+    assert sorted(names) == sorted(EXPECTED)
+
+
+def test_the_report_needs_no_other_file(drawn):
+    text = (drawn[1] / "index.html").read_text()
+    assert re.findall(r"<(?:img|script|link)[^>]*src=['\"](?!data:)", text) == []
+    assert "http" not in re.sub(r"data:image/png;base64,[^']*", "", text)
+    assert text.count("<img") == len(NUMBERS)
+    assert text.count("<tr>") > len(claims())
+
+
+def test_captions_name_their_figure():
+    for name in figures.names():
+        number = re.match(r"fig0?(\d+)([ab]?)_", name)
+        caption = figures.module(name).__doc__
+        assert caption.startswith(f"Fig. {number[1]}{number[2].upper()}: "), name
+
+
+def test_finite_elements_join_where_they_exist(tmp_path, monkeypatch):
+    import h5py
+
+    from validation.figures import _fem, fig03_force
+    from validation.paper import YIELD_COMPRESSION
+
+    monkeypatch.setattr(_fem, "_DATA", tmp_path)
+    assert _fem.read("indentation") is None
+    with h5py.File(tmp_path / "fem_indentation.h5", "w") as file:
+        file["compression"] = [YIELD_COMPRESSION, 2 * YIELD_COMPRESSION]
+        file["force"] = [1.0, 2.0]
+    with _style.applied():
+        figure, _ = fig03_force.draw()
+    points = next(line for line in figure.axes[0].lines if line.get_label() == "finite elements")
+    assert list(points.get_xdata()) == pytest.approx([1.0, 2.0])
