@@ -9,7 +9,7 @@ from oracle import ALL_LAWS, NUMBERS
 from scipy.integrate import quad
 
 import contactlaw as cl
-from contactlaw import laws
+from contactlaw import cache, laws, store, table
 from contactlaw.laws import _etsion, jackson_green, kogut_etsion, stronge
 from contactlaw.table import Settings
 
@@ -223,3 +223,11 @@ def test_jackson_green_refuses_what_its_fit_cannot_do():
         jackson_green.law(5.0, 0.3)
     with pytest.raises(ValueError, match="Poisson's ratio 0.5"):
         jackson_green.law(20.0, 0.5)
+
+
+def test_each_set_of_numbers_has_a_table_of_its_own(tmp_path):
+    names = [f"jackson_green({ratio},0.3)" for ratio in (120, 150)]
+    assert len({cache.file_name(name, TINY) for name in names}) == 2
+    path = tmp_path / "table.h5"
+    store.write(table.build(names[0], TINY), path)
+    assert store.read(path).law == names[0]

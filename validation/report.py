@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 
 import contactlaw as cl
 from validation.claims import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
+from validation.typeset import typeset
 
 _DERIVATIONS = Path(__file__).parent / "derivations"
 _COLOURS = {
@@ -103,14 +104,18 @@ def _pill(verdict: str) -> str:
     return f"<span class='verdict' style='background:{_COLOURS[verdict]}'>{verdict}</span>"
 
 
+def _formula(text: str) -> str:
+    return typeset(html.escape(text, quote=False))
+
+
 def _number(value: float | None) -> str:
     return "-" if value is None else f"{value:.4g}"
 
 
 def _claims(claims: tuple[Claim, ...]) -> str:
     rows = "".join(
-        f"<tr><td>{html.escape(claim.where)}</td><td>{html.escape(claim.statement)}"
-        f"<br><span class='note'>{html.escape(claim.note)}</span></td>"
+        f"<tr><td>{html.escape(claim.where)}</td><td>{_formula(claim.statement)}"
+        f"<br><span class='note'>{_formula(claim.note)}</span></td>"
         f"<td class='n'>{_number(claim.printed)}</td><td class='n'>{_number(claim.ours)}</td>"
         f"<td>{html.escape(claim.tolerance)}</td><td>{_pill(claim.verdict)}</td></tr>"
         for claim in claims
@@ -122,9 +127,9 @@ def _claims(claims: tuple[Claim, ...]) -> str:
 
 def _figure(name: str, caption: str, numbers: dict[str, float], image: bytes) -> str:
     data = base64.b64encode(image).decode("ascii")
-    title, _, text = html.escape(" ".join(caption.split())).partition(": ")
+    title, _, text = _formula(" ".join(caption.split())).partition(": ")
     rows = "".join(
-        f"<tr><td>{html.escape(key)}</td><td class='n'>{value:.4g}</td></tr>"
+        f"<tr><td>{_formula(key)}</td><td class='n'>{value:.4g}</td></tr>"
         for key, value in numbers.items()
     )
     return (
@@ -135,4 +140,4 @@ def _figure(name: str, caption: str, numbers: dict[str, float], image: bytes) ->
 
 def _derivation(name: str) -> str:
     text = (_DERIVATIONS / f"{name}.md").read_text(encoding="utf-8")
-    return markdown.markdown(text, extensions=["tables"])
+    return typeset(markdown.markdown(text, extensions=["tables"]))

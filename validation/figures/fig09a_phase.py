@@ -38,15 +38,14 @@ def draw() -> tuple[Figure, dict[str, float]]:
     exact = np.array([borderline(x) for x in half])
     axes.plot(exact, half, color="black", linewidth=2.2)
     axes.plot(border(half), half, "--", color="white", linewidth=2.2)
-    for x, y, text in (
-        (0.25, 1.0, "I\nelastic"),
-        (2.4, 1.45, "II\nwave"),
-        (7.0, 0.4, "III\nplastic"),
+    for x, y, text, cited in (
+        (0.12, 1.0, "I  elastic", "Mueller\net al. 2015"),
+        (1.75, 1.5, "II  wave", "as cited: Kharaz & Gorham 2000;\nPatil & Higgs 2017 (to III)"),
+        (6.2, 0.4, "III  plastic", "as cited: Patil & Higgs 2017 (from II)"),
     ):
-        axes.text(
-            x, y, text, fontsize=15, fontweight="bold", ha="center" if x > 1 else "left",
-            color="white" if x < 5 else "black",
-        )  # fmt: skip
+        colour = "white" if x < 5 else "black"
+        axes.text(x, y, text, fontsize=15, fontweight="bold", color=colour)
+        axes.text(x, y - 0.03, cited, fontsize=10, color=colour, va="top")
     axes.set(xlabel="impact speed  V$_0$ / V$_{Y0}$", ylabel="R / H", xlim=(0, 10), ylim=(0, 1.8))
     axes.grid(visible=False)
     x2 = half[half >= 0.1] ** 2
