@@ -164,7 +164,8 @@ class ImpactModel:
 
         Notes
         -----
-        Within 1e-6 of `solve`.
+        Within 1e-6 of `solve` for the laws ``"myc"``, ``"thornton"`` and ``"hertz"``; for others,
+        whose loading curves have corners, within 1e-4 next to those.
 
         Examples
         --------
@@ -267,7 +268,8 @@ class ImpactModel:
         Returns
         -------
         Rebound
-            Its energy balance closes to 1e-9 at the default rtol, and to 30 rtol at any.
+            Its energy balance closes to 1e-9 at the default rtol, and to 30 rtol at any; with the
+            law ``"stronge"``, whose unloading curve has corners, to 1e-7 and 1000 rtol.
 
         Raises
         ------

@@ -55,8 +55,10 @@ def test_packaged_table_against_the_solver():
     assert (worst[1:] < 1e-5).all()  # and, relatively, for the rest
 
 
-@pytest.mark.parametrize("law", [law for law in ALL_LAWS if law.kinks], ids=lambda law: law.name)
-def test_tables_of_all_laws(law):
+@pytest.mark.parametrize(
+    "law", [law for law in ALL_LAWS if law.kinks and law.name != "myc"], ids=lambda law: law.name
+)
+def test_tables_of_the_other_laws(law):
     # where the slope of the loading curve jumps (Stronge at yield, Kogut & Etsion twice), the
     # surface has a term in (chi - kink)^(3/2), and a kink after the first is no line of constant
     # chi: 1e-6 is for the others

@@ -128,7 +128,9 @@ def test_linear_branch_is_an_oscillator():
 @settings(deadline=None, max_examples=100)
 @given(lam=st.floats(0, 10), v=st.floats(1e-3, 100))
 def test_energy_balance_and_bounds(law, lam, v):
-    one = zener.solve(law.functions, lam, yield_ratio(v), 1e-10)
+    # the error control of a step may overlook a corner of Stronge's unloading curve
+    rtol = 1e-12 if law.name == "stronge" else 1e-10
+    one = zener.solve(law.functions, lam, yield_ratio(v), rtol)
     assert one.status == zener.OK
     assert 0.0 < one.restitution <= 1.0 + 1e-10
     balance = 1 - one.restitution**2 - one.plastic_fraction - one.wave_fraction
