@@ -102,7 +102,9 @@ def test_eq_22_jumps_as_printed_and_is_continuous_with_the_factor():
 
 def test_the_turning_point_form_is_within_one_per_cent(surface):
     form = turning_point.restitution(SPEEDS, INELASTICITIES[:, None])
-    assert np.abs(form / surface - 1).max() < 0.006
+    error = np.abs(form / surface - 1)
+    assert error.max() < 0.006
+    assert error[:, SPEEDS < 4].max() < 6e-4  # before the linear branch, only the fits err
     # Eq. 22, its continuous form, over the same range: 4.6 %
     ratio = np.sqrt(INELASTICITIES / 0.0751)
     peng = closed_form.peng(SPEEDS, ratio[:, None], 0.0751)

@@ -225,6 +225,11 @@ def test_jackson_green_refuses_what_its_fit_cannot_do():
         jackson_green.law(20.0, 0.5)
 
 
+def test_an_edit_of_a_shared_function_makes_another_table():
+    found = cache._sources(laws.law("kogut_etsion(0.3)"))
+    assert {kogut_etsion, _etsion} <= set(found)
+
+
 def test_each_set_of_numbers_has_a_table_of_its_own(tmp_path):
     names = [f"jackson_green({ratio},0.3)" for ratio in (120, 150)]
     assert len({cache.file_name(name, TINY) for name in names}) == 2
