@@ -25,6 +25,18 @@ from contactlaw.closed_form import WAVE_SLOPE, at_turning_point, checked
 Array = NDArray[np.float64]
 
 
+def loading(lam: Array) -> Array:
+    """Largest elastic compression over its lossless value: within 0.006 % up to lambda = 0.6."""
+    share: Array = (1.0 + 0.6 * WAVE_SLOPE * lam + 0.0193 * lam**2) ** (-2.0 / 3.0)
+    return share
+
+
+def release(x: Array) -> Array:
+    """Rebound speed over its lossless value, G: within 0.08 % up to x = 0.8."""
+    share: Array = np.exp(-0.5 * WAVE_SLOPE * x * (1.0 + 0.304 * x + 0.190 * x**2))
+    return share
+
+
 def restitution(speed_ratio: ArrayLike, inelasticity_at_yield: ArrayLike) -> float | Array:
     """COR of an impact on a plate, elastic or plastic, in the turning-point form.
 
@@ -50,9 +62,6 @@ def restitution(speed_ratio: ArrayLike, inelasticity_at_yield: ArrayLike) -> flo
         speed_ratio=(speed_ratio, 1e-9, 1e6),
         inelasticity_at_yield=(inelasticity_at_yield, 0.0, 5.0),
     )
-    lam = lam_y * v**0.2
-    chi = v**0.8 * (1.0 + 0.6 * WAVE_SLOPE * lam + 0.0193 * lam**2) ** (-2.0 / 3.0)
-    force, span = at_turning_point(chi)
-    x = lam_y * np.sqrt(force / span)
-    released = np.exp(-0.5 * WAVE_SLOPE * x * (1.0 + 0.304 * x + 0.190 * x**2))
+    force, span = at_turning_point(v**0.8 * loading(lam_y * v**0.2))
+    released = release(lam_y * np.sqrt(force / span))
     return shaped(np.sqrt(force * span) / v * released, shape)

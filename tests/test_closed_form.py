@@ -111,6 +111,14 @@ def test_the_turning_point_form_is_within_one_per_cent(surface):
     assert np.abs(peng / surface - 1).max() > 0.04
 
 
+def test_the_two_fits_of_the_turning_point_form():
+    lam = np.linspace(0.01, 0.6, 30)
+    share = closed_form.elastic_compression(lam) / 1.25**0.4
+    assert turning_point.loading(lam) == pytest.approx(share, rel=7e-5)
+    x = lam * share**0.25
+    assert turning_point.release(x) == pytest.approx(closed_form.zener(lam) / share**1.25, rel=9e-4)
+
+
 def test_the_turning_point_form_is_exact_on_the_half_space():
     v = np.geomspace(0.1, 1e3, 50)
     assert turning_point.restitution(v, 0.0) == pytest.approx(closed_form.half_space(v), abs=1e-14)

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from contactlaw.closed_form import WAVE_SLOPE, elastic_compression
+from contactlaw import turning_point
+from contactlaw.closed_form import elastic_compression
 from validation.figures import _style
 
 INTERCEPT = 1.25**-0.6
@@ -28,7 +29,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     left, right = figure.subplots(1, 2)
     lam = np.linspace(0.0, 2.0, 81)
     exact = elastic_compression(lam)
-    quadratic = INTERCEPT * (1.0 + 0.6 * WAVE_SLOPE * lam + 0.0193 * lam**2)
+    quadratic = INTERCEPT * turning_point.loading(lam) ** -1.5
     left.plot(lam[::5], exact[::5] ** -1.5, "s", color=_style.BLUE, markersize=7, label="solver")
     left.plot(lam, lam + INTERCEPT, color=_style.VERMILION, linewidth=2, label="Eq. 6, slope 1.00")
     left.plot(lam, quadratic, color=_style.GREEN, linewidth=2, label="derived slope + quadratic")
