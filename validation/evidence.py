@@ -6,9 +6,20 @@ import math
 
 import numpy as np
 
-from contactlaw import closed_form
+from contactlaw import closed_form, laws
 from contactlaw.closed_form import yield_speed_ratio
-from validation.paper import ETA, PAIR, RADIUS, SHARE, SPEED, THINNEST, YIELD_COMPRESSION
+from validation.paper import (
+    ETA,
+    FASTEST,
+    FORCE,
+    PAIR,
+    RADIUS,
+    SHARE,
+    SPEED,
+    THINNEST,
+    YIELD_COMPRESSION,
+    force,
+)
 
 
 def exponent_of_moduli() -> float:
@@ -67,3 +78,20 @@ def fitted_c(
         else:
             low += third
     return low
+
+
+def myc_against_indentation(points: dict[str, np.ndarray]) -> float:
+    """Find the largest relative difference of MYC's loading force from finite elements."""
+    d, measured = points["compression_5"] / YIELD_COMPRESSION, points["force_5"] / FORCE
+    loading = slice(0, int(np.argmax(d)))
+    d, measured = d[loading], measured[loading]
+    inside = (d >= 1.0) & (d <= 4.77)
+    return float(np.abs(force(laws.law("myc"), d[inside]) / measured[inside] - 1).max())
+
+
+def eq_22_against_impacts(points: dict[str, np.ndarray]) -> float:
+    """Find the largest relative difference of Eq. 22, continuous, from finite elements."""
+    v, ratio = points["speed"] / SPEED, RADIUS / points["thickness"]
+    inside = (v <= 1.001 * FASTEST) & (ratio <= 1.001 * THINNEST)
+    form = np.asarray(closed_form.peng(v[inside], ratio[inside], ETA))
+    return float(np.abs(form / points["restitution"][inside] - 1).max())

@@ -20,6 +20,7 @@ SHARE = PAIR.sphere.plane_modulus / (PAIR.sphere.plane_modulus + PAIR.plate.plan
 YIELD_COMPRESSION = (
     0.68 * (math.pi * 472.5e6 / PAIR.effective_modulus) ** 2 * RADIUS
 )  # d_Y of MYC [m], Eq. 18
+FORCE = 4 / 3 * PAIR.effective_modulus * math.sqrt(RADIUS) * YIELD_COMPRESSION**1.5  # F_Y [N]
 THINNEST, FASTEST = 1.8, 7.0  # R/H and V0/V_Y0, to which the paper's finite elements reach
 
 

@@ -12,8 +12,9 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from validation.figures import _fem, _style
-from validation.paper import PAIR, RADIUS, YIELD_COMPRESSION, all_laws, force
+from validation import stored
+from validation.figures import _style
+from validation.paper import FORCE, YIELD_COMPRESSION, all_laws, force
 
 _TOP = 5.0  # d_Y
 
@@ -46,12 +47,11 @@ def draw() -> tuple[Figure, dict[str, float]]:
         right.text(14.8, level - 0.02, text, ha="right", va="top", fontsize=10.5)
     right.axvspan(0.0, 4.77, color=_style.PALE, alpha=0.4, linewidth=0)
     right.text(0.15, 0.97, "up to 7 V$_{Y0}$", fontsize=10.5, color=_style.MUTED, va="top")
-    points = _fem.read("indentation")
+    points = stored.read("indentation")
     if points is not None:
-        unit = 4.0 / 3.0 * PAIR.effective_modulus * math.sqrt(RADIUS) * YIELD_COMPRESSION**1.5
         left.plot(
-            points["compression"] / YIELD_COMPRESSION, points["force"] / unit, "o",
-            color=_style.INK, markersize=3, label="finite elements",
+            (points["compression_5"] / YIELD_COMPRESSION)[::8], (points["force_5"] / FORCE)[::8],
+            "o", color=_style.INK, markersize=4.5, label="finite elements",
         )  # fmt: skip
     left.set(xlim=(0, _TOP), ylim=(0, 17), xlabel="compression  d / d$_Y$")
     left.set_ylabel("force  F / F$_Y$")

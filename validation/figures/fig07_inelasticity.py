@@ -14,7 +14,8 @@ from contactlaw.closed_form import mueller, raman, zener
 from contactlaw.impact import scales as scales_of
 from contactlaw.impact import sphere_on_plate
 from contactlaw.laws import law
-from validation.figures import _fem, _style
+from validation import stored
+from validation.figures import _style
 from validation.paper import PAIR, RADIUS, impacts
 
 _SPEEDS = (0.5, 1.0, 2.0, 3.5, 7.0)
@@ -42,7 +43,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
             one.inelasticity, one.restitution, "o", color=colour, markersize=5,
             label=f"{v:g} V$_{{Y0}}$",
         )  # fmt: skip
-    points = _fem.read("impacts")
+    points = stored.read("matrix")
     if points is not None:
         contact = sphere_on_plate(PAIR, law("myc"), np.array(RADIUS), points["thickness"])
         axes.plot(

@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 
 from contactlaw import turning_point
 from contactlaw.closed_form import peng
-from validation.figures import _fem, _style
+from validation import stored
+from validation.figures import _style
 from validation.paper import ETA, FASTEST, RADIUS, SPEED, impacts
 
 _RATIOS = (0.3, 0.9, 1.3, 1.8)
@@ -28,7 +29,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     panels = figure.subplots(1, len(_RATIOS), sharey=True)
     v = np.linspace(0.05, FASTEST, 400)
     errors = {"printed": 0.0, "continuous": 0.0, "turning point": 0.0}
-    points = _fem.read("impacts")
+    points = stored.read("matrix")
     for axes, ratio in zip(panels, _RATIOS, strict=True):
         e = np.asarray(impacts(v, ratio).restitution)
         forms = {

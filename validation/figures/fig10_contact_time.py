@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from validation.figures import _fem, _style
+from validation import stored
+from validation.figures import _style
 from validation.paper import RADIUS, SPEED, impacts
 
 _SPEEDS = (0.5, 1.0, 2.0, 3.5, 7.0)
@@ -34,7 +35,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         axes.plot(lam, one.contact_time * 1e6, color=colour, label=f"{v:g} V$_{{Y0}}$")
         axes.plot(lam, elastic.contact_time * 1e6, "--", color=colour, linewidth=1.4)
         shorter = max(shorter, float((1 - one.contact_time / elastic.contact_time).max()))
-    points = _fem.read("impacts")
+    points = stored.read("matrix")
     if points is not None:
         lam = [
             impacts(v / SPEED, RADIUS / h).inelasticity
