@@ -1,8 +1,8 @@
 """Fig. 13: the COR by all laws, on the half-space and on a plate.
 
 Four laws agree within 5 % up to 3.5 V_Y0 and part beyond. Thornton's, which yields at 2.13 m/s, is
-far lower; it approaches its asymptote 1.185 v^(-1/4) (v by its own yield speed), Johnson's classical
-power. Stronge's bend near 2.6 V_Y0 is where its unloading leaves the loading curve for good.
+far lower; it approaches its asymptote 1.185 v^(-1/4) (v by its own yield speed), Johnson's power.
+Stronge's bends from 2.4 to 3 V_Y0, where its unloading curve leaves the loading curve.
 """
 
 from __future__ import annotations
