@@ -31,7 +31,7 @@ WAVE_SLOPE: float = 0.8 * 1.25**1.6 * math.gamma(1.6) * math.gamma(0.5) / math.g
 """-de/dlambda at lambda = 0, 1.7302: the integral of f^2 dt over a lossless Hertzian contact,
 2 w_m^4 (2/5) B(8/5, 1/2) with w_m = (5/4)^(2/5) and u^2 = 1 - (w/w_m)^(5/2)."""
 
-_P = 2.14 / 0.68  # d_P/d_Y, Eq. 18
+P = 2.14 / 0.68  # d_P/d_Y, Eq. 18
 _RTOL = 1e-11  # of the integrations here
 
 
@@ -280,9 +280,9 @@ def at_turning_point(chi: Array) -> tuple[Array, Array]:
 
     Beyond P the linear branch takes the loading work 0.4 chi^(5/2) that Hertz's curve would take.
     """
-    excess = 8.0 / 15.0 * chi**2.5 / math.sqrt(_P) - 4.0 / 45.0 * _P**2
-    dm = np.where(chi < _P, chi, _P / 3.0 + np.sqrt(np.maximum(excess, 0.0)))
-    force = np.where(chi < _P, dm**1.5, math.sqrt(_P) * (1.5 * dm - 0.5 * _P))
+    excess = 8.0 / 15.0 * chi**2.5 / math.sqrt(P) - 4.0 / 45.0 * P**2
+    dm = np.where(chi < P, chi, P / 3.0 + np.sqrt(np.maximum(excess, 0.0)))
+    force = np.where(chi < P, dm**1.5, math.sqrt(P) * (1.5 * dm - 0.5 * P))
     return force, np.where(dm < 1.0, dm, np.sqrt(np.maximum(2.0 * dm - 1.0, 0.0)))
 
 

@@ -24,7 +24,7 @@ NUMBERS = {
     "fig09a_phase": {"coefficient of Eq. 23, fitted over R/H 0.1 to 1.2": 1.015},
     "fig09b_energy": {"plastic overtakes wave at R/H = 1.2": 9.98},
     "fig10_contact_time": {"largest shortening by plastic flow up to 7 V_Y0": 0.0927},
-    "fig11_turning_point": {"largest error": 0.00536},
+    "fig11_turning_point": {"largest error up to 20 V_Y0": 0.00122},
     "fig13_laws": {"lowest over highest COR at 3.5 V_Y0, R/H = 1": 0.704},
     "fig12_sensitivity": {"thickness, R/H = 1.8, 2 V_Y0": 0.886},
 }
@@ -92,7 +92,7 @@ def test_bounds_that_figures_show(drawn):
     numbers = drawn[0]
     assert numbers["fig05_surface"]["largest rise of COR with speed or R/H"] <= 0.0
     assert numbers["fig09b_energy"]["energy not accounted for"] < 1e-6
-    assert numbers["fig11_turning_point"]["largest error"] < 0.01  # the aim
+    assert numbers["fig11_turning_point"]["largest error up to 10 V_Y0"] < 5e-4
     assert numbers["fig12_sensitivity"]["largest difference to the solver, speed"] < 1e-4
 
 
