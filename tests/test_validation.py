@@ -24,7 +24,7 @@ NUMBERS = {
     "fig09a_phase": {"coefficient of Eq. 23, fitted over R/H 0.1 to 1.2": 1.015},
     "fig09b_energy": {"plastic overtakes wave at R/H = 1.2": 9.98},
     "fig10_contact_time": {"largest shortening by plastic flow up to 7 V_Y0": 0.0927},
-    "fig11_turning_point": {"largest error up to 20 V_Y0": 0.00122},
+    "fig11_turning_point": {"largest error up to 20 V_Y0": 0.001228},
     "fig13_laws": {"lowest over highest COR at 3.5 V_Y0, R/H = 1": 0.704},
     "fig12_sensitivity": {"thickness, R/H = 1.8, 2 V_Y0": 0.886},
 }
