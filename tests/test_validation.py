@@ -1,11 +1,12 @@
 """The reproduction of the paper: a number of each figure, the verdict on each claim, the report."""
 
+import doctest
 import re
 
 import numpy as np
 import pytest
 
-from validation import evidence, figures, stored
+from validation import evidence, figures, stored, typeset
 from validation.__main__ import main
 from validation.claims import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, claims
 from validation.figures import _style
@@ -120,6 +121,12 @@ def test_the_report_needs_no_other_file(drawn):
     assert "http" not in re.sub(r"data:image/png;base64,[^']*", "", text)
     assert text.count("<img") == len(NUMBERS)
     assert text.count("<tr>") > len(claims())
+
+
+def test_examples():
+    assert doctest.testmod(typeset).attempted > 0
+    for module in (typeset, figures):
+        assert doctest.testmod(module).failed == 0
 
 
 def test_captions_name_their_figure():

@@ -39,13 +39,14 @@ def draw() -> tuple[Figure, dict[str, float]]:
     axes.plot(exact, half, color="black", linewidth=2.2)
     axes.plot(border(half), half, "--", color="white", linewidth=2.2)
     for x, y, text, cited in (
-        (0.12, 1.0, "I  elastic", "Mueller\net al. 2015"),
         (1.75, 1.5, "II  wave", "as cited: Kharaz & Gorham 2000;\nPatil & Higgs 2017 (to III)"),
         (6.2, 0.4, "III  plastic", "as cited: Patil & Higgs 2017 (from II)"),
     ):
         colour = "white" if x < 5 else "black"
         axes.text(x, y, text, fontsize=15, fontweight="bold", color=colour)
         axes.text(x, y - 0.03, cited, fontsize=10, color=colour, va="top")
+    axes.text(0.15, 0.75, "I  elastic", fontsize=15, fontweight="bold", color="white", rotation=90)
+    axes.text(0.55, 0.75, "as cited: Mueller et al. 2015", fontsize=10, color="white", rotation=90)
     axes.set(xlabel="impact speed  V$_0$ / V$_{Y0}$", ylabel="R / H", xlim=(0, 10), ylim=(0, 1.8))
     axes.grid(visible=False)
     x2 = half[half >= 0.1] ** 2
