@@ -1,0 +1,157 @@
+"""Axisymmetric 4-node quadrilateral with one integration point, for large deformations.
+
+Mean velocity gradient and hourglass modes as in Flanagan & Belytschko, Int. J. Numer. Methods Eng.
+17 (1981) 679, whose orthogonal hourglass base makes rigid and linear fields free of hourglass
+forces. The stiffness of an hourglass mode is that of the bending it stands for (Belytschko &
+Bindeman, Comput. Methods Appl. Mech. Eng. 88 (1991) 311), so that a plate of few elements bends
+as it should. Jaumann rate and radial return: Wilkins, Methods Comput. Phys. 3 (1964) 211; Simo &
+Hughes, Computational Inelasticity (1998), section 3.3 and ch. 8.
+
+Legend: b, c derivatives of the shape functions to r and z at the centre (those of nodes 2 and 3
+are minus those of 0 and 1); d rate of deformation, w spin; s stress (rr, zz, tt, rz); q hourglass
+velocities, h_r, h_z their forces; everything per radian.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+class Body(NamedTuple):
+    """Elements of one material; the first axis of each array is the element."""
+
+    elements: Indices  # (m, 4)
+    stress: Array  # (m, 4) [Pa]
+    hourglass: Array  # (m, 2), forces h_r and h_z [N]
+    plastic_strain: Array  # (m,), equivalent
+    work: Array  # (2,), plastic and hourglass work so far [J]
+    bulk: float  # Lame's lambda [Pa]
+    shear: float  # [Pa]
+    bending: float  # stiffness of the hourglass modes [Pa]
+    strength: float  # yield strength [Pa]; inf: elastic
+
+
+@kernel
+def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
+    """Advance the stress by a step of velocities v, and add what it does to the nodes."""
+    plastic, hourglass = 0.0, 0.0
+    for e in range(body.elements.shape[0]):
+        n0, n1 = body.elements[e, 0], body.elements[e, 1]
+        n2, n3 = body.elements[e, 2], body.elements[e, 3]
+        r0, r1, r2, r3 = x[n0, 0], x[n1, 0], x[n2, 0], x[n3, 0]
+        z0, z1, z2, z3 = x[n0, 1], x[n1, 1], x[n2, 1], x[n3, 1]
+        area = 0.5 * ((r2 - r0) * (z3 - z1) + (r1 - r3) * (z2 - z0))
+        r = 0.25 * (r0 + r1 + r2 + r3)
+        half = 0.5 / area
+        b0, b1, c0, c1 = half * (z1 - z3), half * (z2 - z0), half * (r3 - r1), half * (r0 - r2)
+        u0, u1, u2, u3 = v[n0, 0], v[n1, 0], v[n2, 0], v[n3, 0]
+        w0, w1, w2, w3 = v[n0, 1], v[n1, 1], v[n2, 1], v[n3, 1]
+        u_r, u_z = b0 * (u0 - u2) + b1 * (u1 - u3), c0 * (u0 - u2) + c1 * (u1 - u3)
+        w_r, w_z = b0 * (w0 - w2) + b1 * (w1 - w3), c0 * (w0 - w2) + c1 * (w1 - w3)
+        u_t = 0.25 * (u0 + u1 + u2 + u3) / r
+
+        # Jaumann rate
+        spin = dt * (u_z - w_r)  # twice the rotation of this step
+        s_rr, s_zz, s_tt, s_rz = (
+            body.stress[e, 0], body.stress[e, 1], body.stress[e, 2], body.stress[e, 3],
+        )  # fmt: skip
+        swap = spin * s_rz
+        turn = 0.5 * spin * (s_zz - s_rr)
+        pressure, double = body.bulk * dt * (u_r + w_z + u_t), 2.0 * body.shear * dt
+        s_rr += swap + pressure + double * u_r
+        s_zz += -swap + pressure + double * w_z
+        s_tt += pressure + double * u_t
+        s_rz += turn + 0.5 * double * (u_z + w_r)
+
+        # radial return
+        mean = (s_rr + s_zz + s_tt) / 3.0
+        d_r, d_z, d_t = s_rr - mean, s_zz - mean, s_tt - mean
+        mises = 1.5 * (d_r * d_r + d_z * d_z + d_t * d_t) + 3.0 * s_rz * s_rz
+        if mises > body.strength * body.strength:
+            mises = math.sqrt(mises)
+            keep = body.strength / mises
+            s_rr, s_zz, s_tt, s_rz = mean + keep * d_r, mean + keep * d_z, mean + keep * d_t, keep * s_rz
+            strain = (mises - body.strength) / (3.0 * body.shear)
+            body.plastic_strain[e] += strain
+            plastic += body.strength * strain * area * r
+        body.stress[e, 0], body.stress[e, 1] = s_rr, s_zz
+        body.stress[e, 2], body.stress[e, 3] = s_tt, s_rz
+
+        # hourglass
+        h_r, h_z = 0.25 * (r0 - r1 + r2 - r3), 0.25 * (z0 - z1 + z2 - z3)
+        q_r = 0.25 * (u0 - u1 + u2 - u3) - h_r * u_r - h_z * u_z
+        q_z = 0.25 * (w0 - w1 + w2 - w3) - h_r * w_r - h_z * w_z
+        stiffness = 8.0 / 3.0 * body.bending * area * r * dt
+        g_r, g_z = body.hourglass[e, 0], body.hourglass[e, 1]
+        new_r = g_r + stiffness * (b0 * b0 + b1 * b1) * q_r
+        new_z = g_z + stiffness * (c0 * c0 + c1 * c1) * q_z
+        body.hourglass[e, 0], body.hourglass[e, 1] = new_r, new_z
+        hourglass += 0.5 * dt * ((g_r + new_r) * q_r + (g_z + new_z) * q_z)
+
+        # forces: mean gradient, hoop, hourglass modes
+        volume = area * r
+        hoop = 0.25 * area * s_tt
+        f_0 = volume * (b0 * s_rr + c0 * s_rz) - (h_r * b0 + h_z * c0) * new_r
+        f_1 = volume * (b1 * s_rr + c1 * s_rz) - (h_r * b1 + h_z * c1) * new_r
+        g_0 = volume * (b0 * s_rz + c0 * s_zz) - (h_r * b0 + h_z * c0) * new_z
+        g_1 = volume * (b1 * s_rz + c1 * s_zz) - (h_r * b1 + h_z * c1) * new_z
+        mode = 0.25 * new_r
+        force[n0, 0] -= f_0 + hoop + mode
+        force[n1, 0] -= f_1 + hoop - mode
+        force[n2, 0] -= hoop - f_0 + mode
+        force[n3, 0] -= hoop - f_1 - mode
+        mode = 0.25 * new_z
+        force[n0, 1] -= g_0 + mode
+        force[n1, 1] -= g_1 - mode
+        force[n2, 1] -= mode - g_0
+        force[n3, 1] -= -mode - g_1
+    body.work[0] += plastic
+    body.work[1] += hourglass
+
+
+def lumped_mass(elements: Indices, x: Array, density: float) -> Array:
+    """Mass of each node, per radian: a quarter of each of its elements.
+
+    The volume of an element is its area times the mean radius of its nodes, since the forces of
+    one integration point are the derivatives of just that volume.
+    """
+    mass = np.zeros(len(x))
+    np.add.at(mass, elements, (0.25 * density * volumes(elements, x))[:, None])
+    return mass
+
+
+def volumes(elements: Indices, x: Array) -> Array:
+    """Volume of each element, per radian."""
+    r, z = np.moveaxis(x[elements], -1, 0)
+    diagonals = (r[:, 2] - r[:, 0]) * (z[:, 3] - z[:, 1])
+    diagonals += (r[:, 1] - r[:, 3]) * (z[:, 2] - z[:, 0])
+    volume: Array = 0.5 * diagonals * r.mean(axis=1)
+    return volume
+
+
+def stable_step(body: Body, x: Array, density: float) -> float:
+    """Largest stable step: that of the pressure wave across each element (Flanagan & Belytschko)."""
+    r, z = np.moveaxis(x[body.elements], -1, 0)
+    area = volumes(body.elements, x) / r.mean(axis=1)
+    diagonals = sum((y[:, k] - y[:, k + 2]) ** 2 for y in (r, z) for k in (0, 1))
+    wave = math.sqrt((body.bulk + 2.0 * body.shear) / density)
+    return float(np.min(area / np.sqrt(0.5 * diagonals))) / wave
+
+
+def strain_energy(body: Body, x: Array) -> float:
+    """Elastic energy that the stresses hold [J per radian]."""
+    s = body.stress
+    trace = s[:, :3].sum(axis=1)
+    squares = (s[:, :3] ** 2).sum(axis=1) + 2.0 * s[:, 3] ** 2
+    poisson = 0.5 * body.bulk / (body.bulk + body.shear)
+    density = (squares - poisson / (1.0 + poisson) * trace**2) / (4.0 * body.shear)
+    return float(density @ volumes(body.elements, x))

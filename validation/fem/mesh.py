@@ -1,0 +1,143 @@
+"""Structured meshes of 4-node quadrilaterals, finest at the contact: a sphere, a plate.
+
+r is the distance from the axis, z points up; the bodies touch at the origin, the sphere above and
+the plate below.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+# Our choices, in radii of the sphere; tests refine all of them together with the elements.
+_CORE = 0.3  # width of the finest part: a contact's radius at 7 V_Y0 is 0.25
+_FAR_CORE = 1.2  # width of the part around the far pole
+_GROWTH = 1.06  # of one element of the plate over its neighbour
+_COARSEST = 0.15  # element of the plate: bending waves of the contact's length are 20 times longer
+
+
+class Mesh(NamedTuple):
+    """Nodes and elements of one body."""
+
+    nodes: Array  # (n, 2), r and z [m]
+    elements: Indices  # (m, 4), counter-clockwise in the (r, z) plane
+    surface: Indices  # (s,), nodes that may touch the other body, from the axis outwards
+
+
+def sphere(radius: float, size: float, hemisphere: bool = False) -> Mesh:
+    """Half a disc with elements of one size at the contact, growing away from it.
+
+    A square at the contact, rings around it and a square at the far pole are laid into the
+    quadrant p, q >= 0 of a plane u = p + iq, and taken to the half disc by x = u/(1 - iu/(2R)).
+    The map is conformal: elements keep their right angles.
+
+    Parameters
+    ----------
+    radius : float
+        Radius R of the sphere [m].
+    size : float
+        Size of the elements at the contact [m].
+    hemisphere : bool, optional
+        Stop at the equator, where z = R.
+
+    Returns
+    -------
+    Mesh
+
+    Examples
+    --------
+    >>> mesh = sphere(1.0, 0.05)
+    >>> r, z = mesh.nodes[mesh.surface].T
+    >>> bool(np.allclose(r**2 + (z - 1) ** 2, 1))
+    True
+    """
+    n = round(_CORE * radius / size)
+    side = np.linspace(0.0, 1.0, n + 1)
+    square = side + 1j * side[:, None]
+    rim = np.concatenate([square[:, n], square[n, -2::-1]])  # up the right side, back to the axis
+    near, far = n * size * rim, 4.0 * radius**2 / (_FAR_CORE * radius * rim.conj())
+    if hemisphere:
+        far = 2.0 * radius * np.exp(0.5j * np.pi * np.linspace(0.0, 1.0, rim.size))
+    # as many rings as make their elements as long as they are wide
+    rings = round(np.log(abs(far[0] / near[0])) * 4 * n / np.pi)
+    share = np.linspace(0.0, 1.0, rings + 1)[1:, None]
+    grown = np.exp((1.0 - share) * np.log(near) + share * np.log(far))
+    x = [_disc(n * size * square, radius).ravel(), _disc(grown, radius).ravel()]
+    core = np.arange(square.size).reshape(square.shape)
+    ring = np.arange(grown.size).reshape(grown.shape) + core.size
+    columns = np.vstack([np.concatenate([core[:, n], core[n, -2::-1]]), ring])
+    elements = [_cells(core), _cells(columns.T)]
+    if not hemisphere:
+        inner = 2j * radius + _disc(_FAR_CORE * radius * square[:-1, :-1], radius).conj()
+        x.append(inner.ravel())
+        cap = np.empty_like(core)
+        cap[:-1, :-1] = np.arange(inner.size).reshape(inner.shape) + core.size + ring.size
+        cap[:, n], cap[n, -2::-1] = ring[-1, : n + 1], ring[-1, n + 1 :]
+        elements.append(_cells(cap)[:, ::-1])  # mirrored
+    nodes = np.concatenate(x)
+    surface = np.concatenate([core[0], ring[:, 0]])
+    return Mesh(_points(nodes), np.concatenate(elements), surface)
+
+
+def plate(radius: float, size: float, thickness: float, width: float) -> Mesh:
+    """Rectangle of a plate's thickness, with elements of one size at the contact.
+
+    Parameters
+    ----------
+    radius : float
+        Radius of the sphere that hits it [m].
+    size : float
+        Size of the elements at the contact [m].
+    thickness, width : float
+        Thickness of the plate and distance of its edge from the axis [m].
+
+    Returns
+    -------
+    Mesh
+
+    Examples
+    --------
+    >>> mesh = plate(1.0, 0.05, 2.0, 10.0)
+    >>> [float(v) for v in mesh.nodes.min(axis=0)], [float(v) for v in mesh.nodes.max(axis=0)]
+    ([0.0, -2.0], [10.0, 0.0])
+    """
+    r = _graded(width, size, _CORE * radius, _COARSEST * radius)
+    z = -_graded(thickness, size, 0.0, _COARSEST * radius)[::-1]
+    index = np.arange(r.size * z.size).reshape(z.size, r.size)
+    return Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
+
+
+def _disc(u: NDArray[np.complex128], radius: float) -> NDArray[np.complex128]:
+    x: NDArray[np.complex128] = u / (1.0 - 0.5j * u / radius)
+    return x
+
+
+def _points(x: NDArray[np.complex128]) -> Array:
+    points = np.column_stack([x.real.ravel(), x.imag.ravel()])
+    points[abs(points[:, 0]) < 1e-12 * points[:, 0].max(), 0] = 0.0  # the axis, to the last bit
+    return points
+
+
+def _cells(index: Indices) -> Indices:
+    """Elements between the rows and columns of a grid of nodes."""
+    a, b = index[:-1, :-1], index[:-1, 1:]
+    d, c = index[1:, :-1], index[1:, 1:]
+    return np.stack([a, b, c, d], axis=-1).reshape(-1, 4)
+
+
+def _graded(length: float, size: float, fine: float, coarsest: float) -> Array:
+    """Points from 0 to length: steps of one size up to `fine`, then growing to the coarsest."""
+    steps = [size] * round(fine / size)
+    while sum(steps) < length:
+        steps.append(min(max(coarsest, size), _GROWTH * (steps[-1] if steps else size / _GROWTH)))
+    points = np.concatenate([[0.0], np.cumsum(steps)])
+    excess = points[-1] / length  # spread over the growing part
+    start = round(fine / size) if length > fine else 0
+    head, tail = points[: start + 1], points[start:]
+    scale = (length - head[-1]) / (tail[-1] - tail[0]) if excess != 1.0 else 1.0
+    return np.concatenate([head[:-1], head[-1] + scale * (tail - tail[0])])

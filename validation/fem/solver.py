@@ -1,0 +1,132 @@
+"""Explicit dynamics of two axisymmetric bodies: central differences with a lumped mass.
+
+Legend: per radian, as all integrals here; velocities live half a step behind positions.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.materials import Material
+from validation.fem import contact, elements
+from validation.fem.contact import Surfaces
+from validation.fem.elements import Body
+from validation.fem.mesh import Mesh
+
+Array = NDArray[np.float64]
+
+VERSION = 1  # of the solver, stored with each result: a change of its numbers needs another
+_COURANT = 0.85  # of the stable step of the undeformed mesh; elements shorten by up to a tenth
+_BENDING = (0.05, 1.0)  # hourglass stiffness of sphere and plate, over that of bending; see README
+
+
+class System(NamedTuple):
+    """Everything that moves: the sphere's nodes first, then the plate's."""
+
+    x: Array  # (n, 2), positions [m]
+    v: Array  # (n, 2), velocities [m/s]
+    force: Array  # (n, 2), inner forces [N]
+    mass: Array  # (n,) [kg]
+    inverse_mass: Array  # (n, 2); 0 where a node cannot move [1/kg]
+    sphere: Body
+    plate: Body
+    surfaces: Surfaces
+
+
+@kernel
+def advance(system: System, load: Array, dt: float, steps: int) -> tuple[float, bool]:
+    """Take some steps; mean contact force [N per radian], and whether the last one had contact."""
+    x, v, force, inverse = system.x, system.v, system.force, system.inverse_mass
+    total, lift = 0.0, 0.0
+    for _ in range(steps):
+        near = contact.approach(system.surfaces, x, v)
+        for n in range(x.shape[0]):
+            for k in range(2):
+                v[n, k] += dt * inverse[n, k] * (force[n, k] + load[n, k])
+        lift = contact.resolve(system.surfaces, x, v, inverse, dt, near)
+        total += lift
+        for n in range(x.shape[0]):
+            for k in range(2):
+                x[n, k] += dt * v[n, k]
+                force[n, k] = 0.0
+        elements.add_forces(system.sphere, x, v, dt, force)
+        elements.add_forces(system.plate, x, v, dt, force)
+    return total / steps, lift != 0.0
+
+
+def body(mesh: Mesh, material: Material, first: int, bending: float, yields: bool) -> Body:
+    """Elements of a mesh, at rest; `first` is the number of the mesh's first node."""
+    m = len(mesh.elements)
+    ratio = material.poissons_ratio
+    shear = 0.5 * material.youngs_modulus / (1.0 + ratio)
+    return Body(
+        elements=mesh.elements + first,
+        stress=np.zeros((m, 4)),
+        hourglass=np.zeros((m, 2)),
+        plastic_strain=np.zeros(m),
+        work=np.zeros(2),
+        bulk=2.0 * shear * ratio / (1.0 - 2.0 * ratio),
+        shear=shear,
+        bending=bending * material.plane_modulus,
+        strength=material.require_yield_strength("fem") if yields else math.inf,
+    )
+
+
+def assemble(
+    meshes: tuple[Mesh, Mesh],
+    materials: tuple[Material, Material],
+    friction: float = 0.1,
+    yields: bool = True,
+) -> System:
+    """Put a sphere upon a plate, both at rest.
+
+    Parameters
+    ----------
+    meshes : tuple of Mesh
+        Sphere and plate.
+    materials : tuple of Material
+        Likewise; only the sphere may yield.
+    friction : float, optional
+        Coefficient of friction, 0.1 as in the paper.
+    yields : bool, optional
+        Whether the sphere does.
+    """
+    above, below = meshes
+    first = len(above.nodes)
+    x = np.concatenate([above.nodes, below.nodes])
+    bodies = (
+        body(above, materials[0], 0, _BENDING[0], yields),
+        body(below, materials[1], first, _BENDING[1], False),
+    )
+    mass = sum(
+        elements.lumped_mass(one.elements, x, material.density)
+        for one, material in zip(bodies, materials, strict=True)
+    )
+    inverse_mass = np.repeat(1.0 / mass[:, None], 2, axis=1)
+    inverse_mass[x[:, 0] == 0.0, 0] = 0.0  # the axis
+    slaves = above.surface.size
+    surfaces = Surfaces(
+        slave=above.surface,
+        master=below.surface + first,
+        segment=np.zeros(slaves, dtype=np.int64),
+        share=np.zeros(slaves),
+        gap=np.zeros((slaves, 2)),
+        before=np.zeros((slaves, 2)),
+        impulse=np.zeros((slaves, 2)),
+        work=np.zeros(2),
+        friction=friction,
+        reach=float(x[below.surface[1] + first, 0]),  # the finest element: a wave needs a step
+    )
+    still = np.zeros((4, *x.shape))
+    return System(x, still[0], still[1], mass, inverse_mass, *bodies, surfaces)
+
+
+def time_step(system: System, materials: tuple[Material, Material]) -> float:
+    """Step [s] that keeps the central differences stable."""
+    bodies = zip((system.sphere, system.plate), materials, strict=True)
+    return _COURANT * min(elements.stable_step(b, system.x, m.density) for b, m in bodies)
