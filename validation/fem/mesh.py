@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-# Our choices, in radii of the sphere; tests refine all of them together with the elements.
-_CORE = 0.3  # width of the finest part: a contact's radius at 7 V_Y0 is 0.25
-_FAR_CORE = 1.2  # width of the part around the far pole
-_GROWTH = 1.06  # of one element of the plate over its neighbour
-_COARSEST = 0.15  # element of the plate: bending waves of the contact's length are 20 times longer
+# Our choices.
+_FAR_CORE = 1.2  # width of the part around the far pole [R]
+_GROWTH = 1.1  # of one element of the plate over its neighbour
+_COARSEST = 0.15  # largest element of the plate [R] ...
+_LAYERS = 24  # ... or this part of its thickness: waves are at least 20 times longer
 
 
 class Mesh(NamedTuple):
@@ -29,7 +29,7 @@ class Mesh(NamedTuple):
     surface: Indices  # (s,), nodes that may touch the other body, from the axis outwards
 
 
-def sphere(radius: float, size: float, hemisphere: bool = False) -> Mesh:
+def sphere(radius: float, size: float, core: float, hemisphere: bool = False) -> Mesh:
     """Half a disc with elements of one size at the contact, growing away from it.
 
     A square at the contact, rings around it and a square at the far pole are laid into the
@@ -40,8 +40,8 @@ def sphere(radius: float, size: float, hemisphere: bool = False) -> Mesh:
     ----------
     radius : float
         Radius R of the sphere [m].
-    size : float
-        Size of the elements at the contact [m].
+    size, core : float
+        Size of the elements at the contact, and how far from the axis they have it [m].
     hemisphere : bool, optional
         Stop at the equator, where z = R.
 
@@ -51,12 +51,12 @@ def sphere(radius: float, size: float, hemisphere: bool = False) -> Mesh:
 
     Examples
     --------
-    >>> mesh = sphere(1.0, 0.05)
+    >>> mesh = sphere(1.0, 0.05, 0.3)
     >>> r, z = mesh.nodes[mesh.surface].T
     >>> bool(np.allclose(r**2 + (z - 1) ** 2, 1))
     True
     """
-    n = round(_CORE * radius / size)
+    n = max(round(core / size), 4)
     side = np.linspace(0.0, 1.0, n + 1)
     square = side + 1j * side[:, None]
     rim = np.concatenate([square[:, n], square[n, -2::-1]])  # up the right side, back to the axis
@@ -84,15 +84,15 @@ def sphere(radius: float, size: float, hemisphere: bool = False) -> Mesh:
     return Mesh(_points(nodes), np.concatenate(elements), surface)
 
 
-def plate(radius: float, size: float, thickness: float, width: float) -> Mesh:
+def plate(radius: float, size: float, core: float, thickness: float, width: float) -> Mesh:
     """Rectangle of a plate's thickness, with elements of one size at the contact.
 
     Parameters
     ----------
     radius : float
         Radius of the sphere that hits it [m].
-    size : float
-        Size of the elements at the contact [m].
+    size, core : float
+        Size of the elements at the contact, and how far from the axis they have it [m].
     thickness, width : float
         Thickness of the plate and distance of its edge from the axis [m].
 
@@ -102,12 +102,13 @@ def plate(radius: float, size: float, thickness: float, width: float) -> Mesh:
 
     Examples
     --------
-    >>> mesh = plate(1.0, 0.05, 2.0, 10.0)
+    >>> mesh = plate(1.0, 0.05, 0.3, 2.0, 10.0)
     >>> [float(v) for v in mesh.nodes.min(axis=0)], [float(v) for v in mesh.nodes.max(axis=0)]
     ([0.0, -2.0], [10.0, 0.0])
     """
-    r = _graded(width, size, _CORE * radius, _COARSEST * radius)
-    z = -_graded(thickness, size, 0.0, _COARSEST * radius)[::-1]
+    coarsest = max(_COARSEST * radius, thickness / _LAYERS)
+    r = _graded(width, size, core, coarsest)
+    z = -_graded(thickness, size, 0.0, coarsest)[::-1]
     index = np.arange(r.size * z.size).reshape(z.size, r.size)
     return Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
 

@@ -1,0 +1,246 @@
+"""One impact of a sphere on a plate by finite elements."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+import contactlaw as cl
+from validation.fem import elements, mesh, solver
+from validation.fem.solver import System
+
+Array = NDArray[np.float64]
+
+_SAMPLES = 400  # of the history, per expected contact time
+_PATIENCE = 0.15  # of the contact time: so long without a force, and the sphere has left
+_GIVE_UP = 3.0  # expected contact times
+_CORE = 1.3  # finest part of the mesh, over the expected contact's radius sqrt(R d)
+_RIM = 0.55  # half of the way that a pressure wave runs in a plate, and a tenth more
+
+
+@dataclass(frozen=True)
+class Impact:
+    """Outcome of an impact; fractions are of the initial kinetic energy.
+
+    Attributes
+    ----------
+    restitution : float
+        Mean rebound velocity of the sphere over its impact speed [-].
+    contact_time : float
+        Until the force is zero for good [s].
+    peak_force, peak_compression, residual_compression : float
+        Largest force [N]; largest way of the sphere's centre of mass towards the foot of the plate
+        below it, and what of that is left at separation [m].
+    plastic, wave, vibration, friction, hourglass, contact : float
+        Shares of the energy: plastic work; energy in the plate; elastic and kinetic energy in the
+        sphere beyond that of its mean motion; losses of friction and of touching; work of the
+        hourglass modes of both bodies [-].
+    balance : float
+        Largest deviation of the sum of all energies from the first, over the whole impact [-].
+    plastic_strain : float
+        Largest equivalent plastic strain [-].
+    time, force, speed, compression : ndarray
+        History: time [s], force [N], mean speed of the sphere towards the plate [m/s],
+        compression [m].
+    system : System
+        All nodes and elements at the end.
+    snapshots : list of ndarray
+        Positions (n, 2) of all nodes [m] at the times asked for.
+    step, steps : float, int
+        Step of the integration [s] and their number.
+    """
+
+    restitution: float
+    contact_time: float
+    peak_force: float
+    peak_compression: float
+    residual_compression: float
+    plastic: float
+    wave: float
+    vibration: float
+    friction: float
+    hourglass: float
+    contact: float
+    balance: float
+    plastic_strain: float
+    time: Array
+    force: Array
+    speed: Array
+    compression: Array
+    system: System
+    snapshots: list[Array]
+    step: float
+    steps: int
+
+
+def impact(
+    pair: cl.Pair,
+    speed: float,
+    radius: float,
+    thickness: float,
+    *,
+    size: float = 0.01,
+    friction: float = 0.1,
+    yields: bool = True,
+    width: float | None = None,
+    times: Sequence[float] = (),
+) -> Impact:
+    """Let a sphere fall on a plate whose edge is too far to answer.
+
+    Parameters
+    ----------
+    pair : contactlaw.Pair
+        Materials; the sphere is elastic-perfectly plastic, the plate elastic.
+    speed, radius, thickness : float
+        Impact speed [m/s], radius of the sphere and thickness of the plate [m].
+    size : float, optional
+        Smallest element, over the radius.
+    friction : float, optional
+        Coefficient of friction.
+    yields : bool, optional
+        Whether the sphere does.
+    width : float, optional
+        Distance of the plate's free edge from the axis [m]; by default as far as no wave comes
+        back from in the contact time that the model expects.
+    times : sequence of float, optional
+        Times at which to keep all positions [s].
+
+    Returns
+    -------
+    Impact
+
+    Raises
+    ------
+    RuntimeError
+        If the sphere does not leave the plate within three times the contact time expected.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> pair = cl.Pair("gamma-alumina", "glass")
+    >>> hit = impact(pair, 26.0, 0.9e-3, 0.5e-3, size=0.06)
+    >>> abs(hit.restitution - 0.51) < 0.02, abs(hit.balance) < 0.01
+    (True, True)
+    """
+    model = cl.ImpactModel(pair, law="myc" if yields else "hertz", outside="solve")
+    guess = model.lookup(speed, radius, thickness)
+    expected = float(guess.contact_time)
+    if width is None:
+        wave = math.sqrt(pair.plate.plane_modulus / pair.plate.density)
+        width = _RIM * wave * (1.0 + _PATIENCE) * expected
+    core = _CORE * math.sqrt(radius * float(guess.peak_compression))
+    meshes = (
+        mesh.sphere(radius, size * radius, core),
+        mesh.plate(radius, size * radius, core, thickness, width),
+    )
+    system = solver.assemble(meshes, (pair.sphere, pair.plate), friction, yields)
+    step = solver.time_step(system, (pair.sphere, pair.plate))
+    system.v[: _sphere_nodes(system), 1] = -speed
+    every = max(1, round(expected / _SAMPLES / step))
+    foot = _foot(system)
+    load = np.zeros_like(system.x)
+    rows: list[tuple[float, float, float, float]] = []
+    energies = [energy(system)]
+    snapshots: list[Array] = []
+    last, start = 0.0, _way(system, foot)
+    while True:
+        force, touching = solver.advance(system, load, step, every)
+        time = (len(rows) + 1) * every * step
+        rows.append((time, 2.0 * math.pi * force, _speed(system), start - _way(system, foot)))
+        if touching:
+            last = time
+        if len(rows) % 20 == 0:
+            energies.append(energy(system))
+        if len(snapshots) < len(times) and time >= times[len(snapshots)]:
+            snapshots.append(system.x.copy())
+        if last and time > (1.0 + _PATIENCE) * last:
+            break
+        if time > _GIVE_UP * expected:
+            raise RuntimeError(
+                f"the sphere is still in contact after {time:.3g} s, {_GIVE_UP:g} times the time "
+                f"expected at speed {speed:g} m/s on a plate of {thickness:g} m"
+            )
+    return _outcome(system, np.array(rows).T, np.array(energies), last, snapshots, step, every)
+
+
+def _sphere_nodes(system: System) -> int:
+    return int(system.plate.elements.min())
+
+
+def _foot(system: System) -> int:
+    """Node on the plate's lower face, on the axis."""
+    return _sphere_nodes(system)
+
+
+def _speed(system: System) -> float:
+    n = _sphere_nodes(system)
+    return -float(system.mass[:n] @ system.v[:n, 1] / system.mass[:n].sum())
+
+
+def _way(system: System, foot: int) -> float:
+    """Height of the sphere's centre of mass over the plate's foot."""
+    n = _sphere_nodes(system)
+    centre = system.mass[:n] @ system.x[:n, 1] / system.mass[:n].sum()
+    return float(centre - system.x[foot, 1])
+
+
+def energy(system: System) -> tuple[float, ...]:
+    """Energies [J per radian]: motion of the sphere as a whole and within itself, of the plate;
+    elastic of both; plastic; hourglass of both; losses of contact and of friction.
+    """
+    n = _sphere_nodes(system)
+    kinetic = 0.5 * system.mass * (system.v**2).sum(axis=1)
+    mean = 0.5 * system.mass[:n].sum() * _speed(system) ** 2
+    return (
+        mean,
+        kinetic[:n].sum() - mean,
+        kinetic[n:].sum(),
+        elements.strain_energy(system.sphere, system.x),
+        elements.strain_energy(system.plate, system.x),
+        system.sphere.work[0],
+        system.sphere.work[1],
+        system.plate.work[1],
+        *system.surfaces.work,
+    )
+
+
+def _outcome(
+    system: System,
+    history: Array,
+    energies: Array,
+    contact_time: float,
+    snapshots: list[Array],
+    step: float,
+    every: int,
+) -> Impact:
+    time, force, speed, compression = history
+    first = energies[0].sum()
+    share = np.array(energy(system)) / first
+    end = int(np.searchsorted(time, contact_time))
+    return Impact(
+        restitution=-speed[-1] / math.sqrt(2.0 * first / system.mass[: _sphere_nodes(system)].sum()),
+        contact_time=contact_time,
+        peak_force=float(force.max()),
+        peak_compression=float(compression.max()),
+        residual_compression=float(compression[end]),
+        plastic=share[5],
+        wave=share[2] + share[4] + share[7],
+        vibration=share[1] + share[3] + share[6],
+        friction=share[9],
+        hourglass=share[6] + share[7],
+        contact=share[8],
+        balance=float(np.abs(energies.sum(axis=1) / first - 1.0).max()),
+        plastic_strain=float(system.sphere.plastic_strain.max()),
+        time=time,
+        force=force,
+        speed=speed,
+        compression=compression,
+        system=system,
+        snapshots=snapshots,
+        step=step,
+        steps=time.size * every,
+    )

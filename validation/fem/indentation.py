@@ -1,0 +1,116 @@
+"""Slow indentation of a hemisphere into a block, loading and unloading, by finite elements."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+import contactlaw as cl
+from validation.fem import elements, mesh, solver
+from validation.fem.solver import System
+
+Array = NDArray[np.float64]
+
+_BLOCK = 20.0  # width and thickness of the block, over the sphere's radius
+_CORE = 1.3  # finest part of the mesh, over the contact's expected radius ...
+_WIDEST = 0.3  # ... but not wider than this many radii
+_SAMPLES = 400
+_TRANSITS = 800.0  # of the pressure wave through the radius, for loading and unloading together
+
+
+@dataclass(frozen=True)
+class Indentation:
+    """Force against compression.
+
+    Attributes
+    ----------
+    compression, force : ndarray
+        Way of the hemisphere's equator [m] and force [N], loading then unloading.
+    contact_radius : ndarray
+        Largest radius at which the surfaces press on each other [m].
+    kinetic : float
+        Largest kinetic energy over the largest work done: how far from static it was [-].
+    plastic : float
+        Plastic work over the work of loading [-].
+    system : System
+        All nodes and elements at the end.
+    """
+
+    compression: Array
+    force: Array
+    contact_radius: Array
+    kinetic: float
+    plastic: float
+    system: System
+
+
+def indent(
+    pair: cl.Pair,
+    radius: float,
+    depth: float,
+    *,
+    size: float = 0.02,
+    friction: float = 0.1,
+    yields: bool = True,
+    slowness: float = 1.0,
+) -> Indentation:
+    """Press a hemisphere into a block and draw it back, smoothly and slowly.
+
+    The equator moves by depth (1 - cos(2 pi t/T))/2; the foot of the block stands still.
+
+    Parameters
+    ----------
+    pair : contactlaw.Pair
+        Materials of hemisphere and block.
+    radius, depth : float
+        Radius of the hemisphere and largest compression [m].
+    size : float, optional
+        Smallest element, over the radius.
+    friction : float, optional
+        Coefficient of friction.
+    yields : bool, optional
+        Whether the hemisphere does.
+    slowness : float, optional
+        Factor on the time T, to show that it does not matter.
+
+    Returns
+    -------
+    Indentation
+    """
+    core = min(_CORE * math.sqrt(radius * depth), _WIDEST * radius)
+    fine, block = size * radius, _BLOCK * radius
+    meshes = (
+        mesh.sphere(radius, fine, core, hemisphere=True),
+        mesh.plate(radius, fine, core, block, block),
+    )
+    materials = pair.sphere, pair.plate
+    system = solver.assemble(meshes, materials, friction, yields)
+    first = len(meshes[0].nodes)
+    driven = np.flatnonzero(system.x[:first, 1] > radius * (1.0 - 1e-9))
+    foot = first + np.flatnonzero(meshes[1].nodes[:, 1] < -block * (1.0 - 1e-9))
+    system.inverse_mass[np.concatenate([driven, foot]), 1] = 0.0
+    step = solver.time_step(system, materials)
+    wave = math.sqrt((system.sphere.bulk + 2 * system.sphere.shear) / pair.sphere.density)
+    duration = slowness * _TRANSITS * radius / wave
+    every = max(1, round(duration / _SAMPLES / step))
+    load = np.zeros_like(system.x)
+    way, rows, plastic = 0.0, [], []
+    for n in range(1, math.ceil(duration / step / every) + 1):
+        target = 0.5 * depth * (1.0 - math.cos(2.0 * math.pi * n * every * step / duration))
+        system.v[driven, 1] = (way - target) / (every * step)
+        force, touching = solver.advance(system, load, step, every)
+        kinetic = 0.5 * system.mass @ (system.v**2).sum(axis=1)
+        pressed = system.surfaces.slave[system.surfaces.impulse[:, 0] > 0.0]
+        edge = system.x[pressed, 0].max(initial=0.0) if touching else 0.0
+        rows.append((0.5 * (way + target), 2.0 * math.pi * force, edge, kinetic))
+        plastic.append(system.sphere.work[0])
+        way = target
+    compression, force_, edge_, kinetic_ = np.array(rows).T
+    top = int(compression.argmax())
+    work = float(np.trapezoid(force_[: top + 1], compression[: top + 1])) / (2.0 * math.pi)
+    return Indentation(
+        compression, force_, edge_, float(kinetic_.max()) / work, plastic[-1] / work, system
+    )
