@@ -18,6 +18,8 @@ Array = NDArray[np.float64]
 _SAMPLES = 400  # of the history, per expected contact time
 _PATIENCE = 0.15  # of the contact time: so long without a force, and the sphere has left
 _GIVE_UP = 3.0  # expected contact times
+_FINEST = 0.01  # R, the paper's smallest element, and at least ...
+_ACROSS = 15.0  # ... so many in the expected contact's radius
 _CORE = 1.3  # finest part of the mesh, over the expected contact's radius sqrt(R d)
 _RIM = 0.55  # half of the way that a pressure wave runs in a plate, and a tenth more
 
@@ -50,6 +52,8 @@ class Impact:
         All nodes and elements at the end.
     snapshots : list of ndarray
         Positions (n, 2) of all nodes [m] at the times asked for.
+    size : float
+        Smallest element, over the radius.
     step, steps : float, int
         Step of the integration [s] and their number.
     """
@@ -73,6 +77,7 @@ class Impact:
     compression: Array
     system: System
     snapshots: list[Array]
+    size: float
     step: float
     steps: int
 
@@ -83,7 +88,7 @@ def impact(
     radius: float,
     thickness: float,
     *,
-    size: float = 0.01,
+    size: float | None = None,
     friction: float = 0.1,
     yields: bool = True,
     width: float | None = None,
@@ -98,7 +103,7 @@ def impact(
     speed, radius, thickness : float
         Impact speed [m/s], radius of the sphere and thickness of the plate [m].
     size : float, optional
-        Smallest element, over the radius.
+        Smallest element, over the radius; by default 0.01, or a 15th of the contact's radius.
     friction : float, optional
         Coefficient of friction.
     yields : bool, optional
@@ -132,7 +137,10 @@ def impact(
     if width is None:
         wave = math.sqrt(pair.plate.plane_modulus / pair.plate.density)
         width = _RIM * wave * (1.0 + _PATIENCE) * expected
-    core = _CORE * math.sqrt(radius * float(guess.peak_compression))
+    contact = math.sqrt(radius * float(guess.peak_compression))
+    if size is None:
+        size = min(_FINEST, contact / radius / _ACROSS)
+    core = _CORE * contact
     meshes = (
         mesh.sphere(radius, size * radius, core),
         mesh.plate(radius, size * radius, core, thickness, width),
@@ -141,16 +149,15 @@ def impact(
     step = solver.time_step(system, (pair.sphere, pair.plate))
     system.v[: _sphere_nodes(system), 1] = -speed
     every = max(1, round(expected / _SAMPLES / step))
-    foot = _foot(system)
     load = np.zeros_like(system.x)
     rows: list[tuple[float, float, float, float]] = []
     energies = [energy(system)]
     snapshots: list[Array] = []
-    last, start = 0.0, _way(system, foot)
+    last, start = 0.0, _way(system)
     while True:
         force, touching = solver.advance(system, load, step, every)
         time = (len(rows) + 1) * every * step
-        rows.append((time, 2.0 * math.pi * force, _speed(system), start - _way(system, foot)))
+        rows.append((time, 2.0 * math.pi * force, _speed(system), start - _way(system)))
         if touching:
             last = time
         if len(rows) % 20 == 0:
@@ -164,16 +171,11 @@ def impact(
                 f"the sphere is still in contact after {time:.3g} s, {_GIVE_UP:g} times the time "
                 f"expected at speed {speed:g} m/s on a plate of {thickness:g} m"
             )
-    return _outcome(system, np.array(rows).T, np.array(energies), last, snapshots, step, every)
+    return _outcome(system, np.array(rows).T, energies, last, snapshots, size, step, every)
 
 
 def _sphere_nodes(system: System) -> int:
     return int(system.plate.elements.min())
-
-
-def _foot(system: System) -> int:
-    """Node on the plate's lower face, on the axis."""
-    return _sphere_nodes(system)
 
 
 def _speed(system: System) -> float:
@@ -181,11 +183,11 @@ def _speed(system: System) -> float:
     return -float(system.mass[:n] @ system.v[:n, 1] / system.mass[:n].sum())
 
 
-def _way(system: System, foot: int) -> float:
-    """Height of the sphere's centre of mass over the plate's foot."""
+def _way(system: System) -> float:
+    """Height of the sphere's centre of mass over the plate's lower face, on the axis."""
     n = _sphere_nodes(system)
     centre = system.mass[:n] @ system.x[:n, 1] / system.mass[:n].sum()
-    return float(centre - system.x[foot, 1])
+    return float(centre - system.x[n, 1])
 
 
 def energy(system: System) -> tuple[float, ...]:
@@ -211,14 +213,15 @@ def energy(system: System) -> tuple[float, ...]:
 def _outcome(
     system: System,
     history: Array,
-    energies: Array,
+    energies: list[tuple[float, ...]],
     contact_time: float,
     snapshots: list[Array],
+    size: float,
     step: float,
     every: int,
 ) -> Impact:
     time, force, speed, compression = history
-    first = energies[0].sum()
+    first = sum(energies[0])
     share = np.array(energy(system)) / first
     end = int(np.searchsorted(time, contact_time))
     return Impact(
@@ -233,7 +236,7 @@ def _outcome(
         friction=share[9],
         hourglass=share[6] + share[7],
         contact=share[8],
-        balance=float(np.abs(energies.sum(axis=1) / first - 1.0).max()),
+        balance=float(np.abs(np.sum(energies, axis=1) / first - 1.0).max()),
         plastic_strain=float(system.sphere.plastic_strain.max()),
         time=time,
         force=force,
@@ -241,6 +244,7 @@ def _outcome(
         compression=compression,
         system=system,
         snapshots=snapshots,
+        size=size,
         step=step,
         steps=time.size * every,
     )

@@ -14,11 +14,11 @@ from validation.fem.solver import System
 
 Array = NDArray[np.float64]
 
-_BLOCK = 20.0  # width and thickness of the block, over the sphere's radius
+BLOCK = 20.0  # width and thickness of the block, over the sphere's radius
 _CORE = 1.3  # finest part of the mesh, over the contact's expected radius ...
 _WIDEST = 0.3  # ... but not wider than this many radii
 _SAMPLES = 400
-_TRANSITS = 800.0  # of the pressure wave through the radius, for loading and unloading together
+_TRANSITS = 200.0  # of the pressure wave through the radius, for loading and unloading together
 
 
 @dataclass(frozen=True)
@@ -45,6 +45,11 @@ class Indentation:
     kinetic: float
     plastic: float
     system: System
+
+
+def core(radius: float, depth: float) -> float:
+    """Width of the finest part of the mesh [m]."""
+    return min(_CORE * math.sqrt(radius * depth), _WIDEST * radius)
 
 
 def indent(
@@ -80,11 +85,11 @@ def indent(
     -------
     Indentation
     """
-    core = min(_CORE * math.sqrt(radius * depth), _WIDEST * radius)
-    fine, block = size * radius, _BLOCK * radius
+    width = core(radius, depth)
+    fine, block = size * radius, BLOCK * radius
     meshes = (
-        mesh.sphere(radius, fine, core, hemisphere=True),
-        mesh.plate(radius, fine, core, block, block),
+        mesh.sphere(radius, fine, width, hemisphere=True),
+        mesh.plate(radius, fine, width, block, block),
     )
     materials = pair.sphere, pair.plate
     system = solver.assemble(meshes, materials, friction, yields)

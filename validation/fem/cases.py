@@ -1,0 +1,108 @@
+"""Many impacts at once: cases, their outcomes, and the file that keeps both."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+import contactlaw as cl
+from contactlaw.laws import law
+from contactlaw.impact import scales, sphere_on_plate
+from validation.fem import store
+from validation.fem.impact import impact
+
+PAPER = cl.Pair("gamma-alumina", "glass")
+RADIUS = 0.9e-3  # [m], the paper's
+
+UNITS = {
+    "speed": "m/s", "radius": "m", "thickness": "m", "width": "m", "size": "sphere radius",
+    "contact_time": "s", "peak_force": "N", "peak_compression": "m", "residual_compression": "m",
+    "step": "s", "time": "s", "force": "N", "compression": "m", "contact_radius": "m", "r": "m",
+    "z": "m", "deflection": "m",
+}  # fmt: skip
+OUTCOMES = (
+    "restitution", "contact_time", "peak_force", "peak_compression", "residual_compression",
+    "plastic", "wave", "vibration", "friction_loss", "hourglass", "touching_loss", "balance",
+    "plastic_strain", "steps", "step", "elements",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Case:
+    """One impact to be computed, see `impact.impact`; NaN stands for the default."""
+
+    speed: float  # [m/s]
+    thickness: float  # [m]
+    radius: float = RADIUS  # [m]
+    sphere: str = "gamma-alumina"
+    plate: str = "glass"
+    size: float = math.nan  # [radius]
+    width: float = math.nan  # [m]
+    friction: float = 0.1
+    yields: bool = True
+
+    @property
+    def pair(self) -> cl.Pair:
+        """Materials."""
+        return cl.Pair(self.sphere, self.plate)
+
+
+def solve(case: Case) -> dict[str, Any]:
+    """Compute a case; its inputs and outcomes by name."""
+    hit = impact(
+        case.pair, case.speed, case.radius, case.thickness,
+        size=None if math.isnan(case.size) else case.size, friction=case.friction,
+        yields=case.yields, width=None if math.isnan(case.width) else case.width,
+    )  # fmt: skip
+    named = {
+        "friction_loss": hit.friction,
+        "touching_loss": hit.contact,
+        "elements": len(hit.system.sphere.elements) + len(hit.system.plate.elements),
+    }
+    outcome = {key: named[key] if key in named else getattr(hit, key) for key in OUTCOMES}
+    width = float(hit.system.x[:, 0].max())
+    return {**asdict(case), **outcome, "size": hit.size, "width": width}
+
+
+def solve_all(cases: Iterable[Case], title: str, processes: int) -> dict[str, np.ndarray]:
+    """Compute cases side by side; columns by name, in the order of the cases."""
+    listed = list(cases)
+    rows: list[dict[str, Any]] = [{} for _ in listed]
+    with ProcessPoolExecutor(processes) as pool:
+        futures = {pool.submit(solve, case): n for n, case in enumerate(listed)}
+        bar = tqdm(as_completed(futures), title, len(listed), disable=None, leave=False)
+        for future in bar:
+            rows[futures[future]] = future.result()
+    names = [field.name for field in fields(Case)] + list(OUTCOMES)
+    return {name: np.array([row[name] for row in rows]) for name in names}
+
+
+def yield_inelasticity(pair: cl.Pair, thickness: float) -> float:
+    """Inelasticity lambda of an impact at V_Y0 [-]."""
+    contact = sphere_on_plate(pair, law("myc"), np.float64(RADIUS), np.float64(thickness))
+    return float(scales(contact, np.float64(pair.yield_speed)).inelasticity)
+
+
+def predicted(data: dict[str, np.ndarray], law_name: str = "myc") -> list[cl.Rebound]:
+    """What the model says of each case, by integration."""
+    return [
+        cl.ImpactModel(cl.Pair(s, p), law=law_name).solve(v, r, h)
+        for s, p, v, r, h in zip(
+            data["sphere"], data["plate"], data["speed"], data["radius"], data["thickness"],
+            strict=True,
+        )
+    ]  # fmt: skip
+
+
+def save(name: str, about: str, data: dict[str, np.ndarray]) -> None:
+    """Keep computed cases as a file."""
+    store.write(
+        name, about, data, UNITS,
+        mesh="conformal half disc, plate graded by 1.1; element size [R] in column size",
+    )  # fmt: skip

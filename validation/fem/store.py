@@ -1,0 +1,95 @@
+"""Files of results: HDF5, each with what made it."""
+
+from __future__ import annotations
+
+import os
+from datetime import date
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._version import VERSION
+from validation.fem import solver
+
+FOLDER = Path(__file__).parent.parent / "data"
+
+
+class Result(NamedTuple):
+    """Arrays of a file by name, and its attributes: what made them."""
+
+    data: dict[str, NDArray[Any]]
+    attributes: dict[str, Any]
+
+
+def path(name: str) -> Path:
+    """Where a result is kept."""
+    return FOLDER / f"fem_{name}.h5"
+
+
+def write(
+    name: str, about: str, data: dict[str, NDArray[Any]], units: dict[str, str], **settings: Any
+) -> None:
+    """Keep a result; it replaces an older one when all of it is on disk.
+
+    Parameters
+    ----------
+    name : str
+        Name of the study.
+    about : str
+        What the file holds, for a reader who has nothing else.
+    data : dict
+        Arrays by name.
+    units : dict
+        Units of those that have one.
+    **settings
+        Mesh and whatever else made it.
+    """
+    FOLDER.mkdir(exist_ok=True)
+    unfinished = path(name).with_suffix(".part")
+    with h5py.File(unfinished, "w") as file:
+        file.attrs.update(
+            about=about,
+            command=f"python -m validation.fem {name}",
+            date=date.today().isoformat(),
+            solver_version=solver.VERSION,
+            contactlaw_version=VERSION,
+            **settings,
+        )
+        for key, values in data.items():
+            array = np.asarray(values)
+            if array.dtype.kind == "U":
+                file.create_dataset(key, data=array.astype(h5py.string_dtype()))
+                continue
+            if not np.isfinite(array).all():
+                raise ValueError(f"{key}: a result of study {name!r} is not finite")
+            packed = {"compression": "gzip", "shuffle": True} if array.size > 200 else {}
+            file.create_dataset(key, data=array, **packed)
+            file[key].attrs["unit"] = units.get(key, "-")
+    os.replace(unfinished, path(name))
+
+
+def read(name: str) -> Result:
+    """Read a result.
+
+    Raises
+    ------
+    FileNotFoundError
+        If it has not been computed.
+
+    Examples
+    --------
+    >>> result = read("matrix")
+    >>> result.data["restitution"].size >= 64, result.attributes["command"]
+    (True, 'python -m validation.fem matrix')
+    """
+    if not path(name).exists():
+        raise FileNotFoundError(f"{path(name)}: run python -m validation.fem {name}")
+    with h5py.File(path(name)) as file:
+        data = {
+            key: item.asstr()[()] if h5py.check_string_dtype(item.dtype) else item[()]
+            for key, item in file.items()
+        }
+        return Result(data, dict(file.attrs))
