@@ -1,0 +1,105 @@
+"""Whole impacts by finite elements, on coarse meshes; the stored results are the fine ones."""
+
+import math
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from validation.fem import calculix, cases, store
+from validation.fem.impact import energy, impact
+from validation.fem.indentation import indent
+from validation.fem.studies import CALCULIX_DEPTH, CALCULIX_SIZE, yield_compression
+
+R = cases.RADIUS
+
+
+@pytest.fixture(scope="module")
+def hit():
+    """The paper's impact of Figs 11 to 13 on elements of 0.04 R."""
+    return impact(cases.PAPER, 26.0, R, 0.5e-3, size=0.04)
+
+
+def test_hertz_is_the_limit_of_small_contacts():
+    """Peak force and contact time on a thick block; the contact is 1/26 of the radius wide.
+
+    At larger contacts the sphere is stiffer than Hertz has it, in proportion to a/R: 2 % at 0.08.
+    """
+    found = impact(cases.PAPER, 0.5, R, 4e-3, size=0.008, friction=0.0, yields=False)
+    hertz = cl.ImpactModel(cases.PAPER, law="hertz").solve(0.5, R, math.inf)
+    assert found.peak_force == pytest.approx(hertz.peak_force, rel=0.01)
+    assert found.contact_time == pytest.approx(hertz.contact_time, rel=0.015)
+
+
+def test_contact_radius_is_hertzs():
+    press = indent(cases.PAPER, R, 2e-6, size=0.005, friction=0.0, yields=False, slowness=0.5)
+    top = int(press.compression.argmax())
+    wide = math.sqrt(R * press.compression[top])
+    assert press.contact_radius[top] == pytest.approx(wide, abs=0.6 * 0.005 * R)
+    assert press.kinetic < 0.01
+
+
+def test_energy_and_momentum_are_kept(hit):
+    assert hit.balance < 0.01
+    assert hit.hourglass < 0.02
+    shares = hit.plastic + hit.wave + hit.vibration + hit.friction + hit.contact
+    assert hit.restitution**2 + shares == pytest.approx(1.0, abs=0.01)
+    n = int(hit.system.plate.elements.min())
+    mass = 2 * math.pi * hit.system.mass[:n].sum()
+    impulse = np.trapezoid(hit.force, hit.time)
+    assert mass * 26.0 * (1 + hit.restitution) == pytest.approx(impulse, rel=1e-3)
+    momentum = hit.system.mass @ hit.system.v[:, 1] * 2 * math.pi
+    assert momentum == pytest.approx(-mass * 26.0, rel=1e-9)
+
+
+def test_everything_ends_where_it_began_without_motion():
+    still = impact(cases.PAPER, 26.0, R, 0.5e-3, size=0.08).system
+    assert len(energy(still)) == 10
+
+
+def test_coarse_impact_agrees_with_the_stored_one(hit):
+    """Within the error of its mesh, which `verification` records."""
+    fine = store.read("paper").data
+    assert hit.restitution == pytest.approx(fine["restitution"], abs=0.006)
+    assert hit.force.max() == pytest.approx(fine["force"].max(), rel=0.03)
+    assert hit.plastic_strain == pytest.approx(fine["largest_plastic_strain"], rel=0.04)
+
+
+def test_the_papers_plastic_strain():
+    """About 0.039 (Fig. 12)."""
+    assert store.read("paper").data["largest_plastic_strain"] == pytest.approx(0.039, abs=5e-4)
+
+
+@pytest.mark.parametrize("row", [3, 38, 61])
+def test_coarse_matrix_agrees_with_the_stored_one(row):
+    stored = {key: values[row] for key, values in store.read("matrix").data.items()}
+    found = impact(
+        cases.PAPER, stored["speed"], R, stored["thickness"], size=3 * stored["size"]
+    )
+    assert found.restitution == pytest.approx(stored["restitution"], abs=0.012)
+    assert found.contact_time == pytest.approx(stored["contact_time"], rel=0.02)
+
+
+def test_coarse_indentation_agrees_with_calculix():
+    depth = CALCULIX_DEPTH * yield_compression()
+    press = indent(cases.PAPER, R, depth, size=2 * CALCULIX_SIZE)
+    other = store.read("calculix").data
+    top, peak = int(press.compression.argmax()), int(other["compression"].argmax())
+    way = np.linspace(0.1, 0.95, 20) * depth
+    ours = np.interp(way, press.compression[:top], press.force[:top])
+    theirs = np.interp(way, other["compression"][: peak + 1], other["force"][: peak + 1])
+    assert np.abs(ours - theirs).max() < 0.03 * theirs.max()
+
+
+@pytest.mark.skipif(not calculix.installed(), reason="ccx is not installed")
+def test_calculix_reads_the_deck_and_finds_hertz():
+    depth = 1e-6
+    compression, force = calculix.run(cases.PAPER, R, depth, 0.012, friction=0.0)
+    stiffness = 4 / 3 * cases.PAPER.effective_modulus * math.sqrt(R)
+    at = int(compression.argmax())
+    assert force[at] == pytest.approx(stiffness * depth**1.5, rel=0.05)
+
+
+def test_a_sphere_that_stays_is_an_error():
+    with pytest.raises(RuntimeError, match="still in contact"):
+        impact(cases.PAPER, 5.0, R, 0.05e-3, size=0.1, width=0.5e-3)
