@@ -84,6 +84,12 @@ def indent(
     Returns
     -------
     Indentation
+
+    Raises
+    ------
+    RuntimeError
+        If elements collapse: an elastic hemisphere cannot be pressed in by more than a quarter of
+        its radius, a plastic one by a third at least.
     """
     width = core(radius, depth)
     fine, block = size * radius, BLOCK * radius
@@ -114,6 +120,11 @@ def indent(
         plastic.append(system.sphere.work[0])
         way = target
     compression, force_, edge_, kinetic_ = np.array(rows).T
+    if not np.isfinite(force_).all():
+        raise RuntimeError(
+            f"elements collapsed on the way to depth {depth:g} m: take less than "
+            f"{0.25 * radius:g} m for an elastic hemisphere, or coarser elements than {size:g}"
+        )
     top = int(compression.argmax())
     work = float(np.trapezoid(force_[: top + 1], compression[: top + 1])) / (2.0 * math.pi)
     return Indentation(

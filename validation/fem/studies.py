@@ -63,7 +63,7 @@ def indentation(processes: int) -> None:
     jobs["10_twice_as_slow"] = {"depth": 10 * unit, "slowness": 2.0}
     jobs["10_coarse"] = {"depth": 10 * unit, "size": 0.04}
     jobs["10_calculix_mesh"] = {"depth": CALCULIX_DEPTH * unit, "size": CALCULIX_SIZE}
-    jobs["10_elastic"] = {"depth": 10 * unit, "yields": False}
+    jobs["20_elastic"] = {"depth": 20 * unit, "yields": False}
     jobs["1_elastic"] = {"depth": unit, "yields": False, "size": 0.01}
     data: dict[str, NDArray[Any]] = {}
     with ProcessPoolExecutor(processes) as pool:
