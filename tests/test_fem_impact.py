@@ -7,7 +7,7 @@ import pytest
 
 import contactlaw as cl
 from validation.fem import calculix, cases, store
-from validation.fem.impact import energy, impact
+from validation.fem.impact import impact
 from validation.fem.indentation import indent
 from validation.fem.studies import CALCULIX_DEPTH, CALCULIX_SIZE, yield_compression
 
@@ -21,21 +21,21 @@ def hit():
 
 
 def test_hertz_is_the_limit_of_small_contacts():
-    """Peak force and contact time on a thick block; the contact is 1/26 of the radius wide.
+    """Peak force and contact time on a block of 6 mm; the contact is 1/32 of the radius wide.
 
-    At larger contacts the sphere is stiffer than Hertz has it, in proportion to a/R: 2 % at 0.08.
+    Wider contacts are stiffer than Hertz's half-spaces, in proportion to their width.
     """
-    found = impact(cases.PAPER, 0.5, R, 4e-3, size=0.008, friction=0.0, yields=False)
-    hertz = cl.ImpactModel(cases.PAPER, law="hertz").solve(0.5, R, math.inf)
+    found = impact(cases.PAPER, 0.3, R, 6e-3, size=0.0065, width=6e-3, friction=0.0, yields=False)
+    hertz = cl.ImpactModel(cases.PAPER, law="hertz").solve(0.3, R, math.inf)
     assert found.peak_force == pytest.approx(hertz.peak_force, rel=0.01)
-    assert found.contact_time == pytest.approx(hertz.contact_time, rel=0.015)
+    assert found.contact_time == pytest.approx(hertz.contact_time, rel=0.01)
 
 
 def test_contact_radius_is_hertzs():
-    press = indent(cases.PAPER, R, 2e-6, size=0.005, friction=0.0, yields=False, slowness=0.5)
+    press = indent(cases.PAPER, R, 8e-6, size=0.01, friction=0.0, yields=False)
     top = int(press.compression.argmax())
     wide = math.sqrt(R * press.compression[top])
-    assert press.contact_radius[top] == pytest.approx(wide, abs=0.6 * 0.005 * R)
+    assert press.contact_radius[top] == pytest.approx(wide, abs=0.6 * 0.01 * R)
     assert press.kinetic < 0.01
 
 
@@ -50,11 +50,6 @@ def test_energy_and_momentum_are_kept(hit):
     assert mass * 26.0 * (1 + hit.restitution) == pytest.approx(impulse, rel=1e-3)
     momentum = hit.system.mass @ hit.system.v[:, 1] * 2 * math.pi
     assert momentum == pytest.approx(-mass * 26.0, rel=1e-9)
-
-
-def test_everything_ends_where_it_began_without_motion():
-    still = impact(cases.PAPER, 26.0, R, 0.5e-3, size=0.08).system
-    assert len(energy(still)) == 10
 
 
 def test_coarse_impact_agrees_with_the_stored_one(hit):
@@ -73,9 +68,7 @@ def test_the_papers_plastic_strain():
 @pytest.mark.parametrize("row", [3, 38, 61])
 def test_coarse_matrix_agrees_with_the_stored_one(row):
     stored = {key: values[row] for key, values in store.read("matrix").data.items()}
-    found = impact(
-        cases.PAPER, stored["speed"], R, stored["thickness"], size=3 * stored["size"]
-    )
+    found = impact(cases.PAPER, stored["speed"], R, stored["thickness"], size=3 * stored["size"])
     assert found.restitution == pytest.approx(stored["restitution"], abs=0.012)
     assert found.contact_time == pytest.approx(stored["contact_time"], rel=0.02)
 
@@ -100,6 +93,7 @@ def test_calculix_reads_the_deck_and_finds_hertz():
     assert force[at] == pytest.approx(stiffness * depth**1.5, rel=0.05)
 
 
-def test_a_sphere_that_stays_is_an_error():
+def test_a_sphere_that_stays_is_an_error(monkeypatch):
+    monkeypatch.setattr("validation.fem.impact._GIVE_UP", 0.5)
     with pytest.raises(RuntimeError, match="still in contact"):
-        impact(cases.PAPER, 5.0, R, 0.05e-3, size=0.1, width=0.5e-3)
+        impact(cases.PAPER, 26.0, R, 0.5e-3, size=0.08)

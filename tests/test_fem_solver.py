@@ -1,4 +1,4 @@
-"""The finite elements against closed forms and invariants; finer meshes: python -m validation.fem."""
+"""The finite elements against closed forms and invariants."""
 
 import math
 

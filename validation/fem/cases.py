@@ -12,8 +12,8 @@ import numpy as np
 from tqdm import tqdm
 
 import contactlaw as cl
-from contactlaw.laws import law
 from contactlaw.impact import scales, sphere_on_plate
+from contactlaw.laws import law
 from validation.fem import store
 from validation.fem.impact import impact
 
@@ -85,12 +85,12 @@ def solve_all(cases: Iterable[Case], title: str, processes: int) -> dict[str, np
 
 def yield_inelasticity(pair: cl.Pair, thickness: float) -> float:
     """Inelasticity lambda of an impact at V_Y0 [-]."""
-    contact = sphere_on_plate(pair, law("myc"), np.float64(RADIUS), np.float64(thickness))
-    return float(scales(contact, np.float64(pair.yield_speed)).inelasticity)
+    contact = sphere_on_plate(pair, law("myc"), np.array(RADIUS), np.array(thickness))
+    return float(scales(contact, np.array(pair.yield_speed)).inelasticity)
 
 
 def predicted(data: dict[str, np.ndarray], law_name: str = "myc") -> list[cl.Rebound]:
-    """What the model says of each case, by integration."""
+    """Solve the model for each case."""
     return [
         cl.ImpactModel(cl.Pair(s, p), law=law_name).solve(v, r, h)
         for s, p, v, r, h in zip(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.impact import scales, sphere_on_plate
+from contactlaw.impact import sphere_on_plate
 from validation.fem import published, store
 from validation.fem.studies import yield_compression
 
@@ -41,15 +41,16 @@ def comparison(name: str) -> Comparison:
         zip(fem["sphere"], fem["plate"], fem["speed"], fem["radius"], fem["thickness"], strict=True)
     )
     models = {
-        key: [cl.ImpactModel(cl.Pair(s, p), law=key) for s, p, *_ in rows]
-        for key in laws.names()
+        key: [cl.ImpactModel(cl.Pair(s, p), law=key) for s, p, *_ in rows] for key in laws.names()
     }
     solved = {
         key: [m.solve(v, r, h) for m, (_, _, v, r, h) in zip(many, rows, strict=True)]
         for key, many in models.items()
     }
     pairs = [m.pair for m in models["myc"]]
-    ratio = np.array([v / pair.yield_speed for pair, (_, _, v, _, _) in zip(pairs, rows, strict=True)])
+    ratio = np.array(
+        [v / pair.yield_speed for pair, (_, _, v, _, _) in zip(pairs, rows, strict=True)]
+    )
     model = {
         field: np.array([float(getattr(one, field)) for one in solved["myc"]])
         for field in cl.Rebound.__dataclass_fields__
@@ -117,12 +118,12 @@ def indentation(name: str) -> tuple[Array, Array, int]:
         way, force = data[f"compression_{name}"], data[f"force_{name}"]
     unit = yield_compression()
     pair = cl.Pair("gamma-alumina", "glass")
-    contact = sphere_on_plate(pair, laws.law("myc"), np.float64(0.9e-3), np.float64(1.0))
+    contact = sphere_on_plate(pair, laws.law("myc"), np.array(0.9e-3), np.array(1.0))
     return way / unit, force / (float(contact.stiffness) * unit**1.5), int(way.argmax())
 
 
 def loading_curves(way: Array) -> dict[str, Array]:
-    """Loading force [F_Y] of each registered law, and of Thornton's and Stronge's, at way [d_Y]."""
+    """Compute the loading force [F_Y] of each law, registered or published, at way [d_Y]."""
     curves = {
         name: np.array([laws.law(name).loading(float(q)) for q in np.sqrt(way)])
         for name in laws.names()

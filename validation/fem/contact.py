@@ -109,7 +109,7 @@ def resolve(
 
 @kernel
 def _direction(x: Array, a: int, b: int) -> tuple[float, float]:
-    """Unit vector (e_r, e_z) along a segment; (-e_z, e_r) is its normal."""
+    """Return the unit vector (e_r, e_z) along a segment; (-e_z, e_r) is its normal."""
     e_r, e_z = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1]
     length = math.sqrt(e_r * e_r + e_z * e_z)
     return e_r / length, e_z / length

@@ -79,7 +79,12 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         if mises > body.strength * body.strength:
             mises = math.sqrt(mises)
             keep = body.strength / mises
-            s_rr, s_zz, s_tt, s_rz = mean + keep * d_r, mean + keep * d_z, mean + keep * d_t, keep * s_rz
+            s_rr, s_zz, s_tt, s_rz = (
+                mean + keep * d_r,
+                mean + keep * d_z,
+                mean + keep * d_t,
+                keep * s_rz,
+            )
             strain = (mises - body.strength) / (3.0 * body.shear)
             body.plastic_strain[e] += strain
             plastic += body.strength * strain * area * r
@@ -139,7 +144,7 @@ def volumes(elements: Indices, x: Array) -> Array:
 
 
 def stable_step(body: Body, x: Array, density: float) -> float:
-    """Largest stable step: that of the pressure wave across each element (Flanagan & Belytschko)."""
+    """Time of the pressure wave across the smallest element [s] (Flanagan & Belytschko)."""
     r, z = np.moveaxis(x[body.elements], -1, 0)
     area = volumes(body.elements, x) / r.mean(axis=1)
     diagonals = sum((y[:, k] - y[:, k + 2]) ** 2 for y in (r, z) for k in (0, 1))

@@ -191,8 +191,10 @@ def _way(system: System) -> float:
 
 
 def energy(system: System) -> tuple[float, ...]:
-    """Energies [J per radian]: motion of the sphere as a whole and within itself, of the plate;
-    elastic of both; plastic; hourglass of both; losses of contact and of friction.
+    """List the energies [J per radian].
+
+    Kinetic of the sphere as a whole and within itself, and of the plate; elastic of both; plastic;
+    hourglass of both; losses of touching and of friction.
     """
     n = _sphere_nodes(system)
     kinetic = 0.5 * system.mass * (system.v**2).sum(axis=1)
@@ -225,7 +227,8 @@ def _outcome(
     share = np.array(energy(system)) / first
     end = int(np.searchsorted(time, contact_time))
     return Impact(
-        restitution=-speed[-1] / math.sqrt(2.0 * first / system.mass[: _sphere_nodes(system)].sum()),
+        restitution=-speed[-1]
+        / math.sqrt(2.0 * first / system.mass[: _sphere_nodes(system)].sum()),
         contact_time=contact_time,
         peak_force=float(force.max()),
         peak_compression=float(compression.max()),

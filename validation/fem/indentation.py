@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from validation.fem import elements, mesh, solver
+from validation.fem import mesh, solver
 from validation.fem.solver import System
 
 Array = NDArray[np.float64]

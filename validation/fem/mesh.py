@@ -6,7 +6,7 @@ the plate below.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,19 +68,19 @@ def sphere(radius: float, size: float, core: float, hemisphere: bool = False) ->
     share = np.linspace(0.0, 1.0, rings + 1)[1:, None]
     grown = np.exp((1.0 - share) * np.log(near) + share * np.log(far))
     x = [_disc(n * size * square, radius).ravel(), _disc(grown, radius).ravel()]
-    core = np.arange(square.size).reshape(square.shape)
-    ring = np.arange(grown.size).reshape(grown.shape) + core.size
-    columns = np.vstack([np.concatenate([core[:, n], core[n, -2::-1]]), ring])
-    elements = [_cells(core), _cells(columns.T)]
+    inner = np.arange(square.size).reshape(square.shape)
+    ring = np.arange(grown.size).reshape(grown.shape) + inner.size
+    columns = np.vstack([np.concatenate([inner[:, n], inner[n, -2::-1]]), ring])
+    elements = [_cells(inner), _cells(columns.T)]
     if not hemisphere:
-        inner = 2j * radius + _disc(_FAR_CORE * radius * square[:-1, :-1], radius).conj()
-        x.append(inner.ravel())
-        cap = np.empty_like(core)
-        cap[:-1, :-1] = np.arange(inner.size).reshape(inner.shape) + core.size + ring.size
+        pole = 2j * radius + _disc(_FAR_CORE * radius * square[:-1, :-1], radius).conj()
+        x.append(pole.ravel())
+        cap = np.empty_like(inner)
+        cap[:-1, :-1] = np.arange(pole.size).reshape(pole.shape) + inner.size + ring.size
         cap[:, n], cap[n, -2::-1] = ring[-1, : n + 1], ring[-1, n + 1 :]
         elements.append(_cells(cap)[:, ::-1])  # mirrored
     nodes = np.concatenate(x)
-    surface = np.concatenate([core[0], ring[:, 0]])
+    surface = np.concatenate([inner[0], ring[:, 0]])
     return Mesh(_points(nodes), np.concatenate(elements), surface)
 
 
@@ -113,7 +113,7 @@ def plate(radius: float, size: float, core: float, thickness: float, width: floa
     return Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
 
 
-def _disc(u: NDArray[np.complex128], radius: float) -> NDArray[np.complex128]:
+def _disc(u: NDArray[Any], radius: float) -> NDArray[np.complex128]:
     x: NDArray[np.complex128] = u / (1.0 - 0.5j * u / radius)
     return x
 

@@ -47,10 +47,11 @@ def closed_form(inelasticity: Array, speed_ratio: Array, slenderness: Array) -> 
 
 
 def thornton(compression: Array) -> Array:
-    """Loading force [F_Y of MYC] at a compression [d_Y of MYC] (Thornton, J. Appl. Mech. 1997).
+    """Compute the loading force [F_Y of MYC] at a compression [d_Y of MYC] (Thornton 1997).
 
-    With the yield compression that Peng et al. 2021 give it, 0.25 pi^2 sigma_Y^2 R*/E*^2, beyond
-    which the pressure no longer grows: the force is linear with the slope of Hertz's curve there.
+    Thornton, J. Appl. Mech. 64 (1997) 383. With the yield compression that Peng et al. 2021 give
+    it, 0.25 pi^2 sigma_Y^2 R*/E*^2, beyond which the pressure no longer grows: the force is linear
+    with the slope of Hertz's curve there.
     """
     d, y = np.asarray(compression), 0.25 / 0.68
     force: Array = np.where(d < y, np.abs(d) ** 1.5, y**1.5 + 1.5 * y**0.5 * (d - y))
@@ -58,14 +59,16 @@ def thornton(compression: Array) -> Array:
 
 
 def stronge(compression: Array) -> Array:
-    """Loading force [F_Y of MYC] at a compression [d_Y of MYC] (Stronge, Impact Mechanics, 6.2).
+    """Compute the loading force [F_Y of MYC] at a compression [d_Y of MYC] (Stronge 2000).
 
-    Elastic to d_Y, whose coefficient (3/4 x 1.1)^2 = 0.6806 is MYC's to 0.1 %, then elastic-plastic
-    to 84 d_Y.
+    Stronge, Impact Mechanics (2000), section 6.2. Elastic to d_Y, whose coefficient
+    (3/4 x 1.1)^2 = 0.6806 is MYC's to 0.1 %, then elastic-plastic to 84 d_Y.
     """
     d = np.asarray(compression)
     rise = np.maximum(2.0 * d - 1.0, 1.0)
-    force: Array = np.where(d < 1.0, np.abs(d) ** 1.5, rise * (1.0 + np.log(rise) / (3 * _CRITICAL)))
+    force: Array = np.where(
+        d < 1.0, np.abs(d) ** 1.5, rise * (1.0 + np.log(rise) / (3 * _CRITICAL))
+    )
     return force
 
 
@@ -84,8 +87,8 @@ def force_history(
         Steps of the integration.
     """
     myc = law("myc")
-    contact = sphere_on_plate(pair, myc, np.float64(radius), np.float64(thickness))
-    units = scales(contact, np.float64(speed))
+    contact = sphere_on_plate(pair, myc, np.array(radius), np.array(thickness))
+    units = scales(contact, np.array(speed))
     lam, y = float(units.inelasticity), float(units.yield_ratio)
     solved = cl.ImpactModel(pair).solve(speed, radius, thickness)
     end = float(solved.contact_time) / float(units.time)
@@ -93,22 +96,21 @@ def force_history(
     def force(w: float, largest: float) -> float:
         d, dm = max(w, 0.0) / y, max(largest, w) / y
         if d >= dm:
-            return float(myc.loading(math.sqrt(d))) * y**1.5
-        rest = myc.residual(dm)
-        return float(myc.unloading(math.sqrt(max(d - rest, 0.0)), *myc.unloading_curve(dm))) * y**1.5
+            return float(myc.loading(math.sqrt(d)) * y**1.5)
+        q = math.sqrt(max(d - myc.residual(dm), 0.0))
+        return float(myc.unloading(q, *myc.unloading_curve(dm)) * y**1.5)
+
+    def rates(state: Array, largest: float) -> Array:
+        f = force(state[0], largest)
+        return np.array([state[1] - lam * f, -f])
 
     state, largest, h = np.array([0.0, 1.0]), 0.0, end / steps
     out = np.zeros(steps + 1)
     for n in range(steps):
-
-        def rates(s: Array) -> Array:
-            f = force(s[0], largest)
-            return np.array([s[1] - lam * f, -f])
-
-        a = rates(state)
-        b = rates(state + 0.5 * h * a)
-        c = rates(state + 0.5 * h * b)
-        d = rates(state + h * c)
+        a = rates(state, largest)
+        b = rates(state + 0.5 * h * a, largest)
+        c = rates(state + 0.5 * h * b, largest)
+        d = rates(state + h * c, largest)
         state = state + h / 6.0 * (a + 2.0 * b + 2.0 * c + d)
         largest = max(largest, state[0])
         out[n + 1] = force(state[0], largest)

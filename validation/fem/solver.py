@@ -103,10 +103,9 @@ def assemble(
         body(above, materials[0], 0, _BENDING[0], yields),
         body(below, materials[1], first, _BENDING[1], False),
     )
-    mass = sum(
-        elements.lumped_mass(one.elements, x, material.density)
-        for one, material in zip(bodies, materials, strict=True)
-    )
+    mass = np.zeros(len(x))
+    for one, material in zip(bodies, materials, strict=True):
+        mass += elements.lumped_mass(one.elements, x, material.density)
     inverse_mass = np.repeat(1.0 / mass[:, None], 2, axis=1)
     inverse_mass[x[:, 0] == 0.0, 0] = 0.0  # the axis
     slaves = above.surface.size

@@ -27,12 +27,12 @@ OTHER_PAIRS = (
 )
 DEPTHS = (2.0, 5.0, 10.0, 30.0)  # of the indentations [d_Y]
 CALCULIX_SIZE, CALCULIX_DEPTH = 0.03, 10.0  # [R], [d_Y]
-_PAPER_IMPACT = {"speed": 26.0, "thickness": 0.5e-3}  # its Figs 11 to 13 [m/s, m]
+_SPEED, _THICKNESS = 26.0, 0.5e-3  # of the paper's Figs 11 to 13 [m/s, m]
 
 
 def yield_compression(pair: cl.Pair = PAPER, radius: float = RADIUS) -> float:
     """d_Y of the MYC law [m]."""
-    contact = sphere_on_plate(pair, law("myc"), np.float64(radius), np.float64(radius))
+    contact = sphere_on_plate(pair, law("myc"), np.array(radius), np.array(radius))
     return float(contact.yield_compression)
 
 
@@ -40,9 +40,8 @@ def verification(processes: int) -> None:
     """Meshes from 0.04 R to 0.005 R, no friction, a plate twice as wide, and Hertz's limit."""
     listed: list[tuple[str, Case]] = []
     for thickness in (0.5e-3, 1e-3):
-        common = {"speed": 26.0, "thickness": thickness}
-        listed += [("mesh", Case(**common, size=s)) for s in (0.04, 0.02, 0.01, 0.005)]
-        listed.append(("no friction", Case(**common, size=0.01, friction=0.0)))
+        listed += [("mesh", Case(_SPEED, thickness, size=s)) for s in (0.04, 0.02, 0.01, 0.005)]
+        listed.append(("no friction", Case(_SPEED, thickness, size=0.01, friction=0.0)))
     thin = Case(speed=7.43, thickness=0.5e-3, size=0.01)
     wave = math.sqrt(PAPER.plate.plane_modulus / PAPER.plate.density)
     width = 0.55 * 1.15 * wave * 5.2e-6  # what `impact` takes, made explicit
@@ -114,9 +113,7 @@ def calculix_indentation(_: int) -> None:
 
 def matrix(processes: int) -> None:
     """Eight thicknesses by eight speeds (Figs 7, 8, 10)."""
-    listed = [
-        Case(v * PAPER.yield_speed, RADIUS / s) for s in SLENDERNESS for v in SPEED_RATIO
-    ]
+    listed = [Case(v * PAPER.yield_speed, RADIUS / s) for s in SLENDERNESS for v in SPEED_RATIO]
     data = cases.solve_all(listed, "matrix", processes)
     cases.save("matrix", "gamma-alumina on glass, R/H 0.1 to 1.8, V0/V_Y0 0.3 to 7", data)
 
@@ -124,12 +121,12 @@ def matrix(processes: int) -> None:
 def paper(_: int) -> None:
     """One impact in full: plastic strain, deflection, force (Figs 11 to 13)."""
     times = (1e-6, 2e-6, 3e-6)
-    hit = impact(PAPER, radius=RADIUS, size=0.01, times=times, **_PAPER_IMPACT)
+    hit = impact(PAPER, _SPEED, RADIUS, _THICKNESS, size=0.01, times=times)
     system = hit.system
     first = int(system.plate.elements.min())
     lower = np.arange(first, first + int(np.argmax(np.diff(system.x[first:, 0]) < 0.0)) + 1)
     strain = system.sphere.plastic_strain
-    rest = -_PAPER_IMPACT["thickness"]
+    rest = -_THICKNESS
     store.write(
         "paper",
         "gamma-alumina of 0.9 mm at 26 m/s on 0.5 mm of glass: history; corners (r, z) of the "
@@ -154,7 +151,8 @@ def paper(_: int) -> None:
         },
         {**cases.UNITS, "corners": "m", "snapshot_time": "s"},
         mesh=f"element size {hit.size:g} R",
-        **_PAPER_IMPACT,
+        speed=_SPEED,
+        thickness=_THICKNESS,
         radius=RADIUS,
         step=hit.step,
         steps=hit.steps,
@@ -162,7 +160,7 @@ def paper(_: int) -> None:
 
 
 def pairs(processes: int) -> None:
-    """Two other pairs at equal inelasticity: one table for all of them?"""
+    """Compare three pairs at equal inelasticity: does one table serve them all."""
     listed = []
     for slenderness in (0.5, 1.0, 1.5):
         inelasticity = yield_inelasticity(PAPER, RADIUS / slenderness)
@@ -171,9 +169,7 @@ def pairs(processes: int) -> None:
             # lambda ~ 1/H^2
             thickness = RADIUS * math.sqrt(yield_inelasticity(pair, RADIUS) / inelasticity)
             for v in (0.5, 1.5, 3.5, 7.0):
-                listed.append(
-                    Case(v * pair.yield_speed, thickness, sphere=sphere, plate=plate)
-                )
+                listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere, plate=plate))
     data = cases.solve_all(listed, "pairs", processes)
     about = "three pairs at the same inelasticity lambda and speed over yield speed; plates elastic"
     cases.save("pairs", about, data)
@@ -191,7 +187,7 @@ def limits(processes: int) -> None:
 
 
 def edge(processes: int) -> None:
-    """A plate of finite radius: the bending wave comes back from its free edge."""
+    """Let the bending wave come back from the free edge of a small plate."""
     thickness = RADIUS / 1.5
     speed = PAPER.yield_speed
     time = float(cl.ImpactModel(PAPER).lookup(speed, RADIUS, thickness).contact_time)
