@@ -1,4 +1,7 @@
-"""Recompute the studies: ``python -m validation.fem [NAME ...] [--processes N]``."""
+"""Recompute the studies: ``python -m validation.fem [NAME ...] [--processes N]``.
+
+``report`` prints the comparison of the stored results with the model, ``figures`` draws it.
+"""
 
 from __future__ import annotations
 
@@ -6,26 +9,37 @@ import argparse
 import os
 import sys
 import time
+from collections.abc import Callable
 
 from tqdm import tqdm
 
+from validation.fem import compare, figures
 from validation.fem.studies import STUDIES
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the studies named, or all; 0 when done, 2 for wrong usage."""
-    parser = argparse.ArgumentParser(prog="python -m validation.fem", description=__doc__)
-    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(STUDIES)}")
+    """Run what is named, or all; 0 when done, 2 for wrong usage."""
+    steps: dict[str, Callable[[int], None]] = {**STUDIES, "figures": _figures, "report": _report}
+    parser = argparse.ArgumentParser(prog="python -m validation.fem")
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args(arguments)
-    wrong = set(options.names) - set(STUDIES)
+    wrong = set(options.names) - set(steps)
     if wrong:
-        parser.error(f"no such study: {', '.join(wrong)}; there are {', '.join(STUDIES)}")
-    for name in tqdm(options.names or list(STUDIES), "studies", disable=None):
+        parser.error(f"no such study: {', '.join(wrong)}; there are {', '.join(steps)}")
+    for name in tqdm(options.names or list(steps), "studies", disable=None):
         start = time.perf_counter()
-        STUDIES[name](options.processes)
+        steps[name](options.processes)
         tqdm.write(f"{name:14s} {time.perf_counter() - start:6.0f} s")
     return 0
+
+
+def _figures(_: int) -> None:
+    figures.draw()
+
+
+def _report(_: int) -> None:
+    tqdm.write(compare.report())
 
 
 if __name__ == "__main__":

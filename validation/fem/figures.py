@@ -1,4 +1,4 @@
-"""Figures of the studies: ``python -m validation.fem.figures`` draws the stored results.
+"""Figures of the stored results: ``python -m validation.fem figures`` draws them.
 
 One function per figure; each reads its files and returns the figure. They are saved as
 ``validation/figures/fem_<name>.png``.
@@ -122,12 +122,13 @@ def restitution() -> Figure:
     figure = _style.figure(
         13.0, 6.4, "The modified Zener model holds where yielding ends Zener's",
         "gamma-alumina on glass; points: finite elements (open: no plastic strain), lines: the "
-        "modified Zener model with the MYC law, dotted: Zener",
+        "modified Zener model, dotted: Zener",
     )  # fmt: skip
     left, right = figure.subplots(1, 2)
     colours = _colours(len(SLENDERNESS))
     fine = np.geomspace(0.25, 7.6, 100)
     model = cl.ImpactModel(PAPER)
+    e_thick = float(case.fem["restitution"][len(SPEED_RATIO) - 1])
     for slenderness, colour in zip(SLENDERNESS, colours, strict=True):
         rows = np.isclose(case.slenderness, slenderness)
         v, e = case.speed_ratio[rows], case.fem["restitution"][rows]
@@ -138,10 +139,11 @@ def restitution() -> Figure:
             axes.plot(at, line.restitution, color=colour, linewidth=1.6)
             axes.plot(x[~elastic], e[~elastic], "o", color=colour)
             axes.plot(x[elastic], e[elastic], "o", color=colour, markerfacecolor="white")
+        lift = {0.1: 3, 0.25: -7, 0.5: -6}.get(slenderness, -4)  # apart from each other
         left.annotate(
-            f"{slenderness:g}", (7.0, e[-1]), (8, -4), textcoords="offset points", color=colour
+            f"{slenderness:g}", (7.0, e[-1]), (12, lift), textcoords="offset points", color=colour
         )
-    left.annotate("R/H", (7.0, 0.83), (8, 10), textcoords="offset points", color=INK)
+    left.annotate("R/H", (7.0, e_thick), (12, 20), textcoords="offset points", color=INK)
     lam = np.linspace(0.0, 0.38, 60)
     zener = cl.ImpactModel(PAPER, law="hertz")
     slow = 1.0
@@ -381,7 +383,3 @@ def _inelasticity(speed: float) -> float:
     """Lambda of an elastic impact on a plate as thick as the sphere's radius."""
     model = cl.ImpactModel(PAPER, law="hertz")
     return float(model.lookup(speed, RADIUS, RADIUS).inelasticity)
-
-
-if __name__ == "__main__":
-    draw()
