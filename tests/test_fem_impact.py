@@ -1,14 +1,15 @@
 """Whole impacts by finite elements, on coarse meshes; the stored results are the fine ones."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 
 import contactlaw as cl
-from validation.fem import calculix, cases, store
+from validation.fem import calculix, cases, mesh, store
 from validation.fem.impact import impact
-from validation.fem.indentation import indent
+from validation.fem.indentation import core, indent
 from validation.fem.studies import CALCULIX_DEPTH, CALCULIX_SIZE, yield_compression
 
 R = cases.RADIUS
@@ -32,11 +33,11 @@ def test_hertz_is_the_limit_of_small_contacts():
 
 
 def test_contact_radius_is_hertzs():
-    press = indent(cases.PAPER, R, 8e-6, size=0.01, friction=0.0, yields=False)
+    press = indent(cases.PAPER, R, 8e-6, size=0.012, friction=0.0, yields=False, slowness=0.5)
     top = int(press.compression.argmax())
     wide = math.sqrt(R * press.compression[top])
-    assert press.contact_radius[top] == pytest.approx(wide, abs=0.6 * 0.01 * R)
-    assert press.kinetic < 0.01
+    assert press.contact_radius[top] == pytest.approx(wide, abs=0.6 * 0.012 * R)
+    assert press.kinetic < 0.04
 
 
 def test_energy_and_momentum_are_kept(hit):
@@ -84,13 +85,20 @@ def test_coarse_indentation_agrees_with_calculix():
     assert np.abs(ours - theirs).max() < 0.03 * theirs.max()
 
 
-@pytest.mark.skipif(not calculix.installed(), reason="ccx is not installed")
-def test_calculix_reads_the_deck_and_finds_hertz():
-    depth = 1e-6
-    compression, force = calculix.run(cases.PAPER, R, depth, 0.012, friction=0.0)
-    stiffness = 4 / 3 * cases.PAPER.effective_modulus * math.sqrt(R)
-    at = int(compression.argmax())
-    assert force[at] == pytest.approx(stiffness * depth**1.5, rel=0.05)
+def test_the_input_of_calculix_is_the_same_mesh():
+    """Both bodies, their sets and the faces that may touch; ccx itself takes minutes."""
+    depth = CALCULIX_DEPTH * yield_compression()
+    text = calculix.deck(cases.PAPER, R, depth, 0.1)
+    width = core(R, depth)
+    above = mesh.sphere(R, 0.1 * R, width, hemisphere=True)
+    below = mesh.plate(R, 0.1 * R, width, 20 * R, 20 * R)
+    assert len(re.findall(r"^\d+(?:, \d+){4}$", text, re.M)) == sum(
+        len(body.elements) for body in (above, below)
+    )
+    for name, body in (("ABOVE", above), ("BELOW", below)):
+        faces = re.search(rf"NAME={name}, TYPE=ELEMENT\n((?:\d+, S\d\n)+)", text).group(1)
+        near = body.nodes[body.surface, 0] <= R
+        assert faces.count("\n") == near.sum() - 1
 
 
 def test_a_sphere_that_stays_is_an_error(monkeypatch):

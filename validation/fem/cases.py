@@ -89,17 +89,6 @@ def yield_inelasticity(pair: cl.Pair, thickness: float) -> float:
     return float(scales(contact, np.array(pair.yield_speed)).inelasticity)
 
 
-def predicted(data: dict[str, np.ndarray], law_name: str = "myc") -> list[cl.Rebound]:
-    """Solve the model for each case."""
-    return [
-        cl.ImpactModel(cl.Pair(s, p), law=law_name).solve(v, r, h)
-        for s, p, v, r, h in zip(
-            data["sphere"], data["plate"], data["speed"], data["radius"], data["thickness"],
-            strict=True,
-        )
-    ]  # fmt: skip
-
-
 def save(name: str, about: str, data: dict[str, np.ndarray]) -> None:
     """Keep computed cases as a file."""
     store.write(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +29,7 @@ class Comparison(NamedTuple):
     yielded: NDArray[np.bool_]  # the model says so
 
 
+@functools.cache
 def comparison(name: str) -> Comparison:
     """Read a study of impacts and predict each of them.
 
@@ -37,36 +39,35 @@ def comparison(name: str) -> Comparison:
     True
     """
     fem = store.read(name).data
-    rows = list(
-        zip(fem["sphere"], fem["plate"], fem["speed"], fem["radius"], fem["thickness"], strict=True)
-    )
-    models = {
-        key: [cl.ImpactModel(cl.Pair(s, p), law=key) for s, p, *_ in rows] for key in laws.names()
-    }
-    solved = {
-        key: [m.solve(v, r, h) for m, (_, _, v, r, h) in zip(many, rows, strict=True)]
-        for key, many in models.items()
-    }
-    pairs = [m.pair for m in models["myc"]]
-    ratio = np.array(
-        [v / pair.yield_speed for pair, (_, _, v, _, _) in zip(pairs, rows, strict=True)]
-    )
-    model = {
-        field: np.array([float(getattr(one, field)) for one in solved["myc"]])
-        for field in cl.Rebound.__dataclass_fields__
-        if field != "flags"
-    }
+    solved = {key: _solved(fem, key) for key in laws.names()}
+    model = solved["myc"]
+    ratio = model["speed_ratio"]
     slenderness = fem["radius"] / fem["thickness"]
     lam = model["inelasticity"]
     restitution = {
         "modified Zener": model["restitution"],
         "closed form (Eq. 22)": published.closed_form(lam, ratio, slenderness),
-        "Zener": np.array([float(one.restitution) for one in solved["hertz"]]),
+        "Zener": solved["hertz"]["restitution"],
         "Mueller (Eq. 3)": published.mueller(lam),
     }
     for key in set(laws.names()) - {"myc", "hertz"}:
-        restitution[key] = np.array([float(one.restitution) for one in solved[key]])
+        restitution[key] = solved[key]["restitution"]
     return Comparison(slenderness, ratio, lam, fem, model, restitution, model["overload"] > 1.0)
+
+
+def _solved(fem: dict[str, Array], law: str) -> dict[str, Array]:
+    """Solve the model for all impacts of a study, pair by pair; V0/V_Y0 too."""
+    fields = [field for field in cl.Rebound.__dataclass_fields__ if field != "flags"]
+    out = {field: np.empty(fem["speed"].size) for field in (*fields, "speed_ratio")}
+    for sphere, plate in set(zip(fem["sphere"], fem["plate"], strict=True)):
+        rows = (fem["sphere"] == sphere) & (fem["plate"] == plate)
+        pair = cl.Pair(sphere, plate)
+        impacts = fem["speed"][rows], fem["radius"][rows], fem["thickness"][rows]
+        found = cl.ImpactModel(pair, law=law).solve(*impacts)
+        for field in fields:
+            out[field][rows] = getattr(found, field)
+        out["speed_ratio"][rows] = impacts[0] / pair.yield_speed
+    return out
 
 
 def errors(case: Comparison, where: NDArray[np.bool_] | slice = slice(None)) -> dict[str, Array]:
