@@ -55,6 +55,13 @@ def deck(pair: cl.Pair, radius: float, depth: float, size: float, friction: floa
         Smallest element, over the radius.
     friction : float, optional
         Coefficient of friction.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> text = deck(cl.Pair("gamma-alumina", "glass"), 0.9e-3, 1e-5, 0.1)
+    >>> text.count("*STEP"), text.count("CAX4")
+    (2, 2)
     """
     unit = 1e3  # m to mm
     fine, block = size * radius, BLOCK * radius

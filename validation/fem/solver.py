@@ -22,7 +22,9 @@ Array = NDArray[np.float64]
 
 VERSION = 1  # of the solver, stored with each result: a change of its numbers needs another
 _COURANT = 0.85  # of the stable step of the undeformed mesh; elements shorten by up to a tenth
-_BENDING = (0.05, 1.0)  # hourglass stiffness of sphere and plate, over that of bending; see README
+# Hourglass stiffness of sphere and plate, over that of bending. The plate bends; a plastic sphere
+# must not be stiffened: from 0.01 to 1 its COR changes by 2e-4 and its peak force by 0.4 %.
+_BENDING = (0.05, 1.0)
 
 
 class System(NamedTuple):
@@ -95,6 +97,22 @@ def assemble(
         Coefficient of friction, 0.1 as in the paper.
     yields : bool, optional
         Whether the sphere does.
+
+    Returns
+    -------
+    System
+
+    Examples
+    --------
+    >>> import math
+    >>> import contactlaw as cl
+    >>> from validation.fem import mesh
+    >>> pair = cl.Pair("gamma-alumina", "glass")
+    >>> meshes = mesh.sphere(1e-3, 2e-5, 3e-4), mesh.plate(1e-3, 2e-5, 3e-4, 1e-3, 5e-3)
+    >>> system = assemble(meshes, (pair.sphere, pair.plate))
+    >>> mass = 2 * math.pi * system.mass[: len(meshes[0].nodes)].sum()
+    >>> bool(abs(mass / (4 / 3 * math.pi * 1e-9 * 879.0) - 1) < 1e-3)
+    True
     """
     above, below = meshes
     first = len(above.nodes)
