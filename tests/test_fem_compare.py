@@ -108,6 +108,26 @@ def test_the_model_over_the_matrix(matrix):
     assert ranked == sorted(ranked)
 
 
+def test_one_table_serves_every_pair_below_yield_only():
+    """A sphere stiffer than its plate loses half the plastic work that the model has."""
+    case = compare.comparison("pairs")
+    cor = case.fem["restitution"].reshape(3, 3, 4)  # inelasticity, pair, speed
+    spread = cor.max(axis=1) - cor.min(axis=1)
+    assert spread[:, 0].max() < 0.003
+    assert spread[:, 3].min() > 0.05
+    steel = np.char.startswith(case.fem["sphere"].astype(str), "bearing")
+    fast = case.speed_ratio > 3.0
+    share = case.fem["plastic"] / np.maximum(case.model["plastic_fraction"], 1e-9)
+    assert share[steel & fast].max() < 0.5 < 0.7 < share[~steel & fast].min()
+
+
+def test_an_edge_nearer_than_one_and_a_half_edge_distances_answers():
+    data = store.read("edge").data
+    ratio, cor = data["width"] / data["edge_distance"], data["restitution"]
+    assert cor[ratio > 1.45] == pytest.approx(cor[-1], abs=0.002)
+    assert abs(cor[np.isclose(ratio, 0.8, atol=0.01)] - cor[-1]) > 0.05
+
+
 def test_the_readme_states_what_was_measured(matrix):
     largest, rms = 100 * compare.errors(matrix)["modified Zener"]
     stated = re.search(r"within (\d\.\d) % of them \(rms (\d\.\d) %\)", README)

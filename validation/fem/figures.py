@@ -282,9 +282,9 @@ def pairs() -> Figure:
     """Three pairs at equal inelasticity."""
     case = compare.comparison("pairs")
     figure = _style.figure(
-        13.0, 5.2, "Pairs of equal inelasticity rebound alike, but for plates too thick to bend",
-        "finite elements of three pairs (points) whose plates give the same inelasticity at the "
-        "yield speed, and the one line that the model has for all of them",
+        13.0, 5.2, "One table serves all pairs until they yield: a sphere stiffer than its plate keeps more",
+        "points: finite elements of pairs with the same inelasticity at the yield speed; line: the "
+        "model, one for all",
     )  # fmt: skip
     names = list(dict.fromkeys(zip(case.fem["sphere"], case.fem["plate"], strict=True)))
     looks = dict(zip(names, (BLUE, ORANGE, VERMILION), strict=True))
