@@ -282,7 +282,7 @@ def pairs() -> Figure:
     """Three pairs at equal inelasticity."""
     case = compare.comparison("pairs")
     figure = _style.figure(
-        13.0, 5.2, "One table serves all pairs until they yield: a sphere stiffer than its plate keeps more",
+        13.0, 5.2, "One table serves all pairs until they yield; steel then keeps more",
         "points: finite elements of pairs with the same inelasticity at the yield speed; line: the "
         "model, one for all",
     )  # fmt: skip
