@@ -335,12 +335,12 @@ def limits() -> Figure:
             case.speed_ratio[rows], off, marker + "-", color=colour, label=f"R/H {slenderness:g}"
         )
     left.axvline(7.0, color=MUTED, linestyle=":")
-    left.annotate("the paper's fastest", (7.2, 0.029), color=MUTED)
+    left.annotate("the paper's fastest", (7.2, 0.0305), color=MUTED)
     left.axhline(0.0, color=INK, linewidth=1)
     left.set_xlabel("speed over yield speed")
     left.set_ylabel("COR of the model minus finite elements")
     left.legend(loc="lower left", ncols=2)
-    left.set_ylim(-0.025)
+    left.set_ylim(-0.025, 0.033)
     ratio = edge["width"] / edge["edge_distance"]
     right.plot(ratio, edge["restitution"], "o-", color=BLUE, label="finite elements")
     model = cl.ImpactModel(PAPER).lookup(edge["speed"][0], RADIUS, edge["thickness"][0])
