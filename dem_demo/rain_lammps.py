@@ -63,6 +63,7 @@ class _Rain:
         n = scene.beads.radius.size
         self.depth = depths(scene)
         self.emitted = 0
+        self.late = np.empty(0, dtype=np.int64)  # beads that found no room when they were due
         self.frames = 0
         self.now = Frame(
             scene.beads.position.copy(),
@@ -99,31 +100,52 @@ class _Rain:
             """
 
     def advance(self) -> None:
-        """Go on by one frame; the beads emitted in it appear at its end, where they are then."""
+        """Go on by one frame; the beads emitted in it appear at its end, where they are then.
+
+        One that would appear in another, which has come up from a plate, waits for the next frame.
+        """
         self.lmp.command(f"run {self.steps} post no")
         self.frames += 1
         beads, time = self.scene.beads, self.frames / self.scene.frame_rate
         until = int(np.searchsorted(beads.emission_time, time, side="right"))
-        new = slice(self.emitted, until)
+        new = np.r_[self.late, self.emitted : until]
         age = time - beads.emission_time[new]
+        age[: self.late.size] = 0.0
         x, height = (beads.position[new] + beads.velocity[new] * age[:, None]).T
         height = height - 0.5 * GRAVITY * age**2
         u, w = beads.velocity[new].T
         position = np.column_stack((x, self.depth[new], height))
         velocity = np.column_stack((u, np.zeros_like(u), w - GRAVITY * age))
-        self._create(np.arange(self.emitted, until), position, velocity)
-        self.now.status[new] = FLYING
         self.emitted = until
+        if new.size:
+            fits = self._fits(position)
+            self.late = new[~fits]
+            if fits.any():
+                self._create(new[fits], position[fits], velocity[fits])
+
+    def _fits(self, position: Floats) -> NDArray[np.bool_]:
+        """Whether a bead can appear at each of these places, one after the other."""
+        reach = 2.0 * float(self.scene.beads.radius.max())
+        here = self.lmp.extract_setting("nlocal")
+        others = self.lmp.numpy.extract_atom("x")[:here] if here else np.empty((0, 3))
+        near = others[others[:, 2] > position[:, 2].min() - reach]
+        taken = np.concatenate([*self.comm.allgather(near), position])
+        count = len(taken) - len(position)
+        fits = np.zeros(len(position), dtype=bool)
+        for n, place in enumerate(position):
+            fits[n] = not (((taken[:count] - place) ** 2).sum(axis=1) < reach**2).any()
+            taken[count] = place
+            count += int(fits[n])
+        return fits
 
     def _create(self, index: NDArray[np.int64], position: Floats, velocity: Floats) -> None:
         n = index.size
-        if not n:
-            return
+        self.now.status[index] = FLYING
         ids = (index + 1).tolist()
         self.lmp.create_atoms(n, ids, [1] * n, position.ravel().tolist(), velocity.ravel().tolist())
         here = self.lmp.extract_setting("nlocal")
         bead = self.lmp.numpy.extract_atom("id")[:here] - 1 if here else np.empty(0, int)
-        fresh = bead >= index[0]
+        fresh = np.isin(bead, index)
         radius = self.scene.beads.radius
         if fresh.any():
             self.lmp.numpy.extract_atom("radius")[:here][fresh] = radius[bead[fresh]]
