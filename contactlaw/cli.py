@@ -82,7 +82,7 @@ def _history(arguments: argparse.Namespace) -> None:
         plots.save_history(contact, title, arguments.plot)
         print(arguments.plot)
         return
-    print("time_s,force_N,compression_m,plate_displacement_m")
+    print("time_s,force_N,compression_m,impulse_Ns,plate_displacement_m")
     np.savetxt(sys.stdout, np.column_stack(contact), fmt="%.9g", delimiter=",")
 
 

@@ -302,7 +302,7 @@ class ImpactModel:
         samples: int = 256,
         method: Literal["table", "solve"] = "table",
     ) -> ForceHistory:
-        """Force, compression and displacement of the plate over one contact, or over many.
+        """Force, compression, impulse and displacement of the plate over contacts.
 
         Parameters
         ----------
@@ -326,7 +326,8 @@ class ImpactModel:
 
         Notes
         -----
-        The integral of the force is the change of the sphere's momentum, m V0 (1 + e).
+        The integral of the force, `ForceHistory.impulse`, ends at the change of the sphere's
+        momentum, m V0 (1 + e).
 
         Examples
         --------
@@ -344,14 +345,15 @@ class ImpactModel:
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
         v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
         check(speed=v, radius=r, thickness=h)
-        units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
+        contact = sphere_on_plate(self.pair, self._law, r, h)
+        units = scales(contact, v)
         if method == "solve":
             fields = solved(self._law, units, RTOL)
             contacts = history.solved(self._law, fields, samples, RTOL)
         else:
             fields, _ = self._fields(units)
             contacts = history.tabulated(self._law, self._whole_table, fields, samples, RTOL)
-        return history.with_units(contacts, units, shape)
+        return history.with_units(contacts, contact, v, shape)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | Array:
         """Speed V_Y [m/s] from which the bead yields on this plate; ``inf`` for an elastic law.

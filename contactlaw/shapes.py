@@ -101,7 +101,7 @@ def sample(law: Functions, shapes: Shapes, fields: Array, out: Array) -> None:
     """Contacts at even times from touch to separation.
 
     fields (7, n): COR, contact time, wave rate, compression ratio, w_m, lam, y, inside the table;
-    out (4, n, samples): time [T_H], force, compression, displacement of the plate.
+    out (4, n, samples): time [T_H], force, compression, momentum that has passed [m V0].
     """
     samples = out.shape[2]
     inner = np.empty(2 * SIZE)
@@ -142,10 +142,10 @@ def sample(law: Functions, shapes: Shapes, fields: Array, out: Array) -> None:
                 out[0, n, i] = i * step
                 out[1, n, i] = _force(law, loading, compression, residual, y, a, b)
                 out[2, n, i] = compression
-                out[3, n, i] = lam * (1.0 - speed)
+                out[3, n, i] = 1.0 - speed
                 i += 1
         out[0, n, samples - 1], out[1, n, samples - 1] = end, 0.0
-        out[2, n, samples - 1], out[3, n, samples - 1] = residual, lam * (1.0 + e)
+        out[2, n, samples - 1], out[3, n, samples - 1] = residual, 1.0 + e
 
 
 @kernel

@@ -188,8 +188,11 @@ def advance(law: Functions, spring: Spring, state: State, overlap: float, step: 
 @kernel
 def _advance_all(
     law: Functions, springs: Spring, states: State, overlap: Array, step: float
-) -> None:
-    """`advance` for arrays, in place."""
+) -> int:
+    """`advance` for arrays, in place; index of an overlap that is not finite, else -1."""
+    for n in range(overlap.size):
+        if not -math.inf < overlap[n] < math.inf:
+            return n
     for n in range(overlap.size):
         spring = Spring(
             springs.mass[n],
@@ -203,6 +206,7 @@ def _advance_all(
         states.plate_displacement[n] = state.plate_displacement
         states.largest_compression[n] = state.largest_compression
         states.force[n] = state.force
+    return -1
 
 
 class Contacts:
@@ -301,7 +305,8 @@ class Contacts:
         Raises
         ------
         ValueError
-            If there is not one overlap per contact, or the step is not positive and finite.
+            If there is not one finite overlap per contact, or the step is not positive and finite;
+            the contacts are as they were then.
         """
         if not isinstance(overlap, np.ndarray) or overlap.dtype != np.float64:
             raise ValueError(f"overlap: expected an array of float64, got {overlap!r}")
@@ -312,7 +317,12 @@ class Contacts:
             )
         if not 0.0 < step < math.inf:
             raise ValueError(f"step: must be positive and finite [s], got {step!r}")
-        _advance_all(self._law, self._springs, self._states, overlap, step)
+        wrong = _advance_all(self._law, self._springs, self._states, overlap, step)
+        if wrong >= 0:
+            raise ValueError(
+                f"overlap: must be finite [m], got {overlap[wrong]} (element {wrong}); has the "
+                "simulation blown up?"
+            )
         return self.force
 
 

@@ -338,7 +338,7 @@ def histories(
         # an elastic law has y = inf; any scale does for it
         history(law, lam[n], y[n] if y[n] < math.inf else 1.0, rtol, out[0, n], states)
         out[1, n], out[2, n] = states[0], states[1]
-        out[3, n] = lam[n] * (1.0 - states[2])
+        out[3, n] = 1.0 - states[2]
         out[1, n, last] = 0.0
 
 

@@ -176,7 +176,7 @@ def test_as_a_module():
 def test_history_prints_csv(capsys, model):
     assert main(["history", *IMPACT[1:], "--samples", "5"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == "time_s,force_N,compression_m,plate_displacement_m"
+    assert lines[0] == "time_s,force_N,compression_m,impulse_Ns,plate_displacement_m"
     printed = np.array([[float(value) for value in line.split(",")] for line in lines[1:]])
     contact = model.force_history(12.0, 0.9e-3, 1e-3, samples=5)
     assert printed == pytest.approx(np.column_stack(contact), rel=1e-8)

@@ -86,6 +86,20 @@ def test_momentum(model):
     assert np.trapezoid(contact.force, contact.time) == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.parametrize("method", ["table", "solve"])
+def test_impulse(model, method):
+    """Integral of the force, up to lambda = 5, where the force has a long tail."""
+    speed = np.array([0.1, 2.0, 8.0, 30.0])
+    thickness = R / np.array([[0.01], [2.0], [5.0], [6.0]])
+    assert np.max(model.lookup(speed, R, thickness).inelasticity) > 3.5
+    contact = model.force_history(speed, R, thickness, 4001, method)
+    expected = mass(model) * speed * (1 + model.restitution(speed, R, thickness))
+    assert contact.impulse[..., -1] == pytest.approx(expected, rel=2e-6)
+    parts = 0.5 * np.diff(contact.time) * (contact.force[..., 1:] + contact.force[..., :-1])
+    passed = np.cumsum(parts, axis=-1) / expected[..., None]
+    assert contact.impulse[..., 1:] / expected[..., None] == pytest.approx(passed, abs=3e-5)
+
+
 def test_energy(model):
     """Work on the contact is the plastic share, work on the plate that of the wave."""
     speed, radius, thickness = impacts(model, 200, seed=4)

@@ -220,3 +220,13 @@ def test_the_advised_step_keeps_its_promise(model, law, error):
 def test_bad_input_is_named(model, call, words):
     with pytest.raises(ValueError, match=words):
         call(model)
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_an_overlap_that_is_not_finite_is_refused(model, value):
+    contacts = Contacts(model, [R, R], 1e-3)
+    contacts.advance(np.array([1e-6, 1e-6]), 1e-7)
+    before = contacts.force.copy()
+    with pytest.raises(ValueError, match=r"overlap: must be finite \[m\], got .*element 1"):
+        contacts.advance(np.array([2e-6, value]), 1e-7)
+    assert np.array_equal(contacts.force, before)

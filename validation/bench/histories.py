@@ -25,7 +25,7 @@ def rows() -> Iterator[Row]:
     peer = scipy_history()
     yield Row(
         "force history, 256 samples, table", table * 1e6, "us", 10, "solve_ivp(DOP853)",
-        peer / table, note="time, force, compression, displacement of the plate",
+        peer / table, note="time, force, compression, impulse, displacement of the plate",
     )  # fmt: skip
     yield Row(
         "the same by integration", solve * 1e6, "us", None, "solve_ivp(DOP853)", peer / solve,
