@@ -6,11 +6,11 @@ What takes long to import is imported inside the commands, where Ctrl-C is alrea
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import importlib
 import shlex
 import sys
 import time
+import traceback
 from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
@@ -51,8 +51,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Interrupted as stop:
         print("\ndem-demo: interrupted; nothing was written", file=sys.stderr)
         return _stopped(stop.exit_status)
-    except (_Refused, OSError) as error:
+    except (_Refused, OSError, RuntimeError) as error:  # an engine's adapter raises the last one
         print(f"dem-demo: {error}", file=sys.stderr)
+        return _stopped(1)
+    except Exception:
+        traceback.print_exc()
         return _stopped(1)
 
 
@@ -167,9 +170,8 @@ def _plan(arguments: argparse.Namespace) -> tuple[Scene, ImpactModel | ConstantR
             sphere=arguments.sphere,
             plate=arguments.plate,
             dimensions=3 if lammps else 2,
+            frame_rate=defaults.LAMMPS_FRAME_RATE if lammps else defaults.FRAME_RATE,
         )
-        if lammps:
-            scene = dataclasses.replace(scene, frame_rate=defaults.LAMMPS_FRAME_RATE)
         if scene.sphere_material.yield_strength is None:
             known = [name for name in materials() if material(name).yield_strength is not None]
             raise ValueError(

@@ -8,6 +8,7 @@ THICKNESSES = (0.5e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3)  # [m]
 RADIUS = (0.5e-3, 0.9e-3)  # [m]; R/H is at most 1.8, where the model is known to hold
 SPEED = (0.5, 15.0)  # [m/s], downwards; gamma-alumina on glass yields from 7.4 m/s
 DURATION = 2.4  # [s]
+FRAME_RATE = 200.0  # [1/s]
 LAMMPS_DURATION = 0.3  # [s]: a contact of microseconds takes it 20 steps
 LAMMPS_FRAME_RATE = 1000.0  # [1/s]
 SEED = 1

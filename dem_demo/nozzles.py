@@ -35,6 +35,7 @@ def rain(
     sphere: Material | str = defaults.SPHERE,
     plate: Material | str = defaults.PLATE,
     dimensions: int = 2,
+    frame_rate: float = defaults.FRAME_RATE,
 ) -> Scene:
     """Draw a rain of beads on a row of plates.
 
@@ -54,6 +55,8 @@ def rain(
         Materials of beads and plates.
     dimensions : int, optional
         Of the engine; in 3 there are as many rows of nozzles, one behind the other, as fit.
+    frame_rate : float, optional
+        Recorded frames per second [1/s].
 
     Returns
     -------
@@ -84,7 +87,7 @@ def rain(
         raise ValueError(f"duration: must be positive and finite [s], got {duration!r}")
     rows = max(1, int((DEPTH - 2.0 * MARGIN) / (2.2 * radius[1]))) if dimensions == 3 else 1
     drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed, rows)
-    return Scene(drops, plates, sphere_material, plate_material, duration, seed, rows=rows)
+    return Scene(drops, plates, sphere_material, plate_material, duration, seed, frame_rate, rows)
 
 
 def depths(scene: Scene) -> Floats:

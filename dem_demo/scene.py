@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import Material
+from dem_demo import defaults
 
 Floats = NDArray[np.float64]
 
@@ -121,7 +122,7 @@ class Scene:
     plate_material: Material
     duration: float
     seed: int
-    frame_rate: float = 200.0
+    frame_rate: float = defaults.FRAME_RATE
     rows: int = 1
 
     def __post_init__(self) -> None:
