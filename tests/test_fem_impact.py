@@ -7,18 +7,18 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from validation.fem import calculix, cases, mesh, store
+from validation.fem import calculix, mesh, store
 from validation.fem.impact import impact
 from validation.fem.indentation import core, indent
-from validation.fem.studies import CALCULIX_DEPTH, CALCULIX_SIZE, yield_compression
-
-R = cases.RADIUS
+from validation.fem.studies import CALCULIX_DEPTH, CALCULIX_SIZE
+from validation.paper import PAIR, YIELD_COMPRESSION
+from validation.paper import RADIUS as R
 
 
 @pytest.fixture(scope="module")
 def hit():
     """The paper's impact of Figs 11 to 13 on elements of 0.04 R."""
-    return impact(cases.PAPER, 26.0, R, 0.5e-3, size=0.04)
+    return impact(PAIR, 26.0, R, 0.5e-3, size=0.04)
 
 
 def test_hertz_is_the_limit_of_small_contacts():
@@ -26,14 +26,14 @@ def test_hertz_is_the_limit_of_small_contacts():
 
     Wider contacts are stiffer than Hertz's half-spaces, in proportion to their width.
     """
-    found = impact(cases.PAPER, 0.3, R, 6e-3, size=0.0065, width=6e-3, friction=0.0, yields=False)
-    hertz = cl.ImpactModel(cases.PAPER, law="hertz").solve(0.3, R, math.inf)
+    found = impact(PAIR, 0.3, R, 6e-3, size=0.0065, width=6e-3, friction=0.0, yields=False)
+    hertz = cl.ImpactModel(PAIR, law="hertz").solve(0.3, R, math.inf)
     assert found.peak_force == pytest.approx(hertz.peak_force, rel=0.01)
     assert found.contact_time == pytest.approx(hertz.contact_time, rel=0.01)
 
 
 def test_contact_radius_is_hertzs():
-    press = indent(cases.PAPER, R, 8e-6, size=0.012, friction=0.0, yields=False, slowness=0.5)
+    press = indent(PAIR, R, 8e-6, size=0.012, friction=0.0, yields=False, slowness=0.5)
     top = int(press.compression.argmax())
     wide = math.sqrt(R * press.compression[top])
     assert press.contact_radius[top] == pytest.approx(wide, abs=0.6 * 0.012 * R)
@@ -69,14 +69,14 @@ def test_the_papers_plastic_strain():
 @pytest.mark.parametrize("row", [3, 38, 61])
 def test_coarse_matrix_agrees_with_the_stored_one(row):
     stored = {key: values[row] for key, values in store.read("matrix").data.items()}
-    found = impact(cases.PAPER, stored["speed"], R, stored["thickness"], size=3 * stored["size"])
+    found = impact(PAIR, stored["speed"], R, stored["thickness"], size=3 * stored["size"])
     assert found.restitution == pytest.approx(stored["restitution"], abs=0.012)
     assert found.contact_time == pytest.approx(stored["contact_time"], rel=0.02)
 
 
 def test_coarse_indentation_agrees_with_calculix():
-    depth = CALCULIX_DEPTH * yield_compression()
-    press = indent(cases.PAPER, R, depth, size=2 * CALCULIX_SIZE)
+    depth = CALCULIX_DEPTH * YIELD_COMPRESSION
+    press = indent(PAIR, R, depth, size=2 * CALCULIX_SIZE)
     other = store.read("calculix").data
     top, peak = int(press.compression.argmax()), int(other["compression"].argmax())
     way = np.linspace(0.1, 0.95, 20) * depth
@@ -87,8 +87,8 @@ def test_coarse_indentation_agrees_with_calculix():
 
 def test_the_input_of_calculix_is_the_same_mesh():
     """Both bodies, their sets and the faces that may touch; ccx itself takes minutes."""
-    depth = CALCULIX_DEPTH * yield_compression()
-    text = calculix.deck(cases.PAPER, R, depth, 0.1)
+    depth = CALCULIX_DEPTH * YIELD_COMPRESSION
+    text = calculix.deck(PAIR, R, depth, 0.1)
     width = core(R, depth)
     above = mesh.sphere(R, 0.1 * R, width, hemisphere=True)
     below = mesh.plate(R, 0.1 * R, width, 20 * R, 20 * R)
@@ -104,4 +104,4 @@ def test_the_input_of_calculix_is_the_same_mesh():
 def test_a_sphere_that_stays_is_an_error(monkeypatch):
     monkeypatch.setattr("validation.fem.impact._GIVE_UP", 0.5)
     with pytest.raises(RuntimeError, match="still in contact"):
-        impact(cases.PAPER, 26.0, R, 0.5e-3, size=0.08)
+        impact(PAIR, 26.0, R, 0.5e-3, size=0.08)

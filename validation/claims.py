@@ -16,16 +16,15 @@ import numpy as np
 
 from contactlaw import closed_form, laws
 from contactlaw.closed_form import WAVE_SLOPE, elastic_compression, yield_speed_ratio
-from validation import evidence, stored
+from validation import evidence
+from validation.fem import compare, store
 from validation.paper import (
     ETA,
     FASTEST,
     PAIR,
     SHARE,
     THINNEST,
-    all_laws,
     borderline,
-    force,
     impacts,
 )
 
@@ -125,7 +124,8 @@ def _section_1() -> Iterator[Claim]:
     yield _open(
         "wave in a half-space", "section 1",
         "elastic waves in a half-space take less than 5 % of the energy (Hunter, Reed)", 0.05,
-        "the model has bending waves only; on a half-space it has none",
+        "the model has bending waves only, and our plates of finite elements a lower face: 10 R of "
+        "glass take 0.4 to 2 % (0.3 to 7 V_Y0)",
     )  # fmt: skip
 
 
@@ -166,29 +166,25 @@ def _section_2() -> Iterator[Claim]:
 
 
 def _section_3_1() -> Iterator[Claim]:
-    d = np.linspace(1.8, 4.77, 100)
-    curves = {law.name.partition("(")[0]: force(law, d) for law in all_laws()}
-    ratio = {name: curve / curves["myc"] - 1.0 for name, curve in curves.items()}
+    d = np.linspace(0.5, 10.0, 191)
+    off = compare.loading_errors(d)
+    yielded = d >= 2.0
     yield _near(
         "Stronge", "section 3.1, Fig. 3", "Stronge's force is about 40 % high", 0.40,
-        float(np.median(ratio["stronge"])), 0.05,
-        "against MYC, median over 1.8 to 4.77 d_Y (2 to 7 V_Y0 on a half-space)",
+        float(np.median(off["stronge"][yielded])), 0.05,
+        "against our finite elements, median over 2 to 10 d_Y: 38 to 44 %, and 121 % at 30 d_Y",
     )  # fmt: skip
     yield _near(
         "Thornton", "section 3.1, Fig. 3", "Thornton's force is about 64 % low", -0.64,
-        float(ratio["thornton"].min()), 0.05,
-        "against MYC 40 % low at 2 d_Y, 57 % at 4.77 d_Y (7 V_Y0); 64 % at 15 d_Y, beyond the "
-        "paper's speeds. Its limit for deep contacts is 66 %", LIMITED,
+        float(off["thornton"][d <= 4.77].min()), 0.05,
+        "against our finite elements 41 % low at 2 d_Y, 57 % at 4.77 d_Y (7 V_Y0 on a half-space); "
+        "64 % at 10 to 14 d_Y, beyond the paper's speeds", LIMITED,
     )  # fmt: skip
-    claim = "MYC", "section 3.1, Fig. 3", "MYC is within 6 % of finite elements"
-    indentation = stored.read("indentation")
-    if indentation is None:
-        yield _open(*claim, 0.06, "needs validation/data/fem_indentation.h5")
-    else:
-        yield _bounded(
-            *claim, 0.06, evidence.myc_against_indentation(indentation),
-            "largest difference while loading from d_Y to 4.77 d_Y (7 V_Y0)", LIMITED,
-        )  # fmt: skip
+    yield _bounded(
+        "MYC", "section 3.1, Fig. 3", "MYC is within 6 % of finite elements", 0.06,
+        float(np.abs(off["myc"]).max()),
+        "largest difference while loading from 0.5 to 10 d_Y; 29 % high at 30 d_Y", LIMITED,
+    )  # fmt: skip
     myc = laws.law("myc")
     yield _near(
         "Eq. 16, Hertz", "Eqs. 16, 19", "below d_P the force is K d_P^1.5, a constant", 1.0,
@@ -326,15 +322,12 @@ def _section_4_1() -> Iterator[Claim]:
     yield _near(
         "0.556", "sections 4.1, 5", "H >= 0.556 R is R/H <= 1.8", 1.0 / 0.556, THINNEST, 2e-3
     )
-    claim = "14 %", "section 4.1, Fig. 8", "Eq. 22 is within 14 % of finite elements"
-    matrix = stored.read("matrix")
-    if matrix is None:
-        yield _open(*claim, 0.14, "needs validation/data/fem_matrix.h5")
-    else:
-        yield _bounded(
-            *claim, 0.14, evidence.eq_22_against_impacts(matrix),
-            "in its continuous form, R/H <= 1.8, v <= 7", LIMITED,
-        )  # fmt: skip
+    yield _bounded(
+        "14 %", "section 4.1, Fig. 8", "Eq. 22 is within 14 % of finite elements", 0.14,
+        evidence.eq_22_against_impacts(),
+        "in its continuous form, 64 impacts with R/H 0.1 to 1.8, v 0.3 to 7; the modified Zener "
+        "model itself: 4.7 %", LIMITED,
+    )  # fmt: skip
 
 
 def _section_4_2() -> Iterator[Claim]:
@@ -397,19 +390,16 @@ def _section_4_3() -> Iterator[Claim]:
 
 
 def _appendix() -> Iterator[Claim]:
-    claim = (
-        "plastic strain",
-        "appendix, Fig. 12",
-        "the largest plastic strain is 0.039 at 26 m/s on H = 0.5 mm",
-    )
-    paper = stored.read("paper")
-    if paper is None:
-        yield _open(*claim, 0.039, "needs validation/data/fem_paper.h5")
-    else:
-        yield _near(*claim, 0.039, float(paper["largest_plastic_strain"]), 1e-3)
-    yield _open(
-        "no reflection", "appendix, Fig. 13", "no wave returns from the edge of a plate of 150 mm",
-        None, "needs finite elements; contactlaw.edge_distance asks for less than 10 mm",
+    yield _near(
+        "plastic strain", "appendix, Fig. 12",
+        "the largest plastic strain is 0.039 at 26 m/s on H = 0.5 mm", 0.039,
+        float(store.read("paper").data["largest_plastic_strain"]), 1e-3,
+    )  # fmt: skip
+    yield _bounded(
+        "no reflection", "appendix, Fig. 13", "no wave returns from an edge at 150 mm", 0.150,
+        evidence.nearest_harmless_edge(),
+        "distance [m] from which on a free edge changes our finite elements' COR by less than "
+        "0.2 %, at V_Y0 on H = 0.6 mm",
     )  # fmt: skip
 
 

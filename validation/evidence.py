@@ -6,19 +6,17 @@ import math
 
 import numpy as np
 
-from contactlaw import closed_form, laws
+from contactlaw import closed_form
 from contactlaw.closed_form import yield_speed_ratio
+from validation.fem import compare, store
 from validation.paper import (
     ETA,
-    FASTEST,
-    FORCE,
     PAIR,
     RADIUS,
     SHARE,
     SPEED,
     THINNEST,
     YIELD_COMPRESSION,
-    force,
 )
 
 
@@ -80,18 +78,14 @@ def fitted_c(
     return low
 
 
-def myc_against_indentation(points: dict[str, np.ndarray]) -> float:
-    """Find the largest relative difference of MYC's loading force from finite elements."""
-    d, measured = points["compression_5"] / YIELD_COMPRESSION, points["force_5"] / FORCE
-    loading = slice(0, int(np.argmax(d)))
-    d, measured = d[loading], measured[loading]
-    inside = (d >= 1.0) & (d <= 4.77)
-    return float(np.abs(force(laws.law("myc"), d[inside]) / measured[inside] - 1).max())
-
-
-def eq_22_against_impacts(points: dict[str, np.ndarray]) -> float:
+def eq_22_against_impacts() -> float:
     """Find the largest relative difference of Eq. 22, continuous, from finite elements."""
-    v, ratio = points["speed"] / SPEED, RADIUS / points["thickness"]
-    inside = (v <= 1.001 * FASTEST) & (ratio <= 1.001 * THINNEST)
-    form = np.asarray(closed_form.peng(v[inside], ratio[inside], ETA))
-    return float(np.abs(form / points["restitution"][inside] - 1).max())
+    return float(compare.errors(compare.comparison("matrix"))["Eq. 22, continuous"][0])
+
+
+def nearest_harmless_edge() -> float:
+    """Find the distance [m] from which on the edge changes the COR by less than 0.2 %."""
+    edge = store.read("edge").data
+    change = np.abs(edge["restitution"] / edge["restitution"][-1] - 1.0)
+    felt = np.flatnonzero(change > 2e-3)
+    return float(edge["width"][felt[-1] + 1])

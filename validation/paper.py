@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 import contactlaw as cl
 from contactlaw import closed_form, laws, zener
-from contactlaw.impact import Rebound
+from contactlaw.impact import Rebound, law_of
 
 PAIR = cl.Pair("gamma-alumina", "glass")  # Table 1
 RADIUS = 0.9e-3  # [m], section 3.1
@@ -40,11 +40,7 @@ def impacts(speed_ratio: ArrayLike, thickness_ratio: ArrayLike, law: str = "myc"
 
 def all_laws() -> list[laws.Law]:
     """Every registered law, with the numbers that it takes from the pair."""
-    numbers = {
-        "modulus_ratio": PAIR.effective_modulus / 472.5e6,
-        "poissons_ratio": PAIR.sphere.poissons_ratio,
-    }
-    return [laws.law(name, **numbers) for name in laws.names()]
+    return [law_of(PAIR, name) for name in laws.names()]
 
 
 def force(law: laws.Law, compression: np.ndarray) -> np.ndarray:
@@ -53,6 +49,15 @@ def force(law: laws.Law, compression: np.ndarray) -> np.ndarray:
         return np.asarray(compression) ** 1.5
     unit = law.yield_coefficient / 0.68  # its d_Y in MYC's
     return unit**1.5 * np.array([law.loading(math.sqrt(d / unit)) for d in compression])
+
+
+def unloading(law: laws.Law, largest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Unloading curve from a largest compression: compression [d_Y], force [F_Y], both MYC's."""
+    unit = 1.0 if law.yield_coefficient is None else law.yield_coefficient / 0.68
+    residual, curve = law.residual(largest / unit), law.unloading_curve(largest / unit)
+    q = np.linspace(0.0, math.sqrt(largest / unit - residual), 200)
+    down = np.array([law.unloading(x, *curve) for x in q])
+    return unit * (residual + q**2), unit**1.5 * down
 
 
 def restitution(speed_ratio: float, inelasticity_at_yield: float, law: laws.Law) -> float:

@@ -1,6 +1,7 @@
 """Recompute the studies: ``python -m validation.fem [NAME ...] [--processes N]``.
 
-``report`` prints the comparison of the stored results with the model, ``figures`` draws it.
+``report`` prints the comparison of the stored results with the model; ``python -m validation``
+draws it.
 """
 
 from __future__ import annotations
@@ -13,13 +14,13 @@ from collections.abc import Callable
 
 from tqdm import tqdm
 
-from validation.fem import compare, figures
+from validation.fem import compare
 from validation.fem.studies import STUDIES
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run what is named, or all; 0 when done, 2 for wrong usage."""
-    steps: dict[str, Callable[[int], None]] = {**STUDIES, "figures": _figures, "report": _report}
+    steps: dict[str, Callable[[int], None]] = {**STUDIES, "report": _report}
     parser = argparse.ArgumentParser(prog="python -m validation.fem")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
@@ -32,10 +33,6 @@ def main(arguments: list[str] | None = None) -> int:
         steps[name](options.processes)
         tqdm.write(f"{name:14s} {time.perf_counter() - start:6.0f} s")
     return 0
-
-
-def _figures(_: int) -> None:
-    figures.draw()
 
 
 def _report(_: int) -> None:

@@ -16,9 +16,7 @@ from contactlaw.impact import scales, sphere_on_plate
 from contactlaw.laws import law
 from validation.fem import store
 from validation.fem.impact import impact
-
-PAPER = cl.Pair("gamma-alumina", "glass")
-RADIUS = 0.9e-3  # [m], the paper's
+from validation.paper import PAIR, RADIUS
 
 UNITS = {
     "speed": "m/s", "radius": "m", "thickness": "m", "width": "m", "size": "sphere radius",
@@ -40,8 +38,8 @@ class Case:
     speed: float  # [m/s]
     thickness: float  # [m]
     radius: float = RADIUS  # [m]
-    sphere: str = "gamma-alumina"
-    plate: str = "glass"
+    sphere: str = PAIR.sphere.name
+    plate: str = PAIR.plate.name
     size: float = math.nan  # [radius]
     width: float = math.nan  # [m]
     friction: float = 0.1

@@ -9,10 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw import laws
-from contactlaw.impact import sphere_on_plate
-from validation.fem import published, store
-from validation.fem.studies import yield_compression
+from contactlaw import closed_form, turning_point
+from validation import paper
+from validation.fem import store
 
 Array = NDArray[np.float64]
 
@@ -39,44 +38,57 @@ def comparison(name: str) -> Comparison:
     True
     """
     fem = store.read(name).data
-    solved = {key: _solved(fem, key) for key in laws.names()}
-    model = solved["myc"]
-    ratio = model["speed_ratio"]
-    slenderness = fem["radius"] / fem["thickness"]
-    lam = model["inelasticity"]
-    restitution = {
-        "modified Zener": model["restitution"],
-        "closed form (Eq. 22)": published.closed_form(lam, ratio, slenderness),
-        "Zener": solved["hertz"]["restitution"],
-        "Mueller (Eq. 3)": published.mueller(lam),
-    }
-    for key in set(laws.names()) - {"myc", "hertz"}:
-        restitution[key] = solved[key]["restitution"]
-    return Comparison(slenderness, ratio, lam, fem, model, restitution, model["overload"] > 1.0)
-
-
-def _solved(fem: dict[str, Array], law: str) -> dict[str, Array]:
-    """Solve the model for all impacts of a study, pair by pair; V0/V_Y0 too."""
     fields = [field for field in cl.Rebound.__dataclass_fields__ if field != "flags"]
-    out = {field: np.empty(fem["speed"].size) for field in (*fields, "speed_ratio")}
+    model = {field: np.empty(fem["speed"].size) for field in fields}
+    ratio, eta = np.empty(fem["speed"].size), np.empty(fem["speed"].size)
+    slenderness = fem["radius"] / fem["thickness"]
     for sphere, plate in set(zip(fem["sphere"], fem["plate"], strict=True)):
         rows = (fem["sphere"] == sphere) & (fem["plate"] == plate)
         pair = cl.Pair(sphere, plate)
         impacts = fem["speed"][rows], fem["radius"][rows], fem["thickness"][rows]
-        found = cl.ImpactModel(pair, law=law).solve(*impacts)
+        found = cl.ImpactModel(pair).solve(*impacts)
         for field in fields:
-            out[field][rows] = getattr(found, field)
-        out["speed_ratio"][rows] = impacts[0] / pair.yield_speed
-    return out
+            model[field][rows] = getattr(found, field)
+        ratio[rows] = impacts[0] / pair.yield_speed
+        eta[rows] = closed_form.eta(pair)
+    lam = model["inelasticity"]
+    at_yield = eta * slenderness**2
+    # Eq. 22 knows a pair by its eta only: (R/H)^2 of the paper's pair
+    like = np.sqrt(at_yield / paper.ETA)
+    restitution = {
+        "modified Zener": model["restitution"],
+        "turning point": np.asarray(turning_point.restitution(ratio, at_yield)),
+        "Eq. 22, continuous": np.asarray(closed_form.peng(ratio, like, paper.ETA)),
+        "Eq. 22, printed": np.asarray(closed_form.peng(ratio, like, paper.ETA, printed=True)),
+        "Zener": np.asarray(closed_form.zener(lam)),
+        "Mueller, Eq. 3": np.asarray(closed_form.mueller(lam)),
+    }
+    return Comparison(slenderness, ratio, lam, fem, model, restitution, model["overload"] > 1.0)
+
+
+@functools.cache
+def by_law() -> dict[str, Array]:
+    """COR of every impact of the matrix by each registered law; every law has its own d_Y."""
+    case = comparison("matrix")
+    at_yield = paper.ETA * case.slenderness**2
+    impacts = list(zip(case.speed_ratio, at_yield, strict=True))
+    return {
+        law.name.partition("(")[0]: np.array([paper.restitution(*one, law) for one in impacts])
+        for law in paper.all_laws()
+    }
+
+
+def deviation(
+    cor: Array, case: Comparison, where: NDArray[np.bool_] | slice = slice(None)
+) -> Array:
+    """Largest and rms error of predicted COR, relative to the finite elements [-]."""
+    off = (cor / case.fem["restitution"] - 1.0)[where]
+    return np.array([np.abs(off).max(), np.sqrt(np.mean(off**2))])
 
 
 def errors(case: Comparison, where: NDArray[np.bool_] | slice = slice(None)) -> dict[str, Array]:
     """Largest and rms error of each predictor in COR, relative to the finite elements [-]."""
-    table = {}
-    for name, cor in case.restitution.items():
-        off = (cor / case.fem["restitution"] - 1.0)[where]
-        table[name] = np.array([np.abs(off).max(), np.sqrt(np.mean(off**2))])
-    return table
+    return {name: deviation(cor, case, where) for name, cor in case.restitution.items()}
 
 
 def regions(case: Comparison) -> dict[str, NDArray[np.bool_]]:
@@ -117,19 +129,39 @@ def indentation(name: str) -> tuple[Array, Array, int]:
     else:
         data = store.read("indentation").data
         way, force = data[f"compression_{name}"], data[f"force_{name}"]
-    unit = yield_compression()
-    pair = cl.Pair("gamma-alumina", "glass")
-    contact = sphere_on_plate(pair, laws.law("myc"), np.array(0.9e-3), np.array(1.0))
-    return way / unit, force / (float(contact.stiffness) * unit**1.5), int(way.argmax())
+    return way / paper.YIELD_COMPRESSION, force / paper.FORCE, int(way.argmax())
 
 
-def loading_curves(way: Array) -> dict[str, Array]:
-    """Compute the loading force [F_Y] of each law, registered or published, at way [d_Y]."""
-    curves = {
-        name: np.array([laws.law(name).loading(float(q)) for q in np.sqrt(way)])
-        for name in laws.names()
+def force_at(name: str, way: Array, *, loading: bool = True) -> Array:
+    """Force [F_Y] of a stored indentation at compressions [d_Y], on the way in or out."""
+    x, force, top = indentation(name)
+    part = slice(None, top + 1) if loading else slice(None, top - 1, -1)
+    return np.interp(way, x[part], force[part])
+
+
+def loading_errors(way: Array) -> dict[str, Array]:
+    """Error of every law's loading force, relative to the indentation to 30 d_Y [-].
+
+    Parameters
+    ----------
+    way : ndarray
+        Compressions [d_Y of MYC], from 0.4, where the force is no longer small, to 30.
+
+    Examples
+    --------
+    >>> bool(abs(loading_errors(np.array([5.0]))["myc"][0]) < 0.06)
+    True
+    """
+    fem = force_at("30", way)
+    return {
+        law.name.partition("(")[0]: paper.force(law, way) / fem - 1.0 for law in paper.all_laws()
     }
-    return {"thornton": published.thornton(way), "stronge": published.stronge(way), **curves}
+
+
+def returned(way: Array, force: Array, top: int) -> float:
+    """Work of unloading over that of loading [-]."""
+    spent = np.trapezoid(force[: top + 1], way[: top + 1])
+    return float(-np.trapezoid(force[top:], way[top:]) / spent)
 
 
 def report() -> str:
@@ -139,17 +171,22 @@ def report() -> str:
     lines.append(f"COR over the matrix ({matrix.slenderness.size} impacts): largest, rms [%]")
     parts: dict[str, NDArray[np.bool_] | slice] = {"all": slice(None), **regions(matrix)}
     for part, where in parts.items():
-        cells = ", ".join(
-            f"{name} {100 * big:.1f} {100 * rms:.1f}"
-            for name, (big, rms) in errors(matrix, where).items()
-        )
-        lines.append(f"  {part:22s} {cells}")
+        lines.append(f"  {part}")
+        predicted = {**errors(matrix, where)}
+        for law, cor in by_law().items():
+            predicted[f"law {law}"] = deviation(cor, matrix, where)
+        for name, (big, rms) in predicted.items():
+            lines.append(f"    {name:20s} {100 * big:5.1f} {100 * rms:5.1f}")
     for name, off in field_errors(matrix).items():
         n = int(np.abs(off).argmax())
         lines.append(
             f"  {name:18s} largest {100 * off[n]:+.1f} at R/H {matrix.slenderness[n]:.2f}, "
             f"v {matrix.speed_ratio[n]:.1f}; rms {100 * np.sqrt(np.mean(off**2)):.1f} [%]"
         )
+    way = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 30.0])
+    lines.append(f"loading force of the laws less finite elements at {way} d_Y [%]")
+    for name, off in loading_errors(way).items():
+        lines.append(f"  {name:14s}" + "".join(f"{100 * value:+7.1f}" for value in off))
     for name in ("pairs", "limits"):
         case = comparison(name)
         lines.append(f"{name}: FEM COR, model COR, difference")

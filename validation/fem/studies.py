@@ -12,12 +12,11 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import contactlaw as cl
-from contactlaw.impact import sphere_on_plate
-from contactlaw.laws import law
 from validation.fem import calculix, cases, store
-from validation.fem.cases import PAPER, RADIUS, Case, yield_inelasticity
+from validation.fem.cases import Case, yield_inelasticity
 from validation.fem.impact import impact
 from validation.fem.indentation import BLOCK, indent
+from validation.paper import PAIR, RADIUS, YIELD_COMPRESSION
 
 SLENDERNESS = (0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.8)  # R/H
 SPEED_RATIO = (0.3, 0.6, 1.0, 1.5, 2.2, 3.5, 5.0, 7.0)  # V0/V_Y0
@@ -30,12 +29,6 @@ CALCULIX_SIZE, CALCULIX_DEPTH = 0.03, 10.0  # [R], [d_Y]
 _SPEED, _THICKNESS = 26.0, 0.5e-3  # of the paper's Figs 11 to 13 [m/s, m]
 
 
-def yield_compression(pair: cl.Pair = PAPER, radius: float = RADIUS) -> float:
-    """d_Y of the MYC law [m]."""
-    contact = sphere_on_plate(pair, law("myc"), np.array(radius), np.array(radius))
-    return float(contact.yield_compression)
-
-
 def verification(processes: int) -> None:
     """Meshes from 0.04 R to 0.005 R, no friction, a plate twice as wide, and Hertz's limit."""
     listed: list[tuple[str, Case]] = []
@@ -43,7 +36,7 @@ def verification(processes: int) -> None:
         listed += [("mesh", Case(_SPEED, thickness, size=s)) for s in (0.04, 0.02, 0.01, 0.005)]
         listed.append(("no friction", Case(_SPEED, thickness, size=0.01, friction=0.0)))
     thin = Case(speed=7.43, thickness=0.5e-3, size=0.01)
-    wave = math.sqrt(PAPER.plate.plane_modulus / PAPER.plate.density)
+    wave = math.sqrt(PAIR.plate.plane_modulus / PAIR.plate.density)
     width = 0.55 * 1.15 * wave * 5.2e-6  # what `impact` takes, made explicit
     for factor in (1.0, 2.0):
         listed.append(("width", Case(thin.speed, thin.thickness, size=0.01, width=factor * width)))
@@ -57,7 +50,7 @@ def verification(processes: int) -> None:
 
 def indentation(processes: int) -> None:
     """Force against compression, loading and unloading (Fig. 3)."""
-    unit = yield_compression()
+    unit = YIELD_COMPRESSION
     jobs: dict[str, dict[str, Any]] = {f"{d:g}": {"depth": d * unit} for d in DEPTHS}
     jobs["10_twice_as_slow"] = {"depth": 10 * unit, "slowness": 2.0}
     jobs["10_coarse"] = {"depth": 10 * unit, "size": 0.04}
@@ -83,7 +76,7 @@ def indentation(processes: int) -> None:
 
 
 def _indented(job: dict[str, Any]) -> dict[str, NDArray[Any]]:
-    press = indent(PAPER, RADIUS, **job)
+    press = indent(PAIR, RADIUS, **job)
     return {
         "compression": press.compression,
         "force": press.force,
@@ -98,8 +91,8 @@ def calculix_indentation(_: int) -> None:
     if not calculix.installed():
         tqdm.write("calculix: ccx is not installed (Debian: calculix-ccx); the stored result stays")
         return
-    depth = CALCULIX_DEPTH * yield_compression()
-    compression, force = calculix.run(PAPER, RADIUS, depth, CALCULIX_SIZE)
+    depth = CALCULIX_DEPTH * YIELD_COMPRESSION
+    compression, force = calculix.run(PAIR, RADIUS, depth, CALCULIX_SIZE)
     store.write(
         "calculix",
         "the indentation to 10 d_Y by CalculiX: CAX4 elements, surface-to-surface contact",
@@ -113,7 +106,7 @@ def calculix_indentation(_: int) -> None:
 
 def matrix(processes: int) -> None:
     """Eight thicknesses by eight speeds (Figs 7, 8, 10)."""
-    listed = [Case(v * PAPER.yield_speed, RADIUS / s) for s in SLENDERNESS for v in SPEED_RATIO]
+    listed = [Case(v * PAIR.yield_speed, RADIUS / s) for s in SLENDERNESS for v in SPEED_RATIO]
     data = cases.solve_all(listed, "matrix", processes)
     cases.save("matrix", "gamma-alumina on glass, R/H 0.1 to 1.8, V0/V_Y0 0.3 to 7", data)
 
@@ -121,7 +114,7 @@ def matrix(processes: int) -> None:
 def paper(_: int) -> None:
     """One impact in full: plastic strain, deflection, force (Figs 11 to 13)."""
     times = (1e-6, 2e-6, 3e-6)
-    hit = impact(PAPER, _SPEED, RADIUS, _THICKNESS, size=0.01, times=times)
+    hit = impact(PAIR, _SPEED, RADIUS, _THICKNESS, size=0.01, times=times)
     system = hit.system
     first = int(system.plate.elements.min())
     lower = np.arange(first, first + int(np.argmax(np.diff(system.x[first:, 0]) < 0.0)) + 1)
@@ -163,8 +156,8 @@ def pairs(processes: int) -> None:
     """Compare three pairs at equal inelasticity: does one table serve them all."""
     listed = []
     for slenderness in (0.5, 1.0, 1.5):
-        inelasticity = yield_inelasticity(PAPER, RADIUS / slenderness)
-        for sphere, plate in ((PAPER.sphere.name, PAPER.plate.name), *OTHER_PAIRS):
+        inelasticity = yield_inelasticity(PAIR, RADIUS / slenderness)
+        for sphere, plate in ((PAIR.sphere.name, PAIR.plate.name), *OTHER_PAIRS):
             pair = cl.Pair(sphere, plate)
             # lambda ~ 1/H^2
             thickness = RADIUS * math.sqrt(yield_inelasticity(pair, RADIUS) / inelasticity)
@@ -178,7 +171,7 @@ def pairs(processes: int) -> None:
 def limits(processes: int) -> None:
     """Beyond the paper: thinner and faster."""
     listed = [
-        Case(v * PAPER.yield_speed, RADIUS / s)
+        Case(v * PAIR.yield_speed, RADIUS / s)
         for s in (0.5, 1.0, 1.8, 2.5)
         for v in (0.5, 1.5, 3.5, 7.0, 10.0, 14.0)
     ]
@@ -187,16 +180,16 @@ def limits(processes: int) -> None:
 
 
 def edge(processes: int) -> None:
-    """Let the bending wave come back from the free edge of a small plate."""
+    """Let the bending wave come back from the free edge of a small plate: why 1.5."""
     thickness = RADIUS / 1.5
-    speed = PAPER.yield_speed
-    time = float(cl.ImpactModel(PAPER).lookup(speed, RADIUS, thickness).contact_time)
-    distance = float(cl.edge_distance(PAPER.plate, thickness, time))
+    speed = PAIR.yield_speed
+    time = float(cl.ImpactModel(PAIR).lookup(speed, RADIUS, thickness).contact_time)
+    way = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5  # c_g time/2
     factors = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 4.0)
-    listed = [Case(speed, thickness, width=factor * distance) for factor in factors]
+    listed = [Case(speed, thickness, width=factor * way) for factor in factors]
     data = cases.solve_all(listed, "edge", processes)
-    data["edge_distance"] = np.full(len(listed), distance)
-    cases.save("edge", "distance of the free edge over contactlaw.edge_distance, 0.5 to 4", data)
+    about = "free edge at 0.5 to 4 times the way of the contact's own bending wave, there and back"
+    cases.save("edge", about, data)
 
 
 STUDIES: dict[str, Callable[[int], None]] = {

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+
 from dem_demo.figures._style import (
     BLUE,
     GREEN,
@@ -32,6 +35,20 @@ TITLES = {
     "jackson_green": "Jackson & Green",
 }
 
+
+def shades(count: int) -> list[tuple[float, ...]]:
+    """Colours of a quantity that rises: dark to bright, none too pale for a line."""
+    return [tuple(colormaps["viridis"](0.82 * n / (count - 1))) for n in range(count)]
+
+
+def speed_axis(axes: Axes, ticks: tuple[float, ...]) -> None:
+    """Give speeds a logarithmic axis with these ticks only."""
+    axes.set_xscale("log")
+    axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    axes.minorticks_off()
+    axes.set_xlabel("impact speed  V$_0$ / V$_{Y0}$")
+
+
 __all__ = [
     "BLUE",
     "GREEN",
@@ -46,4 +63,6 @@ __all__ = [
     "VERMILION",
     "applied",
     "figure",
+    "shades",
+    "speed_axis",
 ]

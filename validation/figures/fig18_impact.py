@@ -1,0 +1,76 @@
+"""Fig. 18: one impact in full, 26 m/s on 0.5 mm of glass: the paper's Figs 11 to 13.
+
+The largest plastic strain is 0.0392 (the paper has about 0.039). The force history is the model's
+but for a ripple; so is the deflection of the plate under the contact, which the model gets from its
+mobility alone (crosses).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.collections import PolyCollection
+from matplotlib.figure import Figure
+
+from validation.fem import store
+from validation.figures import _style
+from validation.paper import RADIUS, model
+
+
+def draw() -> tuple[Figure, dict[str, float]]:
+    """Draw force, deflection, mesh and plastic strain."""
+    data, made = store.read("paper")
+    strain = float(data["largest_plastic_strain"])
+    figure = _style.figure(
+        13.0,
+        9.0,
+        "One impact in full: 26 m/s on 0.5 mm of glass",
+        f"gamma-alumina sphere, R = 0.9 mm; largest plastic strain {strain:.4f} (paper: about "
+        "0.039); dashes and crosses: modified Zener model",
+    )
+    (a, b), (c, d) = figure.subplots(2, 2)
+    contact = model().force_history(made["speed"], RADIUS, made["thickness"])
+    us = 1e6 * data["time"]
+    a.plot(us, data["force"], color=_style.INK, linewidth=2, label="finite elements")
+    a.plot(
+        contact.time * 1e6, contact.force, "--", color=_style.BLUE, linewidth=2,
+        label="modified Zener",
+    )  # fmt: skip
+    a.set(xlabel="time  [us]", ylabel="contact force  [N]")
+    a.legend(loc="lower center")
+    colours = _style.ORANGE, _style.GREEN, _style.VERMILION
+    sunk = np.interp(data["snapshot_time"], contact.time, contact.plate_displacement)
+    for at, way, deep, colour in zip(
+        data["snapshot_time"], data["deflection"], sunk, colours, strict=True
+    ):
+        b.plot(data["r"] * 1e3, -way * 1e6, color=colour, linewidth=2, label=f"{at * 1e6:.0f} us")
+        b.plot(0.0, deep * 1e6, "X", color=colour, markersize=10, clip_on=False)
+    b.set_xlim(0.0, 6.0)
+    b.invert_yaxis()
+    b.set(xlabel="distance from the axis  [mm]", ylabel="deflection of the plate  [um]")
+    b.legend(loc="lower right")
+    corners = data["corners"] * 1e3
+    corners[..., 1] -= corners[..., 1].min()
+    mesh = PolyCollection(list(corners), linewidth=0.3, facecolor="white", edgecolor=_style.INK)
+    quads = PolyCollection(list(corners), linewidth=0.3, cmap="cividis", edgecolor="face")
+    quads.set_array(data["plastic_strain"])
+    figure.colorbar(quads, ax=d, pad=0.01).set_label("equivalent plastic strain")
+    for axes, drawn, title in (
+        (c, mesh, "mesh of the sphere"),
+        (d, quads, "plastic strain after separation"),
+    ):
+        axes.add_collection(drawn)
+        axes.set_aspect("equal")
+        axes.grid(visible=False)
+        axes.set_title(title, loc="left")
+        axes.set(xlabel="r  [mm]", ylabel="z  [mm]")
+    c.set(xlim=(0.0, 1.4), ylim=(-0.02, 1.82))
+    d.set(xlim=(0.0, 0.45), ylim=(0.0, 0.3))
+    return figure, {
+        "largest plastic strain": strain,
+        "peak force, model over finite elements, less 1": float(
+            contact.force.max() / data["force"].max() - 1.0
+        ),
+        "deflection at 3 us, model over finite elements, less 1": float(
+            sunk[-1] / -data["deflection"][-1, 0] - 1.0
+        ),
+    }
