@@ -7,7 +7,10 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from validation.fem import compare, published, store
+from contactlaw import laws
+from validation import paper
+from validation.fem import compare, store
+from validation.fem.compare import force_at
 from validation.fem.studies import STUDIES
 
 README = (Path(__file__).parent.parent / "README.md").read_text()
@@ -16,12 +19,6 @@ README = (Path(__file__).parent.parent / "README.md").read_text()
 @pytest.fixture(scope="module")
 def matrix():
     return compare.comparison("matrix")
-
-
-def interpolated(name, way, loading=True):
-    x, force, top = compare.indentation(name)
-    part = slice(None, top + 1) if loading else slice(None, top - 1, -1)
-    return np.interp(way, x[part], force[part])
 
 
 @pytest.mark.parametrize("name", STUDIES)
@@ -81,22 +78,48 @@ def test_indentation_is_static_and_agrees_with_calculix():
     way = np.linspace(0.5, 9.8, 100)
     peak = compare.indentation("calculix")[1].max()
     for loading in (True, False):
-        ours = interpolated("10_calculix_mesh", way, loading)
-        assert np.abs(ours - interpolated("calculix", way, loading)).max() < 0.015 * peak
-    slow = interpolated("10_twice_as_slow", way)
-    assert interpolated("10", way) == pytest.approx(slow, rel=0.015)
+        ours = force_at("10_calculix_mesh", way, loading=loading)
+        assert np.abs(ours - force_at("calculix", way, loading=loading)).max() < 0.015 * peak
+    slow = force_at("10_twice_as_slow", way)
+    assert force_at("10", way) == pytest.approx(slow, rel=0.015)
 
 
 def test_which_law_is_right():
     """The paper's percentages: MYC 6 %, Thornton 64 % low, Stronge 40 % high; and their range."""
     way = np.linspace(0.5, 10.0, 200)
-    fem = interpolated("30", way)
-    off = {name: curve / fem - 1 for name, curve in compare.loading_curves(way).items()}
+    off = compare.loading_errors(way)
+    assert set(off) == set(laws.names())
     assert np.abs(off["myc"]).max() < 0.06
     assert off["thornton"][-1] == pytest.approx(-0.64, abs=0.01)
     assert off["stronge"][way > 2.5] == pytest.approx(0.43, abs=0.03)
-    deep = compare.loading_curves(np.array([30.0]))["myc"] / interpolated("30", 30.0) - 1
-    assert deep > 0.25  # not beyond: 6 % up to 17 d_Y
+    for name in ("jackson_green", "kogut_etsion"):
+        assert np.abs(off[name]).max() < 0.1, name
+    deep = compare.loading_errors(np.array([30.0]))
+    assert deep.pop("thornton") < -0.5
+    assert min(deep.values()) > 0.25  # not beyond: MYC is within 6 % up to 17 d_Y
+
+
+def test_laws_are_compared_in_common_units():
+    """Below its own yield every law is Hertz's, whatever its d_Y."""
+    way = np.array([0.1, 0.3])
+    for law in paper.all_laws():
+        assert paper.force(law, way) == pytest.approx(way**1.5, rel=1e-12), law.name
+        back, load = paper.unloading(law, 5.0)
+        assert back[-1] == pytest.approx(5.0)
+        assert load[-1] == pytest.approx(paper.force(law, np.array([5.0]))[0])
+
+
+def test_unloading():
+    """The law in use gives back too little work: the plastic share that the model overrates."""
+    curves = {name: compare.indentation(name) for name in ("2", "5", "10", "calculix")}
+    share = {name: compare.returned(*curve) for name, curve in curves.items()}
+    assert share["calculix"] == pytest.approx(share["10"], abs=0.002)
+    myc = laws.law("myc")
+    for name in ("2", "5", "10"):
+        back, load = paper.unloading(myc, float(name))
+        d = np.linspace(0.0, float(name), 2001)
+        ours = np.trapezoid(load, back) / np.trapezoid(paper.force(myc, d), d)
+        assert 0.01 < share[name] - ours < 0.065
 
 
 def test_the_model_over_the_matrix(matrix):
@@ -104,8 +127,10 @@ def test_the_model_over_the_matrix(matrix):
     assert errors["modified Zener"][0] < 0.05
     assert errors["modified Zener"][1] < 0.02
     # an independent ranking: each step of the physics left out costs
-    ranked = [errors[name][1] for name in errors if "Zener" in name or "Mueller" in name]
+    ranked = [errors[name][1] for name in ("modified Zener", "Zener", "Mueller, Eq. 3")]
     assert ranked == sorted(ranked)
+    # the closed form is as near as what it stands for
+    assert errors["turning point"] == pytest.approx(errors["modified Zener"], abs=1e-3)
 
 
 def test_one_table_serves_every_pair_below_yield_only():
@@ -121,48 +146,28 @@ def test_one_table_serves_every_pair_below_yield_only():
     assert share[steel & fast].max() < 0.5 < 0.7 < share[~steel & fast].min()
 
 
-def test_an_edge_nearer_than_one_and_a_half_edge_distances_answers():
+def test_an_edge_beyond_the_edge_distance_is_not_felt():
     data = store.read("edge").data
-    ratio, cor = data["width"] / data["edge_distance"], data["restitution"]
-    assert cor[ratio > 1.45] == pytest.approx(cor[-1], abs=0.002)
-    assert abs(cor[np.isclose(ratio, 0.8, atol=0.01)] - cor[-1]) > 0.05
+    thickness = data["thickness"][0]
+    free = cl.ImpactModel(paper.PAIR).lookup(data["speed"][0], data["radius"][0], thickness)
+    distance = cl.edge_distance(paper.PAIR.plate, thickness, free.contact_time)
+    ratio, cor = data["width"] / distance, data["restitution"]
+    assert cor[ratio > 0.99] == pytest.approx(cor[-1], rel=0.002)
+    assert (ratio > 0.99).sum() >= 3
+    for factor, change in ((1 / 1.5, 0.023), (0.8 / 1.5, 0.09)):  # as its docstring says
+        nearer = cor[np.isclose(ratio, factor, atol=0.01)]
+        assert abs(nearer / cor[-1] - 1) == pytest.approx([change], abs=0.003)
+
+
+def test_friction_hardly_matters():
+    data = store.read("verification").data
+    without = data["restitution"][data["check"] == "no friction"]
+    same_mesh = (data["check"] == "mesh") & np.isclose(data["size"], 0.01)
+    gained = without - data["restitution"][same_mesh]
+    assert (gained > 0.005).all() and (gained < 0.0075).all()
 
 
 def test_the_readme_states_what_was_measured(matrix):
     largest, rms = 100 * compare.errors(matrix)["modified Zener"]
     stated = re.search(r"within (\d\.\d) % of them \(rms (\d\.\d) %\)", README)
     assert [float(x) for x in stated.groups()] == [round(largest, 1), round(rms, 1)]
-
-
-def test_published_formulas():
-    assert published.mueller(np.array([0.25])) == pytest.approx(0.6731, abs=1e-4)
-    # at the yield speed Eq. 22 goes over into Eq. 3
-    lam, q = 0.1, 0.1 * (5 / 4) ** 0.6
-    g = q + (1 + q) ** -0.2
-    below, above = (
-        published.closed_form(lam * v**0.2, v, np.array(1.0)) for v in (g - 1e-9, g + 1e-9)
-    )
-    assert below == pytest.approx(above, abs=1e-5)
-    ends = published.thornton(np.array([0.2, 0.25 / 0.68])), published.stronge(np.array([1.0]))
-    assert ends[0] == pytest.approx([0.2**1.5, (0.25 / 0.68) ** 1.5])
-    assert ends[1] == pytest.approx(1.0)
-
-
-def test_force_history_is_the_models():
-    pair = cl.Pair("gamma-alumina", "glass")
-    time, force = published.force_history(pair, 26.0, 0.9e-3, 0.5e-3)
-    solved = cl.ImpactModel(pair).solve(26.0, 0.9e-3, 0.5e-3)
-    assert force.max() == pytest.approx(solved.peak_force, rel=1e-5)
-    assert force[-1] < 1e-3 * force.max()
-    mass = 4 / 3 * np.pi * 879.0 * 0.9e-3**3
-    impulse = mass * 26.0 * (1 + solved.restitution)
-    assert np.trapezoid(force, time) == pytest.approx(impulse, rel=1e-5)
-
-
-def test_figures_are_drawn(tmp_path):
-    from validation.fem import figures
-
-    for name in ("indentation", "errors", "paper"):
-        figure = figures.FIGURES[name]()
-        figure.savefig(tmp_path / f"{name}.png")
-        assert all(axes.get_xlabel() for axes in figure.axes if axes.get_label() != "<colorbar>")

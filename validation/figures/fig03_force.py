@@ -40,16 +40,17 @@ def draw() -> tuple[Figure, dict[str, float]]:
             left.plot(*unloading(law, _TOP), line, color=colour, linewidth=1.2)
         right.plot(far, 100 * off[name], line, color=colour, linewidth=2.2)
     way, load, _ = compare.indentation("5")
+    way, load = way[load > 0.0], load[load > 0.0]
     left.plot(way[::8], load[::8], "o", color=_style.INK, markersize=4.5, label="finite elements")
     left.set(xlim=(0, _TOP), ylim=(0, 17), xlabel="compression  d / d$_Y$")
     left.set_ylabel("force  F / F$_Y$")
     left.legend(loc="upper left")
     right.axhspan(-6, 6, color=_style.PALE, alpha=0.5, linewidth=0)
     right.axhline(0.0, color=_style.INK, linewidth=1)
-    for level, text in ((-64, "paper: Thornton -64 %"), (40, "paper: Stronge +40 %")):
+    for level, text in ((-64, "paper: -64 %"), (40, "paper: +40 %")):
         right.axhline(level, color=_style.INK, linewidth=1.0, linestyle=":")
         right.text(0.43, level - 2, text, va="top", fontsize=10.5)
-    right.text(0.43, 8, "paper: MYC within 6 %", va="bottom", fontsize=10.5)
+    right.text(0.43, 8, "paper: 6 %", va="bottom", fontsize=10.5)
     right.axvline(_FASTEST, color=_style.MUTED, linewidth=1.0, linestyle=":")
     right.text(4.5, -82, "7 V$_{Y0}$", fontsize=10.5, color=_style.MUTED, ha="right", va="bottom")
     right.set_xscale("log")

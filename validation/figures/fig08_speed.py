@@ -50,7 +50,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
             case.speed_ratio[here], case.fem["restitution"][here], "x", color=_style.INK,
             markersize=8, markeredgewidth=2, label="finite elements",
         )  # fmt: skip
-        axes.set(title=f"R/H = {ratio:g}", xlabel="V$_0$ / V$_{Y0}$", xlim=(0, FASTEST))
+        axes.set(title=f"R/H = {ratio:g}", xlabel="V$_0$ / V$_{Y0}$", xlim=(0, FASTEST + 0.3))
     panels[0].set(ylabel="coefficient of restitution", ylim=(0.3, 1.02))
     panels[0].legend(loc="lower left")
     return figure, {f"largest error, {name}": error for name, error in errors.items()}

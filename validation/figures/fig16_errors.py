@@ -44,7 +44,7 @@ def error_map(axes: Axes, title: str, values: np.ndarray, widest: float = 10.0) 
     table = 100.0 * values.reshape(len(SLENDERNESS), len(SPEED_RATIO))
     axes.imshow(table, cmap="RdBu_r", vmin=-widest, vmax=widest, aspect="auto", origin="lower")
     for (i, j), value in np.ndenumerate(table):
-        ink = "white" if abs(value) > 0.65 * widest else _style.INK
+        ink = "white" if abs(value) > 0.55 * widest else _style.INK
         axes.text(j, i, f"{value:+.1f}", ha="center", va="center", fontsize=10, color=ink)
     axes.set_title(title, fontweight="bold", loc="left")
     axes.set_xticks(range(len(SPEED_RATIO)), [f"{v:g}" for v in SPEED_RATIO])

@@ -1,8 +1,9 @@
 """Fig. 18: one impact in full, 26 m/s on 0.5 mm of glass: the paper's Figs 11 to 13.
 
-The largest plastic strain is 0.0392 (the paper has about 0.039). The force history is the model's
-but for a ripple; so is the deflection of the plate under the contact, which the model gets from its
-mobility alone (crosses).
+The largest plastic strain is 0.0392 (the paper has about 0.039). The force peaks 2 % higher than
+that of the model and a tenth of a microsecond earlier. The plate under the contact is deeper than
+the model's mobility has it (crosses): by a quarter at 1 us, when bending has had little time, by
+4 % at 3 us.
 """
 
 from __future__ import annotations
@@ -29,8 +30,9 @@ def draw() -> tuple[Figure, dict[str, float]]:
     )
     (a, b), (c, d) = figure.subplots(2, 2)
     contact = model().force_history(made["speed"], RADIUS, made["thickness"])
-    us = 1e6 * data["time"]
-    a.plot(us, data["force"], color=_style.INK, linewidth=2, label="finite elements")
+    a.plot(
+        data["time"] * 1e6, data["force"], color=_style.INK, linewidth=2, label="finite elements"
+    )
     a.plot(
         contact.time * 1e6, contact.force, "--", color=_style.BLUE, linewidth=2,
         label="modified Zener",
@@ -70,7 +72,10 @@ def draw() -> tuple[Figure, dict[str, float]]:
         "peak force, model over finite elements, less 1": float(
             contact.force.max() / data["force"].max() - 1.0
         ),
-        "deflection at 3 us, model over finite elements, less 1": float(
-            sunk[-1] / -data["deflection"][-1, 0] - 1.0
-        ),
+        **{
+            f"deflection at {us} us, model over finite elements, less 1": float(
+                sunk[n] / -data["deflection"][n, 0] - 1.0
+            )
+            for n, us in ((0, 1), (2, 3))
+        },
     }

@@ -47,7 +47,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
                 size, off, line, marker="o", color=colour, label=label if line == "-" else None
             )
     left.loglog([0.01, 0.04], [0.001, 0.004], color=_style.MUTED, linewidth=1)
-    left.text(0.0103, 0.00125, "first order", color=_style.MUTED, fontsize=10.5)
+    left.text(0.0245, 0.0029, "first order", color=_style.MUTED, fontsize=10.5)
     left.set_xticks([0.01, 0.02, 0.04], ["0.01 R", "0.02 R", "0.04 R"])
     left.minorticks_off()
     left.set(xlabel="smallest element", ylabel="difference from elements of 0.005 R")
