@@ -117,10 +117,15 @@ def main(path, chunks):
     assert cli.main([*RAIN, "--out", str(Path(path).with_name("rain"))]) == 0
     lmp = make([(0.03, 0, R + 1e-4)], (0, 0, -5), dt=4e-7, processors="2 1 1")
     attach(lmp, cl.ImpactModel(PAIR), [flat(1e-3)])
-    try:
-        lmp.command("run 100000")
-    except RuntimeError as error:
-        print(f"caught: {error}", flush=True)
+    for commands in ("run 100000", "velocity all set 0 0 -5\nrun 150\nno_command", "print told"):
+        lmp.command("set group all z 0.001 vz -5")
+        try:
+            lmp.commands_string(commands)
+        except RuntimeError as error:
+            print(f"caught: {error}", flush=True)
+    if MPI.COMM_WORLD.rank == 0:  # what needs no other rank waits for none
+        lmp.command("variable one equal 1")
+        print("alone", flush=True)
 
 
 if __name__ == "__main__":

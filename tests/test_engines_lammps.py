@@ -154,7 +154,13 @@ def test_the_dump_is_one_that_ovito_opens(two_ranks):
 
 
 def test_an_error_on_one_rank_reaches_both(two_ranks):
-    assert two_ranks[0].count("caught: bead 1 on plate 0 at step") == 2
+    """Once on each: a later error of LAMMPS's own does not hide it, and it is not told again."""
+    assert two_ranks[0].count("caught: bead 1 on plate 0 at step") == 4
+    assert two_ranks[0].count("caught") == 4
+
+
+def test_a_command_without_time_steps_needs_no_other_rank(two_ranks):
+    assert two_ranks[0].count("alone") == 1
 
 
 def test_a_restart_in_mid_contact_gives_the_same_bits(whole_shower, tmp_path):
@@ -211,6 +217,96 @@ def test_edges_and_both_sides(model):
     assert v[2, 0] == pytest.approx(v[1, 2], rel=1e-6)
     assert -v[0, 2] == pytest.approx(v[1, 2], rel=1e-6)
     lmp.close()
+
+
+def halves(left=1e-3, right=1e-3, order=(0, 1)):
+    """Two plates that share the edge x = 0."""
+    plates = [flat(left, x=-0.05, width=0.05), flat(right, x=0.0, width=0.05)]
+    return [plates[n] for n in order]
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+@pytest.mark.parametrize("x", [-2e-4, -5e-5, -1e-9, 0.0, 1e-9, 5e-5, 2e-4])
+def test_a_seam_is_not_felt(model, x, order):
+    lmp = make((x, 0, R + 1e-4), (0, 0, -5))
+    walls = attach(lmp, model, halves(order=order))
+    lmp.command("run 700")
+    (row,) = walls.collisions()
+    assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
+    assert row["plate"] == (0 if x == 0 else order.index(int(x > 0)))
+    assert abs(state(lmp)["v"][0, :2]).max() < 1e-12
+    lmp.close()
+
+
+@pytest.mark.parametrize("order", [(0, 1), (1, 0)])
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_a_bead_that_crosses_a_seam_takes_its_contact_along(one, order, friction):
+    """The same bits as on one plate: also there and back, with x as the bead's fast direction."""
+    ends = []
+    for plates in (halves(order=order), [flat(1e-3)]):
+        for side in (-1, 1):
+            start = (-side * 30e-6 - side * 20e-6, 0, R + 2e-6)
+            lmp = make(start, (side * 20, 0, -5), dt=5e-8)
+            walls = attach(lmp, cl.ImpactModel(box.PAIR), plates, friction=friction)
+            lmp.command("run 60")
+            assert state(lmp)["d2_contactlaw"][0, PLATE] != 0.0
+            x = state(lmp)["x"][0, 0]
+            assert x * side > 0  # crossed while in contact
+            lmp.command("run 300")
+            (row,) = walls.collisions()
+            ends.append((row["restitution"], row["contact_time"], *state(lmp)["v"][0]))
+            lmp.close()
+    assert np.array_equal(ends[:2], ends[2:])
+
+
+def test_where_two_thicknesses_meet_the_first_plate_is_hit(model):
+    for order, thickness in (((0, 1), 0.5e-3), ((1, 0), 3e-3)):
+        lmp = make((0, 0, R + 1e-4), (0, 0, -5))
+        walls = attach(lmp, model, halves(0.5e-3, 3e-3, order))
+        lmp.command("run 700")
+        (row,) = walls.collisions()
+        assert row["plate"] == 0
+        assert row["restitution"] == pytest.approx(model.restitution(5.0, R, thickness), abs=5e-4)
+        lmp.close()
+
+
+def test_four_tiles_at_a_corner_are_one_plate(model):
+    tiles = [
+        Plate((x, y, 0), (0.05, 0, 0), (0, 0.05, 0), 1e-3) for x in (-0.05, 0) for y in (-0.05, 0)
+    ]
+    places = [(0, 0), (1e-5, 2e-5), (-1e-5, 2e-5), (1e-5, -2e-5), (-1e-5, -2e-5), (0, 1e-5)]
+    for x, y in places:
+        lmp = make((x, y, R + 1e-4), (0, 0, -5))
+        walls = attach(lmp, model, tiles)
+        lmp.command("run 700")
+        (row,) = walls.collisions()
+        assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
+        assert abs(state(lmp)["v"][0, :2]).max() < 1e-12
+        lmp.close()
+
+
+def test_a_ridge_is_hit_once(model):
+    """The edge that two sides of a roof share, the outer corner of a box, and the rim of tiles."""
+    left = Plate((0, -0.05, 0), (-0.03, 0, -0.04), (0, 0.1, 0), 1e-3)
+    right = Plate((0, -0.05, 0), (0.03, 0, -0.04), (0, 0.1, 0), 1e-3)
+    down = Plate((0, -0.05, 0), (0, 0.1, 0), (0, 0, -0.05), 1e-3)
+    level = flat(1e-3, x=-0.05, width=0.05)
+    for plates in ([left, right], [right, left], [level, down], [down, level]):
+        lmp = make((0, 0, R + 1e-4), (0, 0, -5))
+        walls = attach(lmp, model, plates)
+        lmp.command("run 700")
+        (row,) = walls.collisions()
+        assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
+        assert abs(state(lmp)["v"][0, :2]).max() < 1e-12
+        lmp.close()
+    tiles = [Plate((x, 0, 0), (0.05, 0, 0), (0, 0.05, 0), 1e-3) for x in (-0.05, 0)]
+    for x in (-1e-5, 0.0, 1e-5):
+        lmp = make((x, -R - 1e-4, 0), (0, 5, 0))
+        walls = attach(lmp, model, tiles)
+        lmp.command("run 700")
+        assert len(walls.collisions()) == 1
+        assert abs(state(lmp)["v"][0, 0]) < 1e-12
+        lmp.close()
 
 
 def test_a_leaning_plate_is_a_level_one_turned(model):
@@ -272,6 +368,48 @@ def test_a_new_bead_knows_nothing_of_the_one_whose_place_it_takes(model):
     lmp.close()
 
 
+@pytest.mark.parametrize("step", [51, 50, 55, 100000, 0])
+def test_the_clock_may_be_reset_in_mid_contact(one, step):
+    """Only the time in the record knows of it."""
+    outcomes = []
+    for command in ("", f"reset_timestep {step}"):
+        lmp, walls = one([flat(0.5e-3)], gap=1e-5)
+        lmp.commands_string(f"run 50\n{command}\nrun 400")
+        (row,) = walls.collisions()
+        outcomes.append((row, state(lmp)))
+    (plain, path), (moved, moved_path) = outcomes
+    for name in path:
+        assert np.array_equal(path[name], moved_path[name]), name
+    for name in set(plain.dtype.names) - {"time"}:
+        assert plain[name] == moved[name], name
+    shift = step - 50 if step >= 50 else -50  # LAMMPS starts anew at 0 where the step goes back
+    assert moved["time"] - plain["time"] == pytest.approx(shift * box.DT, abs=1e-12)
+    assert plain["time"] == pytest.approx(2e-6, rel=1e-6)
+
+
+def test_the_time_step_may_change_in_mid_contact(one, model):
+    lmp, walls = one(gap=1e-5)
+    lmp.commands_string("run 30\ntimestep 5e-8\nrun 800")
+    (row,) = walls.collisions()
+    hit = model.solve(5.0, R, 1e-3)
+    assert row["contact_time"] == pytest.approx(hit.contact_time, rel=5e-3)
+    assert row["time"] == pytest.approx(2e-6, rel=1e-6)
+    assert row["restitution"] == pytest.approx(hit.restitution, abs=5e-4)
+
+
+def test_a_bead_that_is_hit_while_it_touches_a_plate(one):
+    """The record has the speed of the hit, and the step is checked for it."""
+    lmp, walls = one(velocity=(0, 0, -0.01), gap=1e-9)
+    lmp.commands_string("run 20\nset atom 1 vz -5\nrun 500")
+    (row,) = walls.collisions()
+    assert row["approach_speed"] == pytest.approx(5.0, rel=1e-4)
+    assert 0.85 < row["restitution"] < 0.95
+    lmp, _ = one(velocity=(0, 0, -0.01), gap=1e-9, dt=4e-7)
+    lmp.command("run 20")
+    with pytest.raises(RuntimeError, match="timestep: too large for an impact at 5 m/s"):
+        lmp.commands_string("set atom 1 vz -5\nrun 200")
+
+
 def test_detach_gives_the_simulation_back(one):
     lmp, walls = one()
     lmp.command("run 100")
@@ -282,6 +420,33 @@ def test_detach_gives_the_simulation_back(one):
                 for name in lmp.available_ids(kind) if name and "contactlaw" in name]  # fmt: skip
     lmp.command("run 2000")
     assert state_without_history(lmp)[2] == pytest.approx(-5.0, rel=1e-12)  # through the plate
+
+
+def test_detach_after_the_simulation_has_changed_or_gone(one):
+    lmp, walls = one()
+    lmp.command("unfix contactlaw_force")
+    walls.detach()
+    attach(lmp, cl.ImpactModel(box.PAIR), [flat(1e-3)]).detach()
+    lmp, walls = one()
+    lmp.command("clear")
+    walls.detach()
+    assert "command" not in vars(lmp)
+    lmp, walls = one(gap=1e-5)
+    lmp.command("run 500")
+    lmp.close()
+    walls.detach()
+    assert len(walls.collisions()) == 1
+
+
+def test_detach_restores_the_methods_that_were_there(model):
+    lmp = make((0, 0, R + 1e-4), (0, 0, -5))
+    own = lmp.command
+    lmp.command = own
+    walls = attach(lmp, model, [flat(1e-3)])
+    assert lmp.command is not own
+    walls.detach()
+    assert lmp.command is own
+    lmp.close()
 
 
 def state_without_history(lmp):

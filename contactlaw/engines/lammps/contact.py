@@ -15,24 +15,29 @@ from contactlaw._jit import kernel
 from contactlaw.engines.lammps import memory
 from contactlaw.engines.lammps.memory import (
     DISPLACEMENT,
+    DURATION,
+    FIRST,
     FORCE,
     LARGEST,
     OWNER,
     PLATE,
     SPEED,
     SPRING,
-    START,
     TOLD,
     WAVE,
     array_at,
     complain,
     slot_of,
+    touches,
 )
 from contactlaw.laws import Functions
 from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, advance, resized
 
 NEAR = 2.0  # [r] from the plate: from here on a bead's history is kept up to date
-_DEEP = 0.1  # [r] of overlap at first touch: no step that is short enough gets there
+_AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a plate
+_FASTER = 1.01  # times its approach speed: a bead in contact that has been hit, not one that falls on
+_SEAM = 1e-4  # [r] between plates that are one surface to a bead
+_TIE = 1e-9  # [r] of overlap: rounding
 _SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
 _RECORD_COLUMNS = len(memory.RECORD)
 
@@ -41,7 +46,7 @@ class Clock(NamedTuple):
     """Where the simulation is."""
 
     step: int
-    zero: float  # the step at which LAMMPS's time would have been 0, with its fraction
+    now: float  # [s]
     dt: float  # [s]
     advancing: bool  # else a set-up, which asks for the forces of the last step again
 
@@ -94,21 +99,95 @@ def _geometry(plate: Any, bead: Bead) -> Touch:
 
 
 @kernel
+def _nearest(touch: Touch, bead: Bead) -> tuple[float, float, float]:
+    """Point of a plate that is nearest to the bead's centre."""
+    reach, x = bead.r - touch.x, bead.x
+    return x[0] - reach * touch.nx, x[1] - reach * touch.ny, x[2] - reach * touch.nz
+
+
+@kernel
+def _has(plate: Any, point: tuple[float, float, float], margin: float) -> bool:
+    """Whether a point is on a plate."""
+    corner, a, b, normal = plate.corner, plate.a, plate.b, plate.normal
+    px, py, pz = point[0] - corner[0], point[1] - corner[1], point[2] - corner[2]
+    along_a = px * a[0] + py * a[1] + pz * a[2]
+    along_b = px * b[0] + py * b[1] + pz * b[2]
+    return (
+        abs(px * normal[0] + py * normal[1] + pz * normal[2]) <= margin
+        and -margin <= along_a <= plate.length_a + margin
+        and -margin <= along_b <= plate.length_b + margin
+    )
+
+
+@kernel
+def _order(touch: Touch, p: int, r: float) -> tuple[bool, int, int]:
+    """What sorts plates that share a point: face before edge, then the nearest, then the first."""
+    return not touch.face, math.floor(-touch.x / (_TIE * r)), p
+
+
+@kernel
+def _home(plates: Any, p: int, touch: Touch, bead: Bead) -> int:
+    """Plate that a contact with plate p belongs to: another one, if p goes on there without a gap.
+
+    Where plates meet, the nearest points of all of them may be one, or one of them may be on a
+    plate that comes nearer. The bead feels one surface.
+    """
+    point, q = _nearest(touch, bead), 0
+    while q < len(plates):
+        if q != p and _has(plates[q], point, _SEAM * bead.r):
+            other = _geometry(plates[q], bead)
+            if _order(other, q, bead.r) < _order(touch, p, bead.r):
+                p, touch, q = q, other, -1
+                point = _nearest(touch, bead)
+        q += 1
+    return p
+
+
+@kernel
+def hand_over(shared: Any, plates: Any, bead: Bead) -> None:
+    """Let a bead that crosses from plate to plate take its contact along."""
+    row = bead.history
+    if row[OWNER] != bead.tag:
+        return
+    for k in range(shared.slots):
+        at = FIRST + k * shared.width
+        if row[at + PLATE] == 0.0:
+            continue
+        p = int(abs(row[at + PLATE])) - 1
+        home = _home(plates, p, _geometry(plates[p], bead), bead)
+        if home == p:
+            continue
+        touch, taken = _geometry(plates[home], bead), slot_of(row, shared, home)
+        if taken != 0 and abs(row[taken + PLATE]) == home + 1:
+            row[at : at + shared.width] = 0.0  # two contacts have become one
+        elif touch.x > 0.0:
+            row[at + PLATE] = math.copysign(home + 1.0, touch.s)
+
+
+@kernel
+def _check_step(
+    shared: Any, clock: Clock, bead: Bead, p: int, spring: Spring, u: float
+) -> None:
+    """Refuse a step that is too long for an impact at this speed."""
+    shortest = CONTACT_TIME * (spring.mass / (spring.stiffness * math.sqrt(u))) ** 0.4
+    limit = shortest / FEWEST_STEPS
+    if clock.dt > limit:
+        complain(shared, clock.step, bead.tag, bead.history, memory.STEP_TOO_LARGE, p, u, limit)
+
+
+@kernel
 def _begin(
     shared: Any, clock: Clock, bead: Bead, p: int, at: int, spring: Spring, x: float, u: float
 ) -> None:
     """Start a contact, or the next one of a bead that comes back before it has parted."""
-    row, dt = bead.history, clock.dt
+    row = bead.history
     first = u > 0.0 and row[at + LARGEST] == 0.0
-    row[at + START] = clock.step - (x / (u * dt) if first else 0.0)
+    row[at + DURATION] = min(x / u, clock.dt) if first else 0.0
     row[at + SPEED], row[at + WAVE] = u, 0.0
     if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
         complain(shared, clock.step, bead.tag, row, memory.WRONG_MASS, p, bead.mass, spring.mass)
     if u > 0.0:
-        shortest = CONTACT_TIME * (spring.mass / (spring.stiffness * math.sqrt(u))) ** 0.4
-        limit = shortest / FEWEST_STEPS
-        if dt > limit:
-            complain(shared, clock.step, bead.tag, row, memory.STEP_TOO_LARGE, p, u, limit)
+        _check_step(shared, clock, bead, p, spring, u)
 
 
 @kernel
@@ -125,7 +204,7 @@ def _end(
     u: float,
 ) -> None:
     """Put a contact whose force has ended in this step into the record."""
-    row, dt, scale = bead.history, clock.dt, spring.scale
+    row, scale = bead.history, spring.scale
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     dm = last.largest_compression / scale
     lost = law.dissipation(dm) * unit * scale if dm > 1.0 else 0.0
@@ -136,18 +215,15 @@ def _end(
     if n == shared.record_capacity:
         complain(shared, clock.step, bead.tag, row, memory.TOO_MANY_RECORDS, p, 0.0, n)
         return
-    ended = float(clock.step)
+    since = 0.0
     if u < 0.0:  # between the steps, where the compression was down to the residual one
         gap = law.residual(dm) * scale + last.plate_displacement - touch.x
-        ended -= min(max(gap / (-u * dt), 0.0), 1.0)
+        since = min(max(gap / -u, 0.0), clock.dt)
     line = array_at(shared.records, (shared.record_capacity, _RECORD_COLUMNS), np.float64)[n]
-    reach = bead.r - touch.x
-    line[0], line[1], line[2] = (row[at + START] - clock.zero) * dt, bead.tag, p
-    line[3] = bead.x[0] - reach * touch.nx
-    line[4] = bead.x[1] - reach * touch.ny
-    line[5] = bead.x[2] - reach * touch.nz
+    line[0], line[1], line[2] = clock.now - row[at + DURATION], bead.tag, p
+    line[3], line[4], line[5] = _nearest(touch, bead)
     line[6], line[7] = row[at + SPEED], -u / row[at + SPEED]
-    line[8], line[9] = (ended - row[at + START]) * dt, law.loading(math.sqrt(dm)) * unit
+    line[8], line[9] = row[at + DURATION] - since, law.loading(math.sqrt(dm)) * unit
     line[10], line[11] = lost - told, row[at + WAVE]
     shared.record_count = n + 1
 
@@ -157,13 +233,15 @@ def _normal(
     law: Functions, shared: Any, clock: Clock, bead: Bead, plate: Any, p: int, at: int, touch: Touch
 ) -> None:
     """Advance a contact by a step; its slot is empty afterwards if the bodies have parted."""
-    row = bead.history
-    u = -(bead.v[0] * touch.nx + bead.v[1] * touch.ny + bead.v[2] * touch.nz)
+    row, v = bead.history, bead.v
+    u = -(v[0] * touch.nx + v[1] * touch.ny + v[2] * touch.nz)
     side = math.copysign(p + 1.0, touch.s)
     if row[at + PLATE] == 0.0:
-        if touch.x > _DEEP * bead.r:
-            complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, p, touch.x,
-                     _DEEP * bead.r)  # fmt: skip
+        # no deeper than a step's way; on an edge the way is not along the normal
+        deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + _AT_REST * bead.r
+        # (plates in a flat valley are the exception: from the one a bead may come deep into the next)
+        if touch.x > deepest and not touches(row, shared):
+            complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, p, touch.x, deepest)
     elif touch.face and side != row[at + PLATE]:
         complain(shared, clock.step, bead.tag, row, memory.CROSSED, p, u, 0.0)
     unit = Spring(plate.mass, plate.stiffness, plate.mobility, plate.scale, plate.relaxation)
@@ -172,6 +250,11 @@ def _normal(
     state = advance(law, spring, last, touch.x, clock.dt)
     if state.force > 0.0 and last.force == 0.0:
         _begin(shared, clock, bead, p, at, spring, touch.x, u)
+    else:
+        row[at + DURATION] += clock.dt
+        if u > _FASTER * max(row[at + SPEED], 0.0):
+            row[at + SPEED] = u
+            _check_step(shared, clock, bead, p, spring, u)
     square = last.force * last.force + state.force * state.force
     row[at + WAVE] += 0.5 * clock.dt * spring.mobility * square
     if state.force == 0.0 and last.force > 0.0:
@@ -213,14 +296,17 @@ def _slide(
 
 
 @kernel
-def interact(law: Functions, shared: Any, clock: Clock, plate: Any, p: int, bead: Bead) -> None:
+def interact(law: Functions, shared: Any, clock: Clock, plates: Any, p: int, bead: Bead) -> None:
     """Add the force of plate p to a bead, and keep the bead's history."""
+    plate = plates[p]
     touch = _geometry(plate, bead)
     if not touch.x > (1.0 - NEAR) * bead.r:
         return
     if bead.history[OWNER] != bead.tag:
         bead.history[:] = 0.0
         bead.history[OWNER] = bead.tag
+    if touch.x > 0.0 and len(plates) > 1 and _home(plates, p, touch, bead) != p:
+        return
     at = slot_of(bead.history, shared, p)
     if at == 0:
         if touch.x > 0.0:

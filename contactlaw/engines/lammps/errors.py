@@ -11,8 +11,8 @@ _MESSAGES = {
         "{limit:.2g} s or less"
     ),
     memory.STARTS_INSIDE: (
-        "the first touch finds it {value:.4g} m deep in the plate; place it outside, or take a "
-        "shorter timestep, so that this is below {limit:.2g} m"
+        "the first touch finds it {value:.4g} m deep in the plate, more than its speed explains; "
+        "place it outside, or at most {limit:.2g} m deep"
     ),
     memory.CROSSED: (
         "its centre went through the plate at {value:.4g} m/s, pushed by what is stronger than the "

@@ -16,12 +16,12 @@ carray: Any = numba.carray  # type: ignore[attr-defined]
 # A bead's history is the code of an error, the bead's ID, and slots for the plates that it touches.
 # (LAMMPS gives a new bead the row that another one has left behind: by the ID it is known.) A slot:
 # the plate's number, counted from 1, negative if the bead is on the side from which the normal
-# points away, 0 if the slot is empty; the state of the contact; the step of first touch, with its
-# fraction (LAMMPS's clock has other bits when a run is cut into pieces); approach speed [m/s];
-# energy to the wave, and energy to plastic flow that is in the record already [J]; with friction,
-# the three components of the tangential spring [m].
-ERROR, OWNER, _FIRST = range(3)
-PLATE, DISPLACEMENT, LARGEST, FORCE, START, SPEED, WAVE, TOLD, SPRING = range(9)
+# points away, 0 if the slot is empty; the state of the contact; the time since first touch [s],
+# summed up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset); approach
+# speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already [J]; with
+# friction, the three components of the tangential spring [m].
+ERROR, OWNER, FIRST = range(3)
+PLATE, DISPLACEMENT, LARGEST, FORCE, DURATION, SPEED, WAVE, TOLD, SPRING = range(9)
 _SLOTS = 3  # plates that a bead may touch at once; a corner has three
 
 RECORD = ("time", "bead", "plate", "x", "y", "z", "approach_speed", "restitution", "contact_time",
@@ -30,11 +30,12 @@ RECORD = ("time", "bead", "plate", "x", "y", "z", "approach_speed", "restitution
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, TOO_MANY_PLATES, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST,
  NOT_FINITE) = range(1, 9)  # fmt: skip
 
-# Integers from "lammps" to "records" are addresses.
+# Integers from "lammps" to "records" are addresses; "calls" counts those of the C function.
 SHARED = np.dtype(
     [(name, "i8") for name in ("lammps", "v", "f", "radius", "rmass", "omega", "torque", "history")]
+    + [("elapsed", "i8")]
     + [(name, "i8") for name in ("dt", "atime", "atimestep", "plates", "records")]
-    + [(name, "i8") for name in ("plate_count", "slots", "width", "columns", "last_step")]
+    + [(name, "i8") for name in ("plate_count", "slots", "width", "columns", "calls")]
     + [(name, "i8") for name in ("record_capacity", "record_count")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
     + [(name, "f8") for name in ("error_value", "error_limit", "friction")]
@@ -46,7 +47,7 @@ SHARED = np.dtype(
 def history_shape(plates: int, friction: bool) -> tuple[int, int, int]:
     """Slots per bead, columns of a slot, and columns of the history."""
     slots, width = min(plates, _SLOTS), SPRING + 3 * friction
-    return slots, width, _FIRST + slots * width
+    return slots, width, FIRST + slots * width
 
 
 @intrinsic
@@ -76,12 +77,21 @@ def slot_of(row: Any, shared: Any, plate: int) -> Any:
     """First column of the plate's slot, else of an empty one, else 0."""
     empty = 0
     for k in range(shared.slots):
-        at = _FIRST + k * shared.width
+        at = FIRST + k * shared.width
         if abs(row[at]) == plate + 1:
             return at
         if row[at] == 0.0 and empty == 0:
             empty = at
     return empty
+
+
+@kernel
+def touches(row: Any, shared: Any) -> bool:
+    """Whether a bead is in contact with any plate."""
+    for k in range(shared.slots):
+        if row[FIRST + k * shared.width] != 0.0:
+            return True
+    return False
 
 
 @kernel

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -116,6 +118,8 @@ def checked(plates: Any, model: Any) -> list[Plate]:
     """Refuse plates that the model of the beads cannot serve."""
     if not isinstance(model, ImpactModel):
         raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
+    if not isinstance(plates, Sequence):
+        raise TypeError(f"plates: expected a list of plates, got {plates!r}")
     found = list(plates)
     if not found:
         raise ValueError("plates: at least one contactlaw.engines.lammps.Plate is needed")
@@ -129,3 +133,11 @@ def checked(plates: Any, model: Any) -> list[Plate]:
                 "differ in their own material only"
             )
     return found
+
+
+def check_friction(friction: Any) -> None:
+    """Refuse what is no coefficient of friction."""
+    if not isinstance(friction, Real) or isinstance(friction, bool):
+        raise TypeError(f"friction: expected a number, got {friction!r}")
+    if not 0.0 <= friction < math.inf:
+        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
