@@ -330,7 +330,8 @@ class LammpsPlates:
             time of first touch [s], bead (LAMMPS's atom ID), plate, other (-1), x, y and z of the
             contact [m], approach_speed [m/s], restitution, contact_time [s], peak_force [N],
             plastic_energy and wave_energy [J]; all as they happened in the engine. A bead that
-            rests makes no row until it leaves.
+            rests makes no row until it leaves; if it is hit meanwhile, the approach speed is the
+            largest one. The time is that of LAMMPS's clock at the end less the contact time.
         """
         raw = np.concatenate([np.empty((0, len(RECORD))), *self._parts])
         out = np.zeros(len(raw), COLUMNS)

@@ -35,7 +35,9 @@ from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, adv
 
 NEAR = 2.0  # [r] from the plate: from here on a bead's history is kept up to date
 _AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a plate
-_FASTER = 1.01  # times its approach speed: a bead in contact that has been hit, not one that falls on
+_FASTER = (
+    1.01  # times its approach speed: a bead in contact that has been hit, not one that falls on
+)
 _SEAM = 1e-4  # [r] between plates that are one surface to a bead
 _TIE = 1e-9  # [r] of overlap: rounding
 _SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
@@ -106,7 +108,7 @@ def _nearest(touch: Touch, bead: Bead) -> tuple[float, float, float]:
 
 
 @kernel
-def _has(plate: Any, point: tuple[float, float, float], margin: float) -> bool:
+def _has(plate: Any, point: tuple[float, float, float], margin: float) -> Any:
     """Whether a point is on a plate."""
     corner, a, b, normal = plate.corner, plate.a, plate.b, plate.normal
     px, py, pz = point[0] - corner[0], point[1] - corner[1], point[2] - corner[2]
@@ -121,7 +123,7 @@ def _has(plate: Any, point: tuple[float, float, float], margin: float) -> bool:
 
 @kernel
 def _order(touch: Touch, p: int, r: float) -> tuple[bool, int, int]:
-    """What sorts plates that share a point: face before edge, then the nearest, then the first."""
+    """Sort plates that share a point: face before edge, then the nearest, then the first."""
     return not touch.face, math.floor(-touch.x / (_TIE * r)), p
 
 
@@ -157,17 +159,14 @@ def hand_over(shared: Any, plates: Any, bead: Bead) -> None:
         home = _home(plates, p, _geometry(plates[p], bead), bead)
         if home == p:
             continue
-        touch, taken = _geometry(plates[home], bead), slot_of(row, shared, home)
-        if taken != 0 and abs(row[taken + PLATE]) == home + 1:
-            row[at : at + shared.width] = 0.0  # two contacts have become one
-        elif touch.x > 0.0:
+        touch, own = _geometry(plates[home], bead), slot_of(row, shared, home)
+        # In a flat valley the bead presses on both already: then each contact ends by itself.
+        if touch.x > 0.0 and (own == 0 or row[own + PLATE] == 0.0):
             row[at + PLATE] = math.copysign(home + 1.0, touch.s)
 
 
 @kernel
-def _check_step(
-    shared: Any, clock: Clock, bead: Bead, p: int, spring: Spring, u: float
-) -> None:
+def _check_step(shared: Any, clock: Clock, bead: Bead, p: int, spring: Spring, u: float) -> None:
     """Refuse a step that is too long for an impact at this speed."""
     shortest = CONTACT_TIME * (spring.mass / (spring.stiffness * math.sqrt(u))) ** 0.4
     limit = shortest / FEWEST_STEPS
@@ -239,7 +238,7 @@ def _normal(
     if row[at + PLATE] == 0.0:
         # no deeper than a step's way; on an edge the way is not along the normal
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + _AT_REST * bead.r
-        # (plates in a flat valley are the exception: from the one a bead may come deep into the next)
+        # (but in a flat valley a bead may come from one plate deep into the next)
         if touch.x > deepest and not touches(row, shared):
             complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, p, touch.x, deepest)
     elif touch.face and side != row[at + PLATE]:
@@ -305,15 +304,16 @@ def interact(law: Functions, shared: Any, clock: Clock, plates: Any, p: int, bea
     if bead.history[OWNER] != bead.tag:
         bead.history[:] = 0.0
         bead.history[OWNER] = bead.tag
-    if touch.x > 0.0 and len(plates) > 1 and _home(plates, p, touch, bead) != p:
-        return
     at = slot_of(bead.history, shared, p)
+    new = at == 0 or bead.history[at + PLATE] == 0.0
+    if new and touch.x > 0.0 and len(plates) > 1 and _home(plates, p, touch, bead) != p:
+        return
     if at == 0:
         if touch.x > 0.0:
             complain(shared, clock.step, bead.tag, bead.history, memory.TOO_MANY_PLATES, p, 0.0,
                      shared.slots)  # fmt: skip
         return
-    if bead.history[at + PLATE] == 0.0 and (touch.x <= 0.0 or not clock.advancing):
+    if new and (touch.x <= 0.0 or not clock.advancing):
         return
     if clock.advancing:
         _normal(law, shared, clock, bead, plate, p, at, touch)

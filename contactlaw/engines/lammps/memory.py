@@ -17,9 +17,9 @@ carray: Any = numba.carray  # type: ignore[attr-defined]
 # (LAMMPS gives a new bead the row that another one has left behind: by the ID it is known.) A slot:
 # the plate's number, counted from 1, negative if the bead is on the side from which the normal
 # points away, 0 if the slot is empty; the state of the contact; the time since first touch [s],
-# summed up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset); approach
-# speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already [J]; with
-# friction, the three components of the tangential spring [m].
+# summed up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset);
+# approach speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already
+# [J]; with friction, the three components of the tangential spring [m].
 ERROR, OWNER, FIRST = range(3)
 PLATE, DISPLACEMENT, LARGEST, FORCE, DURATION, SPEED, WAVE, TOLD, SPRING = range(9)
 _SLOTS = 3  # plates that a bead may touch at once; a corner has three

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -137,7 +136,7 @@ def checked(plates: Any, model: Any) -> list[Plate]:
 
 def check_friction(friction: Any) -> None:
     """Refuse what is no coefficient of friction."""
-    if not isinstance(friction, Real) or isinstance(friction, bool):
+    if not isinstance(friction, int | float | np.number) or isinstance(friction, bool):
         raise TypeError(f"friction: expected a number, got {friction!r}")
     if not 0.0 <= friction < math.inf:
         raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
