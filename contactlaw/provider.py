@@ -410,8 +410,9 @@ class ImpactModel:
         Sensitivity
             By how many per cent the COR rises with one per cent of each input [-]; an input that is
             known to 10 % leaves the COR uncertain by ten times that. From the table's derivatives,
-            within 1e-4 for lambda up to 1. A law's own numbers (E*/sigma_Y of `jackson_green`) are
-            held fixed.
+            within 1e-4 for lambda up to 1; next to the corners of the loading curves of
+            ``"stronge"`` and ``"kogut_etsion"`` within 1e-2. A law's own numbers are held fixed: of
+            ``"jackson_green"``, whose E*/sigma_Y moves with moduli and strength, 5 % is missing.
 
         Raises
         ------

@@ -236,3 +236,28 @@ def test_each_set_of_numbers_has_a_table_of_its_own(tmp_path):
     path = tmp_path / "table.h5"
     store.write(table.build(names[0], TINY), path)
     assert store.read(path).law == names[0]
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("myc(3)", r"'myc\(3\)' takes no numbers"),
+        ("thornton(1.6)", "takes no numbers"),
+        ("kogut_etsion(0.9)", "poissons_ratio must lie between 0 and 0.5, got '0.9'"),
+        ("kogut_etsion(e)", "poissons_ratio must lie between"),
+        ("jackson_green(0,0.3)", "modulus_ratio must lie between 2 and 1e"),
+        ("jackson_green(1e400,0.3)", "modulus_ratio must lie between"),
+    ],
+)
+def test_wrong_numbers_of_a_law(name, message):
+    with pytest.raises(ValueError, match=message):
+        laws.law(name)
+
+
+def test_numbers_of_a_law_count_as_they_are_written():
+    assert laws.law("kogut_etsion(0.30000004)").name == "kogut_etsion(0.3)"
+    assert laws.law("kogut_etsion(0.30000004)").yield_coefficient == (
+        laws.law("kogut_etsion", poissons_ratio=0.3).yield_coefficient
+    )
+    with pytest.raises(ValueError, match="poissons_ratio must lie"):
+        laws.law("kogut_etsion", poissons_ratio=float("nan"))

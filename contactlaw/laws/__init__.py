@@ -22,8 +22,9 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import ModuleType
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+_RANGES = {"modulus_ratio": (2.0, 1e6), "poissons_ratio": (0.0, 0.5)}  # of laws' parameters
 _BRACKETS = re.compile(r"[a-z_]+\([-+.,0-9e]+\)")
 
 
@@ -161,6 +162,8 @@ def law(name: str, **numbers: float) -> Law:
     """
     module = _module(name)
     wanted = getattr(module, "PARAMETERS", None)
+    if wanted is None and "(" in name:
+        raise ValueError(f"law: {name!r} takes no numbers; name it as {name.partition('(')[0]!r}")
     if wanted is None:
         found: Law = module.LAW
         return found
@@ -179,10 +182,22 @@ def _module(name: str) -> ModuleType:
 
 
 def _values(name: str, wanted: tuple[str, ...], numbers: dict[str, float]) -> list[float]:
-    given = name[:-1].partition("(")[2].split(",") if "(" in name else None
+    given: list[Any] | None = name[:-1].partition("(")[2].split(",") if "(" in name else None
     if given is None and numbers.keys() >= set(wanted):
-        given = [f"{numbers[parameter]:.6g}" for parameter in wanted]
+        given = [numbers[parameter] for parameter in wanted]
+    form = f"{name.partition('(')[0]}({','.join(wanted)})"
     if given is None or len(given) != len(wanted):
-        form = f"{name.partition('(')[0]}({','.join(wanted)})"
         raise ValueError(f"law: {name!r} needs its numbers, got none or others: name it as {form}")
-    return [float(value) for value in given]
+    values = []
+    for parameter, value in zip(wanted, given, strict=True):
+        low, high = _RANGES[parameter]
+        try:
+            number = float(f"{float(value):.6g}")  # as in the name, which a table is found by
+        except (TypeError, ValueError):
+            number = math.nan
+        if not low <= number <= high:
+            raise ValueError(
+                f"law: {parameter} must lie between {low:g} and {high:g}, got {value!r} in {form}"
+            )
+        values.append(number)
+    return values

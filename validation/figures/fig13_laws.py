@@ -1,6 +1,6 @@
 """Fig. 13: the COR by all laws, on the half-space and on a plate.
 
-Four laws agree within 5 % up to 3.5 V_Y0 and part beyond. Thornton's, which yields at 2.13 m/s, is
+Four laws agree within 7 % up to 3.5 V_Y0 and part beyond. Thornton's, which yields at 2.13 m/s, is
 far lower; it approaches its asymptote 1.185 v^(-1/4) (v by its own yield speed), Johnson's power.
 Stronge's bends from 2.4 to 3 V_Y0, where its unloading curve leaves the loading curve.
 """
@@ -22,7 +22,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     figure = _style.figure(
         12.0,
         5.6,
-        "Four laws agree within 5 % at moderate speeds, Thornton's does not",
+        "Four laws agree within 7 % at moderate speeds, Thornton's does not",
         "COR against speed, gamma-alumina on glass; V$_{Y0}$ is the yield speed of MYC, 7.43 m/s",
     )
     left, right = figure.subplots(1, 2, sharey=True)
