@@ -41,7 +41,14 @@ def test_a_result_with_nan_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(store, "FOLDER", tmp_path)
     with pytest.raises(ValueError, match="force.*'bad'.*not finite"):
         store.write("bad", "", {"force": np.array([np.nan])}, {})
-    assert not store.path("bad").exists()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "FOLDER", tmp_path)
+    with pytest.raises(TypeError):
+        store.write("bad", "", {"force": np.ones(3)}, {}, mesh=object())
+    assert not list(tmp_path.iterdir())
 
 
 def test_discretisation_error():

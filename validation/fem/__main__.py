@@ -25,6 +25,8 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args(arguments)
+    if options.processes < 1:
+        parser.error(f"--processes: must be 1 or more, got {options.processes}")
     wrong = set(options.names) - set(steps)
     if wrong:
         parser.error(f"no such study: {', '.join(wrong)}; there are {', '.join(steps)}")

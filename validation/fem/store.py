@@ -48,27 +48,31 @@ def write(
         Mesh and whatever else made it.
     """
     FOLDER.mkdir(exist_ok=True)
+    for key, values in data.items():
+        if np.asarray(values).dtype.kind == "f" and not np.isfinite(values).all():
+            raise ValueError(f"{key}: a result of study {name!r} is not finite")
     unfinished = path(name).with_suffix(".part")
-    with h5py.File(unfinished, "w") as file:
-        file.attrs.update(
-            about=about,
-            command=f"python -m validation.fem {name}",
-            date=date.today().isoformat(),
-            solver_version=solver.VERSION,
-            contactlaw_version=VERSION,
-            **settings,
-        )
-        for key, values in data.items():
-            array = np.asarray(values)
-            if array.dtype.kind == "U":
-                file.create_dataset(key, data=array.astype(h5py.string_dtype()))
-                continue
-            if not np.isfinite(array).all():
-                raise ValueError(f"{key}: a result of study {name!r} is not finite")
-            packed = {"compression": "gzip", "shuffle": True} if array.size > 200 else {}
-            file.create_dataset(key, data=array, **packed)
-            file[key].attrs["unit"] = units.get(key, "-")
-    os.replace(unfinished, path(name))
+    try:
+        with h5py.File(unfinished, "w") as file:
+            file.attrs.update(
+                about=about,
+                command=f"python -m validation.fem {name}",
+                date=date.today().isoformat(),
+                solver_version=solver.VERSION,
+                contactlaw_version=VERSION,
+                **settings,
+            )
+            for key, values in data.items():
+                array = np.asarray(values)
+                if array.dtype.kind == "U":
+                    file.create_dataset(key, data=array.astype(h5py.string_dtype()))
+                    continue
+                packed = {"compression": "gzip", "shuffle": True} if array.size > 200 else {}
+                file.create_dataset(key, data=array, **packed)
+                file[key].attrs["unit"] = units.get(key, "-")
+        os.replace(unfinished, path(name))
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def read(name: str) -> Result:
