@@ -101,9 +101,8 @@ def cached(law: str, settings: Settings | None = None) -> Table:
             return found
         place.mkdir(parents=True, exist_ok=True)
         with _locked(path):
-            found = _usable(
-                path, law, settings
-            )  # another process may have built it while this one waited
+            # another process may have built it while this one waited
+            found = _usable(path, law, settings)
             if found is not None:
                 return found
             built = table.build(law, settings, progress=progress_bar)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import lookup, shapes, zener
-from contactlaw.impact import Contact, scales
+from contactlaw.impact import Scales
 from contactlaw.laws import Law
 from contactlaw.table import Table
 
@@ -72,11 +72,11 @@ def solved(law: Law, fields: Array, samples: int, rtol: float) -> Array:
 
 
 def with_units(
-    histories: Array, contact: Contact, speed: Array, shape: tuple[int, ...] | None
+    histories: Array, units: Scales, mobility: Array, shape: tuple[int, ...] | None
 ) -> ForceHistory:
     """Give histories (4, n, samples) their units and the shape of the answer."""
-    units, momentum = scales(contact, speed), contact.mass * speed
+    momentum = units.force * units.time
     histories *= np.stack((units.time, units.force, units.compression, momentum))[..., None]
-    displacement = contact.mobility[:, None] * histories[3]
+    displacement = mobility[:, None] * histories[3]
     whole = (*(shape or ()), histories.shape[2])
     return ForceHistory(*(values.reshape(whole) for values in (*histories, displacement)))

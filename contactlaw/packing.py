@@ -49,10 +49,19 @@ def spline_coefficients(values: Array) -> Array:
     return c
 
 
-def surface(values: Array, lengths: NDArray[np.int64]) -> Array:
+def blocks(segments: tuple[Array, ...]) -> Array:
+    """First ln chi, nodes per unit of ln chi and first column of coefficients of each segment."""
+    lengths = np.array([nodes.size for nodes in segments])
+    start, end = np.array([(nodes[0], nodes[-1]) for nodes in segments]).T
+    return np.column_stack(
+        (start, (lengths - 1) / (end - start), np.cumsum(lengths + 2) - (lengths + 2))
+    )
+
+
+def surface(values: Array, segments: tuple[Array, ...]) -> Array:
     """Coefficients of bicubic splines along axes 0 and 1; along 1, one for each segment."""
     across = spline_coefficients(values).swapaxes(0, 1)
-    parts = np.split(across, np.cumsum(lengths)[:-1])
+    parts = np.split(across, np.cumsum([nodes.size for nodes in segments])[:-1])
     both = np.concatenate([spline_coefficients(part) for part in parts])
     return both.swapaxes(0, 1)
 
@@ -81,22 +90,17 @@ def pack(
     fields: dict[str, Array],
 ) -> Array:
     """Fit splines through the values of a table's nodes and pack them into one array."""
-    lengths = np.array([len(nodes) for nodes in segments])
-    first_columns = np.cumsum(lengths + 2) - (lengths + 2)
-    both = surface(np.stack([fields[name] for name in FIELDS], axis=-1), lengths)
+    both = surface(np.stack([fields[name] for name in FIELDS], axis=-1), segments)
     # a kernel reads one coefficient too many at the very end, with the weight 0, and needs no test
     padded = np.pad(both, ((0, 1), (0, 1), (0, 0)), mode="edge")
     cor, others = padded[..., 0], padded[..., 1:]
     x_max = lam_max / (lam_max + stretch)
     power_series = _power_series_of(np.log(elastic_compression))
-    blocks = [
-        (nodes[0], (len(nodes) - 1) / (nodes[-1] - nodes[0]), column)
-        for nodes, column in zip(segments, first_columns, strict=True)
-    ]
     header = np.empty(HEADER)
     header[[STRETCH, X_MAX, LOG_CHI_MAX]] = stretch, x_max, segments[-1][-1]
     header[NODES_PER_X] = (len(both) - 3) / x_max
     header[[COLUMNS, SEGMENTS]] = cor.shape[1], len(segments)
-    start = HEADER + power_series.size + BLOCK * len(blocks)
+    start = HEADER + power_series.size + BLOCK * len(segments)
     header[[COR_AT, OTHERS_AT]] = start, start + cor.size
-    return np.concatenate([header, power_series, np.ravel(blocks), cor.ravel(), others.ravel()])
+    parts = header, power_series, blocks(segments).ravel(), cor.ravel(), others.ravel()
+    return np.concatenate(parts)

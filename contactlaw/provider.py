@@ -353,7 +353,7 @@ class ImpactModel:
         else:
             fields, _ = self._fields(units)
             contacts = history.tabulated(self._law, self._whole_table, fields, samples, RTOL)
-        return history.with_units(contacts, contact, v, shape)
+        return history.with_units(contacts, units, contact.mobility, shape)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | Array:
         """Speed V_Y [m/s] from which the bead yields on this plate; ``inf`` for an elastic law.

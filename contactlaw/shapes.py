@@ -50,16 +50,16 @@ class Shapes(NamedTuple):
 
 def pack(stretch: float, lam_max: float, segments: tuple[Array, ...], values: Singles) -> Shapes:
     """Fit splines through shapes (rows, nodes of all segments, 2, SIZE)."""
-    lengths = np.array([nodes.size for nodes in segments])
+    start, per_log, column = packing.blocks(segments).T
     flat = values.reshape(*values.shape[:2], 2 * SIZE).astype(np.float64)
     # a kernel reads one coefficient too many at the very end, with the weight 0, and needs no test
-    coefficients = np.pad(packing.surface(flat, lengths), ((0, 1), (0, 1), (0, 0)), mode="edge")
+    coefficients = np.pad(packing.surface(flat, segments), ((0, 1), (0, 1), (0, 0)), mode="edge")
     return Shapes(
         stretch=stretch,
         rows_per_x=(ROWS - 1) * (lam_max + stretch) / lam_max,
-        start=np.array([nodes[0] for nodes in segments]),
-        per_log=np.array([(len(nodes) - 1) / (nodes[-1] - nodes[0]) for nodes in segments]),
-        column=np.cumsum(lengths + 2) - (lengths + 2),
+        start=start.copy(),
+        per_log=per_log.copy(),
+        column=column.astype(np.int64),
         coefficients=coefficients.astype(np.float32),
     )
 

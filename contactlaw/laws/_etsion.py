@@ -56,9 +56,8 @@ def unloading(q: float, stiffness: float, twice: float) -> float:
 def dissipation(dm: float, fm: float, loading_work: float) -> float:
     """Subtract the unloading work from the loading work."""
     x = share(dm)
-    if (
-        max(dm, 1.0) ** -0.0331 <= 1.0 - x
-    ):  # on Hertz's curve, 0.4 - (1 - x)/(n + 1) without cancellation
+    if max(dm, 1.0) ** -0.0331 <= 1.0 - x:
+        # on Hertz's curve, 0.4 - (1 - x)/(n + 1) without cancellation
         return fm * dm * 0.16 * x / (1.0 - 0.6 * x)
     return loading_work - fm * dm * (1.0 - x) / (exponent(dm) + 1.0)
 

@@ -27,12 +27,13 @@ from __future__ import annotations
 import math
 
 from contactlaw._jit import kernel
-from contactlaw.laws import Law
+from contactlaw.laws import Law, myc
 
 _C_YIELD = (3.3 / 4.0) ** 2  # of pi^2 sigma_Y^2 R*/E*^2
 _PRESSURES = 2.8 / 1.1  # fully plastic over yield
 _S_PLASTIC = math.exp(3.3 * (_PRESSURES - 1.0))
 _P = 0.5 * (_S_PLASTIC + 1.0)
+_residual = myc.LAW.residual  # dm - sqrt(2 dm - 1)
 
 
 @kernel
@@ -53,14 +54,6 @@ def _loading_work(d: float) -> float:
     e = min(s, _S_PLASTIC)
     work = 0.4 + 0.25 * (e * e - 1.0) + (e * e * (2.0 * math.log(e) - 1.0) + 1.0) / (8.0 * 3.3)
     return work + 0.25 * _PRESSURES * (s * s - e * e)
-
-
-@kernel
-def _residual(dm: float) -> float:
-    """Return dm - sqrt(2 dm - 1), written without its cancellation near dm = 1."""
-    if dm < 1.0:
-        return 0.0
-    return (dm - 1.0) ** 2 / (dm + math.sqrt(2.0 * dm - 1.0))
 
 
 @kernel

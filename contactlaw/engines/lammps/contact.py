@@ -35,9 +35,8 @@ from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, adv
 
 NEAR = 2.0  # [r] from the plate: from here on a bead's history is kept up to date
 _AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a plate
-_FASTER = (
-    1.01  # times its approach speed: a bead in contact that has been hit, not one that falls on
-)
+# times its approach speed: a bead in contact that has been hit, not one that falls on
+_FASTER = 1.01
 _SEAM = 1e-4  # [r] between plates that are one surface to a bead
 _TIE = 1e-9  # [r] of overlap: rounding
 _SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
