@@ -113,21 +113,21 @@ def test_yielding_tube_carries_the_closed_form_pressure():
 
 
 def test_mobility_of_the_plate():
-    """A slow pulse of force moves the plate at alpha F (Zener 1941), until waves come back."""
+    """Under a slow pulse of force F the plate moves at alpha F (Zener 1941), all the time."""
     glass = cl.material("glass")
-    thickness, duration = 1e-3, 60e-6
-    one = block(150, 6, 0.12, thickness)
+    thickness, duration, stride = 1e-3, 240e-6, 20
+    one = block(200, 6, 0.25, thickness)  # waves are not back from the edge
     system, dt = alone(one, glass)
     load = np.zeros_like(system.x)
-    loaded = system.x[:, 0] < 2.5e-3
+    loaded = system.x[:, 0] < 1.3e-3
     shape = system.mass * loaded / (system.mass @ loaded) / (2 * math.pi)
-    foot = 0
-    impulse = way = moved = time = 0.0
+    mobility = float(plate_mobility(glass, np.float64(thickness)))
+    foot, time, speed, force = 0, 0.0, [], []
     while time < duration:
-        force = math.sin(math.pi * (time + 5 * dt) / duration) ** 2
-        load[:, 1] = -force * shape
-        solver.advance(system, load, dt, 10)
-        time += 10 * dt
-        impulse += force * 10 * dt
-    way, moved = -system.x[foot, 1], float(plate_mobility(glass, np.float64(thickness))) * impulse
-    assert way == pytest.approx(moved, rel=0.02)
+        force.append(math.sin(math.pi * (time + 0.5 * stride * dt) / duration) ** 2)
+        load[:, 1] = -force[-1] * shape
+        before = system.x[foot, 1]
+        solver.advance(system, load, dt, stride)
+        time += stride * dt
+        speed.append((before - system.x[foot, 1]) / (stride * dt))
+    assert np.array(speed) == pytest.approx(mobility * np.array(force), abs=0.02 * mobility)

@@ -19,7 +19,7 @@ from validation.fem.studies import STUDIES
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run what is named, or all; 0 when done, 2 for wrong usage."""
+    """Run what is named, or all; 0 when done, 2 for wrong usage, 130 for Ctrl-C."""
     steps: dict[str, Callable[[int], None]] = {**STUDIES, "report": _report}
     parser = argparse.ArgumentParser(prog="python -m validation.fem")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
@@ -30,10 +30,17 @@ def main(arguments: list[str] | None = None) -> int:
     wrong = set(options.names) - set(steps)
     if wrong:
         parser.error(f"no such study: {', '.join(wrong)}; there are {', '.join(steps)}")
-    for name in tqdm(options.names or list(steps), "studies", disable=None):
-        start = time.perf_counter()
-        steps[name](options.processes)
-        tqdm.write(f"{name:14s} {time.perf_counter() - start:6.0f} s")
+    bar = tqdm(options.names or list(steps), disable=None)
+    try:
+        for name in bar:
+            bar.set_description(name)
+            start = time.perf_counter()
+            steps[name](options.processes)
+            tqdm.write(f"{name:14s} {time.perf_counter() - start:6.0f} s")
+    except KeyboardInterrupt:
+        bar.close()
+        print("interrupted; the studies that were finished are kept", file=sys.stderr)
+        return 130
     return 0
 
 

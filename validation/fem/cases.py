@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+import multiprocessing
+import signal
 from collections.abc import Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, fields
+from multiprocessing.pool import Pool
 from typing import Any
 
 import numpy as np
@@ -16,14 +18,15 @@ from contactlaw.impact import scales, sphere_on_plate
 from contactlaw.laws import law
 from validation.fem import store
 from validation.fem.impact import impact
+from validation.fem.solver import SETTINGS
 from validation.paper import PAIR, RADIUS
 
-UNITS = {
+_UNITS = {
     "speed": "m/s", "radius": "m", "thickness": "m", "width": "m", "size": "sphere radius",
     "contact_time": "s", "peak_force": "N", "peak_compression": "m", "residual_compression": "m",
-    "step": "s", "time": "s", "force": "N", "compression": "m", "contact_radius": "m", "r": "m",
-    "z": "m", "deflection": "m",
+    "step": "s",
 }  # fmt: skip
+_DEFAULTED = "size", "width", "hourglass_stiffness"  # by `impact`, where a case has NaN
 OUTCOMES = (
     "restitution", "contact_time", "peak_force", "peak_compression", "residual_compression",
     "plastic", "wave", "vibration", "friction_loss", "hourglass", "touching_loss", "balance",
@@ -44,6 +47,8 @@ class Case:
     width: float = math.nan  # [m]
     friction: float = 0.1
     yields: bool = True
+    far: float = 1.0
+    hourglass_stiffness: float = math.nan
 
     @property
     def pair(self) -> cl.Pair:
@@ -53,10 +58,10 @@ class Case:
 
 def solve(case: Case) -> dict[str, Any]:
     """Compute a case; its inputs and outcomes by name."""
+    given = {name: value for name in _DEFAULTED if not math.isnan(value := getattr(case, name))}
     hit = impact(
         case.pair, case.speed, case.radius, case.thickness,
-        size=None if math.isnan(case.size) else case.size, friction=case.friction,
-        yields=case.yields, width=None if math.isnan(case.width) else case.width,
+        friction=case.friction, yields=case.yields, far=case.far, **given,
     )  # fmt: skip
     named = {
         "friction_loss": hit.friction,
@@ -65,18 +70,22 @@ def solve(case: Case) -> dict[str, Any]:
     }
     outcome = {key: named[key] if key in named else getattr(hit, key) for key in OUTCOMES}
     width = float(hit.system.x[:, 0].max())
-    return {**asdict(case), **outcome, "size": hit.size, "width": width}
+    stiffness = hit.system.sphere.bending / case.pair.sphere.plane_modulus
+    taken = {"size": hit.size, "width": width, "hourglass_stiffness": stiffness}
+    return {**asdict(case), **outcome, **taken}
+
+
+def workers(processes: int) -> Pool:
+    """Start processes that end with the block that uses them, at once, Ctrl-C included."""
+    return multiprocessing.Pool(processes, signal.signal, (signal.SIGINT, signal.SIG_IGN))
 
 
 def solve_all(cases: Iterable[Case], title: str, processes: int) -> dict[str, np.ndarray]:
     """Compute cases side by side; columns by name, in the order of the cases."""
     listed = list(cases)
-    rows: list[dict[str, Any]] = [{} for _ in listed]
-    with ProcessPoolExecutor(processes) as pool:
-        futures = {pool.submit(solve, case): n for n, case in enumerate(listed)}
-        bar = tqdm(as_completed(futures), title, len(listed), disable=None, leave=False)
-        for future in bar:
-            rows[futures[future]] = future.result()
+    with workers(processes) as pool:
+        done = tqdm(pool.imap(solve, listed), title, len(listed), disable=None, leave=False)
+        rows = list(done)
     names = [field.name for field in fields(Case)] + list(OUTCOMES)
     return {name: np.array([row[name] for row in rows]) for name in names}
 
@@ -89,7 +98,9 @@ def yield_inelasticity(pair: cl.Pair, thickness: float) -> float:
 
 def save(name: str, about: str, data: dict[str, np.ndarray]) -> None:
     """Keep computed cases as a file."""
+    units = {name: _UNITS.get(name, "-") for name in data}
     store.write(
-        name, about, data, UNITS,
+        name, about, data, units,
         mesh="conformal half disc, plate graded by 1.1; element size [R] in column size",
+        **SETTINGS,
     )  # fmt: skip

@@ -20,7 +20,7 @@ from contactlaw._jit import kernel
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-_SWEEPS = 12  # our choice; the force changes by less than 1e-4 beyond it
+SWEEPS = 12  # our choice; the force changes by less than 1e-4 beyond it
 
 
 class Surfaces(NamedTuple):
@@ -30,7 +30,7 @@ class Surfaces(NamedTuple):
     master: Indices  # (m,), likewise
     segment: Indices  # (s,), the master's segment below each slave
     share: Array  # (s,), where on the segment, 0 to 1
-    gap: Array  # (s, 2), from the segment to the slave, in r and z [m]
+    gap: Array  # (s,), from the segment up to the slave [m]
     before: Array  # (s, 2), its rate half a step ago [m/s]
     impulse: Array  # (s, 2), normal and tangential [N s]
     work: Array  # (2,), loss in normal contact and in friction so far [J]
@@ -56,9 +56,9 @@ def approach(pair: Surfaces, x: Array, v: Array) -> int:
         pair.segment[i], pair.share[i] = k, t
         for j in range(2):
             pair.impulse[i, j] = 0.0
-            pair.gap[i, j] = x[s, j] - (1.0 - t) * x[a, j] - t * x[b, j]
             pair.before[i, j] = v[s, j] - (1.0 - t) * v[a, j] - t * v[b, j]
-        if pair.gap[i, 1] > pair.reach:
+        pair.gap[i] = x[s, 1] - (1.0 - t) * x[a, 1] - t * x[b, 1]
+        if pair.gap[i] > pair.reach:
             return i
     return pair.slave.size
 
@@ -68,7 +68,7 @@ def resolve(
     pair: Surfaces, x: Array, v: Array, inverse_mass: Array, dt: float, count: int
 ) -> float:
     """Correct the new velocities for contact; return the force that lifts the slaves [N/rad]."""
-    for _ in range(_SWEEPS):
+    for _ in range(SWEEPS):
         for i in range(count):
             s, t = pair.slave[i], pair.share[i]
             a, b = pair.master[pair.segment[i]], pair.master[pair.segment[i] + 1]
@@ -79,10 +79,10 @@ def resolve(
             i_r = m[0] + (1.0 - t) ** 2 * m_a[0] + t * t * m_b[0]
             i_z = m[1] + (1.0 - t) ** 2 * m_a[1] + t * t * m_b[1]
             i_n, i_t = e_z * e_z * i_r + e_r * e_r * i_z, e_r * e_r * i_r + e_z * e_z * i_z
-            depth = e_r * (u_z + pair.gap[i, 1] / dt) - e_z * (u_r + pair.gap[i, 0] / dt)
+            depth = e_r * (u_z + pair.gap[i] / dt) - e_z * u_r
             normal = max(pair.impulse[i, 0] - depth / i_n, 0.0)
             limit = pair.friction * normal
-            slip = (e_r * u_r + e_z * u_z) / i_t if i_t > 0.0 else 0.0  # 0 on the axis
+            slip = (e_r * u_r + e_z * u_z) / i_t if i_r > 0.0 else 0.0  # 0 on the axis
             along = min(max(pair.impulse[i, 1] - slip, -limit), limit)
             j_n, j_t = normal - pair.impulse[i, 0], along - pair.impulse[i, 1]
             pair.impulse[i, 0], pair.impulse[i, 1] = normal, along

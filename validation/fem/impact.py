@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
+from contactlaw.closed_form import checked
 from validation.fem import elements, mesh, solver
 from validation.fem.solver import System
 
@@ -33,7 +34,7 @@ class Impact:
     restitution : float
         Mean rebound velocity of the sphere over its impact speed [-].
     contact_time : float
-        Until the force is zero for good [s].
+        Until the last step with a force [s].
     peak_force, peak_compression, residual_compression : float
         Largest force [N]; largest way of the sphere's centre of mass towards the foot of the plate
         below it, and what of that is left at separation [m].
@@ -46,8 +47,8 @@ class Impact:
     plastic_strain : float
         Largest equivalent plastic strain [-].
     time, force, speed, compression : ndarray
-        History: time [s], force [N], mean speed of the sphere towards the plate [m/s],
-        compression [m].
+        History: time [s], force [N], mean of the time from the sample before to the sample after,
+        mean speed of the sphere towards the plate [m/s], compression [m].
     system : System
         All nodes and elements at the end.
     snapshots : list of ndarray
@@ -92,6 +93,8 @@ def impact(
     friction: float = 0.1,
     yields: bool = True,
     width: float | None = None,
+    far: float = 1.0,
+    hourglass_stiffness: float | None = None,
     times: Sequence[float] = (),
 ) -> Impact:
     """Let a sphere fall on a plate whose edge is too far to answer.
@@ -103,14 +106,19 @@ def impact(
     speed, radius, thickness : float
         Impact speed [m/s], radius of the sphere and thickness of the plate [m].
     size : float, optional
-        Smallest element, over the radius; by default 0.01, or a 15th of the contact's radius.
+        Smallest element, over the radius, 0.001 to 0.1; by default 0.01, or a 15th of the
+        contact's radius.
     friction : float, optional
-        Coefficient of friction.
+        Coefficient of friction, 0 to 1.
     yields : bool, optional
         Whether the sphere does.
     width : float, optional
         Distance of the plate's free edge from the axis [m]; by default as far as no wave comes
-        back from in the contact time that the model expects.
+        back from in the contact time that the model expects; at least the radius.
+    far : float, optional
+        Factor on the plate's elements away from the contact, 0.1 to 2, see `mesh.plate`.
+    hourglass_stiffness : float, optional
+        Stiffness of the sphere's hourglass modes, 0 to 1, see `solver.assemble`.
     times : sequence of float, optional
         Times at which to keep all positions [s].
 
@@ -120,8 +128,11 @@ def impact(
 
     Raises
     ------
+    ValueError
+        If an argument is outside its range.
     RuntimeError
-        If the sphere does not leave the plate within three times the contact time expected.
+        If the sphere does not leave the plate within three times the contact time expected, or
+        elements collapse.
 
     Examples
     --------
@@ -134,19 +145,21 @@ def impact(
     model = cl.ImpactModel(pair, law="myc" if yields else "hertz", outside="solve")
     guess = model.lookup(speed, radius, thickness)
     expected = float(guess.contact_time)
-    if width is None:
-        wave = math.sqrt(pair.plate.plane_modulus / pair.plate.density)
-        width = _RIM * wave * (1.0 + _PATIENCE) * expected
     contact = math.sqrt(radius * float(guess.peak_compression))
-    if size is None:
-        size = min(_FINEST, contact / radius / _ACROSS)
+    width = free_width(pair.plate, expected) if width is None else width
+    size = min(_FINEST, contact / radius / _ACROSS) if size is None else size
     core = _CORE * contact
+    checked(
+        size=(size, 1e-3, 0.1), friction=(friction, 0.0, 1.0), width=(width, radius, math.inf),
+        far=(far, 0.1, 2.0), hourglass_stiffness=(hourglass_stiffness or 0.0, 0.0, 1.0),
+    )  # fmt: skip
     meshes = (
         mesh.sphere(radius, size * radius, core),
-        mesh.plate(radius, size * radius, core, thickness, width),
+        mesh.plate(radius, size * radius, core, thickness, width, far),
     )
-    system = solver.assemble(meshes, (pair.sphere, pair.plate), friction, yields)
-    step = solver.time_step(system, (pair.sphere, pair.plate))
+    materials = pair.sphere, pair.plate
+    system = solver.assemble(meshes, materials, friction, yields, hourglass_stiffness)
+    step = solver.time_step(system, materials)
     system.v[: _sphere_nodes(system), 1] = -speed
     every = max(1, round(expected / _SAMPLES / step))
     load = np.zeros_like(system.x)
@@ -155,11 +168,16 @@ def impact(
     snapshots: list[Array] = []
     last, start = 0.0, _way(system)
     while True:
-        force, touching = solver.advance(system, load, step, every)
+        force, touched = solver.advance(system, load, step, every)
+        if not math.isfinite(force):
+            raise RuntimeError(
+                f"elements collapsed at speed {speed:g} m/s on a plate of {thickness:g} m: take a "
+                f"lower speed, or coarser elements than {size:g}"
+            )
+        if touched:
+            last = (len(rows) * every + touched) * step
         time = (len(rows) + 1) * every * step
         rows.append((time, 2.0 * math.pi * force, _speed(system), start - _way(system)))
-        if touching:
-            last = time
         if len(rows) % 20 == 0:
             energies.append(energy(system))
         if len(snapshots) < len(times) and time >= times[len(snapshots)]:
@@ -172,6 +190,12 @@ def impact(
                 f"expected at speed {speed:g} m/s on a plate of {thickness:g} m"
             )
     return _outcome(system, np.array(rows).T, energies, last, snapshots, size, step, every)
+
+
+def free_width(plate: cl.Material, contact_time: float) -> float:
+    """Distance [m] from which an edge sends no wave back while a contact lasts."""
+    wave = math.sqrt(plate.plane_modulus / plate.density)
+    return _RIM * wave * (1.0 + _PATIENCE) * contact_time
 
 
 def _sphere_nodes(system: System) -> int:
@@ -222,15 +246,17 @@ def _outcome(
     step: float,
     every: int,
 ) -> Impact:
-    time, force, speed, compression = history
+    time, mean_force, speed, compression = history
     first = float(sum(energies[0]))
     share = [float(value) / first for value in energy(system)]
     mass = system.mass[: _sphere_nodes(system)].sum()
     end = int(np.searchsorted(time, contact_time))
+    # a row's force is the mean since the row before, half a sample older than the rest of it
+    force = 0.5 * (mean_force + np.append(mean_force[1:], 0.0))
     return Impact(
         restitution=float(-speed[-1]) / math.sqrt(2.0 * first / mass),
         contact_time=contact_time,
-        peak_force=float(force.max()),
+        peak_force=float(mean_force.max()),
         peak_compression=float(compression.max()),
         residual_compression=float(compression[end]),
         plastic=share[5],

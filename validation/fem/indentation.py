@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
+from contactlaw.closed_form import checked
 from validation.fem import mesh, solver
 from validation.fem.solver import System
 
@@ -71,15 +72,15 @@ def indent(
     pair : contactlaw.Pair
         Materials of hemisphere and block.
     radius, depth : float
-        Radius of the hemisphere and largest compression [m].
+        Radius of the hemisphere and largest compression, up to half of it [m].
     size : float, optional
-        Smallest element, over the radius.
+        Smallest element, over the radius, 0.001 to 0.1.
     friction : float, optional
-        Coefficient of friction.
+        Coefficient of friction, 0 to 1.
     yields : bool, optional
         Whether the hemisphere does.
     slowness : float, optional
-        Factor on the time T, to show that it does not matter.
+        Factor on the time T, 0.1 to 10, to show that it does not matter.
 
     Returns
     -------
@@ -87,10 +88,15 @@ def indent(
 
     Raises
     ------
+    ValueError
+        If depth, size, friction or slowness is outside its range.
     RuntimeError
-        If elements collapse: an elastic hemisphere cannot be pressed in by more than a quarter of
-        its radius, a plastic one by a third at least.
+        If elements collapse.
     """
+    checked(
+        depth=(depth, 1e-6 * radius, 0.5 * radius), size=(size, 1e-3, 0.1),
+        friction=(friction, 0.0, 1.0), slowness=(slowness, 0.1, 10.0),
+    )  # fmt: skip
     width = core(radius, depth)
     fine, block = size * radius, BLOCK * radius
     meshes = (
@@ -103,28 +109,28 @@ def indent(
     driven = np.flatnonzero(system.x[:first, 1] > radius * (1.0 - 1e-9))
     foot = first + np.flatnonzero(meshes[1].nodes[:, 1] < -block * (1.0 - 1e-9))
     system.inverse_mass[np.concatenate([driven, foot]), 1] = 0.0
-    step = solver.time_step(system, materials)
     wave = math.sqrt((system.sphere.bulk + 2 * system.sphere.shear) / pair.sphere.density)
     duration = slowness * _TRANSITS * radius / wave
-    every = max(1, round(duration / _SAMPLES / step))
+    interval = duration / _SAMPLES
     load = np.zeros_like(system.x)
     way, rows, plastic = 0.0, [], []
-    for n in range(1, math.ceil(duration / step / every) + 1):
-        target = 0.5 * depth * (1.0 - math.cos(2.0 * math.pi * n * every * step / duration))
-        system.v[driven, 1] = (way - target) / (every * step)
-        force, touching = solver.advance(system, load, step, every)
+    for n in range(1, _SAMPLES + 1):
+        every = math.ceil(interval / solver.time_step(system, materials))  # elements get thinner
+        target = 0.5 * depth * (1.0 - math.cos(2.0 * math.pi * n / _SAMPLES))
+        system.v[driven, 1] = (way - target) / interval
+        force, touched = solver.advance(system, load, interval / every, every)
+        if not math.isfinite(force):
+            raise RuntimeError(
+                f"elements collapsed on the way to depth {depth:g} m: take less, or coarser "
+                f"elements than {size:g}"
+            )
         kinetic = 0.5 * system.mass @ (system.v**2).sum(axis=1)
         pressed = system.surfaces.slave[system.surfaces.impulse[:, 0] > 0.0]
-        edge = system.x[pressed, 0].max(initial=0.0) if touching else 0.0
+        edge = system.x[pressed, 0].max(initial=0.0) if touched == every else 0.0
         rows.append((0.5 * (way + target), 2.0 * math.pi * force, edge, kinetic))
         plastic.append(system.sphere.work[0])
         way = target
     compression, force_, edge_, kinetic_ = np.array(rows).T
-    if not np.isfinite(force_).all():
-        raise RuntimeError(
-            f"elements collapsed on the way to depth {depth:g} m: take less than "
-            f"{0.25 * radius:g} m for an elastic hemisphere, or coarser elements than {size:g}"
-        )
     top = int(compression.argmax())
     work = float(np.trapezoid(force_[: top + 1], compression[: top + 1])) / (2.0 * math.pi)
     return Indentation(

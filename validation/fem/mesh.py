@@ -84,7 +84,9 @@ def sphere(radius: float, size: float, core: float, hemisphere: bool = False) ->
     return Mesh(_points(nodes), np.concatenate(elements), surface)
 
 
-def plate(radius: float, size: float, core: float, thickness: float, width: float) -> Mesh:
+def plate(
+    radius: float, size: float, core: float, thickness: float, width: float, far: float = 1.0
+) -> Mesh:
     """Rectangle of a plate's thickness, with elements of one size at the contact.
 
     Parameters
@@ -95,6 +97,8 @@ def plate(radius: float, size: float, core: float, thickness: float, width: floa
         Size of the elements at the contact, and how far from the axis they have it [m].
     thickness, width : float
         Thickness of the plate and distance of its edge from the axis [m].
+    far : float, optional
+        Factor on the elements away from the contact: on the largest, and on how fast they grow.
 
     Returns
     -------
@@ -106,9 +110,9 @@ def plate(radius: float, size: float, core: float, thickness: float, width: floa
     >>> [float(v) for v in mesh.nodes.min(axis=0)], [float(v) for v in mesh.nodes.max(axis=0)]
     ([0.0, -2.0], [10.0, 0.0])
     """
-    coarsest = max(_COARSEST * radius, thickness / _LAYERS)
-    r = _graded(width, size, core, coarsest)
-    z = -_graded(thickness, size, 0.0, coarsest)[::-1]
+    coarsest = far * max(_COARSEST * radius, thickness / _LAYERS)
+    r = _graded(width, size, core, coarsest, _GROWTH**far)
+    z = -_graded(thickness, size, 0.0, coarsest, _GROWTH**far)[::-1]
     index = np.arange(r.size * z.size).reshape(z.size, r.size)
     return Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
 
@@ -131,11 +135,11 @@ def _cells(index: Indices) -> Indices:
     return np.stack([a, b, c, d], axis=-1).reshape(-1, 4)
 
 
-def _graded(length: float, size: float, fine: float, coarsest: float) -> Array:
+def _graded(length: float, size: float, fine: float, coarsest: float, growth: float) -> Array:
     """Points from 0 to length: steps of one size up to `fine`, then growing to the coarsest."""
     steps = [size] * round(fine / size)
     while sum(steps) < length:
-        steps.append(min(max(coarsest, size), _GROWTH * (steps[-1] if steps else size / _GROWTH)))
+        steps.append(min(max(coarsest, size), growth * (steps[-1] if steps else size / growth)))
     points = np.concatenate([[0.0], np.cumsum(steps)])
     excess = points[-1] / length  # spread over the growing part
     start = round(fine / size) if length > fine else 0

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._version import VERSION
-from validation.fem import solver
 
 FOLDER = Path(__file__).parent.parent / "data"
 
@@ -43,14 +42,23 @@ def write(
     data : dict
         Arrays by name.
     units : dict
-        Units of those that have one.
+        Unit of each array of floats; "-" for a number.
     **settings
         Mesh and whatever else made it.
+
+    Raises
+    ------
+    ValueError
+        If a value is not finite, or has no unit.
     """
     FOLDER.mkdir(exist_ok=True)
     for key, values in data.items():
-        if np.asarray(values).dtype.kind == "f" and not np.isfinite(values).all():
+        if np.asarray(values).dtype.kind != "f":
+            continue
+        if not np.isfinite(values).all():
             raise ValueError(f"{key}: a result of study {name!r} is not finite")
+        if key not in units:
+            raise ValueError(f"{key}: a result of study {name!r} has no unit; a number has '-'")
     unfinished = path(name).with_suffix(".part")
     try:
         with h5py.File(unfinished, "w") as file:
@@ -58,7 +66,6 @@ def write(
                 about=about,
                 command=f"python -m validation.fem {name}",
                 date=date.today().isoformat(),
-                solver_version=solver.VERSION,
                 contactlaw_version=VERSION,
                 **settings,
             )
@@ -69,7 +76,8 @@ def write(
                     continue
                 packed = {"compression": "gzip", "shuffle": True} if array.size > 200 else {}
                 file.create_dataset(key, data=array, **packed)
-                file[key].attrs["unit"] = units.get(key, "-")
+                if key in units:
+                    file[key].attrs["unit"] = units[key]
         os.replace(unfinished, path(name))
     finally:
         unfinished.unlink(missing_ok=True)

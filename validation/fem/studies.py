@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,8 +14,9 @@ from tqdm import tqdm
 import contactlaw as cl
 from validation.fem import calculix, cases, store
 from validation.fem.cases import Case, yield_inelasticity
-from validation.fem.impact import impact
+from validation.fem.impact import free_width, impact
 from validation.fem.indentation import BLOCK, indent
+from validation.fem.solver import SETTINGS
 from validation.paper import PAIR, RADIUS, YIELD_COMPRESSION
 
 SLENDERNESS = (0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.8)  # R/H
@@ -30,21 +31,23 @@ _SPEED, _THICKNESS = 26.0, 0.5e-3  # of the paper's Figs 11 to 13 [m/s, m]
 
 
 def verification(processes: int) -> None:
-    """Meshes from 0.04 R to 0.005 R, no friction, a plate twice as wide, and Hertz's limit."""
+    """Meshes from 0.04 R to 0.005 R and what else may matter of them; Hertz's limit."""
     listed: list[tuple[str, Case]] = []
     for thickness in (0.5e-3, 1e-3):
-        listed += [("mesh", Case(_SPEED, thickness, size=s)) for s in (0.04, 0.02, 0.01, 0.005)]
-        listed.append(("no friction", Case(_SPEED, thickness, size=0.01, friction=0.0)))
-    thin = Case(speed=7.43, thickness=0.5e-3, size=0.01)
-    wave = math.sqrt(PAIR.plate.plane_modulus / PAIR.plate.density)
-    width = 0.55 * 1.15 * wave * 5.2e-6  # what `impact` takes, made explicit
-    for factor in (1.0, 2.0):
-        listed.append(("width", Case(thin.speed, thin.thickness, size=0.01, width=factor * width)))
+        usual = Case(_SPEED, thickness, size=0.01)
+        listed += [("mesh", replace(usual, size=s)) for s in (0.04, 0.02, 0.01, 0.005)]
+        listed.append(("far mesh", replace(usual, far=0.5)))
+        listed += [("hourglass", replace(usual, hourglass_stiffness=k)) for k in (0.01, 1.0)]
+        listed.append(("no friction", replace(usual, friction=0.0)))
+    thin = Case(PAIR.yield_speed, 0.5e-3, size=0.01)
+    time = float(cl.ImpactModel(PAIR).lookup(thin.speed, RADIUS, thin.thickness).contact_time)
+    width = free_width(PAIR.plate, time)
+    listed += [("width", replace(thin, width=factor * width)) for factor in (1.0, 2.0)]
     for speed in (8.0, 3.0, 1.0, 0.5):
         listed.append(("hertz", Case(speed, 9e-3, friction=0.0, yields=False)))
     data = cases.solve_all([case for _, case in listed], "verification", processes)
     data["check"] = np.array([check for check, _ in listed])
-    about = "convergence with the mesh; influence of friction and of the plate's width; Hertz"
+    about = "convergence with the mesh; hourglass stiffness, friction, width of the plate; Hertz"
     cases.save("verification", about, data)
 
 
@@ -55,34 +58,37 @@ def indentation(processes: int) -> None:
     jobs["10_twice_as_slow"] = {"depth": 10 * unit, "slowness": 2.0}
     jobs["10_coarse"] = {"depth": 10 * unit, "size": 0.04}
     jobs["10_calculix_mesh"] = {"depth": CALCULIX_DEPTH * unit, "size": CALCULIX_SIZE}
-    jobs["20_elastic"] = {"depth": 20 * unit, "yields": False}
+    jobs["30_elastic"] = {"depth": 30 * unit, "yields": False}
     jobs["1_elastic"] = {"depth": unit, "yields": False, "size": 0.01}
     data: dict[str, NDArray[Any]] = {}
-    with ProcessPoolExecutor(processes) as pool:
-        futures = {name: pool.submit(_indented, job) for name, job in jobs.items()}
-        for name, future in tqdm(futures.items(), "indentation", disable=None, leave=False):
-            for key, values in future.result().items():
-                data[f"{key}_{name}"] = values
+    units: dict[str, str] = {}
+    with cases.workers(processes) as pool:
+        done = pool.imap(_indented, jobs.values())
+        bar = tqdm(done, "indentation", len(jobs), disable=None, leave=False)
+        for name, outcome in zip(jobs, bar, strict=True):
+            for key, (values, unit) in outcome.items():
+                data[f"{key}_{name}"], units[f"{key}_{name}"] = values, unit
     store.write(
         "indentation",
         "hemisphere pressed into a block and drawn back; the suffix is the depth in yield "
         "compressions d_Y, and what is special",
         data,
-        {key: cases.UNITS.get(key.split("_")[0], "-") for key in data},
-        mesh=f"element size 0.02 R unless the suffix says otherwise, block of {BLOCK:g} R, "
-        "friction 0.1",
-        yield_compression=unit,
+        units,
+        mesh=f"element size 0.02 R unless the suffix says otherwise, block of {BLOCK:g} R",
+        friction=0.1,
+        yield_compression=YIELD_COMPRESSION,
+        **SETTINGS,
     )
 
 
-def _indented(job: dict[str, Any]) -> dict[str, NDArray[Any]]:
+def _indented(job: dict[str, Any]) -> dict[str, tuple[NDArray[Any], str]]:
     press = indent(PAIR, RADIUS, **job)
     return {
-        "compression": press.compression,
-        "force": press.force,
-        "contact": press.contact_radius,
-        "kinetic": np.array(press.kinetic),
-        "plastic": np.array(press.plastic),
+        "compression": (press.compression, "m"),
+        "force": (press.force, "N"),
+        "contact_radius": (press.contact_radius, "m"),
+        "kinetic": (np.array(press.kinetic), "-"),
+        "plastic": (np.array(press.plastic), "-"),
     }
 
 
@@ -97,7 +103,7 @@ def calculix_indentation(_: int) -> None:
         "calculix",
         "the indentation to 10 d_Y by CalculiX: CAX4 elements, surface-to-surface contact",
         {"compression": compression, "force": force},
-        cases.UNITS,
+        {"compression": "m", "force": "N"},
         mesh=f"element size {CALCULIX_SIZE:g} R, block of {BLOCK:g} R",
         settings=calculix.SETTINGS,
         calculix_version=calculix.version(),
@@ -142,14 +148,23 @@ def paper(_: int) -> None:
             "wave": np.array(hit.wave),
             "vibration": np.array(hit.vibration),
         },
-        {**cases.UNITS, "corners": "m", "snapshot_time": "s"},
+        {
+            "time": "s", "force": "N", "speed": "m/s", "compression": "m", "corners": "m",
+            "snapshot_time": "s", "r": "m", "deflection": "m", "plastic_strain": "-",
+            "largest_plastic_strain": "-", "yielded_share": "-", "restitution": "-",
+            "plastic": "-", "wave": "-", "vibration": "-",
+        },
         mesh=f"element size {hit.size:g} R",
+        elements=len(system.sphere.elements) + len(system.plate.elements),
+        width=float(system.x[:, 0].max()),
+        friction=0.1,
         speed=_SPEED,
         thickness=_THICKNESS,
         radius=RADIUS,
         step=hit.step,
         steps=hit.steps,
-    )
+        **SETTINGS,
+    )  # fmt: skip
 
 
 def pairs(processes: int) -> None:

@@ -1,7 +1,10 @@
 """Fig. 21: the finite elements converge with the mesh, and tend to Hertz for small contacts.
 
-Elements of 0.01 R, the paper's, leave 0.1 % in COR, peak force and contact time. A finite contact
-is stiffer than Hertz's half-spaces, in proportion to its width: that is physics, not the mesh.
+Elements of 0.01 R, the paper's, leave an estimated error of 0.13 % in COR, 0.16 % in peak force,
+0.3 % in contact time and 0.5 % in the largest plastic strain: the limit of the last three meshes at
+their order, but at first order at best, and of halving the plate's mesh away from the contact, and
+a quarter more. A finite contact is stiffer than Hertz's half-spaces, in proportion to its width:
+that is physics, not the mesh.
 """
 
 from __future__ import annotations
@@ -12,7 +15,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import PercentFormatter
 
-from validation.fem import store
+from validation.fem import compare, store
 from validation.figures import _style
 from validation.paper import RADIUS, model
 
@@ -69,7 +72,9 @@ def draw() -> tuple[Figure, dict[str, float]]:
     right.legend()
     for axes in (left, right):
         axes.yaxis.set_major_formatter(PercentFormatter(1.0))
-    return figure, {
-        f"{label}: elements of 0.01 R over 0.005 R, difference": worst[name]
-        for name, (_, label) in _FIELDS.items()
-    }
+    estimated = compare.discretisation()
+    numbers = {}
+    for name, (_, label) in _FIELDS.items():
+        numbers[f"{label}: elements of 0.01 R over 0.005 R, difference"] = worst[name]
+        numbers[f"{label}: estimated error of 0.01 R"] = float(estimated[name].max())
+    return figure, numbers
