@@ -38,7 +38,7 @@ class Validity(enum.IntFlag):
 
     THIN_PLATE = 1
     """R/H > 1.8: the plate's deflection is no longer small (Peng et al. 2021, section 4.4). At
-    R/H = 2.5 the COR is up to 7 % above finite elements up to 7 V_Y0, 19 % at 14 V_Y0."""
+    R/H = 2.5 the COR is up to 7.4 % above finite elements up to 7 V_Y0, 19 % at 14 V_Y0."""
     FAST_IMPACT = 2
     """V0 > 7 V_Y0: beyond the paper's finite elements. At 10 and 14 V_Y0 the COR is within 3 % of
     ours up to R/H = 1, and 5 and 9 % too high at R/H = 1.8."""

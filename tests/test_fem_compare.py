@@ -96,7 +96,8 @@ def test_discretisation_error():
     found = compare.discretisation()
     assert all(off.max() < 0.005 for off in found.values())
     stated = re.search(
-        r"estimated\s+error\s+of\s+(\S+) % in COR, (\S+) % in\s+peak force and (\S+) % in contact", README
+        r"estimated\s+error\s+of\s+(\S+) % in COR, (\S+) % in\s+peak force and (\S+) % in contact",
+        README,
     )
     for value, name in zip(stated.groups(), found, strict=False):
         assert float(value) == pytest.approx(100 * found[name].max(), abs=0.006), name
