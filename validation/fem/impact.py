@@ -18,7 +18,8 @@ Array = NDArray[np.float64]
 
 _SAMPLES = 400  # of the history, per expected contact time
 _PATIENCE = 0.15  # of the contact time: so long without a force, and the sphere has left
-_GIVE_UP = 3.0  # expected contact times
+_SOONEST, _GIVE_UP = 0.5, 3.0  # expected contact times
+_IMBALANCE = 0.1  # of the energy: elements that collapse make more
 _FINEST = 0.01  # R, the paper's smallest element, and at least ...
 _ACROSS = 15.0  # ... so many in the expected contact's radius
 _CORE = 1.3  # finest part of the mesh, over the expected contact's radius sqrt(R d)
@@ -167,22 +168,25 @@ def impact(
     energies = [energy(system)]
     snapshots: list[Array] = []
     last, start = 0.0, _way(system)
+    collapsed = RuntimeError(
+        f"elements collapsed at speed {speed:g} m/s on a plate of {thickness:g} m: take a lower "
+        f"speed, or coarser elements than {size:g}"
+    )
     while True:
         force, touched = solver.advance(system, load, step, every)
-        if not math.isfinite(force):
-            raise RuntimeError(
-                f"elements collapsed at speed {speed:g} m/s on a plate of {thickness:g} m: take a "
-                f"lower speed, or coarser elements than {size:g}"
-            )
+        if not np.isfinite(system.v).all():
+            raise collapsed
         if touched:
             last = (len(rows) * every + touched) * step
         time = (len(rows) + 1) * every * step
         rows.append((time, 2.0 * math.pi * force, _speed(system), start - _way(system)))
         if len(rows) % 20 == 0:
             energies.append(energy(system))
+            if abs(sum(energies[-1]) / sum(energies[0]) - 1.0) > _IMBALANCE:
+                raise collapsed
         if len(snapshots) < len(times) and time >= times[len(snapshots)]:
             snapshots.append(system.x.copy())
-        if last and time > (1.0 + _PATIENCE) * last:
+        if last and time > max((1.0 + _PATIENCE) * last, _SOONEST * expected):
             break
         if time > _GIVE_UP * expected:
             raise RuntimeError(

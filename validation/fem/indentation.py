@@ -115,15 +115,16 @@ def indent(
     load = np.zeros_like(system.x)
     way, rows, plastic = 0.0, [], []
     for n in range(1, _SAMPLES + 1):
-        every = math.ceil(interval / solver.time_step(system, materials))  # elements get thinner
-        target = 0.5 * depth * (1.0 - math.cos(2.0 * math.pi * n / _SAMPLES))
-        system.v[driven, 1] = (way - target) / interval
-        force, touched = solver.advance(system, load, interval / every, every)
-        if not math.isfinite(force):
+        stable = solver.time_step(system, materials)  # elements get thinner
+        if not (stable > 0.0 and np.isfinite(system.v).all()):
             raise RuntimeError(
                 f"elements collapsed on the way to depth {depth:g} m: take less, or coarser "
                 f"elements than {size:g}"
             )
+        every = math.ceil(interval / stable)
+        target = 0.5 * depth * (1.0 - math.cos(2.0 * math.pi * n / _SAMPLES))
+        system.v[driven, 1] = (way - target) / interval
+        force, touched = solver.advance(system, load, interval / every, every)
         kinetic = 0.5 * system.mass @ (system.v**2).sum(axis=1)
         pressed = system.surfaces.slave[system.surfaces.impulse[:, 0] > 0.0]
         edge = system.x[pressed, 0].max(initial=0.0) if touched == every else 0.0
