@@ -62,17 +62,21 @@ def scalars(**arguments: float) -> tuple[Array, ...]:
 def check(**arrays: Array) -> None:
     """Refuse values outside the range of the argument of that name."""
     for name, values in arrays.items():
-        low, high, unit = _LIMITS[name]
-        if values.size == 1 and low <= values[0] <= high:
-            continue
-        wrong = ~((low <= values) & (values <= high))
-        if wrong.any():
-            n = int(np.argmax(wrong))
-            where = f" (element {n})" if values.size > 1 else ""
-            raise ValueError(
-                f"{name}: got {float(values[n])!r}{where}; "
-                f"must lie between {low:g} and {high:g} {unit}"
-            )
+        within(name, values, *_LIMITS[name])
+
+
+def within(name: str, values: Array, low: float, high: float, remark: str) -> None:
+    """Refuse values that do not lie between two limits; the remark ends the message."""
+    if values.size == 1 and low <= values[0] <= high:
+        return
+    wrong = ~((low <= values) & (values <= high))
+    if wrong.any():
+        n = int(np.argmax(wrong))
+        where = f" (element {n})" if values.size > 1 else ""
+        raise ValueError(
+            f"{name}: got {float(values[n])!r}{where}; "
+            f"must lie between {low:.9g} and {high:.9g} {remark}"
+        )
 
 
 def shaped(values: Array, shape: tuple[int, ...] | None) -> float | Array:

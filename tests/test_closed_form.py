@@ -11,8 +11,35 @@ import contactlaw as cl
 from contactlaw import closed_form, laws, turning_point, zener
 from contactlaw.impact import scales, sphere_on_plate
 
-SPEEDS = np.linspace(0.05, 10.0, 41)
-INELASTICITIES = np.linspace(0.0, 0.3, 13)
+SPEEDS = np.concatenate([np.linspace(0.03, 2.0, 24), np.linspace(2.2, 20.0, 72)])
+INELASTICITIES = np.linspace(0.0, 0.5, 31)
+ETA = 0.0751269  # of the paper's pair
+
+# every form with arguments inside its range; a limit is the largest value of its first argument
+COR = {
+    closed_form.mueller: ({"inelasticity": 0.3}, 2.0),
+    closed_form.raman: ({"inelasticity": 0.3}, 2.0 / closed_form.WAVE_SLOPE),
+    closed_form.zener: ({"inelasticity": 0.3}, 100.0),
+    closed_form.thornton: ({"speed_ratio": 6.0}, 1e6),
+    closed_form.thornton_asymptote: ({"speed_ratio": 6.0}, 1e6),
+    closed_form.half_space: ({"speed_ratio": 6.0}, 1e6),
+    closed_form.peng: ({"speed_ratio": 6.0, "thickness_ratio": 1.0, "eta": 0.1, "c": 0.1}, 20.0),
+    turning_point.restitution: ({"speed_ratio": 6.0, "inelasticity_at_yield": 0.2}, 20.0),
+}
+FORMS = COR | {
+    closed_form.elastic_compression: ({"inelasticity": 0.3}, 100.0),
+    closed_form.yield_speed_ratio: ({"inelasticity_at_yield": 0.3}, 5.0),
+    closed_form.border: ({"thickness_ratio": 0.3}, 1.2),
+    turning_point.loading: ({"inelasticity": 0.3}, 2.0),
+}
+ARGUMENTS = [(form, name) for form, (good, _) in FORMS.items() for name in good]
+NOT_IN_RANGE = [-1.0, math.nan, math.inf, -math.inf, 1e9, "5", None, True, 1j, [1.0, math.nan]]
+PRINTED = [
+    closed_form.elastic_compression,
+    closed_form.yield_speed_ratio,
+    closed_form.half_space,
+    closed_form.peng,
+]
 
 
 def solved(v, lam_y, law="myc"):
@@ -83,6 +110,9 @@ def test_thornton_is_exact(v):
 
 def test_thornton_asymptote():
     assert closed_form.thornton_asymptote(1e5) == pytest.approx(closed_form.thornton(1e5), rel=1e-5)
+    v = np.array([5.0, 10.0, 100.0])
+    high = closed_form.thornton_asymptote(v) / closed_form.thornton(v) - 1
+    assert high == pytest.approx([0.025, 0.012, 0.0012], rel=0.05)
 
 
 def test_yield_speed_is_the_models(pair, model):
@@ -100,14 +130,45 @@ def test_eq_22_jumps_as_printed_and_is_continuous_with_the_factor():
     assert np.diff(closed_form.peng(around, 1.8, eta)) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_the_turning_point_form_is_within_a_thousandth(surface):
-    form = turning_point.restitution(SPEEDS, INELASTICITIES[:, None])
-    error = np.abs(form / surface - 1)
-    assert error.max() < 6e-4
-    # Eq. 22, its continuous form, over the same range: 4.6 %
-    ratio = np.sqrt(INELASTICITIES / 0.0751)
-    peng = closed_form.peng(SPEEDS, ratio[:, None], 0.0751)
-    assert np.abs(peng / surface - 1).max() > 0.04
+def largest_error(form, surface, lam_y, v):
+    """Over the part of the surface up to (lam_y, v)."""
+    rows, columns = lam_y + 1e-9 >= INELASTICITIES, v >= SPEEDS
+    part = np.ix_(rows, columns)
+    return np.abs(form(SPEEDS[columns], INELASTICITIES[rows, None]) / surface[part] - 1).max()
+
+
+@pytest.mark.parametrize(
+    ("lam_y", "v", "stated"),
+    [
+        (0.3, 10.0, 5e-4),
+        (0.4, 10.0, 5e-4),
+        (0.5, 10.0, 31e-4),
+        (0.3, 20.0, 13e-4),
+        (0.4, 20.0, 50e-4),
+        (0.5, 20.0, 160e-4),
+    ],
+)
+def test_the_turning_point_form_errs_by_what_it_states(surface, lam_y, v, stated):
+    error = largest_error(turning_point.restitution, surface, lam_y, v)
+    assert 0.8 * stated < error < stated
+
+
+@pytest.mark.parametrize(
+    ("printed", "lam_y", "v", "stated"),
+    [
+        (False, ETA * 1.8**2, 7.0, 0.041),
+        (False, 0.5, 20.0, 0.24),
+        (True, ETA * 1.8**2, 7.0, 0.55),
+        (True, 0.5, 20.0, 2.0),
+    ],
+)
+def test_eq_22_errs_by_what_it_states(surface, printed, lam_y, v, stated):
+    def form(speed_ratio, at_yield):
+        ratio = np.sqrt(at_yield / ETA) * (1 - 1e-15)
+        return closed_form.peng(speed_ratio, ratio, ETA, printed=printed)
+
+    error = largest_error(form, surface, lam_y, v)
+    assert 0.8 * stated < error < stated
 
 
 def test_the_two_fits_of_the_turning_point_form():
@@ -115,11 +176,15 @@ def test_the_two_fits_of_the_turning_point_form():
     share = closed_form.elastic_compression(lam) / 1.25**0.4
     assert turning_point.loading(lam) == pytest.approx(share, rel=7e-5)
     x = lam * share**0.25
-    assert turning_point.release(x) == pytest.approx(closed_form.zener(lam) / share**1.25, rel=9e-4)
+    released = closed_form.zener(lam) / share**1.25
+    assert turning_point._release(x) == pytest.approx(released, rel=9e-4)
+    far = np.linspace(0.01, 2.0, 30)
+    share = closed_form.elastic_compression(far) / 1.25**0.4
+    assert turning_point.loading(far) == pytest.approx(share, rel=4e-3)
 
 
 def test_the_turning_point_form_is_exact_on_the_half_space():
-    v = np.geomspace(0.1, 1e3, 50)
+    v = np.geomspace(0.1, 20.0, 50)
     assert turning_point.restitution(v, 0.0) == pytest.approx(closed_form.half_space(v), abs=1e-14)
 
 
@@ -147,19 +212,75 @@ def test_unloading_is_the_second_half_of_an_elastic_impact():
     assert one.restitution == pytest.approx(math.sqrt(force * span) / v * released, rel=1e-9)
 
 
+def test_border_errs_by_what_it_states(model):
+    v_y0 = model.pair.yield_speed
+    stated = {0.25: -0.10, 0.5: -0.04, 0.7: 0.04, 1.2: -0.07}
+    for ratio, error in stated.items():
+        v = closed_form.border(ratio) / (1 + error)  # so the two losses are equal nearby
+        losses = [
+            (hit.plastic_fraction, hit.wave_fraction)
+            for hit in (model.solve(v * by * v_y0, 1e-3, 1e-3 / ratio) for by in (0.99, 1.01))
+        ]
+        assert losses[0][0] < losses[0][1]
+        assert losses[1][0] > losses[1][1]
+
+
+@pytest.mark.parametrize("form", COR, ids=lambda form: form.__name__)
+def test_a_cor_lies_between_0_and_1_up_to_the_limits(form):
+    good, largest = COR[form]
+    first, *others = good
+    low = 5.0 if form is closed_form.thornton_asymptote else 0.0
+    values = np.concatenate([[low], np.geomspace(max(low, 1e-300), largest, 60)])
+    values[-1] = largest
+    arguments = {name: good[name] for name in others}
+    e = form(values, **arguments)
+    assert ((0.0 <= e) & (e <= 1.0)).all()  # NaN is in no range
+    assert low > 0.0 or e[0] == pytest.approx(1.0, abs=1e-11)
+    if form in PRINTED:
+        assert np.isfinite(form(values, **arguments, printed=True)).all()
+    with pytest.raises(ValueError, match=rf"^{first}: got .*; must lie between .* \(.*\)$"):
+        form(math.nextafter(largest, math.inf), **arguments)
+
+
+@pytest.mark.parametrize(("form", "name"), ARGUMENTS, ids=lambda x: getattr(x, "__name__", x))
+@pytest.mark.parametrize("bad", NOT_IN_RANGE, ids=repr)
+def test_no_argument_goes_unchecked(form, name, bad):
+    good, _ = FORMS[form]
+    with pytest.raises(ValueError, match=f"^{name}: "):
+        form(**{**good, name: bad})
+
+
+@pytest.mark.parametrize(("form", "name"), ARGUMENTS, ids=lambda x: getattr(x, "__name__", x))
+def test_every_argument_is_broadcast(form, name):
+    good, _ = FORMS[form]
+    one = form(**good)
+    assert isinstance(one, float)
+    many = form(**{**good, name: np.full((2, 3), good[name])})
+    assert many == pytest.approx(np.full((2, 3), one), rel=1e-15)
+    assert form(**{**good, name: []}).shape == (0,)
+
+
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        (lambda: closed_form.mueller(2.0), "inelasticity: got 2.0; must lie between 0 and 2"),
-        (lambda: closed_form.raman([0.1, math.nan]), "inelasticity: got nan"),
-        (lambda: closed_form.half_space(-1.0), "speed_ratio: got -1.0"),
-        (lambda: turning_point.restitution(0.0, 0.1), "speed_ratio: got 0.0"),
+        (lambda: closed_form.mueller(2.1), r"^inelasticity: got 2.1; .* 0 and 2 .*take zener"),
+        (lambda: closed_form.thornton_asymptote([9, 3]), r"got 3.0 \(element 1\); .*take thornton"),
+        (lambda: turning_point.restitution(25.0, 0.1), "speed_ratio: got 25.0; .*ImpactModel"),
+        (
+            lambda: closed_form.peng(2.0, [1.0, 3.0], 0.08),
+            r"^thickness_ratio: got 3.0; .*0 and 2.5 at eta = 0.08.*<= 0.5 .*ImpactModel",
+        ),
         (lambda: closed_form.peng([1, 2], [1, 2, 3], 0.1), "shapes do not broadcast"),
     ],
 )
-def test_bad_arguments_are_named(call, message):
+def test_a_refusal_says_what_to_do(call, message):
     with pytest.raises(ValueError, match=message):
         call()
+
+
+def test_eta_is_of_a_pair():
+    with pytest.raises(TypeError, match=r"pair: expected a contactlaw.Pair, got \('glass', "):
+        closed_form.eta(("glass", "glass"))
 
 
 def test_a_pair_without_yield_strength_has_no_eta():
