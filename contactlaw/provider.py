@@ -39,7 +39,14 @@ from contactlaw.impact import (
     sphere_on_sphere,
 )
 from contactlaw.pair import Pair
-from contactlaw.sensitivity import Sensitivity, elasticities, gradient
+from contactlaw.sensitivity import (
+    Sensitivity,
+    by_modulus_ratio,
+    by_solver,
+    by_table,
+    elasticities,
+    follows,
+)
 from contactlaw.table import Settings, Table
 
 Array = NDArray[np.float64]
@@ -103,6 +110,7 @@ class ImpactModel:
         if outside not in ("raise", "solve", "clamp"):
             raise ValueError(f"outside: must be 'raise', 'solve' or 'clamp', got {outside!r}")
         self._pair = pair
+        self._given_law = law
         self._law = law_of(pair, law)
         if self._law.kinks:
             pair.sphere.require_yield_strength(law)
@@ -118,7 +126,7 @@ class ImpactModel:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # compiled functions do not travel; the receiving process has its own
-        return ImpactModel, (self.pair, self.law, self._given_table, self.outside)
+        return ImpactModel, (self.pair, self._given_law, self._given_table, self.outside)
 
     def __repr__(self) -> str:
         return f"ImpactModel({self.pair!r}, law={self.law!r}, outside={self.outside!r})"
@@ -409,15 +417,21 @@ class ImpactModel:
         -------
         Sensitivity
             By how many per cent the COR rises with one per cent of each input [-]; an input that is
-            known to 10 % leaves the COR uncertain by ten times that. From the table's derivatives,
-            within 1e-4 for lambda up to 1; next to the corners of the loading curves of
-            ``"stronge"`` and ``"kogut_etsion"`` within 1e-2. A law's own numbers are held fixed: of
-            ``"jackson_green"``, whose E*/sigma_Y moves with moduli and strength, 5 % is missing.
+            known to 10 % leaves the COR uncertain by ten times that. Within 1e-4 for lambda up to
+            1, from the table's derivatives, whose error then grows: 1e-3 up to 2, 2e-2 up to 5.
 
         Raises
         ------
         ValueError
             As in `restitution`; outside the table whatever `outside` says.
+
+        Notes
+        -----
+        Laws whose loading curves have corners, which their tables do not follow (``"stronge"``,
+        ``"kogut_etsion"``, ``"jackson_green"``), are integrated: within 1e-6, but for impacts that
+        turn within 1e-4 of a corner, where the derivatives jump. The first call for
+        ``"jackson_green"``, which takes E*/sigma_Y from the pair, compiles two more laws of that
+        kind, for seconds; numbers that were given in the name of a law are held fixed.
 
         Examples
         --------
@@ -431,8 +445,12 @@ class ImpactModel:
         check(speed=v, radius=r, thickness=h)
         units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
         fields, _ = tabulated(self._law, self._table, units, "raise")
-        by_lam, by_y = gradient(self._table, fields[5], fields[6])
-        return elasticities(self.pair, fields[0], by_lam, by_y, shape)
+        if follows(self._whole_table):
+            by_lam, by_y = by_table(self._table, fields)
+        else:
+            by_lam, by_y = by_solver(self._law, units, fields)
+        by_ratio = by_modulus_ratio(self.pair, self._given_law, units, fields)
+        return elasticities(self.pair, by_lam, by_y, by_ratio, shape)
 
     def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
         """COR of one bead class on one plate, as a fast function of speed.
@@ -533,11 +551,18 @@ class ImpactModel:
         return int(self._c_function.address)
 
     def _twins(self) -> Pair:
+        """Two of the pair's spheres; refused where they would need another law, so another table.
+
+        Numbers that the user gave in the law's name hold for them as they do for the plate.
+        """
         twins = Pair(self.pair.sphere, self.pair.sphere)
-        if law_of(twins, self.law.partition("(")[0]).name != self.law:
+        needed = law_of(twins, self._given_law).name
+        if needed != self.law:
             raise ValueError(
-                f"law: {self.law!r} holds for E* of {self.pair!r}, and two of its spheres have "
-                "another one: contactlaw.restitution_sphere_sphere(..., law=...) has a law of them"
+                f"law: {self._given_law!r} takes E*/sigma_Y from the pair: here it is "
+                f"{self.law!r}, and two of its spheres have another one, {needed!r}. Ask "
+                f"contactlaw.restitution_sphere_sphere(..., law={self._given_law!r}), or name the "
+                "law with its numbers, to have the same for both"
             )
         return twins
 

@@ -1,28 +1,42 @@
-"""How much the COR moves with each input: elasticities, from the table's own derivatives.
+"""How much the COR moves with each input: elasticities d ln e/d ln x.
 
-The COR is a function of lambda and y = d_Y/(V0 T_H) alone, and both are products of powers of the
-inputs. With w = E*/E1' for the sphere and E*/E2' for the plate (they sum to 1) the powers are
+The COR is a function of lambda and y = d_Y/(V0 T_H), and with some laws of r = E*/sigma_Y too. All
+are products of powers of the inputs. With w = E*/E1' for the sphere and E*/E2' for the plate (they
+sum to 1) the powers are
 
                 V0    R    H    rho1   rho2    E1       E2             sigma_Y
     lambda     0.2    2   -2    0.6   -0.5    0.4 w    0.4 w - 0.5     0
     y         -0.8    0    0   -0.4    0     -1.6 w   -1.6 w           2
+    r          0      0    0    0      0      w        w              -1
 
-so d ln e/d ln x is a sum of two terms, power by derivative.
+so d ln e/d ln x is a sum of terms, power by derivative. The derivatives are the table's own where
+the table follows the COR everywhere; next to the corners of some laws' loading curves no spline
+does, and there, and for r, they are central differences of the solver.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from contactlaw import lookup
+from contactlaw import laws, lookup
 from contactlaw.arguments import shaped
+from contactlaw.evaluation import solved
+from contactlaw.impact import Scales
+from contactlaw.laws import Law
 from contactlaw.pair import Pair
+from contactlaw.table import Table
 
 Array = NDArray[np.float64]
+
+# Of a central difference of ln e: the error by the step is 1e-8 times a third derivative, that by
+# the solver 1e-12/1e-4 (with Stronge's unloading, which has corners, 1e-11/1e-4); 3e-7 together.
+_STEP = 1e-4
+_RTOL = 1e-13
 
 
 @dataclass(frozen=True)
@@ -53,11 +67,24 @@ class Sensitivity:
     yield_strength: float | Array
 
 
-def gradient(table: Array, lam: Array, y: Array) -> tuple[Array, Array]:
-    """Differentiate the COR of a packed table with respect to ln(lambda) and ln(y).
+def follows(table: Table) -> bool:
+    """Whether a table keeps its promise for the COR, so that its derivatives are the COR's."""
+    return table.certificate is not None and "restitution" not in table.certificate.exceeded
 
-    Inside the table only. On a kink, the derivative is that of the side with the smaller overload.
+
+def by_table(table: Array, fields: Array) -> tuple[Array, Array]:
+    """Differentiate ln e with respect to ln(lambda) and ln(y), from a packed table.
+
+    On a kink, the derivatives are those of the side with the smaller overload.
+
+    Parameters
+    ----------
+    table : ndarray
+        `Table.packed`.
+    fields : ndarray
+        (7, n), as `evaluation.tabulated` gives them inside the table.
     """
+    lam, y = fields[5:]
     stretch, x_max = table[lookup.STRETCH], table[lookup.X_MAX]
     x = lam / (lam + stretch)
     series = table[lookup.HEADER : lookup.HEADER + lookup.DEGREE + 1]
@@ -82,7 +109,7 @@ def gradient(table: Array, lam: Array, y: Array) -> tuple[Array, Array]:
     by_x = np.einsum("nij,ni,nj->n", c, da, b) * table[lookup.NODES_PER_X]
     by_log_chi = np.einsum("nij,ni,nj->n", c, a, db) * per_log
     by_log_chi[log_chi <= 0.0] = 0.0  # elastic: the overload does not matter
-    return (by_x + by_log_chi * slope) * x * (1.0 - x), -by_log_chi
+    return (by_x + by_log_chi * slope) * x * (1.0 - x) / fields[0], -by_log_chi / fields[0]
 
 
 def _weights(t: Array) -> tuple[Array, Array]:
@@ -93,22 +120,65 @@ def _weights(t: Array) -> tuple[Array, Array]:
     return np.stack(values, axis=-1) / 6.0, np.stack(slopes, axis=-1) / 6.0
 
 
+def by_solver(law: Law, units: Scales, fields: Array) -> tuple[Array, Array]:
+    """Differentiate ln e with respect to ln(lambda) and ln(y), by integration.
+
+    Nearer to a kink than the step, the derivatives are means of those on its two sides.
+    """
+
+    def log_cor(lam_step: float, y_step: float) -> Array:
+        lam = units.inelasticity * math.exp(lam_step)
+        y = units.yield_ratio * math.exp(y_step)
+        moved = units._replace(inelasticity=lam, yield_ratio=y)
+        return np.asarray(np.log(solved(law, moved, _RTOL)[0]))
+
+    by_lam = (log_cor(_STEP, 0.0) - log_cor(-_STEP, 0.0)) / (2.0 * _STEP)
+    by_y = (log_cor(0.0, _STEP) - log_cor(0.0, -_STEP)) / (2.0 * _STEP)
+    return by_lam, np.where(_yields(fields), by_y, 0.0)
+
+
+def by_modulus_ratio(pair: Pair, law: str, units: Scales, fields: Array) -> Array:
+    """Differentiate ln e with respect to ln(E*/sigma_Y), if the law takes that from the pair."""
+    if "modulus_ratio" not in laws.parameters(law):
+        return np.zeros_like(fields[0])
+    ratio = pair.effective_modulus / pair.sphere.require_yield_strength(law)
+    # laws take six digits
+    low, high = (float(f"{ratio * math.exp(step):.6g}") for step in (-_STEP, _STEP))
+    below, above = (
+        solved(
+            laws.law(law, modulus_ratio=value, poissons_ratio=pair.sphere.poissons_ratio),
+            units,
+            _RTOL,
+        )[0]
+        for value in (low, high)
+    )
+    return np.where(_yields(fields), np.log(above / below) / math.log(high / low), 0.0)
+
+
+def _yields(fields: Array) -> NDArray[np.bool_]:
+    """Whether the elastic compression w_m is above y: elsewhere yield does not matter."""
+    return np.asarray(fields[4] > fields[6])
+
+
 def elasticities(
-    pair: Pair, cor: Array, by_lam: Array, by_y: Array, shape: tuple[int, ...] | None
+    pair: Pair, by_lam: Array, by_y: Array, by_ratio: Array, shape: tuple[int, ...] | None
 ) -> Sensitivity:
-    """Chain the derivatives of the COR with the powers of the inputs."""
+    """Chain the derivatives of ln e with the powers of the inputs."""
     sphere = pair.effective_modulus / pair.sphere.plane_modulus
     plate = 1.0 - sphere
     powers = {
-        "speed": (0.2, -0.8),
-        "radius": (2.0, 0.0),
-        "thickness": (-2.0, 0.0),
-        "sphere_density": (0.6, -0.4),
-        "plate_density": (-0.5, 0.0),
-        "sphere_modulus": (0.4 * sphere, -1.6 * sphere),
-        "plate_modulus": (0.4 * plate - 0.5, -1.6 * plate),
-        "yield_strength": (0.0, 2.0),
+        "speed": (0.2, -0.8, 0.0),
+        "radius": (2.0, 0.0, 0.0),
+        "thickness": (-2.0, 0.0, 0.0),
+        "sphere_density": (0.6, -0.4, 0.0),
+        "plate_density": (-0.5, 0.0, 0.0),
+        "sphere_modulus": (0.4 * sphere, -1.6 * sphere, sphere),
+        "plate_modulus": (0.4 * plate - 0.5, -1.6 * plate, plate),
+        "yield_strength": (0.0, 2.0, -1.0),
     }
     return Sensitivity(
-        **{name: shaped((a * by_lam + b * by_y) / cor, shape) for name, (a, b) in powers.items()}
+        **{
+            name: shaped(a * by_lam + b * by_y + c * by_ratio, shape)
+            for name, (a, b, c) in powers.items()
+        }
     )

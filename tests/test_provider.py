@@ -1,6 +1,7 @@
 """ImpactModel: SI in, SI out, from the table and from the solver."""
 
 import ctypes
+import dataclasses
 import math
 import pickle
 import shutil
@@ -255,8 +256,6 @@ def test_wrong_options(pair, arguments, message):
 
 
 def test_the_table_of_another_law_is_refused(pair, small_table):
-    import dataclasses
-
     other = dataclasses.replace(small_table, law="thornton")
     with pytest.raises(ValueError, match="belongs to law 'thornton'"):
         cl.ImpactModel(pair, table=other)
@@ -391,6 +390,33 @@ def test_sphere_on_sphere(model):
     soft_plate = cl.ImpactModel(cl.Pair("bearing-steel-52100", "ptfe"))
     assert soft_plate.lookup_sphere_sphere(0.1, R, R).flags == 0  # there is no plate
     assert model.sphere_sphere_curve(R, R)(1.5 * v_y0) == pytest.approx(e[1], rel=1e-13)
+
+
+def test_two_spheres_have_the_law_that_was_named(pair, model):
+    """A law that takes E*/sigma_Y from the pair is another one for two of its spheres."""
+    named, own = "jackson_green(23.2,0.21)", "jackson_green(23.1922,0.21)"
+    # tables are one below yield
+    tables = {name: dataclasses.replace(model._whole_table, law=name) for name in (named, own)}
+    taking = cl.ImpactModel(pair, law="jackson_green", table=tables[own])
+    assert taking.law == own
+    for one in (taking, pickle.loads(pickle.dumps(taking))):
+        with pytest.raises(
+            ValueError, match=r"'jackson_green' takes .*23.1922.* another one, .*\(13.5"
+        ):
+            one.lookup_sphere_sphere(5.0, R, R)
+    with pytest.raises(
+        ValueError, match=r"restitution_sphere_sphere\(\.\.\., law='jackson_green'\)"
+    ):
+        taking.sphere_sphere_curve(R, R)
+
+    given = cl.ImpactModel(pair, law=named, table=tables[named])
+    hit = given.lookup_sphere_sphere(0.5, R, R)
+    twins = cl.Pair(pair.sphere, pair.sphere)
+    mass = 4 / 3 * math.pi * R**3 * pair.sphere.density / 2
+    stiffness = 4 / 3 * twins.effective_modulus * math.sqrt(R / 2)
+    peak = (5 / 4 * mass * 0.5**2 / stiffness) ** 0.4  # Hertz
+    assert hit.peak_compression == pytest.approx(peak, rel=1e-6)
+    assert given.sphere_sphere_curve(R, R)(0.5) == hit.restitution
 
 
 def test_sphere_on_sphere_is_symmetric():
