@@ -301,7 +301,7 @@ def thornton_asymptote(speed_ratio: ArrayLike) -> float | Array:
 
 
 def at_turning_point(chi: Array) -> tuple[Array, Array]:
-    """Force and span of unloading at the largest compression of impacts with overload chi.
+    """Force and span of unloading at the largest compression of impacts with checked overloads chi.
 
     Beyond P the linear branch takes the loading work 0.4 chi^(5/2) that Hertz's curve would take.
     """
@@ -370,7 +370,7 @@ def peng(
     -------
     float or ndarray of float64
         Within 4.1 % of the solver for the paper's pair, R/H <= 1.8 and v <= 7, 24 % in the whole
-        range; printed, 55 % and a factor of 3.
+        range; printed, 56 % and a factor of 3.
 
     Notes
     -----
