@@ -388,7 +388,7 @@ def peng(
     """
     v, ratio, at_unity, growth, shape = checked(
         speed_ratio=(speed_ratio, 0.0, FASTEST, INTEGRATE),
-        thickness_ratio=(thickness_ratio, 0.0, 1e3, _THICKER),
+        thickness_ratio=(thickness_ratio, 0.0, math.inf, "(it is R/H)"),  # the limit is below
         eta=(eta, 1e-6, 1e3, "(closed_form.eta(pair) has it)"),
         c=(c, 0.0, 1.0, "(the paper prints 0.0935)"),
     )

@@ -78,7 +78,7 @@ class ImpactModel:
     Attributes
     ----------
     pair, law, outside
-        As given; fixed.
+        As given; fixed. A law that takes numbers from the pair has them in its name.
     clamped : int
         Impacts answered with the value at the table's border so far.
 
