@@ -75,7 +75,7 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
         where = f" (element {n})" if values.size > 1 else ""
         raise ValueError(
             f"{name}: got {float(values[n])!r}{where}; "
-            f"must lie between {low:.9g} and {high:.9g} {remark}"
+            f"must lie between {low:.9g} and {high:.9g} {remark}".rstrip()
         )
 
 

@@ -150,9 +150,11 @@ def impact(
     width = free_width(pair.plate, expected) if width is None else width
     size = min(_FINEST, contact / radius / _ACROSS) if size is None else size
     core = _CORE * contact
+    stiffness = hourglass_stiffness or 0.0
     checked(
-        size=(size, 1e-3, 0.1), friction=(friction, 0.0, 1.0), width=(width, radius, math.inf),
-        far=(far, 0.1, 2.0), hourglass_stiffness=(hourglass_stiffness or 0.0, 0.0, 1.0),
+        size=(size, 1e-3, 0.1, "sphere radii"), friction=(friction, 0.0, 1.0, ""),
+        width=(width, radius, math.inf, "metres, from the radius on"), far=(far, 0.1, 2.0, ""),
+        hourglass_stiffness=(stiffness, 0.0, 1.0, "of the stiffness of bending"),
     )  # fmt: skip
     meshes = (
         mesh.sphere(radius, size * radius, core),

@@ -94,8 +94,9 @@ def indent(
         If elements collapse.
     """
     checked(
-        depth=(depth, 1e-6 * radius, 0.5 * radius), size=(size, 1e-3, 0.1),
-        friction=(friction, 0.0, 1.0), slowness=(slowness, 0.1, 10.0),
+        depth=(depth, 1e-6 * radius, 0.5 * radius, "metres, to half of the radius"),
+        size=(size, 1e-3, 0.1, "sphere radii"), friction=(friction, 0.0, 1.0, ""),
+        slowness=(slowness, 0.1, 10.0, ""),
     )  # fmt: skip
     width = core(radius, depth)
     fine, block = size * radius, BLOCK * radius
