@@ -10,7 +10,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from validation import figures
-from validation.claims import GROUPS
+from validation.claims import SECTIONS, of_section
 from validation.figures import _style
 from validation.report import page, png
 
@@ -30,8 +30,8 @@ def main(argv: list[str] | None = None) -> int:
             image = png(figure)
             (out / f"{name}.png").write_bytes(image)
             drawn.append((name, module.__doc__, numbers, image))
-    groups = tqdm(GROUPS, "validation: claims", disable=None)
-    found = tuple(claim for group in groups for claim in group())
+    sections = tqdm(SECTIONS, "validation: claims", disable=None)
+    found = tuple(claim for section in sections for claim in of_section(section))
     (out / "index.html").write_text(page(found, drawn), encoding="utf-8")
     for verdict, count in collections.Counter(claim.verdict for claim in found).items():
         print(f"{count:3d} claims: {verdict}")

@@ -3,59 +3,112 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from contactlaw import closed_form
+import contactlaw as cl
+from contactlaw import closed_form, laws
 from contactlaw.closed_form import yield_speed_ratio
+from contactlaw.impact import Contact, scales, sphere_on_plate
 from validation.fem import compare, store
 from validation.paper import (
     ETA,
+    FASTEST,
     PAIR,
     RADIUS,
     SHARE,
     SPEED,
     THINNEST,
     YIELD_COMPRESSION,
+    Array,
+    borderline,
+    impacts,
+    root,
 )
 
 
+def contact(pair: cl.Pair, law: str, thickness_ratio: float) -> Contact:
+    """Contact of the paper's bead, of any materials, with a plate of R/H (0: half-space)."""
+    thickness = RADIUS / thickness_ratio if thickness_ratio > 0.0 else math.inf
+    return sphere_on_plate(pair, laws.law(law), np.array(RADIUS), np.array(thickness))
+
+
+def slope(one: tuple[float, float], two: tuple[float, float]) -> float:
+    """Exponent of a power law through two points (x, y)."""
+    return math.log(two[1] / one[1]) / math.log(two[0] / one[0])
+
+
 def exponent_of_moduli() -> float:
-    """Find the exponent of E1'/(E1' + E2') in lambda = alpha m/T_H of Eq. 1, at fixed V_W."""
+    """Find the exponent of E1'/(E1' + E2') in lambda of the package, at fixed V_W."""
 
-    def log_lam(plate: float) -> tuple[float, float]:  # E1' = rho1 = rho2/E2' = R = H = V0 = 1
-        modulus = plate / (1.0 + plate)
-        density = plate  # keeps V_W
-        mobility = math.sqrt(3.0) / (4.0 * density)
-        time = math.pow(math.pi / modulus, 0.4)
-        lam = mobility * 4.0 / 3.0 * math.pi / time
-        return math.log(lam * density**0.6), math.log(1.0 / (1.0 + plate))
+    def point(factor: float) -> tuple[float, float]:
+        plate = PAIR.plate
+        density, modulus = factor * plate.density, factor * plate.youngs_modulus  # keeps V_W
+        pair = cl.Pair(PAIR.sphere, replace(plate, density=density, youngs_modulus=modulus))
+        lam = float(scales(contact(pair, "myc", 1.0), np.array(SPEED)).inelasticity)
+        share = pair.sphere.plane_modulus / (pair.sphere.plane_modulus + pair.plate.plane_modulus)
+        return share, lam * density**0.6
 
-    (one, x), (two, y) = log_lam(1.0), log_lam(1.001)
-    return (two - one) / (y - x)
+    return slope(point(1.0), point(1.001))
+
+
+def eq_10(power_of_pi: float, exponent: float) -> float:
+    """Compute eta from the materials by Eq. 10, with its two exponents in doubt as arguments.
+
+    Examples
+    --------
+    >>> from validation.evidence import eq_10
+    >>> round(eq_10(3.0, 0.8), 3), round(eq_10(0.6, 0.4), 4)
+    (0.539, 0.0751)
+    """
+    sphere, plate = PAIR.sphere, PAIR.plate
+    wave_speed = math.sqrt(plate.plane_modulus / plate.density)
+    densities, speeds = sphere.density / plate.density, SPEED / wave_speed
+    moduli = math.pow(SHARE, exponent)
+    factor = math.pow(math.pi, power_of_pi) / math.sqrt(3.0)
+    return factor * math.pow(densities, 0.6) * moduli * math.pow(speeds, 0.2)
+
+
+def left_side_of_eq_9(speed_ratio: float) -> float:
+    """Compute the left side of Eq. 9 at R/H = 1.8; it is 1 at V_Y/V_Y0."""
+    lam = float(impacts(speed_ratio, THINNEST).inelasticity)
+    return math.pow(0.8, 0.4) * math.pow(speed_ratio, 0.8) * math.pow(lam + 1.25**-0.6, -2.0 / 3.0)
+
+
+def yield_speed_of_eq_9() -> float:
+    """Find V_Y/V_Y0 of Eq. 9 at R/H = 1.8."""
+    return root(lambda x: left_side_of_eq_9(x) - 1.0, 1.0, 2.0)
 
 
 def left_side_of_eq_8(speed_ratio: float | None) -> float:
-    """Compute the left side of Eq. 8 at R/H = 1.8 and V_Y of Eq. 11, in units of d_Y.
+    """Compute the left side of Eq. 8 at R/H = 1.8 and V_Y of Eq. 9, in units of d_Y.
 
     With V0/V_Y0 = `speed_ratio` in the time scale, as printed, or with V_Y (None).
     """
-    q = 1.25**0.6 * ETA * THINNEST**2
-    x = 1.0 + q
-    for _ in range(30):  # Newton for Eq. 11, x - x^(-1/5) = q
-        x -= (x - x**-0.2 - q) / (1.0 + 0.2 * x**-1.2)
+    x = yield_speed_of_eq_9()
     v = x if speed_ratio is None else speed_ratio
     scale = math.pi * PAIR.sphere.density / (PAIR.effective_modulus * math.sqrt(v * SPEED))
-    w_m = (ETA * THINNEST**2 * x**0.2 + 1.25**-0.6) ** (-2.0 / 3.0)
+    lam = float(impacts(x, THINNEST).inelasticity)
+    w_m = float(closed_form.elastic_compression(lam, printed=True))
     return x * SPEED * RADIUS * math.pow(scale, 0.4) * w_m / YIELD_COMPRESSION
 
 
+def eq_11(q: Array) -> Array:
+    """Solve Eq. 11, x - x^(-1/5) = q, for x = V_Y/V_Y0 by Newton's method."""
+    x = 1.0 + q
+    for _ in range(20):
+        x = x - (x - x**-0.2 - q) / (1.0 + 0.2 * x**-1.2)
+    return x
+
+
 def fitted_c(
-    surface: np.ndarray, v: np.ndarray, ratio: np.ndarray, *, factor: bool, exponent: float
+    surface: Array, v: Array, ratio: Array, *, factor: bool = True, exponent: float = 0.4
 ) -> float:
     """Fit c of Eq. 22 to COR over (R/H, v) by least squares, with or without the elastic factor.
 
-    `exponent` is that of E1'/(E1' + E2') in the eta from which g comes; lambda has 2/5.
+    `exponent` is that of E1'/(E1' + E2') in the eta from which g comes; lambda has 2/5. (Hence not
+    `closed_form.peng`, where one eta serves both.)
     """
     lam_y = ETA * ratio[:, None] ** 2
     g = np.asarray(yield_speed_ratio(lam_y * SHARE ** (exponent - 0.4), printed=True))
@@ -64,23 +117,94 @@ def fitted_c(
         elastic = np.where(v > g, 1.0, elastic)
     base = 1.0 - (1.0 - np.maximum(v / g, 1.0) ** -0.8) ** 2
 
-    def squares(c: float) -> float:
+    def slope_of_squares(c: float) -> float:  # half of it
         form = elastic * base ** (0.25 + c * ratio[:, None] ** 2)
-        return float(((form - surface) ** 2).sum())
+        return float(((form - surface) * form * np.log(base) * ratio[:, None] ** 2).sum())
 
-    low, high = 0.0, 0.6
-    for _ in range(60):  # golden section: one minimum
-        third = 0.381966 * (high - low)
-        if squares(low + third) < squares(high - third):
-            high -= third
-        else:
-            low += third
-    return low
+    return root(slope_of_squares, 0.0, 0.6)
 
 
-def eq_22_against_impacts() -> float:
-    """Find the largest relative difference of Eq. 22, continuous, from finite elements."""
-    return float(compare.errors(compare.comparison("matrix"))["Eq. 22, continuous"][0])
+def fitted_border(thinnest: float) -> float:
+    """Fit the coefficient of Eq. 23 to the model's border over R/H 0.1 to `thinnest`."""
+    ratio = np.linspace(0.1, thinnest, round((thinnest - 0.1) / 0.05) + 1)
+    excess = np.array([borderline(float(x)) for x in ratio]) ** 0.4 - 1.0
+    return float((excess * ratio**2).sum() / (ratio**4).sum())
+
+
+def taken_by_thick_plate() -> float:
+    """Find the largest share of the energy that a plate of 10 R takes in finite elements."""
+    case = compare.comparison("matrix")
+    return float(case.fem["wave"][np.isclose(case.slenderness, 0.1)].max())
+
+
+def zener_time_on_the_thinnest() -> float:
+    """Find Zener's contact time over that of finite elements at R/H = 2.5, below yield."""
+    case = compare.comparison("limits")
+    here = np.isclose(case.slenderness, 2.5) & ~case.yielded
+    return float((case.model["contact_time"] / case.fem["contact_time"])[here].item())
+
+
+def bending_by_transits() -> tuple[float, float]:
+    """Energy that the plate takes in finite elements over that of the model's bending wave.
+
+    Largest ratio where the contact lasts for less than 6 transits H/c_L of the plate's thickness,
+    and where it lasts for more than 8.
+    """
+    case = compare.comparison("matrix")
+    plate = PAIR.plate
+    nu = plate.poissons_ratio
+    stiffness = plate.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    transit = case.fem["thickness"] / math.sqrt(stiffness / plate.density)
+    transits = case.fem["contact_time"] / transit
+    more = case.fem["wave"] / case.model["wave_fraction"]
+    return float(more[transits < 6.0].max()), float(more[transits > 8.0].max())
+
+
+def contact_time_errors() -> tuple[Array, Array]:
+    """Errors of contact times relative to finite elements.
+
+    The modified Zener model's over the whole matrix; Zener's where the bead yields.
+    """
+    case = compare.comparison("matrix")
+    fem = case.fem["contact_time"]
+    elastic = np.asarray(impacts(case.speed_ratio, case.slenderness, law="hertz").contact_time)
+    return case.model["contact_time"] / fem - 1.0, (elastic / fem - 1.0)[case.yielded]
+
+
+def last_touch() -> float:
+    """Find the time [s] at which the bead leaves the plate in the finite elements of Fig. 13."""
+    data = store.read("paper").data
+    return float(data["time"][data["force"] > 0.0].max())
+
+
+def eq_22_against_impacts() -> tuple[float, float]:
+    """Find the largest relative difference of Eq. 22, continuous and printed, from impacts."""
+    found = compare.errors(compare.comparison("matrix"))
+    return float(found["Eq. 22, continuous"][0]), float(found["Eq. 22, printed"][0])
+
+
+def eq_22_on_thin_plates() -> tuple[float, float, float]:
+    """R/H at which the continuous form errs most; its error at R/H = 1.8 and on thicker plates."""
+    case = compare.comparison("matrix")
+    off = np.abs(case.restitution["Eq. 22, continuous"] / case.fem["restitution"] - 1.0)
+    thin = np.isclose(case.slenderness, THINNEST)
+    return float(case.slenderness[off.argmax()]), float(off[thin].max()), float(off[~thin].max())
+
+
+def elastic_forms_against_impacts() -> dict[str, tuple[float, float]]:
+    """Find how far Zener's and Raman's models are from finite elements.
+
+    Largest relative difference while the bead does not yield, and the least excess at 7 V_Y0.
+    """
+    case = compare.comparison("matrix")
+    raman = np.asarray(closed_form.raman(case.inelasticity))
+    forms = {"Zener": case.restitution["Zener"], "Raman": raman}
+    fastest = case.speed_ratio > 0.99 * FASTEST
+    found = {}
+    for name, cor in forms.items():
+        off = cor / case.fem["restitution"] - 1.0
+        found[name] = float(np.abs(off[~case.yielded]).max()), float(off[fastest].min())
+    return found
 
 
 def nearest_harmless_edge() -> float:

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 import contactlaw as cl
 from contactlaw import closed_form, laws, zener
-from contactlaw.impact import Rebound, law_of
+from contactlaw.impact import Rebound, law_of, sphere_on_plate
+
+Array = NDArray[np.float64]
 
 PAIR = cl.Pair("gamma-alumina", "glass")  # Table 1
 RADIUS = 0.9e-3  # [m], section 3.1
 SPEED = PAIR.yield_speed  # V_Y0 [m/s]
 ETA = closed_form.eta(PAIR)
 SHARE = PAIR.sphere.plane_modulus / (PAIR.sphere.plane_modulus + PAIR.plate.plane_modulus)
-YIELD_COMPRESSION = (
-    0.68 * (math.pi * 472.5e6 / PAIR.effective_modulus) ** 2 * RADIUS
-)  # d_Y of MYC [m], Eq. 18
-FORCE = 4 / 3 * PAIR.effective_modulus * math.sqrt(RADIUS) * YIELD_COMPRESSION**1.5  # F_Y [N]
+_MYC = laws.law("myc")
+_CONTACT = sphere_on_plate(PAIR, _MYC, np.array(RADIUS), np.array(math.inf))
+YIELD_COMPRESSION = float(_CONTACT.yield_compression)  # d_Y of MYC [m]
+FORCE = float(_CONTACT.stiffness) * YIELD_COMPRESSION**1.5  # F_Y [N]
 THINNEST, FASTEST = 1.8, 7.0  # R/H and V0/V_Y0, to which the paper's finite elements reach
 
 
@@ -43,17 +46,22 @@ def all_laws() -> list[laws.Law]:
     return [law_of(PAIR, name) for name in laws.names()]
 
 
-def force(law: laws.Law, compression: np.ndarray) -> np.ndarray:
+def yield_unit(law: laws.Law) -> float:
+    """Yield compression of a law in that of MYC; 1 for a law that never yields."""
+    assert _MYC.yield_coefficient is not None
+    own = law.yield_coefficient
+    return 1.0 if own is None else own / _MYC.yield_coefficient
+
+
+def force(law: laws.Law, compression: Array) -> Array:
     """Compute the loading curve of any law in MYC's units: force [F_Y] at compressions [d_Y]."""
-    if law.yield_coefficient is None:
-        return np.asarray(compression) ** 1.5
-    unit = law.yield_coefficient / 0.68  # its d_Y in MYC's
-    return unit**1.5 * np.array([law.loading(math.sqrt(d / unit)) for d in compression])
+    unit = yield_unit(law)
+    return np.array([unit**1.5 * law.loading(math.sqrt(d / unit)) for d in compression])
 
 
-def unloading(law: laws.Law, largest: float) -> tuple[np.ndarray, np.ndarray]:
+def unloading(law: laws.Law, largest: float) -> tuple[Array, Array]:
     """Unloading curve from a largest compression: compression [d_Y], force [F_Y], both MYC's."""
-    unit = 1.0 if law.yield_coefficient is None else law.yield_coefficient / 0.68
+    unit = yield_unit(law)
     residual, curve = law.residual(largest / unit), law.unloading_curve(largest / unit)
     q = np.linspace(0.0, math.sqrt(largest / unit - residual), 200)
     down = np.array([law.unloading(x, *curve) for x in q])
@@ -62,20 +70,32 @@ def unloading(law: laws.Law, largest: float) -> tuple[np.ndarray, np.ndarray]:
 
 def restitution(speed_ratio: float, inelasticity_at_yield: float, law: laws.Law) -> float:
     """COR of any law by integration; v and lambda_Y of MYC's yield speed."""
-    unit = 1.0 if law.yield_coefficient is None else law.yield_coefficient / 0.68
     lam = inelasticity_at_yield * speed_ratio**0.2
-    y = unit * 1.25**0.4 * speed_ratio**-0.8
+    y = yield_unit(law) * 1.25**0.4 * speed_ratio**-0.8
     return zener.solve(law.functions, lam, y, 1e-10).restitution
 
 
+@functools.cache
 def borderline(thickness_ratio: float) -> float:
-    """V0/V_Y0 at which plastic and wave loss are equal, by bisection in the model."""
-    low, high = 1.0, 64.0
-    for _ in range(50):
-        middle = math.sqrt(low * high)
-        one = impacts(middle, thickness_ratio)
-        if one.plastic_fraction < one.wave_fraction:
-            low = middle
-        else:
-            high = middle
+    """V0/V_Y0 at which plastic and wave loss are equal in the model."""
+
+    def excess(speed_ratio: float) -> float:
+        one = impacts(speed_ratio, thickness_ratio)
+        return float(one.plastic_fraction - one.wave_fraction)
+
+    return root(excess, 1.0, 64.0)
+
+
+def root(function: Callable[[float], float], low: float, high: float) -> float:
+    """Find the root of a function that is negative at `low`, by bisection to the last digit.
+
+    Examples
+    --------
+    >>> from validation.paper import root
+    >>> round(root(lambda x: x * x - 2.0, 1.0, 2.0), 12)
+    1.414213562373
+    """
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if function(middle) < 0.0 else (low, middle)
     return low

@@ -12,8 +12,8 @@ import markdown
 from matplotlib.figure import Figure
 
 import contactlaw as cl
-from validation.claims import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 from validation.typeset import typeset
+from validation.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 
 _DERIVATIONS = Path(__file__).parent / "derivations"
 _COLOURS = {
