@@ -28,7 +28,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     )
     left, right = figure.subplots(1, 2)
     lam = np.linspace(0.0, 2.0, 81)
-    exact = elastic_compression(lam)
+    exact = np.asarray(elastic_compression(lam))
     quadratic = INTERCEPT * turning_point.loading(lam) ** -1.5
     left.plot(lam[::5], exact[::5] ** -1.5, "s", color=_style.BLUE, markersize=7, label="solver")
     left.plot(lam, lam + INTERCEPT, color=_style.VERMILION, linewidth=2, label="Eq. 6, slope 1.00")
@@ -41,8 +41,10 @@ def draw() -> tuple[Figure, dict[str, float]]:
     right.set(xlabel=r"inelasticity  $\lambda$", ylabel=r"error of $w_m$  [%]", xlim=(0, 2))
     slope = float((lam * (exact**-1.5 - INTERCEPT)).sum() / (lam**2).sum())
     near = lam <= 0.6
+    start = float(elastic_compression(1e-4)) ** -1.5 - INTERCEPT
     return figure, {
         "least-squares slope over 0 to 2": slope,
+        "slope at 0": start / 1e-4,
         "largest error of Eq. 6 in w_m": float(np.abs(printed / exact - 1).max()),
         "largest error of the quadratic up to 0.6": float(
             np.abs(quadratic ** (-2 / 3) / exact - 1)[near].max()

@@ -58,6 +58,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     thick = model().sensitivity(5.0 * SPEED, RADIUS, RADIUS / 0.3)
     return figure, {
         "thickness, R/H = 1.8, 2 V_Y0": float(thin.thickness),
+        "radius, R/H = 1.8, 2 V_Y0": float(thin.radius),
         "yield strength, R/H = 0.3, 5 V_Y0": float(thick.yield_strength),
         "speed, R/H = 0.3, 5 V_Y0": float(thick.speed),
         "largest difference to the solver, speed": worst,
