@@ -1,12 +1,15 @@
 """The reproduction of the paper: a number of each figure, the verdict on each claim, the report."""
 
 import doctest
+import os
 import re
+import signal
+from pathlib import Path
 
 import pytest
 
 from contactlaw import closed_form
-from validation import evidence, figures, paper, typeset
+from validation import evidence, figures, paper, report, typeset
 from validation.__main__ import main
 from validation.claims import claims
 from validation.paper import PAIR
@@ -303,9 +306,14 @@ def test_numbers_of_figures(drawn, name):
         assert found[key] == (pytest.approx(value, rel=2e-3) if value is not NONE else NONE), key
 
 
-@pytest.mark.parametrize("claim", claims(), ids=lambda claim: claim.name)
-def test_claims(claim):
-    verdict, ours = CLAIMS[claim.name]
+@pytest.fixture(scope="module")
+def judged():
+    return {claim.name: claim for claim in claims()}
+
+
+@pytest.mark.parametrize("name", CLAIMS)
+def test_claims(judged, name):
+    claim, (verdict, ours) = judged[name], CLAIMS[name]
     assert claim.verdict == verdict
     if ours is None:
         assert claim.ours is None
@@ -314,8 +322,9 @@ def test_claims(claim):
     assert claim.note or claim.verdict == HOLDS  # whatever does not hold says why
 
 
-def test_no_claim_is_lost():
-    assert [claim.name for claim in claims()] == list(CLAIMS)
+def test_no_claim_is_lost_or_named_twice(judged):
+    assert list(judged) == list(CLAIMS)
+    assert len(judged) == len(claims())
 
 
 def test_a_verdict_can_be_another():
@@ -338,6 +347,31 @@ def test_the_report_needs_no_other_file(drawn):
     assert "http" not in re.sub(r"data:image/png;base64,[^']*", "", text)
     assert text.count("<img") == len(NUMBERS)
     assert text.count("<tr>") > len(claims())
+
+
+def test_a_folder_that_is_a_file_is_refused(tmp_path, capsys):
+    path = tmp_path / "report"
+    path.write_text("mine")
+    with pytest.raises(SystemExit, match="2"):
+        main(["--out", str(path)])
+    assert f"--out: {path} is a file, not a folder; name a folder" in capsys.readouterr().err
+    assert path.read_text() == "mine"
+
+
+@pytest.mark.parametrize(
+    ("stop", "status", "message"),
+    [
+        (lambda *_: os.kill(os.getpid(), signal.SIGINT), 130, "interrupted; nothing was written"),
+        (lambda *_: Path("/no/such/file").read_bytes(), 1, "/no/such/file.*nothing was written"),
+    ],
+    ids=["Ctrl-C", "unreadable"],
+)
+def test_an_unfinished_report_leaves_nothing(tmp_path, monkeypatch, capsys, stop, status, message):
+    monkeypatch.setattr(figures, "names", lambda: ["fig09b_energy"])
+    monkeypatch.setattr(report, "page", stop)  # the picture is there by then
+    assert main(["--out", str(tmp_path / "report")]) == status
+    assert list(tmp_path.iterdir()) == []
+    assert re.search(message, capsys.readouterr().err)
 
 
 def test_examples():

@@ -1,42 +1,78 @@
-"""Reproduce the paper: ``python -m validation [--out DIR]``."""
+"""Reproduce the paper: ``python -m validation [--out DIR]``.
+
+What takes long to import is imported inside `_write`, where Ctrl-C is already caught.
+"""
 
 from __future__ import annotations
 
 import argparse
 import collections
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
-from tqdm import tqdm
-
-from validation import figures
-from validation.claims import SECTIONS, of_section
-from validation.figures import _style
-from validation.report import page, png
+from dem_demo.folder import Interrupted, interruptible, results
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Write report and pictures; print what became of the claims."""
-    parser = argparse.ArgumentParser(prog="python -m validation", description=__doc__)
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent / "report")
+def main(argv: Sequence[str] | None = None) -> int:
+    """Write report and pictures, all of them or none; print what became of the claims.
+
+    Returns
+    -------
+    int
+        0: done; 1: a file cannot be read or written; 128 + signal: interrupted. Wrong usage exits
+        with 2.
+    """
+    parser = argparse.ArgumentParser(
+        prog="python -m validation",
+        description="Reproduce the paper: its figures and numbers, and what holds of its claims.",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        default=Path(__file__).parent / "report",
+        help="folder for index.html and the PNGs (default: %(default)s)",
+    )
     out = parser.parse_args(argv).out
-    out.mkdir(parents=True, exist_ok=True)
-    names = figures.names()
-    drawn = []
-    with _style.applied():
-        for name in tqdm(names, "validation: figures", disable=None):
-            module = figures.module(name)
-            figure, numbers = module.draw()
-            image = png(figure)
-            (out / f"{name}.png").write_bytes(image)
-            drawn.append((name, module.__doc__, numbers, image))
-    sections = tqdm(SECTIONS, "validation: claims", disable=None)
-    found = tuple(claim for section in sections for claim in of_section(section))
-    (out / "index.html").write_text(page(found, drawn), encoding="utf-8")
-    for verdict, count in collections.Counter(claim.verdict for claim in found).items():
+    try:
+        with interruptible(), results(out) as folder:
+            verdicts = _write(folder)
+    except NotADirectoryError as error:
+        parser.error(f"argument --{error}; name a folder, which may be new")
+    except OSError as error:
+        print(f"validation: {error}; nothing was written to --out {out}", file=sys.stderr)
+        return 1
+    except Interrupted as stop:
+        print("\nvalidation: interrupted; nothing was written", file=sys.stderr)
+        return stop.exit_status
+    for verdict, count in verdicts.items():
         print(f"{count:3d} claims: {verdict}")
     print(out / "index.html")
     return 0
+
+
+def _write(folder: Path) -> collections.Counter[str]:
+    """Draw, judge and write; count the verdicts."""
+    from tqdm import tqdm
+
+    from validation import figures
+    from validation.claims import SECTIONS, of_section
+    from validation.figures import _style
+    from validation.report import page, png
+
+    drawn = []
+    with _style.applied():
+        for name in tqdm(figures.names(), "validation: figures", disable=None):
+            module = figures.module(name)
+            figure, numbers = module.draw()
+            image = png(figure)
+            (folder / f"{name}.png").write_bytes(image)
+            drawn.append((name, str(module.__doc__), numbers, image))
+    sections = tqdm(SECTIONS, "validation: claims", disable=None)
+    found = tuple(claim for section in sections for claim in of_section(section))
+    (folder / "index.html").write_text(page(found, drawn), encoding="utf-8")
+    return collections.Counter(claim.verdict for claim in found)
 
 
 if __name__ == "__main__":
