@@ -20,8 +20,11 @@ def rows() -> Iterator[Row]:
     rng = np.random.default_rng(2)
     impacts = rng.uniform(0.5, 30.0, N), rng.uniform(0.3e-3, 1e-3, N), rng.uniform(0.5e-3, 3e-3, N)
     table = seconds(lambda: model.force_history(*impacts, SAMPLES)) / N
-    some = [values[:100] for values in impacts]
-    solve = seconds(lambda: model.force_history(*some, SAMPLES, "solve"), 3) / 100
+    speed, radius, thickness = (values[:100] for values in impacts)
+    solve = (
+        seconds(lambda: model.force_history(speed, radius, thickness, SAMPLES, "solve"), 3)
+        / speed.size
+    )
     peer = scipy_history()
     yield Row(
         "force history, 256 samples, table", table * 1e6, "us", 10, "solve_ivp(DOP853)",

@@ -64,7 +64,7 @@ def peers(
     x_nodes = table.inelasticity / (table.inelasticity + c)
     some = slice(0, N, 10)
     hit = model.lookup(v[some], r[some], h[some])
-    x = hit.inelasticity / (hit.inelasticity + c)
+    x = np.asarray(hit.inelasticity / (hit.inelasticity + c))
     y = np.maximum(np.log(hit.overload), 0.0)
     spline = RectBivariateSpline(x_nodes, nodes, values, s=0)
     at_spline = seconds(lambda: spline.ev(x, y), 3) / x.size

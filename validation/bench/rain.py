@@ -9,8 +9,10 @@ from unittest import mock
 import pymunk
 
 import contactlaw as cl
+from contactlaw.engines import pymunk as adapter
 from dem_demo import nozzles, rain_pymunk
 from dem_demo.baseline import ConstantRestitution
+from dem_demo.scene import Scene
 
 from .row import Row
 
@@ -40,7 +42,7 @@ def rows() -> Iterator[Row]:
     for _ in range(REPEAT):
         times["model"].append(_run(scene, cl.ImpactModel(pair)))
         times["adapter"].append(_run(scene, constant))
-        with mock.patch.object(rain_pymunk.adapter, "attach", _Elasticities):
+        with mock.patch.object(adapter, "attach", _Elasticities):
             times["plain"].append(_run(scene, constant))
     least = {name: min(values) for name, values in times.items()}
     yield Row(
@@ -53,8 +55,8 @@ def rows() -> Iterator[Row]:
     )  # fmt: skip
 
 
-def _run(scene: nozzles.Scene, model: cl.ImpactModel | ConstantRestitution) -> float:
-    rain = rain_pymunk._Rain(scene, model)  # type: ignore[arg-type]
+def _run(scene: Scene, model: cl.ImpactModel | ConstantRestitution) -> float:
+    rain = rain_pymunk._Rain(scene, model)
     start = time.perf_counter()
     for _ in range(scene.frames):
         rain.advance(scene.steps_per_frame)

@@ -58,7 +58,7 @@ def rows() -> Iterator[Row]:
 def scipy_solve(lam: np.ndarray, y: np.ndarray) -> float:
     """Time of one elastic impact with solve_ivp at the same tolerance: a lower bound for MYC."""
 
-    def impact(a: float) -> None:
+    def impact(a: float) -> object:
         def rates(t: float, s: np.ndarray) -> list[float]:
             f = max(s[0], 0.0) ** 1.5
             return [s[1] - a * f, -f]
@@ -67,6 +67,6 @@ def scipy_solve(lam: np.ndarray, y: np.ndarray) -> float:
             return float(s[0]) if t > 0 else 1.0
 
         parted.terminal, parted.direction = True, -1  # type: ignore[attr-defined]
-        solve_ivp(rates, [0, 1000], [0, 1], "DOP853", rtol=RTOL, atol=RTOL, events=parted)
+        return solve_ivp(rates, [0, 1000], [0, 1], "DOP853", rtol=RTOL, atol=RTOL, events=parted)
 
     return seconds(lambda: [impact(a) for a in lam], 2) / lam.size
