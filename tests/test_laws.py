@@ -143,6 +143,13 @@ def test_stronge_is_as_printed():
 
 def test_stronge_as_printed_would_gain_energy():
     law = laws.law("stronge")
+    # stiffer than Hertz's contact up to 8 d_Y, with a larger force up to 15
+    slope = [law.loading(math.sqrt(d + 1e-6)) - law.loading(math.sqrt(d)) for d in (7.9, 8.1)]
+    hertz = [(d + 1e-6) ** 1.5 - d**1.5 for d in (7.9, 8.1)]
+    assert slope[0] > hertz[0]
+    assert slope[1] < hertz[1]
+    assert law.loading(math.sqrt(15.0)) > 15.0**1.5
+    assert law.loading(math.sqrt(15.5)) < 15.5**1.5
     for dm in (1.05, 1.3, 1.8):
         up = quad(lambda d: law.loading(math.sqrt(d)), 0, dm, points=[1.0])[0]
         printed = 0.4 * law.loading(math.sqrt(dm)) * math.sqrt(2 * dm - 1)

@@ -349,6 +349,18 @@ def test_the_report_needs_no_other_file(drawn):
     assert text.count("<tr>") > len(claims())
 
 
+def test_no_formula_of_the_report_is_left_as_typed(drawn):
+    text = (drawn[1] / "index.html").read_text()
+    text = re.sub(r"<style>.*?</style>|data:image/png;base64,[^']*", "", text, flags=re.DOTALL)
+    text = re.sub(r"(?<!<pre>)<code>.*?</code>", "", text, flags=re.DOTALL)
+    words = re.sub(r"<[^>]*>", "", text)
+    assert re.findall(r"\w*[\^_`]\w*|\b[dr]?(?:lambda|alpha|tau|chi|rho|sigma)\b", words) == []
+    assert re.findall(r"\d[.\d]*e-?\d+", words) == []
+    # an asterisk is E*'s or a product's: markdown has not taken it for emphasis
+    assert "E*/E<sub>2</sub>'" in text
+    assert not re.search(r"<em>[^<]*(?:<sub>|=)", text)
+
+
 def test_a_folder_that_is_a_file_is_refused(tmp_path, capsys):
     path = tmp_path / "report"
     path.write_text("mine")

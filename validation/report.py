@@ -6,6 +6,7 @@ import base64
 import datetime
 import html
 import io
+import re
 from pathlib import Path
 
 import markdown
@@ -106,11 +107,12 @@ def _pill(verdict: str) -> str:
 
 
 def _formula(text: str) -> str:
-    return typeset(html.escape(text, quote=False))
+    code = re.sub("`([^`]*)`", r"<code>\1</code>", html.escape(text, quote=False))
+    return typeset(code)
 
 
 def _number(value: float | None) -> str:
-    return "-" if value is None else f"{value:.4g}"
+    return "-" if value is None else typeset(f"{value:.4g}")
 
 
 def _claims(claims: tuple[Claim, ...]) -> str:
@@ -118,7 +120,7 @@ def _claims(claims: tuple[Claim, ...]) -> str:
         f"<tr><td>{html.escape(claim.where)}</td><td>{_formula(claim.statement)}"
         f"<br><span class='note'>{_formula(claim.note)}</span></td>"
         f"<td class='n'>{_number(claim.printed)}</td><td class='n'>{_number(claim.ours)}</td>"
-        f"<td>{html.escape(claim.tolerance)}</td><td>{_pill(claim.verdict)}</td></tr>"
+        f"<td>{_formula(claim.tolerance)}</td><td>{_pill(claim.verdict)}</td></tr>"
         for claim in claims
     )
     heads = ("where", "claim", "printed", "ours", "agreement", "verdict")
@@ -130,7 +132,7 @@ def _figure(name: str, caption: str, numbers: dict[str, float], image: bytes) ->
     data = base64.b64encode(image).decode("ascii")
     title, _, text = _formula(" ".join(caption.split())).partition(": ")
     rows = "".join(
-        f"<tr><td>{_formula(key)}</td><td class='n'>{value:.4g}</td></tr>"
+        f"<tr><td>{_formula(key)}</td><td class='n'>{_number(value)}</td></tr>"
         for key, value in numbers.items()
     )
     return (

@@ -1,8 +1,8 @@
 """Fig. 12: elasticities of the COR, d ln e/d ln x, against speed.
 
-On thin plates thickness and radius rule: at R/H = 1.8 one per cent of either is worth about one per
-cent of COR. On thick ones it is the yield strength. Elasticities are from the table's derivatives;
-dots: difference quotients of the solver.
+On thin plates thickness and radius rule: at R/H = 1.8 and 2 V_Y0 one per cent of either is worth
+0.9 per cent of COR. On thick ones it is the yield strength, with 0.5 at R/H = 0.3 and 5 V_Y0.
+Elasticities are from the table's derivatives; dots: difference quotients of the solver.
 """
 
 from __future__ import annotations
