@@ -23,5 +23,5 @@ def marks(axes: Axes, field: str, speed_ratio: float, unit: float = 1.0) -> None
     here = np.isclose(case.speed_ratio, speed_ratio)
     axes.plot(
         case.inelasticity[here], case.fem[field][here] / unit, "X", color=SPEEDS[speed_ratio],
-        markersize=9, markeredgecolor=_style.INK,
+        markersize=9, markeredgecolor=_style.INK, clip_on=False, zorder=3,
     )  # fmt: skip

@@ -30,7 +30,15 @@ def draw() -> tuple[Figure, dict[str, float]]:
     lam = np.linspace(0.0, 2.0, 81)
     exact = np.asarray(elastic_compression(lam))
     quadratic = INTERCEPT * turning_point.loading(lam) ** -1.5
-    left.plot(lam[::5], exact[::5] ** -1.5, "s", color=_style.BLUE, markersize=7, label="solver")
+    left.plot(
+        lam[::5],
+        exact[::5] ** -1.5,
+        "s",
+        color=_style.BLUE,
+        markersize=7,
+        label="solver",
+        clip_on=False,
+    )
     left.plot(lam, lam + INTERCEPT, color=_style.VERMILION, linewidth=2, label="Eq. 6, slope 1.00")
     left.plot(lam, quadratic, color=_style.GREEN, linewidth=2, label="derived slope + quadratic")
     left.set(xlabel=r"inelasticity  $\lambda$", ylabel=r"$w_m^{-1.5}$", xlim=(0, 2))

@@ -28,9 +28,11 @@ def draw() -> tuple[Figure, dict[str, float]]:
     exact = np.asarray(yield_speed_ratio(ETA * ratio**2))
     printed = np.asarray(yield_speed_ratio(ETA * ratio**2, printed=True))
     misprint = np.asarray(yield_speed_ratio(ETA * SHARE**0.4 * ratio**2, printed=True))
-    left.plot(ratio[::8], exact[::8], "s", color=_style.BLUE, markersize=7, label="solver")
-    left.plot(ratio, printed, color=_style.VERMILION, label="Eq. 14, eta corrected")
-    left.plot(ratio, misprint, ":", color=_style.MUTED, label="Eq. 14, exponent 4/5 in eta")
+    left.plot(
+        ratio[::8], exact[::8], "s", color=_style.BLUE, markersize=7, label="solver", clip_on=False
+    )
+    left.plot(ratio, printed, color=_style.VERMILION, label=r"Eq. 14, $\eta$ corrected")
+    left.plot(ratio, misprint, ":", color=_style.MUTED, label=r"Eq. 14, exponent 4/5 in $\eta$")
     left.set(xlabel="R / H", ylabel="V$_Y$ / V$_{Y0}$", xlim=(0, 2.2))
     left.legend(loc="upper left")
     right.plot(ratio, 100 * (printed / exact - 1), color=_style.VERMILION)
