@@ -199,6 +199,7 @@ NUMBERS = {
 # verdict and our number, to the digits given
 CLAIMS = {
     "wave in a half-space": (OPEN, 0.01972),
+    "wave and plastic flow": (OPEN, 0.06187),
     "Mueller's range": (HOLDS, 0.01838),
     "transits": (OPEN, 1.277),
     "Mueller's contact times": (OPEN, 1.0154),
@@ -235,6 +236,7 @@ CLAIMS = {
     "Eq. 20, loading": (HOLDS, 2.661),
     "Eq. 20, unloading": (MISPRINT, 1.5 * 0.5**0.5),
     "monotone": (HOLDS, 0.0),
+    "Mueller, plastic": (HOLDS, 0.3011),
     "Eq. 21": (HOLDS, 0.0),
     "Eq. 21 beyond 4.19": (LIMITED, 0.01969),
     "Eq. 22 for thick plates": (HOLDS, 0.0),
