@@ -97,7 +97,7 @@ def _summary(claims: tuple[Claim, ...]) -> str:
         "restitution of an elastoplastic sphere impacting an elastic plate</i>, Int. J. Solids "
         "Struct. 222-223 (2021) 111036. Every equation, figure and number, computed again by "
         "contactlaw and, where the paper used ABAQUS, by finite elements of our own (stored; "
-        f"Figs. 14 to 22 are theirs). {len(claims)} claims: {counts}. "
+        f"Figs. 14 and on are theirs). {len(claims)} claims: {counts}. "
         "The model itself stands; what is wrong is on paper: exponents, a factor, a slope."
     )
 

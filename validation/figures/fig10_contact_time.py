@@ -2,7 +2,7 @@
 
 Plastic flow shortens the contact by at most 9 % up to 7 V_Y0. Thinner plates prolong it, by 5 % at
 R/H = 1.8 and V_Y0. Finite elements (crosses) have contacts up to 4 % shorter than the model's, rms
-2.4 %: theirs are stiffer than Hertz's. Where the bead yields, Zener's model is 4 to 11 % long
+2.3 %: theirs are stiffer than Hertz's. Where the bead yields, Zener's model is 4 to 11 % long
 beside them, as the paper says.
 """
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from contactlaw.laws import Law
 from validation.fem import compare
 from validation.figures import _style
 from validation.paper import all_laws, force, unloading
@@ -41,8 +42,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         if law.yield_coefficient is None:
             continue
         left.plot(*unloading(law, _DEEPEST), line, color=colour, linewidth=1.2)
-        share = np.array([_returned(law, one) for one in depth])
-        right.plot(depth, share, line, color=colour, linewidth=2)
+        curve_share = np.array([_returned(law, one) for one in depth])
+        right.plot(depth, curve_share, line, color=colour, linewidth=2)
         numbers[f"returned from 5 d_Y, {_style.TITLES[name]}"] = _returned(law, 5.0)
         numbers[f"returned from 30 d_Y, {_style.TITLES[name]}"] = _returned(law, 30.0)
     for name in _DEPTHS:
@@ -80,7 +81,7 @@ def _points(curve: tuple[np.ndarray, np.ndarray, int], step: int) -> tuple[np.nd
     return way[touching][::step], load[touching][::step]
 
 
-def _returned(law, largest: float) -> float:
+def _returned(law: Law, largest: float) -> float:
     d = np.linspace(0.0, largest, 400)
     spent = np.trapezoid(force(law, d), d)
     back, load = unloading(law, largest)
