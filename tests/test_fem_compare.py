@@ -14,6 +14,7 @@ from contactlaw import laws
 from validation import paper
 from validation.fem import compare, solver, store
 from validation.fem.compare import force_at
+from validation.fem.impact import impact
 from validation.fem.studies import STUDIES
 
 README = (Path(__file__).parent.parent / "README.md").read_text()
@@ -152,6 +153,42 @@ def test_indentation_is_static_and_agrees_with_calculix():
         assert np.abs(ours - force_at("calculix", way, loading=loading)).max() < 0.015 * peak
     slow = force_at("10_twice_as_slow", way)
     assert force_at("10", way) == pytest.approx(slow, rel=0.015)
+
+
+def test_impact_agrees_with_calculix():
+    """Another program, implicit, on the same meshes; finer ones bring the two together."""
+    theirs, made = store.read("calculix_impact")
+    apart = {}
+    for n, size in enumerate(theirs["size"]):
+        ours = impact(
+            paper.PAIR, made["speed"], made["radius"], made["thickness"], size=size,
+            friction=made["friction"],
+        )  # fmt: skip
+        sphere, plate = ours.system.sphere.elements, ours.system.plate.elements
+        assert len(sphere) + len(plate) == theirs["elements"][n]
+        apart[size] = [
+            abs(theirs[key][n] / getattr(ours, key) - 1)
+            for key in ("restitution", "peak_force", "contact_time")
+        ]
+        assert apart[size][1] < 0.02
+        assert apart[size][2] < 0.015  # it comes in whole increments, of 0.009
+        # its force is all of the force, and changes the momentum of all of the sphere
+        mass = 2 * np.pi * ours.system.mass[: plate.min()].sum()
+        impulse = np.trapezoid(theirs["force"][n], theirs["time"])
+        momentum = mass * made["speed"] * (1 + theirs["restitution"][n])
+        assert impulse == pytest.approx(momentum, rel=0.005)
+    assert apart[0.04][0] < 0.02
+    assert apart[0.04][0] < 0.8 * apart[0.06][0]
+    stated = re.search(r"within (\d\.\d), (\d\.\d) and (\d\.\d) %", " ".join(README.split()))
+    assert [float(x) for x in stated.groups()] == [round(100 * x, 1) for x in apart[0.04]]
+
+
+def test_numerical_damping_of_calculix_hardly_matters():
+    data = store.read("calculix_impact").data
+    light, heavy = (data["damping"] == one for one in (0.05, 0.3))
+    same_mesh = data["size"] == 0.06
+    difference = data["restitution"][light & same_mesh] - data["restitution"][heavy]
+    assert np.abs(difference).max() < 1e-3
 
 
 def test_which_law_is_right():
