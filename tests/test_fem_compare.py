@@ -172,15 +172,15 @@ def test_impact_agrees_with_calculix():
         ]
         assert apart[size][1] < 0.02
         assert apart[size][2] < 0.015  # it comes in whole increments, of 0.009
-        # its force is all of the force, and changes the momentum of all of the sphere
-        mass = 2 * np.pi * ours.system.mass[: plate.min()].sum()
-        impulse = np.trapezoid(theirs["force"][n], theirs["time"])
-        momentum = mass * made["speed"] * (1 + theirs["restitution"][n])
-        assert impulse == pytest.approx(momentum, rel=0.005)
-    assert apart[0.04][0] < 0.02
-    assert apart[0.04][0] < 0.8 * apart[0.06][0]
+    assert apart[0.03][0] < 0.01
+    assert apart[0.03][0] < 0.5 * apart[0.06][0]
     stated = re.search(r"within (\d\.\d), (\d\.\d) and (\d\.\d) %", " ".join(README.split()))
-    assert [float(x) for x in stated.groups()] == [round(100 * x, 1) for x in apart[0.04]]
+    assert [float(x) for x in stated.groups()] == [round(100 * x, 1) for x in apart[0.03]]
+    # its force is all of the force, and changes the momentum of all of the sphere
+    mass = 2 * np.pi * ours.system.mass[: plate.min()].sum()
+    impulse = np.trapezoid(theirs["force"], theirs["time"])
+    momentum = mass * made["speed"] * (1 + theirs["restitution"][-1])
+    assert impulse == pytest.approx(momentum, rel=0.005)
 
 
 def test_numerical_damping_of_calculix_hardly_matters():
