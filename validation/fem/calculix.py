@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from validation.fem import mesh
-from validation.fem.impact import _CORE, _PATIENCE, _RIM
+from validation.fem.impact import PATIENCE, expect, free_width, meshed
 from validation.fem.indentation import BLOCK, core
 from validation.fem.mesh import Mesh
 
@@ -190,11 +190,11 @@ def impact_deck(
     (2, 2)
     """
     above, below = _impact_meshes(pair, speed, radius, thickness, size)
-    step = _expected(pair, speed, radius, thickness)[0] / increments
+    step = expect(pair, speed, radius, thickness).time / increments
     flight = _FLIGHT * step
     gap = speed * (0.5 * flight + _GAP * step)
     raised = above._replace(nodes=above.nodes + [0.0, gap])
-    period = round(_GAP + (1.0 + _PATIENCE) * increments) * step
+    period = round(_GAP + (1.0 + PATIENCE) * increments) * step
     return (
         _bodies(pair, radius, raised, below, _HOLE * size * radius)
         + _set("SPHERE", np.arange(len(above.nodes)))
@@ -268,23 +268,12 @@ def run_impact(
     return History(since, force, (way[2:] - way[:-2]) / (2.0 * step))
 
 
-def _expected(pair: cl.Pair, speed: float, radius: float, thickness: float) -> tuple[float, float]:
-    """Contact time [s] and radius of the contact [m], as `impact.impact` expects them."""
-    guess = cl.ImpactModel(pair, outside="solve").lookup(speed, radius, thickness)
-    return float(guess.contact_time), math.sqrt(radius * float(guess.peak_compression))
-
-
 def _impact_meshes(
     pair: cl.Pair, speed: float, radius: float, thickness: float, size: float
 ) -> tuple[Mesh, Mesh]:
     """Sphere and plate as `impact.impact` makes them."""
-    time, contact = _expected(pair, speed, radius, thickness)
-    width = _RIM * math.sqrt(pair.plate.plane_modulus / pair.plate.density) * (1 + _PATIENCE) * time
-    fine, inner = size * radius, _CORE * contact
-    return (
-        mesh.sphere(radius, fine, inner),
-        mesh.plate(radius, fine, inner, thickness, width),
-    )
+    guess = expect(pair, speed, radius, thickness)
+    return meshed(guess, radius, thickness, size, free_width(pair.plate, guess.time))
 
 
 def _masses(body: Mesh, density: float) -> Array:

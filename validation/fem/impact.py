@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,12 +13,13 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw.closed_form import checked
 from validation.fem import elements, mesh, solver
+from validation.fem.mesh import Mesh
 from validation.fem.solver import System
 
 Array = NDArray[np.float64]
 
 _SAMPLES = 400  # of the history, per expected contact time
-_PATIENCE = 0.15  # of the contact time: so long without a force, and the sphere has left
+PATIENCE = 0.15  # of the contact time: so long without a force, and the sphere has left
 _SOONEST, _GIVE_UP = 0.5, 3.0  # expected contact times
 _IMBALANCE = 0.1  # of the energy: elements that collapse make more
 _FINEST = 0.01  # R, the paper's smallest element, and at least ...
@@ -143,28 +145,21 @@ def impact(
     >>> abs(hit.restitution - 0.51) < 0.02, hit.balance < 0.01
     (True, True)
     """
-    model = cl.ImpactModel(pair, law="myc" if yields else "hertz", outside="solve")
-    guess = model.lookup(speed, radius, thickness)
-    expected = float(guess.contact_time)
-    contact = math.sqrt(radius * float(guess.peak_compression))
-    width = free_width(pair.plate, expected) if width is None else width
-    size = min(_FINEST, contact / radius / _ACROSS) if size is None else size
-    core = _CORE * contact
+    guess = expect(pair, speed, radius, thickness, yields)
+    width = free_width(pair.plate, guess.time) if width is None else width
+    size = min(_FINEST, guess.contact / radius / _ACROSS) if size is None else size
     stiffness = hourglass_stiffness or 0.0
     checked(
         size=(size, 1e-3, 0.1, "sphere radii"), friction=(friction, 0.0, 1.0, ""),
         width=(width, radius, math.inf, "metres, from the radius on"), far=(far, 0.1, 2.0, ""),
         hourglass_stiffness=(stiffness, 0.0, 1.0, "of the stiffness of bending"),
     )  # fmt: skip
-    meshes = (
-        mesh.sphere(radius, size * radius, core),
-        mesh.plate(radius, size * radius, core, thickness, width, far),
-    )
+    meshes = meshed(guess, radius, thickness, size, width, far)
     materials = pair.sphere, pair.plate
     system = solver.assemble(meshes, materials, friction, yields, hourglass_stiffness)
     step = solver.time_step(system, materials)
     system.v[: _sphere_nodes(system), 1] = -speed
-    every = max(1, round(expected / _SAMPLES / step))
+    every = max(1, round(guess.time / _SAMPLES / step))
     load = np.zeros_like(system.x)
     rows: list[tuple[float, float, float, float]] = []
     energies = [energy(system)]
@@ -188,9 +183,9 @@ def impact(
                 raise collapsed
         if len(snapshots) < len(times) and time >= times[len(snapshots)]:
             snapshots.append(system.x.copy())
-        if last and time > max((1.0 + _PATIENCE) * last, _SOONEST * expected):
+        if last and time > max((1.0 + PATIENCE) * last, _SOONEST * guess.time):
             break
-        if time > _GIVE_UP * expected:
+        if time > _GIVE_UP * guess.time:
             raise RuntimeError(
                 f"the sphere is still in contact after {time:.3g} s, {_GIVE_UP:g} times the time "
                 f"expected at speed {speed:g} m/s on a plate of {thickness:g} m"
@@ -198,10 +193,37 @@ def impact(
     return _outcome(system, np.array(rows).T, energies, last, snapshots, size, step, every)
 
 
+class Expected(NamedTuple):
+    """What the model expects of an impact, for which time and mesh are chosen."""
+
+    time: float  # of contact [s]
+    contact: float  # radius of the contact [m]
+
+
+def expect(
+    pair: cl.Pair, speed: float, radius: float, thickness: float, yields: bool = True
+) -> Expected:
+    """Ask the model for an impact."""
+    model = cl.ImpactModel(pair, law="myc" if yields else "hertz", outside="solve")
+    found = model.lookup(speed, radius, thickness)
+    return Expected(float(found.contact_time), math.sqrt(radius * float(found.peak_compression)))
+
+
+def meshed(
+    guess: Expected, radius: float, thickness: float, size: float, width: float, far: float = 1.0
+) -> tuple[Mesh, Mesh]:
+    """Sphere and plate for an expected impact; lengths [m], `size` over the radius."""
+    fine, core = size * radius, _CORE * guess.contact
+    return (
+        mesh.sphere(radius, fine, core),
+        mesh.plate(radius, fine, core, thickness, width, far),
+    )
+
+
 def free_width(plate: cl.Material, contact_time: float) -> float:
     """Distance [m] from which an edge sends no wave back while a contact lasts."""
     wave = math.sqrt(plate.plane_modulus / plate.density)
-    return _RIM * wave * (1.0 + _PATIENCE) * contact_time
+    return _RIM * wave * (1.0 + PATIENCE) * contact_time
 
 
 def _sphere_nodes(system: System) -> int:

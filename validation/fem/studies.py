@@ -14,7 +14,7 @@ from tqdm import tqdm
 import contactlaw as cl
 from validation.fem import calculix, cases, store
 from validation.fem.cases import Case, yield_inelasticity
-from validation.fem.impact import free_width, impact
+from validation.fem.impact import expect, free_width, impact
 from validation.fem.indentation import BLOCK, indent
 from validation.fem.solver import SETTINGS
 from validation.paper import PAIR, RADIUS, YIELD_COMPRESSION
@@ -40,8 +40,7 @@ def verification(processes: int) -> None:
         listed += [("hourglass", replace(usual, hourglass_stiffness=k)) for k in (0.01, 1.0)]
         listed.append(("no friction", replace(usual, friction=0.0)))
     thin = Case(PAIR.yield_speed, 0.5e-3, size=0.01)
-    time = float(cl.ImpactModel(PAIR).lookup(thin.speed, RADIUS, thin.thickness).contact_time)
-    width = free_width(PAIR.plate, time)
+    width = free_width(PAIR.plate, expect(PAIR, thin.speed, RADIUS, thin.thickness).time)
     listed += [("width", replace(thin, width=factor * width)) for factor in (1.0, 2.0)]
     for speed in (8.0, 3.0, 1.0, 0.5):
         listed.append(("hertz", Case(speed, 9e-3, friction=0.0, yields=False)))
@@ -141,8 +140,10 @@ def calculix_impact(_: int) -> None:
             "force": finest.force,
             "speed": finest.speed,
         },
-        {"size": "sphere radius", "contact_time": "s", "peak_force": "N", "time": "s",
-         "force": "N", "speed": "m/s"},
+        {
+            "size": "sphere radius", "damping": "-", "restitution": "-", "contact_time": "s",
+            "peak_force": "N", "time": "s", "force": "N", "speed": "m/s",
+        },
         mesh="of `impact.impact`; element size [R] in column size",
         columns="damping: -alpha of Hilber, Hughes and Taylor; increments: in the contact time "
         "that the model expects",
@@ -242,7 +243,7 @@ def edge(processes: int) -> None:
     """Let the bending wave come back from the free edge of a small plate: why 1.5."""
     thickness = RADIUS / 1.5
     speed = PAIR.yield_speed
-    time = float(cl.ImpactModel(PAIR).lookup(speed, RADIUS, thickness).contact_time)
+    time = expect(PAIR, speed, RADIUS, thickness).time
     way = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5  # c_g time/2
     factors = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 4.0)
     listed = [Case(speed, thickness, width=factor * way) for factor in factors]
