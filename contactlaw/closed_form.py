@@ -417,7 +417,7 @@ def border(thickness_ratio: ArrayLike) -> float | Array:
     Returns
     -------
     float or ndarray of float64
-        (1 + 1.001 (R/H)^2)^(5/2). For that pair 10 % low at R/H = 0.2 to 0.3, within 5 % from 0.5
+        (1 + 1.001 (R/H)^2)^(5/2). For that pair 10 % low at R/H = 0.2 to 0.3, within 5.1 % from 0.5
         to 1, 7 % low at 1.2.
 
     Examples

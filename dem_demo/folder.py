@@ -13,7 +13,11 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+_SIGNALS = [
+    getattr(signal, name)
+    for name in ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no terminal that hangs up
+    if hasattr(signal, name)
+]
 
 
 class Interrupted(BaseException):
@@ -41,17 +45,20 @@ def _on_signals(
     if threading.current_thread() is not threading.main_thread():
         yield  # Python delivers signals to the main thread only
         return
-    before = [signal.signal(number, reaction) for number in _SIGNALS]
+    before = {number: signal.getsignal(number) for number in _SIGNALS}
+    heard = {n: handler for n, handler in before.items() if handler != signal.SIG_IGN}  # nohup
     try:
+        for number in heard:
+            signal.signal(number, reaction)
         yield
     finally:
-        for number, handler in zip(_SIGNALS, before, strict=True):
+        for number, handler in heard.items():
             signal.signal(number, handler)
 
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Within this block, Ctrl-C and a request to terminate raise `Interrupted`."""
+    """Within this block, Ctrl-C, a request to terminate and a hang-up raise `Interrupted`."""
     with _on_signals(_stop):
         yield
 
@@ -81,7 +88,7 @@ def results(folder: Path) -> Iterator[Path]:
         nearest = nearest.parent
     if not nearest.is_dir():
         raise NotADirectoryError(f"out: {nearest} is a file, not a folder")
-    temporary = Path(tempfile.mkdtemp(prefix=".dem-demo-", dir=nearest))
+    temporary = Path(tempfile.mkdtemp(prefix=".unfinished-", dir=nearest))
     try:
         yield temporary
         with _on_signals(signal.SIG_IGN):

@@ -241,8 +241,14 @@ sys.exit(cli.main({argv!r}))
 """
 
 
-@pytest.mark.parametrize(("module", "function"), [("rain_pymunk", "run"), ("figures", "draw_all")])
-@pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("module", "function", "number", "status"),
+    [
+        ("rain_pymunk", "run", signal.SIGINT, 130),
+        ("rain_pymunk", "run", signal.SIGHUP, 129),
+        ("figures", "draw_all", signal.SIGTERM, 143),
+    ],
+)
 def test_an_interrupt_leaves_nothing(module, function, number, status, tmp_path):
     code = SLOW.format(module=module, function=function, argv=[*SMALL, "--out", "out"])
     process = subprocess.Popen(

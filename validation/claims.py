@@ -43,6 +43,14 @@ def of_section(section: Callable[[], Iterator[Claim]]) -> tuple[Claim, ...]:
     return tuple(section())
 
 
+DEEPEST = np.array([30.0])  # compression of the deepest indentation [d_Y]
+
+
+def _largest(values: Array) -> float:
+    """Value of the largest magnitude."""
+    return float(values[np.abs(values).argmax()])
+
+
 def _percent(share: float, digits: int = 0) -> str:
     return f"{100.0 * share:.{digits}f} %"
 
@@ -89,8 +97,8 @@ def _section_1() -> Iterator[Claim]:
     yield near(
         "bulk power", "section 1", "on a half-space the COR falls as V0^-0.5 (Wu et al. 2003)",
         -0.5, evidence.slope((v[0], e[0]), (v[1], e[1])), 0.02,
-        "Wu et al. find -1/2 for finite deformation; every contact law with linear loading (MYC, "
-        "Thornton) has -1/4, Johnson's classical result", LIMITED,
+        "in the model: every contact law with linear loading (MYC, Thornton) has -1/4, Johnson's "
+        "classical result; Wu et al. find -1/2 where deformations are finite",
     )  # fmt: skip
     one, two = (float(impacts(x, 1.0).inelasticity) for x in (1.0, 2.0))
     yield near(
@@ -143,11 +151,19 @@ def _section_2() -> Iterator[Claim]:
 def _section_3_1() -> Iterator[Claim]:
     d = np.linspace(0.5, 10.0, 191)
     off = compare.loading_errors(d)
-    yielded = d >= 2.0
+    deep = {name: _percent(float(one[0])) for name, one in compare.loading_errors(DEEPEST).items()}
+    way = "largest difference from our finite elements while loading from 0.5 to 10 d_Y"
     yield at_most(
         "MYC", "section 3.1, Fig. 3", "MYC is within 6 % of finite elements", 0.06,
         float(np.abs(off["myc"]).max()),
-        "largest difference while loading from 0.5 to 10 d_Y; 29 % high at 30 d_Y", LIMITED,
+        f"{way}; it takes a ripple of theirs, nodes that come into contact, with it. {deep['myc']} "
+        "high at 30 d_Y", LIMITED,
+    )  # fmt: skip
+    worst = evidence.unloading_error()
+    yield at_most(
+        "MYC, unloading", "section 3.1, Fig. 3", "and while unloading", 0.06, worst,
+        "largest difference from 5 and 10 d_Y on the way back, over the largest force; less work "
+        "comes back than in finite elements, 58 % for 64 % from 5 d_Y", LIMITED,
     )  # fmt: skip
     too_high = d[(d > 1.0) & (np.abs(off["hertz"]) > 0.06)]
     yield at_most(
@@ -156,16 +172,16 @@ def _section_3_1() -> Iterator[Claim]:
         "compression [d_Y] from which it is 6 % high while loading: MYC itself loads along Hertz's "
         "curve up to d_P = 3.15 d_Y. Unloading parts from it at d_Y", LIMITED,
     )  # fmt: skip
+    thornton, stronge = (_largest(off[name]) for name in ("thornton", "stronge"))
+    slow, fast = compare.loading_errors(np.array([2.0, evidence.FASTEST_COMPRESSION]))["thornton"]
     yield near(
-        "Thornton", "section 3.1, Fig. 3", "Thornton's force is about 64 % low", -0.64,
-        float(off["thornton"][d <= 4.77].min()), 0.05,
-        "against our finite elements 41 % low at 2 d_Y, 57 % at 4.77 d_Y (7 V_Y0 on a half-space); "
-        "64 % at 10 to 14 d_Y, beyond the paper's speeds", LIMITED,
+        "Thornton", "section 3.1, Fig. 3", "Thornton's force is about 64 % low", -0.64, thornton,
+        0.05, f"{way}: at 10 d_Y. {_percent(-slow)} low at 2 d_Y, {_percent(-fast)} at 4.77, where "
+        "7 V_Y0 leads to on a half-space: less in the paper's own range of speeds",
     )  # fmt: skip
     yield near(
-        "Stronge", "section 3.1, Fig. 3", "Stronge's force is about 40 % high", 0.40,
-        float(np.median(off["stronge"][yielded])), 0.05,
-        "against our finite elements, median over 2 to 10 d_Y: 38 to 44 %, and 121 % at 30 d_Y",
+        "Stronge", "section 3.1, Fig. 3", "Stronge's force is about 40 % high", 0.40, stronge, 0.05,
+        f"{way}; {deep['stronge']} at 30 d_Y",
     )  # fmt: skip
     yield undecided(
         "Dong et al.", "section 3.1", "MYC has the better COR from 1.6 m/s on (Dong et al. 2018)",
@@ -231,11 +247,15 @@ def _eq_14() -> Iterator[Claim]:
         "Taylor coefficients", "section 3.2", "|a_n| < 1", 1.0, float(np.abs(coefficients).max())
     )
     bound = (1.0 - (q + 1.0) ** -0.2) / (1.0 + q * (q + 1.0) ** 0.2)
-    step = (1.0 - (q + 1.0) ** -0.2) / (q + 1.0)
-    series = sum(step**k for k in range(1, 60)) / (q + 1.0) ** 0.2
+    sums = []
+    for power in (5.0, 0.2):
+        step = (1.0 - (q + 1.0) ** -power) / (q + 1.0)
+        series = sum(step**k for k in range(1, 60)) / (q + 1.0) ** 0.2
+        sums.append(float(np.abs(series - bound).max()))
     yield at_most(
-        "sum of Eq. 13", "Eq. 13", "the series has the sum in closed form (to 1e-12)", 1e-12,
-        float(np.abs(series - bound).max()), "largest difference",
+        "sum of Eq. 13", "Eq. 13", "the series, with (q + 1)^-5, has the sum in closed form", 1e-6,
+        sums[0], f"largest difference; with the exponent -1/5 it has, to {max(sums[1], 1e-12):.0e}",
+        MISPRINT,
     )  # fmt: skip
     yield at_most(
         "bound of Eq. 13", "Eq. 13", "the residual is at most 0.061", 0.061, float(bound.max())
@@ -333,9 +353,9 @@ def _section_3_4() -> Iterator[Claim]:
     )  # fmt: skip
     over = float(closed_form.half_space(FASTEST, printed=True) / closed_form.half_space(FASTEST))
     yield at_most(
-        "Eq. 21 beyond 4.19", "Eq. 21", "and beyond", 1e-6, over - 1.0,
+        "Eq. 21 beyond 4.19", "Eq. 21", "beyond that speed too", 1e-6, over - 1.0,
         "loading is linear from there on; Eq. 21 is 2 % high at v = 7, 4.4 % at 10. The errata "
-        "have the exact form", LIMITED,
+        "have the exact form",
     )  # fmt: skip
     bulk = closed_form.peng(v, 0.0, ETA) - closed_form.half_space(v, printed=True)
     yield at_most(
@@ -355,10 +375,10 @@ def _section_3_4() -> Iterator[Claim]:
         LIMITED,
     )  # fmt: skip
     yield near(
-        "c of Eq. 22, with their g", "Eq. 22", "c = 0.0935, and g with eta's exponent 4/5", 0.0935,
+        "c of Eq. 22, 4/5 in g", "Eq. 22", "c = 0.0935, and g with eta's exponent 4/5", 0.0935,
         evidence.fitted_c(surface, v, ratio, exponent=0.8), 2e-3,
-        "closest of the three; 0.093 to 0.108 over other ranges and weights, with 2/5 in g 0.106 "
-        "to 0.117",
+        "closest of the three: that g was computed so is our guess. 0.093 to 0.108 over other "
+        "ranges and weights, with 2/5 in g 0.106 to 0.117",
     )  # fmt: skip
     as_printed = closed_form.peng(v, ratio[:, None], ETA, printed=True)
     yield at_most(
@@ -376,7 +396,7 @@ def _section_3_4() -> Iterator[Claim]:
 def _section_4_1() -> Iterator[Claim]:
     forms = evidence.elastic_forms_against_impacts()
     for name in ("Zener", "Raman"):
-        elastic, excess = forms[name]
+        elastic, least, fastest = forms[name]
         yield at_most(
             f"{name}, elastic", "section 4.1, Fig. 7", f"{name}'s model predicts elastic impacts",
             0.05, elastic,
@@ -386,9 +406,10 @@ def _section_4_1() -> Iterator[Claim]:
         yield more_than(
             f"{name}, plastic", "section 4.1, Fig. 7",
             f"{name}'s model is more than 20 % high where the bead yields, at small lambda", 0.2,
-            excess,
-            "the least of eight impacts of finite elements at 7 V_Y0, the one on the thickest "
-            "plate; just above V_Y it is not yet so", LIMITED,
+            least,
+            "the least over the yielded impacts of finite elements on R/H = 0.1 and 0.25, at 1.5 "
+            f"V_Y0: yielding begins with no loss. At 7 V_Y0 it is at least {_percent(fastest)}, at "
+            "5 V_Y0 not yet 20 %", LIMITED,
         )  # fmt: skip
     continuous, printed = evidence.eq_22_against_impacts()
     yield at_most(
@@ -422,9 +443,10 @@ def _section_4_2() -> Iterator[Claim]:
     )  # fmt: skip
     sliver = borderline(0.1) - float(yield_speed_ratio(ETA * 0.01))
     yield undecided(
-        "Kharaz and Gorham", "section 4.2", "their plastic loss on thick plates is in region II",
-        None, "neither thickness nor speed is printed. A doubt: at R/H = 0.1 region II of the "
-        f"paper's pair is {sliver:.2f} V_Y0 wide, so that marked plastic loss would lie in III",
+        "Kharaz and Gorham", "section 4.2", "the states of their plastic impacts are in region II",
+        None, "neither thickness nor speed is printed. A doubt: if the plate was thick, R/H = 0.1 "
+        f"say, region II of the paper's pair is {sliver:.2f} V_Y0 wide, so that marked plastic "
+        "loss would lie in III",
     )  # fmt: skip
     yield undecided(
         "Mueller, Patil and Higgs", "section 4.2, Fig. 9A", "their states span I, and II to III",
@@ -444,15 +466,17 @@ def _section_4_2() -> Iterator[Claim]:
         float(fast.wave_fraction), "share of the energy at 7 V_Y0; no number is printed, 2 % is "
         "ours",
     )  # fmt: skip
+    yielding = float(yield_speed_ratio(ETA * 0.2**2))
     share = [
         float(one.plastic_fraction / (one.plastic_fraction + one.wave_fraction))
-        for one in (impacts(2.0, 0.2), fast)
+        for one in (impacts(1.05 * yielding, 0.2), impacts(2.0, 0.2), fast)
     ]
-    yield near(
-        "only cause", "section 4.2", "at R/H = 0.2 plastic flow is the only loss from V_Y on",
-        float(yield_speed_ratio(ETA * 0.2**2)), borderline(0.2), 0.05,
-        "ours is the speed [V_Y0] from which it is more than half of the loss; it is "
-        f"{_percent(share[0])} at 2 V_Y0 and {_percent(share[1])} at 7", LIMITED,
+    yield more_than(
+        "only cause", "section 4.2", "at R/H = 0.2 plastic flow is the only cause of loss from V_Y "
+        "on 'if we ignore the insignificant flexural wave'", 0.9, share[0],
+        "its share of the loss 5 % above V_Y (90 % is ours): the wave is not insignificant at "
+        f"once. More than half from {borderline(0.2):.2f} V_Y0 on, {_percent(share[1])} at 2, "
+        f"{_percent(share[2])} at 7", LIMITED,
     )  # fmt: skip
 
 

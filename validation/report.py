@@ -95,9 +95,10 @@ def _summary(claims: tuple[Claim, ...]) -> str:
     return (
         "Q. Peng, Y. Jin, X. Liu, Y. G. Wei, <i>Effect of plasticity on the coefficient of "
         "restitution of an elastoplastic sphere impacting an elastic plate</i>, Int. J. Solids "
-        "Struct. 222-223 (2021) 111036. Every equation, figure and number, computed again by "
-        "contactlaw and, where the paper used ABAQUS, by finite elements of our own (stored; "
-        f"Figs. 14 and on are theirs). {len(claims)} claims: {counts}. "
+        "Struct. 222-223 (2021) 111036. Its equations, figures and numbers, computed again by "
+        "contactlaw and, where the paper used ABAQUS, by finite elements of our own, which are "
+        f"stored. Figs. 3 to 10 are the paper's, the others ours. {len(claims)} claims; verdicts: "
+        f"{counts}. "
         "The model itself stands; what is wrong is on paper: exponents, a factor, a slope."
     )
 

@@ -106,8 +106,8 @@ def names() -> tuple[str, ...]:
     Examples
     --------
     >>> import contactlaw.laws
-    >>> contactlaw.laws.names()
-    ('hertz', 'jackson_green', 'kogut_etsion', 'myc', 'stronge', 'thornton')
+    >>> "myc" in contactlaw.laws.names()
+    True
     """
     found = (module.name for module in pkgutil.iter_modules(__path__))
     return tuple(sorted(name for name in found if not name.startswith("_")))

@@ -5,8 +5,8 @@ Etsion, Kligerman, Kadin, Int. J. Solids Struct. 42 (2005) 3716, for dm up to 17
     f = fm ((d - dr)/(dm - dr))^n      dr/dm = (1 - dm^-0.28)(1 - dm^-0.69)      n = 1.5 dm^-0.0331
 
 Just above yield, n falls faster than dr rises: as printed, unloading from dm < 1.2 lies above
-Hertz's curve and returns up to 0.02 % more work than loading took. There n is the least exponent
-for which it does not, 1.5 (1 - dr/dm), which meets Hertz's slope at dm.
+Hertz's curve, and from dm < 1.11 it returns more work than loading took, up to 0.05 %. There n is
+the least exponent for which it does not, 1.5 (1 - dr/dm), which meets Hertz's slope at dm.
 
 Legend: d compression, dm the largest so far, dr what remains of it, all in units of d_Y.
 """

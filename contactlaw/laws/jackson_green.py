@@ -96,7 +96,12 @@ def _meeting(
     low, high = _etsion.KINKS[-1], 10.0
     force = np.array([plastic(d) for d in np.geomspace(high, _LARGEST, 200)])
     above, below = (plastic(d) > d**1.5 for d in (low, high))
-    if modulus_ratio < _SOFTEST or not above or below or (np.diff(force) <= 0.0).any():
+    if modulus_ratio < _SOFTEST:
+        raise ValueError(
+            f"law: 'jackson_green' with E*/sigma_Y = {modulus_ratio:g}: must be {_SOFTEST:g} or "
+            "more, it was fitted above 120; take another law"
+        )
+    if not above or below or (np.diff(force) <= 0.0).any():
         raise ValueError(
             f"law: 'jackson_green' with E*/sigma_Y = {modulus_ratio:g} and Poisson's ratio "
             f"{poissons_ratio:g} does not leave Hertz's curve after yield and rise: it was fitted "

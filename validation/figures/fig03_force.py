@@ -12,12 +12,12 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from validation.evidence import FASTEST_COMPRESSION
 from validation.fem import compare
 from validation.figures import _style
 from validation.paper import PAIR, all_laws, force, unloading
 
 _TOP = 5.0  # d_Y
-_FASTEST = 4.77  # d_Y, where 7 V_Y0 leads to on a half-space
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -35,8 +35,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
     off = compare.loading_errors(far)
     for law in all_laws():
         name = law.name.partition("(")[0]
-        colour, line = _style.LAWS[name]
-        left.plot(d, force(law, d), line, color=colour, linewidth=2.2, label=_style.TITLES[name])
+        colour, line, title = _style.law(name)
+        left.plot(d, force(law, d), line, color=colour, linewidth=2.2, label=title)
         if law.yield_coefficient is not None:
             left.plot(*unloading(law, _TOP), line, color=colour, linewidth=1.2)
         right.plot(far, 100 * off[name], line, color=colour, linewidth=2.2)
@@ -52,18 +52,18 @@ def draw() -> tuple[Figure, dict[str, float]]:
         right.axhline(level, color=_style.INK, linewidth=1.0, linestyle=":")
         right.text(0.43, level - 2, text, va="top", fontsize=10.5)
     right.text(0.43, 8, "paper: 6 %", va="bottom", fontsize=10.5)
-    right.axvline(_FASTEST, color=_style.MUTED, linewidth=1.0, linestyle=":")
+    right.axvline(FASTEST_COMPRESSION, color=_style.MUTED, linewidth=1.0, linestyle=":")
     right.text(4.5, -82, "7 V$_{Y0}$", fontsize=10.5, color=_style.MUTED, ha="right", va="bottom")
     right.set_xscale("log")
     right.set_xticks([0.5, 1, 2, 5, 10, 30], ["0.5", "1", "2", "5", "10", "30"])
     right.minorticks_off()
     right.set(xlim=(0.4, 30), ylim=(-85, 85), xlabel="compression  d / d$_Y$")
     right.set_ylabel("loading force against finite elements  [%]")
-    near, yielded = (far > 0.5) & (far < 10.0), (far > 2.0) & (far < 10.0)
-    stronge = off["stronge"][yielded]
-    at = compare.loading_errors(np.array([2.0, _FASTEST, 10.0, 30.0]))
+    near = compare.loading_errors(np.linspace(0.5, 10.0, 191))
+    stronge = near["stronge"][30:]  # from 2 d_Y
+    at = compare.loading_errors(np.array([2.0, FASTEST_COMPRESSION, 10.0, 30.0]))
     return figure, {
-        "MYC, largest error from 0.5 to 10 d_Y": float(np.abs(off["myc"][near]).max()),
+        "MYC, largest error from 0.5 to 10 d_Y": float(np.abs(near["myc"]).max()),
         "MYC at 30 d_Y": float(at["myc"][3]),
         "Stronge, least from 2 to 10 d_Y": float(stronge.min()),
         "Stronge, largest from 2 to 10 d_Y": float(stronge.max()),

@@ -21,6 +21,7 @@ from validation.paper import ETA, SPEED, Array, all_laws, restitution, yield_uni
 
 _SLOWER = yield_unit(laws.law("thornton")) ** 1.25  # yield speed of its law in that of MYC
 _MODERATE = 3.5  # V0/V_Y0
+_ALIKE = "myc", "stronge", "kogut_etsion", "jackson_green"
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -36,10 +37,10 @@ def draw() -> tuple[Figure, dict[str, float]]:
     cor: dict[tuple[str, float], Array] = {}
     for law in all_laws():
         name = law.name.partition("(")[0]
-        colour, line = _style.LAWS[name]
+        colour, line, title = _style.law(name)
         for axes, lam_y in ((left, 0.0), (right, ETA)):
             e = np.array([restitution(x, lam_y, law) for x in v])
-            axes.plot(v, e, line, color=colour, linewidth=2.2, label=_style.TITLES[name])
+            axes.plot(v, e, line, color=colour, linewidth=2.2, label=title)
             cor[name, lam_y] = e
     fast = v[v > 1.5]
     left.plot(
@@ -53,7 +54,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     moderate = v <= _MODERATE
     numbers: dict[str, float] = {}
     for title, lam_y in (("half-space", 0.0), ("R/H = 1", ETA)):
-        others = [cor[name, lam_y] for name in _style.LAWS if name not in ("hertz", "thornton")]
+        others = [e for (name, at), e in cor.items() if at == lam_y and name in _ALIKE]
         spread = np.min(others, axis=0) / np.max(others, axis=0)
         below = cor["thornton", lam_y] / cor["myc", lam_y]
         numbers |= {

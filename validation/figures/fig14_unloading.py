@@ -35,17 +35,15 @@ def draw() -> tuple[Figure, dict[str, float]]:
     grid, depth = np.linspace(0.0, _DEEPEST, 400), np.geomspace(0.8, _DEEPEST, 60)
     for law in all_laws():
         name = law.name.partition("(")[0]
-        colour, line = _style.LAWS[name]
-        left.plot(
-            grid, force(law, grid), line, color=colour, linewidth=2, label=_style.TITLES[name]
-        )
+        colour, line, title = _style.law(name)
+        left.plot(grid, force(law, grid), line, color=colour, linewidth=2, label=title)
         if law.yield_coefficient is None:
             continue
         left.plot(*unloading(law, _DEEPEST), line, color=colour, linewidth=1.2)
         curve_share = np.array([_returned(law, one) for one in depth])
         right.plot(depth, curve_share, line, color=colour, linewidth=2)
-        numbers[f"returned from 5 d_Y, {_style.TITLES[name]}"] = _returned(law, 5.0)
-        numbers[f"returned from 30 d_Y, {_style.TITLES[name]}"] = _returned(law, 30.0)
+        numbers[f"returned from 5 d_Y, {title}"] = _returned(law, 5.0)
+        numbers[f"returned from 30 d_Y, {title}"] = _returned(law, 30.0)
     for name in _DEPTHS:
         curve = compare.indentation(name)
         share = compare.returned(*curve)

@@ -9,6 +9,8 @@ above about 120; this pair has 23.
 
 from __future__ import annotations
 
+import math
+
 from matplotlib.figure import Figure
 
 from validation.fem import compare
@@ -26,11 +28,12 @@ def draw() -> tuple[Figure, dict[str, float]]:
         "COR of the modified Zener equation with each law less finite elements, in percent; "
         "gamma-alumina on glass",
     )
-    for axes, name in zip(figure.subplots(2, 3).flat, _style.LAWS, strict=True):
-        error_map(axes, _style.TITLES[name], cor[name] / case.fem["restitution"] - 1.0, widest=20.0)
     numbers = {}
-    for name, values in cor.items():
+    panels = figure.subplots(2, math.ceil(len(cor) / 2))
+    for axes, (name, values) in zip(panels.flat, cor.items(), strict=False):
+        title = _style.law(name)[2]
+        error_map(axes, title, values / case.fem["restitution"] - 1.0, widest=20.0)
         largest, rms = compare.deviation(values, case)
-        numbers[f"{_style.TITLES[name]}: largest error"] = float(largest)
-        numbers[f"{_style.TITLES[name]}: rms error"] = float(rms)
+        numbers[f"{title}: largest error"] = float(largest)
+        numbers[f"{title}: rms error"] = float(rms)
     return figure, numbers

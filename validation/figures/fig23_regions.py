@@ -23,7 +23,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     cors = dict(case.restitution)
     for law, cor in compare.by_law().items():
         if law not in ("myc", "hertz"):  # the modified Zener model, and Zener's
-            cors[f"{_style.TITLES[law]}'s law"] = cor
+            cors[f"{_style.law(law)[2]}'s law"] = cor
     errors = np.array(
         [[compare.deviation(cor, case, where) for where in parts.values()] for cor in cors.values()]
     )
