@@ -251,6 +251,11 @@ def test_one_table_serves_every_pair_below_yield_only():
     fast = case.speed_ratio > 3.0
     share = case.fem["plastic"] / np.maximum(case.model["plastic_fraction"], 1e-9)
     assert share[steel & fast].max() < 0.5 < 0.7 < share[~steel & fast].min()
+    # as `Validity.STIFF_SPHERE` says
+    off = case.model["restitution"] / case.fem["restitution"] - 1.0
+    for speed, low, high in ((1.5, -0.002, 0.033), (3.5, -0.061, -0.023), (7.0, -0.113, -0.073)):
+        at = off[steel & np.isclose(case.speed_ratio, speed)]
+        assert (at.min(), at.max()) == pytest.approx((low, high), abs=1e-3), speed
 
 
 def test_an_edge_beyond_the_edge_distance_is_not_felt():

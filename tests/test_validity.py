@@ -49,6 +49,16 @@ def test_soft_plate():
     assert not hard.lookup(0.005, 1e-3, 2e-3).flags & Validity.SOFT_PLATE
 
 
+def test_stiff_sphere(model):
+    steel = cl.ImpactModel(cl.Pair("bearing-steel-52100", "soda-lime-glass"))
+    speed = steel.pair.yield_speed
+    assert not steel.lookup(1.99 * speed, R, 2e-3).flags & Validity.STIFF_SPHERE
+    assert steel.lookup(2.01 * speed, R, 2e-3).flags & Validity.STIFF_SPHERE
+    assert not flags(model, speed=3.0 * model.pair.yield_speed) & Validity.STIFF_SPHERE
+    elastic = cl.ImpactModel(steel.pair, law="hertz")
+    assert not elastic.lookup(2.01 * speed, R, 2e-3).flags & Validity.STIFF_SPHERE
+
+
 def test_flags_of_arrays(model):
     both = model.lookup(2.0, R, [1e-3, 0.4e-3]).flags
     assert both.tolist() == [0, int(Validity.THIN_PLATE)]
