@@ -147,7 +147,7 @@ def rebound(
     # V0/V_Y0 = (5/4)^(1/2) y^(-5/4): a half-space impact at V_Y0 has w_m = y = (5/4)^(2/5)
     speed_ratio = math.sqrt(1.25) / (asked_y * np.sqrt(np.sqrt(asked_y)))
     flags = flags | limits_exceeded(
-        pair, impact.radius, impact.thickness, speed_ratio, contact_time
+        pair, law, impact.radius, impact.thickness, speed_ratio, contact_time
     )
     shape = impact.shape
     return Rebound(

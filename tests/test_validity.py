@@ -49,14 +49,17 @@ def test_soft_plate():
     assert not hard.lookup(0.005, 1e-3, 2e-3).flags & Validity.SOFT_PLATE
 
 
-def test_stiff_sphere(model):
+def test_other_law(model):
     steel = cl.ImpactModel(cl.Pair("bearing-steel-52100", "soda-lime-glass"))
     speed = steel.pair.yield_speed
-    assert not steel.lookup(1.99 * speed, R, 2e-3).flags & Validity.STIFF_SPHERE
-    assert steel.lookup(2.01 * speed, R, 2e-3).flags & Validity.STIFF_SPHERE
-    assert not flags(model, speed=3.0 * model.pair.yield_speed) & Validity.STIFF_SPHERE
-    elastic = cl.ImpactModel(steel.pair, law="hertz")
-    assert not elastic.lookup(2.01 * speed, R, 2e-3).flags & Validity.STIFF_SPHERE
+    assert not steel.lookup(1.99 * speed, R, 2e-3).flags & Validity.OTHER_LAW
+    assert steel.lookup(2.01 * speed, R, 2e-3).flags & Validity.OTHER_LAW
+    assert not flags(model, speed=3.0 * model.pair.yield_speed) & Validity.OTHER_LAW
+    for law in ("hertz", "kogut_etsion"):
+        other = cl.ImpactModel(steel.pair, law=law, outside="solve")
+        assert not other.solve(3.0 * speed, R, 2e-3).flags & Validity.OTHER_LAW, law
+    metal = cl.ImpactModel(model.pair, law="kogut_etsion", outside="solve")
+    assert metal.solve(3.0 * model.pair.yield_speed, R, 2e-3).flags & Validity.OTHER_LAW
 
 
 def test_flags_of_arrays(model):

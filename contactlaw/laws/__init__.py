@@ -68,6 +68,9 @@ class Law:
     dissipation : callable
         ``dissipation(dm)``: loading work minus unloading work [F_Y d_Y] of a contact that
         reached dm.
+    yield_strains : tuple of float, optional
+        Least and largest sigma_Y/E of a sphere for which finite elements favour the law once it has
+        yielded well.
     """
 
     name: str
@@ -80,6 +83,7 @@ class Law:
     unloading_curve: Callable[[float], tuple[float, float]]
     unloading: Callable[[float, float, float], float]
     dissipation: Callable[[float], float]
+    yield_strains: tuple[float, float] = (0.0, math.inf)
 
     @property
     def kinks(self) -> tuple[float, ...]:

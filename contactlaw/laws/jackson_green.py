@@ -86,6 +86,7 @@ def law(modulus_ratio: float, poissons_ratio: float) -> Law:
         unloading_curve=unloading_curve,
         unloading=_etsion.unloading,
         dissipation=dissipation,
+        yield_strains=(0.0, 1 / 60),
     )
 
 

@@ -77,4 +77,5 @@ def law(poissons_ratio: float) -> Law:
         unloading_curve=_unloading_curve,
         unloading=_etsion.unloading,
         dissipation=_dissipation,
+        yield_strains=(0.0, 1 / 60),
     )

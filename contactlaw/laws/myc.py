@@ -73,4 +73,5 @@ LAW = Law(
     unloading_curve=_unloading_curve,
     unloading=_unloading,
     dissipation=_dissipation,
+    yield_strains=(1 / 40, 1 / 20),
 )

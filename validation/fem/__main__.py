@@ -11,15 +11,16 @@ import os
 import sys
 import time
 from collections.abc import Callable
+from concurrent.futures.process import BrokenProcessPool
 
 from tqdm import tqdm
 
-from validation.fem import compare
+from validation.fem import compare, store
 from validation.fem.studies import STUDIES
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run what is named, or all; 0 when done, 2 for wrong usage, 130 for Ctrl-C."""
+    """Run what is named, or all; 0 when done, 1 if it failed, 2 for wrong usage, 130 for Ctrl-C."""
     steps: dict[str, Callable[[int], None]] = {**STUDIES, "report": _report}
     parser = argparse.ArgumentParser(prog="python -m validation.fem")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
@@ -30,6 +31,8 @@ def main(arguments: list[str] | None = None) -> int:
     wrong = set(options.names) - set(steps)
     if wrong:
         parser.error(f"no such study: {', '.join(wrong)}; there are {', '.join(steps)}")
+    if not os.access(store.FOLDER, os.W_OK) and set(options.names) != {"report"}:
+        parser.error(f"{store.FOLDER}: results cannot be written there; take a writable copy")
     bar = tqdm(options.names or list(steps), disable=None)
     try:
         for name in bar:
@@ -41,6 +44,10 @@ def main(arguments: list[str] | None = None) -> int:
         bar.close()
         print("interrupted; the studies that were finished are kept", file=sys.stderr)
         return 130
+    except (BrokenProcessPool, OSError) as error:
+        bar.close()
+        print(f"validation.fem: {name}: {error}", file=sys.stderr)
+        return 1
     return 0
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import multiprocessing
 import signal
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass, fields
-from multiprocessing.pool import Pool
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -53,7 +54,22 @@ class Case:
     @property
     def pair(self) -> cl.Pair:
         """Materials."""
-        return cl.Pair(self.sphere, self.plate)
+        return cl.Pair(material(self.sphere), material(self.plate))
+
+
+def material(name: str) -> cl.Material:
+    """Look a material up; "glass, yield strength x 0.5" is glass with half its strength.
+
+    Examples
+    --------
+    >>> material("gamma-alumina, yield strength x 0.5").yield_strength
+    236250000.0
+    """
+    name, weaker, factor = name.partition(", yield strength x ")
+    found = cl.material(name)
+    if not weaker:
+        return found
+    return replace(found, yield_strength=float(factor) * found.require_yield_strength("fem"))
 
 
 def solve(case: Case) -> dict[str, Any]:
@@ -75,16 +91,28 @@ def solve(case: Case) -> dict[str, Any]:
     return {**asdict(case), **outcome, **taken}
 
 
-def workers(processes: int) -> Pool:
-    """Start processes that end with the block that uses them, at once, Ctrl-C included."""
-    return multiprocessing.Pool(processes, signal.signal, (signal.SIGINT, signal.SIG_IGN))
+def _leave_ctrl_c_to_the_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def workers(processes: int) -> Iterator[ProcessPoolExecutor]:
+    """Start processes for a block; an exception in it, Ctrl-C included, ends them at once."""
+    with ProcessPoolExecutor(processes, initializer=_leave_ctrl_c_to_the_parent) as pool:
+        try:
+            yield pool
+        except BaseException:
+            for child in multiprocessing.active_children():
+                child.terminate()
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
 
 
 def solve_all(cases: Iterable[Case], title: str, processes: int) -> dict[str, np.ndarray]:
     """Compute cases side by side; columns by name, in the order of the cases."""
     listed = list(cases)
     with workers(processes) as pool:
-        done = tqdm(pool.imap(solve, listed), title, len(listed), disable=None, leave=False)
+        done = tqdm(pool.map(solve, listed), title, len(listed), disable=None, leave=False)
         rows = list(done)
     names = [field.name for field in fields(Case)] + list(OUTCOMES)
     return {name: np.array([row[name] for row in rows]) for name in names}

@@ -44,7 +44,7 @@ class Impact:
     plastic, wave, vibration, friction, hourglass, contact : float
         Shares of the energy: plastic work; energy in the plate; elastic and kinetic energy in the
         sphere beyond that of its mean motion; losses of friction and of touching; work of the
-        hourglass modes of both bodies [-].
+        hourglass modes of both bodies, which is in `wave` and `vibration` too [-].
     balance : float
         Largest deviation of the sum of all energies from the first, over the whole impact [-].
     plastic_strain : float

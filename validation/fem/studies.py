@@ -62,7 +62,7 @@ def indentation(processes: int) -> None:
     data: dict[str, NDArray[Any]] = {}
     units: dict[str, str] = {}
     with cases.workers(processes) as pool:
-        done = pool.imap(_indented, jobs.values())
+        done = pool.map(_indented, jobs.values())
         bar = tqdm(done, "indentation", len(jobs), disable=None, leave=False)
         for name, outcome in zip(jobs, bar, strict=True):
             for key, (values, unit) in outcome.items():
@@ -228,6 +228,21 @@ def pairs(processes: int) -> None:
     cases.save("pairs", about, data)
 
 
+def strengths(processes: int) -> None:
+    """Weaken the sphere: what its modulus over its strength does, at equal inelasticity."""
+    inelasticity = yield_inelasticity(PAIR, RADIUS)  # R/H = 1; at 1 it is in `pairs`
+    listed = []
+    for factor in (2.0, 0.5, 0.25, 0.125):
+        sphere = f"{PAIR.sphere.name}, yield strength x {factor:g}"
+        pair = cl.Pair(cases.material(sphere), PAIR.plate)
+        thickness = RADIUS * math.sqrt(yield_inelasticity(pair, RADIUS) / inelasticity)
+        for v in (1.5, 3.5, 7.0):
+            listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere))
+    data = cases.solve_all(listed, "strengths", processes)
+    about = "the paper's pair with 2 to 1/8 of its yield strength, at the lambda_Y of R/H = 1"
+    cases.save("strengths", about, data)
+
+
 def limits(processes: int) -> None:
     """Beyond the paper: thinner and faster."""
     listed = [
@@ -260,6 +275,7 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "matrix": matrix,
     "paper": paper,
     "pairs": pairs,
+    "strengths": strengths,
     "limits": limits,
     "edge": edge,
 }

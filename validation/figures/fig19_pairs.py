@@ -1,8 +1,8 @@
 """Fig. 19: three pairs at equal inelasticity, and the one line that the table has for them.
 
-Below yield it does: the COR of the three agree within 0.003. Above, the table has two to three
-times the plastic work of a sphere that is stiffer than its plate: steel on glass or on aluminium
-(taken as elastic) keeps 0.05 to 0.08 more at 7 V_Y0, 7 to 11 % of its COR.
+Below yield it does: the COR of the three agree within 0.003. Above, the table of the MYC law has
+two to three times the plastic work of a sphere that is stiff for its strength (Fig. 24): steel on
+glass or on aluminium (taken as elastic) keeps 0.05 to 0.08 more at 7 V_Y0, 7 to 11 % of its COR.
 """
 
 from __future__ import annotations
