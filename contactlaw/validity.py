@@ -55,8 +55,9 @@ class Validity(enum.IntFlag):
     """V0 > 2 V_Y0, and finite elements favour another contact law for the sphere's yield strain
     sigma_Y/E: ``"myc"`` from 1/40 to 1/20 (the paper's alumina has 1/26), ``"jackson_green"`` and
     ``"kogut_etsion"`` below 1/60, as metals have. There, at 7 V_Y0, the COR of ``"myc"`` is 7 to
-    11 % too low and theirs 1 to 3 % too high; at 1/26 theirs is 10 to 12 % too high. From 1/60 to
-    1/40 each errs by 4 to 6 %, and above 1/20 none holds: at 1/13 all are 30 % too high."""
+    11 % too low, and theirs from 1 % too low on thick plates to 6 % too high on thin ones; at 1/26
+    theirs is 10 to 12 % too high. From 1/60 to 1/40 each errs by 4 to 6 %, and above 1/20 none
+    holds: at 1/13 all are 30 % too high or more."""
 
 
 def limits_exceeded(

@@ -11,6 +11,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import laws
+from contactlaw.impact import law_of
 from validation import paper
 from validation.fem import calculix, compare, solver, store
 from validation.fem.__main__ import main as command
@@ -273,6 +274,20 @@ def test_one_table_serves_every_pair_below_yield_only():
     for speed, low, high in ((1.5, -0.002, 0.033), (3.5, -0.061, -0.023), (7.0, -0.113, -0.073)):
         at = off[steel & np.isclose(case.speed_ratio, speed)]
         assert (at.min(), at.max()) == pytest.approx((low, high), abs=1e-3), speed
+
+
+def test_laws_of_metals_suit_steel():
+    """On thick plates and thin ones, as `Validity.OTHER_LAW` and the README say."""
+    case = compare.comparison("pairs")
+    fast = np.isclose(case.speed_ratio, 7.0)
+    steel = np.char.startswith(case.fem["sphere"].astype(str), "bearing")
+    for name in ("kogut_etsion", "jackson_green"):
+        off = []
+        for n in np.flatnonzero(fast & steel):
+            law = law_of(cl.Pair(case.fem["sphere"][n], case.fem["plate"][n]), name)
+            lam_y = case.inelasticity[n] * 7.0**-0.2
+            off.append(paper.restitution(7.0, lam_y, law) / case.fem["restitution"][n] - 1.0)
+        assert -0.01 < min(off) < 0.01 < 0.05 < max(off) < 0.065, name
 
 
 def test_the_law_has_to_suit_the_yield_strain():

@@ -17,6 +17,7 @@ from validation.figures import _style
 
 _LAWS = "myc", "stronge", "kogut_etsion", "jackson_green"
 _SPEEDS = 3.5, 7.0  # V0/V_Y0
+_KINDS = {"13": (0, 20), "26": (20, 40), "52": (40, 60), "100 and more": (60, 1e6)}  # E/sigma_Y
 _MARKERS = {"glass": "o", "soda-lime-glass": "s", "aluminium-6061-t6": "^"}  # by plate
 
 
@@ -27,7 +28,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         6.2,
         "Soft beads follow MYC, metals Kogut & Etsion and Jackson & Green",
         "COR at equal inelasticity, that of gamma-alumina on glass with R/H = 1; black: finite "
-        "elements of weakened alumina and of steel; lines: the modified Zener equation",
+        "elements of steel and of alumina with other strengths; lines: the modified Zener equation",
     )
     numbers: dict[str, float] = {}
     for axes, speed in zip(figure.subplots(1, 2, sharey=True), _SPEEDS, strict=True):
@@ -39,11 +40,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
                 [row.ratio for row in alumina], [row.laws[name] for row in alumina], line,
                 color=colour, linewidth=2.2, label=title,
             )  # fmt: skip
-            for kind, some in (
-                ("13 and 26", [row for row in rows if row.ratio < 30.0]),
-                ("52", [row for row in rows if 30.0 < row.ratio < 60.0]),
-                ("100 and more", [row for row in rows if row.ratio > 60.0]),
-            ):
+            for kind, (low, high) in _KINDS.items():
+                some = [row for row in rows if low < row.ratio < high]
                 off = np.array([row.laws[name] / row.fem - 1.0 for row in some])
                 numbers[f"{title}, {speed:g} V_Y0, E/sigma_Y {kind}: largest error"] = float(
                     off[np.abs(off).argmax()]
@@ -58,7 +56,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         axes.set_xscale("log")
         axes.set_xticks([13, 26, 52, 100, 200], ["13", "26", "52", "100", "200"])
         axes.minorticks_off()
-        axes.set(xlabel="E / sigma$_Y$ of the sphere", title=f"{speed:g} V$_{{Y0}}$")
+        axes.set(xlabel=r"E / $\sigma_Y$  of the sphere", title=f"{speed:g} V$_{{Y0}}$")
     figure.axes[0].set_ylabel("coefficient of restitution")
     figure.axes[0].legend(loc="lower right", ncols=2)
     return figure, numbers
