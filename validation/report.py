@@ -16,6 +16,7 @@ import contactlaw as cl
 from validation.typeset import typeset
 from validation.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 
+_MANY = 20  # numbers of a figure, from which on they are folded away
 _DERIVATIONS = Path(__file__).parent / "derivations"
 _COLOURS = {
     HOLDS: "#009E73",
@@ -136,9 +137,12 @@ def _figure(name: str, caption: str, numbers: dict[str, float], image: bytes) ->
         f"<tr><td>{_formula(key)}</td><td class='n'>{_number(value)}</td></tr>"
         for key, value in numbers.items()
     )
+    table = f"<table>{rows}</table>"
+    if len(numbers) > _MANY:
+        table = f"<details><summary>{len(numbers)} numbers</summary>{table}</details>"
     return (
         f"<figure id='{name}'><img alt='{title}' src='data:image/png;base64,{data}'>"
-        f"<figcaption><b>{title}</b>: {text}<table>{rows}</table></figcaption></figure>"
+        f"<figcaption><b>{title}</b>: {text}{table}</figcaption></figure>"
     )
 
 
