@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from validation.fem import mesh
-from validation.fem.impact import PATIENCE, expect, free_width, meshed
+from validation.fem.impact import PATIENCE, Expected, expect, free_width, meshed
 from validation.fem.indentation import BLOCK, core
 from validation.fem.mesh import Mesh
 
@@ -154,55 +154,54 @@ def deck(
     )
 
 
-def impact_deck(
-    pair: cl.Pair,
-    speed: float,
-    radius: float,
-    thickness: float,
-    size: float,
-    friction: float = FRICTION,
-    damping: float = 0.05,
-    increments: int = 115,
-) -> str:
-    """Input of ``ccx`` for a sphere that falls on a plate, on the mesh of `impact.impact`.
+class Fall(NamedTuple):
+    """An impact as `impact_deck` and `run_impact` take it."""
 
-    Parameters
-    ----------
-    pair : contactlaw.Pair
-        Materials of sphere and plate.
-    speed, radius, thickness : float
-        Impact speed [m/s], radius of the sphere and thickness of the plate [m].
-    size : float
-        Smallest element, over the radius.
-    friction : float, optional
-        Coefficient of friction.
-    damping : float, optional
-        Numerical damping of the time integration, -alpha of Hilber, Hughes and Taylor: 0 to 1/3.
-    increments : int, optional
-        In the contact time that the model expects. Enough for elements of 0.04 R, where half as
-        many again change the COR by 2e-4; 0.03 R needs 170 to converge.
+    pair: cl.Pair
+    speed: float  # [m/s]
+    radius: float  # of the sphere [m]
+    thickness: float  # of the plate [m]
+    size: float  # smallest element, over the radius
+    damping: float = 0.05  # -alpha of Hilber, Hughes and Taylor, 0 to 1/3
+    increments: int = 115  # in the contact time that the model expects; 0.03 R needs 170
+    friction: float = FRICTION  # coefficient
+
+    @property
+    def expected(self) -> Expected:
+        """What the model expects."""
+        return expect(self.pair, self.speed, self.radius, self.thickness)
+
+    @property
+    def meshes(self) -> tuple[Mesh, Mesh]:
+        """Sphere and plate as `impact.impact` makes them."""
+        width = free_width(self.pair.plate, self.expected.time)
+        return meshed(self.expected, self.radius, self.thickness, self.size, width)
+
+
+def impact_deck(fall: Fall) -> str:
+    """Input of ``ccx`` for a sphere that falls on a plate.
 
     Examples
     --------
     >>> import contactlaw as cl
-    >>> text = impact_deck(cl.Pair("gamma-alumina", "glass"), 26.0, 0.9e-3, 0.5e-3, 0.1)
+    >>> text = impact_deck(Fall(cl.Pair("gamma-alumina", "glass"), 26.0, 0.9e-3, 0.5e-3, 0.1))
     >>> text.count("*DYNAMIC"), text.count("CAX4")
     (2, 2)
     """
-    above, below = _impact_meshes(pair, speed, radius, thickness, size)
-    step = expect(pair, speed, radius, thickness).time / increments
-    flight = _FLIGHT * step
-    gap = speed * (0.5 * flight + _GAP * step)
+    above, below = fall.meshes
+    step = fall.expected.time / fall.increments
+    flight, fine = _FLIGHT * step, fall.size * fall.radius
+    gap = fall.speed * (0.5 * flight + _GAP * step)
     raised = above._replace(nodes=above.nodes + [0.0, gap])
-    period = round(_GAP + (1.0 + PATIENCE) * increments) * step
+    period = round(_GAP + (1.0 + PATIENCE) * fall.increments) * step
     return (
-        _bodies(pair, radius, raised, below, _HOLE * size * radius)
+        _bodies(fall.pair, fall.radius, raised, below, _HOLE * fine)
         + _set("SPHERE", np.arange(len(above.nodes)))
-        + _contact(pair, "NODE TO SURFACE", _SOFTER / (size * radius), friction)
+        + _contact(fall.pair, "NODE TO SURFACE", _SOFTER / fine, fall.friction)
         + f"*STEP, NLGEOM\n*DYNAMIC, ALPHA=0., DIRECT\n{step * _US:.9e}, {flight * _US:.9e}\n"
-        + f"*DLOAD\nSPHERE, GRAV, {speed / flight * _MM / _US**2:.9e}, 0., -1., 0.\n"
+        + f"*DLOAD\nSPHERE, GRAV, {fall.speed / flight * _MM / _US**2:.9e}, 0., -1., 0.\n"
         + "*NODE PRINT, NSET=SPHERE\nU\n*END STEP\n"
-        + f"*STEP, NLGEOM, INC=2000\n*DYNAMIC, ALPHA={-damping:g}, DIRECT\n"
+        + f"*STEP, NLGEOM, INC=2000\n*DYNAMIC, ALPHA={-fall.damping:g}, DIRECT\n"
         + f"{step * _US:.9e}, {period * _US:.9e}\n*DLOAD, OP=NEW\n*END STEP\n"
     )
 
@@ -229,32 +228,17 @@ def run(
     return compression, -_WEDGE * force
 
 
-def run_impact(
-    pair: cl.Pair,
-    speed: float,
-    radius: float,
-    thickness: float,
-    size: float,
-    friction: float = FRICTION,
-    damping: float = 0.05,
-    increments: int = 115,
-) -> History:
+def run_impact(fall: Fall) -> History:
     """History of an impact as ``ccx`` has it: momentum of the sphere from its displacements.
-
-    Parameters
-    ----------
-    pair, speed, radius, thickness, size, friction, damping, increments
-        As in `impact_deck`.
 
     Raises
     ------
     RuntimeError
         If ``ccx`` does not reach the end.
     """
-    case = pair, speed, radius, thickness, size
-    text = _printed(impact_deck(*case, friction, damping, increments))
+    text = _printed(impact_deck(fall))
     blocks = re.split(r"displacements \(vx,vy,vz\) for set SPHERE and time", text)[1:]
-    mass = _masses(_impact_meshes(*case)[0], pair.sphere.density)
+    mass = _masses(fall.meshes[0], fall.pair.sphere.density)
     time, way = np.empty(len(blocks)), np.empty(len(blocks))
     for n, block in enumerate(blocks):
         instant, table = block.split("\n\n")[:2]
@@ -266,14 +250,6 @@ def run_impact(
     force = -mass.sum() * np.diff(way, 2) / step**2
     since = time[1:-1] - time[0] - _GAP * step
     return History(since, force, (way[2:] - way[:-2]) / (2.0 * step))
-
-
-def _impact_meshes(
-    pair: cl.Pair, speed: float, radius: float, thickness: float, size: float
-) -> tuple[Mesh, Mesh]:
-    """Sphere and plate as `impact.impact` makes them."""
-    guess = expect(pair, speed, radius, thickness)
-    return meshed(guess, radius, thickness, size, free_width(pair.plate, guess.time))
 
 
 def _masses(body: Mesh, density: float) -> Array:

@@ -115,24 +115,22 @@ def calculix_impact(_: int) -> None:
     if not calculix.installed():
         tqdm.write("calculix: ccx is not installed (Debian: calculix-ccx); the stored result stays")
         return
-    case = PAIR, _SPEED, RADIUS, _THICKNESS
-    size, damping = np.array([0.06, 0.06, 0.03]), np.array([0.05, 0.3, 0.05])
-    increments = [115, 115, 170]
-    bar = tqdm(size, "calculix_impact", disable=None, leave=False)
-    found = [
-        calculix.run_impact(*case, h, damping=damping[n], increments=increments[n])
-        for n, h in enumerate(bar)
+    runs = [
+        calculix.Fall(PAIR, _SPEED, RADIUS, _THICKNESS, size, damping, increments)
+        for size, damping, increments in ((0.06, 0.05, 115), (0.06, 0.3, 115), (0.03, 0.05, 170))
     ]
+    bar = tqdm(runs, "calculix_impact", disable=None, leave=False)
+    found = [calculix.run_impact(run) for run in bar]
     finest = found[-1]
     store.write(
         "calculix_impact",
         "26 m/s on 0.5 mm of glass by CalculiX: CAX4 elements, implicit dynamics; an entry per "
         "run, and the history of the last",
         {
-            "size": size,
-            "damping": damping,
-            "increments": np.array(increments),
-            "elements": np.array([calculix.elements(calculix.impact_deck(*case, h)) for h in size]),
+            "size": np.array([run.size for run in runs]),
+            "damping": np.array([run.damping for run in runs]),
+            "increments": np.array([run.increments for run in runs]),
+            "elements": np.array([calculix.elements(calculix.impact_deck(run)) for run in runs]),
             "restitution": np.array([one.restitution for one in found]),
             "contact_time": np.array([one.contact_time for one in found]),
             "peak_force": np.array([one.force.max() for one in found]),
