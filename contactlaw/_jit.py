@@ -1,17 +1,34 @@
-"""The one place where numba's options are set."""
+"""The one place where numba's options are set, and where compiled code is kept.
+
+Machine code goes into a folder whose name is a hash of all sources of the package, numba's version
+and the CPU: numba itself notices an edit in a function's own file only, and would go on with the
+old code of what it calls in another. Laws are data, so no kernel takes a function from outside, and
+each of them is compiled once on a machine.
+"""
 
 from __future__ import annotations
 
 import functools
+import hashlib
+import os
+import shutil
+import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Any, TypeVar, overload
 
 import numba
+from numba.core import config
 from numba.extending import intrinsic
+
+from contactlaw import _folder
+from contactlaw._version import VERSION
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _cached: list[Any] = []
+_UNUSED = 30 * 86400.0  # [s] after which the code of another version is thrown away
 
 
 @overload
@@ -23,9 +40,9 @@ def kernel(
 ) -> _F | Callable[[_F], _F]:
     """Compile a function on its first call; to a type checker it stays what it was.
 
-    `cache` keeps the machine code on disk. Numba notices an edit in the function's own file only,
-    so every jitted callee has to be in that file too; functions passed as values cannot be cached.
-    `inline` copies the function into its callers, where LLVM finds it too large to do so.
+    `cache` keeps the machine code on disk, for kernels that Python calls: it contains that of the
+    kernels which they call. `inline` copies the function into its callers, where LLVM finds it too
+    large to do so.
     """
 
     def compiled(python_function: _F) -> _F:
@@ -40,23 +57,70 @@ def kernel(
         )(python_function)
         if cache:
             _cached.append(dispatcher)
+            if enable_caching.cache_info().currsize:  # the module came after the first answer
+                _keep(dispatcher)
         return dispatcher  # type: ignore[no-any-return]
 
     return compiled if function is None else compiled(function)
 
 
+def switched_off() -> bool:
+    """Whether numba was told to leave Python as it is (``NUMBA_DISABLE_JIT=1``)."""
+    return bool(config.DISABLE_JIT)
+
+
 @functools.cache
 def enable_caching() -> None:
-    """Let the kernels that asked for it use numba's disk cache, from now on.
+    """Let the kernels that asked for it use the disk cache, from now on.
 
     Not when they are defined: numba then makes a cache folder, and raises where it finds none that
     is writable; an import should do neither.
     """
     for dispatcher in _cached:
-        try:
-            dispatcher.enable_caching()
-        except RuntimeError:  # no writable folder anywhere: compile in every process
+        _keep(dispatcher)
+
+
+def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = False) -> Any:
+    """Compile a function for C; its ``address`` is valid as long as the result lives.
+
+    Raises
+    ------
+    RuntimeError
+        If numba is switched off.
+    """
+    if switched_off():
+        raise RuntimeError(
+            "numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler"
+        )
+    with _into_folder() as folder:
+        made: Any = numba.cfunc(  # type: ignore[attr-defined]
+            signature, error_model="numpy", cache=cache and folder is not None
+        )(function)
+    return made
+
+
+def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
+    """Compile a kernel for one signature and return its bare entry, as numba's dispatcher calls it.
+
+    It skips the dispatcher's look at the types of the arguments, a third of the time of a call
+    that takes half a microsecond: every argument has to be what the signature says.
+    """
+    if switched_off():
+        return function
+    enable_caching()
+    dispatcher: Any = function
+    dispatcher.compile(signature)
+    types, _ = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
+    entry: Callable[..., Any] = dispatcher.overloads[types].entry_point
+    return entry
+
+
+def _keep(dispatcher: Any) -> None:
+    """Give a kernel the disk cache."""
+    with _into_folder() as folder:
+        if folder is None or switched_off():
             return
+        dispatcher.enable_caching()
         store = dispatcher._cache
         store.save_overload = functools.partial(_save, store.save_overload)
 
@@ -67,6 +131,56 @@ def _save(save: Callable[[Any, Any], None], signature: Any, data: Any) -> None:
         save(signature, data)
     except OSError as error:
         _warn_once(str(error))
+
+
+@contextmanager
+def _into_folder() -> Iterator[Path | None]:
+    """Within this block numba's caches are made in our folder; None where there is none."""
+    folder, before = _code_folder(), config.CACHE_DIR
+    try:
+        if folder is not None:
+            config.CACHE_DIR = str(folder)
+        yield folder
+    finally:
+        config.CACHE_DIR = before
+
+
+@functools.cache
+def _code_folder() -> Path | None:
+    """Folder of the machine code, made if need be: in numba's own if one is named, else in ours."""
+    try:
+        home = Path(config.CACHE_DIR) if config.CACHE_DIR else _folder.folder()
+        if home is None:
+            return None
+        folder = home / f"contactlaw-{fingerprint()}"
+        if not folder.is_dir():
+            folder.mkdir(parents=True, exist_ok=True)
+            _sweep(home)
+        os.utime(folder)  # refused where the folder is not ours to write
+        return folder
+    except (OSError, RuntimeError) as error:
+        _warn_once(str(error))
+        return None
+
+
+@functools.cache
+def fingerprint() -> str:
+    """Hash of all that machine code, and a table, depend on: every source, numba and the CPU."""
+    import llvmlite.binding as llvm
+
+    digest = hashlib.sha256(f"{VERSION} {numba.__version__} {llvm.get_host_cpu_name()} ".encode())
+    digest.update(llvm.get_host_cpu_features().flatten().encode())
+    package = Path(__file__).parent
+    for path in sorted(package.rglob("*.py")):
+        digest.update(path.relative_to(package).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _sweep(home: Path) -> None:
+    """Remove the code of other versions that nobody has used for a month."""
+    for other in home.glob("contactlaw-*"):
+        if time.time() - other.stat().st_mtime > _UNUSED:
+            shutil.rmtree(other, ignore_errors=True)
 
 
 @functools.cache
@@ -91,17 +205,3 @@ def uncached(typing_context: Any) -> Any:
         return builder.ptrtoint(pointer, context.get_value_type(numba.types.intp))
 
     return numba.types.intp(), generate
-
-
-def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
-    """Compile a kernel for one signature and return its bare entry, as numba's dispatcher calls it.
-
-    It skips the dispatcher's look at the types of the arguments, a third of the time of a call
-    that takes half a microsecond: every argument has to be what the signature says.
-    """
-    enable_caching()
-    dispatcher: Any = function
-    dispatcher.compile(signature)
-    types, _ = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
-    entry: Callable[..., Any] = dispatcher.overloads[types].entry_point
-    return entry

@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw import laws
-from contactlaw import zener as _zener
-from contactlaw.arguments import broadcast, shaped, within
-from contactlaw.impact import plate_mobility
-from contactlaw.pair import Pair
+from contactlaw.equation import zener as _zener
+from contactlaw.equation.force import HERTZ
+from contactlaw.physical.arguments import broadcast, shaped, within
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.scaling import plate_mobility
 
 Array = NDArray[np.float64]
 
@@ -168,9 +168,8 @@ def zener(inelasticity: ArrayLike) -> float | Array:
     array([0.8433, 0.6577])
     """
     lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, _THICKER))
-    hertz = laws.law("hertz").functions
     return shaped(
-        np.array([_zener.solve(hertz, one, 1.0, _RTOL).restitution for one in lam]), shape
+        np.array([_zener.solve(HERTZ, one, 1.0, _RTOL).restitution for one in lam]), shape
     )
 
 
@@ -204,8 +203,7 @@ def elastic_compression(inelasticity: ArrayLike, *, printed: bool = False) -> fl
 
 
 def _elastic_compression(lam: Array) -> Array:
-    hertz = laws.law("hertz").functions
-    return np.array([_zener.elastic_compression(hertz, one, _RTOL)[1] for one in lam])
+    return np.array([_zener.elastic_compression(one, _RTOL)[1] for one in lam])
 
 
 def yield_speed_ratio(inelasticity_at_yield: ArrayLike, *, printed: bool = False) -> float | Array:

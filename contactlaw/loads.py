@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.arguments import broadcast, check
+from contactlaw.physical.arguments import broadcast, check
 
 if TYPE_CHECKING:
-    from contactlaw.provider import ImpactModel
+    from contactlaw.model import ImpactModel
 
 Array = NDArray[np.float64]
 
@@ -107,7 +107,7 @@ def load_signal(
     return LoadSignal(np.arange(0.5, force.size) / rate, force)
 
 
-@kernel
+@kernel(cache=True)
 def _add(start: Array, time: Array, force: Array, impulse: Array, rate: float, out: Array) -> None:
     """Add the momentum that contacts bring to each interval, over its length."""
     last = time.shape[1] - 1

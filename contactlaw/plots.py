@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from contactlaw.history import ForceHistory
+from contactlaw.physical.history import ForceHistory
 
 _BLUE, _VERMILION, _MUTED = "#0072B2", "#D55E00", "#6E6E6E"  # Okabe and Ito 2008
 _SETTINGS: dict[Any, Any] = {

@@ -9,27 +9,27 @@ sum to 1) the powers are
     y         -0.8    0    0   -0.4    0     -1.6 w   -1.6 w           2
     r          0      0    0    0      0      w        w              -1
 
-so d ln e/d ln x is a sum of terms, power by derivative. The derivatives are the table's own where
-the table follows the COR everywhere; next to the corners of some laws' loading curves no spline
-does, and there, and for r, they are central differences of the solver.
+so d ln e/d ln x is a sum of terms, power by derivative. The derivatives are central differences: of
+the table where it keeps its promise, else of the solver, and of the solver for r.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import polynomial
 from numpy.typing import NDArray
 
-from contactlaw import laws, lookup
-from contactlaw.arguments import shaped
-from contactlaw.evaluation import solved
-from contactlaw.impact import Scales
+from contactlaw import laws
+from contactlaw.equation import outcome, zener
+from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
-from contactlaw.pair import Pair
-from contactlaw.table import Table
+from contactlaw.physical.arguments import shaped
+from contactlaw.physical.pair import Pair
+from contactlaw.table import lookup
+from contactlaw.table.nodes import Table
 
 Array = NDArray[np.float64]
 
@@ -72,92 +72,83 @@ def follows(table: Table) -> bool:
     return table.certificate is not None and "restitution" not in table.certificate.exceeded
 
 
-def by_table(table: Array, fields: Array) -> tuple[Array, Array]:
+def by_table(table: Array, found: Outcome) -> tuple[Array, Array]:
     """Differentiate ln e with respect to ln(lambda) and ln(y), from a packed table.
-
-    On a kink, the derivatives are those of the side with the smaller overload.
 
     Parameters
     ----------
     table : ndarray
         `Table.packed`.
-    fields : ndarray
-        (7, n), as `evaluation.tabulated` gives them inside the table.
-    """
-    lam, y = fields[5:]
-    stretch, x_max = table[lookup.STRETCH], table[lookup.X_MAX]
-    x = lam / (lam + stretch)
-    series = table[lookup.HEADER : lookup.HEADER + lookup.DEGREE + 1]
-    t = 2.0 * x / x_max - 1.0
-    log_chi = polynomial.polyval(t, series) - np.log(y)
-    slope = polynomial.polyval(t, polynomial.polyder(series)) * 2.0 / x_max
-
-    blocks = table[lookup.HEADER + lookup.DEGREE + 1 :][
-        : lookup.BLOCK * int(table[lookup.SEGMENTS])
-    ].reshape(-1, lookup.BLOCK)
-    block = blocks[np.maximum(np.searchsorted(blocks[:, lookup.START], log_chi) - 1, 0)]
-    per_log = block[:, lookup.PER_LOG]
-    across = x * table[lookup.NODES_PER_X]
-    along = np.maximum(log_chi - block[:, lookup.START], 0.0) * per_log
-    row, cell = across.astype(int), along.astype(int)
-    steps = np.arange(4)
-    first = int(table[lookup.COR_AT]) + block[:, lookup.COLUMN].astype(int) + cell
-    rows = (row[:, None] + steps) * int(table[lookup.COLUMNS])
-    c = table[first[:, None, None] + rows[:, :, None] + steps]  # (n, 4, 4)
-
-    (a, da), (b, db) = _weights(across - row), _weights(along - cell)
-    by_x = np.einsum("nij,ni,nj->n", c, da, b) * table[lookup.NODES_PER_X]
-    by_log_chi = np.einsum("nij,ni,nj->n", c, a, db) * per_log
-    by_log_chi[log_chi <= 0.0] = 0.0  # elastic: the overload does not matter
-    return (by_x + by_log_chi * slope) * x * (1.0 - x) / fields[0], -by_log_chi / fields[0]
-
-
-def _weights(t: Array) -> tuple[Array, Array]:
-    """Uniform cubic B-splines (n, 4) at t in [0, 1], and their derivatives."""
-    s = 1.0 - t
-    values = (s**3, (3.0 * t - 6.0) * t**2 + 4.0, (3.0 * s - 6.0) * s**2 + 4.0, t**3)
-    slopes = (-3.0 * s**2, (9.0 * t - 12.0) * t, (12.0 - 9.0 * s) * s, 3.0 * t**2)
-    return np.stack(values, axis=-1) / 6.0, np.stack(slopes, axis=-1) / 6.0
-
-
-def by_solver(law: Law, units: Scales, fields: Array) -> tuple[Array, Array]:
-    """Differentiate ln e with respect to ln(lambda) and ln(y), by integration.
-
-    Nearer to a kink than the step, the derivatives are means of those on its two sides.
+    found : Outcome
+        As `evaluation.tabulated` gives them inside the table.
     """
 
-    def log_cor(lam_step: float, y_step: float) -> Array:
-        lam = units.inelasticity * math.exp(lam_step)
-        y = units.yield_ratio * math.exp(y_step)
-        moved = units._replace(inelasticity=lam, yield_ratio=y)
-        return np.asarray(np.log(solved(law, moved, _RTOL)[0]))
+    def outcomes(lam: Array, y: Array) -> Outcome:
+        moved = outcome.at(lam, y)
+        lookup.fields(table, True, moved)  # at the border by a one-sided difference
+        return moved
 
-    by_lam = (log_cor(_STEP, 0.0) - log_cor(-_STEP, 0.0)) / (2.0 * _STEP)
-    by_y = (log_cor(0.0, _STEP) - log_cor(0.0, -_STEP)) / (2.0 * _STEP)
-    return by_lam, np.where(_yields(fields), by_y, 0.0)
+    return _differences(outcomes, found)
 
 
-def by_modulus_ratio(pair: Pair, law: str, units: Scales, fields: Array) -> Array:
+def by_solver(law: Law, found: Outcome) -> tuple[Array, Array]:
+    """Differentiate ln e with respect to ln(lambda) and ln(y), by integration."""
+
+    def outcomes(lam: Array, y: Array) -> Outcome:
+        return _solved(law, lam, y)
+
+    return _differences(outcomes, found)
+
+
+def _differences(
+    outcomes: Callable[[Array, Array], Outcome], found: Outcome
+) -> tuple[Array, Array]:
+    """Central differences; nearer to a kink than the step, means of those on its two sides."""
+    lam, y = found.inelasticity, found.yield_ratio
+    steps = (math.exp(-_STEP), math.exp(_STEP))
+    low, high = (outcomes(lam * step, y) for step in steps)
+    by_lam = _quotient(low, high, "inelasticity")
+    low, high = (outcomes(lam, y * step) for step in steps)
+    return by_lam, np.where(_yields(found), _quotient(low, high, "yield_ratio"), 0.0)
+
+
+def _quotient(low: Outcome, high: Outcome, number: str) -> Array:
+    """Difference of ln e over that of the logarithm of a number."""
+    with np.errstate(invalid="ignore", divide="ignore"):  # ln(0/0), inf/inf
+        length = np.log(getattr(high, number) / getattr(low, number))
+        quotient = np.log(high.restitution / low.restitution) / length
+    return np.where(np.isfinite(quotient), quotient, 0.0)
+
+
+def by_modulus_ratio(pair: Pair, law: Law, found: Outcome) -> Array:
     """Differentiate ln e with respect to ln(E*/sigma_Y), if the law takes that from the pair."""
-    if "modulus_ratio" not in laws.parameters(law):
-        return np.zeros_like(fields[0])
-    ratio = pair.effective_modulus / pair.sphere.require_yield_strength(law)
+    if "modulus_ratio" not in law.from_pair:
+        return np.zeros_like(found.restitution)
+    ratio = pair.effective_modulus / pair.sphere.require_yield_strength(law.name)
     # laws take six digits
     low, high = (float(f"{ratio * math.exp(step):.6g}") for step in (-_STEP, _STEP))
     below, above = (
-        solved(
-            laws.law(law, modulus_ratio=value, poissons_ratio=pair.sphere.poissons_ratio),
-            units,
-            _RTOL,
-        )[0]
+        _solved(
+            laws.law(law.family, modulus_ratio=value, poissons_ratio=pair.sphere.poissons_ratio),
+            found.inelasticity,
+            found.yield_ratio,
+        ).restitution
         for value in (low, high)
     )
-    return np.where(_yields(fields), np.log(above / below) / math.log(high / low), 0.0)
+    return np.where(_yields(found), np.log(above / below) / math.log(high / low), 0.0)
 
 
-def _yields(fields: Array) -> NDArray[np.bool_]:
+def _solved(law: Law, lam: Array, y: Array) -> Outcome:
+    out = outcome.at(lam, y)
+    status, _ = zener.solve_all(law.data, _RTOL, out)
+    if status != zener.OK:
+        raise RuntimeError(f"the equation did not solve: {zener.MESSAGES[status]}")
+    return out
+
+
+def _yields(found: Outcome) -> NDArray[np.bool_]:
     """Whether the elastic compression w_m is above y: elsewhere yield does not matter."""
-    return np.asarray(fields[4] > fields[6])
+    return np.asarray(found.elastic_compression > found.yield_ratio)
 
 
 def elasticities(

@@ -17,7 +17,7 @@ where contact begins and ends inside a step an error of order dt^2.5 is left.
 The largest compression lies between two steps as a rule. Where the bead turns, d'' = -F/m whatever
 the plate does, so the parabola through the last two compressions gives it to third order.
 
-Legend, as in `zener`: scaled by d_Y and F_Y inside the kernels,
+Legend, as in `contactlaw.equation`: scaled by d_Y and F_Y inside the kernels,
 
     d   compression                    q   root compression, sqrt(d - dr)
     dm  largest compression so far     b   (5/12) alpha dt + dt^2/(12 m)
@@ -36,12 +36,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw import laws
-from contactlaw._jit import kernel
-from contactlaw.arguments import broadcast, check, scalars
-from contactlaw.impact import scales, sphere_on_plate
-from contactlaw.laws import Functions
-from contactlaw.provider import ImpactModel
+from contactlaw._jit import enable_caching, kernel
+from contactlaw.equation import force as forces
+from contactlaw.equation.force import Curve
+from contactlaw.equation.integrator import NO_CURVE
+from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import broadcast, check, scalars
+from contactlaw.physical.scaling import scales, sphere_on_plate
 
 Array = NDArray[np.float64]
 
@@ -81,7 +82,7 @@ PARTED = State(0.0, 0.0, 0.0)
 def unit_spring(model: ImpactModel, thickness: float) -> Spring:
     """Spring of a bead of radius 1 m; `resized` makes that of any other."""
     one = np.ones(())
-    contact = sphere_on_plate(model.pair, laws.law(model.law), one, thickness * one)
+    contact = sphere_on_plate(model.pair, model.force_law, one, thickness * one)
     scale = float(contact.yield_compression)
     mass, stiffness = float(contact.mass), float(contact.stiffness)
     return Spring(
@@ -98,7 +99,7 @@ def _relaxation(mass: Any, stiffness: Any) -> Any:
     return RELAXATION * CONTACT_TIME * (mass / stiffness) ** 0.4
 
 
-@kernel
+@kernel(cache=True)
 def resized(unit: Spring, radius: float) -> Spring:
     """Spring of a bead of this radius [m], from that of radius 1 m on the same plate."""
     return Spring(
@@ -111,13 +112,13 @@ def resized(unit: Spring, radius: float) -> Spring:
 
 
 @kernel
-def _force(law: Functions, loading: bool, q: float, curve: tuple[float, float]) -> float:
-    return law.loading(q) if loading else law.unloading(q, curve[0], curve[1])
+def _force(law: Array, loading: bool, q: float, curve: Curve) -> float:
+    return forces.loading(law, q) if loading else forces.unloading_force(law, curve, q)
 
 
 @kernel
 def _balance(
-    law: Functions, loading: bool, curve: tuple[float, float], b: float, r: float
+    law: Array, loading: bool, curve: Curve, b: float, r: float
 ) -> tuple[float, float]:
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
@@ -145,8 +146,8 @@ def _balance(
     return q, f
 
 
-@kernel
-def advance(law: Functions, spring: Spring, state: State, overlap: float, step: float) -> State:
+@kernel(cache=True)
+def advance(law: Array, spring: Spring, state: State, overlap: float, step: float) -> State:
     """State at the end of a step in which the overlap has become this [m]; the step in [s].
 
     The force to apply is the state's. Compression that falls, or grows again below its largest
@@ -163,14 +164,14 @@ def advance(law: Functions, spring: Spring, state: State, overlap: float, step: 
     b = (moved - ahead + step * step / (12.0 * spring.mass)) * unit / scale
     r = (overlap - known - ahead * state.force) / scale
     dm = state.largest_compression / scale
-    top = state.force >= _TOP * law.loading(math.sqrt(dm)) * unit  # the compression was dm
+    top = state.force >= _TOP * forces.loading(law, math.sqrt(dm)) * unit  # compression was dm
     loading, q, f = True, 0.0, 0.0
-    if dm > 1.0 and not top:  # every law is Hertz's below dm = 1
-        dr = law.residual(dm)
-        q, f = _balance(law, False, law.unloading_curve(dm), b, r - dr)
-        loading = q * q + dr > dm
+    if dm > 1.0 and not top:  # no law has lost anything below dm = 1
+        curve = forces.unloading(law, dm)
+        q, f = _balance(law, False, curve, b, r - curve.residual)
+        loading = q * q + curve.residual > dm
     if loading:
-        q, f = _balance(law, True, (0.0, 0.0), b, r)
+        q, f = _balance(law, True, NO_CURVE, b, r)
         d = q * q
         fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
         if top and fall > 0.0:
@@ -178,16 +179,16 @@ def advance(law: Functions, spring: Spring, state: State, overlap: float, step: 
             if turn < 1.0:
                 dm = max(d, dm + 0.5 * fall * max(turn, 0.0) ** 2)
                 if dm > 1.0:
-                    curve = law.unloading_curve(dm)
-                    q, f = _balance(law, False, curve, b, r - law.residual(dm))
+                    curve = forces.unloading(law, dm)
+                    q, f = _balance(law, False, curve, b, r - curve.residual)
         dm = max(d, dm)
     force = f * unit
     return State(known + moved * force, dm * scale, force)
 
 
-@kernel
+@kernel(cache=True)
 def _advance_all(
-    law: Functions, springs: Spring, states: State, overlap: Array, step: float
+    law: Array, springs: Spring, states: State, overlap: Array, step: float
 ) -> int:
     """`advance` for arrays, in place; index of an overlap that is not finite, else -1."""
     for n in range(overlap.size):
@@ -250,10 +251,11 @@ class Contacts:
     def __init__(self, model: ImpactModel, radius: ArrayLike, thickness: ArrayLike) -> None:
         r, h, _ = broadcast(radius=radius, thickness=thickness)
         check(radius=r, thickness=h)
-        law = laws.law(model.law)
+        law = model.force_law
         contact = sphere_on_plate(model.pair, law, r, h)
         elastic = contact.yield_compression == math.inf
-        self._law = law.functions
+        enable_caching()
+        self._law = law.data
         self._springs = Spring(
             mass=contact.mass,
             stiffness=contact.stiffness,
@@ -364,7 +366,7 @@ def time_step(
     if not 2e-5 <= error <= 1e-2:
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
-    units = scales(sphere_on_plate(model.pair, laws.law(model.law), r, h), v)
+    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
     time = np.minimum(model.lookup(v, r, h).contact_time, CONTACT_TIME * units.time)
     steps: float = (_ERROR / error) ** 0.4
     return float(time[0]) / max(FEWEST_STEPS, steps)

@@ -7,11 +7,12 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.arguments import broadcast, check, shaped
 from contactlaw.evaluation import table_for, tabulated
-from contactlaw.impact import law_of, scales, sphere_on_sphere
-from contactlaw.materials import Material
-from contactlaw.pair import Pair
+from contactlaw.laws import Law
+from contactlaw.physical.arguments import broadcast, check, shaped
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.scaling import law_of, scales, sphere_on_sphere
 
 Array = NDArray[np.float64]
 
@@ -23,7 +24,7 @@ def restitution_sphere_sphere(
     radius: ArrayLike,
     other_radius: ArrayLike,
     *,
-    law: str = "myc",
+    law: str | Law = "myc",
 ) -> float | Array:
     """Coefficient of restitution of bead on bead: the bulk limit.
 
@@ -35,7 +36,7 @@ def restitution_sphere_sphere(
         Normal approach speed [m/s].
     radius, other_radius : array_like
         Radii [m].
-    law : str, optional
+    law : str or Law, optional
         Normal force law, as in `ImpactModel`.
 
     Returns
@@ -66,5 +67,5 @@ def restitution_sphere_sphere(
         pair, r, o = Pair(pair.plate, pair.sphere), o, r
     chosen = law_of(pair, law)
     units = scales(sphere_on_sphere(pair, chosen, r, o), v)
-    fields, _ = tabulated(chosen, table_for(chosen, None).packed, units, "raise")
-    return shaped(fields[0], shape)
+    found, _ = tabulated(chosen, table_for(chosen, None).packed, units, "raise")
+    return shaped(found.restitution, shape)

@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.arguments import shaped
+from contactlaw.physical.arguments import shaped
 from contactlaw.closed_form import (
     FASTEST,
     INTEGRATE,

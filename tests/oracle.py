@@ -123,7 +123,7 @@ def impact_of(law, lam, y):
     left, curve = law.residual(largest / y), law.unloading_curve(largest / y)
 
     def down(w):
-        return scale * law.unloading(math.sqrt(max(w / y - left, 0.0)), *curve)
+        return scale * law.unloading(math.sqrt(max(w / y - left, 0.0)), curve)
 
     run = follow(down, t, state, [event(lambda t, s: s[0] - left * y, -1)])
     assert run.t_events[0].size == 1

@@ -1,5 +1,6 @@
 """The table cache under what happens to caches: races, kills, damage, full and read-only disks."""
 
+import dataclasses
 import errno
 import multiprocessing
 import os
@@ -14,8 +15,11 @@ import platformdirs
 import pytest
 import tqdm
 
-from contactlaw import cache, laws, store, table, zener
+from contactlaw import _jit, laws, table
+from contactlaw.table import cache
+from contactlaw.table import file as store
 
+MYC = laws.law("myc")
 SMALL = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
 # children are forked, so that they need not compile the solver again; what they import lazily is
 # loaded here, since a child that gave up its rights may not read the packages any more
@@ -25,7 +29,7 @@ LOADED = filelock, platformdirs, tqdm
 
 @pytest.fixture(scope="module")
 def expected():
-    return table.build("myc", SMALL)
+    return table.build(MYC, SMALL)
 
 
 @pytest.fixture(autouse=True)
@@ -39,7 +43,7 @@ def place(tmp_path, monkeypatch, expected):
 
 @pytest.fixture
 def path(place):
-    return place / cache.file_name("myc", SMALL)
+    return place / cache.file_name(MYC, SMALL)
 
 
 def same(one, other):
@@ -66,23 +70,27 @@ def in_child(function, *arguments):
 
 
 def test_a_table_is_built_once_and_kept(path, expected, monkeypatch):
-    assert same(cache.cached("myc", SMALL), expected)
+    assert same(cache.cached(MYC, SMALL), expected)
     assert path.exists()
     cache.cached.cache_clear()
     monkeypatch.setattr(table, "build", None)  # a second build would fail
-    assert same(cache.cached("myc", SMALL), expected)
+    assert same(cache.cached(MYC, SMALL), expected)
 
 
 def test_the_name_depends_on_all_that_the_content_does(monkeypatch):
-    names = {cache.file_name("myc", SMALL), cache.file_name("myc", table.Settings())}
+    names = {cache.file_name(MYC, SMALL), cache.file_name(MYC, table.Settings())}
     monkeypatch.setattr(store, "SCHEMA", 99)
-    names.add(cache.file_name("myc", SMALL))
-    changed = laws.Law(**{**vars(laws.law("myc")), "yield_coefficient": 0.7})
-    monkeypatch.setattr(laws, "law", lambda name: changed)
-    names.add(cache.file_name("myc", SMALL))
-    monkeypatch.setattr(cache.inspect, "getsource", lambda module: "another solver")
-    names.add(cache.file_name("myc", SMALL))
+    names.add(cache.file_name(MYC, SMALL))
+    changed = dataclasses.replace(MYC, data=np.nextafter(MYC.data, 9.0))
+    names.add(cache.file_name(changed, SMALL))
+    monkeypatch.setattr(cache, "fingerprint", lambda: "another solver")
+    names.add(cache.file_name(MYC, SMALL))
     assert len(names) == 5
+
+
+def test_the_name_does_not_depend_on_what_the_content_does_not():
+    other = dataclasses.replace(MYC, name="theirs", yield_coefficient=0.7)
+    assert cache.file_name(other, SMALL) == cache.file_name(MYC, SMALL)
 
 
 def test_folder(monkeypatch, tmp_path):
@@ -95,7 +103,7 @@ def test_folder(monkeypatch, tmp_path):
 
 def test_switched_off_writes_nothing(place, expected, monkeypatch):
     monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
-    assert same(cache.cached("myc", SMALL), expected)
+    assert same(cache.cached(MYC, SMALL), expected)
     assert not place.exists()
 
 
@@ -114,27 +122,21 @@ def other_schema(path):
     ids=["zero length", "truncated", "flipped bits", "another schema"],
 )
 def test_a_damaged_file_is_rebuilt(path, expected, damage):
-    cache.cached("myc", SMALL)
+    cache.cached(MYC, SMALL)
     damage(path)
     cache.cached.cache_clear()
-    assert same(cache.cached("myc", SMALL), expected)
+    with pytest.warns(UserWarning, match="built anew") as caught:
+        assert same(cache.cached(MYC, SMALL), expected)
+    assert len(caught) == 1
     assert same(store.read(path), expected)  # and the file is whole again
 
 
 def test_another_table_under_the_name_is_rebuilt(place, path, expected):
     place.mkdir()
     store.write(
-        table.build("myc", table.Settings(inelasticity_nodes=5, log_overload_step=0.5)), path
+        table.build(MYC, table.Settings(inelasticity_nodes=5, log_overload_step=0.5)), path
     )
-    assert same(cache.cached("myc", SMALL), expected)
-
-
-def test_an_installation_without_sources(path, expected, monkeypatch):
-    def no_source(module):
-        raise OSError("could not get source code")
-
-    monkeypatch.setattr(cache.inspect, "getsource", no_source)
-    assert same(cache.cached("myc", SMALL), expected)
+    assert same(cache.cached(MYC, SMALL), expected)
 
 
 def test_two_processes_build_one_table(place, path, expected):
@@ -150,7 +152,7 @@ def test_two_processes_build_one_table(place, path, expected):
     def child(results):
         table.build = counted
         barrier.wait()
-        results.put(same(cache.cached("myc", SMALL), expected))
+        results.put(same(cache.cached(MYC, SMALL), expected))
 
     results = FORK.Queue()
     children = [FORK.Process(target=child, args=(results,)) for _ in range(2)]
@@ -185,7 +187,7 @@ def test_a_writer_killed_at_any_moment_leaves_a_whole_file_or_none(place, path, 
         interrupted += bool(list(place.glob("*.part")) or list(place.glob(".*.part")))
     assert interrupted > 5  # the kills did hit writes
     path.unlink(missing_ok=True)
-    assert same(cache.cached("myc", SMALL), expected)
+    assert same(cache.cached(MYC, SMALL), expected)
     assert not list(place.glob(".*.part"))  # what the killed ones left is gone
 
 
@@ -194,7 +196,7 @@ def test_a_builder_killed_with_the_lock_does_not_block_the_next(place, path, exp
 
     def child():
         table.build = lambda *a, **k: (started.set(), time.sleep(60))
-        cache.cached("myc", SMALL)
+        cache.cached(MYC, SMALL)
 
     builder = FORK.Process(target=child)
     builder.start()
@@ -202,7 +204,7 @@ def test_a_builder_killed_with_the_lock_does_not_block_the_next(place, path, exp
     os.kill(builder.pid, signal.SIGKILL)
     builder.join()
     before = time.monotonic()
-    assert same(cache.cached("myc", SMALL), expected)
+    assert same(cache.cached(MYC, SMALL), expected)
     assert time.monotonic() - before < 30  # the lock went with its process
 
 
@@ -211,7 +213,7 @@ def warned(change):
     change()
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        tables = [cache.cached("myc", SMALL) for _ in range(2)]
+        tables = [cache.cached(MYC, SMALL) for _ in range(2)]
     return tables[1].fields["restitution"], [str(w.message) for w in caught]
 
 
@@ -261,5 +263,14 @@ def test_progress_is_quiet_without_a_terminal(capfd):
     assert capfd.readouterr() == ("", "")
 
 
-def test_the_solver_is_named_by_its_source():
-    assert "Dormand" in cache.inspect.getsource(zener)
+def test_every_source_is_in_the_fingerprint(tmp_path, monkeypatch):
+    (tmp_path / "equation").mkdir()
+    prints = set()
+    for name in ("_jit.py", "equation/force.py"):
+        for text in ("one", "another"):
+            (tmp_path / name).write_text(text)
+            monkeypatch.setattr(_jit, "__file__", str(tmp_path / "_jit.py"))
+            _jit.fingerprint.cache_clear()
+            prints.add(_jit.fingerprint())
+    _jit.fingerprint.cache_clear()
+    assert len(prints) == 4

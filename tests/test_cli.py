@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import store, table
+from contactlaw import laws, table
 from contactlaw.cli import main
+from contactlaw.table import file
 
 COR = ["cor", "--sphere", "gamma-alumina", "--plate", "glass"]
 IMPACT = [*COR, "--radius", "0.9e-3", "--thickness", "1e-3", "--speed", "12"]
@@ -126,7 +127,7 @@ def test_table_info_and_check(capsys):
 
 def test_table_check_fails_above_the_bounds(tmp_path, capsys):
     coarse = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
-    store.write(table.build("myc", coarse), tmp_path / "coarse.h5")
+    file.write(table.build(laws.law("myc"), coarse), tmp_path / "coarse.h5")
     assert main(["table", "check", str(tmp_path / "coarse.h5"), "--points", "500"]) == 1
     assert "exceeds its bounds" in capsys.readouterr().err
 

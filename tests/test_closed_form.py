@@ -8,8 +8,9 @@ from oracle import yield_ratio
 from scipy.integrate import quad
 
 import contactlaw as cl
-from contactlaw import closed_form, laws, turning_point, zener
-from contactlaw.impact import scales, sphere_on_plate
+from contactlaw import closed_form, laws, turning_point
+from contactlaw.equation import zener
+from contactlaw.physical.scaling import scales, sphere_on_plate
 
 SPEEDS = np.concatenate([np.linspace(0.03, 2.0, 24), np.linspace(2.2, 20.0, 72)])
 INELASTICITIES = np.linspace(0.0, 0.5, 31)
@@ -43,7 +44,7 @@ PRINTED = [
 
 
 def solved(v, lam_y, law="myc"):
-    one = zener.solve(laws.law(law).functions, lam_y * v**0.2, yield_ratio(v), 1e-11)
+    one = zener.solve(laws.law(law).data, lam_y * v**0.2, yield_ratio(v), 1e-11)
     return one.restitution
 
 
@@ -196,17 +197,17 @@ def test_the_turning_point_form_is_continuous():
 
 def test_unloading_is_the_second_half_of_an_elastic_impact():
     """What the turning-point form rests on, exactly: whatever the loading was."""
-    myc, hertz = laws.law("myc"), laws.law("hertz").functions
+    myc, hertz = laws.law("myc"), laws.law("hertz").data
     v, lam_y = 8.0, 0.25
     y = yield_ratio(v)
-    one = zener.solve(myc.functions, lam_y * v**0.2, y, 1e-12)
+    one = zener.solve(myc.data, lam_y * v**0.2, y, 1e-12)
     dm = one.peak_compression / y
     force, span = myc.loading(math.sqrt(dm)), dm - myc.residual(dm)
     # the elastic impact that turns with the same x = lambda_Y sqrt(f/s), by bisection in lambda
     low, high = 0.0, 2.0
     for _ in range(60):
         lam = 0.5 * (low + high)
-        w_m = zener.elastic_compression(hertz, lam, 1e-13)[1] / 1.25**0.4
+        w_m = zener.elastic_compression(lam, 1e-13)[1] / 1.25**0.4
         low, high = (lam, high) if lam * w_m**0.25 < lam_y * math.sqrt(force / span) else (low, lam)
     released = zener.solve(hertz, lam, 1.0, 1e-13).restitution / w_m**1.25
     assert one.restitution == pytest.approx(math.sqrt(force * span) / v * released, rel=1e-9)

@@ -11,7 +11,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.impact import law_of
+from contactlaw.physical.scaling import law_of
 from validation import paper
 from validation.fem import calculix, compare, solver, store
 from validation.fem.__main__ import main as command

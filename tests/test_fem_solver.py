@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw.impact import plate_mobility
+from contactlaw.physical.scaling import plate_mobility
 from validation.fem import elements, mesh, solver
 
 STEEL = cl.Material("steel", 200e9, 0.3, 8000.0, yield_strength=400e6)

@@ -7,11 +7,12 @@ import oracle
 import pytest
 
 import contactlaw as cl
-from contactlaw import laws, zener
-from contactlaw.impact import plate_mobility
+from contactlaw import laws
+from contactlaw.equation import zener
+from contactlaw.physical.scaling import plate_mobility
 
 R = 0.9e-3
-MYC = laws.law("myc").functions
+MYC = laws.law("myc").data
 
 
 def mass(model, radius=R):
@@ -35,7 +36,7 @@ def test_solver_against_scipy(lam, chi_over):
     force, speed = oracle.force_history(lam, y, share)
     solution = zener.solve(MYC, lam, y, 1e-11)
     out = np.empty((3, share.size))
-    zener.history(MYC, lam, y, 1e-11, share * solution.contact_time, out)
+    zener.history(MYC, lam, y, 1e-11, share * solution.contact_time, *out)
     assert out[0] == pytest.approx(force, abs=1e-7 * solution.peak_force)
     assert out[2] == pytest.approx(speed, abs=1e-7)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactlaw import laws
-from contactlaw.impact import plate_mobility, scales, sphere_on_plate, sphere_on_sphere
+from contactlaw.physical.scaling import plate_mobility, scales, sphere_on_plate, sphere_on_sphere
 
 MYC = laws.law("myc")
 R, H, V = 0.9e-3, 1e-3, 5.0

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from contactlaw import lookup
+from contactlaw.table import lookup
 
 
 def test_logarithm_and_fifth_root():

@@ -13,7 +13,7 @@ from importlib.resources import files
 import numpy as np
 import pytest
 
-from contactlaw.materials import Material, material, materials
+from contactlaw.physical.materials import Material, material, materials
 
 NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength")
 REQUIRED = {
@@ -331,11 +331,10 @@ def test_replace_checks_again() -> None:
 
 
 def test_import_reads_no_catalogue() -> None:
-    # In a fresh process, since this one has long read it; the name contactlaw.materials is the
-    # function's, the module is found in sys.modules.
+    # In a fresh process, since this one has long read it.
     code = (
         "import sys, contactlaw; "
-        "print(sys.modules['contactlaw.materials']._catalogue.cache_info().currsize)"
+        "print(sys.modules['contactlaw.physical.materials']._catalogue.cache_info().currsize)"
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert ran.stdout.strip() == "0"

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import contactlaw as cl
-from contactlaw import table
+from contactlaw import laws, table
 
 R, H = 0.9e-3, 1e-3
 FIELDS = (
@@ -44,7 +44,7 @@ NOT_POSITIVE = [
 @pytest.fixture(scope="module")
 def small_table():
     return table.build(
-        "myc",
+        laws.law("myc"),
         table.Settings(
             largest_inelasticity=1.0,
             largest_overload=5.0,
@@ -256,7 +256,7 @@ def test_wrong_options(pair, arguments, message):
 
 
 def test_the_table_of_another_law_is_refused(pair, small_table):
-    other = dataclasses.replace(small_table, law="thornton")
+    other = dataclasses.replace(small_table, law=laws.law("thornton"))
     with pytest.raises(ValueError, match="belongs to law 'thornton'"):
         cl.ImpactModel(pair, table=other)
 
@@ -267,9 +267,9 @@ def test_a_pair_is_needed():
 
 
 def test_a_table_file_is_taken(pair, small_table, tmp_path):
-    from contactlaw import store
+    from contactlaw.table import file
 
-    store.write(small_table, tmp_path / "t.h5")
+    file.write(small_table, tmp_path / "t.h5")
     ours = cl.ImpactModel(pair, table=tmp_path / "t.h5").restitution(5.0, R, H)
     assert ours == cl.ImpactModel(pair, table=small_table).restitution(5.0, R, H)
 
@@ -351,7 +351,7 @@ def test_read_only_input_is_taken(model):
 
 def test_a_coarse_table_says_so(pair, small_table):
     with pytest.warns(UserWarning, match="less accurate than contactlaw promises"):
-        cl.ImpactModel(pair, table=table.build("myc", table.Settings(log_overload_step=0.5)))
+        cl.ImpactModel(pair, table=table.build(laws.law("myc"), table.Settings(log_overload_step=0.5)))
 
 
 def test_a_callers_disk_cache_keeps_no_table(tmp_path):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import laws
 from contactlaw._jit import kernel
+from contactlaw.equation import force
 from contactlaw.softsphere import PARTED, Contacts, State, advance, resized, time_step, unit_spring
 
 R = 0.9e-3
@@ -58,7 +58,7 @@ def rest(law, spring, weight, step, steps):
 
 @pytest.fixture(scope="module")
 def law(model):
-    return laws.law(model.law).functions
+    return model.force_law.data
 
 
 def spring_of(model, thickness, radius=R):
@@ -115,7 +115,7 @@ def test_unloading_and_reloading_follow_one_curve(model, law):
     # so small a step that its terms in dt^2, which are for a body in motion, do nothing
     spring, step = spring_of(model, math.inf), 1e-15
     top = 3 * spring.scale
-    left = law.residual(3.0) * spring.scale
+    left = force.residual(law, 3.0) * spring.scale
     down = np.linspace(top, left + 0.1 * (top - left), 50)
     path = np.concatenate((np.linspace(0, top, 50), down, down[::-1], [top, 1.2 * top]))
     forces = np.empty(path.size)
@@ -123,22 +123,22 @@ def test_unloading_and_reloading_follow_one_curve(model, law):
     unload, reload = forces[50:100], forces[100:150]
     assert reload == pytest.approx(unload[::-1], rel=1e-12)
     unit = spring.stiffness * spring.scale**1.5
-    curve = law.unloading_curve(3.0)
-    exact = [unit * law.unloading(math.sqrt((d - left) / spring.scale), *curve) for d in down]
+    curve = force.unloading(law, 3.0)
+    exact = [unit * force.unloading_force(law, curve, math.sqrt((d - left) / spring.scale)) for d in down]
     assert unload == pytest.approx(exact, rel=1e-9)
-    assert forces[-1] == pytest.approx(unit * law.loading(math.sqrt(3.6)), rel=1e-9)
+    assert forces[-1] == pytest.approx(unit * force.loading(law, math.sqrt(3.6)), rel=1e-9)
     assert last.largest_compression == pytest.approx(1.2 * top, rel=1e-12)
     # the loop between the two loadings is the energy that the law says plastic flow takes
     work = np.trapezoid(forces[:100], path[:100])
     rest_of_it = 0.4 * unload[-1] * (down[-1] - left)  # of q^3 from there to the residual
-    lost = law.dissipation(3.0) * unit * spring.scale
+    lost = force.loss(law, 3.0) * unit * spring.scale
     assert work - rest_of_it == pytest.approx(lost, rel=2e-3)  # trapezoids of 50 points
 
 
 def test_no_force_in_the_dent_and_none_apart(model, law):
     spring = spring_of(model, math.inf)
     dent = State(0.0, 5 * spring.scale, 1e-6)
-    left = law.residual(5.0) * spring.scale
+    left = force.residual(law, 5.0) * spring.scale
     inside = advance(law, spring, dent, 0.9 * left, 1e-8)
     assert inside == State(0.0, dent.largest_compression, 0.0)  # remembers
     assert advance(law, spring, inside, 0.0, 1e-8) == PARTED

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from oracle import ALL_LAWS, RATIO, impact, impact_of, yield_ratio
 from scipy.integrate import quad
 
-from contactlaw import laws, zener
+from contactlaw import laws
+from contactlaw.equation import force, zener
 
-HERTZ = laws.law("hertz").functions
+HERTZ = force.HERTZ.copy()
 
 
 def elastic(lam, rtol=1e-11):
@@ -58,7 +59,7 @@ def test_lossless_contact():
 @pytest.mark.parametrize("v", [1.0, 1.5, 3.0, 4.19])
 def test_half_space_is_eq_21(v):
     # exact as long as loading follows Hertz's curve, to v = (d_P/d_Y)^(5/4) = 4.19
-    one = zener.solve(laws.law("myc").functions, 0.0, yield_ratio(v), 1e-12)
+    one = zener.solve(laws.law("myc").data, 0.0, yield_ratio(v), 1e-12)
     assert one.restitution == pytest.approx((1 - (1 - v**-0.8) ** 2) ** 0.25, abs=1e-10)
 
 
@@ -66,7 +67,7 @@ def test_against_an_independent_integration():
     # 200 points over lambda 0 to 3 and v 0.05 to 20; scipy at 1e-11 is good to about 1e-9
     rng = np.random.default_rng(20210326)
     lams, speeds = rng.uniform(0, 3, 200), np.exp(rng.uniform(*np.log([0.05, 20]), 200))
-    functions = laws.law("myc").functions
+    functions = laws.law("myc").data
     worst = np.zeros(3)
     for lam, v in zip(lams, speeds, strict=True):
         y = yield_ratio(v)
@@ -85,7 +86,7 @@ def test_every_law_against_an_independent_integration(law):
     lams, speeds = rng.uniform(0, 1, 12), np.exp(rng.uniform(*np.log([0.5, 20]), 12))
     for lam, v in zip(lams, speeds, strict=True):
         y = yield_ratio(v)
-        one = zener.solve(law.functions, lam, y, 1e-10)
+        one = zener.solve(law.data, lam, y, 1e-10)
         e, time, peak = impact_of(law, lam, y)
         assert one.restitution == pytest.approx(e, abs=1e-7)
         assert one.contact_time == pytest.approx(time, rel=1e-7)
@@ -120,7 +121,7 @@ def test_linear_branch_is_an_oscillator():
     # x = exp(-damping t)(x0 cos + b sin); its first maximum
     t = math.atan2(omega * b - damping * x0, omega * x0 + damping * b) / omega
     peak = math.exp(-damping * t) * (x0 * math.cos(omega * t) + b * math.sin(omega * t)) + shift
-    one = zener.solve(laws.law("myc").functions, lam, y, 1e-12)
+    one = zener.solve(laws.law("myc").data, lam, y, 1e-12)
     assert one.peak_compression == pytest.approx(peak, rel=1e-10)
 
 
@@ -128,9 +129,7 @@ def test_linear_branch_is_an_oscillator():
 @settings(deadline=None, max_examples=100)
 @given(lam=st.floats(0, 10), v=st.floats(1e-3, 100))
 def test_energy_balance_and_bounds(law, lam, v):
-    # the error control of a step may overlook a corner of Stronge's unloading curve
-    rtol = 1e-12 if law.name == "stronge" else 1e-10
-    one = zener.solve(law.functions, lam, yield_ratio(v), rtol)
+    one = zener.solve(law.data, lam, yield_ratio(v), 1e-10)
     assert one.status == zener.OK
     assert 0.0 < one.restitution <= 1.0 + 1e-10
     balance = 1 - one.restitution**2 - one.plastic_fraction - one.wave_fraction
@@ -142,7 +141,7 @@ def test_energy_balance_and_bounds(law, lam, v):
 def test_error_follows_the_tolerance():
     # an adaptive 5(4) pair keeps its error in proportion to the tolerance: slope 1 in log-log,
     # 0.2 less or more (STYLE's band for an observed order)
-    functions, y = laws.law("myc").functions, yield_ratio(6.0)
+    functions, y = laws.law("myc").data, yield_ratio(6.0)
     exact = zener.solve(functions, 0.4, y, 1e-13).restitution
     rtols = np.array([1e-5, 1e-6, 1e-7, 1e-8, 1e-9])
     errors = [abs(zener.solve(functions, 0.4, y, r).restitution - exact) for r in rtols]
@@ -155,8 +154,8 @@ def test_error_follows_the_tolerance():
 def test_peak_on_a_kink(kink, factor):
     # the largest compression falls on the kink itself, or a hair from it
     lam = 0.2
-    _, w_m = zener.elastic_compression(HERTZ, lam, 1e-13)
-    one = zener.solve(laws.law("myc").functions, lam, w_m / (kink * factor), 1e-11)
+    _, w_m = zener.elastic_compression(lam, 1e-13)
+    one = zener.solve(laws.law("myc").data, lam, w_m / (kink * factor), 1e-11)
     assert one.status == zener.OK
     # the linear branch leaves Hertz's curve along its tangent, so the peak differs by O(step^2)
     assert one.peak_compression == pytest.approx(w_m, rel=1e-10)
@@ -170,7 +169,7 @@ def test_large_inelasticity_decays_as_the_fifth_power():
 
 
 def test_far_below_yield_is_elastic():
-    one = zener.solve(laws.law("myc").functions, 0.3, yield_ratio(1e-6), 1e-11)
+    one = zener.solve(laws.law("myc").data, 0.3, yield_ratio(1e-6), 1e-11)
     assert one.restitution == pytest.approx(elastic(0.3).restitution, abs=1e-10)
     assert one.plastic_fraction == 0.0
 

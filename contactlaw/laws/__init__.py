@@ -1,106 +1,35 @@
 """Normal force laws in scaled form, one file each, chosen by name.
 
 A law knows no unit: compressions are in units of the yield compression d_Y, forces in units of
-F_Y = K d_Y^1.5, so that every law follows Hertz, F = d^1.5, up to d = 1. Forces are functions of
-the root compression q, sqrt(d) while loading and sqrt(d - residual) while unloading: it is to
-Hertz the radius of contact, and a force that is smooth in it is what the solver needs. A new law
-is a new module here that defines ``LAW``; nothing else has to be touched.
+F_Y = K d_Y^1.5, so that every law follows Hertz, F = d^1.5, up to d = 1. A file is plain numpy: its
+formulas, the kinks between which they are smooth, and their source; `Law.of` makes the data of
+them that everything else reads. A new law is a new module here that defines ``LAW``; nothing else
+has to be touched. Files that begin with ``_`` are no laws.
 
 A law whose scaled form depends on more than the compression defines ``PARAMETERS`` instead, their
-names, and a function ``law`` of them. Their values are part of its name, ``"kogut_etsion(0.3)"``,
-so that each set has a table of its own wherever tables are kept by the name of their law.
+names, and a function ``law`` of them. Their values are part of its name, ``"kogut_etsion(0.3)"``.
+
+Users bring laws of their own by `Law.of`, or by `measured` points, to `contactlaw.ImpactModel`.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import difflib
 import functools
 import importlib
 import math
 import pkgutil
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import Any
+
+from contactlaw.laws._law import HERTZ, Law, Loading, Unloading
+
+__all__ = ["HERTZ", "Law", "Loading", "Unloading", "law", "names", "parameters"]
 
 _RANGES = {"modulus_ratio": (2.0, 1e6), "poissons_ratio": (0.0, 0.5)}  # of laws' parameters
 _BRACKETS = re.compile(r"[a-z_]+\([-+.,0-9e]+\)")
-
-
-class Functions(NamedTuple):
-    """A law as kernels take it: numba-jitted functions and plain numbers. See `Law`."""
-
-    loading: Callable[[float], float]
-    residual: Callable[[float], float]
-    unloading_curve: Callable[[float], tuple[float, float]]
-    unloading: Callable[[float, float, float], float]
-    dissipation: Callable[[float], float]
-    kinks: tuple[float, ...]  # of the loading curve; the last is inf, so there always is one
-
-
-@dataclass(frozen=True, eq=False)
-class Law:
-    """A normal force law, as numba-jitted functions of scaled compressions.
-
-    Parameters
-    ----------
-    name : str
-        What users call it; the name of its module.
-    source : str
-        Where the formulas come from.
-    yield_coefficient : float or None
-        c in d_Y = c pi^2 sigma_Y^2 R* / E*^2; None for a law that never yields.
-    loading_kinks : tuple of float
-        Compressions [d_Y], rising, at which the loading curve changes its formula.
-    unloading_kinks : tuple of float
-        Largest compressions [d_Y], rising, at which the family of unloading curves does.
-    loading : callable
-        ``loading(q)``: force [F_Y] while the compression d = q^2 grows.
-    residual : callable
-        ``residual(dm)``: compression [d_Y] left after unloading from the largest one, dm.
-    unloading_curve : callable
-        ``unloading_curve(dm)``: the two numbers a, b that single out the unloading curve from
-        dm, computed once per impact.
-    unloading : callable
-        ``unloading(q, a, b)``: force [F_Y] at d = residual(dm) + q^2 below dm; reloading follows
-        the same curve.
-    dissipation : callable
-        ``dissipation(dm)``: loading work minus unloading work [F_Y d_Y] of a contact that
-        reached dm.
-    yield_strains : tuple of float, optional
-        Least and largest sigma_Y/E of a sphere for which finite elements favour the law once it has
-        yielded well.
-    """
-
-    name: str
-    source: str
-    yield_coefficient: float | None
-    loading_kinks: tuple[float, ...]
-    unloading_kinks: tuple[float, ...]
-    loading: Callable[[float], float]
-    residual: Callable[[float], float]
-    unloading_curve: Callable[[float], tuple[float, float]]
-    unloading: Callable[[float, float, float], float]
-    dissipation: Callable[[float], float]
-    yield_strains: tuple[float, float] = (0.0, math.inf)
-
-    @property
-    def kinks(self) -> tuple[float, ...]:
-        """All compressions [d_Y] at which an impact's outcome is not smooth; the first is 1."""
-        return tuple(sorted({*self.loading_kinks, *self.unloading_kinks}))
-
-    @property
-    def functions(self) -> Functions:
-        """The law as the solver's kernels take it."""
-        return Functions(
-            self.loading,
-            self.residual,
-            self.unloading_curve,
-            self.unloading,
-            self.dissipation,
-            (*self.loading_kinks, math.inf),
-        )
 
 
 @functools.cache
@@ -173,7 +102,7 @@ def law(name: str, **numbers: float) -> Law:
         return found
     values = _values(name, wanted, numbers)
     made: Law = module.law(*values)
-    return made
+    return made if "(" in name else dataclasses.replace(made, from_pair=wanted)
 
 
 def _module(name: str) -> ModuleType:

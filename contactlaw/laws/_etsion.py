@@ -8,69 +8,48 @@ Just above yield, n falls faster than dr rises: as printed, unloading from dm < 
 Hertz's curve, and from dm < 1.11 it returns more work than loading took, up to 0.05 %. There n is
 the least exponent for which it does not, 1.5 (1 - dr/dm), which meets Hertz's slope at dm.
 
-Legend: d compression, dm the largest so far, dr what remains of it, all in units of d_Y.
+Legend: d compression, dm the largest so far, dr what remains of it, all in units of d_Y; x = dr/dm.
 """
 
 from __future__ import annotations
 
-import math
+import numpy as np
 
-from contactlaw._jit import kernel
+from contactlaw.laws._law import Array, Unloading, bisect
 
 
-@kernel
-def share(dm: float) -> float:
+def share(dm: Array) -> Array:
     """dr/dm, without cancellation near dm = 1."""
-    if dm < 1.0:
-        return 0.0
-    log = math.log(dm)
-    return math.expm1(-0.28 * log) * math.expm1(-0.69 * log)
+    log = np.log(dm)
+    return np.asarray(np.expm1(-0.28 * log) * np.expm1(-0.69 * log))
 
 
-@kernel
-def residual(dm: float) -> float:
-    """Compression left after unloading from dm."""
-    return dm * share(dm)
+def _residual(dm: Array) -> Array:
+    """Compression left, over (dm - 1)^2."""
+    return dm * share(dm) / (dm - 1.0) ** 2
 
 
-@kernel
-def exponent(dm: float) -> float:
-    """Exponent n of the unloading curve from dm."""
-    return 1.5 * max(math.pow(max(dm, 1.0), -0.0331), 1.0 - share(dm))
+def _next_to_yield(dm: Array) -> Array:
+    """Exponent of the unloading curve below `KINK`."""
+    return 1.5 * (1.0 - share(dm))
 
 
-@kernel
-def unloading_curve(dm: float, fm: float) -> tuple[float, float]:
-    """Stiffness fm/(dm - dr)^n, and 2 n."""
-    n = exponent(dm)
-    return fm / (dm - residual(dm)) ** n, 2.0 * n
+def _printed(dm: Array) -> Array:
+    """Exponent of the unloading curve beyond."""
+    return 1.5 * dm**-0.0331
 
 
-@kernel
-def unloading(q: float, stiffness: float, twice: float) -> float:
-    """Force at d = dr + q^2."""
-    return math.copysign(stiffness * abs(q) ** twice, q)  # a trial step may pass q = 0
-
-
-@kernel
-def dissipation(dm: float, fm: float, loading_work: float) -> float:
-    """Subtract the unloading work from the loading work."""
+def _loss_next_to_yield(dm: Array) -> Array:
+    """0.4 - (1 - x)/(n + 1), of the Hertzian work, over (dm - 1)^2."""
     x = share(dm)
-    if max(dm, 1.0) ** -0.0331 <= 1.0 - x:
-        # on Hertz's curve, 0.4 - (1 - x)/(n + 1) without cancellation
-        return fm * dm * 0.16 * x / (1.0 - 0.6 * x)
-    return loading_work - fm * dm * (1.0 - x) / (exponent(dm) + 1.0)
+    return dm**2.5 * 0.16 * x / (1.0 - 0.6 * x) / (dm - 1.0) ** 2
 
 
-def _kink() -> float:
-    """Largest dm whose exponent is not the printed one."""
-    low, high = 1.1, 2.0
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        log = math.log(middle)
-        lost = math.expm1(-0.28 * log) * math.expm1(-0.69 * log)
-        low, high = (middle, high) if middle**-0.0331 < 1.0 - lost else (low, middle)
-    return low
+KINK = float(bisect(lambda dm: dm**-0.0331 < 1.0 - share(dm), 1.1, 2.0))
+"""Largest dm whose exponent is not the printed one."""
 
-
-KINKS = (1.0, _kink())
+UNLOADING = (
+    Unloading(1.0, _residual, _next_to_yield, _loss_next_to_yield, order=2.0, loss_order=2.0),
+    Unloading(KINK, _residual, _printed, order=2.0),
+)
+"""For laws that load along Hertz's curve beyond `KINK`."""

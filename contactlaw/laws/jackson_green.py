@@ -13,26 +13,24 @@ Hertz's curve: at 4.1, 2.0 and 1.26 for stiff pairs, at 2.13 for the paper's.
 
 Fitted for e_y from 0.001 to 0.008 or so; the paper's pair has 0.043.
 
-Legend: d compression, dm the largest so far, in units of d_Y; forces in units of F_Y; q = sqrt(d)
-while loading.
+Legend: d compression in units of d_Y; forces in units of F_Y.
 """
 
 from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
 
 import numpy as np
+from numpy.polynomial import Polynomial
 
-from contactlaw._jit import kernel
-from contactlaw.laws import Law, _etsion
+from contactlaw.laws import _etsion
+from contactlaw.laws._law import END, HERTZ, Array, Formula, Law, Loading, bisect
 
 PARAMETERS = ("modulus_ratio", "poissons_ratio")
 
-_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(24)  # 1e-13 of the loading work up to d = 200
 _SOFTEST = 10.0  # E*/sigma_Y; our choice: contact radii above R at a few d_Y
-_LARGEST = 200.0  # force has to rise up to here
+_LARGEST = 200.0  # [d_Y]; the force has to rise up to here
 
 
 @functools.cache
@@ -42,61 +40,42 @@ def law(modulus_ratio: float, poissons_ratio: float) -> Law:
     half_b = 0.07 * math.exp(23.0 / modulus_ratio)
     radius_at_yield = 0.5 * math.pi * c / modulus_ratio / 1.9**half_b
 
-    @kernel
-    def plastic(d: float) -> float:
+    def plastic(d: Array) -> Array:
         radius = radius_at_yield * d ** (0.5 + half_b)
-        hardness = -2.84 * math.expm1(-0.82 * radius**-0.7)
-        elastic = math.exp(-0.25 * d ** (5 / 12)) * d * math.sqrt(d)
-        return elastic - 4.0 / c * hardness * math.expm1(-0.04 * d ** (5 / 9)) * d
+        hardness = -2.84 * np.expm1(-0.82 * radius**-0.7)
+        elastic = np.exp(-0.25 * d ** (5 / 12)) * d**1.5
+        return np.asarray(elastic - 4.0 / c * hardness * np.expm1(-0.04 * d ** (5 / 9)) * d)
 
-    first = _meeting(plastic, modulus_ratio, poissons_ratio)
-    root_first = math.sqrt(first)
-
-    @kernel
-    def loading(q: float) -> float:
-        return q * q * q if q < root_first else plastic(q * q)
-
-    @kernel
-    def loading_work(d: float) -> float:
-        work = 0.4 * math.pow(min(d, first), 2.5)
-        if d > first:  # by Gauss in ln d
-            half = 0.5 * math.log(d / first)
-            for k in range(_PLACES.size):
-                at = first * math.exp(half * (1.0 + _PLACES[k]))
-                work += half * _WEIGHTS[k] * at * plastic(at)
-        return work
-
-    @kernel
-    def unloading_curve(dm: float) -> tuple[float, float]:
-        return _etsion.unloading_curve(dm, loading(math.sqrt(dm)))
-
-    @kernel
-    def dissipation(dm: float) -> float:
-        return _etsion.dissipation(dm, loading(math.sqrt(dm)), loading_work(dm))
-
-    return Law(
+    return Law.of(
         name=f"jackson_green({modulus_ratio:.6g},{poissons_ratio:.6g})",
         source="Jackson, Green, J. Tribol. 127 (2005) 343, joined continuously; unloading of "
         "Etsion, Kligerman, Kadin, Int. J. Solids Struct. 42 (2005) 3716",
         yield_coefficient=0.25 * c * c,
-        loading_kinks=(first,),
-        unloading_kinks=_etsion.KINKS,
-        loading=loading,
-        residual=_etsion.residual,
-        unloading_curve=unloading_curve,
-        unloading=_etsion.unloading,
-        dissipation=dissipation,
+        loading=[
+            Loading(0.0, HERTZ),
+            Loading(_meeting(plastic, modulus_ratio, poissons_ratio), plastic),
+            *_tangent(plastic),
+        ],
+        unloading=_etsion.UNLOADING,
         yield_strains=(0.0, 1 / 60),
     )
 
 
-def _meeting(
-    plastic: Callable[[float], float], modulus_ratio: float, poissons_ratio: float
-) -> float:
+def _tangent(plastic: Formula) -> tuple[Loading, ...]:
+    """Branch from `_LARGEST` on, for soft pairs whose printed force falls somewhere beyond."""
+    if (np.diff(plastic(np.geomspace(_LARGEST, END, 1000))) > 0.0).all():
+        return ()
+    below, above = plastic(_LARGEST * np.array([1.0 - 1e-5, 1.0 + 1e-5]))
+    slope = (above - below) / (2e-5 * _LARGEST)
+    start = plastic(np.array(_LARGEST)) - slope * _LARGEST
+    return (Loading(_LARGEST, Polynomial([start, 0.0, slope])),)
+
+
+def _meeting(plastic: Formula, modulus_ratio: float, poissons_ratio: float) -> float:
     """Compression at which the plastic form falls below Hertz's curve."""
-    low, high = _etsion.KINKS[-1], 10.0
-    force = np.array([plastic(d) for d in np.geomspace(high, _LARGEST, 200)])
-    above, below = (plastic(d) > d**1.5 for d in (low, high))
+    low, high = _etsion.KINK, 10.0
+    force = plastic(np.geomspace(high, _LARGEST, 200))
+    above, below = (plastic(np.array(d)) > d**1.5 for d in (low, high))
     if modulus_ratio < _SOFTEST:
         raise ValueError(
             f"law: 'jackson_green' with E*/sigma_Y = {modulus_ratio:g}: must be {_SOFTEST:g} or "
@@ -108,7 +87,4 @@ def _meeting(
             f"{poissons_ratio:g} does not leave Hertz's curve after yield and rise: it was fitted "
             "for E*/sigma_Y above 120; take another law"
         )
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if plastic(middle) > middle**1.5 else (low, middle)
-    return low
+    return float(bisect(lambda d: plastic(d) > d**1.5, low, high))

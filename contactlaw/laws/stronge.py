@@ -20,95 +20,100 @@ along the loading curve wherever the printed unloading curve would lie above it;
 nowhere does.
 
 Legend: d compression, dm the largest so far, dr what remains of it, all in units of d_Y; forces in
-units of F_Y; q = sqrt(d) while loading and sqrt(d - dr) while unloading.
+units of F_Y; s = 2 d - 1; k = fm/(dm - dr)^1.5, the stiffness of the printed unloading curve.
 """
 
 from __future__ import annotations
 
 import math
 
-from contactlaw._jit import kernel
-from contactlaw.laws import Law, myc
+import numpy as np
+
+from contactlaw.laws._law import HERTZ, Array, Law, Loading, Unloading, bisect
+from contactlaw.laws.myc import residual  # dm - sqrt(2 dm - 1), over (dm - 1)^2
 
 _C_YIELD = (3.3 / 4.0) ** 2  # of pi^2 sigma_Y^2 R*/E*^2
 _PRESSURES = 2.8 / 1.1  # fully plastic over yield
-_S_PLASTIC = math.exp(3.3 * (_PRESSURES - 1.0))
-_P = 0.5 * (_S_PLASTIC + 1.0)
-_residual = myc.LAW.residual  # dm - sqrt(2 dm - 1)
+_P = 0.5 * (math.exp(3.3 * (_PRESSURES - 1.0)) + 1.0)
 
 
-@kernel
-def _loading(q: float) -> float:
-    """At d = q^2."""
-    if q < 1.0:
-        return q * q * q
-    s = 2.0 * q * q - 1.0
-    return s * (1.0 + math.log(s) / 3.3) if s < _S_PLASTIC else _PRESSURES * s
-
-
-@kernel
-def _loading_work(d: float) -> float:
-    """Integral of the loading curve."""
-    if d < 1.0:
-        return 0.4 * d * d * math.sqrt(d)
+def _elastic_plastic(d: Array) -> Array:
     s = 2.0 * d - 1.0
-    e = min(s, _S_PLASTIC)
-    work = 0.4 + 0.25 * (e * e - 1.0) + (e * e * (2.0 * math.log(e) - 1.0) + 1.0) / (8.0 * 3.3)
-    return work + 0.25 * _PRESSURES * (s * s - e * e)
+    return s * (1.0 + np.log(s) / 3.3)
 
 
-@kernel
-def _unloading_curve(dm: float) -> tuple[float, float]:
-    """Stiffness fm/(dm - dr)^1.5, and dr."""
-    dr = _residual(dm)
-    span = dm - dr
-    return _loading(math.sqrt(dm)) / (span * math.sqrt(span)), dr
+def _work(d: Array) -> Array:
+    """Integral of the loading curve from 1 on, up to _P."""
+    s = 2.0 * d - 1.0
+    return 0.25 * (s * s - 1.0) + (s * s * (2.0 * np.log(s) - 1.0) + 1.0) / (8.0 * 3.3)
 
 
-@kernel
-def _unloading(q: float, stiffness: float, dr: float) -> float:
-    """At d = dr + q^2: the printed curve, or the loading curve where that is lower."""
-    return min(stiffness * (q * q * q), _loading(math.sqrt(dr + q * q)))
+def _log_stiffness(dm: Array) -> Array:
+    """Logarithm of k, whose digits count next to dm = 1; the span is sqrt(s)."""
+    log = np.log(2.0 * dm - 1.0)
+    return 0.25 * log + np.log1p(log / 3.3)
 
 
-@kernel
-def _parting(dm: float, stiffness: float, dr: float) -> tuple[float, float]:
-    """Compressions between which the printed unloading curve would lie above the loading curve."""
-    ratio = stiffness ** (2.0 / 3.0)
-    if ratio * (1.0 - dr) <= 1.0:  # it does so at d = 1 if anywhere
-        return dm, dm
-    low, high = 1.0, dm
-    if 1.5 * stiffness * math.sqrt(dm - dr) * (2.0 * dm - 1.0) > 2.0 * _loading(math.sqrt(dm)) + (
-        2.0 / 3.3
-    ) * (2.0 * dm - 1.0):  # steeper than loading at dm: they cross once more
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            above = stiffness * (middle - dr) ** 1.5 > _loading(math.sqrt(middle))
-            low, high = (middle, high) if above else (low, middle)
-    return ratio * dr / (ratio - 1.0), high
+def _cap_low(dm: Array) -> Array:
+    """Compression at which k (d - dr)^1.5 meets Hertz's d^1.5."""
+    dr = residual(dm) * (dm - 1.0) ** 2
+    return dr * np.exp(2.0 / 3.0 * _log_stiffness(dm)) / np.expm1(2.0 / 3.0 * _log_stiffness(dm))
 
 
-@kernel
-def _dissipation(dm: float) -> float:
-    """Area between loading and unloading, on either side of the stretch where they are one."""
-    if dm <= 1.0:
-        return 0.0
-    stiffness, dr = _unloading_curve(dm)
-    low, high = _parting(dm, stiffness, dr)
-    below = _loading_work(low) - 0.4 * stiffness * math.pow(low - dr, 2.5)
-    above = 0.4 * stiffness * (math.pow(dm - dr, 2.5) - math.pow(high - dr, 2.5))
-    return below + (_loading_work(dm) - _loading_work(high) - above)
+def _cap_high(dm: Array) -> Array:
+    """Compression, between 1 and dm, from which the printed curve lies above the loading curve."""
+    dr, stiffness = residual(dm) * (dm - 1.0) ** 2, np.exp(_log_stiffness(dm))
+    return np.asarray(
+        bisect(lambda d: stiffness * (d - dr) ** 1.5 > _elastic_plastic(d), np.ones_like(dm), dm)
+    )
 
 
-LAW = Law(
+def _loss_below(dm: Array) -> Array:
+    """Area between the curves below `_cap_low`: 0.4 low^2.5 (1 - k (1 - dr/low)^2.5)."""
+    low = _cap_low(dm)
+    left = residual(dm) * (dm - 1.0) ** 2 / low
+    return np.asarray(-0.4 * low**2.5 * np.expm1(_log_stiffness(dm) + 2.5 * np.log1p(-left)))
+
+
+def _loss_next_to_yield(dm: Array) -> Array:
+    """Over (dm - 1)^(7/2): `_cap_low` and the bracket begin in proportion to dm - 1."""
+    return _loss_below(dm) / (dm - 1.0) ** 3.5
+
+
+def _loss_between(dm: Array) -> Array:
+    """With the area above `_cap_high`."""
+    high, dr = _cap_high(dm), residual(dm) * (dm - 1.0) ** 2
+    back = 0.4 * np.exp(_log_stiffness(dm)) * ((dm - dr) ** 2.5 - (high - dr) ** 2.5)
+    return _loss_below(dm) + (_work(dm) - _work(high) - back)
+
+
+def _steeper(dm: float) -> bool:
+    """Whether the printed unloading curve is flatter than the loading curve at dm."""
+    s = 2.0 * dm - 1.0
+    return 1.5 * _elastic_plastic(dm) / math.sqrt(s) < 2.0 * (1.0 + math.log(s) / 3.3) + 2.0 / 3.3
+
+
+PARTS = float(bisect(_steeper, 1.01, 2.2))
+"""From this dm on unloading leaves the loading curve at once, and meets it again."""
+FREE = float(bisect(lambda dm: _cap_low(dm) < 1.0, 1.01, 3.0))
+"""From this dm on the printed unloading curve nowhere lies above the loading curve."""
+
+
+LAW = Law.of(
     name="stronge",
     source="Stronge, Impact Mechanics (2000), chapter 6; d_p by continuity, see the module",
     yield_coefficient=_C_YIELD,
-    loading_kinks=(1.0, _P),
-    unloading_kinks=(1.0,),
-    loading=_loading,
-    residual=_residual,
-    unloading_curve=_unloading_curve,
-    unloading=_unloading,
-    dissipation=_dissipation,
-)
+    loading=[
+        Loading(0.0, HERTZ),
+        Loading(1.0, _elastic_plastic),
+        Loading(_P, lambda d: _PRESSURES * (2.0 * d - 1.0)),
+    ],
+    unloading=[
+        Unloading(
+            1.0, residual, loss=_loss_next_to_yield, order=2.0, loss_order=3.5,
+            cap=(_cap_low, None),
+        ),
+        Unloading(PARTS, residual, loss=_loss_between, order=2.0, cap=(_cap_low, _cap_high)),
+        Unloading(FREE, residual, order=2.0),
+    ],
+)  # fmt: skip

@@ -9,63 +9,34 @@ d_Y = pi^2 p_y^2 R*/(4 E*^2); p_y = sigma_Y in Peng et al. 2021 and here, so tha
 0.25. (Von Mises' criterion puts it at p_y = 1.6 sigma_Y: a yield compression of 0.64.)
 
 Legend: d compression, dm the largest so far, dr what remains of it, all in units of d_Y; forces in
-units of F_Y; q = sqrt(d) while loading and sqrt(d - dr) while unloading; g = sqrt(dm).
+units of F_Y; g = sqrt(dm).
 """
 
 from __future__ import annotations
 
-import math
+import numpy as np
+from numpy.polynomial import Polynomial
 
-from contactlaw._jit import kernel
-from contactlaw.laws import Law
-
-
-@kernel
-def _loading(q: float) -> float:
-    """F_Y + pi p_y R* (d - d_Y), scaled, at d = q^2."""
-    return q * q * q if q < 1.0 else 1.5 * q * q - 0.5
+from contactlaw.laws._law import HERTZ, Array, Law, Loading, Unloading
 
 
-@kernel
-def _residual(dm: float) -> float:
-    """Return dm - fm/g, fm = 1.5 g^2 - 0.5; the span fm/g is that of Hertz with R_p."""
-    if dm < 1.0:
-        return 0.0
-    g = math.sqrt(dm)
-    return (g - 1.0) ** 2 * (g + 0.5) / g
+def _residual(dm: Array) -> Array:
+    """Return dm - fm/g = (g - 1)^2 (g + 1/2)/g over (dm - 1)^2; fm/g is Hertz's span with R_p."""
+    g = np.sqrt(dm)
+    return (g + 0.5) / (g * (g + 1.0) ** 2)
 
 
-@kernel
-def _unloading_curve(dm: float) -> tuple[float, float]:
-    """Stiffness sqrt(R_p/R*); no second parameter."""
-    g = math.sqrt(dm)
-    return g * math.sqrt(g / _loading(g)), 0.0
+def _loss(dm: Array) -> Array:
+    """0.75 dm^2 - 0.5 dm + 0.15 - 0.4 fm^2/g over (dm - 1)^2."""
+    g = np.sqrt(dm)
+    return (((0.75 * g + 0.6) * g - 0.05) * g - 0.1) / (g * (g + 1.0) ** 2)
 
 
-@kernel
-def _unloading(q: float, stiffness: float, _: float) -> float:
-    """Hertz with R_p, at d = dr + q^2."""
-    return stiffness * (q * q * q)
-
-
-@kernel
-def _dissipation(dm: float) -> float:
-    """0.75 dm^2 - 0.5 dm + 0.15 - 0.4 fm^2/g, with its double root at g = 1 taken out."""
-    if dm < 1.0:
-        return 0.0
-    g = math.sqrt(dm)
-    return (g - 1.0) ** 2 * (((0.75 * g + 0.6) * g - 0.05) * g - 0.1) / g
-
-
-LAW = Law(
+LAW = Law.of(
     name="thornton",
     source="Thornton, J. Appl. Mech. 64 (1997) 383; p_y = sigma_Y as in Peng et al. 2021",
     yield_coefficient=0.25,
-    loading_kinks=(1.0,),
-    unloading_kinks=(1.0,),
-    loading=_loading,
-    residual=_residual,
-    unloading_curve=_unloading_curve,
-    unloading=_unloading,
-    dissipation=_dissipation,
+    # F_Y + pi p_y R* (d - d_Y), scaled
+    loading=[Loading(0.0, HERTZ), Loading(1.0, Polynomial([-0.5, 0.0, 1.5]))],
+    unloading=[Unloading(1.0, _residual, loss=_loss, order=2.0, loss_order=2.0)],
 )

@@ -15,7 +15,7 @@ from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
 from contactlaw.engines.lammps.memory import ERROR, RECORD, SHARED, history_shape
 from contactlaw.engines.lammps.plate import Plate, bounds, check_friction, checked, rows
-from contactlaw.provider import ImpactModel
+from contactlaw.model import ImpactModel
 
 if TYPE_CHECKING:
     from lammps import lammps
@@ -237,6 +237,10 @@ class LammpsPlates:
         }
         shared = np.zeros(1, SHARED)
         shared["lammps"] = handle
+        for function in ("extract_atom", "get_thermo"):
+            shared[function] = _address(self._lmp, f"lammps_{function}")
+        self._law = self._model.force_law.data
+        shared["law"], shared["law_size"] = self._law.ctypes.data, self._law.size
         for field, buffer in self._names.items():
             shared[field] = ctypes.addressof(buffer)
         for name in ("dt", "atime", "atimestep"):
@@ -251,11 +255,7 @@ class LammpsPlates:
 
     def _register(self) -> None:
         """Hand the C function to LAMMPS, without Python in between."""
-        self._callback = callback(
-            self._model.law,
-            _address(self._lmp, "lammps_extract_atom"),
-            _address(self._lmp, "lammps_get_thermo"),
-        )
+        self._callback = callback()
         setter = _c_function(self._lmp, "lammps_set_fix_external_callback", None, 4)
         setter(
             ctypes.cast(self._lmp.lmp, ctypes.c_void_p),

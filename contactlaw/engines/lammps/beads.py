@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from contactlaw.arguments import scalars
 from contactlaw.engines.lammps.plate import check_friction
-from contactlaw.materials import Material, material
+from contactlaw.physical.arguments import scalars
+from contactlaw.physical.materials import Material, material
 from contactlaw.spheres import restitution_sphere_sphere
 
 

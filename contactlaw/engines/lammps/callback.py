@@ -8,17 +8,14 @@ and that takes longer than all the rest.
 
 from __future__ import annotations
 
-import ctypes
 import functools
 import math
 from typing import Any
 
-import numba
 import numpy as np
 from numba import types
 
-from contactlaw import laws
-from contactlaw._jit import kernel
+from contactlaw._jit import c_function, kernel
 from contactlaw.engines.lammps.contact import NEAR, Bead, Clock, hand_over, interact
 from contactlaw.engines.lammps.memory import (
     NOT_FINITE,
@@ -27,7 +24,9 @@ from contactlaw.engines.lammps.memory import (
     array_at,
     carray,
     complain,
+    extract,
     matrix_at,
+    thermo,
 )
 from contactlaw.engines.lammps.plate import ROW
 
@@ -42,8 +41,6 @@ _SIGNATURE = types.void(
     _pointer(_pointer(types.float64)),  # positions
     _pointer(_pointer(types.float64)),  # forces that the fix would add; its group is empty
 )
-_EXTRACT = ctypes.CFUNCTYPE(ctypes.c_ssize_t, ctypes.c_ssize_t, ctypes.c_ssize_t)  # addresses
-_THERMO = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_ssize_t, ctypes.c_ssize_t)
 
 
 @kernel
@@ -58,66 +55,59 @@ def _look_for_jumps(
             complain(shared, clock.step, tags[i], history[i], code, -1, speed, radius[i])
 
 
-@functools.cache
-def callback(law_name: str, extract_address: int, thermo_address: int) -> Any:
-    """Compile the callback of ``fix external`` for a law; keep the result as long as it is used.
-
-    Parameters
-    ----------
-    law_name : str
-        Name of the normal force law.
-    extract_address, thermo_address : int
-        Of LAMMPS's functions ``lammps_extract_atom`` and ``lammps_get_thermo``.
-    """
-    law = laws.law(law_name).functions
-    extract, thermo = _EXTRACT(extract_address), _THERMO(thermo_address)
-
-    def each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces: Any) -> None:
-        shared = carray(memory, 1, SHARED)[0]
-        shared.calls += 1
-        if n == 0:
-            return
-        dt = array_at(shared.dt, 1, np.float64)[0]
-        time, at_step = (
-            array_at(shared.atime, 1, np.float64),
-            array_at(shared.atimestep, 1, np.int64),
+def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces: Any) -> None:
+    """Add the force of the plates to all beads of this rank."""
+    shared = carray(memory, 1, SHARED)[0]
+    shared.calls += 1
+    if n == 0:
+        return
+    law = array_at(shared.law, shared.law_size, np.float64)
+    dt = array_at(shared.dt, 1, np.float64)[0]
+    time, at_step = (
+        array_at(shared.atime, 1, np.float64),
+        array_at(shared.atimestep, 1, np.int64),
+    )
+    # No step of a run has passed in a set-up; the number of the step can be reset at will.
+    advancing = thermo(shared, shared.elapsed) > 0.0
+    clock = Clock(step, time[0] + (step - at_step[0]) * dt, dt, advancing)
+    v = matrix_at(extract(shared, shared.v), n, 3)
+    radius = array_at(extract(shared, shared.radius), n, np.float64)
+    mass = array_at(extract(shared, shared.rmass), n, np.float64)
+    history = matrix_at(extract(shared, shared.history), n, shared.columns)
+    omega, torque = v, v
+    if shared.friction > 0.0:
+        omega = matrix_at(extract(shared, shared.omega), n, 3)
+        torque = matrix_at(extract(shared, shared.torque), n, 3)
+    if step % _EVERY == 0:
+        _look_for_jumps(shared, clock, tags, v, radius, history)
+    x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
+    plates = array_at(shared.plates, shared.plate_count, ROW)
+    # Local numbers: the compiler cannot know that nothing below changes `shared`.
+    count = shared.plate_count
+    x0, y0, z0 = shared.low[0], shared.low[1], shared.low[2]
+    x1, y1, z1 = shared.high[0], shared.high[1], shared.high[2]
+    for i in range(n):
+        reach = NEAR * radius[i]
+        if (
+            x[i, 2] > z1 + reach
+            or x[i, 2] < z0 - reach
+            or x[i, 0] > x1 + reach
+            or x[i, 0] < x0 - reach
+            or x[i, 1] > y1 + reach
+            or x[i, 1] < y0 - reach
+        ):
+            continue
+        bead = Bead(
+            tags[i], x[i], v[i], omega[i], torque[i], force[i], history[i], radius[i], mass[i]
         )
-        # No step of a run has passed in a set-up; the number of the step can be reset at will.
-        advancing = thermo(shared.lammps, shared.elapsed) > 0.0
-        clock = Clock(step, time[0] + (step - at_step[0]) * dt, dt, advancing)
-        v = matrix_at(extract(shared.lammps, shared.v), n, 3)
-        radius = array_at(extract(shared.lammps, shared.radius), n, np.float64)
-        mass = array_at(extract(shared.lammps, shared.rmass), n, np.float64)
-        history = matrix_at(extract(shared.lammps, shared.history), n, shared.columns)
-        omega, torque = v, v
-        if shared.friction > 0.0:
-            omega = matrix_at(extract(shared.lammps, shared.omega), n, 3)
-            torque = matrix_at(extract(shared.lammps, shared.torque), n, 3)
-        if step % _EVERY == 0:
-            _look_for_jumps(shared, clock, tags, v, radius, history)
-        x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared.lammps, shared.f), n, 3)
-        plates = array_at(shared.plates, shared.plate_count, ROW)
-        # Local numbers: the compiler cannot know that nothing below changes `shared`.
-        count = shared.plate_count
-        x0, y0, z0 = shared.low[0], shared.low[1], shared.low[2]
-        x1, y1, z1 = shared.high[0], shared.high[1], shared.high[2]
-        for i in range(n):
-            reach = NEAR * radius[i]
-            if (
-                x[i, 2] > z1 + reach
-                or x[i, 2] < z0 - reach
-                or x[i, 0] > x1 + reach
-                or x[i, 0] < x0 - reach
-                or x[i, 1] > y1 + reach
-                or x[i, 1] < y0 - reach
-            ):
-                continue
-            bead = Bead(
-                tags[i], x[i], v[i], omega[i], torque[i], force[i], history[i], radius[i], mass[i]
-            )
-            if count > 1 and advancing:
-                hand_over(shared, plates, bead)
-            for p in range(count):
-                interact(law, shared, clock, plates, p, bead)
+        if count > 1 and advancing:
+            hand_over(shared, plates, bead)
+        for p in range(count):
+            interact(law, shared, clock, plates, p, bead)
 
-    return numba.cfunc(_SIGNATURE, error_model="numpy")(each_step)
+
+
+@functools.cache
+def callback() -> Any:
+    """Return the C function for ``fix external``, compiled or from the disk cache."""
+    return c_function(_SIGNATURE, _each_step, cache=True)

@@ -10,6 +10,7 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.engines.lammps import memory
@@ -30,8 +31,10 @@ from contactlaw.engines.lammps.memory import (
     slot_of,
     touches,
 )
-from contactlaw.laws import Functions
+from contactlaw.equation import force
 from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, advance, resized
+
+Array = NDArray[np.float64]
 
 NEAR = 2.0  # [r] from the plate: from here on a bead's history is kept up to date
 _AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a plate
@@ -190,7 +193,7 @@ def _begin(
 
 @kernel
 def _end(
-    law: Functions,
+    law: Array,
     shared: Any,
     clock: Clock,
     bead: Bead,
@@ -205,7 +208,7 @@ def _end(
     row, scale = bead.history, spring.scale
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     dm = last.largest_compression / scale
-    lost = law.dissipation(dm) * unit * scale if dm > 1.0 else 0.0
+    lost = force.loss(law, dm) * unit * scale if dm > 1.0 else 0.0
     told, row[at + TOLD] = row[at + TOLD], lost
     if not row[at + SPEED] > 0.0:  # it was put there and then left
         return
@@ -215,20 +218,20 @@ def _end(
         return
     since = 0.0
     if u < 0.0:  # between the steps, where the compression was down to the residual one
-        gap = law.residual(dm) * scale + last.plate_displacement - touch.x
+        gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
         since = min(max(gap / -u, 0.0), clock.dt)
     line = array_at(shared.records, (shared.record_capacity, _RECORD_COLUMNS), np.float64)[n]
     line[0], line[1], line[2] = clock.now - row[at + DURATION], bead.tag, p
     line[3], line[4], line[5] = _nearest(touch, bead)
     line[6], line[7] = row[at + SPEED], -u / row[at + SPEED]
-    line[8], line[9] = row[at + DURATION] - since, law.loading(math.sqrt(dm)) * unit
+    line[8], line[9] = row[at + DURATION] - since, force.loading(law, math.sqrt(dm)) * unit
     line[10], line[11] = lost - told, row[at + WAVE]
     shared.record_count = n + 1
 
 
 @kernel
 def _normal(
-    law: Functions, shared: Any, clock: Clock, bead: Bead, plate: Any, p: int, at: int, touch: Touch
+    law: Array, shared: Any, clock: Clock, bead: Bead, plate: Any, p: int, at: int, touch: Touch
 ) -> None:
     """Advance a contact by a step; its slot is empty afterwards if the bodies have parted."""
     row, v = bead.history, bead.v
@@ -294,7 +297,7 @@ def _slide(
 
 
 @kernel
-def interact(law: Functions, shared: Any, clock: Clock, plates: Any, p: int, bead: Bead) -> None:
+def interact(law: Array, shared: Any, clock: Clock, plates: Any, p: int, bead: Bead) -> None:
     """Add the force of plate p to a bead, and keep the bead's history."""
     plate = plates[p]
     touch = _geometry(plate, bead)
@@ -316,9 +319,9 @@ def interact(law: Functions, shared: Any, clock: Clock, plates: Any, p: int, bea
         return
     if clock.advancing:
         _normal(law, shared, clock, bead, plate, p, at, touch)
-    force = bead.history[at + FORCE]
-    bead.force[0] += force * touch.nx
-    bead.force[1] += force * touch.ny
-    bead.force[2] += force * touch.nz
+    push = bead.history[at + FORCE]
+    bead.force[0] += push * touch.nx
+    bead.force[1] += push * touch.ny
+    bead.force[2] += push * touch.nz
     if shared.friction > 0.0:
         _slide(clock, bead, shared.friction, touch, at, plate.tangential)

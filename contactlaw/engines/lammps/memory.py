@@ -6,6 +6,7 @@ from typing import Any
 
 import numba
 import numpy as np
+from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
@@ -30,9 +31,10 @@ RECORD = ("time", "bead", "plate", "x", "y", "z", "approach_speed", "restitution
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, TOO_MANY_PLATES, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST,
  NOT_FINITE) = range(1, 9)  # fmt: skip
 
-# Integers from "lammps" to "records" are addresses; "calls" counts those of the C function.
+# Integers up to "records" are addresses, but for the size of the law; "calls" counts those of the C function.
 SHARED = np.dtype(
-    [(name, "i8") for name in ("lammps", "v", "f", "radius", "rmass", "omega", "torque", "history")]
+    [(name, "i8") for name in ("extract_atom", "get_thermo", "law", "law_size")]
+    + [(name, "i8") for name in ("lammps", "v", "f", "radius", "rmass", "omega", "torque", "history")]
     + [("elapsed", "i8")]
     + [(name, "i8") for name in ("dt", "atime", "atimestep", "plates", "records")]
     + [(name, "i8") for name in ("plate_count", "slots", "width", "columns", "calls")]
@@ -58,6 +60,31 @@ def _pointer(typing_context: Any, address: Any) -> Any:
         return builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
 
     return types.voidptr(types.intp), generate
+
+
+@intrinsic
+def _call(typing_context: Any, address: Any, result: Any, first: Any, second: Any) -> Any:
+    """Call a C function of two addresses whose result has the type of `result`."""
+
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        kinds = [context.get_value_type(kind) for kind in signature.args]
+        function = ir.FunctionType(kinds[1], kinds[2:]).as_pointer()
+        pointer = builder.inttoptr(arguments[0], function)
+        return builder.call(pointer, arguments[2:])
+
+    return result(types.intp, result, types.intp, types.intp), generate
+
+
+@kernel
+def extract(shared: Any, name: int) -> Any:
+    """Address of one of LAMMPS's arrays, by the address of its name."""
+    return _call(shared.extract_atom, np.int64(0), shared.lammps, name)  # type: ignore[call-arg]
+
+
+@kernel
+def thermo(shared: Any, name: int) -> Any:
+    """One of LAMMPS's numbers, by the address of its name."""
+    return _call(shared.get_thermo, 0.0, shared.lammps, name)  # type: ignore[call-arg]
 
 
 @kernel

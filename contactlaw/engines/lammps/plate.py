@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.arguments import scalars
-from contactlaw.materials import Material
-from contactlaw.provider import ImpactModel
+from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import scalars
+from contactlaw.physical.materials import Material
 from contactlaw.softsphere import Spring, unit_spring
 
 Vector = Sequence[float]
@@ -126,7 +126,10 @@ def checked(plates: Any, model: Any) -> list[Plate]:
         if not isinstance(plate, Plate):
             raise TypeError(f"plates: expected contactlaw.engines.lammps.Plate, got {plate!r}")
         own = plate.model
-        if own is not None and (own.law, own.pair.sphere) != (model.law, model.pair.sphere):
+        if own is not None and (own.force_law, own.pair.sphere) != (
+            model.force_law,
+            model.pair.sphere,
+        ):
             raise ValueError(
                 f"plates: {own!r} is for another law or other beads than {model!r}; plates may "
                 "differ in their own material only"

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from contactlaw.arguments import broadcast, check
+from contactlaw.physical.arguments import broadcast, check
 
 if TYPE_CHECKING:
     import pymunk

@@ -8,7 +8,6 @@ the solver work with: the inelasticity lambda, and the yield compression y on He
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -16,9 +15,8 @@ from numpy.typing import NDArray
 
 from contactlaw import laws
 from contactlaw.laws import Law
-from contactlaw.materials import Material
-from contactlaw.pair import Pair
-from contactlaw.validity import Validity
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
 
@@ -42,21 +40,40 @@ class Scales(NamedTuple):
     force: Array  # m V0/T_H [N]
 
 
-def law_of(pair: Pair, name: str) -> Law:
-    """Law of a name, with the numbers that it takes from the pair (`contactlaw.laws.parameters`).
+class Factors(NamedTuple):
+    """A pair's constants, with which no power has to be taken for a sphere on a plate."""
+
+    inelasticity: float  # lambda at 1 m/s and R = H
+    log_overload: float  # ln(chi/w_m) at 1 m/s; -inf for a law that never yields
+    time: float  # T_H at 1 m/s, over R [s/m]
+    mass: float  # over R^3 [kg/m3]
+
+
+def law_of(pair: Pair, law: str | Law) -> Law:
+    """Resolve a law where the user gives it, with the numbers that it takes from the pair.
 
     Raises
     ------
     ValueError
         If there is no such law, or the sphere has no yield strength where the law needs one.
+    TypeError
+        If it is neither a name nor a Law.
     """
-    if not laws.parameters(name):
-        return laws.law(name)
-    return laws.law(
-        name,
-        modulus_ratio=pair.effective_modulus / pair.sphere.require_yield_strength(name),
-        poissons_ratio=pair.sphere.poissons_ratio,
-    )
+    if isinstance(law, Law):
+        found = law
+    elif not isinstance(law, str):
+        raise TypeError(f"law: expected the name of a law or a contactlaw.laws.Law, got {law!r}")
+    elif laws.parameters(law):
+        found = laws.law(
+            law,
+            modulus_ratio=pair.effective_modulus / pair.sphere.require_yield_strength(law),
+            poissons_ratio=pair.sphere.poissons_ratio,
+        )
+    else:
+        found = laws.law(law)
+    if found.yields:
+        pair.sphere.require_yield_strength(found.name)
+    return found
 
 
 def plate_mobility(plate: Material, thickness: Array) -> Array:
@@ -123,36 +140,14 @@ def scales(contact: Contact, speed: Array) -> Scales:
     )
 
 
-@dataclass(frozen=True)
-class Rebound:
-    """Outcome of an impact, or of many: every field a float, or an array of one shape.
-
-    Attributes
-    ----------
-    restitution
-        Rebound speed over impact speed [-].
-    contact_time
-        Time from first touch to separation [s].
-    peak_force
-        Largest contact force [N].
-    peak_compression, residual_compression
-        Largest relative compression of the bodies, and what of it is left at separation [m].
-    plastic_fraction, wave_fraction
-        Shares of the initial kinetic energy lost to plastic flow and to the bending wave [-].
-        1 - restitution^2 is their sum.
-    inelasticity, overload
-        The dimensionless numbers lambda and chi of the impact [-].
-    flags
-        `Validity` limits that the impact exceeds; 0 is inside all of them.
-    """
-
-    restitution: float | Array
-    contact_time: float | Array
-    peak_force: float | Array
-    peak_compression: float | Array
-    residual_compression: float | Array
-    plastic_fraction: float | Array
-    wave_fraction: float | Array
-    inelasticity: float | Array
-    overload: float | Array
-    flags: Validity | NDArray[np.int64]
+def factors(pair: Pair, law: Law) -> Factors:
+    """Constants of spheres on plates."""
+    one = np.ones(())
+    contact = sphere_on_plate(pair, law, one, one)
+    units = scales(contact, one)
+    return Factors(
+        inelasticity=units.inelasticity.item(),
+        log_overload=-math.log(units.yield_ratio.item()),
+        time=units.time.item(),
+        mass=contact.mass.item(),
+    )

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from contactlaw.materials import Material, material
-
-_MYC_YIELD = 0.68  # Peng et al. 2021, Eq. 18; the law's file holds the same number, a test compares
+from contactlaw.laws.myc import C_YIELD
+from contactlaw.physical.materials import Material, material
 
 
 class Pair:
@@ -72,7 +71,7 @@ class Pair:
         """
         strength = self.sphere.require_yield_strength("myc")
         # V_Y0^2 = (4/5) K dY^2.5/m with K = (4/3) E* R^0.5, m = (4/3) pi rho1 R^3, dY as in Eq. 18
-        compression = _MYC_YIELD * (math.pi * strength / self.effective_modulus) ** 2  # d_Y/R
+        compression = C_YIELD * (math.pi * strength / self.effective_modulus) ** 2  # d_Y/R
         energy = 0.8 * self.effective_modulus * compression**2.5  # per (4/3) R^3
         return math.sqrt(energy / (math.pi * self.sphere.density))
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import enum
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.arguments import broadcast, check, shaped
+from contactlaw._jit import kernel
 from contactlaw.laws import Law
-from contactlaw.materials import Material
-from contactlaw.pair import Pair
+from contactlaw.physical.arguments import broadcast, check, shaped
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
 
@@ -60,30 +62,51 @@ class Validity(enum.IntFlag):
     holds: at 1/13 all are 30 % too high or more."""
 
 
-def limits_exceeded(
-    pair: Pair, law: Law, radius: Array, thickness: Array, speed_ratio: Array, contact_time: Array
-) -> NDArray[np.int64]:
-    """Flag impacts; speed_ratio is V0/V_Y0 of the law, 0 if it never yields."""
+class Limits(NamedTuple):
+    """What the limits of a pair and its law are, for kernels."""
+
+    slowness: float  # of the pressure wave in the plate [s/m]
+    always: int  # flags of every impact
+    yielded: int  # flags of an impact beyond `_YIELDED`
+
+
+def limits(pair: Pair, law: Law) -> Limits:
+    """Limits of the model for a pair."""
     nu = pair.plate.poissons_ratio
     # E (1 - nu)/((1 + nu)(1 - 2 nu)) is infinite for an incompressible plate: no transit time then
     slowness = math.sqrt(
         pair.plate.density / pair.plate.youngs_modulus * (1 + nu) * (1 - 2 * nu) / (1 - nu)
     )
-    transits = np.where(np.isfinite(thickness), contact_time, math.inf)
     strength = pair.plate.yield_strength
     soft = strength is not None and strength < (pair.sphere.yield_strength or 0.0)
     least, largest = law.yield_strains
     strain = (pair.sphere.yield_strength or 0.0) / pair.sphere.youngs_modulus
     other = not least <= strain <= largest
-    flags: NDArray[np.int64] = (
-        (radius > _THINNEST * thickness) * int(Validity.THIN_PLATE)
-        + (speed_ratio > _FASTEST) * int(Validity.FAST_IMPACT)
-        + (transits < _TRANSITS * np.where(np.isfinite(thickness), thickness, 0.0) * slowness)
-        * int(Validity.THICK_PLATE)
-        + int(soft) * int(Validity.SOFT_PLATE)
-        + (other & (speed_ratio > _YIELDED)) * int(Validity.OTHER_LAW)
-    )
+    return Limits(slowness, soft * int(Validity.SOFT_PLATE), other * int(Validity.OTHER_LAW))
+
+
+@kernel
+def flags_of(
+    limits: Limits, radius: float, thickness: float, yield_ratio: float, contact_time: float
+) -> int:
+    """Flags of an impact."""
+    flags = limits.always
+    if radius > _THINNEST * thickness:
+        flags |= _THIN_PLATE
+    if thickness < math.inf and contact_time < _TRANSITS * thickness * limits.slowness:
+        flags |= _THICK_PLATE
+    if yield_ratio < _Y_YIELDED:
+        flags |= limits.yielded
+        if yield_ratio < _Y_FASTEST:
+            flags |= _FAST_IMPACT
     return flags
+
+
+# V0/V_Y0 = (5/4)^(1/2) y^(-5/4): a half-space impact at V_Y0 has w_m = y = (5/4)^(2/5)
+_Y_YIELDED, _Y_FASTEST = ((math.sqrt(1.25) / ratio) ** 0.8 for ratio in (_YIELDED, _FASTEST))
+_THIN_PLATE, _FAST_IMPACT, _THICK_PLATE = (
+    int(flag) for flag in (Validity.THIN_PLATE, Validity.FAST_IMPACT, Validity.THICK_PLATE)
+)
 
 
 def edge_distance(plate: Material, thickness: ArrayLike, contact_time: ArrayLike) -> float | Array:

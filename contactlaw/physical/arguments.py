@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw import lookup
+from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
 

@@ -49,7 +49,7 @@ class Material:
 
     Examples
     --------
-    >>> from contactlaw.materials import Material
+    >>> from contactlaw import Material
     >>> steel = Material("steel", 207e9, 0.293, 7850, yield_strength=350e6)
     >>> round(steel.plane_modulus / 1e9, 1)
     226.4
@@ -110,7 +110,7 @@ class Material:
 
         Examples
         --------
-        >>> from contactlaw.materials import material
+        >>> from contactlaw import material
         >>> material("gamma-alumina").require_yield_strength("myc")
         472500000.0
         """
@@ -144,7 +144,7 @@ def material(name: str) -> Material:
 
     Examples
     --------
-    >>> from contactlaw.materials import material
+    >>> from contactlaw import material
     >>> material("AISI 304").name
     'stainless-steel-304'
     """
@@ -170,7 +170,7 @@ def materials() -> tuple[str, ...]:
 
     Examples
     --------
-    >>> from contactlaw.materials import materials
+    >>> from contactlaw import materials
     >>> "gamma-alumina" in materials()
     True
     """
@@ -180,7 +180,7 @@ def materials() -> tuple[str, ...]:
 @functools.cache
 def _catalogue() -> tuple[dict[str, Material], dict[str, str]]:
     """Read the catalogue once: materials by name, and the name behind every name or alias."""
-    tables = tomllib.loads(files("contactlaw").joinpath("catalogue.toml").read_text("utf-8"))
+    tables = tomllib.loads(files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8"))
     references = tables.pop("references")
     by_name = {name: _from_table(name, table, references) for name, table in tables.items()}
     canonical = {name: name for name in by_name}

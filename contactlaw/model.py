@@ -1,7 +1,7 @@
 """ImpactModel: what a bead's collision with a plate does, in SI units.
 
-Here the two towers meet: `impact` turns speeds, radii and thicknesses into dimensionless numbers,
-`lookup` and `zener` answer for those, and the answer is given its units back.
+Here the two towers meet: `physical` turns speeds, radii and thicknesses into dimensionless numbers,
+`table` and `equation` answer for those, and the answer is given its units back.
 """
 
 from __future__ import annotations
@@ -9,36 +9,42 @@ from __future__ import annotations
 import functools
 import math
 import os
+import threading
 from collections.abc import Callable
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw import history, lookup
-from contactlaw.arguments import broadcast, check, scalars, shaped
 from contactlaw.compiled import c_function, entries, jitted
+from contactlaw.equation import outcome
+from contactlaw.equation.outcome import Outcome
 from contactlaw.evaluation import (
     RTOL,
-    Impact,
+    Flags,
     Outside,
-    factors,
-    rebound,
+    complete,
+    histories_by_solver,
+    histories_by_table,
     solved,
     table_for,
     tabulated,
 )
-from contactlaw.history import ForceHistory
-from contactlaw.impact import (
+from contactlaw.laws import Law
+from contactlaw.physical.arguments import broadcast, check, scalars, shaped
+from contactlaw.physical.history import ForceHistory, with_units
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.rebound import Impacts, Rebound, rebound
+from contactlaw.physical.scaling import (
     Contact,
-    Rebound,
     Scales,
+    factors,
     law_of,
     scales,
     sphere_on_plate,
     sphere_on_sphere,
 )
-from contactlaw.pair import Pair
+from contactlaw.physical.validity import limits
 from contactlaw.sensitivity import (
     Sensitivity,
     by_modulus_ratio,
@@ -47,7 +53,7 @@ from contactlaw.sensitivity import (
     elasticities,
     follows,
 )
-from contactlaw.table import Settings, Table
+from contactlaw.table import Settings, Table, lookup
 
 Array = NDArray[np.float64]
 
@@ -64,10 +70,11 @@ class ImpactModel:
     ----------
     pair : Pair
         Materials of sphere and plate.
-    law : str, optional
+    law : str or Law, optional
         Normal force law: ``"myc"`` (elastic-plastic), ``"hertz"`` (elastic, needs no yield
-        strength), or another of `contactlaw.laws.names`, whose table is built when it is first
-        needed and kept in the user's cache folder.
+        strength), or another of `contactlaw.laws.names`; or a `contactlaw.laws.Law` of your own.
+        A table for it is built when it is first needed, in less than a second, and kept in the
+        user's cache folder.
     table : Table, path-like or Settings, optional
         A table to use in place of the packaged one; `contactlaw.table.Settings` of a larger or
         finer one are built (in seconds) and kept in the user's cache folder.
@@ -101,7 +108,7 @@ class ImpactModel:
     def __init__(
         self,
         pair: Pair,
-        law: str = "myc",
+        law: str | Law = "myc",
         table: Table | Settings | str | os.PathLike[str] | None = None,
         outside: Outside = "raise",
     ) -> None:
@@ -110,23 +117,21 @@ class ImpactModel:
         if outside not in ("raise", "solve", "clamp"):
             raise ValueError(f"outside: must be 'raise', 'solve' or 'clamp', got {outside!r}")
         self._pair = pair
-        self._given_law = law
         self._law = law_of(pair, law)
-        if self._law.kinks:
-            pair.sphere.require_yield_strength(law)
+        self._limits = limits(pair, self._law)
         self._outside: Outside = outside
         self._on_plate, self._at = entries()
-        self.clamped = 0
+        self._clamping = threading.Lock()
+        self._clamped = 0
         self._given_table = table
         self._whole_table = table_for(self._law, table)
         self._table = self._whole_table.packed
-        self._c_lam, self._c_chi = factors(
-            sphere_on_plate(pair, self._law, np.ones(()), np.ones(()))
-        )
+        self._factors = factors(pair, self._law)
+        self._c_lam, self._c_chi = self._factors[:2]
 
     def __reduce__(self) -> tuple[Any, ...]:
         # compiled functions do not travel; the receiving process has its own
-        return ImpactModel, (self.pair, self._given_law, self._given_table, self.outside)
+        return ImpactModel, (self.pair, self._law, self._given_table, self.outside)
 
     def __repr__(self) -> str:
         return f"ImpactModel({self.pair!r}, law={self.law!r}, outside={self.outside!r})"
@@ -145,6 +150,21 @@ class ImpactModel:
     def law(self) -> str:
         """Name of the normal force law."""
         return self._law.name
+
+    @property
+    def force_law(self) -> Law:
+        """The normal force law itself, as data."""
+        return self._law
+
+    @property
+    def clamped(self) -> int:
+        """Impacts answered with the value at the table's border so far; may be set."""
+        return self._clamped
+
+    @clamped.setter
+    def clamped(self, count: int) -> None:
+        with self._clamping:
+            self._clamped = count
 
     def restitution(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike
@@ -191,9 +211,7 @@ class ImpactModel:
         out = np.empty(v.size)
         if lookup.restitutions(self._table, self._c_lam, self._c_chi, v, r, h, out):
             check(speed=v, radius=r, thickness=h)
-            wrong = np.isnan(out)
-            contact = sphere_on_plate(self.pair, self._law, r[wrong], h[wrong])
-            out[wrong] = self._fields(scales(contact, v[wrong]))[0][0]
+            out = self._outcomes(v, r, h)[0].restitution
         return shaped(out, shape)
 
     def lookup(self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Rebound:
@@ -233,8 +251,11 @@ class ImpactModel:
         """
         v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
         check(speed=v, radius=r, thickness=h)
-        contact = sphere_on_plate(self.pair, self._law, r, h)
-        return self._lookup(self.pair, contact, Impact(v, r, h, shape))
+        found, flags, asked, root = self._outcomes(v, r, h)
+        time, mass = self._factors.time * r / root, self._factors.mass * (r * r * r)
+        return rebound(
+            self._law.data, self._limits, Impacts(v, r, h, shape), time, mass, asked, found, flags
+        )
 
     def lookup_sphere_sphere(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
@@ -266,7 +287,10 @@ class ImpactModel:
         check(speed=v, radius=r, other_radius=o)
         twins = self._twins()
         contact = sphere_on_sphere(twins, self._law, r, o)
-        return self._lookup(twins, contact, Impact(v, r, np.full_like(r, math.inf), shape))
+        units = scales(contact, v)
+        found, flags = self._fields(units)
+        impacts = Impacts(v, r, np.full_like(r, math.inf), shape)
+        return self._rebound(twins, contact, units, impacts, found, flags)
 
     def solve(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10
@@ -305,9 +329,13 @@ class ImpactModel:
             raise ValueError(f"rtol: must be a float between 1e-13 and 1e-6, got {rtol!r}")
         v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
         check(speed=v, radius=r, thickness=h)
-        units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
-        fields = solved(self._law, units, rtol)
-        return rebound(self.pair, self._law, units, fields, Impact(v, r, h, shape))
+        contact = sphere_on_plate(self.pair, self._law, r, h)
+        units = scales(contact, v)
+        found = solved(self._law, units, rtol)
+        flags = np.zeros(v.size, dtype=np.int64)
+        return self._rebound(
+            self.pair, contact, units, Impacts(v, r, h, shape), found, flags
+        )
 
     def force_history(
         self,
@@ -363,12 +391,11 @@ class ImpactModel:
         contact = sphere_on_plate(self.pair, self._law, r, h)
         units = scales(contact, v)
         if method == "solve":
-            fields = solved(self._law, units, RTOL)
-            contacts = history.solved(self._law, fields, samples, RTOL)
+            contacts = histories_by_solver(self._law, solved(self._law, units, RTOL), samples)
         else:
-            fields, _ = self._fields(units)
-            contacts = history.tabulated(self._law, self._whole_table, fields, samples, RTOL)
-        return history.with_units(contacts, units, contact.mobility, shape)
+            found, _ = self._fields(units)
+            contacts = histories_by_table(self._law, self._whole_table, found, samples)
+        return with_units(contacts, units, contact.mobility, shape)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | Array:
         """Speed V_Y [m/s] from which the bead yields on this plate; ``inf`` for an elastic law.
@@ -401,7 +428,7 @@ class ImpactModel:
         r, h, shape = broadcast(radius=radius, thickness=thickness)
         check(radius=r, thickness=h)
         out = np.full(r.size, math.inf)
-        if self._law.kinks:
+        if self._law.yields:
             lookup.yield_speeds(self._table, self._c_lam * (r / h) ** 2, self._c_chi, out)
             if np.isnan(out).any():
                 n = int(np.argmax(np.isnan(out)))
@@ -452,12 +479,12 @@ class ImpactModel:
         v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
         check(speed=v, radius=r, thickness=h)
         units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
-        fields, _ = tabulated(self._law, self._table, units, "raise")
+        found, _ = tabulated(self._law, self._table, units, "raise")
         if follows(self._whole_table):
-            by_lam, by_y = by_table(self._table, fields)
+            by_lam, by_y = by_table(self._table, found)
         else:
-            by_lam, by_y = by_solver(self._law, units, fields)
-        by_ratio = by_modulus_ratio(self.pair, self._given_law, units, fields)
+            by_lam, by_y = by_solver(self._law, found)
+        by_ratio = by_modulus_ratio(self.pair, self._law, found)
         return elasticities(self.pair, by_lam, by_y, by_ratio, shape)
 
     def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
@@ -512,7 +539,9 @@ class ImpactModel:
         r, o = scalars(radius=radius, other_radius=other_radius)
         twins = self._twins()
         contact = sphere_on_sphere(twins, self._law, r, o)
-        return self._curve(*factors(contact), lambda: contact)
+        units = scales(contact, np.ones(()))
+        c_lam, c_chi = units.inelasticity.item(), -math.log(units.yield_ratio.item())
+        return self._curve(c_lam, c_chi, lambda: contact)
 
     @functools.cached_property
     def kernel(self) -> Callable[[float, float, float], float]:
@@ -564,14 +593,15 @@ class ImpactModel:
         Numbers that the user gave in the law's name hold for them as they do for the plate.
         """
         twins = Pair(self.pair.sphere, self.pair.sphere)
-        needed = law_of(twins, self._given_law).name
-        if needed != self.law:
-            raise ValueError(
-                f"law: {self._given_law!r} takes E*/sigma_Y from the pair: here it is "
-                f"{self.law!r}, and two of its spheres have another one, {needed!r}. Ask "
-                f"contactlaw.restitution_sphere_sphere(..., law={self._given_law!r}), or name the "
-                "law with its numbers, to have the same for both"
-            )
+        if self._law.from_pair:
+            needed = law_of(twins, self._law.family)
+            if needed != self._law:
+                raise ValueError(
+                    f"law: {self._law.family!r} takes E*/sigma_Y from the pair: here it is "
+                    f"{self.law!r}, and two of its spheres have another one, {needed.name!r}. Ask "
+                    f"contactlaw.restitution_sphere_sphere(..., law={self._law.family!r}), or name "
+                    "the law with its numbers, to have the same for both"
+                )
         return twins
 
     def _curve(
@@ -586,17 +616,58 @@ class ImpactModel:
                 value = math.nan
             if value != value:  # NaN; half the time of a call of isnan
                 (v,) = scalars(speed=speed)
-                return float(self._fields(scales(contact(), v))[0][0, 0])
+                return float(self._fields(scales(contact(), v))[0].restitution[0])
             return value
 
         return restitution
 
-    def _lookup(self, pair: Pair, contact: Contact, impact: Impact) -> Rebound:
-        units = scales(contact, impact.speed)
-        fields, clamped = self._fields(units)
-        return rebound(pair, self._law, units, fields, impact, clamped)
+    def _outcomes(
+        self, v: Array, r: Array, h: Array
+    ) -> tuple[Outcome, Flags, tuple[Array, Array], Array]:
+        """Outcomes of spheres on plates, flags of the clamped ones, what was asked, V^(1/5)."""
+        found, root = outcome.empty(v.size), np.empty(v.size)
+        flags = np.zeros(v.size, dtype=np.int64)
+        c_lam, c_chi = self._c_lam, self._c_chi
+        beyond = lookup.outcomes(self._table, c_lam, c_chi, v, r, h, found, root)
+        asked = found.inelasticity, found.yield_ratio
+        if beyond:
+            asked = asked[0].copy(), asked[1].copy()
+            outside = np.isnan(found.restitution)
+            units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
+            flags[outside] = complete(
+                self._law, self._table, units, self.outside, outside, found
+            )
+            self._count(flags)
+        return found, flags, asked, root
 
-    def _fields(self, units: Scales) -> tuple[Array, NDArray[np.int64]]:
-        fields, flags = tabulated(self._law, self._table, units, self.outside)
-        self.clamped += int(np.count_nonzero(flags))
-        return fields, flags
+    def _fields(self, units: Scales) -> tuple[Outcome, Flags]:
+        found, flags = tabulated(self._law, self._table, units, self.outside)
+        self._count(flags)
+        return found, flags
+
+    def _count(self, flags: Flags) -> None:
+        """Add to the impacts that were clamped."""
+        count = int(np.count_nonzero(flags))
+        if count:
+            with self._clamping:
+                self._clamped += count
+
+    def _rebound(
+        self,
+        pair: Pair,
+        contact: Contact,
+        units: Scales,
+        impacts: Impacts,
+        found: Outcome,
+        flags: Flags,
+    ) -> Rebound:
+        """Give outcomes their units, whatever the bodies."""
+        shape = impacts.speed.shape
+        asked = (
+            np.ascontiguousarray(np.broadcast_to(units.inelasticity, shape)),
+            np.ascontiguousarray(np.broadcast_to(units.yield_ratio, shape)),
+        )
+        bounds = self._limits if pair is self.pair else limits(pair, self._law)
+        return rebound(
+            self._law.data, bounds, impacts, units.time, contact.mass, asked, found, flags
+        )

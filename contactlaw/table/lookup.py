@@ -1,43 +1,43 @@
 """Interpolation in the table: the kernels that read its splines.
 
-A table holds functions of the inelasticity lambda and of ln chi, the logarithm of the overload.
-Along lambda the nodes are uniform in x = lambda/(lambda + c); along ln chi they are uniform within
-each segment between two kinks, and each segment has a spline of its own, so no spline runs across
-a kink. Splines are kept as coefficients of uniform cubic B-splines, two more than there are nodes:
-they need the least memory, and a table that stays in the cache is a fast one. Where ln chi < 0 the
-contact is elastic and the values at ln chi = 0 hold. ln w_m is a polynomial in x.
+A table holds functions of the inelasticity lambda and of ln chi, the logarithm of the overload, on
+the nodes that `contactlaw.table.grid` places. Splines are kept as coefficients of uniform cubic
+B-splines, two more than there are nodes: they need the least memory, and a table that stays in the
+cache is a fast one. Where ln chi < 0 the contact is elastic and the values at ln chi = 0 hold.
+ln w_m is a polynomial in x, and so is ln chi along each kink that is no line of constant chi.
 
 All of it is packed into one array of float64, because a kernel that takes one array and a few
 numbers is called from Python in a third of a microsecond. The array begins with a header:
 
-    STRETCH      c                        COLUMNS    columns of coefficients, all segments
-    X_MAX        x of the largest lambda  SEGMENTS   number of segments n
+    STRETCH      c                        SEGMENTS   number of segments n
+    X_MAX        x of the largest lambda  CURVED     1 if there are curved kinks
     LOG_CHI_MAX  largest ln chi           COR_AT     where the coefficients of COR begin
     NODES_PER_X  1/(distance of nodes)    OTHERS_AT  where those of the other fields begin
+    COLUMNS      of coefficients
 
-then, at HEADER, the polynomial's coefficients and n blocks (first ln chi, nodes per unit of
-ln chi, first column). `contactlaw.packing` makes it; the constants are here, because numba's cache
-does not see an edit of a constant in another file.
+then, at HEADER, the polynomial's coefficients, n blocks and the polynomials of curved kinks:
+
+    START, END   ln chi at lambda = 0     COLUMN     first column of coefficients
+    PER_LOG      nodes per unit of it     GRADED     1 if nodes are uniform in the root
+    CELLS        nodes less one           LINE       where the polynomial of the start is, or 0
 
 Legend: v speed, lam inelasticity, chi overload, w_m largest elastic compression [V0 T_H]. Powers:
-lam = c_lam V^(1/5), ln chi = c_chi + (4/5) ln V + ln w_m; c_lam and c_chi come with SI units from
-`contactlaw.evaluation`, for spheres on plates with R/H = 1.
+lam = c_lam V^(1/5) (R/H)^2, ln chi = c_chi + (4/5) ln V + ln w_m; the two constants belong to a
+pair of materials and a law, `contactlaw.physical.scaling` has them.
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
-from numba.core import types
-from numba.extending import intrinsic
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from contactlaw.equation.outcome import Outcome
 
 Array = NDArray[np.float64]
-Integers = NDArray[np.int32]
 
 # Input beyond these is a mistake: no continuum below 1 nm, no bead above 1 km [m], no contact that
 # is quasi-static above the speed of every wave in a solid, nor an impact below 1e-30 m/s, where
@@ -45,44 +45,22 @@ Integers = NDArray[np.int32]
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = 1e-30
 
-STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X = range(4)
-COLUMNS, SEGMENTS, COR_AT, OTHERS_AT, HEADER = range(4, 9)
+STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X, COLUMNS = range(5)
+SEGMENTS, CURVED, COR_AT, OTHERS_AT, HEADER = range(5, 10)
 DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
-START, PER_LOG, COLUMN, BLOCK = range(4)
+START, END, PER_LOG, CELLS, COLUMN, GRADED, LINE, BLOCK = range(8)
+_BLOCKS = HEADER + DEGREE + 1
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
-@kernel(cache=True)
 def lam_max(table: Array) -> float:
     """Largest inelasticity of a table."""
-    value: float = table[STRETCH] * table[X_MAX] / (1.0 - table[X_MAX])
-    return value
+    return float(table[STRETCH] * table[X_MAX] / (1.0 - table[X_MAX]))
 
 
-@kernel(cache=True)
 def chi_max(table: Array) -> float:
     """Largest overload of a table."""
     return math.exp(table[LOG_CHI_MAX])
-
-
-@intrinsic
-def _bits(typing_context: Any, value: Any) -> Any:
-    """Bits of a float64 as an int64."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], context.get_value_type(types.int64))
-
-    return types.int64(types.float64), generate
-
-
-@intrinsic
-def _from_bits(typing_context: Any, value: Any) -> Any:
-    """Float64 with the bits of an int64."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.bitcast(arguments[0], context.get_value_type(types.double))
-
-    return types.float64(types.int64), generate
 
 
 def _root_series() -> tuple[float, ...]:
@@ -94,10 +72,12 @@ def _root_series() -> tuple[float, ...]:
 
 
 _ROOT = _root_series()
+_ABOVE = np.int64((1024 << 52) - 0x3FE6A09E667F3BCD)  # 1024 exponents, less sqrt(1/2)
+_TWO_52 = np.int64(0x433 << 52)  # bits of 2^52
 _ROOTS_OF_TWO = 2.0 ** (np.arange(-1024, 3072) / 5)  # 2^(k/5), for any 12 bits of an exponent
 
 
-@kernel(cache=True)
+@kernel
 def _log_and_root(v: float) -> tuple[float, float]:
     """Logarithm and fifth root to 2e-11, for V_MIN <= v <= V_MAX; garbage, but no crash, elsewhere.
 
@@ -105,12 +85,12 @@ def _log_and_root(v: float) -> tuple[float, float]:
     2 artanh z = ln m and of m^(1/5) do not wait for each other, and contain no call, so that loops
     over them become vector instructions.
     """
-    bits: int = _bits(v)  # type: ignore[call-arg]
+    bits = np.float64(v).view(np.int64)
     # k + 1024, from the exponent of v/sqrt(1/2); unsigned, since vectors have no signed shift
-    biased = np.uint64(bits - 0x3FE6A09E667F3BCD + (1024 << 52)) >> np.uint64(52)
+    biased = np.uint64(bits + _ABOVE) >> np.uint64(52)
     signed = np.int64(biased)
-    exponent = _from_bits(signed + (0x433 << 52)) - (2.0**52 + 1024.0)  # k as a float
-    m = _from_bits(bits - ((signed - 1024) << 52))
+    exponent = np.int64(signed + _TWO_52).view(np.float64) - (2.0**52 + 1024.0)  # k as a float
+    m = np.int64(bits - ((signed - np.int64(1024)) << np.int64(52))).view(np.float64)
     z = (m - 1.0) / (m + 1.0)
     w = z * z
     w2 = w * w
@@ -124,7 +104,7 @@ def _log_and_root(v: float) -> tuple[float, float]:
     return exponent * math.log(2.0) + z * odd, root * _ROOTS_OF_TWO[biased]
 
 
-@kernel(cache=True)
+@kernel
 def weights(t: float) -> tuple[float, float, float, float]:
     """Six times the uniform cubic B-splines at t in [0, 1] (de Boor 1978, chapter IX).
 
@@ -138,10 +118,10 @@ def weights(t: float) -> tuple[float, float, float, float]:
     )
 
 
-@kernel(cache=True)
-def _power_series(table: Array) -> tuple[float, ...]:
-    """Coefficients of ln w_m, as a tuple: no later write to an array can change them."""
-    c, k = table, HEADER
+@kernel
+def _power_series(table: Array, k: int) -> tuple[float, ...]:
+    """Coefficients that begin at k, as a tuple: no later write to an array can change them."""
+    c = table
     return (
         (c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5], c[k + 6])
         + (c[k + 7], c[k + 8], c[k + 9], c[k + 10], c[k + 11], c[k + 12], c[k + 13])
@@ -149,7 +129,7 @@ def _power_series(table: Array) -> tuple[float, ...]:
     )
 
 
-@kernel(cache=True)
+@kernel
 def _evaluate(c: tuple[float, ...], t: float) -> float:
     """Power series of degree 20 by Estrin's scheme: 7 products deep where Horner's has 20."""
     t2 = t * t
@@ -163,10 +143,10 @@ def _evaluate(c: tuple[float, ...], t: float) -> float:
     return (p0 + p1 * t4) + ((p2 + p3 * t4) + p4 * t8) * t8
 
 
-@kernel(cache=True)
+@kernel
 def _log_elastic(table: Array, x: float) -> float:
     """Logarithm of w_m at x."""
-    return _evaluate(_power_series(table), 2.0 / table[X_MAX] * x - 1.0)
+    return _evaluate(_power_series(table, HEADER), 2.0 / table[X_MAX] * x - 1.0)
 
 
 @kernel(cache=True)
@@ -175,21 +155,47 @@ def log_elastic_compression(table: Array, lam: float) -> float:
     return _log_elastic(table, lam / (lam + table[STRETCH]))
 
 
-@kernel(cache=True)
-def _locate(table: Array, x: float, log_chi: float) -> tuple[int, float, float]:
-    """Index of the first of 4 x 4 coefficients, and the place within the cell."""
-    block = HEADER + DEGREE + 1
-    for k in range(1, int(table[SEGMENTS])):
-        # counted, not branched: half of the branches would be predicted wrongly
-        block += BLOCK * (log_chi > table[HEADER + DEGREE + 1 + k * BLOCK + START])
+@kernel
+def _start(table: Array, block: int, t: float) -> float:
+    """Ln chi of the kink at which a segment begins, at t = 2 x/x_max - 1."""
+    line = int(table[block + LINE])
+    return table[block + START] if line == 0 else _evaluate(_power_series(table, line), t)
+
+
+@kernel
+def _between_curves(table: Array, x: float, log_chi: float) -> tuple[int, float]:
+    """Block of a segment between curved kinks, and the place in it, in cells."""
+    t = 2.0 / table[X_MAX] * x - 1.0
+    block, last = _BLOCKS, _BLOCKS + (int(table[SEGMENTS]) - 1) * BLOCK
+    low = table[block + START]
+    while True:
+        high = table[block + END] if block == last else _start(table, block + BLOCK, t)
+        if log_chi <= high or block == last:
+            break
+        block, low = block + BLOCK, high
+    share = min(max((log_chi - low) / (high - low), 0.0), 1.0)
+    return block, share * table[block + CELLS]
+
+
+@kernel(inline=True)
+def locate(table: Array, x: float, log_chi: float) -> tuple[int, int, float, float]:
+    """Row and column of the first of 4 x 4 coefficients, and the place within the cell."""
+    if table[CURVED] == 0.0:
+        block = _BLOCKS
+        for k in range(1, int(table[SEGMENTS])):
+            # counted, not branched: half of the branches would be predicted wrongly
+            block += BLOCK * (log_chi > table[_BLOCKS + k * BLOCK + START])
+        along = max(0.0, log_chi - table[block + START]) * table[block + PER_LOG]
+    else:
+        block, along = _between_curves(table, x, log_chi)
+    if table[block + GRADED] > 0.0:
+        along = math.sqrt(along * table[block + CELLS])
     across = x * table[NODES_PER_X]
-    along = max(0.0, log_chi - table[block + START]) * table[block + PER_LOG]
     row, cell = int(across), int(along)
-    first = row * int(table[COLUMNS]) + int(table[block + COLUMN]) + cell
-    return first, across - row, along - cell
+    return row, int(table[block + COLUMN]) + cell, across - row, along - cell
 
 
-@kernel(cache=True, inline=True)
+@kernel(inline=True)
 def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
     """COR from its 16 coefficients, which begin at p; four along ln chi share each instruction.
 
@@ -209,22 +215,63 @@ def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> flo
     return min(max(value, 0.0), 1.0)  # the spline may pass 1 by its error, and engines refuse that
 
 
-@kernel(cache=True)
-def _other_fields(table: Array, first: int, s: float, t: float) -> tuple[float, float, float]:
-    """Contact time [T_H], wave rate and compression ratio."""
+class _Others(NamedTuple):
+    """What a table has beside COR."""
+
+    contact_time: float
+    wave_rate: float
+    compression_ratio: float
+
+
+@kernel
+def _other_fields(table: Array, p: int, s: float, t: float) -> _Others:
+    """Contact time [T_H], wave rate and compression ratio; their coefficients begin at p."""
     a, b = weights(s), weights(t)
     time = wave = ratio = 0.0
+    step = 3 * int(table[COLUMNS])
     for k in range(4):
-        start = int(table[OTHERS_AT]) + 3 * (first + k * int(table[COLUMNS]))
+        start = p + k * step
         for n in range(4):
             weight = a[k] * b[n]
             time += weight * table[start + 3 * n]
             wave += weight * table[start + 3 * n + 1]
             ratio += weight * table[start + 3 * n + 2]
-    return time / 36.0, wave / 36.0, ratio / 36.0
+    return _Others(time / 36.0, wave / 36.0, ratio / 36.0)
 
 
-@kernel(cache=True, inline=True)
+@kernel(inline=True)
+def _cor_at(table: Array, x: float, log_chi: float) -> float:
+    """COR at a place in the table."""
+    row, column, s, t = locate(table, x, log_chi)
+    step = int(table[COLUMNS])
+    first = int(table[COR_AT]) + row * step + column
+    return _cor(table, np.uint64(first), np.uint64(step), s, t)
+
+
+@kernel
+def _put(table: Array, x: float, log_chi: float, log_w: float, out: Outcome, n: int) -> None:
+    """Fields at a place in the table."""
+    row, column, s, t = locate(table, x, log_chi)
+    step = int(table[COLUMNS])
+    first = row * step + column
+    out.restitution[n] = _cor(
+        table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t
+    )
+    others = _other_fields(table, int(table[OTHERS_AT]) + 3 * first, s, t)
+    out.contact_time[n] = others.contact_time
+    out.wave_rate[n] = others.wave_rate
+    out.compression_ratio[n] = others.compression_ratio
+    out.elastic_compression[n] = math.exp(log_w)
+
+
+@kernel
+def _blank(out: Outcome, n: int) -> None:
+    """No answer."""
+    out.restitution[n] = out.contact_time[n] = out.wave_rate[n] = math.nan
+    out.compression_ratio[n] = out.elastic_compression[n] = math.nan
+
+
+@kernel(inline=True)
 def _restitution(
     table: Array, c_lam: float, c_chi: float, speed: float, radius_2: float, thickness_2: float
 ) -> float:
@@ -239,9 +286,7 @@ def _restitution(
     log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
     if not log_chi <= table[LOG_CHI_MAX]:
         return math.nan
-    first, s, t = _locate(table, x, log_chi)
-    start, step = np.int64(table[COR_AT]), np.int64(table[COLUMNS])
-    return _cor(table, np.uint64(start + first), np.uint64(step), s, t)
+    return _cor_at(table, x, log_chi)
 
 
 @kernel(cache=True)
@@ -260,7 +305,7 @@ def restitution_on_plate(
     return _restitution(table, c_lam, c_chi, speed, radius * radius, thickness * thickness)
 
 
-@kernel(cache=True)
+@kernel
 def _coordinates(
     table: Array,
     c_lam: float,
@@ -270,50 +315,30 @@ def _coordinates(
     thickness: Array,
     log_chi: Array,
     x: Array,
+    log_w: Array,
+    root: Array,
 ) -> bool:
-    """Coordinates ln chi and x of impacts, and whether all of them are valid and in the table."""
+    """Coordinates ln chi and x of impacts, ln w_m and the fifth root of the speed.
+
+    Whether all of them are valid and in the table.
+    """
     stretch, x_max, scale = table[STRETCH], table[X_MAX], 2.0 / table[X_MAX]
-    power_series, log_chi_max = _power_series(table), table[LOG_CHI_MAX]
+    power_series, log_chi_max = _power_series(table, HEADER), table[LOG_CHI_MAX]
     for i in range(x.size):
-        log_chi[i], x[i] = _log_and_root(speed[i])
+        log_chi[i], root[i] = _log_and_root(speed[i])
     for i in range(x.size):
         # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
-        above = c_lam * x[i] * radius[i] * radius[i]
+        above = c_lam * root[i] * radius[i] * radius[i]
         x[i] = above / (above + stretch * (thickness[i] * thickness[i]))
     for i in range(x.size):
-        log_chi[i] = c_chi + 0.8 * log_chi[i] + _evaluate(power_series, scale * x[i] - 1.0)
+        log_w[i] = _evaluate(power_series, scale * x[i] - 1.0)
+        log_chi[i] = c_chi + 0.8 * log_chi[i] + log_w[i]
     good = 0
     for i in range(x.size):
         valid = (speed[i] >= V_MIN) & (speed[i] <= V_MAX) & (thickness[i] >= R_MIN)
         valid &= (radius[i] >= R_MIN) & (radius[i] <= R_MAX)
         good += valid & (x[i] <= x_max) & (log_chi[i] <= log_chi_max)
     return good == x.size
-
-
-@kernel(cache=True)
-def _cells(
-    table: Array, x: Array, log_chi: Array, first: Integers, along: Array, column: Integers
-) -> None:
-    """Index of the first of 4 x 4 coefficients; places within the cell over x and into along."""
-    nodes_per_x = table[NODES_PER_X]
-    columns, cor = np.int32(table[COLUMNS]), np.int32(table[COR_AT])
-    for i in range(x.size):
-        across = x[i] * nodes_per_x
-        row = np.int32(across)
-        x[i] = across - row
-        first[i] = cor + row * columns
-    for k in range(int(table[SEGMENTS])):
-        block = HEADER + DEGREE + 1 + k * BLOCK
-        start, per_log = table[block + START], table[block + PER_LOG]
-        offset = np.int32(table[block + COLUMN])
-        for i in range(x.size):
-            place = max(0.0, log_chi[i] - start) * per_log
-            cell = np.int32(place)
-            here = (log_chi[i] > start) | (k == 0)
-            along[i] = place - cell if here else along[i]
-            column[i] = offset + cell if here else column[i]
-    for i in range(x.size):
-        first[i] += column[i]
 
 
 @kernel(cache=True)
@@ -327,9 +352,12 @@ def restitutions(
     out: Array,
 ) -> int:
     """COR of many spheres on plates into out; how many are NaN."""
-    log_chi, x, along = np.empty(_CHUNK), np.empty(_CHUNK), np.empty(_CHUNK)
-    first, column = np.empty(_CHUNK, dtype=np.int32), np.empty(_CHUNK, dtype=np.int32)
-    step = np.uint64(np.int64(table[COLUMNS]))
+    log_chi, x, log_w, root = (
+        np.empty(_CHUNK),
+        np.empty(_CHUNK),
+        np.empty(_CHUNK),
+        np.empty(_CHUNK),
+    )
     bad = 0
     for start in range(0, out.size, _CHUNK):
         stop = min(start + _CHUNK, out.size)
@@ -340,10 +368,11 @@ def restitutions(
             thickness[start:stop],
             out[start:stop],
         )
-        if _coordinates(table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n]):
-            _cells(table, x[:n], log_chi[:n], first[:n], along[:n], column[:n])
+        if _coordinates(
+            table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n], log_w[:n], root[:n]
+        ):
             for i in range(n):
-                values[i] = _cor(table, np.uint64(first[i]), step, x[i], along[i])
+                values[i] = _cor_at(table, x[i], log_chi[i])
         else:  # one by one; such chunks are rare
             for i in range(n):
                 values[i] = restitution_on_plate(table, c_lam, c_chi, v[i], r[i], h[i])
@@ -352,32 +381,63 @@ def restitutions(
 
 
 @kernel(cache=True)
-def fields(table: Array, lam: Array, yield_ratio: Array, clamp: bool, out: Array) -> int:
-    """COR, contact time, wave rate, compression ratio, w_m into out (5, n); how many are outside.
+def outcomes(
+    table: Array,
+    c_lam: float,
+    c_chi: float,
+    speed: Array,
+    radius: Array,
+    thickness: Array,
+    out: Outcome,
+    root: Array,
+) -> int:
+    """All fields of many spheres on plates, of valid input; how many are outside, and are NaN.
 
-    yield_ratio is y = w_m/chi. Outside the table all fields are NaN, unless `clamp` takes the
-    nearest point of its border, and puts that point's coordinates over lam and yield_ratio.
+    Beside them V^(1/5) into root.
+    """
+    log_chi, x, log_w = np.empty(_CHUNK), np.empty(_CHUNK), np.empty(_CHUNK)
+    y_1 = math.exp(-c_chi)
+    outside = 0
+    for start in range(0, speed.size, _CHUNK):
+        stop = min(start + _CHUNK, speed.size)
+        n = stop - start
+        v, r, h = speed[start:stop], radius[start:stop], thickness[start:stop]
+        roots = root[start:stop]
+        _coordinates(table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n], log_w[:n], roots)
+        for i in range(n):
+            ratio, square = r[i] / h[i], roots[i] * roots[i]
+            out.inelasticity[start + i] = c_lam * roots[i] * (ratio * ratio)
+            out.yield_ratio[start + i] = y_1 / (square * square)
+            if x[i] <= table[X_MAX] and log_chi[i] <= table[LOG_CHI_MAX]:
+                _put(table, x[i], log_chi[i], log_w[i], out, start + i)
+            else:
+                _blank(out, start + i)
+                outside += 1
+    return outside
+
+
+@kernel(cache=True)
+def fields(table: Array, clamp: bool, out: Outcome) -> int:
+    """Fields at the inelasticities and yield ratios of `out`; how many of these are outside.
+
+    Outside the table fields are NaN, unless `clamp` takes the nearest point of its border, and
+    puts that point's coordinates in place of those asked for.
     """
     outside = 0
-    start, step = np.int64(table[COR_AT]), np.uint64(np.int64(table[COLUMNS]))
-    for n in range(lam.size):
-        x = lam[n] / (lam[n] + table[STRETCH])
+    for n in range(out.inelasticity.size):
+        x = out.inelasticity[n] / (out.inelasticity[n] + table[STRETCH])
         inside_x = min(x, table[X_MAX])
         log_w = _log_elastic(table, inside_x)
-        log_chi = log_w - math.log(yield_ratio[n])
+        log_chi = log_w - math.log(out.yield_ratio[n])
         inside_chi = min(log_chi, table[LOG_CHI_MAX])
         if not (inside_x == x and inside_chi == log_chi):
             outside += 1
             if not clamp:
-                for k in range(len(out)):  # a slice would take the compiler a second
-                    out[k, n] = math.nan
+                _blank(out, n)
                 continue
-            lam[n] = inside_x * table[STRETCH] / (1.0 - inside_x)
-            yield_ratio[n] = math.exp(log_w - inside_chi)
-        first, s, t = _locate(table, inside_x, inside_chi)
-        out[0, n] = _cor(table, np.uint64(start + first), step, s, t)
-        out[1, n], out[2, n], out[3, n] = _other_fields(table, first, s, t)
-        out[4, n] = math.exp(log_w)
+            out.inelasticity[n] = inside_x * table[STRETCH] / (1.0 - inside_x)
+            out.yield_ratio[n] = math.exp(log_w - inside_chi)
+        _put(table, inside_x, inside_chi, log_w, out, n)
     return outside
 
 

@@ -1,0 +1,81 @@
+"""The one list of what is known of an impact, in the units of Hertz's scale.
+
+Speeds in V0, time in T_H, compressions in V0 T_H, forces in m V0/T_H, energies as shares of the
+initial kinetic energy. Kernels take these NamedTuples of arrays, one entry per impact, and fill
+them by name.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Outcome(NamedTuple):
+    """Impacts, as solver and table give them; what else there is follows from the law."""
+
+    restitution: Any
+    contact_time: Any  # from touch to separation
+    wave_rate: Any  # share of the energy in the bending wave, over lambda: it has a limit at 0
+    compression_ratio: Any  # largest compression over the elastic one
+    elastic_compression: Any  # w_m, the largest compression of an elastic impact
+    inelasticity: Any  # lambda
+    yield_ratio: Any  # y, the yield compression; inf for an elastic law
+
+
+class Extremes(NamedTuple):
+    """What the law says of contacts whose largest compressions are known."""
+
+    peak_force: Any
+    residual_compression: Any
+    plastic_fraction: Any
+
+
+class History(NamedTuple):
+    """Contacts over time: samples along the last axis."""
+
+    time: Any  # since first touch
+    force: Any
+    compression: Any
+    impulse: Any  # momentum that has passed [m V0]
+
+
+STORED = {
+    "restitution": "rebound speed over impact speed [-]",
+    "contact_time": "time from touch to separation [T_H]",
+    "wave_rate": "share of the initial energy in the bending wave, over lambda [-]",
+    "compression_ratio": "largest compression over the elastic one, d_m/(chi d_Y) [-]",
+}
+"""Fields of `Outcome` that a table keeps, and what its file says of them."""
+
+
+def empty(count: int) -> Outcome:
+    """Room for the outcomes of impacts."""
+    return Outcome(*np.empty((len(Outcome._fields), count)))
+
+
+def at(inelasticity: Array, yield_ratio: Array) -> Outcome:
+    """Room for the outcomes of impacts with these dimensionless numbers."""
+    out = empty(inelasticity.size)
+    out.inelasticity[:] = inelasticity
+    out.yield_ratio[:] = yield_ratio
+    return out
+
+
+def part(outcome: Outcome, chosen: Any) -> Outcome:
+    """Those of the impacts that an index chooses."""
+    return Outcome(*(values[chosen] for values in outcome))
+
+
+def extremes(count: int) -> Extremes:
+    """Room for the extremes of contacts."""
+    return Extremes(*np.empty((len(Extremes._fields), count)))
+
+
+def history(count: int, samples: int) -> History:
+    """Room for contacts over time."""
+    return History(*np.empty((len(History._fields), count, samples)))

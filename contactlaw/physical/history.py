@@ -1,0 +1,56 @@
+"""Force over time of single contacts, in SI units."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.equation.outcome import History
+from contactlaw.physical.scaling import Scales
+
+Array = NDArray[np.float64]
+
+
+class ForceHistory(NamedTuple):
+    """Contacts at even times from first touch to separation.
+
+    Arrays of one shape: that of the arguments by broadcasting, and the samples along a last axis.
+
+    Attributes
+    ----------
+    time
+        Since first touch [s].
+    force
+        Contact force [N]; 0 at either end.
+    compression
+        Relative compression of the bodies [m]; at the end the residual one.
+    impulse
+        Integral of the force since first touch [N s]; at the end m V0 (1 + e). It is exact where a
+        rule over the samples is not: above lambda = 3 the force has a long tail behind its peak.
+    plate_displacement
+        Displacement of the plate at the contact point [m]: its mobility times the impulse. An
+        infinite plate does not come back; a real one does when the bending wave returns.
+    """
+
+    time: Array
+    force: Array
+    compression: Array
+    impulse: Array
+    plate_displacement: Array
+
+
+def with_units(
+    contacts: History, units: Scales, mobility: Array, shape: tuple[int, ...] | None
+) -> ForceHistory:
+    """Give contacts (n, samples) their units and the shape of the answer."""
+    scales = units.time, units.force, units.compression, units.force * units.time
+    time, force, compression, impulse = (
+        values * scale[:, None] for values, scale in zip(contacts, scales, strict=True)
+    )
+    whole = (*(shape or ()), time.shape[1])
+    displacement = mobility[:, None] * impulse
+    return ForceHistory(
+        *(values.reshape(whole) for values in (time, force, compression, impulse, displacement))
+    )

@@ -1,0 +1,167 @@
+"""Tables that do not ship with the package: built once, kept in the user's cache folder.
+
+A table is kept by the data of its law, not by its name: laws that differ in their yield compression
+alone share one. Shapes of force histories are added when the first history is asked for.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import functools
+import hashlib
+import json
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from contactlaw import table as tables
+from contactlaw._folder import folder
+from contactlaw._jit import fingerprint
+from contactlaw.laws import Law
+from contactlaw.table import file
+from contactlaw.table.grid import Settings
+from contactlaw.table.nodes import Table
+
+ON_DEMAND = Settings(inelasticity_nodes=61, log_overload_step=0.03, rtol=1e-11)
+"""Settings of tables that are built when they are first needed, in a few tenths of a second."""
+
+_PATIENCE = 60.0  # [s]: a build takes less than one; a lock held for longer belongs to a process that hangs
+
+
+def file_name(law: Law, settings: Settings) -> str:
+    """Name of a table's file: the law's, and a hash of all that its content depends on.
+
+    Examples
+    --------
+    >>> from contactlaw import laws
+    >>> from contactlaw.table.cache import file_name
+    >>> from contactlaw.table import Settings
+    >>> myc = laws.law("myc")
+    >>> file_name(myc, Settings()) == file_name(myc, Settings(rtol=1e-11))
+    False
+    """
+    ingredients = {
+        "law": law.key,
+        "settings": asdict(settings),
+        "schema": file.SCHEMA,
+        "sources": fingerprint(),
+    }
+    digest = hashlib.sha256(json.dumps(ingredients, sort_keys=True).encode()).hexdigest()
+    return f"table-{digest[:24]}.h5"
+
+
+def progress_bar(rows: Iterator[Array], total: int) -> Iterable[Array]:
+    """Show a bar once a build has taken a second; nothing where stderr is no terminal."""
+    from tqdm import tqdm
+
+    bar: Iterable[Array] = tqdm(rows, "contactlaw: solving", total, delay=1, disable=None)
+    return bar
+
+
+@functools.cache
+def cached(law: Law, settings: Settings = ON_DEMAND) -> Table:
+    """Table of a law from the cache; built, and kept there, if it is missing or damaged.
+
+    Whatever is wrong with the folder, there is an answer; one warning says that it was not kept.
+    """
+
+    def make(found: Table | None) -> Table:
+        return found or tables.build(law, settings, progress=progress_bar)
+
+    return _kept(law, settings, make, lambda found: True)
+
+
+@functools.cache
+def cached_shapes(table: Table) -> Table:
+    """Return the table with shapes of force histories, from the cache or built as in `cached`."""
+    if table.states is not None:
+        return table
+
+    def make(found: Table | None) -> Table:
+        return tables.with_shapes(found or table, progress=progress_bar)
+
+    return _kept(table.law, table.settings, make, lambda found: found.states is not None)
+
+
+def _kept(
+    law: Law,
+    settings: Settings,
+    make: Callable[[Table | None], Table],
+    is_whole: Callable[[Table], bool],
+) -> Table:
+    """Table in the cache; made of what is there, and kept, if that is not whole."""
+    place = _place()
+    if place is None:
+        return make(None)
+    path = place / file_name(law, settings)
+    made: Table | None = None
+    found = _usable(path, law, settings)
+    if found is not None and is_whole(found):
+        return found
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+        with _locked(path):
+            # another process may have built it while this one waited
+            found = _usable(path, law, settings, warn=True)
+            if found is not None and is_whole(found):
+                return found
+            made = make(found)
+            _sweep(path)
+            file.write(made, path)
+    except OSError as error:  # read-only, full, over quota, a file in its place, locked for ever
+        _warn_of(place, error)
+    return made or make(found)
+
+
+def _place() -> Path | None:
+    try:
+        return folder()
+    except RuntimeError as error:  # nobody's home
+        _warn_of("the user's cache folder", error)
+        return None
+
+
+def _warn_of(place: object, error: Exception) -> None:
+    warnings.warn(
+        f"tables cannot be kept in {place} ({error}), so each process builds them anew; set "
+        "CONTACTLAW_CACHE_DIR to a writable folder, or CONTACTLAW_NO_CACHE=1",
+        stacklevel=2,
+    )
+
+
+def progress_bar(rows: Iterator[Any], total: int) -> Iterable[Any]:
+    """Show a bar once a build has taken a second; nothing where stderr is no terminal."""
+    from tqdm import tqdm
+
+    bar: Iterable[Any] = tqdm(rows, "contactlaw: solving", total, delay=1, disable=None)
+    return bar
+
+
+def _usable(path: Path, law: Law, settings: Settings, *, warn: bool = False) -> Table | None:
+    """Table in a cache file; None where there is none, or a damaged or another one: built anew."""
+    try:
+        found = file.read(path)
+    except FileNotFoundError:
+        return None
+    except (OSError, file.DamagedTableError) as error:
+        if warn:
+            warnings.warn(f"a table in the cache is built anew: {error}", stacklevel=2)
+        return None
+    return found if found.law.key == law.key and found.settings == settings else None
+
+
+@contextlib.contextmanager
+def _locked(path: Path) -> Iterator[None]:
+    import filelock
+
+    # the lock is the kernel's: it goes with its process, however that ends
+    with filelock.FileLock(path.with_suffix(".lock"), timeout=_PATIENCE):
+        yield
+
+
+def _sweep(path: Path) -> None:
+    """Remove what writers left that were killed; the lock says that none is at work."""
+    for left in path.parent.glob(f".{path.name}.*.part"):
+        left.unlink(missing_ok=True)

@@ -1,0 +1,159 @@
+"""How far a table is from the solver, at random places off the grid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.equation import outcome, zener
+from contactlaw.equation.outcome import Outcome
+from contactlaw.laws import Law
+from contactlaw.table import lookup, shapes, sweep
+from contactlaw.table.grid import RANGES, Grid, Settings
+from contactlaw.table.shapes import Shapes
+from contactlaw.table.sweep import Progress
+
+Array = NDArray[np.float64]
+
+BOUNDS = {
+    "restitution": 1e-6,
+    "contact_time": 1e-5,
+    "peak_force": 1e-5,
+    "peak_compression": 1e-5,
+    "residual_compression": 1e-5,
+    "plastic_fraction": 1e-5,
+    "wave_fraction": 1e-5,
+    "force_history": 1e-4,
+}
+"""What contactlaw promises: COR absolutely, a force history by its peak, the others relatively."""
+
+# Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2: no number of digits
+# of chi gives them relatively there. Below this they count absolutely (chi - 1 < 2e-6).
+_SMALLEST = 1e-12
+_PART = 500  # points that a thread solves at a time
+_SAMPLES = 33  # of a force history that is compared
+_NEAR_KINK = 0.01  # in ln chi; a share of the points lies this near on either side
+_HALF_SPACE = 0.1  # share of the points with lambda = 0
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """How far lookups are from the solver, at random points off the grid.
+
+    Errors of COR are absolute, those of force histories (the largest at any time) in terms of the
+    peak force, those of the other fields relative.
+
+    Parameters
+    ----------
+    points, seed : int
+        Number of points and seed of their generator.
+    median, percentile_99, largest : dict of str to float
+        Errors, by field.
+    """
+
+    points: int
+    seed: int
+    median: dict[str, float]
+    percentile_99: dict[str, float]
+    largest: dict[str, float]
+
+    @classmethod
+    def of(cls, errors: dict[str, Array], points: int, seed: int) -> Certificate:
+        """Sum up errors."""
+        return cls(
+            points=points,
+            seed=seed,
+            median={name: float(np.median(e)) for name, e in errors.items()},
+            percentile_99={name: float(np.percentile(e, 99)) for name, e in errors.items()},
+            largest={name: float(np.max(e)) for name, e in errors.items()},
+        )
+
+    @property
+    def exceeded(self) -> dict[str, float]:
+        """Largest errors above the bound of their field."""
+        return {name: e for name, e in self.largest.items() if not e <= BOUNDS[name]}
+
+
+def compare_outcomes(
+    law: Law,
+    settings: Settings,
+    grid: Grid,
+    packed: Array,
+    points: int,
+    seed: int,
+    progress: Progress,
+) -> tuple[Outcome, dict[str, Array]]:
+    """Outcomes that are looked up at random points, and their errors by field.
+
+    Raises
+    ------
+    ValueError
+        If there are too few or too many points, or the seed is negative.
+    """
+    if not 100 <= points <= 10_000_000:
+        raise ValueError(f"points: at least 100 and at most 10 000 000 are taken, got {points!r}")
+    if seed < 0:
+        raise ValueError(f"seed: must not be negative, got {seed!r}")
+    lam, chi = _points(grid, points, np.random.default_rng(seed))
+    parts = -(-lam.size // _PART)
+    exact = sweep.solve_overloads(law, lam, chi, _finer(settings), parts, progress)
+    looked = outcome.at(exact.inelasticity, exact.yield_ratio)
+    lookup.fields(packed, True, looked)
+    errors = {}
+    both = (_named(law, values) for values in (looked, exact))
+    for (name, ours), (_, truth) in zip(*(values.items() for values in both), strict=True):
+        scale = 1.0 if name == "restitution" else np.maximum(np.abs(truth), _SMALLEST)
+        errors[name] = np.abs(ours - truth) / scale
+    return looked, errors
+
+
+def compare_histories(
+    law: Law, settings: Settings, packed: Shapes, looked: Outcome
+) -> Array:
+    """Errors of the force histories of outcomes that were looked up."""
+    out = np.empty(looked.restitution.size)
+
+    def compare(part: slice) -> None:
+        shapes.deviations(
+            law.data, packed, outcome.part(looked, part), _finer(settings), _SAMPLES, out[part]
+        )
+
+    sweep.in_parts(compare, out.size, -(-out.size // _PART), sweep.no_progress)
+    return out
+
+
+def _finer(settings: Settings) -> float:
+    return max(settings.rtol / 10, RANGES["rtol"][0])
+
+
+def _points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array]:
+    """Lambda and chi of points; kinks that are curves are taken where they begin and end."""
+    lows = [float(segment.start.min()) for segment in grid.segments]
+    highs = [float(segment.start.max()) for segment in grid.segments]
+    end = float(grid.segments[-1].end[0])
+    strata = [(-2.0, 0.0), *zip(lows, [*highs[1:], end], strict=True)]
+    strata += [(low - _NEAR_KINK, low) for low in lows]
+    strata += [(high, high + _NEAR_KINK) for high in highs]
+    share = -(-count // len(strata))
+    log_chi = np.concatenate([generator.uniform(low, high, share) for low, high in strata])
+    # uniform in the root: COR changes most where lambda is small
+    root = generator.uniform(0.0, math.sqrt(grid.largest_inelasticity), log_chi.size)
+    root[generator.random(log_chi.size) < _HALF_SPACE] = 0.0
+    return root**2, np.exp(log_chi)
+
+
+def _named(law: Law, values: Outcome) -> dict[str, Array]:
+    """Fields of `BOUNDS` from an outcome, as `contactlaw.evaluation` has them."""
+    compression = values.compression_ratio * values.elastic_compression
+    extremes = outcome.extremes(compression.size)
+    zener.extremes(law.data, values, extremes)
+    return {
+        "restitution": values.restitution,
+        "contact_time": values.contact_time,
+        "peak_compression": compression,
+        "wave_fraction": values.inelasticity * values.wave_rate,
+        **extremes._asdict(),
+    }

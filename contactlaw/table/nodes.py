@@ -1,0 +1,195 @@
+"""The table of one contact law: the equation solved at every node."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.equation import zener
+from contactlaw.equation.outcome import STORED
+from contactlaw.laws import Law
+from contactlaw.table import grid as grids
+from contactlaw.table import shapes, splines, sweep
+from contactlaw.table.certificate import Certificate, compare_histories, compare_outcomes
+from contactlaw.table.grid import Grid, Settings
+from contactlaw.table.sweep import Progress, no_progress
+
+Array = NDArray[np.float64]
+
+POINTS = 2000  # of the certificate of a table that is built on the way to a first answer
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Values at the nodes, as they are stored.
+
+    Parameters
+    ----------
+    law : Law
+        What the impacts follow.
+    settings : Settings
+        Extent and fineness.
+    grid : Grid
+        Nodes of the fields.
+    fields : dict of str to ndarray
+        Those of `contactlaw.equation.outcome.STORED`, (rows, columns).
+    states : ndarray of float32, optional
+        Shapes of force histories on `shape_grid`, (rows, columns, 2, SIZE); None if they have not
+        been asked for.
+    certificate : Certificate, optional
+        How far it is from the solver.
+    """
+
+    law: Law
+    settings: Settings
+    grid: Grid
+    fields: dict[str, Array]
+    states: NDArray[np.float32] | None = None
+    certificate: Certificate | None = None
+
+    @functools.cached_property
+    def packed(self) -> Array:
+        """Splines through the values, for the lookup kernels."""
+        return splines.pack(self.grid, self.fields)
+
+    @functools.cached_property
+    def packed_shapes(self) -> shapes.Shapes:
+        """Splines through the shapes of force histories; for a table that has them."""
+        if self.states is None:
+            raise ValueError("table: has no shapes of force histories; with_shapes(table) adds them")
+        return shapes.pack(shape_grid(self), self.states)
+
+
+def shape_grid(table: Table) -> Grid:
+    """Nodes of the shapes: coarser, with the same segments."""
+    return grids.coarser(table.grid, shapes.ROWS, shapes.STEP)
+
+
+def build(
+    law: Law,
+    settings: Settings | None = None,
+    *,
+    points: int = POINTS,
+    progress: Progress = no_progress,
+) -> Table:
+    """Sweep the equation over all nodes, on all cores, and certify the table.
+
+    Parameters
+    ----------
+    law : Law
+        A law that yields.
+    settings : Settings, optional
+        Extent and fineness.
+    points : int, optional
+        Number of random places at which the table is compared with the solver.
+    progress : callable, optional
+        ``progress(rows, total)`` wraps the iterator over finished rows, as ``tqdm`` does.
+
+    Returns
+    -------
+    Table
+        With its certificate; without shapes of force histories.
+
+    Raises
+    ------
+    ValueError
+        If the law never yields: the elastic edge of any table serves it.
+    RuntimeError
+        If a node does not solve; the message names it.
+    """
+    settings = settings or Settings()
+    grid = grids.grid(law, settings, settings.inelasticity_nodes, settings.log_overload_step)
+    rows = grid.inelasticity.size
+    lam, chi = np.repeat(grid.inelasticity, grid.columns), np.exp(grid.log_overload()).ravel()
+    values = sweep.solve_overloads(law, lam, chi, settings.rtol, rows, progress)
+    fields = {name: getattr(values, name).reshape(rows, grid.columns) for name in STORED}
+    table = Table(law, settings, grid, fields)
+    return dataclasses.replace(table, certificate=certify(table, points))
+
+
+def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_progress) -> Table:
+    """Add the shapes of force histories, and their error to the certificate.
+
+    Parameters
+    ----------
+    table : Table
+        As `build` made it.
+    points, progress
+        As of `build`.
+
+    Returns
+    -------
+    Table
+
+    Raises
+    ------
+    RuntimeError
+        If a shape does not solve; the message names it.
+    """
+    states = _states(table, progress)
+    whole = dataclasses.replace(table, states=states)
+    return dataclasses.replace(whole, certificate=certify(whole, points))
+
+
+def _states(table: Table, progress: Progress) -> NDArray[np.float32]:
+    """Shapes at the nodes; their error is far above that of single precision."""
+    law, rtol, grid = table.law, table.settings.rtol, shape_grid(table)
+    chi = np.exp(grid.log_overload())
+    w_m = grids.elastic_compressions(grid.inelasticity, rtol)
+    out = np.empty((*chi.shape, 2, shapes.SIZE), dtype=np.float32)
+
+    def solve(part: slice) -> None:
+        status, row, column = shapes.solve(
+            law.data, grid.inelasticity[part], w_m[part], chi[part], rtol, out[part]
+        )
+        if status != zener.OK:
+            raise RuntimeError(
+                f"table for law {law.name!r}: the shape at lambda = "
+                f"{grid.inelasticity[part][row]:.6g}, chi = {chi[part][row, column]:.6g} did not "
+                f"solve: {zener.MESSAGES[status]}"
+            )
+
+    sweep.in_parts(solve, len(chi), len(chi), progress)
+    return out
+
+
+def certify(
+    table: Table, points: int = 10_000, seed: int = 0, *, progress: Progress = no_progress
+) -> Certificate:
+    """Compare lookups with the solver at random points off the grid.
+
+    The points fall into equal shares: below yield, each segment between two kinks, the close
+    neighbourhood of each kink on either side, and all of these for the half-space.
+
+    Parameters
+    ----------
+    table : Table
+    points : int, optional
+        Number of points, at least 100.
+    seed : int, optional
+        Seed of their generator.
+    progress : callable, optional
+        As in `build`.
+
+    Returns
+    -------
+    Certificate
+        With the error of force histories if the table has them.
+
+    Raises
+    ------
+    ValueError
+        If there are too few or too many points, or the seed is negative.
+    """
+    looked, errors = compare_outcomes(
+        table.law, table.settings, table.grid, table.packed, points, seed, progress
+    )
+    if table.states is not None:
+        errors["force_history"] = compare_histories(
+            table.law, table.settings, table.packed_shapes, looked
+        )
+    return Certificate.of(errors, looked.restitution.size, seed)

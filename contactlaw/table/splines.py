@@ -1,0 +1,84 @@
+"""Splines through the nodes of a table, packed into the arrays that the kernels read."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.table import lookup
+from contactlaw.table.grid import Grid, power_series
+from contactlaw.table.lookup import BLOCK, DEGREE, HEADER
+
+Array = NDArray[np.float64]
+
+
+def spline_coefficients(values: Array) -> Array:
+    """Coefficients of the cubic B-spline through uniform nodes along axis 0, not-a-knot ends.
+
+    With v = (c[i-1] + 4 c[i] + c[i+1])/6 at each node and no jump of the third derivative next to
+    the ends, c is known there; a tridiagonal system is left between. Solved without LAPACK, whose
+    threads would fight for the cores with those of an MPI run.
+    """
+    n = len(values)
+    if n < 5:
+        raise ValueError(f"values: a spline with not-a-knot ends needs at least 5 nodes, got {n}")
+    c = np.empty((n + 2, *values.shape[1:]))
+    c[2], c[n - 1] = ((8.0 * values[k] - values[k - 1] - values[k + 1]) / 6.0 for k in (1, n - 2))
+    gain = np.zeros(n + 2)
+    for k in range(3, n - 1):
+        gain[k] = 1.0 / (4.0 - gain[k - 1])
+        c[k] = (6.0 * values[k - 1] - c[k - 1]) * gain[k]
+    for k in range(n - 2, 2, -1):
+        c[k] -= gain[k] * c[k + 1]
+    for edge, inwards in ((1, 1), (n, -1)):
+        node = edge - 1
+        c[edge] = 6.0 * values[node + inwards] - 4.0 * c[edge + inwards] - c[edge + 2 * inwards]
+        c[edge - inwards] = 6.0 * values[node] - 4.0 * c[edge] - c[edge + inwards]
+    return c
+
+
+def surface(values: Array, grid: Grid) -> Array:
+    """Coefficients of bicubic splines along axes 0 and 1; along 1, one for each segment.
+
+    One more of each at the end: a kernel reads it with the weight 0, and needs no test.
+    """
+    across = spline_coefficients(values).swapaxes(0, 1)
+    sizes = [segment.shares.size for segment in grid.segments]
+    parts = np.split(across, np.cumsum(sizes)[:-1])
+    both = np.concatenate([spline_coefficients(part) for part in parts]).swapaxes(0, 1)
+    return np.pad(both, ((0, 1), (0, 1), *[(0, 0)] * (both.ndim - 2)), mode="edge")
+
+
+def header(grid: Grid) -> Array:
+    """Begin an array with what `lookup.locate` reads."""
+    x_max = grid.largest_inelasticity / (grid.largest_inelasticity + grid.stretch)
+    sizes = np.array([segment.shares.size for segment in grid.segments])
+    head = np.zeros(HEADER)
+    head[[lookup.STRETCH, lookup.X_MAX]] = grid.stretch, x_max
+    head[lookup.LOG_CHI_MAX] = grid.segments[-1].end[0]
+    head[lookup.NODES_PER_X] = (grid.inelasticity.size - 1) / x_max
+    head[lookup.COLUMNS], head[lookup.SEGMENTS] = (sizes + 2).sum() + 1, sizes.size
+    blocks = np.zeros((sizes.size, BLOCK))
+    series = [power_series(np.log(grid.elastic_compression), DEGREE)]
+    lines_at = HEADER + DEGREE + 1 + blocks.size
+    for block, segment, first in zip(
+        blocks, grid.segments, np.cumsum(sizes + 2) - (sizes + 2), strict=True
+    ):
+        cells = segment.shares.size - 1
+        length = segment.end[0] - segment.start[0]
+        block[[lookup.START, lookup.END]] = segment.start[0], segment.end[0]
+        block[[lookup.PER_LOG, lookup.COLUMN]] = cells / length, first
+        block[[lookup.CELLS, lookup.GRADED]] = cells, segment.graded
+        if np.ptp(segment.start) > 0.0:
+            head[lookup.CURVED] = 1.0
+            block[lookup.LINE] = lines_at + (len(series) - 1) * (DEGREE + 1)
+            series.append(power_series(segment.start, DEGREE))
+    return np.concatenate((head, series[0], blocks.ravel(), *series[1:]))
+
+
+def pack(grid: Grid, fields: dict[str, Array]) -> Array:
+    """Fit splines through the values of a table's nodes and pack them into one array."""
+    cor, *others = (surface(values, grid) for values in fields.values())
+    head = header(grid)
+    head[lookup.COR_AT], head[lookup.OTHERS_AT] = head.size, head.size + cor.size
+    return np.concatenate((head, cor.ravel(), np.stack(others, axis=-1).ravel()))

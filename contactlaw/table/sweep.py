@@ -1,0 +1,74 @@
+"""The solver at many points, on all cores."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.equation import outcome, zener
+from contactlaw.equation.outcome import Outcome
+from contactlaw.laws import Law
+
+Array = NDArray[np.float64]
+Progress = Callable[[Iterator[Any], int], Iterable[Any]]
+_T = TypeVar("_T")
+
+
+def no_progress(parts: Iterator[Any], total: int) -> Iterable[Any]:
+    """Show nothing."""
+    return parts
+
+
+def in_parts(
+    function: Callable[[slice], _T], count: int, parts: int, progress: Progress
+) -> Sequence[_T]:
+    """Apply a function that lets other threads run to slices of so many points, on all cores."""
+    edges = np.linspace(0, count, min(parts, count) + 1).astype(int).tolist()
+    slices = [slice(low, high) for low, high in zip(edges[:-1], edges[1:], strict=True)]
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        # compiled once, before the threads ask for it
+        first = function(slices[0])
+        return list(progress(_chain(first, pool.map(function, slices[1:])), len(slices)))
+    finally:  # on Ctrl-C, wait for the parts that run and start no others
+        pool.shutdown(cancel_futures=True)
+
+
+def _chain(first: _T, rest: Iterator[_T]) -> Iterator[_T]:
+    yield first
+    yield from rest
+
+
+def solve_overloads(
+    law: Law,
+    lam: Array,
+    chi: Array,
+    rtol: float,
+    parts: int,
+    progress: Progress = no_progress,
+) -> Outcome:
+    """Outcomes at many points, of which those with one lambda lie side by side.
+
+    Raises
+    ------
+    RuntimeError
+        If one does not solve; the message names it.
+    """
+    out = outcome.empty(lam.size)
+    out.inelasticity[:] = lam
+
+    def solve(part: slice) -> None:
+        status, n = zener.solve_overloads(law.data, rtol, chi[part], outcome.part(out, part))
+        if status != zener.OK:
+            raise RuntimeError(
+                f"table for law {law.name!r}: the node lambda = {lam[part][n]:.6g}, chi = "
+                f"{chi[part][n]:.6g} did not solve: {zener.MESSAGES[status]}"
+            )
+
+    in_parts(solve, lam.size, parts, progress)
+    return out
