@@ -17,14 +17,13 @@ is a ValueError. Errors of the forms are relative, against the solver, unless th
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw import laws
 from contactlaw import zener as _zener
-from contactlaw.arguments import broadcast, shaped, within
+from contactlaw.arguments import checked, shaped, within
 from contactlaw.impact import plate_mobility
 from contactlaw.pair import Pair
 
@@ -42,14 +41,6 @@ _RTOL = 1e-11  # of the integrations here
 _THICKER = "(the plate is far too thin for the model)"
 _RATIO = "(it is V0 over the yield speed V_Y0)"
 INTEGRATE = "(beyond, take contactlaw.ImpactModel)"
-
-
-def checked(**arguments: tuple[ArrayLike, float, float, str]) -> Any:
-    """Flat arrays and their shape; each argument with its limits and what to do beyond them."""
-    *arrays, shape = broadcast(**{name: value for name, (value, *_) in arguments.items()})
-    for values, (name, (_, low, high, remark)) in zip(arrays, arguments.items(), strict=True):
-        within(name, values, low, high, remark)
-    return *arrays, shape
 
 
 def eta(pair: Pair) -> float:
