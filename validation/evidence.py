@@ -9,8 +9,8 @@ import numpy as np
 
 import contactlaw as cl
 from contactlaw import closed_form, laws
-from contactlaw.closed_form import yield_speed_ratio
 from contactlaw.impact import Contact, scales, sphere_on_plate
+from validation import formulas
 from validation.fem import compare, store
 from validation.paper import (
     ETA,
@@ -93,7 +93,7 @@ def left_side_of_eq_8(speed_ratio: float | None) -> float:
     v = x if speed_ratio is None else speed_ratio
     scale = math.pi * PAIR.sphere.density / (PAIR.effective_modulus * math.sqrt(v * SPEED))
     lam = float(impacts(x, THINNEST).inelasticity)
-    w_m = float(closed_form.elastic_compression(lam, printed=True))
+    w_m = float(formulas.eq_6(lam))
     return x * SPEED * RADIUS * math.pow(scale, 0.4) * w_m / YIELD_COMPRESSION
 
 
@@ -114,7 +114,7 @@ def fitted_c(
     `closed_form.peng`, where one eta serves both.)
     """
     lam_y = ETA * ratio[:, None] ** 2
-    g = np.asarray(yield_speed_ratio(lam_y * SHARE ** (exponent - 0.4), printed=True))
+    g = np.asarray(formulas.eq_14(lam_y * SHARE ** (exponent - 0.4)))
     elastic = np.asarray(closed_form.mueller(lam_y * np.minimum(v, g) ** 0.2))
     if not factor:
         elastic = np.where(v > g, 1.0, elastic)
@@ -207,7 +207,7 @@ def elastic_forms_against_impacts() -> dict[str, tuple[float, float, float]]:
     two thickest plates; least excess at 7 V_Y0.
     """
     case = compare.comparison("matrix")
-    raman = np.asarray(closed_form.raman(case.inelasticity))
+    raman = np.asarray(formulas.raman(case.inelasticity))
     forms = {"Zener": case.restitution["Zener"], "Raman": raman}
     fastest = case.speed_ratio > 0.99 * FASTEST
     thick = case.slenderness < 0.3

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw import closed_form, laws, turning_point
 from contactlaw.impact import law_of
-from validation import paper
+from validation import formulas, paper
 from validation.fem import store
 from validation.fem.cases import material
 
@@ -61,7 +61,7 @@ def comparison(name: str) -> Comparison:
         "modified Zener": model["restitution"],
         "turning point": np.asarray(turning_point.restitution(ratio, at_yield)),
         "Eq. 22, continuous": np.asarray(closed_form.peng(ratio, like, paper.ETA)),
-        "Eq. 22, printed": np.asarray(closed_form.peng(ratio, like, paper.ETA, printed=True)),
+        "Eq. 22, printed": np.asarray(formulas.eq_22(ratio, like, paper.ETA)),
         "Zener": np.asarray(closed_form.zener(lam)),
         "Mueller, Eq. 3": np.asarray(closed_form.mueller(lam)),
     }

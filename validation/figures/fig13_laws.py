@@ -15,8 +15,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw import laws
-from contactlaw.closed_form import thornton_asymptote
 from validation.figures import _style
+from validation.formulas import thornton_asymptote
 from validation.paper import ETA, SPEED, Array, all_laws, restitution, yield_unit
 
 _SLOWER = yield_unit(laws.law("thornton")) ** 1.25  # yield speed of its law in that of MYC
