@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import brentq, newton
 
 import contactlaw as cl
 from contactlaw import closed_form, laws
@@ -24,7 +25,6 @@ from validation.paper import (
     Array,
     borderline,
     impacts,
-    root,
     unloading,
 )
 
@@ -81,7 +81,7 @@ def left_side_of_eq_9(speed_ratio: float) -> float:
 
 def yield_speed_of_eq_9() -> float:
     """Find V_Y/V_Y0 of Eq. 9 at R/H = 1.8."""
-    return root(lambda x: left_side_of_eq_9(x) - 1.0, 1.0, 2.0)
+    return float(brentq(lambda x: left_side_of_eq_9(x) - 1.0, 1.0, 2.0))
 
 
 def left_side_of_eq_8(speed_ratio: float | None) -> float:
@@ -99,10 +99,8 @@ def left_side_of_eq_8(speed_ratio: float | None) -> float:
 
 def eq_11(q: Array) -> Array:
     """Solve Eq. 11, x - x^(-1/5) = q, for x = V_Y/V_Y0 by Newton's method."""
-    x = 1.0 + q
-    for _ in range(20):
-        x = x - (x - x**-0.2 - q) / (1.0 + 0.2 * x**-1.2)
-    return x
+    found: Array = newton(lambda x: x - x**-0.2 - q, 1.0 + q, lambda x: 1.0 + 0.2 * x**-1.2)
+    return found
 
 
 def fitted_c(
@@ -124,7 +122,7 @@ def fitted_c(
         form = elastic * base ** (0.25 + c * ratio[:, None] ** 2)
         return float(((form - surface) * form * np.log(base) * ratio[:, None] ** 2).sum())
 
-    return root(slope_of_squares, 0.0, 0.6)
+    return float(brentq(slope_of_squares, 0.0, 0.6))
 
 
 def fitted_border(thinnest: float) -> float:
