@@ -8,11 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from validation.bench.row import Row, seconds
 from validation.fem.elements import Body, add_forces
 from validation.fem.impact import impact
 from validation.paper import PAIR, RADIUS
-
-from .row import Row, seconds
 
 Array = NDArray[np.float64]
 
