@@ -14,6 +14,10 @@ import contactlaw
 ROOT = Path(contactlaw.__file__).parent
 KERNELS = [ROOT / f"{name}.py" for name in ("lookup", "zener", "packing", "shapes")]
 KERNELS += sorted((ROOT / "laws").glob("[a-z]*.py"))
+VALIDATION = ROOT.parent / "validation"
+# what is private to users, but not to the finite elements: numba's settings, and the version
+SHARED = {"contactlaw._jit", "contactlaw._jit.kernel"}
+SHARED |= {"contactlaw._version", "contactlaw._version.VERSION"}
 # from the bottom to the top; a module imports from the left of itself only
 ORDER = [
     "_version", "_jit", "laws", "lookup", "packing", "zener", "shapes", "compiled", "arguments",
@@ -53,6 +57,16 @@ def test_imports_run_upwards_only(path):
     for name in imported(path):
         if name.startswith("contactlaw."):
             assert name.split(".")[1] in below, f"{path.stem} imports {name}"
+
+
+@pytest.mark.parametrize(
+    "path", sorted(VALIDATION.rglob("*.py")), ids=lambda path: str(path.relative_to(VALIDATION))
+)
+def test_validation_imports_public_names_only(path):
+    for name in imported(path):
+        package, *parts = name.split(".")
+        if package in ("contactlaw", "dem_demo"):
+            assert name in SHARED or not any(part.startswith("_") for part in parts), name
 
 
 def test_import_is_light():
