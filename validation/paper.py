@@ -41,9 +41,9 @@ def impacts(speed_ratio: ArrayLike, thickness_ratio: ArrayLike, law: str = "myc"
     return model(law).lookup(np.asarray(speed_ratio) * SPEED, RADIUS, thickness)
 
 
-def all_laws() -> list[laws.Law]:
-    """Every registered law, with the numbers that it takes from the pair."""
-    return [law_of(PAIR, name) for name in laws.names()]
+def all_laws(pair: cl.Pair = PAIR) -> dict[str, laws.Law]:
+    """Every registered law by its name, with the numbers that it takes from the pair."""
+    return {name: law_of(pair, name) for name in laws.names()}
 
 
 def yield_unit(law: laws.Law) -> float:
