@@ -1,4 +1,4 @@
-"""Closed forms of the COR: those of the literature, as printed and as corrected.
+"""Closed forms of the COR from the literature, corrected where they are misprinted.
 
 Arguments are dimensionless. With the yield speed V_Y0 of the half-space (`Pair.yield_speed`):
 
@@ -17,14 +17,13 @@ is a ValueError. Errors of the forms are relative, against the solver, unless th
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.equation import zener as _zener
 from contactlaw.equation.force import HERTZ
-from contactlaw.physical.arguments import broadcast, shaped, within
+from contactlaw.physical.arguments import checked, shaped, within
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import plate_mobility
 
@@ -42,14 +41,6 @@ _RTOL = 1e-11  # of the integrations here
 _THICKER = "(the plate is far too thin for the model)"
 _RATIO = "(it is V0 over the yield speed V_Y0)"
 INTEGRATE = "(beyond, take contactlaw.ImpactModel)"
-
-
-def checked(**arguments: tuple[ArrayLike, float, float, str]) -> Any:
-    """Flat arrays and their shape; each argument with its limits and what to do beyond them."""
-    *arrays, shape = broadcast(**{name: value for name, (value, *_) in arguments.items()})
-    for values, (name, (_, low, high, remark)) in zip(arrays, arguments.items(), strict=True):
-        within(name, values, low, high, remark)
-    return *arrays, shape
 
 
 def eta(pair: Pair) -> float:
@@ -119,35 +110,6 @@ def mueller(inelasticity: ArrayLike) -> float | Array:
         return shaped(np.exp(-math.pi * lam / np.sqrt(4.0 - lam**2)), shape)
 
 
-def raman(inelasticity: ArrayLike) -> float | Array:
-    """COR of an elastic impact, Raman's form (1 - k lambda)/(1 + k lambda).
-
-    Raman (Phys. Rev. 15 (1920) 277) takes the wave's energy to be k lambda times what the sphere
-    brings and what it takes away. Here k = `WAVE_SLOPE`/2 = 0.8651, which makes the slope at
-    lambda = 0 exact. 0.3 % below `zener` at lambda = 0.1, 2.0 % at 0.25.
-
-    Parameters
-    ----------
-    inelasticity : array_like
-        lambda, from 0 to 1/k = 1.156, where the sphere would stay.
-
-    Returns
-    -------
-    float or ndarray of float64
-
-    Examples
-    --------
-    >>> from contactlaw.closed_form import raman
-    >>> raman([0.1, 0.25]).round(4)
-    array([0.8408, 0.6444])
-    """
-    k = 0.5 * WAVE_SLOPE
-    lam, shape = checked(
-        inelasticity=(inelasticity, 0.0, 1.0 / k, "(beyond, the form has no rebound: take zener)")
-    )
-    return shaped((1.0 - k * lam) / (1.0 + k * lam), shape)
-
-
 def zener(inelasticity: ArrayLike) -> float | Array:
     """COR of an elastic impact by integration of Zener's equation, Eq. 5: no closed form.
 
@@ -173,32 +135,26 @@ def zener(inelasticity: ArrayLike) -> float | Array:
     )
 
 
-def elastic_compression(inelasticity: ArrayLike, *, printed: bool = False) -> float | Array:
+def elastic_compression(inelasticity: ArrayLike) -> float | Array:
     """Largest compression w_m of an elastic impact [V0 T_H]: Fig. 4.
 
     Parameters
     ----------
     inelasticity : array_like
         lambda, from 0 to 100.
-    printed : bool, optional
-        Take Eq. 6, w_m^-1.5 = lambda + (5/4)^(-3/5), in place of the integration.
 
     Returns
     -------
     float or ndarray of float64
-        Within 3e-11; printed, up to 3.1 % low.
+        By integration, within 3e-11.
 
     Examples
     --------
     >>> from contactlaw.closed_form import elastic_compression
     >>> elastic_compression([0.0, 0.5]).round(4)
     array([1.0934, 0.8257])
-    >>> elastic_compression([0.0, 0.5], printed=True).round(4)
-    array([1.0934, 0.8088])
     """
     lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, _THICKER))
-    if printed:
-        return shaped((lam + 1.25**-0.6) ** (-2.0 / 3.0), shape)
     return shaped(_elastic_compression(lam), shape)
 
 
@@ -206,38 +162,38 @@ def _elastic_compression(lam: Array) -> Array:
     return np.array([_zener.elastic_compression(one, _RTOL)[1] for one in lam])
 
 
-def yield_speed_ratio(inelasticity_at_yield: ArrayLike, *, printed: bool = False) -> float | Array:
+def yield_speed_ratio(inelasticity_at_yield: ArrayLike) -> float | Array:
     """Speed V_Y/V_Y0 from which the sphere yields on a plate: Fig. 6.
 
     Parameters
     ----------
     inelasticity_at_yield : array_like
         lambda_Y, from 0 to 5.
-    printed : bool, optional
-        Take Eq. 14, x = q + (1 + q)^(-1/5) with q = (5/4)^(3/5) lambda_Y, in place of the speed at
-        which the integrated impact just reaches d_Y.
 
     Returns
     -------
     float or ndarray of float64
-        Within 1e-10; printed, 1.2 % high at lambda_Y = 0.243, 4.3 % at 2.3.
+        At which the integrated impact just reaches d_Y; within 1e-10.
 
     Examples
     --------
     >>> from contactlaw.closed_form import yield_speed_ratio
     >>> yield_speed_ratio([0.0, 0.2434]).round(4)
     array([1.    , 1.2156])
-    >>> yield_speed_ratio([0.0, 0.2434], printed=True).round(4)
-    array([1.    , 1.2304])
     """
     lam_y, shape = checked(inelasticity_at_yield=(inelasticity_at_yield, 0.0, 5.0, _THICKER))
-    q = 1.25**0.6 * lam_y
-    x = q + (1.0 + q) ** -0.2
-    if not printed:
-        for _ in range(30):  # the slope of the logarithms lies between 2/3 and 4/5
-            w_m = _elastic_compression(lam_y * x**0.2)
-            x = x * (1.25**-0.4 * x**0.8 * w_m) ** (-1.0 / 0.75)
+    x = approximate_yield_speed_ratio(lam_y)
+    for _ in range(30):  # the slope of the logarithms lies between 2/3 and 4/5
+        w_m = _elastic_compression(lam_y * x**0.2)
+        x = x * (1.25**-0.4 * x**0.8 * w_m) ** (-1.0 / 0.75)
     return shaped(x, shape)
+
+
+def approximate_yield_speed_ratio(lam_y: Array) -> Array:
+    """V_Y/V_Y0 by Eq. 14 for checked lambda_Y, on which Eq. 22 stands: at most 4.3 % high."""
+    q = 1.25**0.6 * lam_y
+    ratio: Array = q + (1.0 + q) ** -0.2
+    return ratio
 
 
 def thornton(speed_ratio: ArrayLike) -> float | Array:
@@ -270,34 +226,6 @@ def thornton(speed_ratio: ArrayLike) -> float | Array:
     return shaped(factor * np.sqrt(1.0 - x**2 / 6.0) * share**0.25, shape)
 
 
-def thornton_asymptote(speed_ratio: ArrayLike) -> float | Array:
-    """COR of `thornton` far above yield, 1.185 v^(-1/4).
-
-    Wu, Li, Thornton (Int. J. Impact Eng. 28 (2003) 929) find v^(-1/2) in place of v^(-1/4) once the
-    deformation is finite, which no law here is made for.
-
-    Parameters
-    ----------
-    speed_ratio : array_like
-        V0/V_Y0 as there, from 5 to 1e6. Below 2 the power is above 1; a cap there would pass for a
-        COR, and 7 % off, where `thornton` costs no more.
-
-    Returns
-    -------
-    float or ndarray of float64
-        Above `thornton` by 2.5 % at v = 5, 1.2 % at 10, 0.12 % at 100.
-
-    Examples
-    --------
-    >>> from contactlaw.closed_form import thornton_asymptote
-    >>> round(thornton_asymptote(100.0), 4)
-    0.3747
-    """
-    v, shape = checked(speed_ratio=(speed_ratio, 5.0, 1e6, "(below, take thornton)"))
-    factor = math.sqrt(1.2 * math.sqrt(3.0)) * (2.0 * math.sqrt(1.2)) ** -0.25
-    return shaped(factor * v**-0.25, shape)
-
-
 def at_turning_point(chi: Array) -> tuple[Array, Array]:
     """Force and span of unloading at the largest compression of impacts with checked overloads chi.
 
@@ -309,34 +237,27 @@ def at_turning_point(chi: Array) -> tuple[Array, Array]:
     return force, np.where(dm < 1.0, dm, np.sqrt(np.maximum(2.0 * dm - 1.0, 0.0)))
 
 
-def half_space(speed_ratio: ArrayLike, *, printed: bool = False) -> float | Array:
+def half_space(speed_ratio: ArrayLike) -> float | Array:
     """COR on a half-space, Eq. 21, and its continuation to where loading is linear.
 
     Parameters
     ----------
     speed_ratio : array_like
         V0/V_Y0, from 0 to 1e6; 1 and below is elastic.
-    printed : bool, optional
-        Take Eq. 21, (1 - (1 - v^(-4/5))^2)^(1/4), beyond P^(5/4) = 4.19 too, where loading has left
-        Hertz's curve: 2.0 % high at v = 7, 4.4 % at 10.
 
     Returns
     -------
     float or ndarray of float64
-        Exact, unless printed.
+        Exact; Eq. 21 up to v = P^(5/4) = 4.19, where loading leaves Hertz's curve.
 
     Examples
     --------
     >>> from contactlaw.closed_form import half_space
     >>> half_space([2.0, 10.0]).round(4)
     array([0.9513, 0.7042])
-    >>> half_space([2.0, 10.0], printed=True).round(4)
-    array([0.9513, 0.735 ])
     """
     v, shape = checked(speed_ratio=(speed_ratio, 0.0, 1e6, _RATIO))
     v = np.maximum(v, 1.0)
-    if printed:
-        return shaped((1.0 - (1.0 - v**-0.8) ** 2) ** 0.25, shape)
     force, span = at_turning_point(v**0.8)
     return shaped(np.sqrt(force * span) / v, shape)
 
@@ -346,10 +267,8 @@ def peng(
     thickness_ratio: ArrayLike,
     eta: ArrayLike,
     c: ArrayLike = 0.0935,
-    *,
-    printed: bool = False,
 ) -> float | Array:
-    """COR of an elastic-plastic impact on a plate, Eq. 22.
+    """COR of an elastic-plastic impact on a plate, Eq. 22 made continuous.
 
     Parameters
     ----------
@@ -361,28 +280,24 @@ def peng(
         `eta` of the pair, from 1e-6 to 1000.
     c : array_like, optional
         Coefficient of (R/H)^2 in the exponent 1/4 + c (R/H)^2, from 0 to 1.
-    printed : bool, optional
-        Leave out the factor that makes it continuous: the plastic branch then jumps to 1 at yield.
 
     Returns
     -------
     float or ndarray of float64
         Within 4.1 % of the solver for the paper's pair, R/H <= 1.8 and v <= 7, 24 % in the whole
-        range; printed, 56 % and a factor of 3.
+        range.
 
     Notes
     -----
-    The factor is the elastic COR at yield, Eq. 3 with lambda at V_Y = g V_Y0, g by Eq. 14. That
-    the printed c belongs to the form with the factor is seen from a fit (see validation's page of
-    errata).
+    The plastic branch, printed without, has the elastic COR at yield as a factor: Eq. 3 with lambda
+    at V_Y = g V_Y0, g by Eq. 14. That the printed c belongs to the form with the factor is seen
+    from a fit (see validation's page of errata).
 
     Examples
     --------
     >>> from contactlaw.closed_form import peng
     >>> peng(3.0, [0.9, 1.8], eta=0.0751).round(4)
     array([0.8005, 0.5666])
-    >>> peng(3.0, [0.9, 1.8], eta=0.0751, printed=True).round(4)
-    array([0.8817, 0.8466])
     """
     v, ratio, at_unity, growth, shape = checked(
         speed_ratio=(speed_ratio, 0.0, FASTEST, INTEGRATE),
@@ -396,33 +311,7 @@ def peng(
         remark = f"at eta = {at_unity[n]:g}, so that eta (R/H)^2 <= {LARGEST_AT_YIELD} {INTEGRATE}"
         within("thickness_ratio", ratio[n : n + 1], 0.0, float(thinnest[n]), remark)
     lam_y = at_unity * ratio**2
-    g = np.asarray(yield_speed_ratio(lam_y, printed=True))
+    g = approximate_yield_speed_ratio(lam_y)
     elastic = np.asarray(mueller(lam_y * np.minimum(v, g) ** 0.2))  # at yield, where v is beyond
-    if printed:
-        elastic = np.where(v > g, 1.0, elastic)
     plastic = (1.0 - (1.0 - np.maximum(v / g, 1.0) ** -0.8) ** 2) ** (0.25 + growth * ratio**2)
     return shaped(elastic * plastic, shape)
-
-
-def border(thickness_ratio: ArrayLike) -> float | Array:
-    """Speed V0/V_Y0 at which plastic and wave loss are equal, Eq. 23.
-
-    Parameters
-    ----------
-    thickness_ratio : array_like
-        R/H, from 0 to 1.2, over which the fit was made, for gamma-alumina on glass.
-
-    Returns
-    -------
-    float or ndarray of float64
-        (1 + 1.001 (R/H)^2)^(5/2). For that pair 10 % low at R/H = 0.2 to 0.3, within 5.1 % from 0.5
-        to 1, 7 % low at 1.2.
-
-    Examples
-    --------
-    >>> from contactlaw.closed_form import border
-    >>> round(border(0.5), 3)
-    1.748
-    """
-    ratio, shape = checked(thickness_ratio=(thickness_ratio, 0.0, 1.2, INTEGRATE))
-    return shaped((1.0 + 1.001 * ratio**2) ** 2.5, shape)

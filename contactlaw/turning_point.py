@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.physical.arguments import shaped
+from contactlaw.physical.arguments import checked, shaped
 from contactlaw.closed_form import (
     FASTEST,
     INTEGRATE,
@@ -28,7 +28,6 @@ from contactlaw.closed_form import (
     WAVE_SLOPE,
     P,
     at_turning_point,
-    checked,
 )
 
 Array = NDArray[np.float64]

@@ -41,6 +41,10 @@ KERNELS = [
     *(ROOT / f"table/{name}.py" for name in ("lookup", "shapes", "splines", "grid")),
 ]
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
+VALIDATION = ROOT.parent / "validation"
+# what is private to users, but not to the finite elements: numba's settings, and the version
+SHARED = {"contactlaw._jit", "contactlaw._jit.kernel"}
+SHARED |= {"contactlaw._version", "contactlaw._version.VERSION"}
 
 
 def imported(path):
@@ -110,6 +114,16 @@ def test_imports_run_upwards_only(path):
 def test_every_folder_says_what_it_is():
     for path in ROOT.rglob("__init__.py"):
         assert ast.get_docstring(ast.parse(path.read_text())), path
+
+
+@pytest.mark.parametrize(
+    "path", sorted(VALIDATION.rglob("*.py")), ids=lambda path: str(path.relative_to(VALIDATION))
+)
+def test_validation_imports_public_names_only(path):
+    for name in imported(path):
+        package, *parts = name.split(".")
+        if package in ("contactlaw", "dem_demo"):
+            assert name in SHARED or not any(part.startswith("_") for part in parts), name
 
 
 def test_import_is_light():

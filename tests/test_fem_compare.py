@@ -227,7 +227,7 @@ def test_which_law_is_right():
 def test_laws_are_compared_in_common_units():
     """Below its own yield every law is Hertz's, whatever its d_Y."""
     way = np.array([0.1, 0.3])
-    for law in paper.all_laws():
+    for law in paper.all_laws().values():
         assert paper.force(law, way) == pytest.approx(way**1.5, rel=1e-12), law.name
         back, load = paper.unloading(law, 5.0)
         assert back[-1] == pytest.approx(5.0)

@@ -6,11 +6,12 @@ import math
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import brentq, newton
 
 import contactlaw as cl
 from contactlaw import closed_form, laws
-from contactlaw.closed_form import yield_speed_ratio
 from contactlaw.impact import Contact, scales, sphere_on_plate
+from validation import formulas
 from validation.fem import compare, store
 from validation.paper import (
     ETA,
@@ -24,7 +25,6 @@ from validation.paper import (
     Array,
     borderline,
     impacts,
-    root,
     unloading,
 )
 
@@ -81,7 +81,7 @@ def left_side_of_eq_9(speed_ratio: float) -> float:
 
 def yield_speed_of_eq_9() -> float:
     """Find V_Y/V_Y0 of Eq. 9 at R/H = 1.8."""
-    return root(lambda x: left_side_of_eq_9(x) - 1.0, 1.0, 2.0)
+    return float(brentq(lambda x: left_side_of_eq_9(x) - 1.0, 1.0, 2.0))
 
 
 def left_side_of_eq_8(speed_ratio: float | None) -> float:
@@ -93,16 +93,14 @@ def left_side_of_eq_8(speed_ratio: float | None) -> float:
     v = x if speed_ratio is None else speed_ratio
     scale = math.pi * PAIR.sphere.density / (PAIR.effective_modulus * math.sqrt(v * SPEED))
     lam = float(impacts(x, THINNEST).inelasticity)
-    w_m = float(closed_form.elastic_compression(lam, printed=True))
+    w_m = float(formulas.eq_6(lam))
     return x * SPEED * RADIUS * math.pow(scale, 0.4) * w_m / YIELD_COMPRESSION
 
 
 def eq_11(q: Array) -> Array:
     """Solve Eq. 11, x - x^(-1/5) = q, for x = V_Y/V_Y0 by Newton's method."""
-    x = 1.0 + q
-    for _ in range(20):
-        x = x - (x - x**-0.2 - q) / (1.0 + 0.2 * x**-1.2)
-    return x
+    found: Array = newton(lambda x: x - x**-0.2 - q, 1.0 + q, lambda x: 1.0 + 0.2 * x**-1.2)
+    return found
 
 
 def fitted_c(
@@ -114,7 +112,7 @@ def fitted_c(
     `closed_form.peng`, where one eta serves both.)
     """
     lam_y = ETA * ratio[:, None] ** 2
-    g = np.asarray(yield_speed_ratio(lam_y * SHARE ** (exponent - 0.4), printed=True))
+    g = np.asarray(formulas.eq_14(lam_y * SHARE ** (exponent - 0.4)))
     elastic = np.asarray(closed_form.mueller(lam_y * np.minimum(v, g) ** 0.2))
     if not factor:
         elastic = np.where(v > g, 1.0, elastic)
@@ -124,7 +122,7 @@ def fitted_c(
         form = elastic * base ** (0.25 + c * ratio[:, None] ** 2)
         return float(((form - surface) * form * np.log(base) * ratio[:, None] ** 2).sum())
 
-    return root(slope_of_squares, 0.0, 0.6)
+    return float(brentq(slope_of_squares, 0.0, 0.6))
 
 
 def fitted_border(thinnest: float) -> float:
@@ -207,7 +205,7 @@ def elastic_forms_against_impacts() -> dict[str, tuple[float, float, float]]:
     two thickest plates; least excess at 7 V_Y0.
     """
     case = compare.comparison("matrix")
-    raman = np.asarray(closed_form.raman(case.inelasticity))
+    raman = np.asarray(formulas.raman(case.inelasticity))
     forms = {"Zener": case.restitution["Zener"], "Raman": raman}
     fastest = case.speed_ratio > 0.99 * FASTEST
     thick = case.slenderness < 0.3

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
 
 import contactlaw as cl
 from contactlaw import closed_form, laws, zener
@@ -41,9 +41,9 @@ def impacts(speed_ratio: ArrayLike, thickness_ratio: ArrayLike, law: str = "myc"
     return model(law).lookup(np.asarray(speed_ratio) * SPEED, RADIUS, thickness)
 
 
-def all_laws() -> list[laws.Law]:
-    """Every registered law, with the numbers that it takes from the pair."""
-    return [law_of(PAIR, name) for name in laws.names()]
+def all_laws(pair: cl.Pair = PAIR) -> dict[str, laws.Law]:
+    """Every registered law by its name, with the numbers that it takes from the pair."""
+    return {name: law_of(pair, name) for name in laws.names()}
 
 
 def yield_unit(law: laws.Law) -> float:
@@ -83,19 +83,4 @@ def borderline(thickness_ratio: float) -> float:
         one = impacts(speed_ratio, thickness_ratio)
         return float(one.plastic_fraction - one.wave_fraction)
 
-    return root(excess, 1.0, 64.0)
-
-
-def root(function: Callable[[float], float], low: float, high: float) -> float:
-    """Find the root of a function that is negative at `low`, by bisection to the last digit.
-
-    Examples
-    --------
-    >>> from validation.paper import root
-    >>> round(root(lambda x: x * x - 2.0, 1.0, 2.0), 12)
-    1.414213562373
-    """
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if function(middle) < 0.0 else (low, middle)
-    return low
+    return float(brentq(excess, 1.0, 64.0))

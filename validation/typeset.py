@@ -1,36 +1,36 @@
-"""Formulas in plain text, made readable in HTML: Greek letters, indices, powers, names of code."""
+"""Formulas in plain text, made readable in HTML: Greek letters, indices, powers, names of code.
+
+The text around them is prose without marks where a formula begins, so that no reader of AsciiMath
+or LaTeX can take it.
+"""
 
 from __future__ import annotations
 
+import html
 import re
+from collections.abc import Callable
 
-_GREEK = {
-    "lambda": "\N{GREEK SMALL LETTER LAMDA}",
-    "alpha": "\N{GREEK SMALL LETTER ALPHA}",
-    "chi": "\N{GREEK SMALL LETTER CHI}",
-    "eta": "\N{GREEK SMALL LETTER ETA}",
-    "nu": "\N{GREEK SMALL LETTER NU}",
-    "pi": "\N{GREEK SMALL LETTER PI}",
-    "rho": "\N{GREEK SMALL LETTER RHO}",
-    "sigma": "\N{GREEK SMALL LETTER SIGMA}",
-    "tau": "\N{GREEK SMALL LETTER TAU}",
-    "dtau": "d\N{GREEK SMALL LETTER TAU}",
-    "Gamma": "\N{GREEK CAPITAL LETTER GAMMA}",
-}
-_SIGNS = {
-    "sqrt(": "\N{SQUARE ROOT}(",
-    "&lt;=": "\N{LESS-THAN OR EQUAL TO}",
-    "&gt;=": "\N{GREATER-THAN OR EQUAL TO}",
-}
-_WORD = re.compile(
-    rf"(?<![A-Za-z_.])({'|'.join(_GREEK)})(?=[0-9_^<& ,.;:)(/*+='-]|$)", re.MULTILINE
+_GREEK = "alpha|chi|eta|lambda|nu|pi|rho|sigma|tau|Gamma"
+
+
+def _letter(found: re.Match[str]) -> str:
+    return html.unescape(f"{found[1]}&{found[2]};")
+
+
+# In this order: an index or a power ends the word that may be a letter's name.
+_RULES: tuple[tuple[str, str | Callable[[re.Match[str]], str]], ...] = (
+    (r"\^(?:\(([^()]*)\)|([-\d.]*\d))", r"<sup>\1\2</sup>"),  # v^(4/5), w^-1.5
+    (r"(?<![A-Za-z_])([A-Za-z]|sigma|lambda)_([A-Za-z]+0?|\d)(?![A-Za-z_])", r"\1<sub>\2</sub>"),
+    (r"\b(rho|nu|V|E|x|c)([0-3])(?![\d.])", r"\1<sub>\2</sub>"),  # rho2, E1', V0
+    (rf"(?<![A-Za-z_.])(d?)({_GREEK})(?=[0-9_^<& ,.;:)(/*+='-]|$)", _letter),  # and dtau
+    (r"\b[a-z]{2,}(?:[._][a-z]{2,})*_[a-z]{2,}(?:[._][a-z]{2,})*\b", r"<code>\g<0></code>"),
+    (r"\b(?!1e)(\d[\d.]*)e(?:\+|(-))0?(\d+)\b", "\\1 \N{MULTIPLICATION SIGN} 10<sup>\\2\\3</sup>"),
+    (r"\b1e(?:\+|(-))0?(\d+)\b", r"10<sup>\1\2</sup>"),  # 1e-09
+    (r"(?<=\d )us\b", "\N{MICRO SIGN}s"),  # microseconds
+    (r"sqrt\(", "\N{SQUARE ROOT}("),
+    ("&lt;=", "\N{LESS-THAN OR EQUAL TO}"),
+    ("&gt;=", "\N{GREATER-THAN OR EQUAL TO}"),
 )
-_INDEX = re.compile(r"(?<![A-Za-z_])([A-Za-z]|sigma|lambda)_([A-Za-z]+0?|\d)(?![A-Za-z_])")
-_POWER = re.compile(r"\^(\(([^()]*)\)|[-\d.]*\d)")
-_TEN = re.compile(r"\b(\d[\d.]*)e([-+])0?(\d+)\b")
-_NAME = re.compile(r"\b[a-z]{2,}(?:[._][a-z]{2,})*_[a-z]{2,}(?:[._][a-z]{2,})*\b")
-_MICROSECONDS = re.compile(r"(?<=\d )us\b")
-_NUMBERED = re.compile(r"\b(rho|nu|V|E|x|c)([0-3])(?![\d.])('?)")
 _VERBATIM = re.compile(r"((?<!<pre>)<code>.*?</code>|<[^>]*>)", re.DOTALL)
 
 
@@ -50,18 +50,6 @@ def typeset(text: str) -> str:
 
 
 def _formulas(text: str) -> str:
-    text = _POWER.sub(lambda found: f"<sup>{found[2] or found[1]}</sup>", text)
-    text = _INDEX.sub(r"\1<sub>\2</sub>", text)
-    text = _NUMBERED.sub(r"\1<sub>\2</sub>\3", text)
-    text = _WORD.sub(lambda found: _GREEK[found[1]], text)
-    text = _NAME.sub(r"<code>\g<0></code>", text)
-    text = _TEN.sub(_power_of_ten, text)
-    text = _MICROSECONDS.sub("\N{MICRO SIGN}s", text)
-    for plain, sign in _SIGNS.items():
-        text = text.replace(plain, sign)
+    for pattern, readable in _RULES:
+        text = re.sub(pattern, readable, text, flags=re.MULTILINE)
     return text
-
-
-def _power_of_ten(found: re.Match[str]) -> str:
-    factor = "" if found[1] == "1" else f"{found[1]} \N{MULTIPLICATION SIGN} "
-    return f"{factor}10<sup>{found[2].strip('+')}{found[3]}</sup>"

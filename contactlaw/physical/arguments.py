@@ -79,6 +79,14 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
         )
 
 
+def checked(**arguments: tuple[ArrayLike, float, float, str]) -> Any:
+    """Flat arrays and their shape; each argument with its limits and what to do beyond them."""
+    *arrays, shape = broadcast(**{name: value for name, (value, *_) in arguments.items()})
+    for values, (name, (_, low, high, remark)) in zip(arrays, arguments.items(), strict=True):
+        within(name, values, low, high, remark)
+    return *arrays, shape
+
+
 def shaped(values: Array, shape: tuple[int, ...] | None) -> float | Array:
     """Undo `broadcast`."""
     return float(values[0]) if shape is None else np.ascontiguousarray(values).reshape(shape)

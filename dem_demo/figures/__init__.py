@@ -34,7 +34,8 @@ def draw_all(run: Run, folder: Path) -> None:
     folder : Path
         Existing folder for the pictures.
     """
-    style = importlib.import_module(f"{__name__}._style")
+    from dem_demo import style  # matplotlib is loaded when a figure is drawn
+
     with style.applied():
         for name in names():
             figure = importlib.import_module(f"{__name__}.{name}").draw(run)

@@ -5,30 +5,31 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dem_demo.figures import _style
+from dem_demo import style
+from dem_demo.figures._labels import source, thickness_axis
 from dem_demo.measure import model_shares, plate_rows
 from dem_demo.reader import Run
 from dem_demo.recorder import CONSTANT
 from dem_demo.report import label
 
 _KEPT, _WAVE, _PLASTIC, _LOST = (
-    ("kept by the bead", _style.PALE),
-    ("bending wave in the plate", _style.BLUE),
-    ("plastic flow at the contact", _style.ORANGE),
-    ("lost, nobody knows where", _style.MUTED),
+    ("kept by the bead", style.PALE),
+    ("bending wave in the plate", style.BLUE),
+    ("plastic flow at the contact", style.ORANGE),
+    ("lost, nobody knows where", style.MUTED),
 )
 
 
 def draw(run: Run) -> Figure:
     """Draw a stacked bar per plate; beside the baseline, what the model says of its impacts."""
     constant = run.law == CONSTANT
-    figure = _style.figure(
+    figure = style.figure(
         10.5,
         6.2,
         "A constant COR takes the same share from every impact"
         if constant
         else "Where the energy of the impacts went",
-        f"{_style.source(run)}; shares of the normal kinetic energy of all impacts on each plate"
+        f"{source(run)}; shares of the normal kinetic energy of all impacts on each plate"
         + ("; left: the run, right: contactlaw for the same impacts" if constant else ""),
     )
     axes = figure.add_subplot()
@@ -42,7 +43,7 @@ def draw(run: Run) -> Figure:
         else:
             parts = [(_KEPT, row.kept), (_WAVE, row.wave), (_PLASTIC, row.plastic)]
             _bar(axes, n, 0.66, parts)
-    _style.thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
+    thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("share of the impact energy [%]")
     axes.set_ylim(0.0, 100.0)
     _legend(figure, axes)
@@ -55,10 +56,10 @@ def _bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], 
         height = 100.0 * share
         axes.bar(x, height, width, bottom, color=colour, label=name, edgecolor="white")
         if height >= 2.5:  # smaller parts have no room for a number
-            dark = colour in (_style.BLUE, _style.MUTED)
+            dark = colour in (style.BLUE, style.MUTED)
             axes.text(
                 x, bottom + 0.5 * height, f"{height:.0f}", ha="center", va="center",
-                color="white" if dark else _style.INK, fontsize=11,
+                color="white" if dark else style.INK, fontsize=11,
             )  # fmt: skip
         bottom += height
 

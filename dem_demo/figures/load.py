@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contactlaw import load_signal
-from dem_demo.figures import _style
+from dem_demo import style
+from dem_demo.figures._labels import source
 from dem_demo.measure import on_plate
 from dem_demo.reader import Run
 from dem_demo.recorder import CONSTANT
@@ -24,11 +25,11 @@ def draw(run: Run) -> Figure:
     plates = run.scene.plates
     constant = run.law == CONSTANT
     rate = 10.0 ** math.ceil(math.log10(_SAMPLES / run.scene.duration))
-    figure = _style.figure(
+    figure = style.figure(
         13.0,
         1.9 + 1.25 * len(plates),
         "What a force sensor on each plate would see",
-        f"{_style.source(run)}; left: mean force over each {1e3 / rate:g} ms, right: hardest "
+        f"{source(run)}; left: mean force over each {1e3 / rate:g} ms, right: hardest "
         "contact" + ("; forces by contactlaw for the run's impacts" if constant else ""),
     )
     grid = figure.subplots(
@@ -40,7 +41,7 @@ def draw(run: Run) -> Figure:
         load = load_signal(
             rows["time"], *impacts, model=run.model, rate=rate, duration=run.scene.duration
         )
-        left.fill_between(load.time, load.force, step="mid", color=_style.BLUE, linewidth=0.6)
+        left.fill_between(load.time, load.force, step="mid", color=style.BLUE, linewidth=0.6)
         left.set_title(label(plates[n].thickness), loc="left", fontweight="bold", pad=3.0)
         if rows.size:
             _hardest(right, run, *impacts)
@@ -60,4 +61,4 @@ def draw(run: Run) -> Figure:
 def _hardest(axes: Axes, run: Run, speed: Floats, radius: Floats, thickness: float) -> None:
     n = int(np.argmax(run.model.lookup(speed, radius, thickness).peak_force))
     contact = run.model.force_history(speed[n], radius[n], thickness)
-    axes.plot(contact.time * 1e6, contact.force, color=_style.VERMILION, linewidth=2.0)
+    axes.plot(contact.time * 1e6, contact.force, color=style.VERMILION, linewidth=2.0)

@@ -6,7 +6,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dem_demo.figures import _style
+from dem_demo import style
+from dem_demo.figures._labels import source, thickness_axis
 from dem_demo.measure import first_rebounds
 from dem_demo.reader import Run
 from dem_demo.recorder import CONSTANT
@@ -16,13 +17,13 @@ from dem_demo.report import label
 def draw(run: Run) -> Figure:
     """Draw a column per plate; within it beads are sorted from slow to fast."""
     constant = run.law == CONSTANT
-    figure = _style.figure(
+    figure = style.figure(
         10.5,
         6.2,
         "A constant COR sends every bead back to the same share of its height"
         if constant
         else "How high beads rebound depends on the plate and on speed",
-        f"{_style.source(run)}; first impact of each bead, in each column from slow (left) to fast "
+        f"{source(run)}; first impact of each bead, in each column from slow (left) to fast "
         "(right)",
     )
     axes = figure.add_subplot()
@@ -30,7 +31,7 @@ def draw(run: Run) -> Figure:
     for n in range(len(run.scene.plates)):
         _column(axes, run, n, fastest)
     _constant_line(axes, run)
-    _style.thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
+    thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("rebound height / impact height  $v^2/2g$")
     axes.set_ylim(0.0, 1.05)
     axes.legend(loc="lower right")
@@ -42,7 +43,7 @@ def _column(axes: Axes, run: Run, plate: int, fastest: float) -> None:
     first = plate == 0
     x = plate + 0.8 * (speed / fastest - 0.5)
     axes.scatter(
-        x, ratio, s=16, color=_style.BLUE, alpha=0.6, linewidths=0,
+        x, ratio, s=16, color=style.BLUE, alpha=0.6, linewidths=0,
         label="measured in the run" if first else None,
     )  # fmt: skip
     radius = run.scene.beads.radius
@@ -51,7 +52,7 @@ def _column(axes: Axes, run: Run, plate: int, fastest: float) -> None:
     for r in (radius.min(), radius.max()):
         e = run.model.restitution(v, r, run.scene.plates[plate].thickness)
         axes.plot(
-            x, np.square(e), color=_style.INK, linewidth=1.4,
+            x, np.square(e), color=style.INK, linewidth=1.4,
             label="model, smallest and largest bead" if first and r == radius.min() else None,
         )  # fmt: skip
 
@@ -67,5 +68,5 @@ def _constant_line(axes: Axes, run: Run) -> None:
         cor = float(run.collisions["restitution"][on_plates].mean())
         text = "one COR for all: the run's mean, {:.2f}"
     axes.axhline(
-        cor**2, color=_style.VERMILION, linestyle="--", linewidth=2.0, label=text.format(cor)
+        cor**2, color=style.VERMILION, linestyle="--", linewidth=2.0, label=text.format(cor)
     )

@@ -10,7 +10,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from dem_demo.figures import _style
+from dem_demo import style
+from dem_demo.figures._labels import source
 from dem_demo.measure import on_plate
 from dem_demo.reader import Run
 from dem_demo.recorder import CONSTANT
@@ -25,13 +26,13 @@ def draw(run: Run) -> Figure:
     plates = run.scene.plates
     rows = math.ceil(len(plates) / _PER_ROW)
     constant = run.law == CONSTANT
-    figure = _style.figure(
+    figure = style.figure(
         13.0,
         1.6 + 3.8 * rows,
         f"One constant COR, {run.constant_cor:g}, misses every plate's curve"
         if constant
         else "The COR depends on thickness, bead size and speed",
-        f"{_style.source(run)}; points: impacts of the run, lines: model for the smallest, middle "
+        f"{source(run)}; points: impacts of the run, lines: model for the smallest, middle "
         "and largest bead, triangle: yield speed",
     )
     grid = figure.subplots(
@@ -49,7 +50,7 @@ def draw(run: Run) -> Figure:
             axes.set_visible(False)
     for axes in grid[:, 0]:
         axes.set_ylabel("coefficient of restitution")
-    figure.supxlabel("normal impact speed [m/s]", fontsize=13, color=_style.INK)
+    figure.supxlabel("normal impact speed [m/s]", fontsize=13, color=style.INK)
     figure.colorbar(colours, ax=panels, pad=0.01, fraction=0.02).set_label("bead radius [mm]")
     return figure
 

@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Rectangle
 from numpy.typing import NDArray
 
-from dem_demo.figures import _style
+from dem_demo import style
+from dem_demo.figures._labels import source
 from dem_demo.reader import Run
 from dem_demo.recorder import FLYING
 from dem_demo.report import label
@@ -28,11 +29,11 @@ def draw(run: Run) -> Figure:
     """Draw the busiest instant: most beads in sight that have hit a plate."""
     scene = run.scene
     frame = _busiest(run)
-    figure = _style.figure(
+    figure = style.figure(
         12.0,
         6.6,
         "Beads rain on plates of different thickness",
-        f"{_style.source(run)}; t = {run.time[frame] * 1e3:.0f} ms, beads drawn {_MAGNIFIED:g} "
+        f"{source(run)}; t = {run.time[frame] * 1e3:.0f} ms, beads drawn {_MAGNIFIED:g} "
         f"times their size, streaks: the last {_EXPOSURE * 1e3:g} ms",
     )
     axes = figure.add_subplot()
@@ -82,7 +83,7 @@ def _draw_plates(axes: Axes, scene: Scene) -> None:
         corner = plate.x0 * _MM, (plate.y - depth) * _MM
         axes.add_patch(
             Rectangle(
-                corner, (plate.x1 - plate.x0) * _MM, depth * _MM, facecolor=_style.INK, linewidth=0
+                corner, (plate.x1 - plate.x0) * _MM, depth * _MM, facecolor=style.INK, linewidth=0
             )
         )
         axes.annotate(
@@ -112,7 +113,7 @@ def _draw_beads(axes: Axes, run: Run, frame: int) -> PatchCollection:
             Circle((x * _MM, y * _MM), _MAGNIFIED * r * _MM)
             for (x, y), r in zip(position, radius, strict=True)
         ],
-        cmap=colormaps["viridis"].with_extremes(bad=_style.MUTED),
+        cmap=colormaps["viridis"].with_extremes(bad=style.MUTED),
         zorder=3,
     )
     colour = np.ma.masked_invalid(last)

@@ -8,8 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import contactlaw as cl
-
-from .row import Row, seconds
+from validation.bench.row import Row, seconds
 
 N, SAMPLES = 2000, 256
 

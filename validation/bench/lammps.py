@@ -19,8 +19,7 @@ from mpi4py import MPI  # before lammps, which does not find its MPI library oth
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate, attach
-
-from .row import Row
+from validation.bench.row import Row
 
 from lammps import lammps  # isort: skip
 

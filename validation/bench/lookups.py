@@ -12,8 +12,7 @@ from scipy.interpolate import RectBivariateSpline
 
 import contactlaw as cl
 from contactlaw import store
-
-from .row import Row, per_call, seconds
+from validation.bench.row import Row, per_call, seconds
 
 N = 1_000_000
 _INPUT_AND_OUTPUT = 4 * 8  # bytes per impact: speed, radius, thickness in, COR out

@@ -13,8 +13,7 @@ from contactlaw.engines import pymunk as adapter
 from dem_demo import nozzles, rain_pymunk
 from dem_demo.baseline import ConstantRestitution
 from dem_demo.scene import Scene
-
-from .row import Row
+from validation.bench.row import Row
 
 BEADS, COR, REPEAT = 1000, 0.9, 2
 DURATION = 0.6  # [s]; beads come during the first third, all have hit by the end

@@ -13,8 +13,7 @@ from scipy.integrate import solve_ivp
 
 import contactlaw as cl
 from contactlaw import laws, store, table, zener
-
-from .row import Row, seconds
+from validation.bench.row import Row, seconds
 
 N = 20_000
 RTOL = 1e-8

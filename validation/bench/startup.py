@@ -10,7 +10,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 
-from .row import Row
+from validation.bench.row import Row
 
 # numba imports scipy.linalg where scipy is installed, as it is for these benchmarks: 0.3 s that a
 # user of contactlaw alone does not wait for. Hidden, it is as if it were not installed.

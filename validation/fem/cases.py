@@ -15,8 +15,6 @@ import numpy as np
 from tqdm import tqdm
 
 import contactlaw as cl
-from contactlaw.impact import scales, sphere_on_plate
-from contactlaw.laws import law
 from validation.fem import store
 from validation.fem.impact import impact
 from validation.fem.solver import SETTINGS
@@ -82,7 +80,6 @@ def solve(case: Case) -> dict[str, Any]:
     named = {
         "friction_loss": hit.friction,
         "touching_loss": hit.contact,
-        "elements": len(hit.system.sphere.elements) + len(hit.system.plate.elements),
     }
     outcome = {key: named[key] if key in named else getattr(hit, key) for key in OUTCOMES}
     width = float(hit.system.x[:, 0].max())
@@ -116,12 +113,6 @@ def solve_all(cases: Iterable[Case], title: str, processes: int) -> dict[str, np
         rows = list(done)
     names = [field.name for field in fields(Case)] + list(OUTCOMES)
     return {name: np.array([row[name] for row in rows]) for name in names}
-
-
-def yield_inelasticity(pair: cl.Pair, thickness: float) -> float:
-    """Inelasticity lambda of an impact at V_Y0 [-]."""
-    contact = sphere_on_plate(pair, law("myc"), np.array(RADIUS), np.array(thickness))
-    return float(scales(contact, np.array(pair.yield_speed)).inelasticity)
 
 
 def save(name: str, about: str, data: dict[str, np.ndarray]) -> None:

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw import closed_form, laws, turning_point
-from contactlaw.impact import law_of
-from validation import paper
+from contactlaw import closed_form, turning_point
+from validation import formulas, paper
 from validation.fem import store
 from validation.fem.cases import material
 
@@ -61,7 +60,7 @@ def comparison(name: str) -> Comparison:
         "modified Zener": model["restitution"],
         "turning point": np.asarray(turning_point.restitution(ratio, at_yield)),
         "Eq. 22, continuous": np.asarray(closed_form.peng(ratio, like, paper.ETA)),
-        "Eq. 22, printed": np.asarray(closed_form.peng(ratio, like, paper.ETA, printed=True)),
+        "Eq. 22, printed": np.asarray(formulas.eq_22(ratio, like, paper.ETA)),
         "Zener": np.asarray(closed_form.zener(lam)),
         "Mueller, Eq. 3": np.asarray(closed_form.mueller(lam)),
     }
@@ -75,8 +74,8 @@ def by_law() -> dict[str, Array]:
     at_yield = paper.ETA * case.slenderness**2
     impacts = list(zip(case.speed_ratio, at_yield, strict=True))
     return {
-        law.name.partition("(")[0]: np.array([paper.restitution(*one, law) for one in impacts])
-        for law in paper.all_laws()
+        name: np.array([paper.restitution(*one, law) for one in impacts])
+        for name, law in paper.all_laws().items()
     }
 
 
@@ -107,8 +106,8 @@ def by_strain(speed_ratio: float) -> list[Yielded]:
             pair = cl.Pair(material(case.fem["sphere"][n]), material(case.fem["plate"][n]))
             ratio = pair.sphere.youngs_modulus / pair.sphere.require_yield_strength("by_strain")
             cor = {
-                name: paper.restitution(speed_ratio, paper.ETA, law_of(pair, name))
-                for name in laws.names()
+                name: paper.restitution(speed_ratio, paper.ETA, law)
+                for name, law in paper.all_laws(pair).items()
             }
             found.append(Yielded(ratio, pair.plate.name, float(case.fem["restitution"][n]), cor))
     return sorted(found, key=lambda one: one.ratio)
@@ -189,9 +188,7 @@ def loading_errors(way: Array) -> dict[str, Array]:
     True
     """
     fem = force_at("30", way)
-    return {
-        law.name.partition("(")[0]: paper.force(law, way) / fem - 1.0 for law in paper.all_laws()
-    }
+    return {name: paper.force(law, way) / fem - 1.0 for name, law in paper.all_laws().items()}
 
 
 def returned(way: Array, force: Array, top: int) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw.closed_form import checked
+from contactlaw.arguments import checked
 from validation.fem import elements, mesh, solver
 from validation.fem.mesh import Mesh
 from validation.fem.solver import System
@@ -24,7 +24,6 @@ _SOONEST, _GIVE_UP = 0.5, 3.0  # expected contact times
 _IMBALANCE = 0.1  # of the energy: elements that collapse make more
 _FINEST = 0.01  # R, the paper's smallest element, and at least ...
 _ACROSS = 15.0  # ... so many in the expected contact's radius
-_CORE = 1.3  # finest part of the mesh, over the expected contact's radius sqrt(R d)
 _RIM = 0.55  # half of the way that a pressure wave runs in a plate, and a tenth more
 
 
@@ -84,6 +83,11 @@ class Impact:
     size: float
     step: float
     steps: int
+
+    @property
+    def elements(self) -> int:
+        """Number of elements, of both bodies."""
+        return len(self.system.sphere.elements) + len(self.system.plate.elements)
 
 
 def impact(
@@ -213,7 +217,7 @@ def meshed(
     guess: Expected, radius: float, thickness: float, size: float, width: float, far: float = 1.0
 ) -> tuple[Mesh, Mesh]:
     """Sphere and plate for an expected impact; lengths [m], `size` over the radius."""
-    fine, core = size * radius, _CORE * guess.contact
+    fine, core = size * radius, mesh.CORE * guess.contact
     return (
         mesh.sphere(radius, fine, core),
         mesh.plate(radius, fine, core, thickness, width, far),

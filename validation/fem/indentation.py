@@ -9,15 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw.closed_form import checked
+from contactlaw.arguments import checked
 from validation.fem import mesh, solver
 from validation.fem.solver import System
 
 Array = NDArray[np.float64]
 
 BLOCK = 20.0  # width and thickness of the block, over the sphere's radius
-_CORE = 1.3  # finest part of the mesh, over the contact's expected radius ...
-_WIDEST = 0.3  # ... but not wider than this many radii
+_WIDEST = 0.3  # finest part of the mesh, over the radius, however deep
 _SAMPLES = 400
 _TRANSITS = 200.0  # of the pressure wave through the radius, for loading and unloading together
 
@@ -50,7 +49,7 @@ class Indentation:
 
 def core(radius: float, depth: float) -> float:
     """Width of the finest part of the mesh [m]."""
-    return min(_CORE * math.sqrt(radius * depth), _WIDEST * radius)
+    return min(mesh.CORE * math.sqrt(radius * depth), _WIDEST * radius)
 
 
 def indent(

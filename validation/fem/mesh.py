@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 # Our choices.
+CORE = 1.3  # finest part, over the contact's expected radius sqrt(R d)
 _FAR_CORE = 1.2  # width of the part around the far pole [R]
 _GROWTH = 1.1  # of one element of the plate over its neighbour
 _COARSEST = 0.15  # largest element of the plate [R] ...

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -12,12 +13,13 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import contactlaw as cl
+from contactlaw.closed_form import eta
 from validation.fem import calculix, cases, store
-from validation.fem.cases import Case, yield_inelasticity
+from validation.fem.cases import Case
 from validation.fem.impact import expect, free_width, impact
 from validation.fem.indentation import BLOCK, indent
 from validation.fem.solver import SETTINGS
-from validation.paper import PAIR, RADIUS, YIELD_COMPRESSION
+from validation.paper import ETA, PAIR, RADIUS, YIELD_COMPRESSION
 
 SLENDERNESS = (0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.8)  # R/H
 SPEED_RATIO = (0.3, 0.6, 1.0, 1.5, 2.2, 3.5, 5.0, 7.0)  # V0/V_Y0
@@ -91,11 +93,22 @@ def _indented(job: dict[str, Any]) -> dict[str, tuple[NDArray[Any], str]]:
     }
 
 
+def _where_installed(study: Callable[[int], None]) -> Callable[[int], None]:
+    """Make a study by CalculiX one that keeps the stored result where there is no CalculiX."""
+
+    @functools.wraps(study)
+    def run(processes: int) -> None:
+        if calculix.installed():
+            study(processes)
+        else:
+            tqdm.write("calculix: ccx is not installed (Debian: calculix-ccx); its result stays")
+
+    return run
+
+
+@_where_installed
 def calculix_indentation(_: int) -> None:
-    """Repeat one indentation with CalculiX, where it is installed."""
-    if not calculix.installed():
-        tqdm.write("calculix: ccx is not installed (Debian: calculix-ccx); the stored result stays")
-        return
+    """Repeat one indentation with CalculiX."""
     depth = CALCULIX_DEPTH * YIELD_COMPRESSION
     compression, force = calculix.run(PAIR, RADIUS, depth, CALCULIX_SIZE)
     store.write(
@@ -110,11 +123,9 @@ def calculix_indentation(_: int) -> None:
     )
 
 
+@_where_installed
 def calculix_impact(_: int) -> None:
     """Repeat one impact with CalculiX: two meshes, and more numerical damping."""
-    if not calculix.installed():
-        tqdm.write("calculix: ccx is not installed (Debian: calculix-ccx); the stored result stays")
-        return
     runs = [
         calculix.Fall(PAIR, _SPEED, RADIUS, _THICKNESS, size, damping, increments)
         for size, damping, increments in ((0.06, 0.05, 115), (0.06, 0.3, 115), (0.03, 0.05, 170))
@@ -198,7 +209,7 @@ def paper(_: int) -> None:
             "plastic": "-", "wave": "-", "vibration": "-",
         },
         mesh=f"element size {hit.size:g} R",
-        elements=len(system.sphere.elements) + len(system.plate.elements),
+        elements=hit.elements,
         width=float(system.x[:, 0].max()),
         friction=0.1,
         speed=_SPEED,
@@ -214,11 +225,9 @@ def pairs(processes: int) -> None:
     """Compare three pairs at equal inelasticity: does one table serve them all."""
     listed = []
     for slenderness in (0.5, 1.0, 1.5):
-        inelasticity = yield_inelasticity(PAIR, RADIUS / slenderness)
         for sphere, plate in ((PAIR.sphere.name, PAIR.plate.name), *OTHER_PAIRS):
             pair = cl.Pair(sphere, plate)
-            # lambda ~ 1/H^2
-            thickness = RADIUS * math.sqrt(yield_inelasticity(pair, RADIUS) / inelasticity)
+            thickness = RADIUS / slenderness * math.sqrt(eta(pair) / ETA)
             for v in (0.5, 1.5, 3.5, 7.0):
                 listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere, plate=plate))
     data = cases.solve_all(listed, "pairs", processes)
@@ -228,12 +237,11 @@ def pairs(processes: int) -> None:
 
 def strengths(processes: int) -> None:
     """Weaken the sphere: what its modulus over its strength does, at equal inelasticity."""
-    inelasticity = yield_inelasticity(PAIR, RADIUS)  # R/H = 1; at 1 it is in `pairs`
     listed = []
-    for factor in (2.0, 0.5, 0.25, 0.125):
+    for factor in (2.0, 0.5, 0.25, 0.125):  # 1 is in `pairs`
         sphere = f"{PAIR.sphere.name}, yield strength x {factor:g}"
         pair = cl.Pair(cases.material(sphere), PAIR.plate)
-        thickness = RADIUS * math.sqrt(yield_inelasticity(pair, RADIUS) / inelasticity)
+        thickness = RADIUS * math.sqrt(eta(pair) / ETA)  # so lambda_Y is that of R/H = 1
         for v in (1.5, 3.5, 7.0):
             listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere))
     data = cases.solve_all(listed, "strengths", processes)

@@ -1,21 +1,19 @@
-"""The look of the demo's figures, with more colours and the marks of the paper's regions."""
+"""The look that all figures share, with more colours and the marks of the paper's regions."""
 
 from __future__ import annotations
 
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 
-from dem_demo.figures._style import (
-    BLUE,
-    GREEN,
-    INK,
-    MUTED,
-    ORANGE,
-    PALE,
-    VERMILION,
-    applied,
-    figure,
-)
+from dem_demo.style import BLUE as BLUE
+from dem_demo.style import GREEN as GREEN
+from dem_demo.style import INK as INK
+from dem_demo.style import MUTED as MUTED
+from dem_demo.style import ORANGE as ORANGE
+from dem_demo.style import PALE as PALE
+from dem_demo.style import VERMILION as VERMILION
+from dem_demo.style import applied as applied
+from dem_demo.style import figure as figure
 
 SKY, PURPLE = "#56B4E9", "#CC79A7"  # Okabe and Ito (2008), as the others
 _LAWS = {
@@ -44,21 +42,3 @@ def speed_axis(axes: Axes, ticks: tuple[float, ...]) -> None:
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.minorticks_off()
     axes.set_xlabel("impact speed  V$_0$ / V$_{Y0}$")
-
-
-__all__ = [
-    "BLUE",
-    "GREEN",
-    "INK",
-    "MUTED",
-    "ORANGE",
-    "PALE",
-    "PURPLE",
-    "SKY",
-    "VERMILION",
-    "applied",
-    "figure",
-    "law",
-    "shades",
-    "speed_axis",
-]

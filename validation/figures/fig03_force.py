@@ -33,8 +33,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     d = np.linspace(0.0, _TOP, 501)
     far = np.geomspace(0.4, 30.0, 300)
     off = compare.loading_errors(far)
-    for law in all_laws():
-        name = law.name.partition("(")[0]
+    for name, law in all_laws().items():
         colour, line, title = _style.law(name)
         left.plot(d, force(law, d), line, color=colour, linewidth=2.2, label=title)
         if law.yield_coefficient is not None:

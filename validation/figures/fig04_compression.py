@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from contactlaw import turning_point
 from contactlaw.closed_form import elastic_compression
 from validation.figures import _style
+from validation.formulas import eq_6
 
 INTERCEPT = 1.25**-0.6
 
@@ -43,7 +44,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     left.plot(lam, quadratic, color=_style.GREEN, linewidth=2, label="derived slope + quadratic")
     left.set(xlabel=r"inelasticity  $\lambda$", ylabel=r"$w_m^{-1.5}$", xlim=(0, 2))
     left.legend(loc="upper left")
-    printed = elastic_compression(lam, printed=True)
+    printed = eq_6(lam)
     right.plot(lam, 100 * (printed / exact - 1), color=_style.VERMILION, linewidth=2)
     right.plot(lam, 100 * (quadratic ** (-2 / 3) / exact - 1), color=_style.GREEN, linewidth=2)
     right.set(xlabel=r"inelasticity  $\lambda$", ylabel=r"error of $w_m$  [%]", xlim=(0, 2))

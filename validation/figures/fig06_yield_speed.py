@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from contactlaw.closed_form import yield_speed_ratio
 from validation.evidence import eq_10
 from validation.figures import _style
+from validation.formulas import eq_14
 from validation.paper import ETA, SHARE, THINNEST
 
 
@@ -27,8 +28,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
     left, right = figure.subplots(1, 2)
     ratio = np.linspace(0.0, 2.2, 89)
     exact = np.asarray(yield_speed_ratio(ETA * ratio**2))
-    printed = np.asarray(yield_speed_ratio(ETA * ratio**2, printed=True))
-    misprint = np.asarray(yield_speed_ratio(ETA * SHARE**0.4 * ratio**2, printed=True))
+    printed = np.asarray(eq_14(ETA * ratio**2))
+    misprint = np.asarray(eq_14(ETA * SHARE**0.4 * ratio**2))
     left.plot(
         ratio[::8], exact[::8], "s", color=_style.BLUE, markersize=7, label="solver", clip_on=False
     )
@@ -50,6 +51,6 @@ def draw() -> tuple[Figure, dict[str, float]]:
             misprint[at] / exact[at] - 1
         ),
         "Eq. 14 with eta as printed at R/H = 1.8, error": float(
-            yield_speed_ratio(eq_10(3.0, 0.8) * THINNEST**2, printed=True) / exact[at] - 1
+            eq_14(eq_10(3.0, 0.8) * THINNEST**2) / exact[at] - 1
         ),
     }

@@ -13,6 +13,7 @@ from contactlaw import turning_point
 from contactlaw.closed_form import peng
 from validation.fem import compare
 from validation.figures import _style
+from validation.formulas import eq_22
 from validation.paper import ETA, FASTEST, impacts
 
 _RATIOS = (0.25, 0.75, 1.25, 1.8)  # where there are finite elements
@@ -33,7 +34,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     for axes, ratio in zip(panels, _RATIOS, strict=True):
         e = np.asarray(impacts(v, ratio).restitution)
         forms = {
-            "printed": peng(v, ratio, ETA, printed=True),
+            "printed": eq_22(v, ratio, ETA),
             "continuous": peng(v, ratio, ETA),
             "turning point": turning_point.restitution(v, ETA * ratio**2),
         }

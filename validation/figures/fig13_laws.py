@@ -15,8 +15,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw import laws
-from contactlaw.closed_form import thornton_asymptote
+from validation.evidence import slope
 from validation.figures import _style
+from validation.formulas import thornton_asymptote
 from validation.paper import ETA, SPEED, Array, all_laws, restitution, yield_unit
 
 _SLOWER = yield_unit(laws.law("thornton")) ** 1.25  # yield speed of its law in that of MYC
@@ -35,8 +36,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     left, right = figure.subplots(1, 2, sharey=True)
     v = np.geomspace(0.1, 30.0, 160)
     cor: dict[tuple[str, float], Array] = {}
-    for law in all_laws():
-        name = law.name.partition("(")[0]
+    for name, law in all_laws().items():
         colour, line, title = _style.law(name)
         for axes, lam_y in ((left, 0.0), (right, ETA)):
             e = np.array([restitution(x, lam_y, law) for x in v])
@@ -74,6 +74,5 @@ def draw() -> tuple[Figure, dict[str, float]]:
 
 
 def _slope(law: laws.Law, speed_ratio: float) -> float:
-    step = 1e-3
-    up, down = (restitution(speed_ratio * math.exp(h), 0.0, law) for h in (step, -step))
-    return math.log(up / down) / (2.0 * step)
+    down, up = (speed_ratio * math.exp(h) for h in (-1e-3, 1e-3))
+    return slope((down, restitution(down, 0.0, law)), (up, restitution(up, 0.0, law)))

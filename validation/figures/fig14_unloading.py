@@ -33,8 +33,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     numbers = {}
     grid, depth = np.linspace(0.0, _DEEPEST, 400), np.geomspace(0.8, _DEEPEST, 60)
-    for law in all_laws():
-        name = law.name.partition("(")[0]
+    for name, law in all_laws().items():
         colour, line, title = _style.law(name)
         left.plot(grid, force(law, grid), line, color=colour, linewidth=2, label=title)
         if law.yield_coefficient is None:

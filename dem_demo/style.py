@@ -1,4 +1,4 @@
-"""One look for all figures: sizes that can be read in a talk, colours that most eyes tell apart."""
+"""One look for all figures, the demo's and the report's: readable in a talk, colours told apart."""
 
 from __future__ import annotations
 
@@ -8,12 +8,8 @@ from contextlib import contextmanager
 from typing import Any
 
 import matplotlib as mpl
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-from dem_demo.reader import Run
-from dem_demo.recorder import CONSTANT
 
 # Okabe and Ito (2008), Color Universal Design.
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -58,18 +54,3 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     text = "\n".join(lines)
     made.text(0.012, 1.0 - 0.5 / height, text, fontsize=11.5, color=MUTED, va="top")
     return made
-
-
-def source(run: Run) -> str:
-    """Say in a few words what ran."""
-    scene = run.scene
-    law = f"COR {run.constant_cor:g} everywhere" if run.law == CONSTANT else "contactlaw"
-    return f"{scene.sphere_material.name} on {scene.plate_material.name}, {run.engine}, {law}"
-
-
-def thickness_axis(axes: Axes, labels: list[str]) -> None:
-    """Give every plate a column, with its thickness below."""
-    axes.set_xticks(range(len(labels)), labels)
-    axes.set_xlim(-0.55, len(labels) - 0.45)
-    axes.set_xlabel("plate thickness")
-    axes.grid(visible=False, axis="x")
