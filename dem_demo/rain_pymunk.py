@@ -11,7 +11,8 @@ from tqdm import tqdm
 from contactlaw import ImpactModel
 from contactlaw.engines import pymunk as adapter
 from dem_demo.baseline import ConstantRestitution
-from dem_demo.recorder import FLYING, GONE, WAITING, Frame, Recorder
+from dem_demo.frame import FLYING, GONE, WAITING, Frame
+from dem_demo.recorder import Recorder
 from dem_demo.scene import GRAVITY, Scene
 
 NAME, VERSION, DIMENSIONS = "pymunk", version("pymunk"), 2

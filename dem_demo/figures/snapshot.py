@@ -13,8 +13,8 @@ from matplotlib.patches import Circle, Rectangle
 from numpy.typing import NDArray
 
 from dem_demo.figures import _style
+from dem_demo.frame import FLYING
 from dem_demo.reader import Run
-from dem_demo.recorder import FLYING
 from dem_demo.report import label
 from dem_demo.scene import Floats, Scene
 
