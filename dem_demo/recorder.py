@@ -60,6 +60,8 @@ class Recorder:
         Of the engine, 2 or 3.
     constant_cor : float, optional
         The COR of every contact, in the baseline.
+    bead_on_bead : str, optional
+        What is to be said of beads that hit beads, where the engine does not record them.
     """
 
     def __init__(
@@ -73,6 +75,7 @@ class Recorder:
         time_step: float,
         dimensions: int,
         constant_cor: float | None = None,
+        bead_on_bead: str | None = None,
     ) -> None:
         self.folder = path.parent
         self._file = h5py.File(path, "x")
@@ -82,6 +85,8 @@ class Recorder:
         self._file.attrs.update({"frame_rate": scene.frame_rate, "time_step": time_step})
         if constant_cor is not None:
             self._file.attrs["constant_cor"] = constant_cor
+        if bead_on_bead is not None:
+            self._file.attrs["bead_on_bead"] = bead_on_bead
         _write_scene(self._file, scene)
         self._trajectories = _create_trajectories(self._file, scene, dimensions)
 
