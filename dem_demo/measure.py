@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import Validity, edge_distance
+from dem_demo.frame import FLYING
 from dem_demo.reader import Run
-from dem_demo.recorder import CONSTANT, FLYING
+from dem_demo.recorder import CONSTANT
 from dem_demo.scene import GRAVITY, Floats
 
 

@@ -29,6 +29,8 @@ class Run:
         The COR of every contact, in the baseline.
     engine : str
         Engine that ran it.
+    bead_on_bead : str or None
+        What is to be said of beads that hit beads, where the engine does not record them.
     collisions : structured ndarray
         One row per collision; the columns are those of the file.
     time, position, velocity, status : ndarray
@@ -41,6 +43,7 @@ class Run:
     law: str
     constant_cor: float | None
     engine: str
+    bead_on_bead: str | None
     collisions: NDArray[np.void]
     time: Floats
     position: NDArray[np.float32]
@@ -86,6 +89,7 @@ def read(path: Path) -> Run:
             law=attributes["law"],
             constant_cor=attributes.get("constant_cor"),
             engine=attributes["engine"],
+            bead_on_bead=attributes.get("bead_on_bead"),
             collisions=_table(file["collisions"]),
             **frames,
         )

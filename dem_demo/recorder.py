@@ -8,17 +8,17 @@ from collections.abc import Mapping
 from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
-from typing import NamedTuple, Self
+from typing import Self
 
 import h5py
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import Material
-from dem_demo.scene import Floats, Scene
+from dem_demo.frame import Frame
+from dem_demo.scene import Scene
 
 FORMAT, SCHEMA = "contactlaw-rain", 1
-WAITING, FLYING, GONE = 0, 1, 2
 CONSTANT = "constant"  # the law's name where every contact has the same COR
 
 _COLUMNS = {
@@ -37,18 +37,6 @@ _COLUMNS = {
     "plastic_energy": ("J", "energy lost to plastic flow at the contact"),
     "wave_energy": ("J", "energy carried off by the bending wave in the plate"),
 }
-
-
-class Frame(NamedTuple):
-    """One instant of every bead: position (N, 2) [m], velocity (N, 2) [m/s] and status (N,).
-
-    In three dimensions also depth (N,) [m], the coordinate that the figures look along.
-    """
-
-    position: Floats
-    velocity: Floats
-    status: NDArray[np.uint8]
-    depth: Floats | None = None
 
 
 class Recorder:
@@ -72,6 +60,8 @@ class Recorder:
         Of the engine, 2 or 3.
     constant_cor : float, optional
         The COR of every contact, in the baseline.
+    bead_on_bead : str, optional
+        What is to be said of beads that hit beads, where the engine does not record them.
     """
 
     def __init__(
@@ -85,6 +75,7 @@ class Recorder:
         time_step: float,
         dimensions: int,
         constant_cor: float | None = None,
+        bead_on_bead: str | None = None,
     ) -> None:
         self.folder = path.parent
         self._file = h5py.File(path, "x")
@@ -94,6 +85,8 @@ class Recorder:
         self._file.attrs.update({"frame_rate": scene.frame_rate, "time_step": time_step})
         if constant_cor is not None:
             self._file.attrs["constant_cor"] = constant_cor
+        if bead_on_bead is not None:
+            self._file.attrs["bead_on_bead"] = bead_on_bead
         _write_scene(self._file, scene)
         self._trajectories = _create_trajectories(self._file, scene, dimensions)
 

@@ -68,9 +68,9 @@ def _plate_line(row: PlateRow) -> str:
 
 
 def _bead_line(run: Run) -> str:
+    if run.bead_on_bead is not None:
+        return f"Bead on bead: {run.bead_on_bead}"
     rows = bead_on_bead(run)
-    if run.engine == "lammps":
-        return "Bead on bead: LAMMPS's own contact, not recorded"
     if not rows.size:
         return "Bead on bead: no impacts"
     speed, cor = rows["approach_speed"], rows["restitution"]

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import Material
 from dem_demo import defaults
+
+if TYPE_CHECKING:
+    from contactlaw import Material
 
 Floats = NDArray[np.float64]
 

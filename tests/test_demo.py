@@ -211,7 +211,7 @@ def test_a_file_in_the_way(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("failure", [RuntimeError, ZeroDivisionError])  # one with a traceback
-@pytest.mark.parametrize("where", ["dem_demo.rain_pymunk.run", "dem_demo.figures.draw_all"])
+@pytest.mark.parametrize("where", ["dem_demo.engines.pymunk.run", "dem_demo.figures.draw_all"])
 def test_a_failure_leaves_the_old_result(where, failure, monkeypatch, tmp_path, capsys):
     old = tmp_path / "out"
     old.mkdir()
@@ -244,8 +244,8 @@ sys.exit(cli.main({argv!r}))
 @pytest.mark.parametrize(
     ("module", "function", "number", "status"),
     [
-        ("rain_pymunk", "run", signal.SIGINT, 130),
-        ("rain_pymunk", "run", signal.SIGHUP, 129),
+        ("engines.pymunk", "run", signal.SIGINT, 130),
+        ("engines.pymunk", "run", signal.SIGHUP, 129),
         ("figures", "draw_all", signal.SIGTERM, 143),
     ],
 )

@@ -19,7 +19,7 @@ from box import PLATE, R, flat, make, shower, state  # noqa: E402
 
 from contactlaw.engines.lammps import Plate, attach, pair_coeff  # noqa: E402
 from dem_demo import cli, figures, reader  # noqa: E402
-from dem_demo.recorder import FLYING  # noqa: E402
+from dem_demo.frame import FLYING  # noqa: E402
 from dem_demo.scene import GRAVITY  # noqa: E402
 
 # thickness [m], speed [m/s]: below and above yield (7.4 m/s on a half-space), lambda to 1.2

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from dem_demo import style
 from dem_demo.figures._labels import source
+from dem_demo.frame import FLYING
 from dem_demo.reader import Run
-from dem_demo.recorder import FLYING
 from dem_demo.report import label
 from dem_demo.scene import Floats, Scene
 

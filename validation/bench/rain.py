@@ -10,8 +10,9 @@ import pymunk
 
 import contactlaw as cl
 from contactlaw.engines import pymunk as adapter
-from dem_demo import nozzles, rain_pymunk
+from dem_demo import nozzles
 from dem_demo.baseline import ConstantRestitution
+from dem_demo.engines.pymunk import Rain
 from dem_demo.scene import Scene
 from validation.bench.row import Row
 
@@ -55,7 +56,7 @@ def rows() -> Iterator[Row]:
 
 
 def _run(scene: Scene, model: cl.ImpactModel | ConstantRestitution) -> float:
-    rain = rain_pymunk._Rain(scene, model)
+    rain = Rain(scene, model)
     start = time.perf_counter()
     for _ in range(scene.frames):
         rain.advance(scene.steps_per_frame)

@@ -1,21 +1,39 @@
-"""The rain in pymunk. Another engine is another file with this `run`."""
+"""The rain in pymunk: two dimensions, each impact resolved in one step."""
 
 from __future__ import annotations
 
-from importlib.metadata import version
+from importlib import metadata
+from typing import TYPE_CHECKING
 
 import numpy as np
-import pymunk
 from tqdm import tqdm
 
-from contactlaw import ImpactModel
-from contactlaw.engines import pymunk as adapter
-from dem_demo.baseline import ConstantRestitution
-from dem_demo.recorder import FLYING, GONE, WAITING, Frame, Recorder
+from dem_demo import defaults
+from dem_demo.frame import FLYING, GONE, WAITING, Frame
 from dem_demo.scene import GRAVITY, Scene
 
-NAME, VERSION, DIMENSIONS = "pymunk", version("pymunk"), 2
-RANK = 0  # of this process among those that share the work
+if TYPE_CHECKING:
+    import pymunk
+
+    from contactlaw import ImpactModel
+    from dem_demo.baseline import ConstantRestitution
+    from dem_demo.recorder import Recorder
+
+ABOUT, EXTRAS = "two dimensions", "demo"
+DIMENSIONS = 2
+DURATION, FRAME_RATE = defaults.DURATION, defaults.FRAME_RATE
+NO_CONSTANT_COR = None
+BEAD_ON_BEAD = None
+
+
+def version() -> str:
+    """Version of pymunk."""
+    return metadata.version("pymunk")
+
+
+def rank() -> int:
+    """Tell that nobody shares the work."""
+    return 0
 
 
 def time_step(scene: Scene, model: ImpactModel | ConstantRestitution) -> float:
@@ -23,10 +41,22 @@ def time_step(scene: Scene, model: ImpactModel | ConstantRestitution) -> float:
     return scene.time_step
 
 
-class _Rain:
-    """A scene in a pymunk space: which bodies are in it, and what it looks like now."""
+class Rain:
+    """A scene in a pymunk space: which bodies are in it, and what it looks like now.
+
+    Parameters
+    ----------
+    scene : Scene
+        What falls on what.
+    model : ImpactModel or ConstantRestitution
+        Where each collision's COR comes from.
+    """
 
     def __init__(self, scene: Scene, model: ImpactModel | ConstantRestitution) -> None:
+        import pymunk
+
+        from contactlaw.engines import pymunk as adapter
+
         self.scene = scene
         self.space = pymunk.Space()
         self.space.gravity = (0.0, -GRAVITY)
@@ -62,6 +92,8 @@ class _Rain:
             self.steps += 1
 
     def _emit(self, n: int) -> None:
+        import pymunk
+
         beads = self.scene.beads
         mass, radius = float(self.mass[n]), float(beads.radius[n])
         body = pymunk.Body(mass, 0.4 * mass * radius**2)  # moment of inertia of a solid sphere
@@ -87,7 +119,7 @@ class _Rain:
         return self.now
 
 
-def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Recorder) -> None:
+def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Recorder | None) -> None:
     """Let it rain, and record it.
 
     Parameters
@@ -99,7 +131,8 @@ def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Record
     recorder : Recorder
         Gets every frame, and all collisions at the end.
     """
-    rain = _Rain(scene, model)
+    assert recorder is not None  # of rank 0
+    rain = Rain(scene, model)
     recorder.frame(rain.look())
     # disable=None: no bar where there is no terminal
     for _ in tqdm(range(scene.frames), desc="rain", unit="frame", disable=None):

