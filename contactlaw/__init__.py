@@ -12,15 +12,15 @@ array([0.685, 0.908, 0.989])
 """
 
 from contactlaw._version import VERSION as __version__
-from contactlaw.physical.history import ForceHistory
-from contactlaw.physical.rebound import Rebound
 from contactlaw.loads import LoadSignal, load_signal
+from contactlaw.model import ImpactModel
+from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.materials import Material, material, materials
 from contactlaw.physical.pair import Pair
-from contactlaw.model import ImpactModel
+from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.validity import Validity, edge_distance
 from contactlaw.sensitivity import Sensitivity
 from contactlaw.spheres import restitution_sphere_sphere
-from contactlaw.physical.validity import Validity, edge_distance
 
 __all__ = [
     "ForceHistory",

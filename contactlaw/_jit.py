@@ -20,12 +20,13 @@ from pathlib import Path
 from typing import Any, TypeVar, overload
 
 import numba
-from numba.core import config
+import numba.core.config
 from numba.extending import intrinsic
 
 from contactlaw import _folder
 from contactlaw._version import VERSION
 
+config: Any = numba.core.config
 _F = TypeVar("_F", bound=Callable[..., Any])
 _cached: list[Any] = []
 _UNUSED = 30 * 86400.0  # [s] after which the code of another version is thrown away
@@ -93,9 +94,9 @@ def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = Fa
             "numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler"
         )
     with _into_folder() as folder:
-        made: Any = numba.cfunc(  # type: ignore[attr-defined]
-            signature, error_model="numpy", cache=cache and folder is not None
-        )(function)
+        made: Any = numba.cfunc(signature, error_model="numpy", cache=cache and folder is not None)(
+            function
+        )
     return made
 
 

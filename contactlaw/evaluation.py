@@ -37,7 +37,7 @@ def _default(law: Law) -> Table:
 
 
 def _served(law: Law) -> Law:
-    """Law whose table serves: one that never yields is the edge chi = 1 of any table; myc's ships."""
+    """Law whose table serves: a law that never yields is the edge chi = 1 of any; myc's ships."""
     return law if law.yields else laws.law("myc")
 
 

@@ -333,9 +333,7 @@ class ImpactModel:
         units = scales(contact, v)
         found = solved(self._law, units, rtol)
         flags = np.zeros(v.size, dtype=np.int64)
-        return self._rebound(
-            self.pair, contact, units, Impacts(v, r, h, shape), found, flags
-        )
+        return self._rebound(self.pair, contact, units, Impacts(v, r, h, shape), found, flags)
 
     def force_history(
         self,
@@ -634,9 +632,7 @@ class ImpactModel:
             asked = asked[0].copy(), asked[1].copy()
             outside = np.isnan(found.restitution)
             units = scales(sphere_on_plate(self.pair, self._law, r, h), v)
-            flags[outside] = complete(
-                self._law, self._table, units, self.outside, outside, found
-            )
+            flags[outside] = complete(self._law, self._table, units, self.outside, outside, found)
             self._count(flags)
         return found, flags, asked, root
 

@@ -117,9 +117,7 @@ def _force(law: Array, loading: bool, q: float, curve: Curve) -> float:
 
 
 @kernel
-def _balance(
-    law: Array, loading: bool, curve: Curve, b: float, r: float
-) -> tuple[float, float]:
+def _balance(law: Array, loading: bool, curve: Curve, b: float, r: float) -> tuple[float, float]:
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
     The left side is convex, so the secant method comes down to the root from the right and cannot
@@ -187,9 +185,7 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
 
 
 @kernel(cache=True)
-def _advance_all(
-    law: Array, springs: Spring, states: State, overlap: Array, step: float
-) -> int:
+def _advance_all(law: Array, springs: Spring, states: State, overlap: Array, step: float) -> int:
     """`advance` for arrays, in place; index of an overlap that is not finite, else -1."""
     for n in range(overlap.size):
         if not -math.inf < overlap[n] < math.inf:

@@ -20,7 +20,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.physical.arguments import checked, shaped
 from contactlaw.closed_form import (
     FASTEST,
     INTEGRATE,
@@ -29,6 +28,7 @@ from contactlaw.closed_form import (
     P,
     at_turning_point,
 )
+from contactlaw.physical.arguments import checked, shaped
 
 Array = NDArray[np.float64]
 

@@ -133,9 +133,7 @@ def test_a_damaged_file_is_rebuilt(path, expected, damage):
 
 def test_another_table_under_the_name_is_rebuilt(place, path, expected):
     place.mkdir()
-    store.write(
-        table.build(MYC, table.Settings(inelasticity_nodes=5, log_overload_step=0.5)), path
-    )
+    store.write(table.build(MYC, table.Settings(inelasticity_nodes=5, log_overload_step=0.5)), path)
     assert same(cache.cached(MYC, SMALL), expected)
 
 

@@ -89,9 +89,7 @@ def test_dissipation_is_the_area_between_the_curves(law):
         corners = sorted(d for d in {*inner, curve.cap_low, curve.cap_high} if residual < d < dm)
         ends = [0.0, *(math.sqrt(d - residual) for d in corners)]
         down = sum(
-            quad(lambda q, c=curve: 2 * q * law.unloading(q, c), *piece, limit=200, epsabs=1e-11)[
-                0
-            ]
+            quad(lambda q, c=curve: 2 * q * law.unloading(q, c), *piece, limit=200, epsabs=1e-11)[0]
             for piece in itertools.pairwise([*ends, math.sqrt(dm - residual)])
         )
         # quad is good to about 1e-9 of the areas themselves

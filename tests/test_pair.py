@@ -5,7 +5,8 @@ import math
 import pytest
 
 import contactlaw as cl
-from contactlaw import laws, pair
+from contactlaw import laws
+from contactlaw.physical import pair
 
 
 def test_effective_modulus():
@@ -31,7 +32,7 @@ def test_yield_speed_of_the_paper(pair):
 
 
 def test_yield_compression_is_that_of_the_law():
-    assert laws.law("myc").yield_coefficient == pair._MYC_YIELD
+    assert laws.law("myc").yield_coefficient == pair.C_YIELD
 
 
 def test_yield_speed_needs_a_yield_strength():

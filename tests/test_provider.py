@@ -351,7 +351,9 @@ def test_read_only_input_is_taken(model):
 
 def test_a_coarse_table_says_so(pair, small_table):
     with pytest.warns(UserWarning, match="less accurate than contactlaw promises"):
-        cl.ImpactModel(pair, table=table.build(laws.law("myc"), table.Settings(log_overload_step=0.5)))
+        cl.ImpactModel(
+            pair, table=table.build(laws.law("myc"), table.Settings(log_overload_step=0.5))
+        )
 
 
 def test_a_callers_disk_cache_keeps_no_table(tmp_path):

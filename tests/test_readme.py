@@ -59,9 +59,10 @@ def test_nothing_else_is_unchecked():
 
 
 def test_the_stated_accuracy_is_that_of_the_certificate():
-    from contactlaw import store
+    from contactlaw import laws
+    from contactlaw.table import file
 
-    largest = dict(store.packaged("myc").certificate.largest)
+    largest = dict(file.packaged(laws.law("myc")).certificate.largest)
     assert "within 1e-7 of the integrated equation in COR and within 5e-6" in README
     assert largest.pop("restitution") < 1e-7
     assert "within 1e-4 of their peak of the integrated ones, 4e-5 at the" in README

@@ -10,8 +10,8 @@ from oracle import impact_of
 import contactlaw as cl
 from contactlaw import laws, sensitivity
 from contactlaw.equation import outcome
-from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
 from contactlaw.laws import jackson_green
+from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
 
 SPEED = np.array([3.0, 12.0, 25.0, 40.0, 55.0])
 THICKNESS = np.array([0.4e-3, 0.7e-3, 1e-3, 3e-3, 0.5e-3])

@@ -124,7 +124,9 @@ def test_unloading_and_reloading_follow_one_curve(model, law):
     assert reload == pytest.approx(unload[::-1], rel=1e-12)
     unit = spring.stiffness * spring.scale**1.5
     curve = force.unloading(law, 3.0)
-    exact = [unit * force.unloading_force(law, curve, math.sqrt((d - left) / spring.scale)) for d in down]
+    exact = [
+        unit * force.unloading_force(law, curve, math.sqrt((d - left) / spring.scale)) for d in down
+    ]
     assert unload == pytest.approx(exact, rel=1e-9)
     assert forces[-1] == pytest.approx(unit * force.loading(law, math.sqrt(3.6)), rel=1e-9)
     assert last.largest_compression == pytest.approx(1.2 * top, rel=1e-12)

@@ -68,7 +68,12 @@ def put_nan(file):
         (lambda f: f.pop("fields/contact_time"), "contact_time"),
         (put_nan, "not finite"),
         (lambda f: f.attrs.modify("inelasticity_nodes", 10), "shape"),
-        (lambda f: f["fields/restitution"].write_direct(np.full(f["fields/restitution"].shape, 7.0)), "outside 0 to 1"),
+        (
+            lambda f: f["fields/restitution"].write_direct(
+                np.full(f["fields/restitution"].shape, 7.0)
+            ),
+            "outside 0 to 1",
+        ),
         (lambda f: f["law"].attrs.modify("outcome_kinks", [1.0, 2.0]), "kinks"),
         (lambda f: f["inelasticity"].write_direct(np.linspace(0, 5, 9)), "axes"),
         (lambda f: f.attrs.modify("stretch", 3.0), "axes"),

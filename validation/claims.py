@@ -15,7 +15,7 @@ import numpy as np
 import contactlaw as cl
 from contactlaw import closed_form, laws
 from contactlaw.closed_form import WAVE_SLOPE, P, elastic_compression, yield_speed_ratio
-from contactlaw.impact import plate_mobility, scales
+from contactlaw.physical.scaling import plate_mobility, scales
 from validation import evidence, formulas
 from validation.fem import compare, store
 from validation.paper import (
@@ -316,7 +316,7 @@ def _section_3_3() -> Iterator[Claim]:
     # F' on the unloading curve from 5 d_Y, half way between d_r and d_m, in F_m/(d_m - d_r)
     top = 5.0
     span, curve = top - myc.residual(top), myc.unloading_curve(top)
-    down = [myc.unloading(math.sqrt(0.5 * span + step), *curve) for step in (-h, h)]
+    down = [myc.unloading(math.sqrt(0.5 * span + step), curve) for step in (-h, h)]
     yield near(
         "Eq. 20, unloading", "Eq. 20, last line",
         "F' = 1.5 F_m/(x3 - x1) ((x1 - d_r)/(x3 - d_r))^0.5, half way from d_r to x3",

@@ -10,7 +10,7 @@ from scipy.optimize import brentq, newton
 
 import contactlaw as cl
 from contactlaw import closed_form, laws
-from contactlaw.impact import Contact, scales, sphere_on_plate
+from contactlaw.physical.scaling import Contact, scales, sphere_on_plate
 from validation import formulas
 from validation.fem import compare, store
 from validation.paper import (

@@ -11,7 +11,6 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw.arguments import checked, shaped
 from contactlaw.closed_form import (
     INTEGRATE,
     WAVE_SLOPE,
@@ -20,6 +19,7 @@ from contactlaw.closed_form import (
     mueller,
     peng,
 )
+from contactlaw.physical.arguments import checked, shaped
 
 _TOO_THIN = "(the plate is far too thin for the model)"
 

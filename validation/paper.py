@@ -10,8 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 import contactlaw as cl
-from contactlaw import closed_form, laws, zener
-from contactlaw.impact import Rebound, law_of, sphere_on_plate
+from contactlaw import closed_form, laws
+from contactlaw.equation import zener
+from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.scaling import law_of, sphere_on_plate
 
 Array = NDArray[np.float64]
 
@@ -64,7 +66,7 @@ def unloading(law: laws.Law, largest: float) -> tuple[Array, Array]:
     unit = yield_unit(law)
     residual, curve = law.residual(largest / unit), law.unloading_curve(largest / unit)
     q = np.linspace(0.0, math.sqrt(largest / unit - residual), 200)
-    down = np.array([law.unloading(x, *curve) for x in q])
+    down = np.array([law.unloading(x, curve) for x in q])
     return unit * (residual + q**2), unit**1.5 * down
 
 
@@ -72,7 +74,7 @@ def restitution(speed_ratio: float, inelasticity_at_yield: float, law: laws.Law)
     """COR of any law by integration; v and lambda_Y of MYC's yield speed."""
     lam = inelasticity_at_yield * speed_ratio**0.2
     y = yield_unit(law) * 1.25**0.4 * speed_ratio**-0.8
-    return zener.solve(law.functions, lam, y, 1e-10).restitution
+    return zener.solve(law.data, lam, y, 1e-10).restitution
 
 
 @functools.cache

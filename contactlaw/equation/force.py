@@ -137,7 +137,7 @@ def residual(law: Array, dm: float) -> float:
 
 @kernel(cache=True)
 def loss(law: Array, dm: float) -> float:
-    """Loading work minus unloading work of a contact that reached dm."""
+    """Subtract unloading work from loading work, of a contact that reached dm."""
     row = _unloading_row(law, dm)
     return _function(law, row, LOSS, dm) if row > 0 else 0.0
 
@@ -165,7 +165,7 @@ def unloading(law: Array, dm: float) -> Curve:
 
 @kernel
 def power_force(stiffness: float, exponent: float, q: float) -> float:
-    """a |q|^b with the sign of q: a step on trial may pass q = 0."""
+    """Force a |q|^b with the sign of q: a step on trial may pass q = 0."""
     if exponent == 3.0:
         return stiffness * (q * q * q)
     return math.copysign(stiffness * math.pow(abs(q), exponent), q)
@@ -180,4 +180,3 @@ def unloading_force(law: Array, curve: Curve, q: float) -> float:
     if law[CAPPED] > 0.0 and q > 0.0:
         force = min(force, loading(law, math.sqrt(curve.residual + q * q)))
     return force
-

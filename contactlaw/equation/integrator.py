@@ -27,7 +27,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -84,6 +84,9 @@ class Scale(NamedTuple):
     t: float
     per_q: float  # 1/(q tolerance)
     per_u: float  # 1/(u tolerance)
+
+
+Force = Callable[[Array, Leg, float], float]
 
 
 @kernel
@@ -200,7 +203,7 @@ def _guess(event: int, state: State, trial: State, h: float, level: float, until
     return h * x
 
 
-def _following(force_at: Callable[[Array, Leg, float], float]) -> Callable[..., Any]:
+def _following(force_at: Force) -> Callable[..., tuple[State, int, float, int]]:
     """Make `follow` for one kind of leg.
 
     The compiler makes a loop of its own of each: a choice within the step would cost half as much
@@ -241,7 +244,13 @@ def _following(force_at: Callable[[Array, Leg, float], float]) -> Callable[..., 
             9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5
         )
         a6, b6, f6 = rates(law, beta, leg, q6, u6)
-        w1, w3, w4, w5, w6 = h * 35 / 384, h * 500 / 1113, h * 125 / 192, h * -2187 / 6784, h * 11 / 84
+        w1, w3, w4, w5, w6 = (
+            h * 35 / 384,
+            h * 500 / 1113,
+            h * 125 / 192,
+            h * -2187 / 6784,
+            h * 11 / 84,
+        )
         q7 = q + (w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6)
         u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
         a7, b7, f7 = rates(law, beta, leg, q7, u7)
@@ -275,7 +284,9 @@ def _following(force_at: Callable[[Array, Leg, float], float]) -> Callable[..., 
             trial, error = step(law, beta, leg, state, h, scale)
             if event == NONE:
                 if error > 1.0:
-                    h *= max(0.2, 0.9 / math.sqrt(math.sqrt(error)))  # a power is slower than a step
+                    h *= max(
+                        0.2, 0.9 / math.sqrt(math.sqrt(error))
+                    )  # a power is slower than a step
                     continue
                 if leg.part == _UP and trial.dq < 0.0:
                     event = TURN
@@ -299,7 +310,9 @@ def _following(force_at: Callable[[Array, Leg, float], float]) -> Callable[..., 
                     h = b - gap_b * (b - a) / (gap_b - gap_a)
                     continue
                 if event == TURN and trial.q > level:
-                    event = LEVEL  # the step went over the kink before it turned: land there instead
+                    event = (
+                        LEVEL  # the step went over the kink before it turned: land there instead
+                    )
                 elif event != TIME and trial.t > until:
                     event = TIME
                 else:

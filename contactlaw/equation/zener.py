@@ -1,4 +1,4 @@
-"""The modified Zener model, solved: what becomes of one impact of a sphere on a plate, without units.
+"""The modified Zener model, solved: what becomes of one impact of a sphere on a plate.
 
 Results are on Hertz's scale: speeds in V0, time in T_H, compressions in V0 T_H, forces in m V0/T_H.
 
@@ -58,9 +58,7 @@ def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
     dm = top.q * top.q
     curve, leg, end = integrator.after(law, beta, NO_CURVE, leg, integrator.TURN, top)
     while True:
-        end, event, h, steps = integrator.follow(
-            law, beta, leg, end, h, scale, leg.level, math.inf
-        )
+        end, event, h, steps = integrator.follow(law, beta, leg, end, h, scale, leg.level, math.inf)
         total, longest = total + steps, max(longest, steps)
         if event != LEVEL or integrator.has_parted(leg, event):
             break
@@ -139,9 +137,7 @@ def _seek(
         end = leg.level
         level = math.sqrt(max(target - leg.residual, 0.0))
         level = min(level, end) if rising else max(level, end)
-        state, event, h, steps = integrator.follow(
-            law, beta, leg, state, h, scale, level, math.inf
-        )
+        state, event, h, steps = integrator.follow(law, beta, leg, state, h, scale, level, math.inf)
         total += steps
         if level != end or end == 0.0:
             break
@@ -170,9 +166,7 @@ def shape(
     last = shares.size - 1
     for n in range(last):
         target = (shares[n] * top.q) ** 2
-        curve, leg, state, h, steps = _seek(
-            law, beta, curve, leg, state, h, scale, target, True
-        )
+        curve, leg, state, h, steps = _seek(law, beta, curve, leg, state, h, scale, target, True)
         total += steps
         time[n], speed[n] = state.t / scale.t, state.u / scale.u
     time[last], speed[last] = top.t / scale.t, top.u / scale.u
@@ -182,9 +176,7 @@ def shape(
     for n in range(last, -1, -1):
         share = shares[n - 1] if n > 0 else 0.0
         target = left + share * share * (dm - left)
-        curve, leg, state, h, steps = _seek(
-            law, beta, curve, leg, state, h, scale, target, False
-        )
+        curve, leg, state, h, steps = _seek(law, beta, curve, leg, state, h, scale, target, False)
         total += steps
         k = 2 * last + 1 - n
         time[k], speed[k] = state.t / scale.t, state.u / scale.u

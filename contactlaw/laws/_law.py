@@ -35,7 +35,9 @@ _NODES = np.cos(math.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
 # values at the nodes -> coefficients of Chebyshev polynomials -> of powers
 _TO_CHEBYSHEV = chebyshev.chebvander(_NODES, _TERMS - 1) * 2.0 / _TERMS
 _TO_CHEBYSHEV[:, 0] *= 0.5
-_TO_POWERS = np.array([np.pad(chebyshev.cheb2poly(e), (0, _TERMS))[:_TERMS] for e in np.eye(_TERMS)])
+_TO_POWERS = np.array(
+    [np.pad(chebyshev.cheb2poly(e), (0, _TERMS))[:_TERMS] for e in np.eye(_TERMS)]
+)
 
 
 @dataclass(frozen=True)
@@ -246,7 +248,7 @@ class Law:
         return _force.unloading_force(self.data, curve, q)
 
     def dissipation(self, dm: float) -> float:
-        """Loading work minus unloading work [F_Y d_Y] of a contact that reached dm."""
+        """Subtract unloading work from loading work [F_Y d_Y], of a contact that reached dm."""
         return _force.loss(self.data, dm)
 
 
@@ -268,9 +270,7 @@ class _Part:
     size: Formula | None = None
 
 
-def _expand(
-    name: str, parts: Sequence[_Part | float], low: float, high: float
-) -> list[_Piece]:
+def _expand(name: str, parts: Sequence[_Part | float], low: float, high: float) -> list[_Piece]:
     """Polynomials for some functions on [low, high], all on the same pieces; numbers stay exact."""
     count = max(1, math.ceil(math.log(high / low) / math.log(_WIDEST)))
     edges = np.geomspace(low, high, count + 1)
@@ -334,12 +334,11 @@ class _LoadingCurve:
             first = len(self.pieces)
             force = branch.force
             if isinstance(force, Polynomial):
-                self.pieces.append(_Piece(math.sqrt(branch.start), 1.0, 0.0, [force.coef]))
+                coefficients = np.asarray(force.coef, dtype=np.float64)
+                self.pieces.append(_Piece(math.sqrt(branch.start), 1.0, 0.0, [coefficients]))
             else:
-                self.pieces += _expand(
-                    name, [_Part(lambda q, f=force: f(q * q))], math.sqrt(branch.start),
-                    math.sqrt(end),
-                )  # fmt: skip
+                part = _Part(_over_root(force))
+                self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end))
             self.first += [first] * (len(self.pieces) - first)
         self._tabulate()
         if yields:
@@ -418,6 +417,11 @@ def _exact(branch: Loading) -> bool:
     return isinstance(branch.force, Polynomial)
 
 
+def _over_root(force: Formula) -> Formula:
+    """Take the root compression."""
+    return lambda q: force(q * q)
+
+
 def _ends(branches: Sequence[Any]) -> list[tuple[Any, float]]:
     """Branches with the compressions at which they end; those have to rise."""
     starts = [branch.start for branch in branches]
@@ -434,9 +438,7 @@ class _Row:
     powers: tuple[float, ...]
 
 
-def _unloading_rows(
-    name: str, curve: _LoadingCurve, branch: Unloading, end: float
-) -> list[_Row]:
+def _unloading_rows(name: str, curve: _LoadingCurve, branch: Unloading, end: float) -> list[_Row]:
     exponent = branch.exponent
 
     def twice(dm: Array) -> Array:

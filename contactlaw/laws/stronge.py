@@ -28,6 +28,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contactlaw.laws._law import HERTZ, Array, Law, Loading, Unloading, bisect
 from contactlaw.laws.myc import residual  # dm - sqrt(2 dm - 1), over (dm - 1)^2
@@ -87,10 +88,10 @@ def _loss_between(dm: Array) -> Array:
     return _loss_below(dm) + (_work(dm) - _work(high) - back)
 
 
-def _steeper(dm: float) -> bool:
+def _steeper(dm: Array) -> NDArray[np.bool_]:
     """Whether the printed unloading curve is flatter than the loading curve at dm."""
     s = 2.0 * dm - 1.0
-    return 1.5 * _elastic_plastic(dm) / math.sqrt(s) < 2.0 * (1.0 + math.log(s) / 3.3) + 2.0 / 3.3
+    return 1.5 * _elastic_plastic(dm) / np.sqrt(s) < 2.0 * (1.0 + np.log(s) / 3.3) + 2.0 / 3.3
 
 
 PARTS = float(bisect(_steeper, 1.01, 2.2))

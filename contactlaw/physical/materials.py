@@ -180,7 +180,9 @@ def materials() -> tuple[str, ...]:
 @functools.cache
 def _catalogue() -> tuple[dict[str, Material], dict[str, str]]:
     """Read the catalogue once: materials by name, and the name behind every name or alias."""
-    tables = tomllib.loads(files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8"))
+    tables = tomllib.loads(
+        files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8")
+    )
     references = tables.pop("references")
     by_name = {name: _from_table(name, table, references) for name, table in tables.items()}
     canonical = {name: name for name in by_name}

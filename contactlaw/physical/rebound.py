@@ -133,10 +133,18 @@ def rebound(
         outcome, out, flags,
     )  # fmt: skip
     shape = impacts.shape
+    time_, force, compression, residual, plastic, wave, overload = (
+        shaped(values, shape) for values in out
+    )
     return Rebound(
-        shaped(outcome.restitution, shape),
-        *(shaped(values, shape) for values in out[:6]),
+        restitution=shaped(outcome.restitution, shape),
+        contact_time=time_,
+        peak_force=force,
+        peak_compression=compression,
+        residual_compression=residual,
+        plastic_fraction=plastic,
+        wave_fraction=wave,
         inelasticity=shaped(inelasticity, shape),
-        overload=shaped(out[6], shape),
+        overload=overload,
         flags=Validity(int(flags[0])) if shape is None else flags.reshape(shape),
     )

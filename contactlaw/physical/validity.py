@@ -89,7 +89,7 @@ def limits(pair: Pair, law: Law) -> Limits:
 def flags_of(
     limits: Limits, radius: float, thickness: float, yield_ratio: float, contact_time: float
 ) -> int:
-    """Flags of an impact."""
+    """Flag an impact."""
     flags = limits.always
     if radius > _THINNEST * thickness:
         flags |= _THIN_PLATE

@@ -27,7 +27,9 @@ from contactlaw.table.nodes import Table
 ON_DEMAND = Settings(inelasticity_nodes=61, log_overload_step=0.03, rtol=1e-11)
 """Settings of tables that are built when they are first needed, in a few tenths of a second."""
 
-_PATIENCE = 60.0  # [s]: a build takes less than one; a lock held for longer belongs to a process that hangs
+_PATIENCE = (
+    60.0  # [s]: a build takes less than one; a lock held for longer belongs to a process that hangs
+)
 
 
 def file_name(law: Law, settings: Settings) -> str:
@@ -50,14 +52,6 @@ def file_name(law: Law, settings: Settings) -> str:
     }
     digest = hashlib.sha256(json.dumps(ingredients, sort_keys=True).encode()).hexdigest()
     return f"table-{digest[:24]}.h5"
-
-
-def progress_bar(rows: Iterator[Array], total: int) -> Iterable[Array]:
-    """Show a bar once a build has taken a second; nothing where stderr is no terminal."""
-    from tqdm import tqdm
-
-    bar: Iterable[Array] = tqdm(rows, "contactlaw: solving", total, delay=1, disable=None)
-    return bar
 
 
 @functools.cache

@@ -110,9 +110,7 @@ def compare_outcomes(
     return looked, errors
 
 
-def compare_histories(
-    law: Law, settings: Settings, packed: Shapes, looked: Outcome
-) -> Array:
+def compare_histories(law: Law, settings: Settings, packed: Shapes, looked: Outcome) -> Array:
     """Errors of the force histories of outcomes that were looked up."""
     out = np.empty(looked.restitution.size)
 

@@ -228,6 +228,7 @@ def _law(file: h5py.File) -> Law:
     data, attributes = file["law"], file["law"].attrs
     if data.ndim != 1 or not 0 < data.size <= _LARGEST_LAW:
         raise ValueError(f"its law has the shape {data.shape}")
+    least, largest = attributes["yield_strains"]
     return Law(
         name=str(file.attrs["law"]),
         source=str(file.attrs["law_source"]),
@@ -235,7 +236,7 @@ def _law(file: h5py.File) -> Law:
         loading_kinks=tuple(float(kink) for kink in attributes["loading_kinks"]),
         outcome_kinks=tuple(float(kink) for kink in attributes["outcome_kinks"]),
         data=_numbers(file, "law", data.shape, -math.inf, math.inf),
-        yield_strains=tuple(float(strain) for strain in attributes["yield_strains"]),
+        yield_strains=(float(least), float(largest)),
     )
 
 
@@ -250,12 +251,14 @@ def _grid(file: h5py.File, settings: Settings, law: Law) -> Grid:
     segments = []
     for k in range(len(file["segments"])):
         group = file[f"segments/{k}"]
-        ends = [_numbers(group, name, (grids.SERIES,), 0.0, end) for name in ("start", "end")]
+        start, stop = (
+            _numbers(group, name, (grids.SERIES,), 0.0, end) for name in ("start", "end")
+        )
         count = group["shares"].size
         if not 0 < count <= _MOST_COLUMNS:
             raise ValueError(f"its segment {k} has {count} columns")
         shares = _numbers(group, "shares", (count,), 0.0, 1.0)
-        segments.append(Segment(*ends, shares, bool(group.attrs["graded"])))
+        segments.append(Segment(start, stop, shares, bool(group.attrs["graded"])))
     grids.check(segments, law, end)
     return Grid(
         settings.stretch, settings.largest_inelasticity, elastic, inelasticity, tuple(segments)
@@ -271,7 +274,7 @@ def _numbers(
         raise ValueError(f"its {name} is {data}, not {kind} of the shape {shape} of its axes")
     if data.external or data.is_virtual:
         raise ValueError(f"its {name} is stored in another file")
-    values = data[()]
+    values: NDArray[Any] = data[()]
     if np.isnan(values).any():
         raise ValueError(f"its {name} holds values that are not finite")
     if not ((values >= low) & (values <= high)).all():

@@ -6,10 +6,10 @@ the end of a segment and once as the beginning of the next.
 
 As long as loading follows Hertz's curve, the largest compression is chi d_Y, and a kink of the law
 is a line of constant chi. A kink that comes later is a curve, chi_k(lambda), along which the
-segments' ends are drawn. An impact that turns beyond a kink of the loading curve by some share p has
-spent a time there that grows as the root of p: its outcome has a term in p^(3/2) where the slope of
-the curve jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are uniform in
-the root of p, in which these are smooth; behind those of a capped law, too.
+segments' ends are drawn. An impact that turns beyond a kink of the loading curve by some share p
+has spent a time there that grows as the root of p: its outcome has a term in p^(3/2) where the
+slope of the curve jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are
+uniform in the root of p, in which these are smooth; behind those of a capped law, too.
 """
 
 from __future__ import annotations

@@ -254,9 +254,7 @@ def _put(table: Array, x: float, log_chi: float, log_w: float, out: Outcome, n: 
     row, column, s, t = locate(table, x, log_chi)
     step = int(table[COLUMNS])
     first = row * step + column
-    out.restitution[n] = _cor(
-        table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t
-    )
+    out.restitution[n] = _cor(table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t)
     others = _other_fields(table, int(table[OTHERS_AT]) + 3 * first, s, t)
     out.contact_time[n] = others.contact_time
     out.wave_rate[n] = others.wave_rate
@@ -368,9 +366,7 @@ def restitutions(
             thickness[start:stop],
             out[start:stop],
         )
-        if _coordinates(
-            table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n], log_w[:n], root[:n]
-        ):
+        if _coordinates(table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n], log_w[:n], root[:n]):
             for i in range(n):
                 values[i] = _cor_at(table, x[i], log_chi[i])
         else:  # one by one; such chunks are rare

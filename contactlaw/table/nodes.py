@@ -60,7 +60,9 @@ class Table:
     def packed_shapes(self) -> shapes.Shapes:
         """Splines through the shapes of force histories; for a table that has them."""
         if self.states is None:
-            raise ValueError("table: has no shapes of force histories; with_shapes(table) adds them")
+            raise ValueError(
+                "table: has no shapes of force histories; with_shapes(table) adds them"
+            )
         return shapes.pack(shape_grid(self), self.states)
 
 

@@ -104,7 +104,11 @@ def sample(law: Array, shapes: Shapes, outcome: Outcome, out: History) -> None:
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
         e, end = outcome.restitution[n], outcome.contact_time[n]
-        w_m, lam, y = outcome.elastic_compression[n], outcome.inelasticity[n], outcome.yield_ratio[n]
+        w_m, lam, y = (
+            outcome.elastic_compression[n],
+            outcome.inelasticity[n],
+            outcome.yield_ratio[n],
+        )
         _states(shapes, lam, math.log(w_m / y) if y < math.inf else 0.0, inner)
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
         for k in range(SIZE):  # a slice on the left takes the compiler a second

@@ -8,7 +8,7 @@ import sys
 
 from tqdm import tqdm
 
-SUBJECTS = ("lookups", "histories", "solver", "startup", "rain", "elements", "lammps")
+SUBJECTS = ("lookups", "histories", "solver", "startup", "processes", "rain", "elements", "lammps")
 
 
 def main(names: list[str]) -> int:

@@ -11,7 +11,8 @@ from interpn import interpn
 from scipy.interpolate import RectBivariateSpline
 
 import contactlaw as cl
-from contactlaw import store
+from contactlaw import laws
+from contactlaw.table import file
 from validation.bench.row import Row, per_call, seconds
 
 N = 1_000_000
@@ -54,13 +55,14 @@ def peers(
     model: cl.ImpactModel, v: np.ndarray, r: np.ndarray, h: np.ndarray
 ) -> tuple[float, float]:
     """Time per point of scipy's and interpn's interpolation on the same nodes."""
-    table = store.packaged("myc")
+    table = file.packaged(laws.law("myc"))
     assert table is not None
-    nodes = np.concatenate([table.segments[0], table.segments[1][1:]])
-    at_kink = len(table.segments[0])
+    nodes = table.grid.log_overload()[0]  # both kinks of myc are lines of constant chi
+    at_kink = table.grid.segments[0].shares.size
+    nodes = np.delete(nodes, at_kink)
     values = np.delete(table.fields["restitution"], at_kink, axis=1)
     c = table.settings.stretch
-    x_nodes = table.inelasticity / (table.inelasticity + c)
+    x_nodes = table.grid.inelasticity / (table.grid.inelasticity + c)
     some = slice(0, N, 10)
     hit = model.lookup(v[some], r[some], h[some])
     x = np.asarray(hit.inelasticity / (hit.inelasticity + c))

@@ -12,7 +12,9 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import contactlaw as cl
-from contactlaw import laws, store, table, zener
+from contactlaw import laws, table
+from contactlaw.equation import outcome, zener
+from contactlaw.table import file
 from validation.bench.row import Row, seconds
 
 N = 20_000
@@ -24,11 +26,10 @@ def rows() -> Iterator[Row]:
     rng = np.random.default_rng(1)
     lam = rng.uniform(0.0, 1.0, N)
     y = (5 / 4) ** 0.4 * rng.uniform(0.1, 4.0, N) ** -0.8
-    law, hertz = laws.law("myc").functions, laws.law("hertz").functions
+    law = laws.law("myc").data
 
     def solve(part: slice) -> None:
-        out = np.empty((5, lam[part].size))
-        status, _ = zener.solve_all(law, hertz, lam[part], y[part], RTOL, out)
+        status, _ = zener.solve_all(law, RTOL, outcome.at(lam[part], y[part]))
         assert status == zener.OK
 
     one_core = seconds(lambda: solve(slice(None))) / N
@@ -46,10 +47,10 @@ def rows() -> Iterator[Row]:
         one_core / together,
     )  # fmt: skip
     start = time.perf_counter()
-    table.build("myc")
+    table.build(laws.law("myc"))
     yield Row("table build and certificate", time.perf_counter() - start, "s", 10)
     path = Path(cl.__file__).parent / "data" / "myc.h5"
-    loading = seconds(lambda: store.read(path).packed)
+    loading = seconds(lambda: file.read(path).packed)
     yield Row("table: read, verify, fit splines", loading * 1e3, "ms", 10)
     yield Row("table: size", path.stat().st_size / 1e6, "MB", 2)
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw.arguments import checked
+from contactlaw.physical.arguments import checked
 from validation.fem import elements, mesh, solver
 from validation.fem.mesh import Mesh
 from validation.fem.solver import System

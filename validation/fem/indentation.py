@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw.arguments import checked
+from contactlaw.physical.arguments import checked
 from validation.fem import mesh, solver
 from validation.fem.solver import System
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.materials import Material
+from contactlaw.physical.materials import Material
 from validation.fem import contact, elements
 from validation.fem.contact import Surfaces
 from validation.fem.elements import Body

@@ -106,7 +106,6 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             interact(law, shared, clock, plates, p, bead)
 
 
-
 @functools.cache
 def callback() -> Any:
     """Return the C function for ``fix external``, compiled or from the disk cache."""

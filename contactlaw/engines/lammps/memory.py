@@ -31,10 +31,14 @@ RECORD = ("time", "bead", "plate", "x", "y", "z", "approach_speed", "restitution
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, TOO_MANY_PLATES, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST,
  NOT_FINITE) = range(1, 9)  # fmt: skip
 
-# Integers up to "records" are addresses, but for the size of the law; "calls" counts those of the C function.
+# Integers up to "records" are addresses, but for the size of the law; "calls" counts those of the C
+# function.
 SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "law", "law_size")]
-    + [(name, "i8") for name in ("lammps", "v", "f", "radius", "rmass", "omega", "torque", "history")]
+    + [
+        (name, "i8")
+        for name in ("lammps", "v", "f", "radius", "rmass", "omega", "torque", "history")
+    ]
     + [("elapsed", "i8")]
     + [(name, "i8") for name in ("dt", "atime", "atimestep", "plates", "records")]
     + [(name, "i8") for name in ("plate_count", "slots", "width", "columns", "calls")]
