@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel, Material, Pair
+from contactlaw.engines.record import IMPACT
 from dem_demo.recorder import CONSTANT, FORMAT, SCHEMA
 from dem_demo.scene import Beads, Floats, Plate, Scene
 
@@ -30,7 +31,8 @@ class Run:
     engine : str
         Engine that ran it.
     collisions : structured ndarray
-        One row per collision; the columns are those of the file.
+        One row per collision: the impact record of `contactlaw.engines.record`. In the baseline it
+        ends with the COR.
     time, position, velocity, status : ndarray
         Frames (T,) [s], (T, N, 2) [m], (T, N, 2) [m/s], (T, N).
     depth : ndarray or None
@@ -119,9 +121,8 @@ def _material(group: h5py.Group) -> Material:
 
 
 def _table(group: h5py.Group) -> NDArray[np.void]:
-    columns = {name: dataset[()] for name, dataset in group.items()}
-    kinds = [(name, column.dtype) for name, column in columns.items()]
-    table = np.empty(columns["time"].size, dtype=kinds)
+    columns = {name: group[name][()] for name in IMPACT.names or () if name in group}
+    table = np.empty(columns["time"].size, [(name, IMPACT[name]) for name in columns])
     for name, column in columns.items():
         table[name] = column
     return table

@@ -10,6 +10,7 @@ import pytest
 from matplotlib.image import imread
 
 import contactlaw as cl
+from contactlaw.engines.record import COLUMNS, IMPACT
 from dem_demo import cli, figures, nozzles
 from dem_demo.measure import plate_rows
 from dem_demo.reader import read
@@ -65,6 +66,33 @@ def test_file_explains_itself(folder):
 
         file.visititems(visit)
     assert {"collisions/wave_energy", "trajectories/position", "beads/mass"} <= set(seen)
+
+
+def test_collisions_are_the_one_record_of_impacts(folder, run):
+    assert run.collisions.dtype == IMPACT
+    with h5py.File(folder / "rain.h5") as file:
+        group = file["collisions"]
+        assert set(group) == set(IMPACT.names)
+        for column in COLUMNS:
+            attributes = group[column.name].attrs
+            assert attributes["units"] == column.unit
+            assert attributes["description"] == column.description
+        assert "/beads" in group.attrs["description"]
+
+
+def test_each_impact_has_the_flags_of_the_model(tmp_path):
+    thin = ["rain", "--beads", "30", "--plates", "0.35e-3,0.4e-3", "--duration", "0.3"]
+    assert cli.main([*thin, "--out", str(tmp_path)]) == 0
+    run = read(tmp_path / "rain.h5")
+    rows, radius = run.collisions, run.scene.beads.radius
+    on = rows[rows["plate"] >= 0]
+    thickness = np.array([plate.thickness for plate in run.scene.plates])[on["plate"]]
+    expected = run.model.lookup(on["approach_speed"], radius[on["bead"]], thickness).flags
+    assert on["flags"].tolist() == expected.tolist()
+    thin = (on["flags"] & cl.Validity.THIN_PLATE) != 0
+    assert thin.tolist() == (radius[on["bead"]] > 1.8 * thickness).tolist()
+    assert 0 < thin.sum() < thin.size
+    assert f"{thin.sum()} thin plate" in (tmp_path / "summary.txt").read_text()
 
 
 def test_each_collision_has_the_cor_of_the_model(run):

@@ -50,7 +50,7 @@ def attach(space: pymunk.Space, model: Any) -> PymunkImpacts:
     model : ImpactModel
         Or any object with ``curve(radius, thickness)``, which gives a function of speed; for bead
         on bead ``sphere_sphere_curve(radius, other_radius)`` too. Without ``lookup`` and
-        ``lookup_sphere_sphere`` the record has no contact times, forces and energies.
+        ``lookup_sphere_sphere`` the record has no contact times, forces, energies and flags.
 
     Returns
     -------
@@ -203,10 +203,11 @@ class PymunkImpacts:
         Returns
         -------
         structured array
-            time [s], bead, plate (-1: bead on bead), other (the other bead, -1: plate), x and y of
-            the contact [m], approach_speed [m/s], restitution; with a model that has ``lookup``
-            also contact_time [s], peak_force [N], and plastic_energy and wave_energy [J] of solid
-            spheres (bead on bead: of the relative motion, with the reduced mass).
+            A copy with the columns of `contactlaw.engines.record.COLUMNS`, which have their units
+            there: time, bead, plate, other, x, y, z (0), approach_speed, restitution; with models
+            that have ``lookup`` also contact_time, peak_force, plastic_energy, wave_energy and
+            flags. Energies are those of solid spheres (bead on bead: of the relative motion, with
+            the reduced mass).
         """
         radii = [bead.radius for bead in self._beads.values()]
         plates = [(plate.model, plate.thickness) for plate in self._plates.values()]
@@ -304,7 +305,9 @@ class PymunkImpacts:
                 self._rest(arbiter, speed)
                 return
             restitution = self._answer(arbiter, speed, plate.curve, bead.radius)
-            self._record.add((self.time, bead.index, plate.index, -1, x, y, speed, restitution))
+            self._record.add(
+                (self.time, bead.index, plate.index, -1, x, y, 0.0, speed, restitution)
+            )
         except BaseException as error:
             self._keep(error, arbiter)
 
@@ -327,7 +330,9 @@ class PymunkImpacts:
             restitution = self._answer(arbiter, speed, self._sphere_curve, *radii)
             x, y = bead.body.position
             x, y = x + bead.radius * nx, y + bead.radius * ny
-            self._record.add((self.time, bead.index, -1, other.index, x, y, speed, restitution))
+            self._record.add(
+                (self.time, bead.index, -1, other.index, x, y, 0.0, speed, restitution)
+            )
         except BaseException as error:
             self._keep(error, arbiter)
 
