@@ -12,7 +12,7 @@ from matplotlib.image import imread
 import contactlaw as cl
 from contactlaw.engines.record import COLUMNS, IMPACT
 from dem_demo import cli, figures, nozzles
-from dem_demo.measure import plate_rows
+from dem_demo.measure import flag_counts, model_shares, plate_rows
 from dem_demo.reader import read
 from dem_demo.scene import GRAVITY
 
@@ -173,6 +173,48 @@ def test_baseline(baseline):
     assert run.constant_cor == 0.9
     assert "COR 0.9 everywhere" in (baseline / "summary.txt").read_text()
     assert {path.name for path in baseline.iterdir()} == FILES
+
+
+@pytest.mark.parametrize(("which", "times"), [("folder", 0), ("baseline", 1)])
+def test_no_impact_is_looked_up_a_second_time(request, which, times, tmp_path, monkeypatch):
+    """In the baseline nobody has yet asked what the model says of the impacts."""
+    run = read(request.getfixturevalue(which) / "rain.h5")
+    asked = []
+
+    def count(model, speed, radius, thickness, real=cl.ImpactModel.lookup):
+        asked.extend(np.ravel(speed).tolist())
+        return real(model, speed, radius, thickness)
+
+    monkeypatch.setattr(cl.ImpactModel, "lookup", count)
+    flag_counts(run)
+    figures.draw_all(run, tmp_path)
+    on = run.collisions[run.collisions["plate"] >= 0]
+    assert sorted(asked) == sorted(on["approach_speed"].tolist() * times)
+
+
+def test_baseline_is_compared_with_the_model_on_the_same_impacts(baseline):
+    run = read(baseline / "rain.h5")
+    rows, radius = run.collisions[run.collisions["plate"] >= 0], run.scene.beads.radius
+    thickness = np.array([plate.thickness for plate in run.scene.plates])[rows["plate"]]
+    rebound = run.model.lookup(rows["approach_speed"], radius[rows["bead"]], thickness)
+    assert (run.modelled["peak_force"] == rebound.peak_force).all()
+    assert (run.modelled["flags"] == rebound.flags).all()
+    for n in range(len(run.scene.plates)):
+        here = rows["plate"] == n
+        energy = run.energy(rows)[here]
+        wave, plastic = (
+            (energy * share[here]).sum() / energy.sum()
+            for share in (rebound.wave_fraction, rebound.plastic_fraction)
+        )
+        assert model_shares(run, n) == pytest.approx((1 - wave - plastic, wave, plastic))
+
+
+@pytest.mark.parametrize("more", [[], ["--constant-cor", "0.9"]], ids=["model", "baseline"])
+def test_a_rain_that_never_lands(more, tmp_path):
+    few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01", *more]
+    assert cli.main([*few, "--out", str(tmp_path)]) == 0
+    assert read(tmp_path / "rain.h5").collisions.size == 0
+    assert "all impacts on plates are inside" in (tmp_path / "summary.txt").read_text()
 
 
 @pytest.mark.parametrize("which", ["folder", "baseline"])
