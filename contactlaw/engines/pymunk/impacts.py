@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.engines.needs import Curve, RestitutionModel
 from contactlaw.engines.pymunk.lookahead import LookAhead, tunnelling
 from contactlaw.engines.pymunk.record import Record
 from contactlaw.engines.pymunk.registry import (
     Bead,
-    Curve,
     Plate,
     body_of,
     checked_model,
@@ -40,17 +40,18 @@ NEVER = (-1, 0.0, 0.0)
 _collision_types = count(0xC0A70000)
 
 
-def attach(space: pymunk.Space, model: Any) -> PymunkImpacts:
+def attach(space: pymunk.Space, model: RestitutionModel) -> PymunkImpacts:
     """Let a model decide how the beads of a pymunk space rebound.
 
     Parameters
     ----------
     space : pymunk.Space
         In metres and seconds. Its ``step`` is taken over until `PymunkImpacts.detach`.
-    model : ImpactModel
-        Or any object with ``curve(radius, thickness)``, which gives a function of speed; for bead
-        on bead ``sphere_sphere_curve(radius, other_radius)`` too. Without ``lookup`` and
-        ``lookup_sphere_sphere`` the record has no contact times, forces, energies and flags.
+    model : RestitutionModel
+        An `ImpactModel`, or any object with ``curve(radius, thickness)``, which gives a function of
+        speed; for bead on bead ``sphere_sphere_curve(radius, other_radius)`` too. One that is no
+        `contactlaw.engines.needs.ReboundModel` leaves the record without contact times, forces,
+        energies and flags.
 
     Returns
     -------
@@ -108,7 +109,7 @@ class PymunkImpacts:
         Contacts too slow for an impact, one per contact and step.
     """
 
-    def __init__(self, space: pymunk.Space, model: Any) -> None:
+    def __init__(self, space: pymunk.Space, model: RestitutionModel) -> None:
         self.bead_type = next(_collision_types)
         self.plate_type = next(_collision_types)
         self.time = 0.0
@@ -167,7 +168,13 @@ class PymunkImpacts:
         self._space.collision_slop = min(self._space.collision_slop, 0.1 * radius)
         return bead.index
 
-    def add_plate(self, segment: pymunk.Segment, thickness: float, *, model: Any = None) -> int:
+    def add_plate(
+        self,
+        segment: pymunk.Segment,
+        thickness: float,
+        *,
+        model: RestitutionModel | None = None,
+    ) -> int:
         """Register a plate; its body may be static, kinematic (a sieve) or dynamic.
 
         Parameters
@@ -177,7 +184,7 @@ class PymunkImpacts:
             velocity: an engine takes no notice of a position that is set.
         thickness : float
             Thickness for the model [m]; ``inf`` is the half-space.
-        model : ImpactModel, optional
+        model : RestitutionModel, optional
             For a plate of another material than that of the attached model.
 
         Returns
@@ -204,8 +211,8 @@ class PymunkImpacts:
         -------
         structured array
             A copy with the columns of `contactlaw.engines.record.COLUMNS`, which have their units
-            there: time, bead, plate, other, x, y, z (0), approach_speed, restitution; with models
-            that have ``lookup`` also contact_time, peak_force, plastic_energy, wave_energy and
+            there: time, bead, plate, other, x, y, z (0), approach_speed, restitution; if every
+            model is a `ReboundModel` also contact_time, peak_force, plastic_energy, wave_energy and
             flags. Energies are those of solid spheres (bead on bead: of the relative motion, with
             the reduced mass).
         """

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from contactlaw.arguments import broadcast, check
+from contactlaw.engines.needs import Curve, RestitutionModel, knows_beads
 
 if TYPE_CHECKING:
     import pymunk
-
-Curve = Callable[[float], float]
 
 
 @dataclass(slots=True, eq=False)
@@ -33,7 +31,7 @@ class Plate:
     segment: pymunk.Segment
     body: pymunk.Body
     thickness: float
-    model: Any
+    model: RestitutionModel
     curves: dict[float, Curve] = field(default_factory=dict)  # by bead radius
     # by bead: the last step in which it touched, and the normal then
     touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
@@ -88,7 +86,9 @@ def body_of(shape: Any, kind: type, space: pymunk.Space, collision_type: int) ->
     return body
 
 
-def checked_model(model: Any, beads: Any = None) -> Any:
+def checked_model(
+    model: RestitutionModel, beads: RestitutionModel | None = None
+) -> RestitutionModel:
     """Refuse what cannot answer, or answers for other spheres than the model of the beads."""
     if not callable(getattr(model, "curve", None)):
         raise TypeError(f"model: expected an ImpactModel, or a like with curve(), got {model!r}")
@@ -98,7 +98,7 @@ def checked_model(model: Any, beads: Any = None) -> Any:
     return model
 
 
-def _sphere(model: Any) -> Any:
+def _sphere(model: RestitutionModel | None) -> Any:
     return getattr(getattr(model, "pair", None), "sphere", None)
 
 
@@ -111,12 +111,11 @@ def scalar(**argument: float) -> float:
     return float(values[0])
 
 
-def sphere_curve(model: Any, radius: float, other_radius: float) -> Curve:
+def sphere_curve(model: RestitutionModel, radius: float, other_radius: float) -> Curve:
     """Restitution of two beads by speed."""
-    if not hasattr(model, "sphere_sphere_curve"):
+    if not knows_beads(model):
         raise TypeError(f"beads meet, but {model!r} has no sphere_sphere_curve()")
-    curve: Curve = model.sphere_sphere_curve(radius, other_radius)
-    return curve
+    return model.sphere_sphere_curve(radius, other_radius)
 
 
 def unregistered(shape: Any) -> ValueError:
