@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from contactlaw.arguments import broadcast, check
 from contactlaw.engines.needs import Curve, RestitutionModel, knows_beads
@@ -12,15 +13,40 @@ from contactlaw.engines.needs import Curve, RestitutionModel, knows_beads
 if TYPE_CHECKING:
     import pymunk
 
+Vector = tuple[float, float]
+NEVER = (-1, 0.0, 0.0)  # what `Plate.touched` has of a bead that never did
+
 
 @dataclass(slots=True, eq=False)
 class Bead:
-    """A registered sphere."""
+    """A registered sphere, which hits plates and other spheres."""
 
     index: int
     circle: pymunk.Circle
     body: pymunk.Body
     radius: float
+    pair_curve: Callable[[float, float], Curve]  # of two beads by their radii, the smaller first
+    shake: ClassVar[float] = 0.0  # nothing drives a bead; see `Plate`
+
+    def __str__(self) -> str:
+        return f"bead {self.index}"
+
+    def contact(self, nx: float, ny: float) -> Vector:
+        """Point of its surface in the direction of a normal [m]."""
+        x, y = self.body.position
+        return x + self.radius * nx, y + self.radius * ny
+
+    def curve(self, radius: float) -> Curve:
+        """Restitution of a bead of this radius on this one by speed."""
+        return self.pair_curve(*sorted((radius, self.radius)))
+
+    def motion(self, bead: Bead, nx: float, ny: float) -> tuple[Vector, None]:
+        """Its velocity [m/s]; the normal is through its centre, so that any point will do."""
+        return self.body.velocity, None
+
+    def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
+        """Beads that were pressed through each other go unnoticed."""
+        return False
 
 
 @dataclass(slots=True, eq=False)
@@ -39,12 +65,26 @@ class Plate:
     change: float = 0.0  # of that velocity, within the last step [m/s]
     shake: float = 0.0  # the same while it goes on, else about 0 [m/s]
 
+    def __str__(self) -> str:
+        return f"plate {self.index}"
+
     def curve(self, radius: float) -> Curve:
         """Restitution of beads of this radius by speed; made once."""
         curve = self.curves.get(radius)
         if curve is None:
             curve = self.curves[radius] = self.model.curve(radius, self.thickness)
         return curve
+
+    def motion(self, bead: Bead, nx: float, ny: float) -> tuple[Vector, Vector]:
+        """Its velocity [m/s] at the point [m] where a bead touches it, and that point."""
+        point = bead.contact(nx, ny)
+        return self.body.velocity_at_world_point(point), point
+
+    def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
+        """Whether a bead that touches has been pressed through: its normal has turned round."""
+        last, old_nx, old_ny = self.touched.get(bead.index, NEVER)
+        self.touched[bead.index] = (step, nx, ny)
+        return last == step - 1 and old_nx * nx + old_ny * ny < 0.0
 
     def watch(self, dt: float) -> float:
         """Update `shake` of a kinematic plate; speed of the plate's fastest point [m/s]."""
