@@ -44,13 +44,6 @@ class PlateRow:
     plastic: float
 
 
-def impact_energy(run: Run, rows: NDArray[np.void]) -> Floats:
-    """Kinetic energy of the normal motion before impacts on plates [J]."""
-    mass = run.scene.beads.mass(run.scene.sphere_material.density)[rows["bead"]]
-    energy: Floats = 0.5 * mass * rows["approach_speed"] ** 2
-    return energy
-
-
 def on_plate(run: Run, plate: int) -> NDArray[np.void]:
     """Collisions on one plate."""
     rows: NDArray[np.void] = run.collisions[run.collisions["plate"] == plate]
@@ -73,7 +66,7 @@ def _plate_row(run: Run, plate: int) -> PlateRow:
     thickness = run.scene.plates[plate].thickness
     if not rows.size:
         return PlateRow(thickness, 0, *[math.nan] * 7)
-    energy, cor = impact_energy(run, rows), rows["restitution"]
+    energy, cor = run.energy(rows), rows["restitution"]
     total = energy.sum()
     constant = run.law == CONSTANT
     return PlateRow(
@@ -91,14 +84,9 @@ def _plate_row(run: Run, plate: int) -> PlateRow:
 
 def model_shares(run: Run, plate: int) -> tuple[float, float, float]:
     """Shares kept, lost to waves and lost to plastic flow, had the model ruled the same impacts."""
-    rows = on_plate(run, plate)
-    energy = impact_energy(run, rows)
-    rebound = run.model.lookup(rows["approach_speed"], *_radius_and_thickness(run, rows))
-    total = energy.sum()
-    wave, plastic = (
-        float((energy * share).sum() / total)
-        for share in (rebound.wave_fraction, rebound.plastic_fraction)
-    )
+    rows = run.modelled[run.modelled["plate"] == plate]
+    total = run.energy(rows).sum()
+    wave, plastic = (float(rows[name].sum() / total) for name in ("wave_energy", "plastic_energy"))
     return 1.0 - wave - plastic, wave, plastic
 
 
@@ -108,17 +96,12 @@ def flag_counts(run: Run) -> Counter[str]:
     "near an edge" is an impact so close to the plate's edge that the bending wave comes back while
     the contact lasts.
     """
-    rows = run.collisions[run.collisions["plate"] >= 0]
     counts: Counter[str] = Counter()
-    if not rows.size:
-        return counts
-    radius, thickness = _radius_and_thickness(run, rows)
-    rebound = run.model.lookup(rows["approach_speed"], radius, thickness)
     for flag in Validity:
-        number = int(((np.asarray(rebound.flags) & flag) != 0).sum())
+        number = int(((run.modelled["flags"] & flag) != 0).sum())
         if number:
             counts[str(flag.name).lower().replace("_", " ")] = number
-    near = _near_edge(run, rows, np.asarray(rebound.contact_time))
+    near = _near_edge(run)
     if near:
         counts["near an edge"] = near
     return counts
@@ -150,20 +133,14 @@ def first_rebounds(run: Run, plate: int) -> tuple[Floats, Floats]:
     return speed, apex * 2.0 * GRAVITY / speed**2
 
 
-def _radius_and_thickness(run: Run, rows: NDArray[np.void]) -> tuple[Floats, Floats]:
-    thickness = np.array([plate.thickness for plate in run.scene.plates])
-    return run.scene.beads.radius[rows["bead"]], thickness[rows["plate"]]
-
-
-def _near_edge(run: Run, rows: NDArray[np.void], contact_time: Floats) -> int:
+def _near_edge(run: Run) -> int:
     count = 0
     for n, plate in enumerate(run.scene.plates):
-        here = rows["plate"] == n
-        if not here.any() or plate.thickness == math.inf:
+        here = run.modelled[run.modelled["plate"] == n]
+        if not here.size or plate.thickness == math.inf:
             continue
-        x = rows["x"][here]
-        edge = np.minimum(x - plate.x0, plate.x1 - x)
+        edge = np.minimum(here["x"] - plate.x0, plate.x1 - here["x"])
         # It grows with the square root of contact time, so one call serves for all.
         unit = edge_distance(run.scene.plate_material, plate.thickness, 1.0)
-        count += int((edge < unit * np.sqrt(contact_time[here])).sum())
+        count += int((edge < unit * np.sqrt(here["contact_time"])).sum())
     return count

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel, Material, Pair
+from contactlaw.engines.record import IMPACT, fill
 from dem_demo.recorder import CONSTANT, FORMAT, SCHEMA
 from dem_demo.scene import Beads, Floats, Plate, Scene
 
@@ -32,7 +33,8 @@ class Run:
     bead_on_bead : str or None
         What is to be said of beads that hit beads, where the engine does not record them.
     collisions : structured ndarray
-        One row per collision; the columns are those of the file.
+        One row per collision: the impact record of `contactlaw.engines.record`. In the baseline it
+        ends with the COR.
     time, position, velocity, status : ndarray
         Frames (T,) [s], (T, N, 2) [m], (T, N, 2) [m/s], (T, N).
     depth : ndarray or None
@@ -56,6 +58,32 @@ class Run:
         """The impact model; for the baseline the one that it is to be compared with."""
         pair = Pair(self.scene.sphere_material, self.scene.plate_material)
         return ImpactModel(pair) if self.law == CONSTANT else ImpactModel(pair, self.law)
+
+    @cached_property
+    def modelled(self) -> NDArray[np.void]:
+        """Impacts on plates with all that the model says of them: every column of the record.
+
+        As recorded; only where the record has no flags, as in the baseline, is the model asked
+        about the same impacts. Their COR is that of the run all the same.
+        """
+        recorded = self.collisions[self.collisions["plate"] >= 0]
+        names = recorded.dtype.names or ()
+        if "flags" in names:
+            return recorded
+        rows = np.zeros(recorded.size, IMPACT)
+        for name in names:
+            rows[name] = recorded[name]
+        thickness = np.array([plate.thickness for plate in self.scene.plates])[rows["plate"]]
+        radius = self.scene.beads.radius[rows["bead"]]
+        rebound = self.model.lookup(rows["approach_speed"], radius, thickness)
+        fill(rows, rebound, self.energy(rows))
+        return rows
+
+    def energy(self, rows: NDArray[np.void]) -> Floats:
+        """Kinetic energy of the normal motion before impacts on plates [J]."""
+        mass = self.scene.beads.mass(self.scene.sphere_material.density)[rows["bead"]]
+        energy: Floats = 0.5 * mass * rows["approach_speed"] ** 2
+        return energy
 
 
 def read(path: Path) -> Run:
@@ -123,9 +151,8 @@ def _material(group: h5py.Group) -> Material:
 
 
 def _table(group: h5py.Group) -> NDArray[np.void]:
-    columns = {name: dataset[()] for name, dataset in group.items()}
-    kinds = [(name, column.dtype) for name, column in columns.items()]
-    table = np.empty(columns["time"].size, dtype=kinds)
+    columns = {name: group[name][()] for name in IMPACT.names or () if name in group}
+    table = np.empty(columns["time"].size, [(name, IMPACT[name]) for name in columns])
     for name, column in columns.items():
         table[name] = column
     return table

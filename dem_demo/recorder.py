@@ -15,28 +15,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import Material
+from contactlaw.engines.record import COLUMNS
 from dem_demo.frame import Frame
 from dem_demo.scene import Scene
 
-FORMAT, SCHEMA = "contactlaw-rain", 1
+FORMAT, SCHEMA = "contactlaw-rain", 2
 CONSTANT = "constant"  # the law's name where every contact has the same COR
 
-_COLUMNS = {
-    "time": ("s", "impact; where an engine resolves it in one step, the end of that step"),
-    "bead": ("1", "row of the bead in /beads"),
-    "plate": ("1", "row of the plate in /plates, -1: bead on bead"),
-    "other": ("1", "row of the other bead in /beads, -1: bead on plate"),
-    "x": ("m", "contact point, horizontal"),
-    "y": ("m", "contact point, vertical, upwards"),
-    "z": ("m", "contact point, depth; in three dimensions only"),
-    "approach_speed": ("m/s", "normal speed of approach"),
-    "restitution": ("1", "coefficient of restitution"),
-    # What only a model of the impact knows; absent where every contact has the same COR.
-    "contact_time": ("s", "duration of the contact"),
-    "peak_force": ("N", "largest contact force"),
-    "plastic_energy": ("J", "energy lost to plastic flow at the contact"),
-    "wave_energy": ("J", "energy carried off by the bending wave in the plate"),
-}
+# The columns' own descriptions are those of any engine; this is what they mean in this file.
+_AXES = (
+    "one row per impact; bead and other are rows of /beads, plate of /plates; x is horizontal, y "
+    "points up, z is the depth"
+)
 
 
 class Recorder:
@@ -113,10 +103,12 @@ class Recorder:
         self._frames += 1
 
     def collisions(self, table: NDArray[np.void]) -> None:
-        """Write all collisions, a structured array with the columns of the engine's adapter."""
+        """Write all collisions, with those columns of the impact record that the engine gives."""
         group = self._file.create_group("collisions")
-        for name in table.dtype.names or ():
-            _write(group, name, table[name], *_COLUMNS[name])
+        group.attrs["description"] = _AXES
+        for name, _, unit, description in COLUMNS:
+            if name in (table.dtype.names or ()):
+                _write(group, name, table[name], unit, description)
 
 
 def _provenance(engine: tuple[str, str], command: str) -> dict[str, object]:

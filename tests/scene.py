@@ -40,6 +40,7 @@ class Full(Stub):
     """With the parts that fill the whole record: numbers that can be told apart."""
 
     pair = SimpleNamespace(sphere=SimpleNamespace(density=1000.0))
+    flags = 0
 
     def lookup(self, speed, radius, thickness):
         self.speeds.append(speed.tolist())
@@ -48,6 +49,7 @@ class Full(Stub):
             peak_force=thickness,
             plastic_fraction=np.full_like(speed, self.answer(speed)),
             wave_fraction=np.full_like(speed, 0.125),
+            flags=np.full(speed.shape, self.flags),
         )
 
     def lookup_sphere_sphere(self, speed, radius, other_radius):

@@ -10,8 +10,9 @@ import pytest
 from matplotlib.image import imread
 
 import contactlaw as cl
+from contactlaw.engines.record import COLUMNS, IMPACT
 from dem_demo import cli, figures, nozzles
-from dem_demo.measure import plate_rows
+from dem_demo.measure import flag_counts, model_shares, plate_rows
 from dem_demo.reader import read
 from dem_demo.scene import GRAVITY
 
@@ -65,6 +66,33 @@ def test_file_explains_itself(folder):
 
         file.visititems(visit)
     assert {"collisions/wave_energy", "trajectories/position", "beads/mass"} <= set(seen)
+
+
+def test_collisions_are_the_one_record_of_impacts(folder, run):
+    assert run.collisions.dtype == IMPACT
+    with h5py.File(folder / "rain.h5") as file:
+        group = file["collisions"]
+        assert set(group) == set(IMPACT.names)
+        for column in COLUMNS:
+            attributes = group[column.name].attrs
+            assert attributes["units"] == column.unit
+            assert attributes["description"] == column.description
+        assert "/beads" in group.attrs["description"]
+
+
+def test_each_impact_has_the_flags_of_the_model(tmp_path):
+    thin = ["rain", "--beads", "30", "--plates", "0.35e-3,0.4e-3", "--duration", "0.3"]
+    assert cli.main([*thin, "--out", str(tmp_path)]) == 0
+    run = read(tmp_path / "rain.h5")
+    rows, radius = run.collisions, run.scene.beads.radius
+    on = rows[rows["plate"] >= 0]
+    thickness = np.array([plate.thickness for plate in run.scene.plates])[on["plate"]]
+    expected = run.model.lookup(on["approach_speed"], radius[on["bead"]], thickness).flags
+    assert on["flags"].tolist() == expected.tolist()
+    thin = (on["flags"] & cl.Validity.THIN_PLATE) != 0
+    assert thin.tolist() == (radius[on["bead"]] > 1.8 * thickness).tolist()
+    assert 0 < thin.sum() < thin.size
+    assert f"{thin.sum()} thin plate" in (tmp_path / "summary.txt").read_text()
 
 
 def test_each_collision_has_the_cor_of_the_model(run):
@@ -145,6 +173,48 @@ def test_baseline(baseline):
     assert run.constant_cor == 0.9
     assert "COR 0.9 everywhere" in (baseline / "summary.txt").read_text()
     assert {path.name for path in baseline.iterdir()} == FILES
+
+
+@pytest.mark.parametrize(("which", "times"), [("folder", 0), ("baseline", 1)])
+def test_no_impact_is_looked_up_a_second_time(request, which, times, tmp_path, monkeypatch):
+    """In the baseline nobody has yet asked what the model says of the impacts."""
+    run = read(request.getfixturevalue(which) / "rain.h5")
+    asked = []
+
+    def count(model, speed, radius, thickness, real=cl.ImpactModel.lookup):
+        asked.extend(np.ravel(speed).tolist())
+        return real(model, speed, radius, thickness)
+
+    monkeypatch.setattr(cl.ImpactModel, "lookup", count)
+    flag_counts(run)
+    figures.draw_all(run, tmp_path)
+    on = run.collisions[run.collisions["plate"] >= 0]
+    assert sorted(asked) == sorted(on["approach_speed"].tolist() * times)
+
+
+def test_baseline_is_compared_with_the_model_on_the_same_impacts(baseline):
+    run = read(baseline / "rain.h5")
+    rows, radius = run.collisions[run.collisions["plate"] >= 0], run.scene.beads.radius
+    thickness = np.array([plate.thickness for plate in run.scene.plates])[rows["plate"]]
+    rebound = run.model.lookup(rows["approach_speed"], radius[rows["bead"]], thickness)
+    assert (run.modelled["peak_force"] == rebound.peak_force).all()
+    assert (run.modelled["flags"] == rebound.flags).all()
+    for n in range(len(run.scene.plates)):
+        here = rows["plate"] == n
+        energy = run.energy(rows)[here]
+        wave, plastic = (
+            (energy * share[here]).sum() / energy.sum()
+            for share in (rebound.wave_fraction, rebound.plastic_fraction)
+        )
+        assert model_shares(run, n) == pytest.approx((1 - wave - plastic, wave, plastic))
+
+
+@pytest.mark.parametrize("more", [[], ["--constant-cor", "0.9"]], ids=["model", "baseline"])
+def test_a_rain_that_never_lands(more, tmp_path):
+    few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01", *more]
+    assert cli.main([*few, "--out", str(tmp_path)]) == 0
+    assert read(tmp_path / "rain.h5").collisions.size == 0
+    assert "all impacts on plates are inside" in (tmp_path / "summary.txt").read_text()
 
 
 @pytest.mark.parametrize("which", ["folder", "baseline"])

@@ -9,6 +9,7 @@ from scene import DT, EXACT, G, R, Stub, drop, make_bead, make_plate, make_space
 
 import contactlaw as cl
 from contactlaw.engines.pymunk import attach
+from contactlaw.engines.record import IMPACT
 
 
 @pytest.mark.parametrize("gravity", [0.0, G])
@@ -290,6 +291,42 @@ def test_a_plate_of_another_material(model):
         # the two differ by 0.06; the approach speed by a rounding from 5.0
         assert row["restitution"] == pytest.approx(own.restitution(5.0, R, 1e-3), rel=1e-12)
         assert row["peak_force"] == pytest.approx(own.lookup(5.0, R, 1e-3).peak_force, rel=1e-12)
+
+
+def test_flags_are_those_of_the_lookup(model):
+    # R/H of 0.9 and 3, and a pair of beads beyond 7 V_Y0
+    space = make_space(0.0)
+    impacts = attach(space, model)
+    for x, thickness in ((0, 1e-3), (0.5, 0.3e-3)):
+        impacts.add_plate(make_plate(space, (x, 0), (x + 0.4, 0)), thickness)
+        impacts.add_bead(make_bead(space, (x + 0.2, 1.001 * R), (0, -5)))
+    for x, v in ((-1, 60), (1, -60)):
+        impacts.add_bead(make_bead(space, (0.2 + 1.001 * x * R, 0.5), (v, 0)))
+    space.step(1e-6)
+    rows = np.sort(impacts.collisions(), order="bead")
+    assert rows.dtype == IMPACT
+    assert rows["z"].tolist() == [0.0] * 3
+    both = model.lookup_sphere_sphere(120.0, R, R).flags
+    assert rows["flags"].tolist() == [0, cl.Validity.THIN_PLATE, both]
+    assert both & cl.Validity.FAST_IMPACT
+
+
+def test_the_model_is_asked_about_an_impact_once(model):
+    asked = []
+
+    class Asked(cl.ImpactModel):
+        def lookup(self, *impacts):
+            asked.extend(impacts[0].tolist())
+            return super().lookup(*impacts)
+
+    space, body, impacts = drop(Asked(model.pair), gravity=0.0)
+    for speed in (2.0, 3.0, 4.0):
+        body.position, body.velocity = (0, 1.001 * R), (0, -speed)
+        for _ in range(5):
+            space.step(1e-5)
+            impacts.collisions()
+    assert asked == pytest.approx([2.0, 3.0, 4.0])
+    assert len(impacts.collisions()) == len(asked) == 3
 
 
 def test_an_impact_outside_the_table_says_which(model):

@@ -3,30 +3,58 @@
 import math
 
 import numpy as np
+import pytest
 from scene import Full, R, Stub
 
+import contactlaw as cl
 from contactlaw.engines.pymunk.record import Record
+from contactlaw.engines.record import COLUMNS, IMPACT
+
+
+def test_every_column_has_a_unit_and_a_description():
+    assert IMPACT.names == (
+        "time", "bead", "plate", "other", "x", "y", "z", "approach_speed", "restitution",
+        "contact_time", "peak_force", "plastic_energy", "wave_energy", "flags",
+    )  # fmt: skip
+    assert tuple(column.name for column in COLUMNS) == IMPACT.names
+    units = {"1", "s", "m", "m/s", "N", "J"}
+    for column in COLUMNS:
+        assert column.unit in units, column
+        assert len(column.description) > 10, column
+        whole = column.name in ("bead", "plate", "other", "flags")
+        assert IMPACT[column.name] == (np.int64 if whole else np.float64), column
+
+
+def test_flags_are_explained_bit_by_bit():
+    for flag in cl.Validity:
+        assert f"{flag.value} {flag.name.lower().replace('_', ' ')}" in COLUMNS[-1].description
 
 
 def test_record_without_lookup_has_no_derived_columns():
-    record = Record()
-    assert record.read(Stub(), [], []).shape == (0,)
-    record.add((0.5, 0, 0, -1, 0.1, 0.2, 3.0, 0.6))
+    assert Record().read(Stub(), [], []).shape == (0,)
     half = Stub()
     half.lookup = Full().lookup
     for main, own in ((Stub(), Full()), (Full(), Stub()), (half, Full())):
+        record = Record()
+        record.add((0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6))
         rows = record.read(main, [R], [(own, 1e-3)])
         assert rows.dtype.names[-1] == "restitution"
-        assert rows[0].tolist() == (0.5, 0, 0, -1, 0.1, 0.2, 3.0, 0.6)
-    assert record.read(Full(), [R], [(Full(), 1e-3)]).dtype.names[-1] == "wave_energy"
+        assert rows[0].tolist() == (0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6)
+        assert all(rows.dtype[name] == IMPACT[name] for name in rows.dtype.names)
+    record = Record()
+    record.add((0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6))
+    rows = record.read(Full(), [R], [(Full(), 1e-3)])
+    assert rows.dtype.names[-2:] == ("wave_energy", "flags")
+    assert rows.dtype == IMPACT
 
 
 def test_record_asks_each_model_for_its_own_rows():
     main, other = Full(0.25), Full(0.5)
+    main.flags, other.flags = 3, 4
     record = Record()
-    record.add((1.0, 1, 0, -1, 0, 0, 2.0, 0.6))
-    record.add((2.0, 0, 1, -1, 0, 0, 3.0, 0.6))
-    record.add((3.0, 0, -1, 1, 0, 0, 4.0, 0.6))
+    record.add((1.0, 1, 0, -1, 0, 0, 0, 2.0, 0.6))
+    record.add((2.0, 0, 1, -1, 0, 0, 0, 3.0, 0.6))
+    record.add((3.0, 0, -1, 1, 0, 0, 0, 4.0, 0.6))
     rows = record.read(main, [R, 2 * R], [(main, 1e-3), (other, math.inf)])
     mass = 4 / 3 * math.pi * R**3 * 1000
     kinetic = 0.5 * mass * np.array([8 * 2.0**2, 3.0**2, 8 / 9 * 4.0**2])
@@ -34,4 +62,51 @@ def test_record_asks_each_model_for_its_own_rows():
     assert rows["peak_force"].tolist() == [1e-3, math.inf, 2 * R]
     np.testing.assert_allclose(rows["plastic_energy"], [0.25, 0.5, 0.25] * kinetic, rtol=1e-14)
     np.testing.assert_allclose(rows["wave_energy"], 0.125 * kinetic, rtol=1e-14)
+    assert rows["flags"].tolist() == [3, 4, 3]
     assert (main.speeds, other.speeds) == ([[2.0], [4.0]], [[3.0]])
+
+
+def test_an_impact_is_looked_up_once():
+    model, record, seen = Full(), Record(), []
+    for n in range(1, 4):
+        record.add((n, 0, 0, -1, 0, 0, 0, 10.0 + n, 0.6))
+        record.add((n, 0, -1, 0, 0, 0, 0, 20.0 + n, 0.6))
+        for _ in range(2):
+            seen.append(record.read(model, [R], [(model, 1e-3)]))
+    assert sum(model.speeds, []) == [11.0, 21.0, 12.0, 22.0, 13.0, 23.0]
+    assert seen[-1]["approach_speed"].tolist() == sum(model.speeds, [])
+    assert [len(rows) for rows in seen] == [2, 2, 4, 4, 6, 6]
+    assert (seen[-1][:2] == seen[0]).all()
+
+
+def test_rows_that_were_given_away_are_not_the_record():
+    model, record = Full(), Record()
+    record.add((1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6))
+    record.read(model, [R], [(model, 1e-3)])["bead"] = 7
+    assert record.read(model, [R], [(model, 1e-3)])["bead"].tolist() == [0]
+
+
+def test_a_lookup_that_fails_is_asked_again():
+    model, record = Full(), Record()
+    record.add((1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6))
+
+    def fail(*arguments):
+        raise ValueError("outside the table")
+
+    model.lookup = fail
+    for _ in range(2):
+        with pytest.raises(ValueError, match="outside"):
+            record.read(model, [R], [(model, 1e-3)])
+    del model.lookup
+    assert record.read(model, [R], [(model, 1e-3)])["contact_time"].tolist() == [R]
+
+
+def test_a_plate_without_lookup_that_comes_later_takes_the_columns_away():
+    model, record = Full(), Record()
+    record.add((1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6))
+    assert record.read(model, [R], [(model, 1e-3)]).dtype == IMPACT
+    plates = [(model, 1e-3), (Stub(), 1e-3)]
+    record.add((2.0, 0, 1, -1, 0, 0, 0, 3.0, 0.6))
+    rows = record.read(model, [R], plates)
+    assert rows.dtype.names[-1] == "restitution"
+    assert rows["approach_speed"].tolist() == [2.0, 3.0]

@@ -11,11 +11,9 @@ from matplotlib.figure import Figure
 from contactlaw import load_signal
 from dem_demo import style
 from dem_demo.figures._labels import source
-from dem_demo.measure import on_plate
 from dem_demo.reader import Run
 from dem_demo.recorder import CONSTANT
 from dem_demo.report import label
-from dem_demo.scene import Floats
 
 _SAMPLES = 1000  # at least, at a rate of 10^n per second: single impacts can be told apart
 
@@ -36,15 +34,7 @@ def draw(run: Run) -> Figure:
         len(plates), 2, sharex="col", sharey="col", squeeze=False, width_ratios=(4.0, 1.0)
     )
     for n, (left, right) in enumerate(grid):
-        rows = on_plate(run, n)
-        impacts = rows["approach_speed"], run.scene.beads.radius[rows["bead"]], plates[n].thickness
-        load = load_signal(
-            rows["time"], *impacts, model=run.model, rate=rate, duration=run.scene.duration
-        )
-        left.fill_between(load.time, load.force, step="mid", color=style.BLUE, linewidth=0.6)
-        left.set_title(label(plates[n].thickness), loc="left", fontweight="bold", pad=3.0)
-        if rows.size:
-            _hardest(right, run, *impacts)
+        _plate(left, right, run, n, rate)
     for axes in grid[:, 1]:
         axes.yaxis.set_label_position("right")
         axes.yaxis.tick_right()
@@ -58,7 +48,17 @@ def draw(run: Run) -> Figure:
     return figure
 
 
-def _hardest(axes: Axes, run: Run, speed: Floats, radius: Floats, thickness: float) -> None:
-    n = int(np.argmax(run.model.lookup(speed, radius, thickness).peak_force))
-    contact = run.model.force_history(speed[n], radius[n], thickness)
-    axes.plot(contact.time * 1e6, contact.force, color=style.VERMILION, linewidth=2.0)
+def _plate(left: Axes, right: Axes, run: Run, plate: int, rate: float) -> None:
+    rows = run.modelled[run.modelled["plate"] == plate]
+    speed, radius = rows["approach_speed"], run.scene.beads.radius[rows["bead"]]
+    thickness = run.scene.plates[plate].thickness
+    load = load_signal(
+        rows["time"], speed, radius, thickness,
+        model=run.model, rate=rate, duration=run.scene.duration,
+    )  # fmt: skip
+    left.fill_between(load.time, load.force, step="mid", color=style.BLUE, linewidth=0.6)
+    left.set_title(label(thickness), loc="left", fontweight="bold", pad=3.0)
+    if rows.size:
+        n = int(np.argmax(rows["peak_force"]))
+        contact = run.model.force_history(speed[n], radius[n], thickness)
+        right.plot(contact.time * 1e6, contact.force, color=style.VERMILION, linewidth=2.0)

@@ -95,7 +95,9 @@ def rows() -> Iterator[Row]:
     with tempfile.TemporaryDirectory() as folder:
         cold, _ = run(EVERY_METHOD, folder)
         warm = min(run(EVERY_METHOD, folder)[0] for _ in range(5))
-        yield Row("every method once, warm cache", warm, "s", 1.5, note="7.0 s before laws were data")
+        yield Row(
+            "every method once, warm cache", warm, "s", 1.5, note="7.0 s before laws were data"
+        )
         yield Row("every method once, cold cache", cold, "s", 15, note="11 s before")
         run(NEW_LAW, folder)
         firsts, builds = [], []
@@ -103,7 +105,9 @@ def rows() -> Iterator[Row]:
             first, build = run(NEW_LAW, folder, str(Path(folder) / f"tables-{n}"))[1]
             firsts.append(first)
             builds.append(build)
-        yield Row("a new law's first answer", min(firsts), "s", 2, note="jackson_green: 22 s before")
+        yield Row(
+            "a new law's first answer", min(firsts), "s", 2, note="jackson_green: 22 s before"
+        )
         yield Row("table of a new law", min(builds), "s", 0.2, note="with its certificate")
         run(ATTACH, folder)
         attach = min(run(ATTACH, folder)[1][0] for _ in range(5))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import lru_cache, partial
 from itertools import count
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.engines.needs import RestitutionModel
 from contactlaw.engines.pymunk.lookahead import LookAhead, tunnelling
 from contactlaw.engines.pymunk.record import Record
 from contactlaw.engines.pymunk.registry import (
     Bead,
-    Curve,
     Plate,
     body_of,
     checked_model,
@@ -34,23 +34,25 @@ if TYPE_CHECKING:
 RESTING = 2.0
 # Slower than this many smallest radii per step is rounding, and all that rests without gravity.
 ROUNDING = 1e-12
-NEVER = (-1, 0.0, 0.0)
 
 # Far from the small numbers that people choose; below 2**32, the limit on 32-bit machines.
 _collision_types = count(0xC0A70000)
 
+Callback = Callable[["pymunk.Arbiter", "pymunk.Space", Any], None]
 
-def attach(space: pymunk.Space, model: Any) -> PymunkImpacts:
+
+def attach(space: pymunk.Space, model: RestitutionModel) -> PymunkImpacts:
     """Let a model decide how the beads of a pymunk space rebound.
 
     Parameters
     ----------
     space : pymunk.Space
         In metres and seconds. Its ``step`` is taken over until `PymunkImpacts.detach`.
-    model : ImpactModel
-        Or any object with ``curve(radius, thickness)``, which gives a function of speed; for bead
-        on bead ``sphere_sphere_curve(radius, other_radius)`` too. Without ``lookup`` and
-        ``lookup_sphere_sphere`` the record has no contact times, forces and energies.
+    model : RestitutionModel
+        An `ImpactModel`, or any object with ``curve(radius, thickness)``, which gives a function of
+        speed; for bead on bead ``sphere_sphere_curve(radius, other_radius)`` too. One that is no
+        `contactlaw.engines.needs.ReboundModel` leaves the record without contact times, forces,
+        energies and flags.
 
     Returns
     -------
@@ -108,7 +110,7 @@ class PymunkImpacts:
         Contacts too slow for an impact, one per contact and step.
     """
 
-    def __init__(self, space: pymunk.Space, model: Any) -> None:
+    def __init__(self, space: pymunk.Space, model: RestitutionModel) -> None:
         self.bead_type = next(_collision_types)
         self.plate_type = next(_collision_types)
         self.time = 0.0
@@ -130,8 +132,8 @@ class PymunkImpacts:
         self._replaced = vars(space).get("step")
         self._engine_step = space.step
         vars(space)["step"] = self._step
-        space.on_collision(self.bead_type, self.plate_type, pre_solve=self._bead_on_plate)
-        space.on_collision(self.bead_type, self.bead_type, pre_solve=self._bead_on_bead)
+        for kind, others in ((self.plate_type, self._plates), (self.bead_type, self._beads)):
+            space.on_collision(self.bead_type, kind, pre_solve=self._callback(others))
 
     def add_bead(self, circle: pymunk.Circle) -> int:
         """Register a sphere; its radius is the circle's.
@@ -160,14 +162,20 @@ class PymunkImpacts:
             )
         if body.id in self._bodies:
             raise ValueError(f"circle.body: carries bead {self._bodies[body.id].index} already")
-        bead = Bead(len(self._beads), circle, body, radius)
+        bead = Bead(len(self._beads), circle, body, radius, self._sphere_curve)
         self._beads[circle] = self._bodies[body.id] = bead
         circle.collision_type = self.bead_type
         self._lookahead.reach = min(self._lookahead.reach, radius)
         self._space.collision_slop = min(self._space.collision_slop, 0.1 * radius)
         return bead.index
 
-    def add_plate(self, segment: pymunk.Segment, thickness: float, *, model: Any = None) -> int:
+    def add_plate(
+        self,
+        segment: pymunk.Segment,
+        thickness: float,
+        *,
+        model: RestitutionModel | None = None,
+    ) -> int:
         """Register a plate; its body may be static, kinematic (a sieve) or dynamic.
 
         Parameters
@@ -177,7 +185,7 @@ class PymunkImpacts:
             velocity: an engine takes no notice of a position that is set.
         thickness : float
             Thickness for the model [m]; ``inf`` is the half-space.
-        model : ImpactModel, optional
+        model : RestitutionModel, optional
             For a plate of another material than that of the attached model.
 
         Returns
@@ -203,10 +211,11 @@ class PymunkImpacts:
         Returns
         -------
         structured array
-            time [s], bead, plate (-1: bead on bead), other (the other bead, -1: plate), x and y of
-            the contact [m], approach_speed [m/s], restitution; with a model that has ``lookup``
-            also contact_time [s], peak_force [N], and plastic_energy and wave_energy [J] of solid
-            spheres (bead on bead: of the relative motion, with the reduced mass).
+            A copy with the columns of `contactlaw.engines.record.COLUMNS`, which have their units
+            there: time, bead, plate, other, x, y, z (0), approach_speed, restitution; if every
+            model is a `ReboundModel` also contact_time, peak_force, plastic_energy, wave_energy and
+            flags. Energies are those of solid spheres (bead on bead: of the relative motion, with
+            the reduced mass).
         """
         radii = [bead.radius for bead in self._beads.values()]
         plates = [(plate.model, plate.thickness) for plate in self._plates.values()]
@@ -282,83 +291,56 @@ class PymunkImpacts:
         else:
             self._hook(report)
 
-    def _bead_on_plate(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
-        try:
-            circle, segment = arbiter.shapes
-            bead, plate = self._beads.get(circle), self._plates.get(segment)
-            if bead is None or plate is None:
-                raise unregistered(circle if bead is None else segment)
-            if not arbiter.process_collision:  # switched off by a user's `begin`
-                return
-            nx, ny = arbiter.normal  # from bead to plate
-            x, y = bead.body.position
-            x, y = x + bead.radius * nx, y + bead.radius * ny
-            vx, vy = bead.body.velocity
-            ux, uy = plate.body.velocity_at_world_point((x, y))
-            speed = (vx - ux) * nx + (vy - uy) * ny
-            step, old_nx, old_ny = plate.touched.get(bead.index, NEVER)
-            plate.touched[bead.index] = (self._steps, nx, ny)
-            if step == self._steps - 1 and old_nx * nx + old_ny * ny < 0.0:
-                raise tunnelling(bead.index, plate.index, self.time, abs(speed), None)
-            if speed <= self._resting_speed + RESTING * plate.shake:
-                self._rest(arbiter, speed)
-                return
-            restitution = self._answer(arbiter, speed, plate.curve, bead.radius)
-            self._record.add((self.time, bead.index, plate.index, -1, x, y, speed, restitution))
-        except BaseException as error:
-            self._keep(error, arbiter)
+    def _callback(self, others: Mapping[Any, Bead | Plate]) -> Callback:
+        """Make the callback for contacts of beads with plates, or with each other."""
+        # Found beforehand: it is called for every contact in every step, and a pile has many.
+        on_plate = others is self._plates
+        bead_of, other_of, record = self._beads.get, others.get, self._record.add
 
-    def _bead_on_bead(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
-        try:
-            circle, other_circle = arbiter.shapes
-            bead, other = self._beads.get(circle), self._beads.get(other_circle)
-            if bead is None or other is None:
-                raise unregistered(circle if bead is None else other_circle)
-            if not arbiter.process_collision:
-                return
-            nx, ny = arbiter.normal  # from bead to other; through both centres: spin plays no part
-            vx, vy = bead.body.velocity
-            ux, uy = other.body.velocity
-            speed = (vx - ux) * nx + (vy - uy) * ny
-            if speed <= self._resting_speed:
-                self._rest(arbiter, speed)
-                return
-            radii = sorted((bead.radius, other.radius))
-            restitution = self._answer(arbiter, speed, self._sphere_curve, *radii)
-            x, y = bead.body.position
-            x, y = x + bead.radius * nx, y + bead.radius * ny
-            self._record.add((self.time, bead.index, -1, other.index, x, y, speed, restitution))
-        except BaseException as error:
-            self._keep(error, arbiter)
+        def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+            try:
+                circle, shape = arbiter.shapes
+                bead, other = bead_of(circle), other_of(shape)
+                if bead is None or other is None:
+                    raise unregistered(circle if bead is None else shape)
+                if not arbiter.process_collision:  # switched off by a user's `begin`
+                    return
+                nx, ny = arbiter.normal  # from the bead to the other
+                vx, vy = bead.body.velocity
+                (ux, uy), point = other.motion(bead, nx, ny)
+                speed = (vx - ux) * nx + (vy - uy) * ny
+                if other.passed(bead, nx, ny, self._steps):
+                    raise tunnelling(bead.index, other.index, self.time, abs(speed), None)
+                if speed <= self._resting_speed + RESTING * other.shake:
+                    arbiter.restitution = 0.0
+                    if speed > 0.0:  # or else they separate, or stay together
+                        self.resting += 1
+                    return
+                arbiter.restitution = restitution = self._restitution(bead, other, speed)
+                x, y = point or bead.contact(nx, ny)
+                plate, target = (other.index, -1) if on_plate else (-1, other.index)
+                record((self.time, bead.index, plate, target, x, y, 0.0, speed, restitution))
+            except BaseException as error:
+                self._keep(error, arbiter)
 
-    def _rest(self, arbiter: pymunk.Arbiter, speed: float) -> None:
-        arbiter.restitution = 0.0
-        if speed > 0.0:  # or else they separate, or stay together
-            self.resting += 1
+        return pre_solve
 
-    def _answer(
-        self, arbiter: pymunk.Arbiter, speed: float, curve: Callable[..., Curve], *key: float
-    ) -> float:
-        """Give the model's restitution to the engine, which checks nothing."""
+    def _restitution(self, bead: Bead, other: Bead | Plate, speed: float) -> float:
+        """Ask the model, and check for the engine, which checks nothing."""
         try:
-            restitution = curve(*key)(speed)
+            restitution = other.curve(bead.radius)(speed)
         except Exception as error:
-            error.add_note(self._describe(arbiter, speed))
+            error.add_note(self._describe(bead, other, speed))
             raise
         if not 0.0 <= restitution <= 1.0:
-            where = self._describe(arbiter, speed)
+            where = self._describe(bead, other, speed)
             raise ValueError(
                 f"restitution must lie in [0, 1], the model gave {restitution!r} {where}"
             )
-        arbiter.restitution = restitution
         return restitution
 
-    def _describe(self, arbiter: pymunk.Arbiter, speed: float) -> str:
-        circle, target = arbiter.shapes
-        plate = self._plates.get(target)
-        on = f"plate {plate.index}" if plate else f"bead {self._beads[target].index}"
-        bead = self._beads[circle].index
-        return f"for bead {bead} on {on} at {speed:.9g} m/s, t = {self.time:.9g} s"
+    def _describe(self, bead: Bead, other: Bead | Plate, speed: float) -> str:
+        return f"for {bead} on {other} at {speed:.9g} m/s, t = {self.time:.9g} s"
 
     def _keep(self, error: BaseException, arbiter: pymunk.Arbiter | None = None) -> None:
         """Keep the first error of a step; an interrupt goes before everything."""

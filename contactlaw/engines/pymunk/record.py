@@ -1,93 +1,77 @@
-"""The record of impacts that an adapter keeps: raw numbers during the run, the rest on demand."""
+"""The record of impacts that an adapter keeps: what was seen in the run, the rest on demand."""
 
 from __future__ import annotations
 
 import math
 from array import array
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
+from numpy.lib.recfunctions import repack_fields
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contactlaw.engines.needs import Array, ReboundModel, RestitutionModel, knows_rebounds
+from contactlaw.engines.record import IMPACT, OBSERVED, fill
 
-RAW = np.dtype(
-    [("time", "f8"), ("bead", "i8"), ("plate", "i8"), ("other", "i8"), ("x", "f8"), ("y", "f8")]
-    + [("approach_speed", "f8"), ("restitution", "f8")]
-)
-DERIVED = np.dtype(
-    [("contact_time", "f8"), ("peak_force", "f8"), ("plastic_energy", "f8"), ("wave_energy", "f8")]
-)
+Plates = Sequence[tuple[RestitutionModel, float]]  # model and thickness [m], by index
 
 
 class Record:
     """Impacts, added one by one and read as one array."""
 
     def __init__(self) -> None:
-        self._numbers = array("d")  # 64 bytes per impact; a list of tuples takes five times that
-        self.add = self._numbers.extend  # takes one tuple in the order of RAW
+        self._seen = array("d")  # 72 bytes per impact; a list of tuples takes five times that
+        self.add = self._seen.extend  # takes one tuple in the order of OBSERVED
+        self._rows = np.empty(0, IMPACT)  # of the first impacts seen: those that were read already
 
     def read(
-        self, model: Any, radii: Sequence[float], plates: Sequence[tuple[Any, float]]
+        self, model: RestitutionModel, radii: Sequence[float], plates: Plates
     ) -> NDArray[np.void]:
-        """Structured array of all impacts.
+        """Structured array of all impacts; each is looked up when it is first read, and not again.
 
         Parameters
         ----------
-        model : ImpactModel
-            That of the beads. Without ``lookup`` and ``lookup_sphere_sphere``, here and in every
-            plate's model, the columns of DERIVED are left out.
+        model : RestitutionModel
+            That of the beads. Unless it and those of all plates are a `ReboundModel`, there are
+            only the columns of OBSERVED.
         radii : sequence of float
             Of the beads, by index [m].
         plates : sequence of (model, thickness [m])
-            By index.
+            By index. There may be more than in the last call, as with radii, but no others.
         """
-        raw = np.array(self._numbers).reshape(-1, len(RAW.descr))
-        models = {id(m): m for m in (model, *(m for m, _ in plates))}
-        derived = hasattr(model, "lookup_sphere_sphere")
-        derived = derived and all(hasattr(m, "lookup") for m in models.values())
-        rows = np.zeros(len(raw), RAW.descr + (DERIVED.descr if derived else []))
-        for name, column in zip(RAW.names or (), raw.T, strict=True):
-            rows[name] = column
-        if derived:
-            radius = np.array(radii)
-            for each in models.values():
-                _fill_on_plates(rows, each, radius, plates)
-            _fill_bead_on_bead(rows, model, radius)
-        return rows
+        models = [m for m in (model, *(m for m, _ in plates)) if knows_rebounds(m)]
+        whole = len(models) == 1 + len(plates)
+        seen = np.array(self._seen[len(self._rows) * len(OBSERVED) :]).reshape(-1, len(OBSERVED))
+        if len(seen):
+            rows = np.zeros(len(seen), IMPACT)
+            for name, column in zip(OBSERVED, seen.T, strict=True):
+                rows[name] = column
+            if whole:
+                _complete(rows, models, np.array(radii), np.array([h for _, h in plates]))
+            self._rows = np.concatenate((self._rows, rows))
+        # Plates do not go: where a COR is all that is known, it is so for the rest of the run.
+        return self._rows.copy() if whole else repack_fields(self._rows[list(OBSERVED)])
 
 
-def _fill_on_plates(
-    rows: NDArray[np.void], model: Any, radius: Array, plates: Sequence[tuple[Any, float]]
+def _complete(
+    rows: NDArray[np.void], models: Sequence[ReboundModel], radius: Array, thickness: Array
 ) -> None:
-    """Complete the rows of the plates that answer to this model."""
-    own = np.array([m is model for m, _ in plates] + [False])  # last: plate -1, bead on bead
-    chosen = own[rows["plate"]]
-    if chosen.any():
-        thickness = np.array([h for _, h in plates])[rows["plate"][chosen]]
-        bead = radius[rows["bead"][chosen]]
-        rebound = model.lookup(rows["approach_speed"][chosen], bead, thickness)
-        _fill(rows, chosen, rebound, _mass(model, bead))
-
-
-def _fill_bead_on_bead(rows: NDArray[np.void], model: Any, radius: Array) -> None:
-    chosen = rows["other"] >= 0
-    if chosen.any():
-        bead, other = radius[rows["bead"][chosen]], radius[rows["other"][chosen]]
-        rebound = model.lookup_sphere_sphere(rows["approach_speed"][chosen], bead, other)
-        mass, other_mass = _mass(model, bead), _mass(model, other)
-        _fill(rows, chosen, rebound, mass * other_mass / (mass + other_mass))
-
-
-def _mass(model: Any, radius: Array) -> Array:
-    mass: Array = 4.0 / 3.0 * math.pi * radius**3 * model.pair.sphere.density
-    return mass
-
-
-def _fill(rows: NDArray[np.void], chosen: NDArray[np.bool_], rebound: Any, mass: Array) -> None:
-    energy = 0.5 * mass * rows["approach_speed"][chosen] ** 2
-    rows["contact_time"][chosen] = rebound.contact_time
-    rows["peak_force"][chosen] = rebound.peak_force
-    rows["plastic_energy"][chosen] = rebound.plastic_fraction * energy
-    rows["wave_energy"][chosen] = rebound.wave_fraction * energy
+    """Look impacts up; the first model is that of the beads, the others are those of the plates."""
+    beads, *plates = models
+    on_bead = rows["other"] >= 0
+    bead, other = radius[rows["bead"]], radius[rows["other"]]
+    target = np.where(on_bead, other, np.append(thickness, math.nan)[rows["plate"]])
+    # m1 m2/(m1 + m2), all beads being of one material; a plate counts as a mass without end
+    mass = 4.0 / 3.0 * math.pi * beads.pair.sphere.density * bead**3
+    mass /= 1.0 + np.where(on_bead, bead / other, 0.0) ** 3
+    energy = 0.5 * mass * rows["approach_speed"] ** 2
+    questions = []
+    for model in {id(plate): plate for plate in plates}.values():
+        own = np.array([plate is model for plate in plates] + [False])  # last: plate -1
+        questions.append((model.lookup, own[rows["plate"]]))
+    questions.append((beads.lookup_sphere_sphere, on_bead))
+    for lookup, chosen in questions:
+        if chosen.any():
+            part = rows[chosen]
+            fill(part, lookup(part["approach_speed"], bead[chosen], target[chosen]), energy[chosen])
+            rows[chosen] = part

@@ -5,24 +5,48 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from contactlaw.engines.needs import Curve, RestitutionModel, knows_beads
 from contactlaw.physical.arguments import broadcast, check
 
 if TYPE_CHECKING:
     import pymunk
 
-Curve = Callable[[float], float]
+Vector = tuple[float, float]
+NEVER = (-1, 0.0, 0.0)  # what `Plate.touched` has of a bead that never did
 
 
 @dataclass(slots=True, eq=False)
 class Bead:
-    """A registered sphere."""
+    """A registered sphere, which hits plates and other spheres."""
 
     index: int
     circle: pymunk.Circle
     body: pymunk.Body
     radius: float
+    pair_curve: Callable[[float, float], Curve]  # of two beads by their radii, the smaller first
+    shake: ClassVar[float] = 0.0  # nothing drives a bead; see `Plate`
+
+    def __str__(self) -> str:
+        return f"bead {self.index}"
+
+    def contact(self, nx: float, ny: float) -> Vector:
+        """Point of its surface in the direction of a normal [m]."""
+        x, y = self.body.position
+        return x + self.radius * nx, y + self.radius * ny
+
+    def curve(self, radius: float) -> Curve:
+        """Restitution of a bead of this radius on this one by speed."""
+        return self.pair_curve(*sorted((radius, self.radius)))
+
+    def motion(self, bead: Bead, nx: float, ny: float) -> tuple[Vector, None]:
+        """Its velocity [m/s]; the normal is through its centre, so that any point will do."""
+        return self.body.velocity, None
+
+    def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
+        """Beads that were pressed through each other go unnoticed."""
+        return False
 
 
 @dataclass(slots=True, eq=False)
@@ -33,7 +57,7 @@ class Plate:
     segment: pymunk.Segment
     body: pymunk.Body
     thickness: float
-    model: Any
+    model: RestitutionModel
     curves: dict[float, Curve] = field(default_factory=dict)  # by bead radius
     # by bead: the last step in which it touched, and the normal then
     touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
@@ -41,12 +65,26 @@ class Plate:
     change: float = 0.0  # of that velocity, within the last step [m/s]
     shake: float = 0.0  # the same while it goes on, else about 0 [m/s]
 
+    def __str__(self) -> str:
+        return f"plate {self.index}"
+
     def curve(self, radius: float) -> Curve:
         """Restitution of beads of this radius by speed; made once."""
         curve = self.curves.get(radius)
         if curve is None:
             curve = self.curves[radius] = self.model.curve(radius, self.thickness)
         return curve
+
+    def motion(self, bead: Bead, nx: float, ny: float) -> tuple[Vector, Vector]:
+        """Its velocity [m/s] at the point [m] where a bead touches it, and that point."""
+        point = bead.contact(nx, ny)
+        return self.body.velocity_at_world_point(point), point
+
+    def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
+        """Whether a bead that touches has been pressed through: its normal has turned round."""
+        last, old_nx, old_ny = self.touched.get(bead.index, NEVER)
+        self.touched[bead.index] = (step, nx, ny)
+        return last == step - 1 and old_nx * nx + old_ny * ny < 0.0
 
     def watch(self, dt: float) -> float:
         """Update `shake` of a kinematic plate; speed of the plate's fastest point [m/s]."""
@@ -88,7 +126,9 @@ def body_of(shape: Any, kind: type, space: pymunk.Space, collision_type: int) ->
     return body
 
 
-def checked_model(model: Any, beads: Any = None) -> Any:
+def checked_model(
+    model: RestitutionModel, beads: RestitutionModel | None = None
+) -> RestitutionModel:
     """Refuse what cannot answer, or answers for other spheres than the model of the beads."""
     if not callable(getattr(model, "curve", None)):
         raise TypeError(f"model: expected an ImpactModel, or a like with curve(), got {model!r}")
@@ -98,7 +138,7 @@ def checked_model(model: Any, beads: Any = None) -> Any:
     return model
 
 
-def _sphere(model: Any) -> Any:
+def _sphere(model: RestitutionModel | None) -> Any:
     return getattr(getattr(model, "pair", None), "sphere", None)
 
 
@@ -111,12 +151,11 @@ def scalar(**argument: float) -> float:
     return float(values[0])
 
 
-def sphere_curve(model: Any, radius: float, other_radius: float) -> Curve:
+def sphere_curve(model: RestitutionModel, radius: float, other_radius: float) -> Curve:
     """Restitution of two beads by speed."""
-    if not hasattr(model, "sphere_sphere_curve"):
+    if not knows_beads(model):
         raise TypeError(f"beads meet, but {model!r} has no sphere_sphere_curve()")
-    curve: Curve = model.sphere_sphere_curve(radius, other_radius)
-    return curve
+    return model.sphere_sphere_curve(radius, other_radius)
 
 
 def unregistered(shape: Any) -> ValueError:

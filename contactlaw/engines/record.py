@@ -1,0 +1,86 @@
+"""The impact record, one for all engines: its columns, their units, and how a model fills them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import Validity
+
+if TYPE_CHECKING:
+    from contactlaw import Rebound
+
+
+class Column(NamedTuple):
+    """What one column of the record holds.
+
+    Attributes
+    ----------
+    name : str
+        In arrays, and in files.
+    kind : str
+        Type of the numbers, as numpy abbreviates it.
+    unit : str
+        SI unit; ``"1"`` without one.
+    description : str
+        What the number is.
+    """
+
+    name: str
+    kind: str
+    unit: str
+    description: str
+
+
+_LIMITS = ", ".join(f"{limit.value} {limit.name}".lower().replace("_", " ") for limit in Validity)
+
+COLUMNS = (
+    Column("time", "f8", "s", "first touch; of an impact within one step, the end of that step"),
+    Column("bead", "i8", "1", "number of the bead"),
+    Column("plate", "i8", "1", "number of the plate, -1: bead on bead"),
+    Column("other", "i8", "1", "number of the other bead, -1: bead on plate"),
+    Column("x", "f8", "m", "contact point"),
+    Column("y", "f8", "m", "contact point"),
+    Column("z", "f8", "m", "contact point, 0 in two dimensions"),
+    Column("approach_speed", "f8", "m/s", "normal speed of approach"),
+    Column("restitution", "f8", "1", "coefficient of restitution"),
+    Column("contact_time", "f8", "s", "duration of the contact"),
+    Column("peak_force", "f8", "N", "largest contact force"),
+    Column("plastic_energy", "f8", "J", "energy lost to plastic flow at the contact"),
+    Column("wave_energy", "f8", "J", "energy carried off by the bending wave in the plate"),
+    Column("flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_LIMITS}"),
+)
+IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
+_NAMES = tuple(column.name for column in COLUMNS)
+# All that there is where a model gives a COR and nothing else.
+OBSERVED = _NAMES[: _NAMES.index("contact_time")]
+
+
+def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) -> None:
+    """Complete impacts whose observed columns are known.
+
+    Parameters
+    ----------
+    rows : structured array (n,)
+        Impacts, with the columns of `IMPACT`; changed in place.
+    rebound : Rebound
+        What a model says of them.
+    energy : array (n,)
+        Kinetic energy of the normal motion before each impact [J].
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    >>> rows = np.zeros(1, IMPACT)
+    >>> fill(rows, model.lookup([5.0], radius=0.9e-3, thickness=1e-3), np.array([3.4e-5]))
+    >>> f"{rows['peak_force'][0]:.1f} N, {rows['wave_energy'][0] * 1e6:.1f} uJ to the plate"
+    '9.7 N, 6.0 uJ to the plate'
+    """
+    rows["contact_time"] = rebound.contact_time
+    rows["peak_force"] = rebound.peak_force
+    rows["plastic_energy"] = rebound.plastic_fraction * energy
+    rows["wave_energy"] = rebound.wave_fraction * energy
+    rows["flags"] = rebound.flags

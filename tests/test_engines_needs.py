@@ -1,0 +1,50 @@
+"""What engines ask of a model, and which models have it."""
+
+from types import SimpleNamespace
+
+import pytest
+from scene import DT, Full, Stub, drop
+
+import contactlaw as cl
+from contactlaw.engines.needs import knows_beads, knows_rebounds
+from contactlaw.engines.record import IMPACT
+from dem_demo.baseline import ConstantRestitution
+
+
+@pytest.mark.parametrize(
+    ("make", "beads", "rebounds"),
+    [
+        (lambda: cl.ImpactModel(cl.Pair("gamma-alumina", "glass")), True, True),
+        (lambda: ConstantRestitution(cl.Pair("gamma-alumina", "glass"), 0.9), True, False),
+        (lambda: SimpleNamespace(curve=lambda radius, thickness: lambda speed: 0.5), False, False),
+        (Full, True, True),
+    ],
+    ids=["ImpactModel", "ConstantRestitution", "curve alone", "stub"],
+)
+def test_who_knows_what(make, beads, rebounds):
+    model = make()
+    assert callable(model.curve(0.9e-3, 1e-3))
+    assert (knows_beads(model), knows_rebounds(model)) == (beads, rebounds)
+
+
+@pytest.mark.parametrize("missing", ["pair", "lookup", "lookup_sphere_sphere"])
+def test_the_whole_record_needs_all_three(missing):
+    model = Stub()
+    for name in {"pair", "lookup", "lookup_sphere_sphere"} - {missing}:
+        setattr(model, name, getattr(Full(), name))
+    assert not knows_rebounds(model)
+    space, _, impacts = drop(model)
+    space.step(DT)
+    assert impacts.collisions().dtype.names[-1] == "restitution"
+
+
+def test_a_model_that_passes_questions_on():
+    class Wrapped:
+        inner = Full()
+
+        def __getattr__(self, name):
+            return getattr(self.inner, name)
+
+    space, _, impacts = drop(Wrapped())
+    space.step(DT)
+    assert impacts.collisions().dtype == IMPACT
