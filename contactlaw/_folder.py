@@ -12,7 +12,14 @@ from pathlib import Path
 
 
 def folder() -> Path | None:
-    """Folder of the cache; None if it is switched off."""
+    """Folder of the cache; None if it is switched off.
+
+    Raises
+    ------
+    RuntimeError
+        If it is in a home folder and there is none, as of a container's user without an entry in
+        the list of users.
+    """
     if os.environ.get("CONTACTLAW_NO_CACHE", "").lower() not in ("", "0", "no", "off", "false"):
         return None
     chosen = os.environ.get("CONTACTLAW_CACHE_DIR")
@@ -20,4 +27,5 @@ def folder() -> Path | None:
         return Path(chosen).expanduser()
     import platformdirs
 
-    return platformdirs.user_cache_path("contactlaw", appauthor=False)
+    # early versions leave the ~ of a user without a home: a folder of that name would be made
+    return platformdirs.user_cache_path("contactlaw", appauthor=False).expanduser()

@@ -25,6 +25,7 @@ from contactlaw.table.nodes import Table
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.int64]
+Numbers = NDArray[np.intp]  # of impacts in the flat arrays that the user gave
 Outside = Literal["raise", "solve", "clamp"]
 
 RTOL = 1e-10  # of an integration for which the user names no other
@@ -69,14 +70,18 @@ def _coordinates(units: Scales) -> Outcome:
     return outcome.at(*np.broadcast_arrays(units.inelasticity, units.yield_ratio, units.time)[:2])
 
 
-def solved(law: Law, units: Scales, rtol: float) -> Outcome:
-    """Outcomes by integration."""
+def solved(law: Law, units: Scales, rtol: float, numbers: Numbers | None = None) -> Outcome:
+    """Outcomes by integration.
+
+    Errors name the impact by its number in the user's arrays where these are only some of those.
+    """
     out = _coordinates(units)
     status, n = zener.solve_all(law.data, rtol, out)
     if status != zener.OK:
         raise RuntimeError(
             f"the equation did not solve at lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = "
-            f"{out.yield_ratio[n]:.6g} (element {n}): {zener.MESSAGES[status]}"
+            f"{out.yield_ratio[n]:.6g} (element {n if numbers is None else numbers[n]}): "
+            f"{zener.MESSAGES[status]}"
         )
     return out
 
@@ -104,7 +109,7 @@ def complete(
     if outside == "solve":
         shape = out.inelasticity.shape
         part = Scales(*(np.broadcast_to(value, shape)[beyond] for value in units))
-        found = solved(law, part, RTOL)
+        found = solved(law, part, RTOL, np.flatnonzero(beyond))
     else:
         found = outcome.part(out, beyond)
         lookup.fields(table, True, found)

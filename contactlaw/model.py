@@ -608,10 +608,9 @@ class ImpactModel:
         table, at = self._table, self._at
 
         def restitution(speed: float) -> float:
-            try:
-                value = at(table, c_lam, c_chi, speed)
-            except TypeError:  # no number; said properly below
-                value = math.nan
+            if not isinstance(speed, float):  # the entry would take "5" and True for numbers
+                speed = scalars(speed=speed)[0].item()
+            value = at(table, c_lam, c_chi, speed)
             if value != value:  # NaN; half the time of a call of isnan
                 (v,) = scalars(speed=speed)
                 return float(self._fields(scales(contact(), v))[0].restitution[0])

@@ -180,3 +180,44 @@ def unloading_force(law: Array, curve: Curve, q: float) -> float:
     if law[CAPPED] > 0.0 and q > 0.0:
         force = min(force, loading(law, math.sqrt(curve.residual + q * q)))
     return force
+
+
+def check(law: Array) -> None:
+    """Refuse an array that is no law: kernels would follow its addresses out of memory.
+
+    Raises
+    ------
+    ValueError
+        With what is wrong of it.
+    """
+    size = law.size
+    pieces, rows, at = (_whole(law, n, size) for n in (PIECES, UNLOADINGS, UNLOADING))
+    if size < HEADER or not at == HEADER + (pieces + 1) * PIECE or pieces < 1:
+        raise ValueError("its law has no loading curve")
+    if not at + (rows + 1) * UNLOADING_ROW <= size:
+        raise ValueError("its law ends within its rows")
+    curve = law[HEADER:at].reshape(-1, PIECE)
+    family = law[at : at + (rows + 1) * UNLOADING_ROW].reshape(-1, UNLOADING_ROW)
+    entries = [(row, DEGREE) for row in curve[:-1]]
+    entries += [
+        (row, OFFSET + 1 + n * _FUNCTION + _DEGREE) for row in family[:-1] for n in range(5)
+    ]
+    for row, column in entries:
+        degree, start = _whole(row, column, size), _whole(row, column + 1, size)
+        if not start + degree < size:
+            raise ValueError("its law has coefficients beyond its end")
+    for table in (curve, family):
+        starts = table[:, START]
+        if not (np.diff(starts[:-1]) > 0.0).all() or starts[-1] != math.inf:
+            raise ValueError("the pieces of its law do not follow each other")
+    for n, row in enumerate(curve[:-1]):
+        if not _whole(row, FIRST, size) <= n < _whole(row, NEXT, size) <= pieces:
+            raise ValueError("the pieces of its law belong to no kink")
+
+
+def _whole(row: Array, column: int, most: int) -> int:
+    """Read a number that has to be whole, from 0 to a limit."""
+    number = float(row[column]) if column < row.size else math.nan
+    if not (0.0 <= number <= most and number == int(number)):
+        raise ValueError(f"its law has {number} where there is a whole number up to {most}")
+    return int(number)

@@ -7,6 +7,7 @@ alone share one. Shapes of force histories are added when the first history is a
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import functools
 import hashlib
 import json
@@ -86,42 +87,45 @@ def _kept(
     is_whole: Callable[[Table], bool],
 ) -> Table:
     """Table in the cache; made of what is there, and kept, if that is not whole."""
-    place = _place()
+    try:
+        place = folder()
+    except RuntimeError as error:
+        place = None
+        _warn_not_kept(law, "a folder of this user", error)
     if place is None:
         return make(None)
     path = place / file_name(law, settings)
     made: Table | None = None
-    found = _usable(path, law, settings)
-    if found is not None and is_whole(found):
-        return found
     try:
+        found, _ = _usable(path, law, settings)
+        if found is not None and is_whole(found):
+            return found
         place.mkdir(parents=True, exist_ok=True)
         with _locked(path):
             # another process may have built it while this one waited
-            found = _usable(path, law, settings, warn=True)
+            found, fault = _usable(path, law, settings)
             if found is not None and is_whole(found):
                 return found
             made = make(found)
             _sweep(path)
             file.write(made, path)
+        if fault:
+            warnings.warn(
+                f"the table of law {law.name!r} in the cache was damaged and has been built anew "
+                f"({path}: {fault}); if this comes again, something alters its files: set "
+                "CONTACTLAW_CACHE_DIR to another folder",
+                stacklevel=2,
+            )
     except OSError as error:  # read-only, full, over quota, a file in its place, locked for ever
-        _warn_of(place, error)
-    return made or make(found)
+        _warn_not_kept(law, place, error)
+    return made or make(None)
 
 
-def _place() -> Path | None:
-    try:
-        return folder()
-    except RuntimeError as error:  # nobody's home
-        _warn_of("the user's cache folder", error)
-        return None
-
-
-def _warn_of(place: object, error: Exception) -> None:
+def _warn_not_kept(law: Law, place: Path | str, reason: Exception) -> None:
     warnings.warn(
-        f"tables cannot be kept in {place} ({error}), so each process builds them anew; set "
-        "CONTACTLAW_CACHE_DIR to a writable folder, or CONTACTLAW_NO_CACHE=1",
-        stacklevel=2,
+        f"the table of law {law.name!r} cannot be kept in {place} ({reason}), so each process "
+        "builds it anew; set CONTACTLAW_CACHE_DIR to a writable folder, or CONTACTLAW_NO_CACHE=1",
+        stacklevel=3,
     )
 
 
@@ -133,17 +137,17 @@ def progress_bar(rows: Iterator[Any], total: int) -> Iterable[Any]:
     return bar
 
 
-def _usable(path: Path, law: Law, settings: Settings, *, warn: bool = False) -> Table | None:
-    """Table in a cache file; None where there is none, or a damaged or another one: built anew."""
+def _usable(path: Path, law: Law, settings: Settings) -> tuple[Table | None, str]:
+    """Table in a cache file, or what is wrong with it; neither where there is no file."""
     try:
         found = file.read(path)
     except FileNotFoundError:
-        return None
-    except (OSError, file.DamagedTableError) as error:
-        if warn:
-            warnings.warn(f"a table in the cache is built anew: {error}", stacklevel=2)
-        return None
-    return found if found.law.key == law.key and found.settings == settings else None
+        return None, ""
+    except file.DamagedTableError as error:
+        return None, str(error.__cause__)
+    if found.law.key != law.key or found.settings != settings:
+        return None, "it is the table of another law or of other settings"
+    return dataclasses.replace(found, law=law), ""
 
 
 @contextlib.contextmanager

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import errno
 import functools
 import hashlib
 import io
@@ -23,34 +24,42 @@ from typing import Any
 
 import h5py
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 from contactlaw._version import VERSION
+from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
-from contactlaw.table import shapes
-from contactlaw.table.certificate import Certificate
+from contactlaw.table import guarded, shapes
+from contactlaw.table.certificate import BOUNDS, Certificate
 from contactlaw.table.grid import Grid, Segment, Settings
 from contactlaw.table.nodes import Table, shape_grid
 
 FORMAT = "contactlaw table"
 SCHEMA = 3
 _BLOCK = 512  # bytes; the smallest user block of HDF5
+LARGEST = 1 << 30  # bytes of a file, ours: 700 times the packaged table, and memory that a PC has
 _LARGEST_LAW = 1_000_000  # numbers
-_MOST_COLUMNS = 1_000_000
-_LONGEST = 1e9  # contact time [T_H] of a plate that is far too thin
+_MOST_KINKS, _MOST_COLUMNS = 1000, 1_000_000
 _SEGMENT = {
     "start": "ln chi of the kink at which it begins, over series_inelasticity [-]",
     "end": "ln chi of the kink at which it ends [-]",
     "shares": "of the way from start to end, of the columns of fields/ [-]",
 }
+# Ours, far beyond what the laws give for lambda to 10 and chi to 1e6 (2.5 to 443, 0.007 to 4.3, 0.7
+# to 854): a number outside was not computed. 0 <= e <= 1, and w_m is (5/4)^(2/5) at lambda = 0.
 _RANGES = {
     "restitution": (0.0, 1.0),
-    "contact_time": (1e-6, _LONGEST),
-    "wave_rate": (0.0, 1e6),
-    "compression_ratio": (1e-6, 1e6),
+    "contact_time": (0.1, 1e4),
+    "wave_rate": (0.0, 100.0),
+    "compression_ratio": (0.01, 1e4),
+    "elastic_compression": (0.01, 1.1),
+    "times of shapes/states": (0.0, 1e4),
+    "speeds of shapes/states": (-1.0, 1.0),
 }
+_HEAD = {"format": FORMAT, "schema": SCHEMA, "complete": True}
+_ENERGY = 1e-3  # by which COR and wave may exceed what there is; tables may be coarse
 
 
 class DamagedTableError(ValueError):
@@ -70,10 +79,17 @@ def write(table: Table, path: str | os.PathLike[str]) -> None:
     Raises
     ------
     OSError
-        If the folder does not exist, is not writable or full; nothing is left behind then.
+        If the folder does not exist, is not writable or full, or the table larger than what `read`
+        takes; nothing is left behind then.
     """
     path = Path(path)
     content = _serialise(table)
+    if len(content) > LARGEST:
+        raise OSError(
+            errno.EFBIG,
+            f"table: it has {len(content)} bytes, above the limit of {LARGEST}: take coarser "
+            "Settings",
+        )
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as file:
@@ -107,12 +123,14 @@ def _fill(file: h5py.File, table: Table) -> None:
         schema=SCHEMA,
         law=law.name,
         law_source=law.source,
+        yield_coefficient=law.yield_coefficient,
         contactlaw_version=VERSION,
         **asdict(table.settings),
     )
-    file["law"] = law.data
-    file["law"].attrs.update(_law_attributes(law))
     datasets = {
+        "law/data": (law.data, "force law, see contactlaw.equation.force [d_Y, F_Y]"),
+        "law/loading_kinks": (np.array(law.loading_kinks), "of the loading curve [d_Y]"),
+        "law/outcome_kinks": (np.array(law.outcome_kinks), "of the outcomes [d_Y]"),
         "inelasticity": (grid.inelasticity, "lambda of the rows of fields/ [-]"),
         "series_inelasticity": (grid.series_inelasticity(), "lambda of what follows [-]"),
         "elastic_compression": (grid.elastic_compression, "w_m, of an elastic impact [V0 T_H]"),
@@ -141,18 +159,8 @@ def _fill(file: h5py.File, table: Table) -> None:
     file.attrs["complete"] = True  # last: a file cut short opens without complaint
 
 
-def _law_attributes(law: Law) -> dict[str, Any]:
-    return {
-        "description": "force law, see contactlaw.equation.force [d_Y, F_Y]",
-        "loading_kinks": law.loading_kinks,
-        "outcome_kinks": law.outcome_kinks,
-        "yield_coefficient": law.yield_coefficient,
-        "yield_strains": law.yield_strains,
-    }
-
-
 def read(path: str | os.PathLike[str]) -> Table:
-    """Read a table and verify it: checksum, schema, completeness, finiteness.
+    """Read a table and verify it: size, checksum, schema, completeness, ranges.
 
     Parameters
     ----------
@@ -166,19 +174,23 @@ def read(path: str | os.PathLike[str]) -> Table:
     ------
     FileNotFoundError
         If there is no such file.
+    OSError
+        If it cannot be opened or read.
     DamagedTableError
         If the file is no table, was altered or cut short, has another schema or holds a value
-        that is not finite; the message says how to rebuild it.
+        that no table has; the message says how to rebuild it.
     """
     path = Path(path)
     remedy = "Build it again with: contactlaw table build --out FILE"
     try:
-        content = path.read_bytes()
+        content = guarded.content(path, LARGEST)
     except FileNotFoundError:
         raise FileNotFoundError(f"table: there is no file {path}. {remedy}") from None
+    except ValueError as error:
+        raise DamagedTableError(f"table: cannot use {path}: {error}. {remedy}") from error
     try:
         return _parse(content)
-    except (OSError, KeyError, ValueError, TypeError) as error:
+    except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
         raise DamagedTableError(f"table: cannot use {path}: {error}. {remedy}") from error
 
 
@@ -186,100 +198,131 @@ def _parse(content: bytes) -> Table:
     head = content[:_BLOCK].rstrip(b"\0").decode("ascii", "replace").split()
     if head[:-1] != [*FORMAT.split(), "sha256"]:
         raise ValueError("it is not a table, or its first bytes were altered")
-    if head[-1] != hashlib.sha256(content[_BLOCK:]).hexdigest():
+    if head[-1] != hashlib.sha256(memoryview(content)[_BLOCK:]).hexdigest():
         raise ValueError("its checksum does not fit: it was cut short or altered")
     with h5py.File(io.BytesIO(content), "r") as file:
-        found = {key: file.attrs.get(key) for key in ("format", "schema", "complete")}
-        if found != {"format": FORMAT, "schema": SCHEMA, "complete": True}:
+        found = {
+            key: guarded.attribute(file, key, type(value)) if key in file.attrs else None
+            for key, value in _HEAD.items()
+        }
+        if found != _HEAD:
             raise ValueError(f"it is not a complete table of schema {SCHEMA}, but {found}")
-        return _from_file(file)
+        table = _from_file(file)
+    _check_ranges(table)
+    return table
 
 
 def _from_file(file: h5py.File) -> Table:
-    """Table of an open file: shapes and kinds first, then the numbers, then their ranges."""
-    settings = Settings(**{k: type(v)(file.attrs[k]) for k, v in asdict(Settings()).items()})
-    law = _law(file)
-    certificate = file.attrs.get("certificate")
-    table = Table(
-        law=law,
-        settings=settings,
-        grid=_grid(file, settings, law),
-        fields={},
-        certificate=None if certificate is None else Certificate(**json.loads(certificate)),
+    settings = Settings(
+        **{k: guarded.attribute(file, k, type(v)) for k, v in asdict(Settings()).items()}
     )
-    rows = table.grid.inelasticity.size
-    fields = {
-        name: _numbers(file, f"fields/{name}", (rows, table.grid.columns), *limits)
-        for name, limits in _RANGES.items()
-    }
+    law = _law(file)
+    table = Table(law, settings, _grid(file, settings, law), {}, certificate=_certificate(file))
+    shape = table.grid.inelasticity.size, table.grid.columns
+    fields = {name: _values(file, f"fields/{name}", *shape) for name in STORED}
     table = dataclasses.replace(table, fields=fields)
     if "shapes" not in file:
         return table
-    shares = _numbers(file, "shapes/shares", shapes.SHARES.shape, 0.0, 1.0)
-    if not np.array_equal(shares, shapes.SHARES):
-        raise ValueError("its shapes/shares are not those of this version")
+    _compare(file, "shapes/shares", shapes.SHARES, "this version")
     nodes = shape_grid(table)
-    shape = (nodes.inelasticity.size, nodes.columns, 2, shapes.SIZE)
-    states = _numbers(file, "shapes/states", shape, -2.0, _LONGEST, "f4")
+    shape_of_states = nodes.inelasticity.size, nodes.columns, 2, shapes.SIZE
+    states = _values(file, "shapes/states", *shape_of_states, kind=np.float32)
     return dataclasses.replace(table, states=states)
 
 
+def _values(file: h5py.File, name: str, *shape: int, kind: DTypeLike = np.float64) -> NDArray[Any]:
+    return guarded.values(guarded.member(file, name), shape, kind)
+
+
+def _compare(file: h5py.File, name: str, expected: ArrayLike, whose: str) -> None:
+    if not np.array_equal(_values(file, name, *np.shape(expected)), expected):
+        raise ValueError(f"its {name} are not those of {whose}")
+
+
 def _law(file: h5py.File) -> Law:
-    data, attributes = file["law"], file["law"].attrs
-    if data.ndim != 1 or not 0 < data.size <= _LARGEST_LAW:
-        raise ValueError(f"its law has the shape {data.shape}")
-    least, largest = attributes["yield_strains"]
+    """Law of a table, in whose data kernels will follow addresses."""
+    numbers = _listed(file, "law/data", _LARGEST_LAW)
+    force.check(numbers)
     return Law(
-        name=str(file.attrs["law"]),
-        source=str(file.attrs["law_source"]),
-        yield_coefficient=float(attributes["yield_coefficient"]),
-        loading_kinks=tuple(float(kink) for kink in attributes["loading_kinks"]),
-        outcome_kinks=tuple(float(kink) for kink in attributes["outcome_kinks"]),
-        data=_numbers(file, "law", data.shape, -math.inf, math.inf),
-        yield_strains=(float(least), float(largest)),
+        name=guarded.attribute(file, "law", str),
+        source=guarded.attribute(file, "law_source", str),
+        yield_coefficient=guarded.attribute(file, "yield_coefficient", float),
+        loading_kinks=tuple(_listed(file, "law/loading_kinks", _MOST_KINKS).tolist()),
+        outcome_kinks=tuple(_listed(file, "law/outcome_kinks", _MOST_KINKS).tolist()),
+        data=numbers,
     )
+
+
+def _listed(file: h5py.File, name: str, most: int) -> NDArray[Any]:
+    """Values of a dataset whose length is not known before."""
+    dataset = guarded.member(file, name)
+    count = getattr(dataset, "shape", None)
+    if not isinstance(count, tuple) or len(count) != 1 or not count[0] <= most:
+        raise ValueError(f"its {name} has the shape {count}")
+    return guarded.values(dataset, count, np.float64)
 
 
 def _grid(file: h5py.File, settings: Settings, law: Law) -> Grid:
     """Nodes, which have to be those of the settings and of the law."""
-    rows, end = settings.inelasticity_nodes, math.log(settings.largest_overload)
-    inelasticity = _numbers(file, "inelasticity", (rows,), 0.0, settings.largest_inelasticity)
-    expected = grids.row_inelasticity(rows, settings.stretch, settings.largest_inelasticity)
-    if not np.array_equal(inelasticity, expected):
-        raise ValueError("its rows, the axes along lambda, are not those of its settings")
-    elastic = _numbers(file, "elastic_compression", (grids.SERIES,), 1e-6, 2.0)
+    expected = grids.row_inelasticity(
+        settings.inelasticity_nodes, settings.stretch, settings.largest_inelasticity
+    )
+    _compare(file, "inelasticity", expected, "its settings (axes)")
     segments = []
-    for k in range(len(file["segments"])):
-        group = file[f"segments/{k}"]
-        start, stop = (
-            _numbers(group, name, (grids.SERIES,), 0.0, end) for name in ("start", "end")
-        )
-        count = group["shares"].size
-        if not 0 < count <= _MOST_COLUMNS:
-            raise ValueError(f"its segment {k} has {count} columns")
-        shares = _numbers(group, "shares", (count,), 0.0, 1.0)
-        segments.append(Segment(start, stop, shares, bool(group.attrs["graded"])))
-    grids.check(segments, law, end)
+    for k in range(len(guarded.member(file, "segments"))):
+        group = f"segments/{k}"
+        start, end = (_values(file, f"{group}/{name}", grids.SERIES) for name in ("start", "end"))
+        shares = _listed(file, f"{group}/shares", _MOST_COLUMNS)
+        graded = guarded.attribute(guarded.member(file, group), "graded", bool)
+        segments.append(Segment(start, end, shares, graded))
+    grids.check(segments, law, math.log(settings.largest_overload))
     return Grid(
-        settings.stretch, settings.largest_inelasticity, elastic, inelasticity, tuple(segments)
+        settings.stretch,
+        settings.largest_inelasticity,
+        _values(file, "elastic_compression", grids.SERIES),
+        expected,
+        tuple(segments),
     )
 
 
-def _numbers(
-    group: h5py.Group, name: str, shape: tuple[int, ...], low: float, high: float, kind: str = "f8"
-) -> NDArray[Any]:
-    """Numbers of a dataset: its shape, kind and place before a byte of it, then their range."""
-    data = group[name]
-    if not isinstance(data, h5py.Dataset) or data.shape != shape or data.dtype != np.dtype(kind):
-        raise ValueError(f"its {name} is {data}, not {kind} of the shape {shape} of its axes")
-    if data.external or data.is_virtual:
-        raise ValueError(f"its {name} is stored in another file")
-    values: NDArray[Any] = data[()]
-    if np.isnan(values).any():
-        raise ValueError(f"its {name} holds values that are not finite")
-    if not ((values >= low) & (values <= high)).all():
-        raise ValueError(f"its {name} holds values outside {low:g} to {high:g}")
-    return values
+def _certificate(file: h5py.File) -> Certificate | None:
+    if "certificate" not in file.attrs:
+        return None
+    found = Certificate(**json.loads(guarded.attribute(file, "certificate", str)))
+    numbers: list[float] = [found.points, found.seed]
+    names = BOUNDS.keys() - (set() if "shapes" in file else {"force_history"})
+    for errors in (found.median, found.percentile_99, found.largest):
+        if not isinstance(errors, dict) or errors.keys() != names:
+            raise ValueError("its certificate does not name the errors of each field")
+        numbers += errors.values()
+    if not all(type(number) in (int, float) and 0 <= number < math.inf for number in numbers):
+        raise ValueError("its certificate holds what is no error")
+    return found
+
+
+def _check_ranges(table: Table) -> None:
+    """Refuse numbers that no solver gave; NaN is outside of any range."""
+    arrays: dict[str, NDArray[Any]] = {
+        **table.fields,
+        "elastic_compression": table.grid.elastic_compression,
+    }
+    if table.states is not None:
+        arrays["times of shapes/states"] = table.states[:, :, 0]
+        arrays["speeds of shapes/states"] = table.states[:, :, 1]
+    for name, values in arrays.items():
+        low, high = _RANGES[name]
+        least, largest = values.min(), values.max()
+        if not np.isfinite(least + largest):
+            raise ValueError(f"its {name} has values that are not finite")
+        if not low <= least <= largest <= high:
+            raise ValueError(
+                f"its {name} reach from {least:.6g} to {largest:.6g}, outside {low:g} to {high:g}"
+            )
+    waves = table.grid.inelasticity[:, None] * table.fields["wave_rate"]
+    if not (table.fields["restitution"] ** 2 + waves <= 1.0 + _ENERGY).all():
+        raise ValueError("it holds impacts that gain energy")
+    if table.states is not None and not (np.diff(table.states[:, :, 0]) > 0.0).all():
+        raise ValueError("its shapes/states hold times that do not grow")
 
 
 @functools.cache
