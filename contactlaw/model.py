@@ -44,7 +44,7 @@ from contactlaw.physical.scaling import (
     sphere_on_plate,
     sphere_on_sphere,
 )
-from contactlaw.physical.validity import limits
+from contactlaw.physical.validity import Limits, limits
 from contactlaw.sensitivity import (
     Sensitivity,
     by_modulus_ratio,
@@ -155,6 +155,11 @@ class ImpactModel:
     def force_law(self) -> Law:
         """The normal force law itself, as data."""
         return self._law
+
+    @property
+    def limits(self) -> Limits:
+        """Limits of the model for this pair, as kernels take them."""
+        return self._limits
 
     @property
     def clamped(self) -> int:

@@ -2,14 +2,17 @@
 
 import dataclasses
 import errno
+import io
 import multiprocessing
 import os
+import pwd
 import resource
 import signal
 import time
 import warnings
 
 import filelock
+import h5py
 import numpy as np
 import platformdirs
 import pytest
@@ -111,6 +114,22 @@ def other_schema(path):
     path.write_bytes(store._sign(path.read_bytes()[store._BLOCK :].replace(b"schema", b"schama")))
 
 
+def negative_share(path):
+    """As a program would write it that sets the checksum, too."""
+    image = io.BytesIO(path.read_bytes())
+    with h5py.File(image, "r+") as file:
+        file["fields/wave_rate"][0, 0] = -1.0
+    path.write_bytes(store._sign(image.getvalue()[store._BLOCK :]))
+
+
+def in_its_place(make):
+    def damage(path):
+        path.unlink()
+        make(path)
+
+    return damage
+
+
 @pytest.mark.parametrize(
     "damage",
     [
@@ -118,23 +137,57 @@ def other_schema(path):
         lambda path: path.write_bytes(path.read_bytes()[:-1000]),
         lambda path: path.write_bytes(path.read_bytes().replace(b"\x3f", b"\x40", 1)),
         other_schema,
+        negative_share,
+        in_its_place(os.mkfifo),
+        in_its_place(lambda path: path.symlink_to("/dev/zero")),
+        in_its_place(lambda path: path.symlink_to(path)),
+        lambda path: os.truncate(path, 1 << 40),
     ],
-    ids=["zero length", "truncated", "flipped bits", "another schema"],
+    ids=[
+        "zero length",
+        "truncated",
+        "flipped bits",
+        "another schema",
+        "negative share",
+        "pipe",
+        "device",
+        "cyclic link",
+        "sparse",
+    ],
 )
-def test_a_damaged_file_is_rebuilt(path, expected, damage):
-    cache.cached(MYC, SMALL)
+def test_a_damaged_file_is_rebuilt(place, path, expected, damage):
+    place.mkdir()
+    store.write(expected, path)
     damage(path)
-    cache.cached.cache_clear()
-    with pytest.warns(UserWarning, match="built anew") as caught:
+    with pytest.warns(UserWarning, match=f"{path}.*CONTACTLAW_CACHE_DIR") as caught:
         assert same(cache.cached(MYC, SMALL), expected)
     assert len(caught) == 1
     assert same(store.read(path), expected)  # and the file is whole again
+    cache.cached.cache_clear()
+    assert same(cache.cached(MYC, SMALL), expected)  # without a warning
 
 
 def test_another_table_under_the_name_is_rebuilt(place, path, expected):
     place.mkdir()
     store.write(table.build(MYC, table.Settings(inelasticity_nodes=5, log_overload_step=0.5)), path)
-    assert same(cache.cached(MYC, SMALL), expected)
+    with pytest.warns(UserWarning, match="other settings.*CONTACTLAW_CACHE_DIR"):
+        assert same(cache.cached(MYC, SMALL), expected)
+
+
+def test_a_folder_in_the_place_of_the_file(path, expected):
+    path.mkdir(parents=True)
+    check_one_warning(in_child(warned, lambda: None), expected, "cannot be kept")
+
+
+def test_a_damaged_file_in_a_full_folder(place, path, expected):
+    """Two things are wrong; one warning says which of them matters."""
+    place.mkdir()
+    path.write_bytes(b"")
+
+    def fill():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+
+    check_one_warning(in_child(warned, fill), expected, "cannot be kept")
 
 
 def test_two_processes_build_one_table(place, path, expected):
@@ -233,6 +286,21 @@ def test_a_folder_without_write_permission(place, expected):
     os.chmod(place.parent, 0o755)
     check_one_warning(in_child(warned, give_up_rights), expected, "cannot be kept")
     assert list(place.iterdir()) == []
+
+
+@pytest.mark.parametrize("chosen", [None, "~nouser/x", "~"])
+def test_a_user_without_a_home(expected, chosen):
+    def lose_home():
+        for name in ("HOME", "XDG_CACHE_HOME", "CONTACTLAW_CACHE_DIR"):
+            os.environ.pop(name, None)
+        if chosen is not None:
+            os.environ["CONTACTLAW_CACHE_DIR"] = chosen
+        if os.geteuid() == 0:
+            os.setuid(54321)  # as in a container that was started with --user 54321
+        else:  # no rights to become a user without an entry
+            pwd.getpwuid = pwd.getpwnam = {}.__getitem__
+
+    check_one_warning(in_child(warned, lose_home), expected, "cannot be kept", "home")
 
 
 def test_a_full_disk(place, expected):

@@ -7,6 +7,7 @@ import pickle
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -192,6 +193,24 @@ def test_outside_raise(model):
         model.lookup(1e4, R, H)
 
 
+@pytest.mark.parametrize("method", ["restitution", "lookup", "force_history", "sensitivity"])
+def test_the_impact_outside_is_named_by_its_place(model, method):
+    ask = getattr(model, method)
+    with pytest.raises(ValueError, match="impact 3 is outside the table"):
+        ask([1.0, 2.0, 500.0, 3000.0], R, H)
+    with pytest.raises(ValueError, match="impact 4 is outside the table"):
+        ask(np.array([[1.0, 2.0, 3.0], [4.0, 3000.0, 3000.0]]), R, H)
+    with pytest.raises(ValueError, match="impact 0 is outside the table"):
+        ask(3000.0, R, H)
+
+
+@pytest.mark.parametrize("method", ["restitution", "lookup"])
+def test_the_impact_that_does_not_solve_is_named_by_its_place(pair, method):
+    ask = getattr(cl.ImpactModel(pair, outside="solve"), method)
+    with pytest.raises(RuntimeError, match=r"did not solve .*\(element 3\)"):
+        ask(5.0, [R, 5e-3, R, 1.0], [H, 0.3e-3, H, 1e-5])  # 1 and 3 are outside the table
+
+
 def test_outside_solve(pair, small_table):
     model = cl.ImpactModel(pair, table=small_table, outside="solve")
     inside, thin, fast = (5.0, R, H), (5.0, R, R / 8), (200.0, R, H)
@@ -223,6 +242,21 @@ def test_outside_clamp_is_counted_and_flagged(pair, small_table):
     border = top.restitution(inside[-1], R, math.inf)
     assert model.restitution(300.0, R, math.inf) == pytest.approx(border, abs=1e-3)
     assert model.clamped == 2
+
+
+def test_threads_lose_no_count(pair, small_table):
+    model = cl.ImpactModel(pair, table=small_table, outside="clamp")
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)  # a thread may be interrupted between any two instructions
+    try:
+        with ThreadPoolExecutor(8) as pool:
+            list(pool.map(lambda n: model.lookup([200.0, 5.0, 200.0], R, H), range(4000)))
+    finally:
+        sys.setswitchinterval(interval)
+    assert model.clamped == 8000
+    twin = pickle.loads(pickle.dumps(model))
+    twin.restitution(200.0, R, H)
+    assert (twin.clamped, model.clamped) == (1, 8000)
 
 
 def test_hertz_needs_no_yield_strength(model):
@@ -323,6 +357,20 @@ def test_a_curve_is_for_one_number(model, bad):
         model.curve(bad, H)
     with pytest.raises(ValueError, match="other_radius: expected one number"):
         model.sphere_sphere_curve(R, bad)
+
+
+@pytest.mark.parametrize("bad", [value for value in NOT_POSITIVE if np.ndim(value) == 0], ids=repr)
+def test_a_curve_takes_no_other_speeds_than_restitution(model, bad):
+    for curve in (model.curve(R, H), model.sphere_sphere_curve(R, R)):
+        with pytest.raises(ValueError, match="^speed: "):
+            curve(bad)
+
+
+def test_a_curve_takes_any_kind_of_number(model):
+    for curve in (model.curve(R, H), model.sphere_sphere_curve(R, R)):
+        for speed in (5, np.float64(5.0), np.float32(5.0), np.int64(5), np.array(5.0)):
+            assert curve(speed) == curve(5.0)
+            assert type(curve(speed)) is float
 
 
 def test_what_was_given_cannot_be_changed(model):

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import ERROR, RECORD, SHARED, history_shape
+from contactlaw.engines.lammps.memory import ERROR, SHARED, history_shape
 from contactlaw.engines.lammps.plate import Plate, bounds, check_friction, checked, rows
+from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
 
 if TYPE_CHECKING:
@@ -31,10 +32,6 @@ _PARTS = (  # of an attachment in LAMMPS, in the order in which they are made
     ("compute", f"{HISTORY}_error", f"uncompute {HISTORY}_error"),
     ("variable", f"{HISTORY}_error", f"variable {HISTORY}_error delete"),
     ("fix", f"{HISTORY}_halt", f"unfix {HISTORY}_halt"),
-)
-COLUMNS = np.dtype(
-    [("time", "f8"), ("bead", "i8"), ("plate", "i8"), ("other", "i8")]
-    + [(name, "f8") for name in RECORD if name not in ("time", "bead", "plate")]
 )
 
 
@@ -114,14 +111,14 @@ def attach(
     return LammpsPlates(lmp, model, found, friction, memory)
 
 
-def _record_memory(records: Any) -> NDArray[np.float64]:
+def _record_memory(records: Any) -> NDArray[np.void]:
     """Room for so many impacts; pages are used when written."""
     if not isinstance(records, Integral) or isinstance(records, bool):
         raise TypeError(f"records: expected an integer, got {records!r}")
     if records < 1:
         raise ValueError(f"records: must be positive, got {records!r}")
     try:
-        return np.empty((int(records), len(RECORD)))
+        return np.empty(int(records), IMPACT)
     except (MemoryError, OverflowError, ValueError) as error:
         raise ValueError(f"records: no memory for {records!r} impacts; ask for fewer") from error
 
@@ -187,13 +184,13 @@ class LammpsPlates:
         model: ImpactModel,
         plates: Sequence[Plate],
         friction: float,
-        records: NDArray[np.float64],
+        records: NDArray[np.void],
     ) -> None:
         self._lmp = lmp
         self._comm = lmp.get_mpi_comm()
         self._model = model
         self._attached = True
-        self._parts: list[NDArray[np.float64]] = []
+        self._parts: list[NDArray[np.void]] = []
         self._records = records
         self._rows = rows(plates, model)
         try:
@@ -327,18 +324,12 @@ class LammpsPlates:
         Returns
         -------
         structured array
-            time of first touch [s], bead (LAMMPS's atom ID), plate, other (-1), x, y and z of the
-            contact [m], approach_speed [m/s], restitution, contact_time [s], peak_force [N],
-            plastic_energy and wave_energy [J]; all as they happened in the engine. A bead that
-            rests makes no row until it leaves; if it is hit meanwhile, the approach speed is the
-            largest one. The time is that of LAMMPS's clock at the end less the contact time.
+            The columns of `contactlaw.engines.record.IMPACT`, all as they happened in the engine;
+            bead is LAMMPS's atom ID, other is -1. A bead that rests makes no row until it leaves;
+            if it is hit meanwhile, the approach speed is the largest one. The time is that of
+            LAMMPS's clock at the end less the contact time.
         """
-        raw = np.concatenate([np.empty((0, len(RECORD))), *self._parts])
-        out = np.zeros(len(raw), COLUMNS)
-        out["other"] = -1
-        for name, column in zip(RECORD, raw.T, strict=True):
-            out[name] = column
-        return out
+        return np.concatenate([np.empty(0, IMPACT), *self._parts])
 
     def gather(self) -> NDArray[np.void] | None:
         """Impacts of all ranks, sorted by time: on rank 0, None on the others.

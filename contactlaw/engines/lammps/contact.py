@@ -31,7 +31,9 @@ from contactlaw.engines.lammps.memory import (
     slot_of,
     touches,
 )
+from contactlaw.engines.record import IMPACT
 from contactlaw.equation import force
+from contactlaw.physical.validity import Limits, flags_of
 from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, advance, resized
 
 Array = NDArray[np.float64]
@@ -43,7 +45,6 @@ _FASTER = 1.01
 _SEAM = 1e-4  # [r] between plates that are one surface to a bead
 _TIE = 1e-9  # [r] of overlap: rounding
 _SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
-_RECORD_COLUMNS = len(memory.RECORD)
 
 
 class Clock(NamedTuple):
@@ -197,6 +198,7 @@ def _end(
     shared: Any,
     clock: Clock,
     bead: Bead,
+    plate: Any,
     p: int,
     at: int,
     spring: Spring,
@@ -220,13 +222,25 @@ def _end(
     if u < 0.0:  # between the steps, where the compression was down to the residual one
         gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
         since = min(max(gap / -u, 0.0), clock.dt)
-    line = array_at(shared.records, (shared.record_capacity, _RECORD_COLUMNS), np.float64)[n]
-    line[0], line[1], line[2] = clock.now - row[at + DURATION], bead.tag, p
-    line[3], line[4], line[5] = _nearest(touch, bead)
-    line[6], line[7] = row[at + SPEED], -u / row[at + SPEED]
-    line[8], line[9] = row[at + DURATION] - since, force.loading(law, math.sqrt(dm)) * unit
-    line[10], line[11] = lost - told, row[at + WAVE]
+    record = array_at(shared.records, shared.record_capacity, IMPACT)[n]
+    record.time = clock.now - row[at + DURATION]
+    record.bead, record.plate, record.other = bead.tag, p, -1
+    record.x, record.y, record.z = _nearest(touch, bead)
+    record.approach_speed, record.restitution = row[at + SPEED], -u / row[at + SPEED]
+    record.contact_time = row[at + DURATION] - since
+    record.peak_force = force.loading(law, math.sqrt(dm)) * unit
+    record.plastic_energy, record.wave_energy = lost - told, row[at + WAVE]
+    record.flags = _flags(bead, plate, spring, record.approach_speed, record.contact_time)
     shared.record_count = n + 1
+
+
+@kernel
+def _flags(bead: Bead, plate: Any, spring: Spring, speed: float, contact_time: float) -> int:
+    """Limits of the model that an impact exceeds."""
+    unit_time = (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # T_H
+    yield_ratio = plate.yield_compression * bead.r / (speed * unit_time)
+    limits = Limits(plate.slowness, plate.always, plate.yielded)
+    return flags_of(limits, bead.r, plate.thickness, yield_ratio, contact_time)
 
 
 @kernel
@@ -259,7 +273,7 @@ def _normal(
     square = last.force * last.force + state.force * state.force
     row[at + WAVE] += 0.5 * clock.dt * spring.mobility * square
     if state.force == 0.0 and last.force > 0.0:
-        _end(law, shared, clock, bead, p, at, spring, last, touch, u)
+        _end(law, shared, clock, bead, plate, p, at, spring, last, touch, u)
     row[at + PLATE] = side
     row[at + DISPLACEMENT] = state.plate_displacement
     row[at + LARGEST] = state.largest_compression

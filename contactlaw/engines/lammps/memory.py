@@ -25,9 +25,6 @@ ERROR, OWNER, FIRST = range(3)
 PLATE, DISPLACEMENT, LARGEST, FORCE, DURATION, SPEED, WAVE, TOLD, SPRING = range(9)
 _SLOTS = 3  # plates that a bead may touch at once; a corner has three
 
-RECORD = ("time", "bead", "plate", "x", "y", "z", "approach_speed", "restitution", "contact_time",
-          "peak_force", "plastic_energy", "wave_energy")  # fmt: skip
-
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, TOO_MANY_PLATES, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST,
  NOT_FINITE) = range(1, 9)  # fmt: skip
 

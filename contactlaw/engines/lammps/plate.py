@@ -22,7 +22,10 @@ _SQUARE = 1e-9  # cosine of two edges that count as perpendicular: rounding of a
 SPRING = [(name, "f8") for name in Spring._fields]
 ROW = np.dtype(
     [("corner", "f8", 3), ("a", "f8", 3), ("b", "f8", 3), ("normal", "f8", 3)]
-    + [("length_a", "f8"), ("length_b", "f8"), ("tangential", "f8"), *SPRING],
+    + [("length_a", "f8"), ("length_b", "f8"), ("tangential", "f8"), *SPRING]
+    # of the flags of an impact: d_Y over the bead's radius, and what a Limits has
+    + [("thickness", "f8"), ("yield_compression", "f8")]
+    + [("slowness", "f8"), ("always", "i8"), ("yielded", "i8")],
     align=True,
 )
 
@@ -91,8 +94,11 @@ def rows(plates: Sequence[Plate], model: ImpactModel) -> NDArray[np.void]:
         row["a"], row["b"] = a / row["length_a"], b / row["length_b"]
         row["normal"] = np.cross(row["a"], row["b"])
         row["tangential"] = _tangential(own.pair.sphere, own.pair.plate)
-        for name, value in unit_spring(own, plate.thickness)._asdict().items():
+        spring = unit_spring(own, plate.thickness)
+        for name, value in (*spring._asdict().items(), *own.limits._asdict().items()):
             row[name] = value
+        row["thickness"] = plate.thickness
+        row["yield_compression"] = spring.scale if own.force_law.yields else math.inf
     return out
 
 
