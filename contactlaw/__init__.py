@@ -16,6 +16,7 @@ from contactlaw.loads import LoadSignal, load_signal
 from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.materials import Material, material, materials
+from contactlaw.physical.measured import measured_law
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Validity, edge_distance
@@ -36,5 +37,6 @@ __all__ = [
     "load_signal",
     "material",
     "materials",
+    "measured_law",
     "restitution_sphere_sphere",
 ]

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.equation import zener as _zener
 from contactlaw.equation.force import HERTZ
+from contactlaw.laws.myc import P
 from contactlaw.physical.arguments import checked, shaped, within
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import plate_mobility
@@ -33,7 +34,6 @@ WAVE_SLOPE: float = 0.8 * 1.25**1.6 * math.gamma(1.6) * math.gamma(0.5) / math.g
 """-de/dlambda at lambda = 0, 1.7302: the integral of f^2 dt over a lossless Hertzian contact,
 2 w_m^4 (2/5) B(8/5, 1/2) with w_m = (5/4)^(2/5) and u^2 = 1 - (w/w_m)^(5/2)."""
 
-P = 2.14 / 0.68  # d_P/d_Y, Eq. 18
 LARGEST_AT_YIELD = 0.5  # lambda_Y to which the closed forms for plates are compared
 FASTEST = 20.0  # V0/V_Y0 to which they are
 

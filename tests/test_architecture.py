@@ -35,7 +35,8 @@ FILES = {
     "equation": ["force", "outcome", "integrator", "zener"],
     "table": ["lookup", "grid", "splines", "shapes", "sweep", "certificate", "nodes", "guarded",
               "file", "cache"],
-    "physical": ["arguments", "materials", "pair", "scaling", "history", "validity", "rebound"],
+    "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
+                 "rebound"],
 }  # fmt: skip
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),

@@ -66,7 +66,7 @@ ULTRASONIC = {
 
 
 def raw_catalogue() -> dict[str, dict[str, object]]:
-    return tomllib.loads(files("contactlaw").joinpath("catalogue.toml").read_text("utf-8"))
+    return tomllib.loads(files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8"))
 
 
 def sound_speeds(entry: Material) -> tuple[float, float]:
@@ -119,7 +119,7 @@ def test_every_number_has_its_own_source(name: str) -> None:
 
 
 def test_every_reference_is_used() -> None:
-    text = files("contactlaw").joinpath("catalogue.toml").read_text("utf-8")
+    text = files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8")
     assert [key for key in raw_catalogue()["references"] if f"{{{key}}}" not in text] == []
 
 

@@ -73,7 +73,8 @@ class Unloading:
         Loading work less unloading work over (dm - 1)^loss_order [F_Y d_Y], where the difference
         of the two would lose its digits.
     order, loss_order : float, optional
-        How residual and loss begin at dm = 1; 2 for most laws, 0 takes out no factor.
+        How residual and loss begin at dm = 1; 2 for most laws. With 0 no factor is taken out, and
+        the law follows them to 1e-13 of dm and of the loading work.
     cap : tuple of callable, optional
         Compressions, lower and upper, between which the way back is the loading curve, which is
         lower there than the unloading curve; the upper one is None if that is so from dm on.
@@ -451,7 +452,7 @@ def _unloading_rows(name: str, curve: _LoadingCurve, branch: Unloading, end: flo
         back = 2.0 * curve.force(dm) * (dm - residual(dm)) / (twice(dm) + 2.0)
         return curve.work(dm) - back
 
-    parts: list[_Part | float] = [_Part(branch.residual)]
+    parts: list[_Part | float] = [_Part(branch.residual, None if branch.order else np.positive)]
     parts.append(_Part(twice) if callable(exponent) else 2.0 * exponent)
     if branch.loss is None:
         parts.append(_Part(loss, lambda dm: 0.2 * curve.work(dm)))

@@ -93,10 +93,21 @@ def _yield_compression(pair: Pair, radius: Array, law: Law) -> Array:
     """Yield compression of the sphere's material, Eq. 18; inf for a law that never yields."""
     if law.yield_coefficient is None:
         return np.full_like(radius, math.inf)
-    strength = pair.sphere.require_yield_strength(law.name)
-    strain = math.pi * strength / pair.effective_modulus
-    compression: Array = law.yield_coefficient * strain**2 * radius
+    compression: Array = _yield_share(pair, law.yield_coefficient, law.name) * radius
     return compression
+
+
+def _yield_share(pair: Pair, coefficient: float, law: str) -> float:
+    """d_Y/R*."""
+    strain = math.pi * pair.sphere.require_yield_strength(law) / pair.effective_modulus
+    return coefficient * strain**2
+
+
+def yield_scales(pair: Pair, coefficient: float, radius: float) -> tuple[float, float]:
+    """Yield compression d_Y [m] and force F_Y [N] of a sphere on a plate."""
+    compression = _yield_share(pair, coefficient, "measured") * radius
+    stiffness = 4.0 / 3.0 * pair.effective_modulus * math.sqrt(radius)
+    return compression, stiffness * compression**1.5
 
 
 def _mass(material: Material, radius: Array) -> Array:
