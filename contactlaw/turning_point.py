@@ -25,9 +25,9 @@ from contactlaw.closed_form import (
     INTEGRATE,
     LARGEST_AT_YIELD,
     WAVE_SLOPE,
-    P,
     at_turning_point,
 )
+from contactlaw.laws.myc import P
 from contactlaw.physical.arguments import checked, shaped
 
 Array = NDArray[np.float64]

@@ -14,7 +14,8 @@ import numpy as np
 
 import contactlaw as cl
 from contactlaw import closed_form, laws
-from contactlaw.closed_form import WAVE_SLOPE, P, elastic_compression, yield_speed_ratio
+from contactlaw.closed_form import WAVE_SLOPE, elastic_compression, yield_speed_ratio
+from contactlaw.laws.myc import P
 from contactlaw.physical.scaling import plate_mobility, scales
 from validation import evidence, formulas
 from validation.fem import compare, store

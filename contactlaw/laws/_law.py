@@ -173,7 +173,7 @@ class Law:
         ...     loading=[Loading(0.0, HERTZ), Loading(1.0, lambda d: 1.5 * d - 0.5)],
         ...     unloading=[Unloading(1.0, residual=lambda dm: (dm - 1.0) ** 2 / dm)],
         ... )
-        >>> law.loading(2.0), round(law.residual(3.0), 4)
+        >>> round(law.loading(2.0), 9), round(law.residual(3.0), 4)
         (5.5, 1.3333)
         """
         curve = _LoadingCurve(name, loading, bool(unloading))

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw import closed_form, laws, turning_point
-from contactlaw.closed_form import P
+from contactlaw.laws.myc import P
 from validation.figures import _style
 from validation.paper import ETA, restitution
 
