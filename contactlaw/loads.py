@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.arguments import broadcast, check, number
 
 if TYPE_CHECKING:
     from contactlaw.model import ImpactModel
@@ -89,9 +89,12 @@ def load_signal(
     check(speed=v, radius=r, thickness=h)
     if not np.isfinite(start).all():
         raise ValueError(f"times: must be finite [s], got {start[~np.isfinite(start)][0]}")
-    if not 0.0 < rate < math.inf:
-        raise ValueError(f"rate: must be positive and finite [1/s], got {rate!r}")
-    if duration is None:
+    rate = number("rate", rate)
+    if not (0.0 < rate < math.inf and 1.0 / rate < math.inf):
+        raise ValueError(f"rate: must be positive and finite [1/s], as 1/rate, got {rate!r}")
+    if duration is not None:
+        duration = number("duration", duration)
+    else:
         ends = start + np.ravel(model.lookup(v, r, h).contact_time)
         duration = max(float(ends.max(initial=0.0)), 1.0 / rate)
     if not 0.0 < duration * rate <= _LONGEST:

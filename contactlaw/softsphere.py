@@ -41,7 +41,7 @@ from contactlaw.equation import force as forces
 from contactlaw.equation.force import Curve
 from contactlaw.equation.integrator import NO_CURVE
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import broadcast, check, scalars
+from contactlaw.physical.arguments import broadcast, check, number, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate
 
 Array = NDArray[np.float64]
@@ -306,13 +306,15 @@ class Contacts:
             If there is not one finite overlap per contact, or the step is not positive and finite;
             the contacts are as they were then.
         """
-        if not isinstance(overlap, np.ndarray) or overlap.dtype != np.float64:
+        # numpy's own arrays only: of a subclass, a mask or whatever else it adds would be lost
+        if type(overlap) is not np.ndarray or overlap.dtype != np.float64:
             raise ValueError(f"overlap: expected an array of float64, got {overlap!r}")
         if overlap.shape != self.force.shape:
             raise ValueError(
                 f"overlap: expected one value per contact, shape {self.force.shape}, got "
                 f"{overlap.shape}"
             )
+        step = number("step", step)
         if not 0.0 < step < math.inf:
             raise ValueError(f"step: must be positive and finite [s], got {step!r}")
         wrong = _advance_all(self._law, self._springs, self._states, overlap, step)
@@ -359,6 +361,7 @@ def time_step(
     >>> f"{time_step(model, speed=10.0, radius=0.9e-3, thickness=1e-3):.1e} s"
     '2.1e-07 s'
     """
+    error = number("error", error)
     if not 2e-5 <= error <= 1e-2:
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)

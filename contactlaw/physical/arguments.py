@@ -32,14 +32,17 @@ def broadcast(**arguments: ArrayLike) -> Any:
     return *(_flat(array, shape) for array in arrays), shape or None
 
 
-def _numbers(name: str, value: ArrayLike) -> Array:
+def _numbers(
+    name: str, value: ArrayLike, expected: str = "a number or an array of numbers"
+) -> Array:
     try:
         array = np.asarray(value)
-    except ValueError:  # rows of different lengths
+    except (ValueError, TypeError, OverflowError):  # rows of different lengths, 10**400
         array = np.asarray(None)
     if array.dtype.kind not in "iuf" or isinstance(value, np.ma.MaskedArray):
-        raise ValueError(f"{name}: expected a number or an array of numbers, got {value!r}")
-    return array.astype(np.float64, copy=False)
+        raise ValueError(f"{name}: expected {expected}, got {value!r}")
+    with np.errstate(over="ignore"):  # a long double becomes inf, which no range has
+        return array.astype(np.float64, copy=False)
 
 
 def _flat(array: Array, shape: tuple[int, ...]) -> Array:
@@ -49,14 +52,19 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
     return np.broadcast_to(array, shape).flatten()
 
 
+def number(name: str, value: float) -> float:
+    """One number of whatever kind as a float; its range is for the caller to check."""
+    array = _numbers(name, value, "one number")
+    if array.ndim > 0:
+        raise ValueError(f"{name}: expected one number, got {value!r}")
+    return float(array)
+
+
 def scalars(**arguments: float) -> tuple[Array, ...]:
     """Check single numbers and return them as arrays of one element."""
-    for name, value in arguments.items():
-        if np.ndim(value) > 0:
-            raise ValueError(f"{name}: expected one number, got {value!r}")
-    *arrays, _ = broadcast(**arguments)
-    check(**dict(zip(arguments, arrays, strict=True)))
-    return tuple(arrays)
+    arrays = {name: np.array([number(name, value)]) for name, value in arguments.items()}
+    check(**arrays)
+    return tuple(arrays.values())
 
 
 def check(**arrays: Array) -> None:
