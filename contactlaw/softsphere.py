@@ -41,7 +41,7 @@ from contactlaw.equation import force as forces
 from contactlaw.equation.force import Curve
 from contactlaw.equation.integrator import NO_CURVE
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import broadcast, check, number, scalars
+from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate
 
 Array = NDArray[np.float64]
@@ -306,6 +306,7 @@ class Contacts:
             If there is not one finite overlap per contact, or the step is not positive and finite;
             the contacts are as they were then.
         """
+        refuse_units("overlap", overlap, "m")
         # numpy's own arrays only: of a subclass, a mask or whatever else it adds would be lost
         if type(overlap) is not np.ndarray or overlap.dtype != np.float64:
             raise ValueError(f"overlap: expected an array of float64, got {overlap!r}")

@@ -14,6 +14,29 @@ from contactlaw.softsphere import Contacts, time_step
 R, H = 0.9e-3, 1e-3
 
 
+class Quantity:
+    """Stand-in for arrays with units (pint's, no dependency), which numpy strips of them."""
+
+    def __init__(self, magnitude, units="millimeter"):
+        self.magnitude = np.asarray(magnitude)
+        self.units = units
+
+    def __array__(self, dtype=None, copy=None):
+        return np.array(self.magnitude, dtype=dtype)
+
+    def __float__(self):
+        return float(self.magnitude)
+
+    def __repr__(self):
+        return f"<Quantity({self.magnitude}, '{self.units}')>"
+
+
+class UnitArray(np.ndarray):
+    """Stand-in for astropy's and unyt's arrays, which are arrays of float64 to numpy."""
+
+    unit = "mm"
+
+
 def calls(model):
     """Every public function that takes numbers: name of one argument, and the call with a value."""
     plate = {"speed": 5.0, "radius": R, "thickness": H}
@@ -51,6 +74,52 @@ def calls(model):
 def vars_of(material):
     names = ("youngs_modulus", "poissons_ratio", "density")
     return {name: getattr(material, name) for name in names} | {"yield_strength": 1e8}
+
+
+def test_units_are_not_lost(model):
+    for name, value, call in calls(model):
+        array = np.atleast_1d(np.asarray(value, dtype=np.float64))
+        for bad in (Quantity(value), Quantity(array), array.view(UnitArray), [Quantity(value)]):
+            with pytest.raises(
+                ValueError,
+                match=rf'^{name}.*convert it to SI .*: x.to\(".*"\).magnitude with pint',
+            ):
+                call(bad)
+
+
+@pytest.mark.parametrize(
+    ("call", "unit"),
+    [
+        (lambda m, q: m.restitution(q, R, H), "m/s"),
+        (lambda m, q: m.restitution(5.0, q, H), "m"),
+        (lambda m, q: cl.load_signal(0.0, 5.0, R, H, model=m, rate=q), "1/s"),
+        (lambda m, q: cl.load_signal(q, 5.0, R, H, model=m, rate=1e5), "s"),
+        (lambda m, q: Contacts(m, R, H).advance(q, 1e-7), "m"),
+        (lambda m, q: closed_form.mueller(q), ""),
+        (lambda m, q: cl.Material("own", q, 0.2, 2500.0), "Pa"),
+        (lambda m, q: cl.Material("own", 7e10, q, 2500.0), ""),
+        (lambda m, q: cl.Material("own", 7e10, 0.2, q), "kg/m**3"),
+    ],
+)
+def test_the_unit_to_convert_to_is_named(model, call, unit):
+    with pytest.raises(ValueError) as error:
+        call(model, Quantity([1.0]))
+    assert f'x.to("{unit}").magnitude' in str(error.value)
+
+
+def test_units_of_none_of_them_are_taken(model):
+    class Row(dict):
+        """As a pandas Series, whose rows are attributes too."""
+
+        units = 3.0
+        unit = None
+
+        def __array__(self, dtype=None, copy=None):
+            return np.array([5.0, 6.0], dtype=dtype)
+
+    expected = model.restitution([5.0, 6.0], R, H)
+    assert model.restitution(Row(), R, H) == pytest.approx(expected)
+    assert model.restitution(Quantity([5.0, 6.0], units=None), R, H) == pytest.approx(expected)
 
 
 ODD = [

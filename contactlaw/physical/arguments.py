@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,12 @@ from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
 
+# Units by argument; of the others, which are dimensionless, pint and astropy make "" a number.
+_SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")
+_SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
+_SI |= {"speed": "m/s", "rate": "1/s"}
+
+_BARE = frozenset({float, int, np.float64})  # what long lists hold, not worth a closer look
 _LIMITS = {
     "speed": (lookup.V_MIN, lookup.V_MAX, "m/s, the approach speed"),
     "radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
@@ -32,9 +39,28 @@ def broadcast(**arguments: ArrayLike) -> Any:
     return *(_flat(array, shape) for array in arrays), shape or None
 
 
+def refuse_units(name: str, value: object, unit: str) -> None:
+    """Refuse what carries a unit, as pint, astropy, unyt and xarray have it: numpy drops it."""
+    if _unit(value) is not None:
+        raise ValueError(
+            f"{name}: got {value!r}, whose unit would be lost; convert it to SI and pass the bare "
+            f'numbers: x.to("{unit}").magnitude with pint, x.to_value("{unit}") with astropy, unyt'
+        )
+
+
+def _unit(value: object) -> object:
+    """Find the unit of an object, or of a part of a list; None for bare numbers."""
+    if isinstance(value, list | tuple):
+        parts = (_unit(one) for one in value if type(one) not in _BARE)
+        return next((unit for unit in parts if unit is not None), None)
+    unit = getattr(value, "units", getattr(value, "unit", None))
+    return None if isinstance(unit, Real) else unit  # a row of that name in a pandas Series
+
+
 def _numbers(
     name: str, value: ArrayLike, expected: str = "a number or an array of numbers"
 ) -> Array:
+    refuse_units(name, value, _SI.get(name, ""))
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError):  # rows of different lengths, 10**400

@@ -10,6 +10,8 @@ from importlib.resources import files
 from numbers import Real
 from typing import Any
 
+from contactlaw.arguments import refuse_units
+
 # Two of our own bounds that find values in other units, wide enough for the softened beads of DEM.
 _SOFTEST = 2e3  # [Pa]: above diamond in GPa (1100), below a hydrogel bead (1e4 Pa)
 _FASTEST = 25e3  # [m/s]: bar wave speed sqrt(E / rho); diamond has 17e3, steel in g/cm3 162e3
@@ -201,6 +203,7 @@ def _from_table(name: str, table: dict[str, Any], references: dict[str, str]) ->
 
 
 def _finite(name: str, field: str, value: object, unit: str) -> float:
+    refuse_units(f"{field} of {name!r}", value, "" if unit == "-" else unit.replace("m3", "m**3"))
     # bool is a Real to Python, but True is no measurement.
     if not isinstance(value, Real) or isinstance(value, bool):
         raise ValueError(f"{field} of {name!r} must be a number in [{unit}], got {value!r}")
