@@ -31,7 +31,7 @@ rest sinks by alpha F times that and no further.
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -185,10 +185,15 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
 
 
 @kernel(cache=True)
-def _advance_all(law: Array, springs: Spring, states: State, overlap: Array, step: float) -> int:
-    """`advance` for arrays, in place; index of an overlap that is not finite, else -1."""
+def _advance_all(
+    law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float
+) -> int:
+    """`advance` for arrays, in place; index of an overlap that no contact has, else -1.
+
+    The deepest overlap is in the plate where it is; it may have receded by any displacement.
+    """
     for n in range(overlap.size):
-        if not -math.inf < overlap[n] < math.inf:
+        if not -math.inf < overlap[n] <= deepest[n] + states.plate_displacement[n]:
             return n
     for n in range(overlap.size):
         spring = Spring(
@@ -252,6 +257,7 @@ class Contacts:
         elastic = contact.yield_compression == math.inf
         enable_caching()
         self._law = law.data
+        self._diameters = 2.0 * r  # a sphere that deep is in the plate altogether
         self._springs = Spring(
             mass=contact.mass,
             stiffness=contact.stiffness,
@@ -259,6 +265,7 @@ class Contacts:
             scale=np.where(elastic, r, contact.yield_compression),
             relaxation=_relaxation(contact.mass, contact.stiffness),
         )
+        self._longest = float(self._springs.relaxation.min(initial=math.inf))
         self._states = State(*(np.zeros(r.size) for _ in State._fields))
 
     @property
@@ -291,9 +298,10 @@ class Contacts:
         Parameters
         ----------
         overlap : ndarray of float64, shape (N,)
-            How deep each sphere is in the undeformed plate then [m]; 0 or less: apart.
+            How deep each sphere is in the undeformed plate then [m]; 0 or less: apart. At most its
+            diameter and the `plate_displacement`.
         step : float
-            Length of the step [s].
+            Length of the step [s]; at most 1e5 contact times of an impact at 1 m/s.
 
         Returns
         -------
@@ -303,8 +311,8 @@ class Contacts:
         Raises
         ------
         ValueError
-            If there is not one finite overlap per contact, or the step is not positive and finite;
-            the contacts are as they were then.
+            If there is not one finite overlap per contact, or an overlap or the step is beyond any
+            contact's; the contacts are as they were then.
         """
         refuse_units("overlap", overlap, "m")
         # numpy's own arrays only: of a subclass, a mask or whatever else it adds would be lost
@@ -316,15 +324,28 @@ class Contacts:
                 f"{overlap.shape}"
             )
         step = number("step", step)
-        if not 0.0 < step < math.inf:
-            raise ValueError(f"step: must be positive and finite [s], got {step!r}")
-        wrong = _advance_all(self._law, self._springs, self._states, overlap, step)
-        if wrong >= 0:
+        if not 0.0 < step <= self._longest:
             raise ValueError(
-                f"overlap: must be finite [m], got {overlap[wrong]} (element {wrong}); has the "
-                "simulation blown up?"
+                f"step: must be positive and at most {self._longest:.3g} s, far longer than any "
+                f"contact, got {step!r}; contactlaw.softsphere.time_step advises one"
             )
+        wrong = _advance_all(self._law, self._springs, self._states, self._diameters, overlap, step)
+        if wrong >= 0:
+            self._refuse(overlap[wrong], wrong)
         return self.force
+
+    def _refuse(self, overlap: float, n: int) -> NoReturn:
+        if not math.isfinite(overlap):
+            what = "must be finite [m]"
+        else:
+            what = (
+                f"must be at most the diameter {self._diameters[n]:.6g} m and the plate's "
+                f"displacement {self.plate_displacement[n]:.3g} m"
+            )
+        raise ValueError(
+            f"overlap: {what}, got {float(overlap)!r} (element {n}); has the simulation blown up? "
+            "contactlaw.softsphere.time_step advises a step that is short enough"
+        )
 
 
 def time_step(

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import contactlaw as cl
 from contactlaw._jit import kernel
@@ -222,6 +224,54 @@ def test_the_advised_step_keeps_its_promise(model, law, error):
 def test_bad_input_is_named(model, call, words):
     with pytest.raises(ValueError, match=words):
         call(model)
+
+
+@pytest.mark.parametrize(
+    ("overlap", "step", "message"),
+    [
+        (
+            1e300,
+            1e-7,
+            r"overlap: must be at most the diameter 0.0018 m .* got 1e\+300 \(element 1\)",
+        ),
+        (2.1 * R, 1e-7, r"overlap: must be at most the diameter .*blown up.*time_step"),
+        (1e-6, 1e300, r"step: must be positive and at most 0.\d+ s.* got 1e\+300; .*time_step"),
+        (1e300, 1e300, "step: must be positive and at most"),
+        (1e-6, 1.0, "step: must be positive and at most"),
+    ],
+)
+def test_a_simulation_that_has_blown_up_is_refused(model, overlap, step, message):
+    contacts = Contacts(model, [R, R], 1e-3)
+    contacts.advance(np.array([1e-6, 1e-6]), 1e-7)
+    before = [contacts.force.copy(), contacts.plate_displacement.copy()]
+    with pytest.raises(ValueError, match=message):
+        contacts.advance(np.array([2e-6, overlap]), step)
+    assert np.array_equal(before, [contacts.force, contacts.plate_displacement])
+
+
+def test_a_plate_may_recede_further_than_the_bead_is_large(model):
+    """A heavy bead sinks with a thin plate: no overlap is too deep as such."""
+    contacts = Contacts(model, 1.0, 1e-3)
+    for overlap in np.linspace(0.0, 3.0, 6001):
+        contacts.advance(np.array([overlap]), 1e-4)
+    assert contacts.plate_displacement > 1.0
+    assert np.isfinite(contacts.force)
+
+
+@settings(deadline=None, max_examples=300)
+@given(
+    radius=st.sampled_from([1e-9, 1e-3, 1e3]),
+    thickness=st.sampled_from([1e-9, 1e-3, 1e3, 1e300, math.inf]),
+    share=st.sampled_from([1e-20, 1e-6, 1.0]),
+    path=st.lists(st.floats(-1.0, 1.0) | st.sampled_from([-1e300, 1e-300]), max_size=12),
+)
+def test_no_step_that_is_taken_gives_what_is_not_finite(model, radius, thickness, share, path):
+    contacts = Contacts(model, radius, thickness)
+    for depth in path:
+        overlap = depth * 2.0 * radius + max(depth, 0.0) * contacts.plate_displacement
+        contacts.advance(overlap, share * contacts._longest)
+        for values in (contacts.force, contacts.plate_displacement, contacts.largest_compression):
+            assert np.isfinite(values).all() and (values >= 0.0).all()
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
