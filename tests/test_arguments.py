@@ -157,3 +157,17 @@ def test_single_numbers_have_their_range(model, name, bad):
                 continue  # a short step is no mistake
             with pytest.raises(ValueError, match=f"^{name}: "):
                 call(bad)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "name"),
+    [
+        ((1e12, 0.2, 1e300, 1e9), "density"),
+        ((2e3, 0.2, 1e-7, 1e2), "density"),
+        ((3e8, 0.2, 1e3, 1e-196), "yield_strength"),
+    ],
+)
+def test_materials_whose_products_overflow_are_refused(numbers, name):
+    """As 'math domain error', OverflowError or a force of NaN later on, otherwise."""
+    with pytest.raises(ValueError, match=f"^{name} .* of 'own' must "):
+        cl.Material("own", *numbers)

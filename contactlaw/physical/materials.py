@@ -15,6 +15,9 @@ from contactlaw.arguments import refuse_units
 # Two of our own bounds that find values in other units, wide enough for the softened beads of DEM.
 _SOFTEST = 2e3  # [Pa]: above diamond in GPa (1100), below a hydrogel bead (1e4 Pa)
 _FASTEST = 25e3  # [m/s]: bar wave speed sqrt(E / rho); diamond has 17e3, steel in g/cm3 162e3
+# And two far from any matter, beyond which products of these numbers leave the range of floats.
+_DENSITIES = (1e-6, 1e20)  # [kg/m3]: air has 1.2, a neutron star 1e18
+_WEAKEST = 1e-12  # yield strain sigma_Y/E
 
 _LABELS = {
     "youngs_modulus": ("Young's modulus", " Pa"),
@@ -229,6 +232,11 @@ def _check_units(name: str, modulus: float, density: float, strength: float | No
             f"youngs_modulus {modulus!r} of {name!r} is below {_SOFTEST:g} Pa, softer than any "
             "bead: give it in Pa (not GPa)"
         )
+    if not (_DENSITIES[0] <= density <= _DENSITIES[1]):
+        raise ValueError(
+            f"density {density!r} of {name!r} must lie between {_DENSITIES[0]:g} and "
+            f"{_DENSITIES[1]:g} kg/m3"
+        )
     speed = math.sqrt(modulus / density)
     if not (speed <= _FASTEST):
         raise ValueError(
@@ -240,4 +248,9 @@ def _check_units(name: str, modulus: float, density: float, strength: float | No
         raise ValueError(
             f"yield_strength {strength!r} of {name!r} must be below youngs_modulus {modulus!r}: "
             "give both in Pa"
+        )
+    if strength is not None and not (strength >= _WEAKEST * modulus):
+        raise ValueError(
+            f"yield_strength {strength!r} of {name!r} must be at least {_WEAKEST:g} of "
+            f"youngs_modulus {modulus!r}, no solid is weaker: give both in Pa"
         )
