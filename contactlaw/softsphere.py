@@ -314,9 +314,9 @@ class Contacts:
             If there is not one finite overlap per contact, or an overlap or the step is beyond any
             contact's; the contacts are as they were then.
         """
-        refuse_units("overlap", overlap, "m")
         # numpy's own arrays only: of a subclass, a mask or whatever else it adds would be lost
         if type(overlap) is not np.ndarray or overlap.dtype != np.float64:
+            refuse_units("overlap", overlap, "m")
             raise ValueError(f"overlap: expected an array of float64, got {overlap!r}")
         if overlap.shape != self.force.shape:
             raise ValueError(

@@ -80,6 +80,8 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
 
 def number(name: str, value: float) -> float:
     """One number of whatever kind as a float; its range is for the caller to check."""
+    if type(value) is float:  # once per step of an engine, say
+        return value
     array = _numbers(name, value, "one number")
     if array.ndim > 0:
         raise ValueError(f"{name}: expected one number, got {value!r}")
