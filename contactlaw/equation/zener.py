@@ -67,7 +67,7 @@ def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
     return Solution(
         OK if longest < MAX_STEPS else TOO_MANY_STEPS,
         total,
-        min(-end.u / scale.u, 1.0),  # the error of a step may lift it above
+        min(max(-end.u / scale.u, 0.0), 1.0),  # the error of a step may lift it beyond
         top.t / y4,
         end.t / y4,
         top.f * y * math.sqrt(y),

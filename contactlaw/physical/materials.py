@@ -10,7 +10,7 @@ from importlib.resources import files
 from numbers import Real
 from typing import Any
 
-from contactlaw.arguments import refuse_units
+from contactlaw.physical.arguments import refuse_units
 
 # Two of our own bounds that find values in other units, wide enough for the softened beads of DEM.
 _SOFTEST = 2e3  # [Pa]: above diamond in GPa (1100), below a hydrogel bead (1e4 Pa)

@@ -38,6 +38,7 @@ from contactlaw._jit import kernel
 from contactlaw.equation.outcome import Outcome
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.int32]
 
 # Input beyond these is a mistake: no continuum below 1 nm, no bead above 1 km [m], no contact that
 # is quasi-static above the speed of every wave in a solid, nor an impact below 1e-30 m/s, where
@@ -155,6 +156,13 @@ def log_elastic_compression(table: Array, lam: float) -> float:
     return _log_elastic(table, lam / (lam + table[STRETCH]))
 
 
+@kernel(inline=True)
+def _along(log_chi: float, low: float, per_log: float, cells: float, graded: float) -> float:
+    """Place along ln chi in a segment that begins at `low`, in cells."""
+    place = max(0.0, log_chi - low) * per_log
+    return math.sqrt(place * cells) if graded > 0.0 else place
+
+
 @kernel
 def _start(table: Array, block: int, t: float) -> float:
     """Ln chi of the kink at which a segment begins, at t = 2 x/x_max - 1."""
@@ -163,36 +171,84 @@ def _start(table: Array, block: int, t: float) -> float:
 
 
 @kernel
-def _between_curves(table: Array, x: float, log_chi: float) -> tuple[int, float]:
-    """Block of a segment between curved kinks, and the place in it, in cells."""
+def locate(table: Array, x: float, log_chi: float) -> tuple[int, int, float, float]:
+    """Row and column of the first of 4 x 4 coefficients, and the place within the cell."""
     t = 2.0 / table[X_MAX] * x - 1.0
     block, last = _BLOCKS, _BLOCKS + (int(table[SEGMENTS]) - 1) * BLOCK
     low = table[block + START]
-    while True:
-        high = table[block + END] if block == last else _start(table, block + BLOCK, t)
-        if log_chi <= high or block == last:
+    while block < last:
+        high = _start(table, block + BLOCK, t)
+        if not log_chi > high:
             break
         block, low = block + BLOCK, high
-    share = min(max((log_chi - low) / (high - low), 0.0), 1.0)
-    return block, share * table[block + CELLS]
-
-
-@kernel(inline=True)
-def locate(table: Array, x: float, log_chi: float) -> tuple[int, int, float, float]:
-    """Row and column of the first of 4 x 4 coefficients, and the place within the cell."""
-    if table[CURVED] == 0.0:
-        block = _BLOCKS
-        for k in range(1, int(table[SEGMENTS])):
-            # counted, not branched: half of the branches would be predicted wrongly
-            block += BLOCK * (log_chi > table[_BLOCKS + k * BLOCK + START])
-        along = max(0.0, log_chi - table[block + START]) * table[block + PER_LOG]
-    else:
-        block, along = _between_curves(table, x, log_chi)
-    if table[block + GRADED] > 0.0:
-        along = math.sqrt(along * table[block + CELLS])
+    per_log, cells = table[block + PER_LOG], table[block + CELLS]
+    if table[CURVED] > 0.0:
+        high = table[block + END] if block == last else _start(table, block + BLOCK, t)
+        per_log = cells / (high - low)
+    along = _along(log_chi, low, per_log, cells, table[block + GRADED])
     across = x * table[NODES_PER_X]
-    row, cell = int(across), int(along)
+    # on a curved kink rounding may put it a little into the next segment
+    row, cell = int(across), min(int(along), int(cells))
     return row, int(table[block + COLUMN]) + cell, across - row, along - cell
+
+
+@kernel
+def _locate_all(
+    table: Array, x: Array, log_chi: Array, first: Integers, along: Array, low: Array, high: Array
+) -> None:
+    """`locate` for many places: row by columns + column into first, the places in the cell over x
+    and into along; low and high are scratch. Loops of one operation become vector instructions.
+    """
+    n, scale, curved = x.size, 2.0 / table[X_MAX], table[CURVED] > 0.0
+    for k in range(int(table[SEGMENTS])):
+        block = _BLOCKS + k * BLOCK
+        start, per_log = table[block + START], table[block + PER_LOG]
+        cells, graded = table[block + CELLS], table[block + GRADED]
+        column = np.int32(table[block + COLUMN])
+        line = int(table[block + LINE])
+        if line > 0:
+            series = _power_series(table, line)
+            for i in range(n):
+                low[i] = _evaluate(series, scale * x[i] - 1.0)
+        else:
+            for i in range(n):
+                low[i] = start
+        if curved:
+            if k + 1 < int(table[SEGMENTS]):
+                next_line = int(table[block + BLOCK + LINE])
+                if next_line > 0:
+                    series = _power_series(table, next_line)
+                    for i in range(n):
+                        high[i] = cells / (_evaluate(series, scale * x[i] - 1.0) - low[i])
+                else:
+                    for i in range(n):
+                        high[i] = cells / (table[block + END] - low[i])
+            else:
+                for i in range(n):
+                    high[i] = cells / (table[block + END] - low[i])
+        else:
+            for i in range(n):
+                high[i] = per_log
+        if graded > 0.0:
+            for i in range(n):
+                place = math.sqrt(max(0.0, log_chi[i] - low[i]) * high[i] * cells)
+                cell = np.int32(min(place, cells))
+                here = (log_chi[i] > low[i]) | (k == 0)
+                along[i] = place - cell if here else along[i]
+                first[i] = column + cell if here else first[i]
+        else:
+            for i in range(n):
+                place = max(0.0, log_chi[i] - low[i]) * high[i]
+                cell = np.int32(min(place, cells))
+                here = (log_chi[i] > low[i]) | (k == 0)
+                along[i] = place - cell if here else along[i]
+                first[i] = column + cell if here else first[i]
+    nodes_per_x, columns = table[NODES_PER_X], np.int32(table[COLUMNS])
+    for i in range(n):
+        across = x[i] * nodes_per_x
+        row = np.int32(across)
+        x[i] = across - row
+        first[i] += row * columns
 
 
 @kernel(inline=True)
@@ -215,6 +271,9 @@ def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> flo
     return min(max(value, 0.0), 1.0)  # the spline may pass 1 by its error, and engines refuse that
 
 
+_U = tuple(np.uint64(n) for n in range(12))  # no test for a negative index
+
+
 class _Others(NamedTuple):
     """What a table has beside COR."""
 
@@ -224,22 +283,29 @@ class _Others(NamedTuple):
 
 
 @kernel
-def _other_fields(table: Array, p: int, s: float, t: float) -> _Others:
+def _other_fields(table: Array, p: np.uint64, s: float, t: float) -> _Others:
     """Contact time [T_H], wave rate and compression ratio; their coefficients begin at p."""
-    a, b = weights(s), weights(t)
+    a, (b0, b1, b2, b3) = weights(s), weights(t)
     time = wave = ratio = 0.0
-    step = 3 * int(table[COLUMNS])
+    step = np.uint64(3 * int(table[COLUMNS]))
     for k in range(4):
-        start = p + k * step
-        for n in range(4):
-            weight = a[k] * b[n]
-            time += weight * table[start + 3 * n]
-            wave += weight * table[start + 3 * n + 1]
-            ratio += weight * table[start + 3 * n + 2]
+        time += a[k] * (
+            (b0 * table[p] + b1 * table[p + _U[3]])
+            + (b2 * table[p + _U[6]] + b3 * table[p + _U[9]])
+        )
+        wave += a[k] * (
+            (b0 * table[p + _U[1]] + b1 * table[p + _U[4]])
+            + (b2 * table[p + _U[7]] + b3 * table[p + _U[10]])
+        )
+        ratio += a[k] * (
+            (b0 * table[p + _U[2]] + b1 * table[p + _U[5]])
+            + (b2 * table[p + _U[8]] + b3 * table[p + _U[11]])
+        )
+        p += step
     return _Others(time / 36.0, wave / 36.0, ratio / 36.0)
 
 
-@kernel(inline=True)
+@kernel
 def _cor_at(table: Array, x: float, log_chi: float) -> float:
     """COR at a place in the table."""
     row, column, s, t = locate(table, x, log_chi)
@@ -249,13 +315,11 @@ def _cor_at(table: Array, x: float, log_chi: float) -> float:
 
 
 @kernel
-def _put(table: Array, x: float, log_chi: float, log_w: float, out: Outcome, n: int) -> None:
-    """Fields at a place in the table."""
-    row, column, s, t = locate(table, x, log_chi)
+def _put(table: Array, first: int, s: float, t: float, log_w: float, out: Outcome, n: int) -> None:
+    """Fields from the coefficients whose first, of the 4 x 4, is given."""
     step = int(table[COLUMNS])
-    first = row * step + column
     out.restitution[n] = _cor(table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t)
-    others = _other_fields(table, int(table[OTHERS_AT]) + 3 * first, s, t)
+    others = _other_fields(table, np.uint64(int(table[OTHERS_AT]) + 3 * first), s, t)
     out.contact_time[n] = others.contact_time
     out.wave_rate[n] = others.wave_rate
     out.compression_ratio[n] = others.compression_ratio
@@ -350,25 +414,19 @@ def restitutions(
     out: Array,
 ) -> int:
     """COR of many spheres on plates into out; how many are NaN."""
-    log_chi, x, log_w, root = (
-        np.empty(_CHUNK),
-        np.empty(_CHUNK),
-        np.empty(_CHUNK),
-        np.empty(_CHUNK),
-    )
+    scratch, first = np.empty((6, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
+    cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
     bad = 0
     for start in range(0, out.size, _CHUNK):
-        stop = min(start + _CHUNK, out.size)
-        n = stop - start
-        v, r, h, values = (
-            speed[start:stop],
-            radius[start:stop],
-            thickness[start:stop],
-            out[start:stop],
-        )
-        if _coordinates(table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n], log_w[:n], root[:n]):
+        n = min(_CHUNK, out.size - start)
+        v, r, h = speed[start : start + n], radius[start : start + n], thickness[start : start + n]
+        values = out[start : start + n]
+        x, log_chi, along = scratch[0, :n], scratch[1, :n], scratch[2, :n]
+        a, b = scratch[3, :n], scratch[4, :n]
+        if _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, a, b):
+            _locate_all(table, x, log_chi, first[:n], along, a, b)
             for i in range(n):
-                values[i] = _cor_at(table, x[i], log_chi[i])
+                values[i] = _cor(table, np.uint64(cor_at + first[i]), step, x[i], along[i])
         else:  # one by one; such chunks are rare
             for i in range(n):
                 values[i] = restitution_on_plate(table, c_lam, c_chi, v[i], r[i], h[i])
@@ -391,21 +449,39 @@ def outcomes(
 
     Beside them V^(1/5) into root.
     """
-    log_chi, x, log_w = np.empty(_CHUNK), np.empty(_CHUNK), np.empty(_CHUNK)
-    y_1 = math.exp(-c_chi)
+    scratch, first = np.empty((6, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
+    cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
+    others_at = int(table[OTHERS_AT])
+    x_max, log_chi_max, y_1 = table[X_MAX], table[LOG_CHI_MAX], math.exp(-c_chi)
     outside = 0
     for start in range(0, speed.size, _CHUNK):
-        stop = min(start + _CHUNK, speed.size)
-        n = stop - start
-        v, r, h = speed[start:stop], radius[start:stop], thickness[start:stop]
-        roots = root[start:stop]
-        _coordinates(table, c_lam, c_chi, v, r, h, log_chi[:n], x[:n], log_w[:n], roots)
+        n = min(_CHUNK, speed.size - start)
+        v, r, h = speed[start : start + n], radius[start : start + n], thickness[start : start + n]
+        roots = root[start : start + n]
+        x, log_chi, along, log_w = scratch[0, :n], scratch[1, :n], scratch[2, :n], scratch[3, :n]
+        inside = _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, log_w, roots)
         for i in range(n):
             ratio, square = r[i] / h[i], roots[i] * roots[i]
             out.inelasticity[start + i] = c_lam * roots[i] * (ratio * ratio)
             out.yield_ratio[start + i] = y_1 / (square * square)
-            if x[i] <= table[X_MAX] and log_chi[i] <= table[LOG_CHI_MAX]:
-                _put(table, x[i], log_chi[i], log_w[i], out, start + i)
+        if inside:
+            _locate_all(table, x, log_chi, first[:n], along, scratch[4, :n], scratch[5, :n])
+            # by name here: a tuple of arrays that is handed on is counted for each impact
+            for i in range(n):
+                at, s, t = int(first[i]), x[i], along[i]
+                out.restitution[start + i] = _cor(table, np.uint64(cor_at + at), step, s, t)
+                others = _other_fields(table, np.uint64(others_at + 3 * at), s, t)
+                out.contact_time[start + i] = others.contact_time
+                out.wave_rate[start + i] = others.wave_rate
+                out.compression_ratio[start + i] = others.compression_ratio
+            for i in range(n):
+                out.elastic_compression[start + i] = math.exp(log_w[i])
+            continue
+        for i in range(n):
+            if x[i] <= x_max and log_chi[i] <= log_chi_max:
+                row, column, s, t = locate(table, x[i], log_chi[i])
+                place = row * int(table[COLUMNS]) + column
+                _put(table, place, s, t, log_w[i], out, start + i)
             else:
                 _blank(out, start + i)
                 outside += 1
@@ -433,7 +509,8 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
                 continue
             out.inelasticity[n] = inside_x * table[STRETCH] / (1.0 - inside_x)
             out.yield_ratio[n] = math.exp(log_w - inside_chi)
-        _put(table, inside_x, inside_chi, log_w, out, n)
+        row, column, s, t = locate(table, inside_x, inside_chi)
+        _put(table, row * int(table[COLUMNS]) + column, s, t, log_w, out, n)
     return outside
 
 
