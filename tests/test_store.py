@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from contactlaw import laws, table
+from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
 from contactlaw.table import file as store
 from contactlaw.table import grid
@@ -196,9 +197,9 @@ def gain_energy(file):
         (lambda f: f.attrs.create("inelasticity_nodes", h5py.Empty("i8")), "is no single int"),
         (other_law(0, 1e6), "there is a whole number up to"),
         (other_law(0, 2.5), "there is a whole number up to"),
-        (other_law(1, 500), "ends within its rows"),
-        (other_law(8, 1e5), "whole number up to"),
-        (other_law(4 + 7, -1.0), "do not follow each other"),
+        (other_law(1, 500), "ends within its"),
+        (other_law(force.HEADER + 3 + force.AT, 1e5), "whole number up to"),
+        (other_law(force.HEADER + 1, -1.0), "do not follow each other"),
         (lambda f: f.attrs.create("certificate", 3), "certificate is no single str"),
         (lambda f: f.attrs.create("certificate", "[]"), "argument"),
         (lambda f: f.attrs.create("certificate", "[" * 60_000), "recursion"),

@@ -11,18 +11,21 @@ the contact goes back along the loading curve and nothing is lost.
 A law may be capped: where the unloading curve would lie above the loading curve, from the
 compression `cap_high` down to `cap_low`, the contact goes back along the loading curve.
 
-The array begins with a header, then come the rows, then the coefficients from the constant one up:
+The array begins with a header, then come the starts of the pieces, the rows, and the coefficients
+from the constant one up:
 
     PIECES       pieces of the loading curve       UNLOADINGS     pieces of the unloading family
-    UNLOADING    where the rows of those begin     CAPPED         1 for a capped law
+    STARTS       where the q at which the pieces   FAMILY_STARTS  where the dm of those are
+                 begin are, one after the other    FAMILY         where their rows begin
+    CURVE        where the rows of those begin     CAPPED         1 for a capped law
 
-    row of the loading curve   START  q at which it begins     SCALE, OFFSET  of t
-                               DEGREE, AT  of its polynomial   FIRST, NEXT    pieces at the kinks
-    row of the unloading       START  dm at which it begins    SCALE, OFFSET  of t
-                               and POWER, DEGREE, AT of each of the functions of dm
+    row of the loading curve   SCALE, OFFSET  of t             FIRST, NEXT  pieces at the kinks
+                               DEGREE, AT     of its polynomial
+    row of the unloading       SCALE, OFFSET  of t, and POWER, DEGREE, AT of each function of dm
 
-A last row of either kind begins at infinity. Between two kinks the loading curve is smooth,
-however many pieces it takes: an integration has to stop at kinks only.
+Coefficients are filled up with zeros to a multiple of four. A last start of either kind is
+infinity. Between two kinks the loading curve is smooth, however many pieces it takes: an
+integration has to stop at kinks only.
 
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
 """
@@ -39,18 +42,20 @@ from contactlaw._jit import kernel
 
 Array = NDArray[np.float64]
 
-PIECES, UNLOADINGS, UNLOADING, CAPPED, HEADER = range(5)
-START, SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(8)
+PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, CAPPED, HEADER = range(8)
+SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(7)
 _POWER, _DEGREE, _AT, _FUNCTION = range(4)
 RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH = range(5)  # functions of dm, in the order of a row
-UNLOADING_ROW = OFFSET + 1 + 5 * _FUNCTION
+FUNCTIONS = 5
+_U = tuple(np.uint64(n) for n in range(5))
+UNLOADING_ROW = OFFSET + 1 + FUNCTIONS * _FUNCTION
 
 HERTZ: Array = np.array(
-    [1, 0, HEADER + 2 * PIECE + 4, 0]
-    + [0, 1, 0, 3, HEADER + 2 * PIECE, 0, 1]
-    + [math.inf, 1, 0, 0, 0, 1, 1]
-    + [0, 0, 0, 1]
-    + [math.inf] * UNLOADING_ROW,
+    [1, 0, HEADER, HEADER + 2, HEADER + 2 + PIECE, HEADER + 3 + PIECE, 0]
+    + [0, math.inf]
+    + [1, 0, 3, HEADER + 3 + PIECE, 0, 1]
+    + [math.inf]
+    + [0, 0, 0, 1],
     dtype=np.float64,
 )
 """The elastic law, F = q^3, to which the scales of every impact refer."""
@@ -66,35 +71,55 @@ class Curve(NamedTuple):
     cap_high: float
 
 
-@kernel
+@kernel(inline=True)
 def polynomial(law: Array, at: int, degree: int, t: float) -> float:
-    """Polynomial whose coefficients begin at `at`; two chains of products at a time."""
+    """Polynomial whose coefficients begin at `at`: four at a time, which is one instruction."""
     square = t * t
-    even = odd = 0.0
-    k = degree
-    if k % 2 == 0:
-        even = law[at + k]
-        k -= 1
-    while k > 0:
-        odd = odd * square + law[at + k]
-        even = even * square + law[at + k - 1]
-        k -= 2
-    return even + odd * t
+    fourth = square * square
+    k = np.uint64(at + degree // 4 * 4)  # unsigned: no test for a negative index
+    a, b, c, d = law[k], law[k + _U[1]], law[k + _U[2]], law[k + _U[3]]
+    for _ in range(degree // 4):
+        k -= _U[4]
+        a = a * fourth + law[k]
+        b = b * fourth + law[k + _U[1]]
+        c = c * fourth + law[k + _U[2]]
+        d = d * fourth + law[k + _U[3]]
+    value: float = (a + b * t) + square * (c + d * t)
+    return value
 
 
-@kernel
+@kernel(inline=True)
+def _count(law: Array, at: int, most: int, x: float) -> int:
+    """How many of some starts are not above x: counted, not searched for, without a branch."""
+    count, first = 0, np.uint64(at)
+    for k in range(np.uint64(most)):
+        count += x >= law[first + k]
+    return count
+
+
+@kernel(inline=True)
+def start_of(law: Array, k: int) -> float:
+    """Root compression at which the loading curve's piece k begins."""
+    start: float = law[int(law[STARTS]) + k]
+    return start
+
+
+@kernel(inline=True)
+def row_of(law: Array, k: int) -> int:
+    """Where the row of the loading curve's piece k begins."""
+    return int(law[CURVE]) + k * PIECE
+
+
+@kernel(inline=True)
 def piece_at(law: Array, q: float) -> int:
     """Index of the loading curve's piece at a root compression; a kink belongs to what follows."""
-    k = 0
-    while q >= law[HEADER + (k + 1) * PIECE + START]:
-        k += 1
-    return k
+    return max(_count(law, int(law[STARTS]), int(law[PIECES]), q) - 1, 0)
 
 
-@kernel
+@kernel(inline=True)
 def piece_force(law: Array, k: int, q: float) -> float:
     """Force of the loading curve's piece k at q, also a little beyond its ends."""
-    row = HEADER + k * PIECE
+    row = row_of(law, k)
     t = law[row + SCALE] * q - law[row + OFFSET]
     return polynomial(law, int(law[row + AT]), int(law[row + DEGREE]), t)
 
@@ -105,18 +130,16 @@ def loading(law: Array, q: float) -> float:
     return piece_force(law, piece_at(law, q), q)
 
 
-@kernel
+@kernel(inline=True)
 def _unloading_row(law: Array, dm: float) -> int:
     """Where the row of a largest compression begins; 0 where the contact is elastic."""
-    row = int(law[UNLOADING])
-    if not dm > law[row + START]:
+    at = int(law[FAMILY_STARTS])
+    if not dm > law[at]:
         return 0
-    while dm >= law[row + UNLOADING_ROW + START]:
-        row += UNLOADING_ROW
-    return row
+    return int(law[FAMILY]) + (_count(law, at, int(law[UNLOADINGS]), dm) - 1) * UNLOADING_ROW
 
 
-@kernel
+@kernel(inline=True)
 def _function(law: Array, row: int, which: int, dm: float) -> float:
     """One of the functions of dm."""
     t = law[row + SCALE] * dm - law[row + OFFSET]
@@ -142,6 +165,15 @@ def loss(law: Array, dm: float) -> float:
     return _function(law, row, LOSS, dm) if row > 0 else 0.0
 
 
+@kernel(inline=True)
+def residual_and_loss(law: Array, dm: float) -> tuple[float, float]:
+    """`residual` and `loss` at once."""
+    row = _unloading_row(law, dm)
+    if row == 0:
+        return 0.0, 0.0
+    return _function(law, row, RESIDUAL, dm), _function(law, row, LOSS, dm)
+
+
 @kernel(cache=True)
 def unloading(law: Array, dm: float) -> Curve:
     """Find the unloading curve from dm."""
@@ -163,7 +195,7 @@ def unloading(law: Array, dm: float) -> Curve:
     return Curve(left, loading(law, math.sqrt(dm)) / reach, exponent, low, high)
 
 
-@kernel
+@kernel(inline=True)
 def power_force(stiffness: float, exponent: float, q: float) -> float:
     """Force a |q|^b with the sign of q: a step on trial may pass q = 0."""
     if exponent == 3.0:
@@ -191,26 +223,33 @@ def check(law: Array) -> None:
         With what is wrong of it.
     """
     size = law.size
-    pieces, rows, at = (_whole(law, n, size) for n in (PIECES, UNLOADINGS, UNLOADING))
-    if size < HEADER or not at == HEADER + (pieces + 1) * PIECE or pieces < 1:
+    header = [_whole(law, n, size) for n in range(HEADER)]
+    pieces, rows = header[PIECES], header[UNLOADINGS]
+    if pieces < 1:
         raise ValueError("its law has no loading curve")
-    if not at + (rows + 1) * UNLOADING_ROW <= size:
-        raise ValueError("its law ends within its rows")
-    curve = law[HEADER:at].reshape(-1, PIECE)
-    family = law[at : at + (rows + 1) * UNLOADING_ROW].reshape(-1, UNLOADING_ROW)
-    entries = [(row, DEGREE) for row in curve[:-1]]
+    blocks = {
+        "starts": (header[STARTS], pieces + 1),
+        "loading curve": (header[CURVE], pieces * PIECE),
+        "starts of unloading": (header[FAMILY_STARTS], rows + 1),
+        "unloading": (header[FAMILY], rows * UNLOADING_ROW),
+    }
+    for name, (at, length) in blocks.items():
+        if not HEADER <= at <= at + length <= size:
+            raise ValueError(f"its law ends within its {name}")
+    starts, curve, family_starts, family = (law[at : at + length] for at, length in blocks.values())
+    for values in (starts, family_starts):
+        if not (np.diff(values[:-1]) > 0.0).all() or values[-1] != math.inf:
+            raise ValueError("the pieces of its law do not follow each other")
+    curve, family = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)
+    entries = [(row, DEGREE) for row in curve]
     entries += [
-        (row, OFFSET + 1 + n * _FUNCTION + _DEGREE) for row in family[:-1] for n in range(5)
+        (row, OFFSET + 1 + n * _FUNCTION + _DEGREE) for row in family for n in range(FUNCTIONS)
     ]
     for row, column in entries:
         degree, start = _whole(row, column, size), _whole(row, column + 1, size)
-        if not start + degree < size:
+        if not start + degree // 4 * 4 + 4 <= size:
             raise ValueError("its law has coefficients beyond its end")
-    for table in (curve, family):
-        starts = table[:, START]
-        if not (np.diff(starts[:-1]) > 0.0).all() or starts[-1] != math.inf:
-            raise ValueError("the pieces of its law do not follow each other")
-    for n, row in enumerate(curve[:-1]):
+    for n, row in enumerate(curve):
         if not _whole(row, FIRST, size) <= n < _whole(row, NEXT, size) <= pieces:
             raise ValueError("the pieces of its law belong to no kink")
 

@@ -92,9 +92,14 @@ Force = Callable[[Array, Leg, float], float]
 @kernel
 def _along_loading(law: Array, part: int, first: int, last: int, level: float) -> Leg:
     """Leg on pieces of the loading curve."""
-    row = force.HEADER + first * force.PIECE
+    row = force.row_of(law, first)
     degree, at = int(law[row + force.DEGREE]), int(law[row + force.AT])
-    if last == first and degree <= 3 and law[row + force.SCALE] == 1.0 and law[row + 2] == 0.0:
+    if (
+        last == first
+        and degree <= 3
+        and law[row + force.SCALE] == 1.0
+        and law[row + force.OFFSET] == 0.0
+    ):
         c1 = law[at + 1] if degree > 0 else 0.0
         c2 = law[at + 2] if degree > 1 else 0.0
         c3 = law[at + 3] if degree > 2 else 0.0
@@ -114,8 +119,8 @@ def _on_unloading_curve(part: int, curve: Curve, level: float) -> Leg:
 @kernel
 def _up(law: Array, first: int) -> Leg:
     """Leg of loading from a kink, the first of whose pieces is given, to the next."""
-    following = int(law[force.HEADER + first * force.PIECE + force.NEXT])
-    level = law[force.HEADER + following * force.PIECE + force.START]
+    following = int(law[force.row_of(law, first) + force.NEXT])
+    level = force.start_of(law, following)
     return _along_loading(law, _UP, first, following - 1, level)
 
 
@@ -123,11 +128,11 @@ def _up(law: Array, first: int) -> Leg:
 def _down(law: Array, curve: Curve, below: float) -> Leg:
     """Leg of unloading along the loading curve, from below a root compression to a kink or cap."""
     k = 0
-    while law[force.HEADER + (k + 1) * force.PIECE + force.START] < below:
+    while force.start_of(law, k + 1) < below:
         k += 1
-    first = int(law[force.HEADER + k * force.PIECE + force.FIRST])
+    first = int(law[force.row_of(law, k) + force.FIRST])
     low = 0.0 if curve.stiffness == 0.0 else math.sqrt(curve.cap_low)
-    level = max(low, law[force.HEADER + first * force.PIECE + force.START])
+    level = max(low, force.start_of(law, first))
     return _along_loading(law, _ALONG, first, k, level)
 
 
@@ -171,9 +176,7 @@ def _pieces(law: Array, leg: Leg, q: float) -> float:
     """Force on any stretch of a loading curve."""
     k = leg.first
     # a step on trial may pass the end of the leg on its way up: the law goes on there
-    while q >= law[force.HEADER + (k + 1) * force.PIECE + force.START] and (
-        k < leg.last or leg.part == _UP
-    ):
+    while q >= force.start_of(law, k + 1) and (k < leg.last or leg.part == _UP):
         k += 1
     return force.piece_force(law, k, q)
 

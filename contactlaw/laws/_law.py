@@ -27,6 +27,7 @@ Formula = Callable[[Array], Array]
 
 END = 1e5  # [d_Y]; beyond, a law goes on by its tangent, see `Law.of`
 HERTZ = Polynomial([0.0, 0.0, 0.0, 1.0])  # F = q^3
+_FUNCTIONS = _force.FUNCTIONS
 _TERMS = 18  # Chebyshev terms of a piece
 _WIDEST = 1.7  # ratio of the ends of a piece at first
 _VANISHED = 2e-14  # a term, relatively to the least value on its piece
@@ -491,28 +492,35 @@ def _beyond(curve: _LoadingCurve, last: _Row) -> _Row:
 def _packed(curve: _LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
     """Put all of it into one array, see `contactlaw.equation.force`."""
     pieces = curve.pieces
-    unloading_at = _force.HEADER + (len(pieces) + 1) * _force.PIECE
-    at = unloading_at + (len(rows) + 1) * _force.UNLOADING_ROW
-    header = [len(pieces), len(rows), unloading_at, capped]
-    table: list[float] = []
+    starts = [*(piece.start for piece in pieces), math.inf]
+    family_starts = [*(row.piece.start for row in rows), math.inf]
+    starts_at = _force.HEADER
+    curve_at = starts_at + len(starts)
+    family_starts_at = curve_at + len(pieces) * _force.PIECE
+    family_at = family_starts_at + len(family_starts)
+    at = family_at + len(rows) * _force.UNLOADING_ROW
+    header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at, capped]
     coefficients: list[Array] = []
 
     def put(part: Array) -> list[float]:
         nonlocal at
-        coefficients.append(part)
-        at += part.size
-        return [part.size - 1, at - part.size]
+        coefficients.append(np.pad(part, (0, -part.size % 4)))
+        at += coefficients[-1].size
+        return [part.size - 1, at - coefficients[-1].size]
 
+    curve_rows: list[float] = []
     for piece, first in zip(pieces, curve.first, strict=True):
         following = next((k for k in curve.first if k > first), len(pieces))
-        table += [piece.start, piece.scale, piece.offset, *put(piece.parts[0]), first, following]
-    table += [math.inf] * _force.PIECE
+        curve_rows += [piece.scale, piece.offset, *put(piece.parts[0]), first, following]
+    # one length for all pieces of a function: a loop of constant length is predicted
+    terms = [max((row.piece.parts[n].size for row in rows), default=0) for n in range(_FUNCTIONS)]
+    family_rows: list[float] = []
     for row in rows:
-        table += [row.piece.start, row.piece.scale, row.piece.offset]
-        for power, part in zip(row.powers, row.piece.parts, strict=True):
-            table += [power, *put(part)]
-    table += [math.inf] * _force.UNLOADING_ROW
-    return np.concatenate([np.array([*header, *table], dtype=np.float64), *coefficients])
+        family_rows += [row.piece.scale, row.piece.offset]
+        for power, part, length in zip(row.powers, row.piece.parts, terms, strict=True):
+            family_rows += [power, *put(np.pad(part, (0, length - part.size)))]
+    numbers = [*header, *starts, *curve_rows, *family_starts, *family_rows]
+    return np.concatenate([np.array(numbers, dtype=np.float64), *coefficients])
 
 
 def bisect(above: Callable[[Any], Any], low: Any, high: Any) -> Any:

@@ -105,6 +105,9 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
     """Refuse values that do not lie between two limits; the remark ends the message."""
     if values.size == 1 and low <= values[0] <= high:
         return
+    # of a NaN, least and largest are NaN, too
+    if values.size > 1 and low <= values.min() and values.max() <= high:
+        return
     wrong = ~((low <= values) & (values <= high))
     if wrong.any():
         n = int(np.argmax(wrong))

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from contactlaw.equation import outcome as outcomes
 from contactlaw.equation import zener
-from contactlaw.equation.outcome import Outcome
+from contactlaw.equation.outcome import Extremes, Outcome
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.validity import Limits, Validity, flags_of
 
@@ -61,9 +63,17 @@ class Impacts:
     shape: tuple[int, ...] | None
 
 
+class Units(NamedTuple):
+    """Fields of `Rebound` that take units, or are quotients."""
+
+    contact_time: Array
+    peak_compression: Array
+    wave_fraction: Array
+    overload: Array
+
+
 @kernel(cache=True)
 def _with_units(
-    law: Array,
     limits: Limits,
     speed: Array,
     radius: Array,
@@ -72,23 +82,21 @@ def _with_units(
     mass: Array,
     asked_y: Array,
     outcome: Outcome,
-    out: Array,
+    extremes: Extremes,
+    out: Units,
     flags: NDArray[np.int64],
 ) -> None:
-    """Fields of `Rebound` from its contact time to its overload into out (8, n), and its flags."""
+    """Give outcomes their units; those of `extremes` in place."""
     for n in range(speed.size):
-        v, t, m = speed[n], time[n], mass[n]
-        lam, y = outcome.inelasticity[n], outcome.yield_ratio[n]
-        w = outcome.compression_ratio[n] * outcome.elastic_compression[n]
-        extremes = zener.extremes_at(law, w, y)
+        v, t = speed[n], time[n]
         contact_time = outcome.contact_time[n] * t
-        out[0, n] = contact_time
-        out[1, n] = extremes.peak_force * (m * v / t)
-        out[2, n] = w * (v * t)
-        out[3, n] = extremes.residual_compression * (v * t)
-        out[4, n] = extremes.plastic_fraction
-        out[5, n] = lam * outcome.wave_rate[n]
-        out[6, n] = outcome.elastic_compression[n] / asked_y[n]
+        out.contact_time[n] = contact_time
+        w = outcome.compression_ratio[n] * outcome.elastic_compression[n]
+        out.peak_compression[n] = w * (v * t)
+        out.wave_fraction[n] = outcome.inelasticity[n] * outcome.wave_rate[n]
+        out.overload[n] = outcome.elastic_compression[n] / asked_y[n]
+        extremes.peak_force[n] *= mass[n] * v / t
+        extremes.residual_compression[n] *= v * t
         flags[n] |= flags_of(limits, radius[n], thickness[n], asked_y[n], contact_time)
 
 
@@ -127,24 +135,17 @@ def rebound(
     Rebound
     """
     inelasticity, yield_ratio = asked
-    out = np.empty((7, time.size))
+    out = Units(*np.empty((len(Units._fields), time.size)))
+    found = outcomes.extremes(time.size)
+    zener.extremes(law, outcome, found)
     _with_units(
-        law, limits, impacts.speed, impacts.radius, impacts.thickness, time, mass, yield_ratio,
-        outcome, out, flags,
+        limits, impacts.speed, impacts.radius, impacts.thickness, time, mass, yield_ratio,
+        outcome, found, out, flags,
     )  # fmt: skip
     shape = impacts.shape
-    time_, force, compression, residual, plastic, wave, overload = (
-        shaped(values, shape) for values in out
-    )
+    named = {**out._asdict(), **found._asdict(), "restitution": outcome.restitution}
     return Rebound(
-        restitution=shaped(outcome.restitution, shape),
-        contact_time=time_,
-        peak_force=force,
-        peak_compression=compression,
-        residual_compression=residual,
-        plastic_fraction=plastic,
-        wave_fraction=wave,
+        **{name: shaped(values, shape) for name, values in named.items()},
         inelasticity=shaped(inelasticity, shape),
-        overload=overload,
         flags=Validity(int(flags[0])) if shape is None else flags.reshape(shape),
     )

@@ -196,8 +196,10 @@ def locate(table: Array, x: float, log_chi: float) -> tuple[int, int, float, flo
 def _locate_all(
     table: Array, x: Array, log_chi: Array, first: Integers, along: Array, low: Array, high: Array
 ) -> None:
-    """`locate` for many places: row by columns + column into first, the places in the cell over x
-    and into along; low and high are scratch. Loops of one operation become vector instructions.
+    """`locate` for many places, in loops of one operation that become vector instructions.
+
+    Row by columns + column goes into first, the places in the cell over x and into along. Low and
+    high are scratch.
     """
     n, scale, curved = x.size, 2.0 / table[X_MAX], table[CURVED] > 0.0
     for k in range(int(table[SEGMENTS])):
