@@ -4,7 +4,8 @@ A contact is followed through its root compression q: from touch up to the large
 unloading curve, down to separation. A shape is the list of times and speeds at which q passes given
 shares of its largest value. Between two of these states runs the cubic through both (Hermite), with
 the slopes that the equation of motion gives: dd/dt = u - lam f, du/dt = -f. With 24 states on
-either side of the top it holds the force to 2e-5 of its peak, up to lam = 5.
+either side of the top it holds the force to 3e-5 of its peak, up to lam = 5, and to 6e-5 where the
+loading curve has corners.
 
 The unloading curve of a capped law has corners, where the cubics would err by 3e-3: contacts that
 come back along the cap are integrated.
