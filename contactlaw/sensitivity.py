@@ -34,7 +34,7 @@ from contactlaw.table.nodes import Table
 Array = NDArray[np.float64]
 
 # Of a central difference of ln e: the step errs by 2e-9 times the third derivative, up to 3e4 next
-# to a corner; the solver, good to 1e-12 of ln e (1e-11 with Stronge's unloading), by 1e-8 to 1e-7.
+# to a corner; the solver, good to 1e-12 of ln e, by 1e-8.
 _STEP = 1e-4
 _RTOL = 1e-13
 

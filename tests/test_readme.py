@@ -5,8 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracle import ALL_LAWS
 
 import contactlaw as cl
+from contactlaw import laws, table
+from contactlaw.table import cache, file
 
 README = (Path(__file__).parent.parent / "README.md").read_text()
 BLOCKS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
@@ -54,17 +57,27 @@ def test_the_lammps_section():
     names["lmp"].close()
 
 
+def test_the_section_on_laws_of_your_own():
+    _, compared = run(BLOCKS[4:5], check)
+    assert compared == 2
+
+
 def test_nothing_else_is_unchecked():
-    assert len(BLOCKS) == 4
+    assert len(BLOCKS) == 5
 
 
 def test_the_stated_accuracy_is_that_of_the_certificate():
-    from contactlaw import laws
-    from contactlaw.table import file
-
     largest = dict(file.packaged(laws.law("myc")).certificate.largest)
-    assert "within 1e-7 of the integrated equation in COR and within 5e-6" in README
-    assert largest.pop("restitution") < 1e-7
-    assert "within 1e-4 of their peak of the integrated ones, 4e-5 at the" in README
-    assert largest.pop("force_history") < 4.05e-5
-    assert max(largest.values()) < 5e-6
+    assert "within 5e-8 of the integrated equation in COR and within 3e-6" in README
+    assert largest.pop("restitution") < 5e-8
+    assert "histories from the table are within 1e-4 of their peak" in README
+    assert largest.pop("force_history") < 1e-4
+    assert max(largest.values()) < 3e-6
+
+
+@pytest.mark.parametrize("law", [law for law in ALL_LAWS if law.yields], ids=lambda law: law.name)
+def test_the_stated_accuracy_of_tables_of_other_laws(law):
+    assert "Tables of other laws are within 1e-6 in COR and 1e-5 in other fields" in README
+    built = table.with_shapes(table.build(law, cache.ON_DEMAND), points=10_000)
+    next_to_yield = {"plastic_fraction", "residual_compression"}  # they begin there at zero
+    assert set(built.certificate.exceeded) <= next_to_yield

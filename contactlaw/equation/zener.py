@@ -109,22 +109,27 @@ def history(
 
 
 @kernel(cache=True)
+def history_of(law: Array, outcome: Outcome, n: int, rtol: float, out: History) -> None:
+    """Contact n at even times from touch to separation."""
+    last = out.time.shape[1] - 1
+    for i in range(last + 1):
+        out.time[n, i] = i * outcome.contact_time[n] / last
+    # an elastic law has y = inf; any scale does for it
+    y = outcome.yield_ratio[n] if outcome.yield_ratio[n] < math.inf else 1.0
+    speed = out.impulse[n]
+    history(
+        law, outcome.inelasticity[n], y, rtol, out.time[n], out.force[n], out.compression[n], speed
+    )
+    for i in range(last + 1):
+        out.impulse[n, i] = 1.0 - speed[i]
+    out.force[n, last] = 0.0
+
+
+@kernel(cache=True)
 def histories(law: Array, outcome: Outcome, rtol: float, out: History) -> None:
     """Contacts at even times from touch to separation."""
-    last = out.time.shape[1] - 1
     for n in range(out.time.shape[0]):
-        for i in range(last + 1):
-            out.time[n, i] = i * outcome.contact_time[n] / last
-        # an elastic law has y = inf; any scale does for it
-        y = outcome.yield_ratio[n] if outcome.yield_ratio[n] < math.inf else 1.0
-        speed = out.impulse[n]
-        history(
-            law, outcome.inelasticity[n], y, rtol, out.time[n], out.force[n], out.compression[n],
-            speed,
-        )  # fmt: skip
-        for i in range(last + 1):
-            out.impulse[n, i] = 1.0 - speed[i]
-        out.force[n, last] = 0.0
+        history_of(law, outcome, n, rtol, out)
 
 
 @kernel

@@ -9,7 +9,8 @@ has to be touched. Files that begin with ``_`` are no laws.
 A law whose scaled form depends on more than the compression defines ``PARAMETERS`` instead, their
 names, and a function ``law`` of them. Their values are part of its name, ``"kogut_etsion(0.3)"``.
 
-Users bring laws of their own by `Law.of`, or by `measured` points, to `contactlaw.ImpactModel`.
+Users bring laws of their own to `contactlaw.ImpactModel`: of formulas by `Law.of`, of measured
+points by `contactlaw.measured_law`.
 """
 
 from __future__ import annotations

@@ -144,7 +144,7 @@ def _points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Arr
 
 
 def _named(law: Law, values: Outcome) -> dict[str, Array]:
-    """Fields of `BOUNDS` from an outcome, as `contactlaw.evaluation` has them."""
+    """Fields of `BOUNDS` from an outcome, as `contactlaw.physical.rebound` has them."""
     compression = values.compression_ratio * values.elastic_compression
     extremes = outcome.extremes(compression.size)
     zener.extremes(law.data, values, extremes)

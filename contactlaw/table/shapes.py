@@ -4,7 +4,11 @@ A contact is followed through its root compression q: from touch up to the large
 unloading curve, down to separation. A shape is the list of times and speeds at which q passes given
 shares of its largest value. Between two of these states runs the cubic through both (Hermite), with
 the slopes that the equation of motion gives: dd/dt = u - lam f, du/dt = -f. With 24 states on
-either side of the top it holds the force to 2e-5 of its peak, up to lam = 5.
+either side of the top it holds the force to 3e-5 of its peak, up to lam = 5, and to 6e-5 where the
+loading curve has corners.
+
+The unloading curve of a capped law has corners, where the cubics would err by 3e-3: contacts that
+come back along the cap are integrated.
 
 Times and speeds at given shares are smooth in lam and ln chi. They need fewer nodes than COR does:
 the grid here is coarser than the table's, with the same segments between kinks.
@@ -38,6 +42,7 @@ SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
 SIZE = 2 * STATES - 1  # states between touch and separation; at these two they are known
 ROWS = 41  # nodes along lam, uniform in x = lam/(lam + c)
 STEP = 0.08  # largest distance of two nodes in ln chi
+_RTOL = 1e-10  # of contacts that are integrated
 
 
 def pack(grid: Grid, states: Singles) -> Shapes:
@@ -121,6 +126,9 @@ def sample(law: Array, shapes: Shapes, outcome: Outcome, out: History) -> None:
         else:
             curve = force.unloading(law, top / y)
             residual = curve.residual * y
+        if curve.cap_low < curve.cap_high:
+            zener.history_of(law, outcome, n, _RTOL, out)
+            continue
         for k in range(STATES):
             d[k + 1] = top * SHARES[k] ** 2
             d[SIZE - k] = residual + (top - residual) * SHARES[k] ** 2
