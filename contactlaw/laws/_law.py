@@ -30,6 +30,7 @@ HERTZ = Polynomial([0.0, 0.0, 0.0, 1.0])  # F = q^3
 _TERMS = 18  # Chebyshev terms of a piece
 _WIDEST = 1.7  # ratio of the ends of a piece at first
 _VANISHED = 2e-14  # a term, relatively to the least value on its piece
+_ROUNDING = 1e-13  # of its size, by which a value may fall below zero
 _MOST_PIECES = 400  # of one branch; a formula that needs more is not smooth
 _NODES = np.cos(math.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
 # values at the nodes -> coefficients of Chebyshev polynomials -> of powers
@@ -306,7 +307,7 @@ def _powers(name: str, part: _Part | float, at: Array) -> tuple[Array, NDArray[n
     with np.errstate(all="ignore"):
         values = np.broadcast_to(np.asarray(part.function(at), dtype=np.float64), at.shape)
     size = np.abs(values) if part.size is None else part.size(at)
-    wrong = ~(np.isfinite(values) & (values >= -_VANISHED * size))
+    wrong = ~(np.isfinite(values) & (values >= -_ROUNDING * size))
     if wrong.any():
         n = int(np.argmax(wrong))
         raise ValueError(
