@@ -3,8 +3,11 @@
 import itertools
 import math
 
+import mpmath
 import numpy as np
 import pytest
+import reference_laws
+from mpmath import mpf
 from oracle import ALL_LAWS, NUMBERS
 from scipy.integrate import quad
 
@@ -101,6 +104,118 @@ def test_dissipation_keeps_its_digits_just_above_yield():
     # leading term of 0.4 dm^1.5 dr with dr = (dm - 1)^2/2; a difference of areas would be noise
     step = 1e-7
     assert laws.law("myc").dissipation(1 + step) == pytest.approx(0.2 * step**2, rel=1e-6)
+
+
+# the pair of the other tests, and one that jackson_green was fitted for
+REFERENCED = [*ALL_LAWS, laws.law("jackson_green(150,0.3)")]
+
+
+def farthest(got, want, where):
+    """Largest relative distance of numbers from mpmath's, and where it is."""
+    worst = (0.0, None)
+    for one, exact, place in zip(got, want, where, strict=True):
+        off = abs(float((mpf(one) - exact) / exact)) if exact else abs(float(one))
+        worst = max(worst, (off, place), key=lambda pair: pair[0])
+    return worst
+
+
+def places(kinks, count):
+    """Compressions from 1e-3 to 1e5 d_Y: random ones, and at, below and above kinks."""
+    rng = np.random.default_rng(1904)
+    spread = np.exp(np.concatenate([
+        rng.uniform(*np.log([1e-3, reference_laws.END]), count), rng.uniform(0, np.log(200), count)
+    ]))  # fmt: skip
+    steps = [0.0, *np.geomspace(1e-9, 0.1, 9), *-np.geomspace(1e-9, 0.1, 5)]
+    near = [kink * (1 + step) for kink in kinks for step in steps]
+    return [float(d) for d in (*spread, *near)]
+
+
+@pytest.mark.parametrize("law", REFERENCED, ids=lambda law: law.name)
+class TestAgainstTheFormulas:
+    """To 1e-12 of each quantity itself, by a reference that shares no code."""
+
+    def test_kinks_and_yield(self, law):
+        exact = reference_laws.of(law.name)
+        assert law.loading_kinks == pytest.approx(exact.loading_kinks, rel=1e-12)
+        assert law.outcome_kinks == pytest.approx(exact.outcome_kinks, rel=1e-12)
+        if exact.coefficient is not None:
+            assert law.yield_coefficient == pytest.approx(float(exact.coefficient), rel=1e-14)
+
+    def test_loading(self, law):
+        exact = reference_laws.of(law.name)
+        q = [math.sqrt(d) for d in places(law.outcome_kinks, 200)]
+        force = [exact.loading(mpf(one) ** 2) for one in q]
+        worst = farthest([law.loading(one) for one in q], force, q)
+        assert worst[0] < 1e-12, worst
+
+    def test_unloading(self, law):
+        exact = reference_laws.of(law.name)
+        deepest = [dm for dm in places(law.outcome_kinks, 100) if dm > 1.0 and law.yields]
+        curves = [law.unloading_curve(dm) for dm in deepest]
+        left = [exact.residual(mpf(dm)) for dm in deepest]
+        for got, want in (
+            ([curve.residual for curve in curves], left),
+            ([0.5 * curve.exponent for curve in curves], [exact.exponent(mpf(d)) for d in deepest]),
+        ):
+            worst = farthest(got, want, deepest)
+            assert worst[0] < 1e-12, worst
+        for share in (1e-3, 0.3, 0.7, 0.99):
+            q = [share * math.sqrt(dm - c.residual) for dm, c in zip(deepest, curves, strict=True)]
+            got = [law.unloading(one, curve) for one, curve in zip(q, curves, strict=True)]
+            want = [
+                exact.unloading(dr + mpf(one) ** 2, mpf(dm))
+                for one, dr, dm in zip(q, left, deepest, strict=True)
+            ]
+            worst = farthest(got, want, deepest)
+            assert worst[0] < 1e-12, (share, worst)
+
+    def test_loss(self, law):
+        exact = reference_laws.of(law.name)
+        deepest = [dm for dm in places(law.outcome_kinks, 10) if dm > 1.0 and law.yields]
+        loss = [exact.loss(mpf(dm)) for dm in deepest]
+        worst = farthest([law.dissipation(dm) for dm in deepest], loss, deepest)
+        assert worst[0] < 1e-12, worst
+
+    def test_beyond_the_last_piece(self, law):
+        """Tangent over the compression; share of the residual, and exponent, are kept."""
+        exact = reference_laws.of(law.name)
+        deepest = [reference_laws.END * step for step in (1.0, 1.0 + 1e-9, 1.01, 2.0, 1e3, 1e9)]
+        force = [exact.loading(mpf(math.sqrt(dm)) ** 2) for dm in deepest]
+        worst = farthest([law.loading(math.sqrt(dm)) for dm in deepest], force, deepest)
+        assert worst[0] < 1e-10, worst  # the slope is that of a polynomial, at its end
+        if not law.yields:
+            return
+        curves = [law.unloading_curve(dm) for dm in deepest]
+        for got, want in (
+            ([curve.residual for curve in curves], exact.residual),
+            ([0.5 * curve.exponent for curve in curves], exact.exponent),
+            ([law.dissipation(dm) for dm in deepest], exact.loss),
+        ):
+            worst = farthest(got, [want(mpf(dm)) for dm in deepest], deepest)
+            assert worst[0] < 1e-10, worst
+
+
+def test_every_registered_law_has_a_reference():
+    assert {law.family for law in REFERENCED} == set(laws.names())
+
+
+@pytest.mark.parametrize("law", REFERENCED, ids=lambda law: law.name)
+def test_the_losses_of_the_reference_are_areas(law):
+    exact = reference_laws.of(law.name)
+    for dm in (1.3, 2.0, 9.0) if law.yields else ():
+        with mpmath.workdps(25):
+            dm = mpf(dm)
+            left = exact.residual(dm)
+            corners = sorted({mpf(1), *(b.start for b in exact.branches), *exact.crossings(dm)})
+
+            def area(force, low, dm=dm, corners=corners):
+                """Over d = low + q^2: no root at the lower end."""
+                ends = [low, *(d for d in corners if low < d < dm), dm]
+                ends = [mpmath.sqrt(d - low) for d in ends]
+                return mpmath.quad(lambda q: 2 * q * force(low + q * q), ends)
+
+            lost = area(exact.loading, mpf(0)) - area(lambda d, dm=dm: exact.unloading(d, dm), left)
+            assert float(lost / exact.loss(dm)) == pytest.approx(1.0, abs=1e-11)
 
 
 def test_myc_is_as_printed():

@@ -79,6 +79,67 @@ def test_tables_of_the_other_laws(law):
     assert lost[~beyond].max() < 1e-8
 
 
+@pytest.fixture(
+    scope="module", params=[law for law in ALL_LAWS if law.yields], ids=lambda x: x.name
+)
+def on_demand(request):
+    """Table of a law as it is built when it is first needed."""
+    return table.build(request.param, cache.ON_DEMAND)
+
+
+def check_promise(built, lam, chi):
+    """COR within 1e-6, contact time within 1e-5, relatively; the largest are 3e-7 and 7e-6."""
+    order = np.argsort(lam, kind="stable")  # equal neighbours share their w_m
+    lam, chi = np.asarray(lam)[order], np.asarray(chi)[order]
+    exact, looked = (outcome.at(lam, np.ones(lam.size)) for _ in range(2))
+    assert zener.solve_overloads(built.law.data, 1e-12, chi, exact) == (zener.OK, 0)
+    looked.yield_ratio[:] = exact.yield_ratio
+    lookup.fields(built.packed, True, looked)  # clamped: chi = 40 may be one rounding error beyond
+    for off, promise in (
+        (looked.restitution - exact.restitution, 1e-6),
+        (looked.contact_time / exact.contact_time - 1.0, 1e-5),
+    ):
+        worst = int(np.argmax(np.abs(off)))
+        assert abs(off[worst]) < promise, (off[worst], lam[worst], chi[worst])
+
+
+class TestEveryLaw:
+    def test_over_the_whole_table(self, on_demand):
+        rng = np.random.default_rng(61)
+        lam = 5 * rng.uniform(0, 1, 10_000) ** 2
+        check_promise(on_demand, lam, np.exp(rng.uniform(-0.2, math.log(40), 10_000)))
+
+    def test_on_the_half_space(self, on_demand):
+        chi = np.exp(np.linspace(-0.2, math.log(40), 3000))
+        check_promise(on_demand, np.zeros(chi.size), chi)
+
+    def test_next_to_the_kinks(self, on_demand):
+        law = on_demand.law
+        steps = np.concatenate([[0.0], np.geomspace(1e-9, 0.3, 30), -np.geomspace(1e-9, 0.3, 30)])
+        lam, chi = [], []
+        for one in (0.0, 1e-3, 0.02, 0.1, 0.3, 1.0, 2.0, 3.5, 5.0):
+            w_m = zener.elastic_compression(one, 1e-13)[1]
+            for kink in law.outcome_kinks:
+                at = zener.overload_at(law.data, one, w_m, kink, 1e-12)
+                near = [at * (1 + step) for step in steps if at * (1 + step) < 40]
+                lam += [one] * len(near)
+                chi += near
+        assert len(chi) > 9 * 59  # at least one kink of the law is in the table
+        check_promise(on_demand, lam, chi)
+
+
+def test_kogut_etsion_next_to_its_second_corner(pair, monkeypatch):
+    """The COR was 1.94e-4 off at this point, lambda near 0 and chi = 6.43."""
+    monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
+    model = cl.ImpactModel(pair, law="kogut_etsion")
+    looked, exact = (
+        f(61.2869, radius=1e-3, thickness=0.1752674) for f in (model.lookup, model.solve)
+    )
+    assert looked.overload == pytest.approx(6.43, abs=0.01)
+    assert looked.restitution == pytest.approx(exact.restitution, abs=1e-6)
+    assert looked.contact_time == pytest.approx(exact.contact_time, rel=1e-5)
+
+
 def test_spline_error_falls_with_the_fourth_power():
     # between the kinks, where the surface is smooth; just above chi = d_P/d_Y it has a term in
     # (chi - d_P/d_Y)^(5/2), since the time spent beyond d_P grows as a square root, and the order

