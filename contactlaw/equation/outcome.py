@@ -44,13 +44,23 @@ class History(NamedTuple):
     impulse: Any  # momentum that has passed [m V0]
 
 
+class Stored(NamedTuple):
+    """A field of `Outcome` that a table keeps: what its file says of it, and what it may be."""
+
+    description: str
+    least: float
+    largest: float
+
+
+# Limits are ours, far beyond what the laws give for lambda to 10 and chi to 1e6 (2.5 to 443, 0.007
+# to 4.3, 0.7 to 854): a number outside was not computed.
 STORED = {
-    "restitution": "rebound speed over impact speed [-]",
-    "contact_time": "time from touch to separation [T_H]",
-    "wave_rate": "share of the initial energy in the bending wave, over lambda [-]",
-    "compression_ratio": "largest compression over the elastic one, d_m/(chi d_Y) [-]",
+    "restitution": Stored("rebound speed over impact speed [-]", 0.0, 1.0),
+    "contact_time": Stored("time from touch to separation [T_H]", 0.1, 1e4),
+    "wave_rate": Stored("share of the energy in the bending wave, over lambda [-]", 0.0, 100.0),
+    "compression_ratio": Stored("largest compression over the elastic one [-]", 0.01, 1e4),
 }
-"""Fields of `Outcome` that a table keeps, and what its file says of them."""
+"""What tables keep, in the order in which their splines are packed."""
 
 
 def empty(count: int) -> Outcome:

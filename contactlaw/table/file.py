@@ -47,13 +47,9 @@ _SEGMENT = {
     "end": "ln chi of the kink at which it ends [-]",
     "shares": "of the way from start to end, of the columns of fields/ [-]",
 }
-# Ours, far beyond what the laws give for lambda to 10 and chi to 1e6 (2.5 to 443, 0.007 to 4.3, 0.7
-# to 854): a number outside was not computed. 0 <= e <= 1, and w_m is (5/4)^(2/5) at lambda = 0.
+# Of the numbers beside the fields; w_m is (5/4)^(2/5) at lambda = 0, and falls.
 _RANGES = {
-    "restitution": (0.0, 1.0),
-    "contact_time": (0.1, 1e4),
-    "wave_rate": (0.0, 100.0),
-    "compression_ratio": (0.01, 1e4),
+    **{name: (stored.least, stored.largest) for name, stored in STORED.items()},
     "elastic_compression": (0.01, 1.1),
     "times of shapes/states": (0.0, 1e4),
     "speeds of shapes/states": (-1.0, 1.0),
@@ -139,7 +135,7 @@ def _fill(file: h5py.File, table: Table) -> None:
             for k, segment in enumerate(grid.segments)
             for name, description in _SEGMENT.items()
         },
-        **{f"fields/{name}": (table.fields[name], STORED[name]) for name in STORED},
+        **{f"fields/{name}": (table.fields[name], STORED[name].description) for name in STORED},
     }
     if table.states is not None:
         shape_nodes = shape_grid(table)
