@@ -455,9 +455,9 @@ class ImpactModel:
         -------
         Sensitivity
             By how many per cent the COR rises with one per cent of each input [-]; an input that is
-            known to 10 % leaves the COR uncertain by ten times that. Within 3e-4 for lambda up to
-            1 (99 % of impacts within 1e-4), 2e-3 up to 2, 3e-2 up to 5, by the table's derivatives;
-            with ``"myc"`` and ``"hertz"`` within 3e-5, 6e-4 and 5e-3.
+            known to 10 % leaves the COR uncertain by ten times that. Within 1e-4 for lambda up to
+            1, 1e-3 up to 2, 2e-2 up to 5, by the table's derivatives; with ``"myc"`` and
+            ``"hertz"`` within 3e-5, 6e-4 and 5e-3.
 
         Raises
         ------
@@ -467,10 +467,11 @@ class ImpactModel:
         Notes
         -----
         Impacts that turn nearer than 5e-4 (relatively) to a kink of the law, where the derivatives
-        may jump, are up to 5e-3 off. A table that exceeds its bound for the COR (of coarse
-        `Settings`) is not differentiated: the equation is integrated, four times an impact. So it
-        is, twice, for ``"jackson_green"``, which takes E*/sigma_Y from the pair; numbers that were
-        given in the name of a law are held fixed.
+        may jump, are up to 5e-3 off. Laws whose loading curves have corners (``"stronge"``,
+        ``"kogut_etsion"``, ``"jackson_green"``) are integrated, four times an impact: within 1e-4
+        for lambda up to 5. So are those whose table exceeds its bound for the COR (of coarse
+        `Settings`), and the dependence on E*/sigma_Y of ``"jackson_green"``, which takes it from
+        the pair; numbers that were given in the name of a law are held fixed.
 
         Examples
         --------

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from oracle import impact_of
+from oracle import ALL_LAWS, impact_of
 
 import contactlaw as cl
 from contactlaw import evaluation, laws, sensitivity
@@ -120,7 +120,7 @@ def test_every_law_has_its_elasticities(any_law):
     assert_units_change_nothing(ours)  # so the modulus of the plate is right, too
 
 
-@pytest.mark.parametrize("name", laws.names())
+@pytest.mark.parametrize("name", ["hertz", "myc", "thornton"])
 def test_tables_have_the_derivatives_of_the_solver(name, pair):
     """As `ImpactModel.sensitivity` says, for impacts that do not turn next to a kink."""
     model = cl.ImpactModel(pair, law=name)
@@ -140,7 +140,7 @@ def test_tables_have_the_derivatives_of_the_solver(name, pair):
         pair, *sensitivity.by_table(model._table, found), np.zeros(dm.size), (dm.size,)
     )
     lam = hit.inelasticity
-    bounds = (3e-5, 6e-4, 5e-3) if name in ("myc", "hertz") else (3e-4, 2e-3, 3e-2)
+    bounds = (3e-5, 6e-4, 5e-3) if name in ("myc", "hertz") else (1e-4, 1e-3, 2e-2)
     for low, high, bound in zip((0.0, 1.0, 2.0), (1.0, 2.0, 5.0), bounds, strict=True):
         chosen = away & (low <= lam) & (lam < high)
         assert chosen.sum() > 50
@@ -160,6 +160,10 @@ def test_below_yield_laws_are_one(any_law):
 def test_only_a_table_that_keeps_its_promise_is_differentiated(model):
     table = model._whole_table
     assert sensitivity.follows(table)
+    corners = {"stronge", "kogut_etsion(0.21)", "jackson_green(23.1922,0.21)"}
+    for law in ALL_LAWS:
+        of_it = dataclasses.replace(table, law=law)
+        assert sensitivity.follows(of_it) == (law.name not in corners), law.name
     assert not sensitivity.follows(dataclasses.replace(table, certificate=None))
     worse = dataclasses.replace(
         table.certificate, largest=table.certificate.largest | {"restitution": 1e-5}

@@ -73,7 +73,9 @@ def _numbers(
 
 def _flat(array: Array, shape: tuple[int, ...]) -> Array:
     """Ravel without a copy where there is one writeable value for each; kernels take no others."""
-    if array.shape == shape and array.flags.writeable:
+    # not array.flags.writeable, which warns for what np.broadcast_arrays gives
+    read_only = array.__array_interface__["data"][1]
+    if array.shape == shape and not read_only:
         return np.ravel(array)
     return np.broadcast_to(array, shape).flatten()
 
