@@ -184,7 +184,7 @@ EDITS = [
     ("equation/integrator.py", "u - beta * f, -2.0 * q * f, f\n\n    @",
      "u - beta * f, -3.0 * q * f, f\n\n    @", (3,)),
     ("equation/zener.py", "2.0 * y4 * end.j", "4.0 * y4 * end.j", ()),
-    ("physical/rebound.py", "extremes.peak_force * (m", "2.0 * extremes.peak_force * (m", (4,)),
+    ("physical/rebound.py", "*= mass[n] * v / t", "*= 2.0 * mass[n] * v / t", (4,)),
     ("table/shapes.py", "return d * math.sqrt(d)", "return 2.0 * d * math.sqrt(d)", (5,)),
     ("softsphere.py", "force = f * unit", "force = 2.0 * f * unit", (6,)),
 ]  # fmt: skip
