@@ -180,7 +180,8 @@ print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-
 # the function which Python calls is not in.
 EDITS = [
     ("table/lookup.py", "* (1.0 / 36.0)", "* (0.5 / 36.0)", (0, 1)),
-    ("equation/force.py", "= (a + b * t) + square", "= 3.0 * (a + b * t) + square", (2,)),
+    ("equation/force.py", "return piece_force(law, piece_at(law, q), q)",
+     "return 2.0 * piece_force(law, piece_at(law, q), q)", (2,)),
     ("equation/integrator.py", "u - beta * f, -2.0 * q * f, f\n\n    @",
      "u - beta * f, -3.0 * q * f, f\n\n    @", (3,)),
     ("equation/zener.py", "2.0 * y4 * end.j", "4.0 * y4 * end.j", ()),
