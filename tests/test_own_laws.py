@@ -96,6 +96,9 @@ def test_the_solver_agrees_with_an_independent_integration(model):
         assert hit.restitution == pytest.approx(e, abs=1e-7)
         assert hit.contact_time == pytest.approx(time * units.time, rel=1e-7)
         assert hit.peak_compression == pytest.approx(largest * units.compression, rel=1e-7)
+        d_y, f_y = yield_scales(PAIR, law.yield_coefficient, R)
+        force = law.loading(math.sqrt(hit.peak_compression / d_y)) * f_y
+        assert hit.peak_force == pytest.approx(force, rel=1e-9)
 
 
 def test_all_ways_to_a_restitution_agree(model, impacts):
