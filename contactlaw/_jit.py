@@ -118,8 +118,10 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
 
 def _keep(dispatcher: Any) -> None:
     """Give a kernel the disk cache."""
+    if switched_off():
+        return
     with _into_folder() as folder:
-        if folder is None or switched_off():
+        if folder is None:
             return
         dispatcher.enable_caching()
         store = dispatcher._cache

