@@ -152,18 +152,14 @@ class Reference:
         return found
 
 
+FAMILIES = {"hertz", "myc", "thornton", "stronge", "kogut_etsion", "jackson_green"}
+
+
 @functools.cache
 def of(name):
     """Reference of a law, by its name with its numbers."""
     family, _, numbers = name.rstrip(")").partition("(")
-    return {
-        "hertz": hertz,
-        "myc": myc,
-        "thornton": thornton,
-        "stronge": stronge,
-        "kogut_etsion": kogut_etsion,
-        "jackson_green": jackson_green,
-    }[family](*(mpf(number) for number in numbers.split(",") if number))
+    return globals()[family](*(mpf(number) for number in numbers.split(",") if number))
 
 
 def hertz():
