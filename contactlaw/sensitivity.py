@@ -37,7 +37,6 @@ Array = NDArray[np.float64]
 # to a corner; the solver, good to 1e-12 of ln e, by 1e-8.
 _STEP = 1e-4
 _RTOL = 1e-13
-_CORNER = 1e-4  # relative jump of a slope; differences err by 1e-8 of it
 
 
 @dataclass(frozen=True)
@@ -75,16 +74,7 @@ def follows(table: Table) -> bool:
     which a spline's derivative is far worse than its value.
     """
     promised = table.certificate is not None and "restitution" not in table.certificate.exceeded
-    return promised and not any(_is_corner(table.law, kink) for kink in table.law.loading_kinks)
-
-
-def _is_corner(law: Law, kink: float) -> bool:
-    """Whether the slope of the loading curve jumps."""
-    q, h = math.sqrt(kink), 1e-4
-    force = [law.loading(q + n * h) for n in (-2, -1, 0, 1, 2)]
-    before = 3.0 * force[2] - 4.0 * force[1] + force[0]
-    after = -3.0 * force[2] + 4.0 * force[3] - force[4]
-    return abs(after - before) > _CORNER * before
+    return promised and not any(map(table.law.has_corner, table.law.loading_kinks))
 
 
 def by_table(table: Array, found: Outcome) -> tuple[Array, Array]:

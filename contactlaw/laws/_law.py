@@ -32,6 +32,7 @@ _TERMS = 18  # Chebyshev terms of a piece
 _WIDEST = 1.7  # ratio of the ends of a piece at first
 _VANISHED = 2e-14  # a term, relatively to the least value on its piece
 _ROUNDING = 1e-13  # of its size, by which a value may fall below zero
+_CORNER = 1e-4  # relative jump of a slope; differences err by 1e-8 of it
 _MOST_PIECES = 400  # of one branch; a formula that needs more is not smooth
 _NODES = np.cos(math.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
 # values at the nodes -> coefficients of Chebyshev polynomials -> of powers
@@ -224,18 +225,25 @@ class Law:
         return hash((self.key, self.yield_coefficient))
 
     def follows(self, other: Law) -> bool:
-        """Whether another law is this one, but for rounding."""
+        """Whether another law is this one, but for rounding; without a kernel to compile."""
         mine, theirs = self._samples(), other._samples()
         return len(mine) == len(theirs) and bool(np.allclose(mine, theirs, rtol=1e-11, atol=1e-14))
 
     def _samples(self) -> list[float]:
         """Numbers that tell laws apart."""
-        places = [*self.outcome_kinks, *np.geomspace(0.5, 1e4, 60).tolist()]
         values = [*self.loading_kinks, *self.outcome_kinks]
-        for dm in places:
-            curve = self.unloading_curve(dm)
-            values += [self.loading(math.sqrt(dm)), self.dissipation(dm), *curve]
+        for d in (*self.outcome_kinks, *np.geomspace(0.5, 1e4, 25).tolist()):
+            values += [_sample(self.data, math.sqrt(d), family=False)[0]]
+            values += _sample(self.data, d, family=True)
         return values
+
+    def has_corner(self, kink: float) -> bool:
+        """Whether the slope of the loading curve jumps at one of its kinks."""
+        q, h = math.sqrt(kink), 1e-4
+        force = [_sample(self.data, q + n * h, family=False)[0] for n in (-2, -1, 0, 1, 2)]
+        before = 3.0 * force[2] - 4.0 * force[1] + force[0]
+        after = -3.0 * force[2] + 4.0 * force[3] - force[4]
+        return abs(after - before) > _CORNER * before
 
     def loading(self, q: float) -> float:
         """Force [F_Y] at the compression q^2 [d_Y] while it grows."""
@@ -256,6 +264,27 @@ class Law:
     def dissipation(self, dm: float) -> float:
         """Subtract unloading work from loading work [F_Y d_Y], of a contact that reached dm."""
         return _force.loss(self.data, dm)
+
+
+def _sample(data: Array, x: float, *, family: bool) -> list[float]:
+    """Polynomials of a law's data at one place, of its loading curve or its unloading family."""
+    starts_at, rows_at, count, length = (
+        (_force.FAMILY_STARTS, _force.FAMILY, _force.UNLOADINGS, _force.UNLOADING_ROW)
+        if family
+        else (_force.STARTS, _force.CURVE, _force.PIECES, _force.PIECE)
+    )
+    starts = data[int(data[starts_at]) :][: int(data[count])]
+    k = int(np.searchsorted(starts, x, side="right")) - 1
+    if k < 0:
+        return []
+    row = data[int(data[rows_at]) + k * length :][:length]
+    t = row[_force.SCALE] * x - row[_force.OFFSET]
+    entries = (
+        row[_force.OFFSET + 1 :].reshape(-1, 3)[:, 1:]
+        if family
+        else row[[_force.DEGREE, _force.AT]][None]
+    )
+    return [float(_horner(data[int(at) : int(at + degree) + 1], t)) for degree, at in entries]
 
 
 @dataclass(frozen=True, eq=False)
