@@ -155,6 +155,8 @@ def _code_folder() -> Path | None:
         home = Path(config.CACHE_DIR) if config.CACHE_DIR else _folder.folder()
         if home is None:
             return None
+        # a process may go to another folder, and numba takes ~ for a name
+        home = home.expanduser().absolute()
         folder = home / f"contactlaw-{fingerprint()}"
         if not folder.is_dir():
             folder.mkdir(parents=True, exist_ok=True)

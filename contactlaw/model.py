@@ -241,11 +241,8 @@ class ImpactModel:
 
         Notes
         -----
-        Tables of laws other than ``"myc"`` are less fine. For gamma-alumina on glass they have
-        plastic share and residual compression within 2e-5 from chi = 1.01 on. Below, where both
-        hardly count, the two err by less than 1e-8 of the initial energy and of V0 T_H. Relatively
-        that is up to 4e-4 with ``"thornton"``; with ``"stronge"`` 4e-3 of the plastic share, and
-        no digit of the residual compression is sure below chi = 1.0001.
+        So are those of the other laws, but for plastic share and residual compression with
+        ``"stronge"`` next to yield: up to 1e-3 there, relatively.
 
         Examples
         --------

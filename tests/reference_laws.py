@@ -5,6 +5,7 @@ to far more digits than a double has, next to yield too.
 """
 
 import functools
+import itertools
 from dataclasses import dataclass
 from typing import Any
 
@@ -125,7 +126,7 @@ class Reference:
             return self.work(dm) - back(dm)
         edges = [left, *self.crossings(dm), dm]
         lost = self.work(left)
-        for low, high in zip(edges, edges[1:], strict=False):
+        for low, high in itertools.pairwise(edges):
             middle = (low + high) / 2
             if self.printed(middle, dm) < self.loading(middle):
                 lost += self.work(high) - self.work(low) - (back(high) - back(low))

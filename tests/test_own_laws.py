@@ -340,10 +340,10 @@ class TestMeasured:
     def test_points_that_fall(self):
         compression, force = points(laws.law("myc"))
         for wrong in (compression[::-1], np.full_like(compression, np.nan)):
-            with pytest.raises(ValueError, match="have to be finite, and to rise"):
+            with pytest.raises(ValueError, match="have to be positive and finite, and to rise"):
                 measured(compression=wrong)
         force[20] = force[19]
-        with pytest.raises(ValueError, match="have to be finite, and to rise"):
+        with pytest.raises(ValueError, match="have to be positive and finite, and to rise"):
             measured(force=force)
 
     def test_a_wild_point(self):

@@ -191,7 +191,9 @@ class Law:
             source=source,
             yield_coefficient=yield_coefficient,
             loading_kinks=curve.kinks,
-            outcome_kinks=tuple(sorted({*curve.kinks, *(branch.start for branch in unloading)})),
+            outcome_kinks=tuple(
+                sorted({*curve.kinks, *(float(branch.start) for branch in unloading)})
+            ),
             data=_packed(curve, rows, any(branch.cap for branch in unloading)),
             yield_strains=yield_strains,
         )
@@ -380,7 +382,7 @@ class _LoadingCurve:
             raise ValueError(
                 f"law: the first branch of {name!r} has to begin at 0 with a polynomial, HERTZ"
             )
-        self.kinks = tuple(branch.start for branch in branches[1:])
+        self.kinks = tuple(float(branch.start) for branch in branches[1:])
         self.pieces: list[_Piece] = []
         self.first: list[int] = []  # piece at the last kink, of each piece
         ends = _ends(branches)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw.laws import HERTZ, Law, Loading, Unloading
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.laws.myc import residual as myc_residual
-from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.arguments import broadcast, scalars
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import yield_scales
 
@@ -82,16 +82,20 @@ def measured_law(
     """
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
-    r, _ = broadcast(radius=radius)
-    check(radius=r)
-    d_y, f_y = yield_scales(pair, C_YIELD, float(r[0]))
+    (r,) = scalars(radius=radius)
+    d_y, f_y = yield_scales(pair, C_YIELD, r.item())
     points = {"compression": compression, "force": force}
     if residual is not None:
         points["residual"] = residual
     *columns, _ = broadcast(**points)
     rows = np.column_stack(columns)
-    if not np.isfinite(rows).all() or (np.diff(rows[:, :2], axis=0) <= 0.0).any():
-        raise ValueError("compression, force: have to be finite, and to rise from point to point")
+    rises = (np.diff(rows[:, :2], axis=0, prepend=0.0) > 0.0).all()
+    if not (np.isfinite(rows).all() and rises):
+        raise ValueError(
+            "compression, force: have to be positive and finite, and to rise from point to point"
+        )
+    if residual is not None and not ((rows[:, 2] >= 0.0) & (rows[:, 2] < rows[:, 0])).all():
+        raise ValueError("residual: has to lie between 0 and the compression of its point [m]")
     rows = rows[rows[:, 0] > d_y]
     if len(rows) < _FEWEST:
         raise ValueError(
@@ -120,7 +124,7 @@ def measured_law(
     slope = (after - before) / (2.0 * step)
     return Law.of(
         name=name,
-        source=source or f"measured, radius {radius:g} m, {len(rows)} points beyond yield",
+        source=source or f"measured, radius {r.item():g} m, {len(rows)} points beyond yield",
         yield_coefficient=C_YIELD,
         loading=[
             Loading(0.0, HERTZ),

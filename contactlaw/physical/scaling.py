@@ -7,6 +7,7 @@ the solver work with: the inelasticity lambda, and the yield compression y on He
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from typing import NamedTuple
 
@@ -71,6 +72,8 @@ def law_of(pair: Pair, law: str | Law) -> Law:
         )
     else:
         found = laws.law(law)
+    if found.from_pair and isinstance(law, Law) and law_of(pair, found.family) != found:
+        found = dataclasses.replace(found, from_pair=())  # those of another pair, held fixed here
     if found.yields:
         pair.sphere.require_yield_strength(found.name)
     return found

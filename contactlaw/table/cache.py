@@ -25,7 +25,7 @@ from contactlaw.table import file
 from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table
 
-ON_DEMAND = Settings(log_overload_step=0.03, rtol=1e-10)
+ON_DEMAND = Settings(log_overload_step=0.03, rtol=1e-11)
 """Settings of tables that are built when they are first needed, in a few tenths of a second."""
 
 _PATIENCE = (

@@ -125,8 +125,14 @@ def _fill(file: h5py.File, table: Table) -> None:
     )
     datasets = {
         "law/data": (law.data, "force law, see contactlaw.equation.force [d_Y, F_Y]"),
-        "law/loading_kinks": (np.array(law.loading_kinks), "of the loading curve [d_Y]"),
-        "law/outcome_kinks": (np.array(law.outcome_kinks), "of the outcomes [d_Y]"),
+        "law/loading_kinks": (
+            np.array(law.loading_kinks, dtype=np.float64),
+            "of the loading curve [d_Y]",
+        ),
+        "law/outcome_kinks": (
+            np.array(law.outcome_kinks, dtype=np.float64),
+            "of the outcomes [d_Y]",
+        ),
         "inelasticity": (grid.inelasticity, "lambda of the rows of fields/ [-]"),
         "series_inelasticity": (grid.series_inelasticity(), "lambda of what follows [-]"),
         "elastic_compression": (grid.elastic_compression, "w_m, of an elastic impact [V0 T_H]"),

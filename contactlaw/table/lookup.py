@@ -281,12 +281,12 @@ class _Others(NamedTuple):
 
     contact_time: float
     wave_rate: float
-    compression_ratio: float
+    growth: float  # p in d_m/d_Y = chi^p, see `contactlaw.table.splines`
 
 
 @kernel
 def _other_fields(table: Array, p: np.uint64, s: float, t: float) -> _Others:
-    """Contact time [T_H], wave rate and compression ratio; their coefficients begin at p."""
+    """Contact time [T_H], wave rate and growth; their coefficients begin at p."""
     a, (b0, b1, b2, b3) = weights(s), weights(t)
     time = wave = ratio = 0.0
     step = np.uint64(3 * int(table[COLUMNS]))
@@ -317,14 +317,16 @@ def _cor_at(table: Array, x: float, log_chi: float) -> float:
 
 
 @kernel
-def _put(table: Array, first: int, s: float, t: float, log_w: float, out: Outcome, n: int) -> None:
+def _put(
+    table: Array, first: int, s: float, t: float, log_chi: float, log_w: float, out: Outcome, n: int
+) -> None:
     """Fields from the coefficients whose first, of the 4 x 4, is given."""
     step = int(table[COLUMNS])
     out.restitution[n] = _cor(table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t)
     others = _other_fields(table, np.uint64(int(table[OTHERS_AT]) + 3 * first), s, t)
     out.contact_time[n] = others.contact_time
     out.wave_rate[n] = others.wave_rate
-    out.compression_ratio[n] = others.compression_ratio
+    out.compression_ratio[n] = math.exp((others.growth - 1.0) * max(log_chi, 0.0))
     out.elastic_compression[n] = math.exp(log_w)
 
 
@@ -475,15 +477,17 @@ def outcomes(
                 others = _other_fields(table, np.uint64(others_at + 3 * at), s, t)
                 out.contact_time[start + i] = others.contact_time
                 out.wave_rate[start + i] = others.wave_rate
-                out.compression_ratio[start + i] = others.compression_ratio
+                log_chi[i] = (others.growth - 1.0) * max(log_chi[i], 0.0)
             for i in range(n):
                 out.elastic_compression[start + i] = math.exp(log_w[i])
+            for i in range(n):
+                out.compression_ratio[start + i] = math.exp(log_chi[i])
             continue
         for i in range(n):
             if x[i] <= x_max and log_chi[i] <= log_chi_max:
                 row, column, s, t = locate(table, x[i], log_chi[i])
                 place = row * int(table[COLUMNS]) + column
-                _put(table, place, s, t, log_w[i], out, start + i)
+                _put(table, place, s, t, log_chi[i], log_w[i], out, start + i)
             else:
                 _blank(out, start + i)
                 outside += 1
@@ -512,7 +516,7 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
             out.inelasticity[n] = inside_x * table[STRETCH] / (1.0 - inside_x)
             out.yield_ratio[n] = math.exp(log_w - inside_chi)
         row, column, s, t = locate(table, inside_x, inside_chi)
-        _put(table, row * int(table[COLUMNS]) + column, s, t, log_w, out, n)
+        _put(table, row * int(table[COLUMNS]) + column, s, t, inside_chi, log_w, out, n)
     return outside
 
 

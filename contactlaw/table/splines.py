@@ -76,9 +76,23 @@ def header(grid: Grid) -> Array:
     return np.concatenate((head, series[0], blocks.ravel(), *series[1:]))
 
 
+def _growth(ratio: Array, grid: Grid) -> Array:
+    """Logarithm of the largest compression over that of the overload, p in d_m/d_Y = chi^p.
+
+    Just above yield, where residual compression and plastic share begin with d_m - d_Y, an error of
+    p is one of that difference; an error of the ratio itself would be any multiple of it.
+    """
+    log_chi = grid.log_overload()
+    with np.errstate(invalid="ignore", divide="ignore"):
+        growth = 1.0 + np.log(ratio) / log_chi
+    growth[:, 0] = 1.0  # the limit at yield
+    return growth
+
+
 def pack(grid: Grid, fields: dict[str, Array]) -> Array:
     """Fit splines through the values of a table's nodes and pack them into one array."""
-    cor, *others = (surface(values, grid) for values in fields.values())
+    packed = {**fields, "compression_ratio": _growth(fields["compression_ratio"], grid)}
+    cor, *others = (surface(values, grid) for values in packed.values())
     head = header(grid)
     head[lookup.COR_AT], head[lookup.OTHERS_AT] = head.size, head.size + cor.size
     return np.concatenate((head, cor.ravel(), np.stack(others, axis=-1).ravel()))

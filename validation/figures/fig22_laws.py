@@ -30,7 +30,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
     )
     numbers = {}
     panels = figure.subplots(2, math.ceil(len(cor) / 2))
-    for axes, (name, values) in zip(panels.flat, cor.items(), strict=False):
+    for n, (name, values) in enumerate(cor.items()):
+        axes = panels.flat[n]
         title = _style.law(name)[2]
         error_map(axes, title, values / case.fem["restitution"] - 1.0, widest=20.0)
         largest, rms = compare.deviation(values, case)
