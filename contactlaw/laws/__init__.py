@@ -25,7 +25,8 @@ import re
 from types import ModuleType
 from typing import Any
 
-from contactlaw.laws._law import HERTZ, Law, Loading, Unloading
+from contactlaw.laws._branches import HERTZ, Loading, Unloading
+from contactlaw.laws._law import Law
 
 __all__ = ["HERTZ", "Law", "Loading", "Unloading", "law", "names", "parameters"]
 

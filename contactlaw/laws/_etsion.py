@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlaw.laws._law import Array, Unloading, bisect
+from contactlaw.laws._branches import Array, Unloading, bisect
 
 
 def share(dm: Array) -> Array:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contactlaw.laws._law import HERTZ, Law, Loading
+from contactlaw.laws._branches import HERTZ, Loading
+from contactlaw.laws._law import Law
 
 LAW = Law.of(
     name="hertz",

@@ -25,7 +25,8 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from contactlaw.laws import _etsion
-from contactlaw.laws._law import END, HERTZ, Array, Formula, Law, Loading, bisect
+from contactlaw.laws._branches import END, HERTZ, Array, Formula, Loading, bisect
+from contactlaw.laws._law import Law
 
 PARAMETERS = ("modulus_ratio", "poissons_ratio")
 

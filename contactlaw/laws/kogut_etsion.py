@@ -20,7 +20,8 @@ from __future__ import annotations
 import functools
 
 from contactlaw.laws import _etsion
-from contactlaw.laws._law import HERTZ, Law, Loading
+from contactlaw.laws._branches import HERTZ, Loading
+from contactlaw.laws._law import Law
 
 PARAMETERS = ("poissons_ratio",)
 

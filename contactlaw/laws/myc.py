@@ -16,7 +16,8 @@ import math
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from contactlaw.laws._law import HERTZ, Array, Law, Loading, Unloading
+from contactlaw.laws._branches import HERTZ, Array, Loading, Unloading
+from contactlaw.laws._law import Law
 
 C_YIELD = 0.68  # Eq. 18, d_Y = 0.68 pi^2 sigma_Y^2 R*/E*^2
 C_PLASTIC = 2.14  # Eq. 18, d_P = 2.14 pi^2 sigma_Y^2 R*/E*^2

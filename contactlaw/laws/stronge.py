@@ -30,7 +30,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.laws._law import HERTZ, Array, Law, Loading, Unloading, bisect
+from contactlaw.laws._branches import HERTZ, Array, Loading, Unloading, bisect
+from contactlaw.laws._law import Law
 from contactlaw.laws.myc import residual  # dm - sqrt(2 dm - 1), over (dm - 1)^2
 
 _C_YIELD = (3.3 / 4.0) ** 2  # of pi^2 sigma_Y^2 R*/E*^2

@@ -17,7 +17,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from contactlaw.laws._law import HERTZ, Array, Law, Loading, Unloading
+from contactlaw.laws._branches import HERTZ, Array, Loading, Unloading
+from contactlaw.laws._law import Law
 
 
 def _residual(dm: Array) -> Array:

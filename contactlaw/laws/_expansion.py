@@ -1,0 +1,403 @@
+"""From the formulas of a law to the array that kernels read, see `contactlaw.equation.force`.
+
+Formulas become piecewise polynomials that hold them to 1e-13: they are expanded in Chebyshev
+polynomials on pieces that are halved until the last terms vanish. A `numpy.polynomial.Polynomial`
+is taken as it is.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.polynomial import Polynomial, chebyshev
+from numpy.typing import NDArray
+
+from contactlaw.equation import force as _force
+from contactlaw.laws._branches import END, HERTZ, Array, Formula, Loading, Unloading
+
+_FUNCTIONS = _force.FUNCTIONS
+_TERMS = 18  # Chebyshev terms of a piece
+_WIDEST = 1.7  # ratio of the ends of a piece at first
+_VANISHED = 2e-14  # a term, relatively to the least value on its piece
+_ROUNDING = 1e-13  # of its size, by which a value may fall below zero
+_MOST_PIECES = 400  # of one branch; a formula that needs more is not smooth
+_NODES = np.cos(math.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
+# values at the nodes -> coefficients of Chebyshev polynomials -> of powers
+_TO_CHEBYSHEV = chebyshev.chebvander(_NODES, _TERMS - 1) * 2.0 / _TERMS
+_TO_CHEBYSHEV[:, 0] *= 0.5
+_TO_POWERS = np.array(
+    [np.pad(chebyshev.cheb2poly(e), (0, _TERMS))[:_TERMS] for e in np.eye(_TERMS)]
+)
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """Polynomials over one piece of a line, in t = scale x - offset."""
+
+    start: float
+    scale: float
+    offset: float
+    parts: list[Array]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A function to be expanded, what it is, and the size of what it was computed from."""
+
+    what: str
+    function: Formula
+    size: Formula | None = None
+
+
+def _expand(name: str, parts: Sequence[_Part | float], low: float, high: float) -> list[_Piece]:
+    """Polynomials for some functions on [low, high], all on the same pieces; numbers stay exact."""
+    count = max(1, math.ceil(math.log(high / low) / math.log(_WIDEST)))
+    edges = np.geomspace(low, high, count + 1)
+    edges[[0, -1]] = low, high
+    todo, done = list(itertools.pairwise(edges.tolist())), []
+    while todo:
+        left, right = np.array(todo).T
+        middle, half = 0.5 * (left + right), 0.5 * (right - left)
+        at = middle[:, None] + half[:, None] * _NODES
+        found = [_powers(name, part, at) for part in parts]
+        smooth = np.all([converged for _, converged in found], axis=0)
+        for n in np.flatnonzero(smooth):
+            powers = [np.trim_zeros(rows[n], "b") for rows, _ in found]
+            coefficients = [row if row.size else np.zeros(1) for row in powers]
+            done.append(_Piece(left[n], 1.0 / half[n], middle[n] / half[n], coefficients))
+        todo = [
+            ends for n in np.flatnonzero(~smooth)
+            for ends in ((left[n], middle[n]), (middle[n], right[n]))
+        ]  # fmt: skip
+        if len(todo) + len(done) > _MOST_PIECES:
+            raise ValueError(
+                f"law: {name!r} is not smooth near {todo[0][0]:.6g} d_Y; give each kink a branch "
+                "that begins there"
+            )
+    return sorted(done, key=lambda piece: piece.start)
+
+
+def _powers(name: str, part: _Part | float, at: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """Coefficients of powers of t for rows of values, and which rows have converged."""
+    if isinstance(part, float):
+        return np.full((len(at), 1), part), np.ones(len(at), dtype=bool)
+    values = _values(name, part.what, part.function, at)
+    size = np.abs(values) if part.size is None else part.size(at)
+    wrong = ~(np.isfinite(values) & (values >= -_ROUNDING * size))
+    if wrong.any():
+        n = int(np.argmax(wrong))
+        _refuse(name, part.what, values.flat[n], at.flat[n])
+    level = values[:, :1]  # without it the sums round by what the values vary, not by their size
+    terms = (values - level) @ _TO_CHEBYSHEV
+    terms[:, :1] += level
+    small = np.abs(terms) <= _VANISHED * size.min(axis=1, keepdims=True)
+    kept = np.cumsum(~small[:, ::-1], axis=1)[:, ::-1] > 0  # up to the last that counts
+    return (terms * kept) @ _TO_POWERS, small[:, -2:].all(axis=1)
+
+
+def _refuse(name: str, what: str, value: float, at: float) -> NoReturn:
+    gain = "; a loop would gain energy" if what == "loss" and value < 0.0 else ""
+    raise ValueError(
+        f"law: the {what} of {name!r} is {value:.6g} at {at:.6g} d_Y and has to be finite and not "
+        f"negative{gain}"
+    )
+
+
+def _values(name: str, what: str, function: Formula, at: Array) -> Array:
+    """Values of a user's formula."""
+    with np.errstate(all="ignore"):
+        try:
+            return np.broadcast_to(np.asarray(function(at), dtype=np.float64), at.shape)
+        except (TypeError, ValueError) as error:
+            raise ValueError(
+                f"law: the {what} of {name!r} has to take an array, as numpy's functions do, and "
+                f"give one number for each of its; it says: {error}"
+            ) from error
+
+
+class LoadingCurve:
+    """The loading curve in pieces, with force and work at any compressions."""
+
+    def __init__(self, name: str, branches: Sequence[Loading], yields: bool) -> None:
+        if not branches or branches[0].start != 0.0 or branches[0].force != HERTZ:
+            raise ValueError(
+                f"law: the first branch of {name!r} has to begin at 0 with a polynomial, HERTZ"
+            )
+        self.kinks = tuple(float(branch.start) for branch in branches[1:])
+        self.pieces: list[_Piece] = []
+        self.first: list[int] = []  # piece at the last kink, of each piece
+        ends = _ends(branches)
+        for branch, end in ends:
+            first = len(self.pieces)
+            force = branch.force
+            if isinstance(force, Polynomial):
+                coefficients = np.asarray(force.coef, dtype=np.float64)
+                self.pieces.append(_Piece(math.sqrt(branch.start), 1.0, 0.0, [coefficients]))
+            else:
+                _check_rise(name, force, branch.start, end, 200)
+                part = _Part("loading force", _over_root(force))
+                self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end))
+            self.first += [first] * (len(self.pieces) - first)
+        self._tabulate()
+        if yields:
+            self._go_on()
+        for kink in self.kinks:
+            before, after = self.force(np.array([kink * (1.0 - 1e-12), kink]))
+            if not abs(after - before) <= 1e-9 * before:
+                raise ValueError(
+                    f"law: the loading branches of {name!r} do not meet at {kink:.9g} d_Y: "
+                    f"{before:.9g} and {after:.9g} F_Y"
+                )
+        _check_rise(name, self.force, 1e-3, END, 2000)
+
+    def _go_on(self) -> None:
+        """Add the tangent over the compression at `END`, in powers of q."""
+        end = np.array([END, END * (1.0 + 1e-6)])
+        force, work = self.force(end), self.work(end)
+        piece = self.pieces[-1]
+        t = piece.scale * math.sqrt(END) - piece.offset
+        slope = 0.5 * piece.scale * Polynomial(piece.parts[0]).deriv()(t) / math.sqrt(END)
+        self.tangent = float(force[0]), float(slope), float(work[0])
+        if piece.scale == 1.0 and piece.parts[0].size <= 3 and piece.parts[0][1] == 0.0:
+            return  # it is its own tangent
+        constant = float(force[0] - slope * END)
+        tail = np.array([constant, 0.0, float(slope)])
+        self.pieces.append(_Piece(math.sqrt(END), 1.0, 0.0, [tail]))
+        self.first.append(self.first[-1])
+        self._tabulate()
+
+    def _tabulate(self) -> None:
+        pieces = self.pieces
+        self._starts = np.array([piece.start for piece in pieces])
+        self._scale, self._offset = (
+            np.array([getattr(piece, name) for piece in pieces]) for name in ("scale", "offset")
+        )
+        terms = max(piece.parts[0].size for piece in pieces)
+        self._force = np.zeros((len(pieces), terms))
+        self._work = np.zeros((len(pieces), terms + 2))
+        done = 0.0
+        for n, piece in enumerate(pieces):
+            force = piece.parts[0]
+            self._force[n, : force.size] = force
+            # dW = 2 q f dq with q = (t + offset)/scale
+            product = np.convolve(force, [piece.offset, 1.0]) * (2.0 / piece.scale**2)
+            work = np.concatenate(([0.0], product / np.arange(1, product.size + 1)))
+            work[0] = done - horner(work, piece.scale * piece.start - piece.offset)
+            self._work[n, : work.size] = work
+            if n + 1 < len(pieces):
+                done = float(horner(work, piece.scale * pieces[n + 1].start - piece.offset))
+
+    def force(self, d: Array) -> Array:
+        """Force at compressions."""
+        return self._at(d, self._force)
+
+    def work(self, d: Array) -> Array:
+        """Integral of the force up to compressions."""
+        return self._at(d, self._work)
+
+    def _at(self, d: Array, coefficients: Array) -> Array:
+        q = np.sqrt(d)
+        k = np.searchsorted(self._starts, q, side="right") - 1
+        return horner(coefficients.T[:, k], self._scale[k] * q - self._offset[k])
+
+
+def horner(coefficients: Array, t: Array | float) -> Array:
+    value = np.zeros_like(np.asarray(t))
+    for c in coefficients[::-1]:
+        value = value * t + c
+    return value
+
+
+def _check_rise(name: str, force: Formula, low: float, high: float, count: int) -> None:
+    d = np.geomspace(low, high, count)
+    values = _values(name, "loading force", force, d)
+    for wrong in (~np.isfinite(values), values < 0.0):
+        if wrong.any():
+            n = int(np.argmax(wrong))
+            _refuse(name, "loading force", values[n], d[n])
+    falls = np.diff(values) <= 0.0
+    if falls.any():
+        at = d[int(np.argmax(falls))]
+        raise ValueError(f"law: the loading force of {name!r} does not rise at {at:.6g} d_Y")
+
+
+def check_yield(
+    name: str, coefficient: float | None, loading: Sequence[Loading], unloading: Sequence[Unloading]
+) -> None:
+    """Refuse a law that would not begin to differ from Hertz's at yield."""
+    starts = [branch.start for branch in loading[1:]]
+    if any(start < 1.0 for start in starts) or (unloading and unloading[0].start != 1.0):
+        raise ValueError(
+            f"law: {name!r} has to follow Hertz's curve up to yield, 1 d_Y: no branch of loading "
+            "but the first may begin before, and the first of unloading begins there"
+        )
+    if not (starts or unloading):
+        right, needed = coefficient is None, "None: it never yields"
+    else:
+        right = coefficient is not None and 0.0 < coefficient < math.inf
+        needed = "a positive number: the law yields"
+    if not right:
+        raise ValueError(f"law: yield_coefficient of {name!r} must be {needed}, got {coefficient}")
+
+
+def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading]) -> None:
+    """Refuse unloading curves that change at once, or begin with a jump: so would outcomes."""
+    before = (0.0, 0.0)
+    for branch, end in _ends(branches):
+        dm = np.array([branch.start * (1.0 + 1e-9), end * (1.0 - 1e-9)])
+        left, lost = (np.asarray(f(dm)) for f in _residual_and_loss(curve, branch))
+        for what, value, last, scale in (
+            ("residual compression", left, before[0], branch.start),
+            ("loss", lost, before[1], float(curve.work(dm)[0])),
+        ):
+            if not abs(value[0] - last) <= 1e-6 * scale:
+                raise ValueError(
+                    f"law: the {what} of {name!r} jumps at {branch.start:.9g} d_Y, from {last:.6g} "
+                    f"to {value[0]:.6g}"
+                )
+        before = float(left[1]), float(lost[1])
+
+
+def _over_root(force: Formula) -> Formula:
+    """Take the root compression."""
+    return lambda q: force(q * q)
+
+
+def _ends(branches: Sequence[Any]) -> list[tuple[Any, float]]:
+    """Branches with the compressions at which they end; those have to rise."""
+    starts = [branch.start for branch in branches]
+    if any(not low < high for low, high in itertools.pairwise([*starts, END])):
+        raise ValueError(f"law: branches have to begin one after the other, below {END:g} d_Y")
+    return list(zip(branches, [*starts[1:], END], strict=True)) if starts else []
+
+
+@dataclass(frozen=True, eq=False)
+class _Row:
+    """A piece of the unloading family: functions in the order of `equation.force`."""
+
+    piece: _Piece
+    powers: tuple[float, ...]
+
+
+def _residual_and_loss(curve: LoadingCurve, branch: Unloading) -> tuple[Formula, Formula]:
+    """Residual compression and loss themselves."""
+    exponent, given = branch.exponent, branch.loss
+
+    def residual(dm: Array) -> Array:
+        return branch.residual(dm) * (dm - 1.0) ** branch.order
+
+    def difference(dm: Array) -> Array:
+        n = exponent(dm) if callable(exponent) else exponent
+        return curve.work(dm) - curve.force(dm) * (dm - residual(dm)) / (n + 1.0)
+
+    if given is None:
+        return residual, difference
+    return residual, lambda dm: given(dm) * (dm - 1.0) ** branch.loss_order
+
+
+def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: float) -> list[_Row]:
+    exponent = branch.exponent
+    residual, loss = _residual_and_loss(curve, branch)
+    some = np.geomspace(branch.start * (1.0 + 1e-9), end, 200)
+    deep = _values(name, "residual compression", residual, some) >= some
+    if deep.any():
+        raise ValueError(
+            f"law: the residual compression of {name!r} is not below the largest one at "
+            f"{some[int(np.argmax(deep))]:.6g} d_Y"
+        )
+
+    # what a residual and a loss have to keep their digits of: the span dm - dr where that is
+    # smaller, and the loss itself; rounding allows for shares of 0.05
+    def smaller(dm: Array) -> Array:
+        return branch.residual(dm) * np.clip(1.0 - residual(dm) / dm, 0.05, 1.0)
+
+    def lost(dm: Array) -> Array:
+        work = curve.work(dm)
+        return np.clip(loss(dm), 0.05 * work, 0.2 * work)
+
+    parts: list[_Part | float] = [
+        _Part("residual compression", branch.residual, smaller if branch.order else np.positive)
+    ]
+    parts.append(
+        _Part("exponent", lambda dm: 2.0 * exponent(dm)) if callable(exponent) else 2.0 * exponent
+    )
+    if branch.loss is None:
+        parts.append(_Part("loss", loss, lost))
+    else:
+        parts.append(_Part("loss", branch.loss))
+    low, high = branch.cap or (None, None)
+    parts.append(0.0 if low is None else _Part("cap", low, np.positive))
+    if high is None:
+        parts.append(0.0 if low is None else math.inf)
+    else:
+        parts.append(_Part("cap", high, np.positive))
+    powers = (branch.order, 0.0, branch.loss_order, 0.0, 0.0)
+    # the loss has kinks where the loading curve has them
+    inner = [kink for kink in curve.kinks if branch.start < kink < end]
+    return [
+        _Row(piece, powers)
+        for ends in itertools.pairwise([branch.start, *inner, end])
+        for piece in _expand(name, parts, *ends)
+    ]
+
+
+def _beyond(curve: LoadingCurve, last: _Row) -> _Row:
+    """Row from `END` on: residual in proportion to dm, exponent kept, loss from the works."""
+    piece = last.piece
+    values = [horner(part, piece.scale * END - piece.offset) for part in piece.parts]
+    share = float(values[_force.RESIDUAL]) * (END - 1.0) ** last.powers[_force.RESIDUAL] / END
+    exponent = float(values[_force.EXPONENT])
+    force, slope, work = curve.tangent
+    at_zero = force - slope * END
+    up = np.array([work - at_zero * END - 0.5 * slope * END**2, at_zero, 0.5 * slope])
+    down = np.array([0.0, at_zero, slope]) * (2.0 * (1.0 - share) / (exponent + 2.0))
+    parts = [np.array([0.0, share]), np.array([exponent]), up - down, np.zeros(1), np.zeros(1)]
+    return _Row(_Piece(END, 1.0, 0.0, parts), (0.0,) * len(parts))
+
+
+def law_data(name: str, curve: LoadingCurve, unloading: Sequence[Unloading]) -> Array:
+    """Expand the unloading curves too, and put all of a law into one array."""
+    rows = [row for branch in _ends(unloading) for row in _unloading_rows(name, curve, *branch)]
+    _check_joints(name, curve, unloading)
+    if rows:
+        rows.append(_beyond(curve, rows[-1]))
+    return _packed(curve, rows, any(branch.cap for branch in unloading))
+
+
+def _packed(curve: LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
+    """Put all of it into one array, see `contactlaw.equation.force`."""
+    pieces = curve.pieces
+    starts = [*(piece.start for piece in pieces), math.inf]
+    family_starts = [*(row.piece.start for row in rows), math.inf]
+    starts_at = _force.HEADER
+    curve_at = starts_at + len(starts)
+    family_starts_at = curve_at + len(pieces) * _force.PIECE
+    family_at = family_starts_at + len(family_starts)
+    at = family_at + len(rows) * _force.UNLOADING_ROW
+    header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at, capped]
+    coefficients: list[Array] = []
+
+    def put(part: Array) -> list[float]:
+        nonlocal at
+        coefficients.append(np.pad(part, (0, -part.size % 4)))
+        at += coefficients[-1].size
+        return [part.size - 1, at - coefficients[-1].size]
+
+    curve_rows: list[float] = []
+    for piece, first in zip(pieces, curve.first, strict=True):
+        following = next((k for k in curve.first if k > first), len(pieces))
+        curve_rows += [piece.scale, piece.offset, *put(piece.parts[0]), first, following]
+    # one length for all pieces of a function: a loop of constant length is predicted
+    terms = [max((row.piece.parts[n].size for row in rows), default=0) for n in range(_FUNCTIONS)]
+    family_rows: list[float] = []
+    for row in rows:
+        family_rows += [row.piece.scale, row.piece.offset]
+        for power, part, length in zip(row.powers, row.piece.parts, terms, strict=True):
+            family_rows += [power, *put(np.pad(part, (0, length - part.size)))]
+    numbers = [*header, *starts, *curve_rows, *family_starts, *family_rows]
+    return np.concatenate([np.array(numbers, dtype=np.float64), *coefficients])
