@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import multiprocessing
 import signal
+import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -99,9 +100,12 @@ def workers(processes: int) -> Iterator[ProcessPoolExecutor]:
         try:
             yield pool
         except BaseException:
+            # cancelled work has to be forgotten before the pool breaks: its thread would report an
+            # error of its own for what is cancelled already (Python below 3.12)
+            pool.shutdown(wait=False, cancel_futures=True)
+            time.sleep(0.2)
             for child in multiprocessing.active_children():
                 child.terminate()
-            pool.shutdown(wait=False, cancel_futures=True)
             raise
 
 
