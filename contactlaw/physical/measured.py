@@ -62,7 +62,8 @@ def measured_law(
 
     Notes
     -----
-    Unloading goes as F = Fm ((d - dr)/(dm - dr))^1.5.
+    Unloading goes as F = Fm ((d - dr)/(dm - dr))^1.5. The last point is a kink of the law; force
+    histories from its table are within 3e-4 of their peak.
 
     Examples
     --------
