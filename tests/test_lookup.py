@@ -35,3 +35,8 @@ def test_weights_are_the_b_splines():
         spline = BSpline.basis_element(np.arange(5.0), extrapolate=False)
         expected = [float(spline(3.0 - k + t)) if 3.0 - k + t < 4.0 else 0.0 for k in range(4)]
         assert np.array(lookup.weights(t)) / 6 == pytest.approx(expected, abs=1e-15)
+
+
+def test_exponential():
+    for x in (*np.linspace(-40.0, 40.0, 10_001), 0.0, 1e-300, -600.0, 600.0):
+        assert lookup._exp(x) == pytest.approx(math.exp(x), rel=1e-15)

@@ -75,6 +75,8 @@ def _root_series() -> tuple[float, ...]:
 _ROOT = _root_series()
 _ABOVE = np.int64((1024 << 52) - 0x3FE6A09E667F3BCD)  # 1024 exponents, less sqrt(1/2)
 _TWO_52 = np.int64(0x433 << 52)  # bits of 2^52
+_LN_2_HIGH, _LN_2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10  # fdlibm
+_FACTORIALS = tuple(1.0 / math.factorial(n) for n in range(14))
 _ROOTS_OF_TWO = 2.0 ** (np.arange(-1024, 3072) / 5)  # 2^(k/5), for any 12 bits of an exponent
 
 
@@ -103,6 +105,28 @@ def _log_and_root(v: float) -> tuple[float, float]:
     root += ((c[4] + c[5] * z) + (c[6] + c[7] * z) * w) * w2
     root += ((c[8] + c[9] * z) + (c[10] + c[11] * z) * w + c[12] * w2) * w4
     return exponent * math.log(2.0) + z * odd, root * _ROOTS_OF_TWO[biased]
+
+
+@kernel
+def _exp(x: float) -> float:
+    """Exponential of x within 1e-15, for |x| < 700; without a call, as `_log_and_root`.
+
+    x = k ln 2 + r, |r| < 0.35: the series of exp(r), and k into the bits of the exponent.
+    """
+    shifted = (
+        x * (1.0 / math.log(2.0)) + 1.5 * 2.0**52
+    )  # rounds to a whole number, in the last bits
+    k = shifted - 1.5 * 2.0**52
+    r = (x - k * _LN_2_HIGH) - k * _LN_2_LOW
+    r2 = r * r
+    r4 = r2 * r2
+    c = _FACTORIALS
+    low = (c[0] + c[1] * r) + (c[2] + c[3] * r) * r2
+    middle = (c[4] + c[5] * r) + (c[6] + c[7] * r) * r2
+    high = (c[8] + c[9] * r) + (c[10] + c[11] * r) * r2
+    series = low + (middle + (high + (c[12] + c[13] * r) * r4) * r4) * r4
+    bits = np.float64(shifted).view(np.int64) << np.int64(52)
+    return np.int64(np.float64(series).view(np.int64) + bits).view(np.float64)
 
 
 @kernel
@@ -479,9 +503,9 @@ def outcomes(
                 out.wave_rate[start + i] = others.wave_rate
                 log_chi[i] = (others.growth - 1.0) * max(log_chi[i], 0.0)
             for i in range(n):
-                out.elastic_compression[start + i] = math.exp(log_w[i])
+                out.elastic_compression[start + i] = _exp(log_w[i])
             for i in range(n):
-                out.compression_ratio[start + i] = math.exp(log_chi[i])
+                out.compression_ratio[start + i] = _exp(log_chi[i])
             continue
         for i in range(n):
             if x[i] <= x_max and log_chi[i] <= log_chi_max:

@@ -20,7 +20,7 @@ from contactlaw.table.sweep import Progress, no_progress
 
 Array = NDArray[np.float64]
 
-POINTS = 2000  # of the certificate of a table that is built on the way to a first answer
+POINTS = 1000  # of the certificate of a table that is built on the way to a first answer
 
 
 @dataclass(frozen=True, eq=False)
