@@ -38,7 +38,7 @@ LARGEST_AT_YIELD = 0.5  # lambda_Y to which the closed forms for plates are comp
 FASTEST = 20.0  # V0/V_Y0 to which they are
 
 _RTOL = 1e-11  # of the integrations here
-_THICKER = "(the plate is far too thin for the model)"
+TOO_THIN = "(the plate is far too thin for the model)"
 _RATIO = "(it is V0 over the yield speed V_Y0)"
 INTEGRATE = "(beyond, take contactlaw.ImpactModel)"
 
@@ -129,7 +129,7 @@ def zener(inelasticity: ArrayLike) -> float | Array:
     >>> zener([0.1, 0.25]).round(4)
     array([0.8433, 0.6577])
     """
-    lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, _THICKER))
+    lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, TOO_THIN))
     return shaped(
         np.array([_zener.solve(HERTZ, one, 1.0, _RTOL).restitution for one in lam]), shape
     )
@@ -154,7 +154,7 @@ def elastic_compression(inelasticity: ArrayLike) -> float | Array:
     >>> elastic_compression([0.0, 0.5]).round(4)
     array([1.0934, 0.8257])
     """
-    lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, _THICKER))
+    lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, TOO_THIN))
     return shaped(_elastic_compression(lam), shape)
 
 
@@ -181,7 +181,7 @@ def yield_speed_ratio(inelasticity_at_yield: ArrayLike) -> float | Array:
     >>> yield_speed_ratio([0.0, 0.2434]).round(4)
     array([1.    , 1.2156])
     """
-    lam_y, shape = checked(inelasticity_at_yield=(inelasticity_at_yield, 0.0, 5.0, _THICKER))
+    lam_y, shape = checked(inelasticity_at_yield=(inelasticity_at_yield, 0.0, 5.0, TOO_THIN))
     x = approximate_yield_speed_ratio(lam_y)
     for _ in range(30):  # the slope of the logarithms lies between 2/3 and 4/5
         w_m = _elastic_compression(lam_y * x**0.2)

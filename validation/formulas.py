@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from contactlaw.closed_form import (
     INTEGRATE,
+    TOO_THIN,
     WAVE_SLOPE,
     Array,
     approximate_yield_speed_ratio,
@@ -20,8 +21,6 @@ from contactlaw.closed_form import (
     peng,
 )
 from contactlaw.physical.arguments import checked, shaped
-
-_TOO_THIN = "(the plate is far too thin for the model)"
 
 
 def raman(inelasticity: ArrayLike) -> float | Array:
@@ -101,7 +100,7 @@ def eq_6(inelasticity: ArrayLike) -> float | Array:
     >>> eq_6([0.0, 0.5]).round(4)
     array([1.0934, 0.8088])
     """
-    lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, _TOO_THIN))
+    lam, shape = checked(inelasticity=(inelasticity, 0.0, 100.0, TOO_THIN))
     return shaped((lam + 1.25**-0.6) ** (-2.0 / 3.0), shape)
 
 
@@ -124,7 +123,7 @@ def eq_14(inelasticity_at_yield: ArrayLike) -> float | Array:
     >>> eq_14([0.0, 0.2434]).round(4)
     array([1.    , 1.2304])
     """
-    lam_y, shape = checked(inelasticity_at_yield=(inelasticity_at_yield, 0.0, 5.0, _TOO_THIN))
+    lam_y, shape = checked(inelasticity_at_yield=(inelasticity_at_yield, 0.0, 5.0, TOO_THIN))
     return shaped(approximate_yield_speed_ratio(lam_y), shape)
 
 
