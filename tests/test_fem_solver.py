@@ -58,7 +58,7 @@ def test_jaumann_rate_turns_the_stress_with_the_body():
     """A quarter turn swaps rr and zz."""
     one = block(1, 1, 1.0, 1.0, inner=1.0)
     system, _ = alone(one)
-    body = system.plate._replace(bulk=0.0, shear=0.0, bending=0.0)
+    body = system.plate._replace(bulk=0.0, shear=0.0, bending=np.zeros(len(system.plate.bending)))
     body.stress[:] = [100.0, -50.0, 0.0, 0.0]
     steps = 2000
     angle = 0.5 * math.pi / steps

@@ -19,6 +19,7 @@ _FASTEST = 25e3  # [m/s]: bar wave speed sqrt(E / rho); diamond has 17e3, steel 
 _DENSITIES = (1e-6, 1e20)  # [kg/m3]: air has 1.2, a neutron star 1e18
 _WEAKEST = 1e-12  # yield strain sigma_Y/E
 
+KINDS = ("metal", "ceramic", "glass", "polymer")
 _LABELS = {
     "youngs_modulus": ("Young's modulus", " Pa"),
     "poissons_ratio": ("Poisson's ratio", ""),
@@ -46,6 +47,8 @@ class Material:
         unknown. Without it a bead can only be treated as elastic, with ``law="hertz"``.
     source : str, optional
         Where the numbers come from.
+    kind : str, optional
+        ``"metal"``, ``"ceramic"``, ``"glass"`` or ``"polymer"``; None if that is not known.
 
     Raises
     ------
@@ -66,6 +69,7 @@ class Material:
     density: float
     yield_strength: float | None = None
     source: str = ""
+    kind: str | None = None
 
     def __post_init__(self) -> None:
         """Check every value and store it as float."""
@@ -73,6 +77,11 @@ class Material:
             raise ValueError(f"name must be a non-empty string, got {self.name!r}")
         if not isinstance(self.source, str):
             raise ValueError(f"source must be a string, got {self.source!r}")
+        if self.kind is not None and self.kind not in KINDS:
+            raise ValueError(
+                f"kind of {self.name!r} must be one of {', '.join(map(repr, KINDS))} or None, got "
+                f"{self.kind!r}"
+            )
         modulus = _positive(self.name, "youngs_modulus", self.youngs_modulus, "Pa")
         density = _positive(self.name, "density", self.density, "kg/m3")
         ratio = _finite(self.name, "poissons_ratio", self.poissons_ratio, "-")
@@ -202,7 +211,7 @@ def _from_table(name: str, table: dict[str, Any], references: dict[str, str]) ->
     for field, (label, unit) in _LABELS.items():
         number = f" {values[field]:g}{unit}" if field in values else ""
         parts.append(f"{label}{number}: {table['source'][field].format_map(references)}")
-    return Material(name, **values, source="; ".join(parts))
+    return Material(name, **values, source="; ".join(parts), kind=table["kind"])
 
 
 def _finite(name: str, field: str, value: object, unit: str) -> float:

@@ -47,6 +47,7 @@ class Case:
     width: float = math.nan  # [m]
     friction: float = 0.1
     yields: bool = True
+    plate_yields: bool = False
     far: float = 1.0
     hourglass_stiffness: float = math.nan
 
@@ -76,7 +77,8 @@ def solve(case: Case) -> dict[str, Any]:
     given = {name: value for name in _DEFAULTED if not math.isnan(value := getattr(case, name))}
     hit = impact(
         case.pair, case.speed, case.radius, case.thickness,
-        friction=case.friction, yields=case.yields, far=case.far, **given,
+        friction=case.friction, yields=case.yields, plate_yields=case.plate_yields, far=case.far,
+        **given,
     )  # fmt: skip
     named = {
         "friction_loss": hit.friction,
@@ -84,7 +86,7 @@ def solve(case: Case) -> dict[str, Any]:
     }
     outcome = {key: named[key] if key in named else getattr(hit, key) for key in OUTCOMES}
     width = float(hit.system.x[:, 0].max())
-    stiffness = hit.system.sphere.bending / case.pair.sphere.plane_modulus
+    stiffness = float(hit.system.sphere.bending[0]) / case.pair.sphere.plane_modulus
     taken = {"size": hit.size, "width": width, "hourglass_stiffness": stiffness}
     return {**asdict(case), **outcome, **taken}
 

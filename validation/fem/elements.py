@@ -36,7 +36,7 @@ class Body(NamedTuple):
     work: Array  # (2,), plastic and hourglass work so far [J]
     bulk: float  # Lame's lambda [Pa]
     shear: float  # [Pa]
-    bending: float  # stiffness of the hourglass modes [Pa]
+    bending: Array  # (m,), stiffness of the hourglass modes [Pa]
     strength: float  # yield strength [Pa]; inf: elastic
 
 
@@ -95,7 +95,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         h_r, h_z = 0.25 * (r0 - r1 + r2 - r3), 0.25 * (z0 - z1 + z2 - z3)
         q_r = 0.25 * (u0 - u1 + u2 - u3) - h_r * u_r - h_z * u_z
         q_z = 0.25 * (w0 - w1 + w2 - w3) - h_r * w_r - h_z * w_z
-        stiffness = 8.0 / 3.0 * body.bending * area * r * dt
+        stiffness = 8.0 / 3.0 * body.bending[e] * area * r * dt
         g_r, g_z = body.hourglass[e, 0], body.hourglass[e, 1]
         new_r = g_r + stiffness * (b0 * b0 + b1 * b1) * q_r
         new_z = g_z + stiffness * (c0 * c0 + c1 * c1) * q_z

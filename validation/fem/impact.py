@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,6 +25,7 @@ _SOONEST, _GIVE_UP = 0.5, 3.0  # expected contact times
 _IMBALANCE = 0.1  # of the energy: elements that collapse make more
 _FINEST = 0.01  # R, the paper's smallest element, and at least ...
 _ACROSS = 15.0  # ... so many in the expected contact's radius
+_SOFT = 3.0  # part of a plate that may flow, over the finest part
 _RIM = 0.55  # half of the way that a pressure wave runs in a plate, and a tenth more
 
 
@@ -99,6 +101,7 @@ def impact(
     size: float | None = None,
     friction: float = 0.1,
     yields: bool = True,
+    plate_yields: bool = False,
     width: float | None = None,
     far: float = 1.0,
     hourglass_stiffness: float | None = None,
@@ -109,7 +112,7 @@ def impact(
     Parameters
     ----------
     pair : contactlaw.Pair
-        Materials; the sphere is elastic-perfectly plastic, the plate elastic.
+        Materials; a body that yields is elastic-perfectly plastic.
     speed, radius, thickness : float
         Impact speed [m/s], radius of the sphere and thickness of the plate [m].
     size : float, optional
@@ -117,8 +120,8 @@ def impact(
         contact's radius.
     friction : float, optional
         Coefficient of friction, 0 to 1.
-    yields : bool, optional
-        Whether the sphere does.
+    yields, plate_yields : bool, optional
+        Whether the sphere does, and the plate.
     width : float, optional
         Distance of the plate's free edge from the axis [m]; by default as far as no wave comes
         back from in the contact time that the model expects; at least the radius.
@@ -149,7 +152,7 @@ def impact(
     >>> abs(hit.restitution - 0.51) < 0.02, hit.balance < 0.01
     (True, True)
     """
-    guess = expect(pair, speed, radius, thickness, yields)
+    guess = expect(pair, speed, radius, thickness, yields, plate_yields)
     width = free_width(pair.plate, guess.time) if width is None else width
     size = min(_FINEST, guess.contact / radius / _ACROSS) if size is None else size
     stiffness = hourglass_stiffness or 0.0
@@ -160,7 +163,10 @@ def impact(
     )  # fmt: skip
     meshes = meshed(guess, radius, thickness, size, width, far)
     materials = pair.sphere, pair.plate
-    system = solver.assemble(meshes, materials, friction, yields, hourglass_stiffness)
+    soft = _SOFT * mesh.CORE * guess.contact
+    system = solver.assemble(
+        meshes, materials, friction, yields, plate_yields, hourglass_stiffness, soft
+    )
     step = solver.time_step(system, materials)
     system.v[: _sphere_nodes(system), 1] = -speed
     every = max(1, round(guess.time / _SAMPLES / step))
@@ -205,10 +211,23 @@ class Expected(NamedTuple):
 
 
 def expect(
-    pair: cl.Pair, speed: float, radius: float, thickness: float, yields: bool = True
+    pair: cl.Pair,
+    speed: float,
+    radius: float,
+    thickness: float,
+    yields: bool = True,
+    plate_yields: bool = False,
 ) -> Expected:
-    """Ask the model for an impact."""
-    model = cl.ImpactModel(pair, law="myc" if yields else "hertz", outside="solve")
+    """Ask the model for an impact; what is softer yields there, whichever body it is."""
+    strengths = [
+        body.require_yield_strength("fem")
+        for body, may in ((pair.sphere, yields), (pair.plate, plate_yields))
+        if may
+    ]
+    if strengths:
+        sphere = dataclasses.replace(pair.sphere, yield_strength=min(strengths))
+        pair = cl.Pair(sphere, pair.plate)
+    model = cl.ImpactModel(pair, law="myc" if strengths else "hertz", outside="solve")
     found = model.lookup(speed, radius, thickness)
     return Expected(float(found.contact_time), math.sqrt(radius * float(found.peak_compression)))
 
@@ -261,7 +280,7 @@ def energy(system: System) -> tuple[float, ...]:
         kinetic[n:].sum(),
         elements.strain_energy(system.sphere, system.x),
         elements.strain_energy(system.plate, system.x),
-        system.sphere.work[0],
+        system.sphere.work[0] + system.plate.work[0],
         system.sphere.work[1],
         system.plate.work[1],
         *system.surfaces.work,
@@ -298,7 +317,9 @@ def _outcome(
         hourglass=share[6] + share[7],
         contact=share[8],
         balance=float(np.abs(np.sum(energies, axis=1) / first - 1.0).max()),
-        plastic_strain=float(system.sphere.plastic_strain.max()),
+        plastic_strain=float(
+            max(body.plastic_strain.max() for body in (system.sphere, system.plate))
+        ),
         time=time,
         force=force,
         speed=speed,

@@ -60,6 +60,7 @@ def indent(
     size: float = 0.02,
     friction: float = 0.1,
     yields: bool = True,
+    plate_yields: bool = False,
     slowness: float = 1.0,
 ) -> Indentation:
     """Press a hemisphere into a block and draw it back, smoothly and slowly.
@@ -76,8 +77,8 @@ def indent(
         Smallest element, over the radius, 0.001 to 0.1.
     friction : float, optional
         Coefficient of friction, 0 to 1.
-    yields : bool, optional
-        Whether the hemisphere does.
+    yields, plate_yields : bool, optional
+        Whether the hemisphere does, and the block.
     slowness : float, optional
         Factor on the time T, 0.1 to 10, to show that it does not matter.
 
@@ -104,7 +105,7 @@ def indent(
         mesh.plate(radius, fine, width, block, block),
     )
     materials = pair.sphere, pair.plate
-    system = solver.assemble(meshes, materials, friction, yields)
+    system = solver.assemble(meshes, materials, friction, yields, plate_yields)
     first = len(meshes[0].nodes)
     driven = np.flatnonzero(system.x[:first, 1] > radius * (1.0 - 1e-9))
     foot = first + np.flatnonzero(meshes[1].nodes[:, 1] < -block * (1.0 - 1e-9))
@@ -129,7 +130,7 @@ def indent(
         pressed = system.surfaces.slave[system.surfaces.impulse[:, 0] > 0.0]
         edge = system.x[pressed, 0].max(initial=0.0) if touched == every else 0.0
         rows.append((0.5 * (way + target), 2.0 * math.pi * force, edge, kinetic))
-        plastic.append(system.sphere.work[0])
+        plastic.append(system.sphere.work[0] + system.plate.work[0])
         way = target
     compression, force_, edge_, kinetic_ = np.array(rows).T
     top = int(compression.argmax())

@@ -74,7 +74,9 @@ def advance(system: System, load: Array, dt: float, steps: int) -> tuple[float, 
     return total / steps, touched
 
 
-def body(mesh: Mesh, material: Material, first: int, bending: float, yields: bool) -> Body:
+def body(
+    mesh: Mesh, material: Material, first: int, bending: float | Array, yields: bool
+) -> Body:
     """Elements of a mesh, at rest; `first` is the number of the mesh's first node."""
     m = len(mesh.elements)
     ratio = material.poissons_ratio
@@ -87,7 +89,7 @@ def body(mesh: Mesh, material: Material, first: int, bending: float, yields: boo
         work=np.zeros(2),
         bulk=2.0 * shear * ratio / (1.0 - 2.0 * ratio),
         shear=shear,
-        bending=bending * material.plane_modulus,
+        bending=np.full(m, bending) * material.plane_modulus,
         strength=material.require_yield_strength("fem") if yields else math.inf,
     )
 
@@ -97,7 +99,9 @@ def assemble(
     materials: tuple[Material, Material],
     friction: float = 0.1,
     yields: bool = True,
+    plate_yields: bool = False,
     hourglass: float | None = None,
+    soft: float = math.inf,
 ) -> System:
     """Put a sphere upon a plate, both at rest.
 
@@ -106,14 +110,16 @@ def assemble(
     meshes : tuple of Mesh
         Sphere and plate.
     materials : tuple of Material
-        Likewise; only the sphere may yield.
+        Likewise.
     friction : float, optional
         Coefficient of friction, 0.1 as in the paper.
-    yields : bool, optional
-        Whether the sphere does.
+    yields, plate_yields : bool, optional
+        Whether the sphere does, and the plate.
     hourglass : float, optional
         Stiffness of the sphere's hourglass modes, over that of bending; by default 0.05, or 1 if
         it does not yield.
+    soft : float, optional
+        Distance from the first touch [m] up to which those of a plate that yields have 0.05, too.
 
     Returns
     -------
@@ -138,7 +144,7 @@ def assemble(
     x = np.concatenate([above.nodes, below.nodes])
     bodies = (
         body(above, materials[0], 0, hourglass, yields),
-        body(below, materials[1], first, _HOURGLASS_ELASTIC, False),
+        body(below, materials[1], first, _plate_hourglass(below, soft, plate_yields), plate_yields),
     )
     mass = np.zeros(len(x))
     for one, material in zip(bodies, materials, strict=True):
@@ -160,6 +166,13 @@ def assemble(
     )
     still = np.zeros((4, *x.shape))
     return System(x, still[0], still[1], mass, inverse_mass, *bodies, surfaces)
+
+
+def _plate_hourglass(plate: Mesh, soft: float, yields: bool) -> Array:
+    """Stiffness of the hourglass modes of a plate: soft where it may flow, but not where it bends."""
+    centre = plate.nodes[plate.elements].mean(axis=1)
+    near = yields and np.hypot(centre[:, 0], centre[:, 1]) < soft
+    return np.where(near, _HOURGLASS, _HOURGLASS_ELASTIC)
 
 
 def time_step(system: System, materials: tuple[Material, Material]) -> float:

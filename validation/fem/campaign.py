@@ -1,0 +1,189 @@
+"""What the law ``"fem"`` is made of: slow indentations and impacts in which either body yields.
+
+Small-strain similarity rules all of it: as long as the contact is small beside the sphere, only
+the compression over that at yield counts. So each E*/sigma_Y takes the depths at which it adds
+something: the stiff and strong materials those at yield, the soft metals those up to a tenth of
+the radius.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+import contactlaw as cl
+from contactlaw.laws.myc import C_YIELD
+from validation.fem import journal, store
+from validation.fem.indentation import BLOCK, indent
+from validation.fem.solver import SETTINGS
+
+_ACROSS = 11  # elements in sqrt(R d), fewer than in the contact's radius
+_MODULUS = 1e11  # E* [Pa]: nothing depends on it
+_DENSITY = 5000.0  # [kg/m3], nor on this
+_RADIUS = 1e-3  # [m]
+SAMPLES = 48  # of a stored curve
+
+# E*/sigma_Y of the softer body, and the depths of indentation [d_Y]
+DEPTHS = {
+    11.0: (1.5, 2.0, 3.0, 4.5),
+    16.0: (1.5, 2.5, 4.0, 6.5, 9.5),
+    23.0: (1.5, 2.5, 5.0, 10.0, 19.7),
+    40.0: (1.5, 3.0, 6.0, 12.0, 24.0),
+    60.0: (3.0, 8.0, 20.0, 53.0),
+    100.0: (1.2, 1.5, 2.0, 3.0, 6.0, 12.0, 25.0, 50.0, 149.0),
+    200.0: (12.0, 60.0, 200.0, 590.0),
+    400.0: (60.0, 200.0, 800.0, 2380.0),
+    700.0: (800.0, 2400.0, 7300.0),
+    1200.0: (2400.0, 7200.0, 21400.0),
+    2000.0: (7000.0, 20000.0, 59500.0),
+}
+YIELDING = ("sphere", "plate", "both")
+
+
+@dataclass(frozen=True)
+class Press:
+    """One indentation: E*/sigma_Y of both bodies (inf: elastic), and the depth over the radius."""
+
+    sphere: float
+    plate: float
+    depth: float
+    share: float = 0.5  # E1'/(E1' + E2')
+    poissons_ratio: float = 0.3  # of both
+    friction: float = 0.1
+    across: float = _ACROSS
+    slowness: float = 1.0
+
+    @property
+    def pair(self) -> cl.Pair:
+        """Materials."""
+        moduli = _MODULUS / (1.0 - self.share), _MODULUS / self.share
+        bodies = [
+            cl.Material(
+                name,
+                modulus * (1.0 - self.poissons_ratio**2),
+                self.poissons_ratio,
+                _DENSITY,
+                yield_strength=_MODULUS / ratio if ratio < math.inf else None,
+            )
+            for name, modulus, ratio in zip(
+                ("sphere", "plate"), moduli, (self.sphere, self.plate), strict=True
+            )
+        ]
+        return cl.Pair(*bodies)
+
+
+def yield_depth(ratio: float) -> float:
+    """Yield compression d_Y over R of a body with this E*/sigma_Y."""
+    return C_YIELD * (math.pi / ratio) ** 2
+
+
+def _pressed(ratio: float, yielding: str, depth: float, **others: float) -> Press:
+    """Indentation to a depth [d_Y]."""
+    sphere, plate = (
+        ratio if yielding in (body, "both") else math.inf for body in ("sphere", "plate")
+    )
+    return Press(sphere, plate, depth * yield_depth(ratio), **others)
+
+
+def presses() -> list[Press]:
+    """All indentations of the campaign."""
+    listed = [
+        _pressed(ratio, yielding, depth)
+        for yielding in YIELDING
+        for ratio, depths in DEPTHS.items()
+        for depth in depths
+    ]
+    # nothing yields: the stiffening of a finite sphere
+    listed += [
+        Press(math.inf, math.inf, depth, share=share, friction=friction)
+        for depth in (0.002, 0.01, 0.03, 0.1)
+        for share in (0.15, 0.5, 0.85)
+        for friction in (0.0, 0.1)
+    ]
+    # strengths between: the stronger body has 4/3 or 2 times the strength of the other
+    for factor in (4 / 3, 2.0):
+        for ratio, depths in ((23.0, (2.5, 10.0)), (100.0, (6.0, 25.0, 149.0)), (400.0, (2380.0,))):
+            for depth in depths:
+                way = depth * yield_depth(ratio)
+                listed += [Press(ratio, ratio / factor, way), Press(ratio / factor, ratio, way)]
+    # what else may matter: moduli, Poisson's ratios, friction
+    for yielding in ("sphere", "plate"):
+        for ratio, depth in ((23.0, 5.0), (100.0, 25.0), (400.0, 2380.0)):
+            for share in (0.15, 0.85):
+                listed.append(_pressed(ratio, yielding, depth, share=share))
+            for nu in (0.2, 0.4):
+                listed.append(_pressed(ratio, yielding, depth, poissons_ratio=nu))
+            listed.append(_pressed(ratio, yielding, depth, friction=0.0))
+    # the paper's pair
+    listed += [
+        _pressed(23.16, "sphere", depth, share=0.1435, poissons_ratio=0.21)
+        for depth in (1.0, 1.5, 2.5, 5.0, 10.0, 16.0)
+    ]
+    # how far to trust all of it
+    for yielding, ratio, depth in (
+        ("sphere", 23.0, 5.0), ("plate", 23.0, 5.0), ("sphere", 100.0, 25.0),
+        ("plate", 100.0, 25.0), ("both", 400.0, 2380.0),
+    ):  # fmt: skip
+        listed.append(_pressed(ratio, yielding, depth, across=2.0 * _ACROSS))
+        listed.append(_pressed(ratio, yielding, depth, slowness=2.0))
+    return list(dict.fromkeys(listed))
+
+
+def press(job: Press) -> dict[str, Any]:
+    """Compute an indentation; forces over K R^1.5, compressions over R."""
+    size = math.sqrt(job.depth) / job.across
+    found = indent(
+        job.pair, _RADIUS, job.depth * _RADIUS, size=min(size, 0.1), friction=job.friction,
+        yields=job.sphere < math.inf, plate_yields=job.plate < math.inf, slowness=job.slowness,
+    )  # fmt: skip
+    d = found.compression / _RADIUS
+    f = found.force / (4.0 / 3.0 * _MODULUS * _RADIUS**2)
+    top = int(d.argmax())
+    end = top + int(np.argmax(np.append(f[top:] <= 1e-4 * f[top], True)))
+    loading = float(np.trapezoid(np.append(0.0, f[: top + 1]), np.append(0.0, d[: top + 1])))
+    left = float(np.interp(0.0, [f[end], f[end - 1]], [d[end], d[end - 1]])) if end < d.size else 0.0
+    down = np.append(f[top:end], 0.0), np.append(d[top:end], left)
+    share = np.linspace(0.0, 1.0, SAMPLES)
+    return {
+        "force": float(f[top]),
+        "contact_radius": float(found.contact_radius[top]) / _RADIUS,
+        "loading_work": loading,
+        "unloading_work": -float(np.trapezoid(*down)),
+        "plastic_work": found.plastic * loading,
+        "kinetic": found.kinetic,
+        "residual": left,
+        "size": size,
+        "elements": len(found.system.sphere.elements) + len(found.system.plate.elements),
+        # at even steps of the root of depth, then at even steps of the way back
+        "loading": np.interp(share**2 * d[top], d[: top + 1], f[: top + 1]).tolist(),
+        "unloading": np.interp(
+            left + share * (d[top] - left), down[1][::-1], down[0][::-1]
+        ).tolist(),
+    }
+
+
+def indentations(processes: int) -> None:
+    """Press hemispheres into blocks, either yielding or both."""
+    jobs = presses()
+    rows = journal.complete("campaign_indentation", press, jobs, processes)
+    data = {name: np.array([getattr(job, name) for job in jobs]) for name in Press.__annotations__}
+    # no modulus ratio is infinite in a file: a strength is
+    for body in ("sphere", "plate"):
+        data[f"{body}_yield_strain"] = 1.0 / data.pop(body)
+    data |= {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    units = dict.fromkeys(data, "-")
+    store.write(
+        "campaign_indentation",
+        "hemispheres pressed into blocks and drawn back; sphere_yield_strain and "
+        "plate_yield_strain are sigma_Y/E*, 0 for a body that does not yield; compressions and "
+        "radii over R, forces over K R^1.5, works over K R^2.5; loading at even steps of the root "
+        "of compression, unloading at even steps of the way back to the residual",
+        data,
+        units,
+        mesh=f"block of {BLOCK:g} R; element size [R] in column size",
+        **SETTINGS,
+    )
+    journal.forget("campaign_indentation")
