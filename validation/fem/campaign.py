@@ -16,7 +16,8 @@ import numpy as np
 
 import contactlaw as cl
 from contactlaw.laws.myc import C_YIELD
-from validation.fem import journal, store
+from validation.fem import cases, journal, store
+from validation.fem.cases import Case
 from validation.fem.indentation import BLOCK, indent
 from validation.fem.solver import SETTINGS
 
@@ -187,3 +188,86 @@ def indentations(processes: int) -> None:
         **SETTINGS,
     )
     journal.forget("campaign_indentation")
+
+
+# Impacts: bodies of one steel whose strength is scaled, on plates whose bending takes little.
+_STEEL = "carbon-steel-1020"
+_THICK = 5e-3  # [m]
+IMPACT_DEPTHS = {
+    11.0: (1.5, 2.5, 4.3),
+    16.0: (1.3, 2.5, 5.0, 9.0),
+    23.0: (1.2, 2.0, 4.0, 8.0, 16.0),
+    40.0: (1.5, 4.0, 10.0, 22.0),
+    60.0: (3.0, 10.0, 30.0, 52.0),
+    100.0: (1.3, 2.0, 4.0, 10.0, 30.0, 100.0),
+    200.0: (5.0, 20.0, 100.0, 400.0),
+    400.0: (30.0, 150.0, 600.0, 2000.0),
+    800.0: (100.0, 500.0, 2000.0, 8000.0),
+    1500.0: (500.0, 3000.0, 25000.0),
+}
+THIN = {23.0: (3.0,), 100.0: (3.0, 30.0), 400.0: (30.0, 300.0, 1500.0)}
+ELASTIC_PAIRS = (
+    ("glass", "stainless-steel-304"),
+    ("stainless-steel-304", "glass"),
+    ("alumina", "aluminium-6061-t6"),
+    ("aluminium-6061-t6", "alumina"),
+    ("tungsten-carbide", "copper-c11000"),
+    ("gamma-alumina", "glass"),
+    ("copper-c11000", "copper-c11000"),
+)
+
+
+def _speed(pair: cl.Pair, depth: float) -> float:
+    """Speed [m/s] of an impact that gets about so deep [d_Y]: from Hertz at yield, then hardness."""
+    d = np.linspace(0.0, depth, 1000)
+    work = np.trapezoid(d**1.5 / (1.0 + 0.02 * np.maximum(d - 1.0, 0.0)) ** 0.5, d)
+    return float(pair.yield_speed * math.sqrt(work / 0.4))
+
+
+def impacts() -> list[Case]:
+    """All impacts of the campaign, those that yield nowhere first."""
+    listed = [
+        Case(
+            speed, radius / slenderness, radius, sphere, plate,
+            yields=False, friction=friction,
+        )
+        for radius in (1e-3,)
+        for sphere, plate in ELASTIC_PAIRS
+        for slenderness in (0.1, 0.25, 0.6, 1.1, 1.67)
+        for speed, friction in ((5.0, 0.1),)
+    ]  # fmt: skip
+    listed += [
+        Case(speed, 1e-3 / slenderness, 1e-3, sphere, plate, yields=False)
+        for sphere, plate in ELASTIC_PAIRS[::2]
+        for slenderness in (0.25, 1.1)
+        for speed in (0.5, 40.0)
+    ]
+    for depths, thicknesses in (
+        (IMPACT_DEPTHS, (_THICK,)),
+        (THIN, (1e-3 / 0.6, 1e-3 / 1.1, 1e-3 / 1.67)),
+    ):
+        for ratio, ways in depths.items():
+            for yielding in YIELDING:
+                for depth in ways:
+                    for thickness in thicknesses:
+                        listed.append(_impact(ratio, yielding, depth, thickness))
+    return listed
+
+
+def _impact(ratio: float, yielding: str, depth: float, thickness: float) -> Case:
+    steel = cl.Pair(_STEEL, _STEEL)
+    factor = steel.effective_modulus / ratio / steel.sphere.require_yield_strength("fem")
+    body = f"{_STEEL}, yield strength x {factor:.6g}"
+    pair = Case(1.0, thickness, 1e-3, body, body).pair
+    return Case(
+        _speed(pair, depth), thickness, 1e-3, body, body,
+        yields=yielding != "plate", plate_yields=yielding != "sphere",
+    )  # fmt: skip
+
+
+def blows(processes: int) -> None:
+    """Let spheres fall on plates, either yielding or both or neither."""
+    rows = journal.complete("campaign_impact", cases.solve, impacts(), processes)
+    data = {name: np.array([row[name] for row in rows]) for name in rows[0]}
+    cases.save("campaign_impact", "impacts that the law is made of, beside indentations", data)
+    journal.forget("campaign_impact")
