@@ -159,7 +159,7 @@ def elastic_compression(inelasticity: ArrayLike) -> float | Array:
 
 
 def _elastic_compression(lam: Array) -> Array:
-    return np.array([_zener.elastic_compression(one, _RTOL)[1] for one in lam])
+    return np.array([_zener.elastic_compression(HERTZ, one, _RTOL)[1] for one in lam])
 
 
 def yield_speed_ratio(inelasticity_at_yield: ArrayLike) -> float | Array:

@@ -24,7 +24,7 @@ def entries() -> tuple[Callable[..., float], Callable[..., float]]:
     """Entries of the kernels on a plate and at one speed, for Python; each argument a float."""
     return (
         direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8, f8)"),
-        direct(lookup.restitution, "float64(float64[::1], f8, f8, f8)"),
+        direct(lookup.restitution, "float64(float64[::1], f8, f8, f8, f8)"),
     )
 
 

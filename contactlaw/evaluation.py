@@ -40,8 +40,8 @@ def _default(law: Law) -> Table:
 
 
 def _served(law: Law) -> Law:
-    """Law whose table serves: a law that never yields is the edge chi = 1 of any; myc's ships."""
-    return law if law.yields else laws.law("myc")
+    """Law whose table serves: Hertz's is the edge chi = 1 of any; myc's ships."""
+    return law if law.yields or not law.is_hertz else laws.law("myc")
 
 
 def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None) -> Table:

@@ -40,9 +40,11 @@ from contactlaw.physical.scaling import (
     Scales,
     factors,
     law_of,
+    log_overload,
     scales,
     sphere_on_plate,
     sphere_on_sphere,
+    yield_share,
 )
 from contactlaw.physical.validity import Limits, limits
 from contactlaw.sensitivity import (
@@ -125,9 +127,11 @@ class ImpactModel:
         self._clamped = 0
         self._given_table = table
         self._whole_table = table_for(self._law, table)
-        self._table = self._whole_table.packed
         self._factors = factors(pair, self._law)
-        self._c_lam, self._c_chi = self._factors[:2]
+        self._c_lam, self._c_chi = self._factors.inelasticity, self._factors.log_overload
+        made = self._factors
+        plate = lookup.Plate(made.transit, made.local, made.saturated, made.waves)
+        self._table = lookup.with_plate(self._whole_table.packed, plate)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # compiled functions do not travel; the receiving process has its own
@@ -288,12 +292,12 @@ class ImpactModel:
         """
         v, r, o, shape = broadcast(speed=speed, radius=radius, other_radius=other_radius)
         check(speed=v, radius=r, other_radius=o)
-        twins = self._twins()
-        contact = sphere_on_sphere(twins, self._law, r, o)
+        twins, law, table = self._beads
+        contact = sphere_on_sphere(twins, law, r, o)
         units = scales(contact, v)
-        found, flags = self._fields(units)
+        found, flags = self._fields(units, law, table.packed)
         impacts = Impacts(v, r, np.full_like(r, math.inf), shape)
-        return self._rebound(twins, contact, units, impacts, found, flags)
+        return self._rebound(twins, law, contact, units, impacts, found, flags)
 
     def solve(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10
@@ -335,7 +339,8 @@ class ImpactModel:
         units = scales(contact, v)
         found = solved(self._law, units, rtol)
         flags = np.zeros(v.size, dtype=np.int64)
-        return self._rebound(self.pair, contact, units, Impacts(v, r, h, shape), found, flags)
+        impacts = Impacts(v, r, h, shape)
+        return self._rebound(self.pair, self._law, contact, units, impacts, found, flags)
 
     def force_history(
         self,
@@ -394,12 +399,12 @@ class ImpactModel:
         if method == "solve":
             contacts = histories_by_solver(self._law, solved(self._law, units, RTOL), samples)
         else:
-            found, _ = self._fields(units)
+            found, _ = self._fields(units, self._law, self._table)
             contacts = histories_by_table(self._law, self._whole_table, found, samples)
         return with_units(contacts, units, contact.mobility, shape)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | Array:
-        """Speed V_Y [m/s] from which the bead yields on this plate; ``inf`` for an elastic law.
+        """Speed V_Y [m/s] from which bead or plate yields, whichever is first; ``inf`` for neither.
 
         The thinner the plate, the more it gives way and the later the bead yields (Peng et al.
         2021, section 3.2, without their fit of w_m).
@@ -429,8 +434,10 @@ class ImpactModel:
         r, h, shape = broadcast(radius=radius, thickness=thickness)
         check(radius=r, thickness=h)
         out = np.full(r.size, math.inf)
-        if self._law.yields:
-            lookup.yield_speeds(self._table, self._c_lam * (r / h) ** 2, self._c_chi, out)
+        share = yield_share(self.pair, self._law)
+        if share < math.inf:
+            c_chi = log_overload(self._factors, share)
+            lookup.yield_speeds(self._table, self._c_lam, c_chi, r / h, out)
             if np.isnan(out).any():
                 n = int(np.argmax(np.isnan(out)))
                 raise ValueError(
@@ -511,10 +518,12 @@ class ImpactModel:
         0.9081
         """
         r, h = scalars(radius=radius, thickness=thickness)
-        ratio = r.item() / h.item()
         return self._curve(
-            self._c_lam * ratio * ratio,
+            self._law,
+            self._table,
+            self._c_lam,
             self._c_chi,
+            r.item() / h.item(),
             lambda: sphere_on_plate(self.pair, self._law, r, h),
         )
 
@@ -539,11 +548,11 @@ class ImpactModel:
         0.9608
         """
         r, o = scalars(radius=radius, other_radius=other_radius)
-        twins = self._twins()
-        contact = sphere_on_sphere(twins, self._law, r, o)
+        twins, law, table = self._beads
+        contact = sphere_on_sphere(twins, law, r, o)
         units = scales(contact, np.ones(()))
-        c_lam, c_chi = units.inelasticity.item(), -math.log(units.yield_ratio.item())
-        return self._curve(c_lam, c_chi, lambda: contact)
+        c_chi = -math.log(units.yield_ratio.item())
+        return self._curve(law, table.packed, 0.0, c_chi, 0.0, lambda: contact)
 
     @functools.cached_property
     def kernel(self) -> Callable[[float, float, float], float]:
@@ -589,35 +598,36 @@ class ImpactModel:
         """
         return int(self._c_function.address)
 
-    def _twins(self) -> Pair:
-        """Two of the pair's spheres; refused where they would need another law, so another table.
+    @functools.cached_property
+    def _beads(self) -> tuple[Pair, Law, Table]:
+        """Two of the pair's spheres, their law and its table.
 
-        Numbers that the user gave in the law's name hold for them as they do for the plate.
+        A law that takes numbers from the pair takes those of the two spheres. Numbers that the user
+        gave in its name hold for them as they do for the plate.
         """
         twins = Pair(self.pair.sphere, self.pair.sphere)
-        if self._law.from_pair:
-            needed = law_of(twins, self._law.family)
-            if needed != self._law:
-                raise ValueError(
-                    f"law: {self._law.family!r} takes E*/sigma_Y from the pair: here it is "
-                    f"{self.law!r}, and two of its spheres have another one, {needed.name!r}. Ask "
-                    f"contactlaw.restitution_sphere_sphere(..., law={self._law.family!r}), or name "
-                    "the law with its numbers, to have the same for both"
-                )
-        return twins
+        law = law_of(twins, self._law.family) if self._law.from_pair else self._law
+        same = self._whole_table.law.follows(law) or law == self._law
+        return twins, law, self._whole_table if same else table_for(law, None)
 
     def _curve(
-        self, c_lam: float, c_chi: float, contact: Callable[[], Contact]
+        self,
+        law: Law,
+        table: Array,
+        c_lam: float,
+        c_chi: float,
+        ratio: float,
+        contact: Callable[[], Contact],
     ) -> Callable[[float], float]:
-        table, at = self._table, self._at
+        at = self._at
 
         def restitution(speed: float) -> float:
             if not isinstance(speed, float):  # the entry would take "5" and True for numbers
                 speed = scalars(speed=speed)[0].item()
-            value = at(table, c_lam, c_chi, speed)
+            value = at(table, c_lam, c_chi, speed, ratio)
             if value != value:  # NaN; half the time of a call of isnan
                 (v,) = scalars(speed=speed)
-                return float(self._fields(scales(contact(), v))[0].restitution[0])
+                return float(self._fields(scales(contact(), v), law, table)[0].restitution[0])
             return value
 
         return restitution
@@ -639,8 +649,8 @@ class ImpactModel:
             self._count(flags)
         return found, flags, asked, root
 
-    def _fields(self, units: Scales) -> tuple[Outcome, Flags]:
-        found, flags = tabulated(self._law, self._table, units, self.outside)
+    def _fields(self, units: Scales, law: Law, table: Array) -> tuple[Outcome, Flags]:
+        found, flags = tabulated(law, table, units, self.outside)
         self._count(flags)
         return found, flags
 
@@ -654,6 +664,7 @@ class ImpactModel:
     def _rebound(
         self,
         pair: Pair,
+        law: Law,
         contact: Contact,
         units: Scales,
         impacts: Impacts,
@@ -666,7 +677,5 @@ class ImpactModel:
             np.ascontiguousarray(np.broadcast_to(units.inelasticity, shape)),
             np.ascontiguousarray(np.broadcast_to(units.yield_ratio, shape)),
         )
-        bounds = self._limits if pair is self.pair else limits(pair, self._law)
-        return rebound(
-            self._law.data, bounds, impacts, units.time, contact.mass, asked, found, flags
-        )
+        bounds = self._limits if pair is self.pair else limits(pair, law)
+        return rebound(law.data, bounds, impacts, units.time, contact.mass, asked, found, flags)

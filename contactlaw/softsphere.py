@@ -2,7 +2,7 @@
 
 Soft-sphere engines (LAMMPS, YADE, a loop of one's own) resolve a contact in some tens of steps. In
 each one they know how deep the sphere is in the undeformed plate, the overlap; this module gives
-the force. It keeps three numbers per contact, `State`. The plate's displacement u2 is advanced by
+the force. It keeps five numbers per contact, `State`. The plate's displacement u2 is advanced by
 the trapezoidal rule, implicit in the force F' at the end of the step,
 
     u2' = u2 + alpha dt (F + F')/2,
@@ -23,6 +23,9 @@ Legend, as in `contactlaw.equation`: scaled by d_Y and F_Y inside the kernels,
     dm  largest compression so far     b   (5/12) alpha dt + dt^2/(12 m)
     dr  residual compression           f   contact force
 
+Under a law that takes the plate's mobility to the next order it depends on how long the contact
+will last, and so on the speed of the approach: that of the second step, when it is first known.
+
 An infinite plate recedes for ever under a force that stays, as a bead's weight does. A real one has
 edges: here u2 relaxes within 1e5 contact times, too slow for an impact to notice, and a bead at
 rest sinks by alpha F times that and no further.
@@ -40,6 +43,7 @@ from contactlaw._jit import enable_caching, kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.force import Curve
 from contactlaw.equation.integrator import NO_CURVE
+from contactlaw.equation.waves import SATURATION, Waves, with_waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate
@@ -64,6 +68,8 @@ class State(NamedTuple):
     plate_displacement: Any  # u2 [m]
     largest_compression: Any  # dm [m]
     force: Any  # F [N]
+    mobility: Any = 0.0  # of the plate in this contact [m/(s N)]; 0 where it is the spring's
+    stiffening: Any = 0.0  # of the contact, over the spring's stiffness; 0 likewise
 
 
 class Spring(NamedTuple):
@@ -71,12 +77,16 @@ class Spring(NamedTuple):
 
     mass: Any  # [kg]
     stiffness: Any  # K in F = K d^1.5 [N/m^1.5]
-    mobility: Any  # alpha [m/(s N)]
+    mobility: Any  # alpha of a thin plate [m/(s N)]
     scale: Any  # d_Y [m], or the radius for a law that never yields
     relaxation: Any  # time in which the plate's displacement relaxes [s]
+    transit: Any  # of a wave through the plate, see `contactlaw.physical.scaling.Contact` [s]
+    bulk: Any  # likewise [m s/N]
+    local: Any  # likewise [1/m^0.5]
+    waves: Waves  # next orders of the plate
 
 
-PARTED = State(0.0, 0.0, 0.0)
+PARTED = State(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def unit_spring(model: ImpactModel, thickness: float) -> Spring:
@@ -91,6 +101,10 @@ def unit_spring(model: ImpactModel, thickness: float) -> Spring:
         mobility=float(contact.mobility),
         scale=scale if scale < math.inf else 1.0,
         relaxation=_relaxation(mass, stiffness),
+        transit=float(contact.transit),
+        bulk=float(contact.bulk),
+        local=float(contact.local),
+        waves=contact.waves,
     )
 
 
@@ -108,7 +122,31 @@ def resized(unit: Spring, radius: float) -> Spring:
         unit.mobility,
         unit.scale * radius,
         unit.relaxation * radius,
+        unit.transit,
+        unit.bulk,
+        unit.local * math.sqrt(radius),
+        unit.waves,
     )
+
+
+@kernel
+def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> tuple[float, float]:
+    """Mobility and stiffening of a contact in its second step, when the speed is first known."""
+    if not state.largest_compression > 0.0 or state.stiffening > 0.0:
+        return state.mobility, state.stiffening
+    speed = (overlap - state.plate_displacement - state.largest_compression) / step
+    if not speed > 0.0:
+        return spring.mobility, 1.0
+    time = (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # T_H
+    most = SATURATION * SATURATION * spring.scale
+    more = math.exp(spring.local * math.sqrt(min(speed * time, most)))
+    time /= more
+    over = spring.mass / time
+    lam = with_waves(
+        spring.waves, spring.mobility * over, spring.transit / time,
+        spring.bulk * over / (time * time),
+    )  # fmt: skip
+    return lam / over, more * more * math.sqrt(more)
 
 
 @kernel
@@ -156,15 +194,22 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     scale = spring.scale
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     leak = 0.5 * step / spring.relaxation
-    moved = 0.5 * step * spring.mobility / (1.0 + leak)  # of the plate, per force at either end
+    before = unit * state.stiffening if state.stiffening > 0.0 else unit
+    own, stiffening, mobility = 0.0, 0.0, spring.mobility
+    if spring.waves.bulk_factor > 0.0:
+        own, stiffening = _next_orders(spring, state, overlap, step)
+        if stiffening > 0.0:
+            mobility, unit = own, unit * stiffening
+    moved = 0.5 * step * mobility / (1.0 + leak)  # of the plate, per force at either end
     known = state.plate_displacement * (1.0 - leak) / (1.0 + leak) + moved * state.force
     ahead = moved / 6.0  # of the trapezoidal rule, by its error
     b = (moved - ahead + step * step / (12.0 * spring.mass)) * unit / scale
     r = (overlap - known - ahead * state.force) / scale
     dm = state.largest_compression / scale
-    top = state.force >= _TOP * forces.loading(law, math.sqrt(dm)) * unit  # compression was dm
+    top = state.force >= _TOP * forces.loading(law, math.sqrt(dm)) * before  # compression was dm
     loading, q, f = True, 0.0, 0.0
-    if dm > 1.0 and not top:  # no law has lost anything below dm = 1
+    least = forces.lossless(law)
+    if dm > least and not top:
         curve = forces.unloading(law, dm)
         q, f = _balance(law, False, curve, b, r - curve.residual)
         loading = q * q + curve.residual > dm
@@ -176,12 +221,12 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
             turn = 0.5 + (d - dm) / fall  # of the parabola, in steps
             if turn < 1.0:
                 dm = max(d, dm + 0.5 * fall * max(turn, 0.0) ** 2)
-                if dm > 1.0:
+                if dm > least:
                     curve = forces.unloading(law, dm)
                     q, f = _balance(law, False, curve, b, r - curve.residual)
         dm = max(d, dm)
     force = f * unit
-    return State(known + moved * force, dm * scale, force)
+    return State(known + moved * force, dm * scale, force, own, stiffening)
 
 
 @kernel(cache=True)
@@ -202,12 +247,24 @@ def _advance_all(
             springs.mobility[n],
             springs.scale[n],
             springs.relaxation[n],
+            springs.transit[n],
+            springs.bulk[n],
+            springs.local[n],
+            springs.waves,
         )
-        state = State(states.plate_displacement[n], states.largest_compression[n], states.force[n])
+        state = State(
+            states.plate_displacement[n],
+            states.largest_compression[n],
+            states.force[n],
+            states.mobility[n],
+            states.stiffening[n],
+        )
         state = advance(law, spring, state, overlap[n], step)
         states.plate_displacement[n] = state.plate_displacement
         states.largest_compression[n] = state.largest_compression
         states.force[n] = state.force
+        states.mobility[n] = state.mobility
+        states.stiffening[n] = state.stiffening
     return -1
 
 
@@ -264,6 +321,10 @@ class Contacts:
             mobility=contact.mobility,
             scale=np.where(elastic, r, contact.yield_compression),
             relaxation=_relaxation(contact.mass, contact.stiffness),
+            transit=contact.transit,
+            bulk=np.broadcast_to(contact.bulk, r.shape).copy(),
+            local=contact.local,
+            waves=contact.waves,
         )
         self._longest = float(self._springs.relaxation.min(initial=math.inf))
         self._states = State(*(np.zeros(r.size) for _ in State._fields))

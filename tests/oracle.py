@@ -13,8 +13,14 @@ from contactlaw import laws
 
 RATIO = 2.14 / 0.68  # d_P/d_Y
 # what laws take from the pair beside d_Y: those of gamma-alumina on glass
-NUMBERS = {"modulus_ratio": 23.1922, "poissons_ratio": 0.21}
-ALL_LAWS = [laws.law(name, **NUMBERS) for name in laws.names()]
+NUMBERS = {
+    "modulus_ratio": 23.1922, "poissons_ratio": 0.21,
+    "sphere_ratio": 23.1922, "plate_ratio": 0.0, "modulus_share": 0.1435,
+    "plate_poissons_ratio": 0.21,
+}  # fmt: skip
+# those that are Hertz's until they yield, and the one that is not
+ALL_LAWS = [laws.law(name, **NUMBERS) for name in laws.names() if name != "fem"]
+FEM = laws.law("fem", **NUMBERS)
 OPTIONS = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13}
 
 

@@ -171,7 +171,7 @@ from contactlaw.softsphere import Contacts
 model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'))
 law = model.force_law.data
 print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0],
-      force.loading(law, 2.5), zener.elastic_compression(0.1, 1e-9)[1],
+      force.loading(law, 2.5), zener.elastic_compression(force.HERTZ, 0.1, 1e-9)[1],
       model.lookup(12.0, 0.9e-3, 1e-3).peak_force,
       model.force_history(5.0, 0.9e-3, 1e-3).force.max(),
       Contacts(model, 0.9e-3, 1e-3).advance(np.array([1e-6]), 1e-9)[0])

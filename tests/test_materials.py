@@ -3,6 +3,7 @@
 import dataclasses
 import math
 import pickle
+import re
 import subprocess
 import sys
 import tomllib
@@ -15,7 +16,7 @@ import pytest
 
 from contactlaw.physical.materials import Material, material, materials
 
-NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength")
+NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength", "hardness")
 REQUIRED = {
     "gamma-alumina",
     "glass",
@@ -46,6 +47,8 @@ BRITTLE = {
     "silicon-nitride",
     "polystyrene",
 }
+# Those of them whose hardness is citable.
+HARD = {"soda-lime-glass", "alumina", "zirconia", "silicon-nitride"}
 # Longitudinal sound speeds [m/s] of ASTM E494, Tables X3.1 and X3.2: measured by ultrasound, so
 # they know nothing of the tensile tests and handbooks behind the catalogue. Polymers are absent:
 # at ultrasonic rates they are much stiffer.
@@ -83,8 +86,8 @@ def steel(**changes: object) -> Material:
 
 def test_paper_pair_is_as_printed() -> None:
     bead, plate = material("gamma-alumina"), material("glass")
-    assert [getattr(bead, number) for number in NUMBERS] == [12.23e9, 0.21, 879.0, 472.5e6]
-    assert [getattr(plate, number) for number in NUMBERS] == [73e9, 0.21, 2500.0, None]
+    assert [getattr(bead, number) for number in NUMBERS] == [12.23e9, 0.21, 879.0, 472.5e6, None]
+    assert [getattr(plate, number) for number in NUMBERS] == [73e9, 0.21, 2500.0, None, None]
     assert "111036, Table 1" in bead.source and "111036, Table 1" in plate.source
 
 
@@ -105,11 +108,13 @@ def test_catalogue_has_what_users_need() -> None:
 @pytest.mark.parametrize("name", materials())
 def test_every_number_has_its_own_source(name: str) -> None:
     table, source = raw_catalogue()[name], material(name).source
-    assert set(table["source"]) == set(NUMBERS)  # type: ignore[call-overload]
-    assert set(table) <= {*NUMBERS, "grade", "aliases", "source"}
+    # What yields needs no hardness, and so no line that says why it has none.
+    needed = set(NUMBERS if "yield_strength" not in table else NUMBERS[:-1])
+    assert needed <= set(table["source"]) <= set(NUMBERS)  # type: ignore[call-overload]
+    assert ("hardness" in table) <= ("hardness" in table["source"])  # type: ignore[operator]
+    assert set(table) <= {*NUMBERS, "grade", "kind", "aliases", "source"}
     assert "{" not in source, "a reference key was not expanded"
-    for number in NUMBERS:
-        own = table["source"][number]  # type: ignore[index]
+    for number, own in table["source"].items():  # type: ignore[attr-defined]
         if number in table:
             # Without a {reference} key the text itself must be long enough to be a citation.
             assert "{" in own or len(own) > 20
@@ -132,6 +137,17 @@ def test_entry_is_physically_plausible(name: str) -> None:
     if entry.yield_strength is not None:
         # Lead and pure aluminium yield near 2e-4; a perfect crystal, the limit, near 0.1.
         assert 1e-4 < entry.yield_strength / entry.youngs_modulus < 0.1
+    if entry.hardness is not None:
+        # Far above the metals' yield strain; a perfect crystal, three times its 0.1, is the limit.
+        assert 0.02 < entry.hardness / entry.youngs_modulus < 0.3
+
+
+@pytest.mark.parametrize("name", sorted(HARD))
+def test_hardness_is_the_number_that_its_source_prints(name: str) -> None:
+    printed = re.search(r"(\d+) kgf/mm2", raw_catalogue()[name]["source"]["hardness"])  # type: ignore[index]
+    assert printed is not None
+    # One kgf is 9.80665 N by definition; the catalogue rounds to three or four digits.
+    assert material(name).hardness == pytest.approx(float(printed[1]) * 9.80665e6, rel=1e-3)
 
 
 @pytest.mark.parametrize(("name", "measured"), ULTRASONIC.items())
@@ -150,6 +166,11 @@ def test_tungsten_carbide_returns_the_speeds_it_was_computed_from() -> None:
 def test_brittle_materials_have_no_yield_strength() -> None:
     without = {name for name in materials() if material(name).yield_strength is None}
     assert without == BRITTLE
+
+
+def test_hardness_is_given_where_there_is_no_yield_strength() -> None:
+    assert {name for name in materials() if material(name).hardness is not None} == HARD
+    assert HARD < BRITTLE
 
 
 @pytest.mark.parametrize(
@@ -225,7 +246,7 @@ def test_what_is_no_finite_number_is_refused(field: str, value: object) -> None:
     assert repr(value) in str(caught.value)
 
 
-@pytest.mark.parametrize("field", ["youngs_modulus", "density", "yield_strength"])
+@pytest.mark.parametrize("field", ["youngs_modulus", "density", "yield_strength", "hardness"])
 @pytest.mark.parametrize("value", [0, 0.0, -0.0, -1.0, np.float32(-7850)])
 def test_what_is_not_positive_is_refused(field: str, value: object) -> None:
     with pytest.raises(ValueError, match=f"^{field} of 'steel' must be positive"):
@@ -257,11 +278,19 @@ def test_poissons_ratio_limits_are_accepted(ratio: float) -> None:
         {"youngs_modulus": 207.0, "density": 7.85, "yield_strength": 0.35},  # both
         {"youngs_modulus": 207e3, "yield_strength": 350e6},  # MPa
         {"yield_strength": 350e15},
+        {"hardness": 207e9},
     ],
 )
 def test_mixed_units_are_refused_with_the_right_ones(values: dict[str, float]) -> None:
     with pytest.raises(ValueError, match=r"in Pa"):
         steel(**values)
+
+
+def test_a_hardness_is_the_last_and_needs_no_other_strength() -> None:
+    entry = Material("flint", 75e9, 0.2, 2600.0, None, "", "ceramic", 8e9)
+    assert entry.hardness == 8e9 and entry.yield_strength is None
+    with pytest.raises(ValueError, match=r"^hardness 8\S+ of 'flint' must be below youngs_mod"):
+        dataclasses.replace(entry, hardness=80e9)
 
 
 def test_soft_and_light_beads_are_accepted() -> None:
@@ -287,9 +316,10 @@ def test_numbers_of_any_real_type_become_floats() -> None:
         poissons_ratio=Fraction(3, 10),
         density=np.int64(7850),
         yield_strength=np.float32(350e6),
+        hardness=np.int32(1_600_000_000),
     )
     values = [getattr(entry, number) for number in NUMBERS]
-    assert values == [207e9, 0.3, 7850.0, 350e6]
+    assert values == [207e9, 0.3, 7850.0, 350e6, 1.6e9]
     assert {type(value) for value in values} == {float}
 
 

@@ -10,14 +10,16 @@ from oracle import ALL_LAWS
 import contactlaw as cl
 from contactlaw import laws, table
 from contactlaw.equation import outcome, zener
-from contactlaw.table import cache, file, lookup, splines, sweep
+from contactlaw.equation.force import HERTZ
+from contactlaw.table import file, lookup, splines, sweep
+from contactlaw.table.grid import on_demand
 
 MYC = laws.law("myc")
 SMALL = table.Settings(inelasticity_nodes=21, log_overload_step=0.15)
 
 
 def solve(law, lam, chi, rtol=1e-12):
-    w_m = zener.elastic_compression(lam, 1e-13)[1]
+    w_m = zener.elastic_compression(HERTZ, lam, 1e-13)[1]
     return zener.solve(law.data, lam, w_m / chi, rtol), w_m
 
 
@@ -62,7 +64,7 @@ def test_packaged_table_against_the_solver():
 )
 def test_tables_of_the_other_laws(law):
     """As they are built on demand; the figures are those of `ImpactModel.lookup`'s notes."""
-    built = table.build(law, cache.ON_DEMAND, points=10_000)
+    built = table.build(law, on_demand(law), points=10_000)
     assert built.certificate.largest["restitution"] < (4e-7 if law.capped else 2e-7)
     next_to_yield = {"plastic_fraction", "residual_compression"}  # they begin there at zero
     assert set(built.certificate.exceeded) <= next_to_yield
@@ -84,7 +86,7 @@ def test_tables_of_the_other_laws(law):
 )
 def on_demand(request):
     """Table of a law as it is built when it is first needed."""
-    return table.build(request.param, cache.ON_DEMAND)
+    return table.build(request.param, on_demand(request.param))
 
 
 def check_promise(built, lam, chi):
@@ -118,7 +120,7 @@ class TestEveryLaw:
         steps = np.concatenate([[0.0], np.geomspace(1e-9, 0.3, 30), -np.geomspace(1e-9, 0.3, 30)])
         lam, chi = [], []
         for one in (0.0, 1e-3, 0.02, 0.1, 0.3, 1.0, 2.0, 3.5, 5.0):
-            w_m = zener.elastic_compression(one, 1e-13)[1]
+            w_m = zener.elastic_compression(HERTZ, one, 1e-13)[1]
             for kink in law.outcome_kinks:
                 at = zener.overload_at(law.data, one, w_m, kink, 1e-12)
                 near = [at * (1 + step) for step in steps if at * (1 + step) < 40]
@@ -309,7 +311,7 @@ def test_progress_sees_every_row():
 @pytest.mark.parametrize("law", [law for law in ALL_LAWS if law.yields], ids=lambda law: law.name)
 def test_plastic_fields_keep_their_digits_next_to_yield(law):
     """Down to 1e-5 above it, where residual compression and plastic share are some 1e-10."""
-    built = table.build(law, cache.ON_DEMAND)
+    built = table.build(law, on_demand(law))
     exceeded = built.certificate.exceeded
     if law.name == "stronge":  # its cap begins there, and loses as the power 7/2
         assert exceeded.pop("residual_compression", 0.0) < 1e-3

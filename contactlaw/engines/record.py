@@ -50,6 +50,7 @@ COLUMNS = (
     Column("peak_force", "f8", "N", "largest contact force"),
     Column("plastic_energy", "f8", "J", "energy lost to plastic flow at the contact"),
     Column("wave_energy", "f8", "J", "energy carried off by the bending wave in the plate"),
+    Column("other_energy", "f8", "J", "energy lost to friction and vibration of the bodies"),
     Column("flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_LIMITS}"),
 )
 IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
@@ -83,4 +84,5 @@ def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) 
     rows["peak_force"] = rebound.peak_force
     rows["plastic_energy"] = rebound.plastic_fraction * energy
     rows["wave_energy"] = rebound.wave_fraction * energy
+    rows["other_energy"] = rebound.other_fraction * energy
     rows["flags"] = rebound.flags

@@ -3,8 +3,8 @@
 A law is known along two lines. The loading curve is a force over the root compression q = sqrt(d),
 in pieces, each a polynomial in t = scale q - offset. The unloading curve from the largest
 compression dm is F = a |q|^b over q = sqrt(d - dr), a such that it begins on the loading curve;
-residual dr and exponent b are functions of dm, and so is the loss, loading work minus unloading
-work. These, too, come in pieces, each (dm - 1)^power times a polynomial in t = scale dm - offset,
+residual dr and exponent b are functions of dm, and so are the loss, loading work minus unloading
+work, and what of it is not plastic work. These, too, come in pieces, each (dm - 1)^power times a polynomial in t = scale dm - offset,
 so that what begins at yield as (dm - 1)^2 keeps its digits there. With dm below the first piece
 the contact goes back along the loading curve and nothing is lost.
 
@@ -45,8 +45,10 @@ Array = NDArray[np.float64]
 PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, CAPPED, HEADER = range(8)
 SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(7)
 _POWER, _DEGREE, _AT, _FUNCTION = range(4)
-RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH = range(5)  # functions of dm, in the order of a row
-FUNCTIONS = 5
+RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = range(
+    6
+)  # functions of dm, in the order of a row
+FUNCTIONS = 6
 _U = tuple(np.uint64(n) for n in range(5))
 UNLOADING_ROW = OFFSET + 1 + FUNCTIONS * _FUNCTION
 
@@ -131,6 +133,13 @@ def loading(law: Array, q: float) -> float:
 
 
 @kernel(inline=True)
+def lossless(law: Array) -> float:
+    """Largest compression up to which nothing is lost."""
+    least: float = law[int(law[FAMILY_STARTS])]
+    return least
+
+
+@kernel(inline=True)
 def _unloading_row(law: Array, dm: float) -> int:
     """Where the row of a largest compression begins; 0 where the contact is elastic."""
     at = int(law[FAMILY_STARTS])
@@ -165,13 +174,42 @@ def loss(law: Array, dm: float) -> float:
     return _function(law, row, LOSS, dm) if row > 0 else 0.0
 
 
+@kernel(cache=True)
+def other_loss(law: Array, dm: float) -> float:
+    """What of the loss is not plastic work."""
+    row = _unloading_row(law, dm)
+    return _function(law, row, OTHER, dm) if row > 0 else 0.0
+
+
 @kernel(inline=True)
-def residual_and_loss(law: Array, dm: float) -> tuple[float, float]:
-    """`residual` and `loss` at once."""
+def residual_and_losses(law: Array, dm: float) -> tuple[float, float, float]:
+    """`residual`, `loss` and `other_loss` at once."""
     row = _unloading_row(law, dm)
     if row == 0:
-        return 0.0, 0.0
-    return _function(law, row, RESIDUAL, dm), _function(law, row, LOSS, dm)
+        return 0.0, 0.0, 0.0
+    return (
+        _function(law, row, RESIDUAL, dm),
+        _function(law, row, LOSS, dm),
+        _function(law, row, OTHER, dm),
+    )
+
+
+@kernel(inline=True)
+def is_hertz(law: Array) -> bool:
+    """Whether loading begins as Hertz's."""
+    row = row_of(law, 0)
+    at = int(law[row + AT])
+    same = law[row + DEGREE] == 3.0 and law[row + SCALE] == 1.0 and law[row + OFFSET] == 0.0
+    return same and law[at] == law[at + 1] == law[at + 2] == 0.0 and law[at + 3] == 1.0
+
+
+@kernel(inline=True)
+def leaves_hertz(law: Array) -> float:
+    """Compression up to which contacts are Hertz's, and come back without a loss."""
+    if not is_hertz(law):
+        return 0.0
+    leaves = start_of(law, 1)
+    return min(leaves * leaves, lossless(law))
 
 
 @kernel(cache=True)

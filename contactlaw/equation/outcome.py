@@ -33,6 +33,7 @@ class Extremes(NamedTuple):
     peak_force: Any
     residual_compression: Any
     plastic_fraction: Any
+    other_fraction: Any
 
 
 class History(NamedTuple):

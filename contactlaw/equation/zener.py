@@ -42,6 +42,7 @@ class Solution(NamedTuple):
     peak_compression: float
     residual_compression: float
     plastic_fraction: float
+    other_fraction: float
     wave_fraction: float
     wave_rate: float  # wave_fraction / lam, which has a limit at lam = 0
 
@@ -50,7 +51,7 @@ class Solution(NamedTuple):
 def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
     """One impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol the error allowed per step."""
     if not (0.0 <= lam < math.inf and 0.0 < y < math.inf):
-        return Solution(BAD_INPUT, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return Solution(BAD_INPUT, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     scale, h = integrator.scale_of(y, rtol)
     y4 = math.sqrt(math.sqrt(y))
     beta = lam * y4
@@ -65,6 +66,7 @@ def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
             break
         curve, leg, end = integrator.after(law, beta, curve, leg, event, end)
     wave_rate = 2.0 * y4 * end.j / scale.u**2
+    other = force.other_loss(law, dm)
     return Solution(
         OK if longest < MAX_STEPS else TOO_MANY_STEPS,
         total,
@@ -74,7 +76,8 @@ def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
         top.f * y * math.sqrt(y),
         dm * y,
         curve.residual * y,
-        2.0 * force.loss(law, dm) / scale.u**2,
+        2.0 * (force.loss(law, dm) - other) / scale.u**2,
+        2.0 * other / scale.u**2,
         lam * wave_rate,
         wave_rate,
     )
@@ -190,13 +193,29 @@ def shape(
 
 
 @kernel(cache=True)
-def elastic_compression(lam: float, rtol: float) -> tuple[int, float]:
-    """Status and w_m(lam): largest compression [V0 T_H] under Hertz's law (Fig. 4 of the paper)."""
+def elastic_compression(law: Array, lam: float, rtol: float) -> tuple[int, float]:
+    """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
+
+    Under a law that is Hertz's up to yield that of any elastic impact (Fig. 4 of the paper). Under
+    another it depends a little on the speed: it is the y that is its own largest compression.
+    """
     if not 0.0 <= lam < math.inf:
         return BAD_INPUT, 0.0
-    scale, h = integrator.scale_of(1.0, rtol)
-    _, state, _, steps = integrator.load(HERTZ.copy(), lam, scale, h)
-    return (OK if steps < MAX_STEPS else TOO_MANY_STEPS), state.q * state.q
+    if force.is_hertz(law):
+        scale, h = integrator.scale_of(1.0, rtol)
+        _, state, _, steps = integrator.load(HERTZ.copy(), lam, scale, h)
+        return (OK if steps < MAX_STEPS else TOO_MANY_STEPS), state.q * state.q
+    y = 1.0
+    for _ in range(100):
+        scale, h = integrator.scale_of(y, rtol)
+        _, state, _, steps = integrator.load(law, lam * scale.t, scale, h)
+        if steps >= MAX_STEPS:
+            return TOO_MANY_STEPS, 0.0
+        grown = state.q * state.q
+        y *= grown
+        if abs(grown - 1.0) < 1e-11:
+            break
+    return OK, y
 
 
 @kernel
@@ -212,14 +231,14 @@ def _put(one: Solution, w_m: float, out: Outcome, n: int) -> None:
 @kernel(cache=True)
 def solve_all(law: Array, rtol: float, out: Outcome) -> tuple[int, int]:
     """Impacts with the inelasticities and yield ratios of `out`; status, index of a failure."""
-    leaves = force.start_of(law, 1)  # root compression, Hertz's curve
+    leaves = force.leaves_hertz(law)
     for n in range(out.inelasticity.size):
         lam, y = out.inelasticity[n], out.yield_ratio[n]
         y = y if y < math.inf else 1.0  # the law's scale: any does for an elastic one
         one = solve(law, lam, y, rtol)
         status, w_m = one.status, one.peak_compression
-        if status == OK and w_m > leaves * leaves * y:
-            status, w_m = elastic_compression(lam, rtol)
+        if status == OK and w_m > leaves * y:
+            status, w_m = elastic_compression(law, lam, rtol)
         if status != OK:
             return status, n
         _put(one, w_m, out, n)
@@ -233,7 +252,7 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
     for n in range(out.inelasticity.size):
         lam = out.inelasticity[n]
         if n == 0 or lam != out.inelasticity[n - 1]:
-            status, w_m = elastic_compression(lam, rtol)
+            status, w_m = elastic_compression(law, lam, rtol)
         if status != OK:
             return status, n
         out.yield_ratio[n] = w_m / overload[n]
@@ -280,28 +299,32 @@ def overload_at(law: Array, lam: float, w_m: float, dm: float, rtol: float) -> f
 
 @kernel(cache=True)
 def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
-    """Peak force, residual compression and plastic share of impacts.
+    """Peak force, residual compression and shares of the energy of impacts.
 
-    Every law is Hertz's below yield; y may be inf there. Those that have yielded are gathered: a
-    choice in the loop would be predicted wrongly for half of them.
+    Most laws are Hertz's below yield; y may be inf there. Those that are not are gathered: a choice
+    in the loop would be predicted wrongly for half of them.
     """
-    yielded = np.empty(_CHUNK, dtype=np.int64)
-    dm, left, lost = np.empty(_CHUNK), np.empty(_CHUNK), np.empty(_CHUNK)
+    leaves = force.leaves_hertz(law)
+    beyond = np.empty(_CHUNK, dtype=np.int64)
+    room = np.empty((4, _CHUNK))
+    dm, left, lost, other = room[0], room[1], room[2], room[3]
     for start in range(0, out.peak_force.size, _CHUNK):
         count = 0
         for n in range(start, min(start + _CHUNK, out.peak_force.size)):
             w = outcome.compression_ratio[n] * outcome.elastic_compression[n]
             out.peak_force[n] = w * math.sqrt(w)
-            out.residual_compression[n] = out.plastic_fraction[n] = 0.0
-            yielded[count] = n
+            out.residual_compression[n] = 0.0
+            out.plastic_fraction[n] = out.other_fraction[n] = 0.0
+            beyond[count] = n
             dm[count] = w / outcome.yield_ratio[n]
-            count += w > outcome.yield_ratio[n]
+            count += w > outcome.yield_ratio[n] * leaves
         for k in range(count):
-            left[k], lost[k] = force.residual_and_loss(law, dm[k])
+            left[k], lost[k], other[k] = force.residual_and_losses(law, dm[k])
         for k in range(count):
-            n = yielded[k]
+            n = beyond[k]
             y = outcome.yield_ratio[n]
             unit = y * math.sqrt(y)  # F_Y
             out.peak_force[n] = force.loading(law, math.sqrt(dm[k])) * unit
             out.residual_compression[n] = left[k] * y
-            out.plastic_fraction[n] = 2.0 * lost[k] * y * unit
+            out.plastic_fraction[n] = 2.0 * (lost[k] - other[k]) * y * unit
+            out.other_fraction[n] = 2.0 * other[k] * y * unit

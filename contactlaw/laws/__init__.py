@@ -30,7 +30,14 @@ from contactlaw.laws._law import Law
 
 __all__ = ["HERTZ", "Law", "Loading", "Unloading", "law", "names", "parameters"]
 
-_RANGES = {"modulus_ratio": (2.0, 1e6), "poissons_ratio": (0.0, 0.5)}  # of laws' parameters
+_RANGES = {
+    "modulus_ratio": (2.0, 1e6),
+    "poissons_ratio": (0.0, 0.5),
+    "sphere_ratio": (0.0, 1e6),
+    "plate_ratio": (0.0, 1e6),
+    "modulus_share": (0.0, 1.0),
+    "plate_poissons_ratio": (0.0, 0.5),
+}  # of laws' parameters
 _BRACKETS = re.compile(r"[a-z_]+\([-+.,0-9e]+\)")
 
 
@@ -59,7 +66,9 @@ def parameters(name: str) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        Some of ``"modulus_ratio"``, E*/sigma_Y, and ``"poissons_ratio"``, that of the sphere.
+        Some of ``"modulus_ratio"``, E*/sigma_Y, and ``"poissons_ratio"``, those of the sphere;
+        ``"sphere_ratio"`` and ``"plate_ratio"``, E*/sigma_Y, 0 for a body that does not yield;
+        ``"modulus_share"``, the sphere's E1'/(E1' + E2').
 
     Examples
     --------

@@ -27,7 +27,7 @@ class Loading:
         Compression at which it begins [d_Y]; 0 for the first.
     force : callable or Polynomial
         Force [F_Y]: a function of arrays of the compression [d_Y], or a polynomial in the *root*
-        compression, whose first branch is Hertz's `HERTZ`, q^3.
+        compression, as the first branch has to be: Hertz's `HERTZ`, q^3, or one that begins so.
     """
 
     start: float
@@ -42,6 +42,7 @@ class Unloading:
     ----------
     start : float
         Largest compression at which it begins [d_Y]. Below the first branch the contact is elastic.
+        The first one begins at yield, 1, unless loading is stiffer than Hertz's from the start.
     residual : callable
         Compression left after unloading from dm, over (dm - 1)^order [d_Y].
     exponent : callable or float, optional
@@ -49,6 +50,8 @@ class Unloading:
     loss : callable, optional
         Loading work less unloading work over (dm - 1)^loss_order [F_Y d_Y], where the difference
         of the two would lose its digits.
+    other : callable, optional
+        What of the loss is not plastic work [F_Y d_Y]; none by default.
     order, loss_order : float, optional
         How residual and loss begin at dm = 1; 2 for most laws. With 0 no factor is taken out, and
         the law follows them to 1e-13 of dm and of the loading work.
@@ -61,6 +64,7 @@ class Unloading:
     residual: Formula
     exponent: Formula | float = 1.5
     loss: Formula | None = None
+    other: Formula | None = None
     order: float = 0.0
     loss_order: float = 0.0
     cap: tuple[Formula, Formula | None] | None = None

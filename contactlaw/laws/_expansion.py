@@ -123,16 +123,20 @@ def _values(name: str, what: str, function: Formula, at: Array) -> Array:
 class LoadingCurve:
     """The loading curve in pieces, with force and work at any compressions."""
 
-    def __init__(self, name: str, branches: Sequence[Loading], yields: bool) -> None:
-        if not branches or branches[0].start != 0.0 or branches[0].force != HERTZ:
+    def __init__(
+        self, name: str, branches: Sequence[Loading], yields: bool, end: float = END
+    ) -> None:
+        if not branches or branches[0].start != 0.0 or not _begins_as_hertz(branches[0].force):
             raise ValueError(
-                f"law: the first branch of {name!r} has to begin at 0 with a polynomial, HERTZ"
+                f"law: the first branch of {name!r} has to begin at 0 with a polynomial, HERTZ or "
+                "HERTZ plus higher powers that make it stiffer"
             )
+        self.end = end
+        self.stiffer = branches[0].force != HERTZ
         self.kinks = tuple(float(branch.start) for branch in branches[1:])
         self.pieces: list[_Piece] = []
         self.first: list[int] = []  # piece at the last kink, of each piece
-        ends = _ends(branches)
-        for branch, end in ends:
+        for branch, end in _ends(branches, self.end):
             first = len(self.pieces)
             force = branch.force
             if isinstance(force, Polynomial):
@@ -153,21 +157,22 @@ class LoadingCurve:
                     f"law: the loading branches of {name!r} do not meet at {kink:.9g} d_Y: "
                     f"{before:.9g} and {after:.9g} F_Y"
                 )
-        _check_rise(name, self.force, 1e-3, END, 2000)
+        _check_rise(name, self.force, 1e-3, self.end, 2000)
 
     def _go_on(self) -> None:
-        """Add the tangent over the compression at `END`, in powers of q."""
-        end = np.array([END, END * (1.0 + 1e-6)])
+        """Add the tangent over the compression at the end, in powers of q."""
+        end = np.array([self.end, self.end * (1.0 + 1e-6)])
         force, work = self.force(end), self.work(end)
         piece = self.pieces[-1]
-        t = piece.scale * math.sqrt(END) - piece.offset
-        slope = 0.5 * piece.scale * Polynomial(piece.parts[0]).deriv()(t) / math.sqrt(END)
+        root = math.sqrt(self.end)
+        t = piece.scale * root - piece.offset
+        slope = 0.5 * piece.scale * Polynomial(piece.parts[0]).deriv()(t) / root
         self.tangent = float(force[0]), float(slope), float(work[0])
         if piece.scale == 1.0 and piece.parts[0].size <= 3 and piece.parts[0][1] == 0.0:
             return  # it is its own tangent
-        constant = float(force[0] - slope * END)
+        constant = float(force[0] - slope * self.end)
         tail = np.array([constant, 0.0, float(slope)])
-        self.pieces.append(_Piece(math.sqrt(END), 1.0, 0.0, [tail]))
+        self.pieces.append(_Piece(root, 1.0, 0.0, [tail]))
         self.first.append(self.first[-1])
         self._tabulate()
 
@@ -206,6 +211,13 @@ class LoadingCurve:
         return horner(coefficients.T[:, k], self._scale[k] * q - self._offset[k])
 
 
+def _begins_as_hertz(force: Formula | Polynomial) -> bool:
+    """Whether a branch is q^3, or that and higher powers."""
+    if not isinstance(force, Polynomial) or not (force.coef[4:] >= 0.0).all():
+        return False
+    return np.array_equal(force.coef[:4], HERTZ.coef)
+
+
 def horner(coefficients: Array, t: Array | float) -> Array:
     value = np.zeros_like(np.asarray(t))
     for c in coefficients[::-1]:
@@ -231,11 +243,15 @@ def check_yield(
 ) -> None:
     """Refuse a law that would not begin to differ from Hertz's at yield."""
     starts = [branch.start for branch in loading[1:]]
-    if any(start < 1.0 for start in starts) or (unloading and unloading[0].start != 1.0):
+    stiffer = bool(loading) and loading[0].force != HERTZ
+    early = bool(unloading) and (unloading[0].start > 1.0 if stiffer else unloading[0].start != 1.0)
+    if any(start < 1.0 for start in starts) or early:
         raise ValueError(
             f"law: {name!r} has to follow Hertz's curve up to yield, 1 d_Y: no branch of loading "
             "but the first may begin before, and the first of unloading begins there"
         )
+    if stiffer and coefficient is None:
+        return
     if not (starts or unloading):
         right, needed = coefficient is None, "None: it never yields"
     else:
@@ -247,10 +263,12 @@ def check_yield(
 
 def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading]) -> None:
     """Refuse unloading curves that change at once, or begin with a jump: so would outcomes."""
-    before = (0.0, 0.0)
-    for branch, end in _ends(branches):
+    before: tuple[float, float] | None = None if curve.stiffer else (0.0, 0.0)
+    for branch, end in _ends(branches, curve.end):
         dm = np.array([branch.start * (1.0 + 1e-9), end * (1.0 - 1e-9)])
         left, lost = (np.asarray(f(dm)) for f in _residual_and_loss(curve, branch))
+        if before is None:  # friction takes its share of any contact, however small
+            before = float(left[0]), float(lost[0])
         for what, value, last, scale in (
             ("residual compression", left, before[0], branch.start),
             ("loss", lost, before[1], float(curve.work(dm)[0])),
@@ -268,12 +286,12 @@ def _over_root(force: Formula) -> Formula:
     return lambda q: force(q * q)
 
 
-def _ends(branches: Sequence[Any]) -> list[tuple[Any, float]]:
+def _ends(branches: Sequence[Any], last: float) -> list[tuple[Any, float]]:
     """Branches with the compressions at which they end; those have to rise."""
     starts = [branch.start for branch in branches]
-    if any(not low < high for low, high in itertools.pairwise([*starts, END])):
-        raise ValueError(f"law: branches have to begin one after the other, below {END:g} d_Y")
-    return list(zip(branches, [*starts[1:], END], strict=True)) if starts else []
+    if any(not low < high for low, high in itertools.pairwise([*starts, last])):
+        raise ValueError(f"law: branches have to begin one after the other, below {last:g} d_Y")
+    return list(zip(branches, [*starts[1:], last], strict=True)) if starts else []
 
 
 @dataclass(frozen=True, eq=False)
@@ -282,6 +300,7 @@ class _Row:
 
     piece: _Piece
     powers: tuple[float, ...]
+    other: bool  # whether some of the loss is not plastic work
 
 
 def _residual_and_loss(curve: LoadingCurve, branch: Unloading) -> tuple[Formula, Formula]:
@@ -336,33 +355,44 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
         parts.append(0.0 if low is None else math.inf)
     else:
         parts.append(_Part("cap", high, np.positive))
-    powers = (branch.order, 0.0, branch.loss_order, 0.0, 0.0)
+    parts.append(0.0 if branch.other is None else _Part("other loss", branch.other, lost))
+    powers = (branch.order, 0.0, branch.loss_order, 0.0, 0.0, 0.0)
     # the loss has kinks where the loading curve has them
     inner = [kink for kink in curve.kinks if branch.start < kink < end]
     return [
-        _Row(piece, powers)
+        _Row(piece, powers, branch.other is not None)
         for ends in itertools.pairwise([branch.start, *inner, end])
         for piece in _expand(name, parts, *ends)
     ]
 
 
 def _beyond(curve: LoadingCurve, last: _Row) -> _Row:
-    """Row from `END` on: residual in proportion to dm, exponent kept, loss from the works."""
-    piece = last.piece
-    values = [horner(part, piece.scale * END - piece.offset) for part in piece.parts]
-    share = float(values[_force.RESIDUAL]) * (END - 1.0) ** last.powers[_force.RESIDUAL] / END
+    """Row from the end on: residual in proportion to dm, exponent kept, loss from the works."""
+    piece, end = last.piece, curve.end
+    values = [horner(part, piece.scale * end - piece.offset) for part in piece.parts]
+    share = float(values[_force.RESIDUAL]) * (end - 1.0) ** last.powers[_force.RESIDUAL] / end
     exponent = float(values[_force.EXPONENT])
     force, slope, work = curve.tangent
-    at_zero = force - slope * END
-    up = np.array([work - at_zero * END - 0.5 * slope * END**2, at_zero, 0.5 * slope])
+    at_zero = force - slope * end
+    up = np.array([work - at_zero * end - 0.5 * slope * end**2, at_zero, 0.5 * slope])
     down = np.array([0.0, at_zero, slope]) * (2.0 * (1.0 - share) / (exponent + 2.0))
-    parts = [np.array([0.0, share]), np.array([exponent]), up - down, np.zeros(1), np.zeros(1)]
-    return _Row(_Piece(END, 1.0, 0.0, parts), (0.0,) * len(parts))
+    rest = np.zeros(1)
+    # plastic work keeps its share of the loading work
+    lost = float(values[_force.LOSS]) * (end - 1.0) ** last.powers[_force.LOSS]
+    other = up - down - (lost - float(values[_force.OTHER])) / work * up
+    if not last.other:
+        other = np.zeros(1)
+    parts = [np.array([0.0, share]), np.array([exponent]), up - down, rest, rest, other]
+    return _Row(_Piece(end, 1.0, 0.0, parts), (0.0,) * len(parts), last.other)
 
 
 def law_data(name: str, curve: LoadingCurve, unloading: Sequence[Unloading]) -> Array:
     """Expand the unloading curves too, and put all of a law into one array."""
-    rows = [row for branch in _ends(unloading) for row in _unloading_rows(name, curve, *branch)]
+    rows = [
+        row
+        for branch in _ends(unloading, curve.end)
+        for row in _unloading_rows(name, curve, *branch)
+    ]
     _check_joints(name, curve, unloading)
     if rows:
         rows.append(_beyond(curve, rows[-1]))

@@ -12,7 +12,7 @@ import numpy as np
 
 from contactlaw.equation import force as _force
 from contactlaw.equation.force import Curve
-from contactlaw.laws._branches import Array, Loading, Unloading
+from contactlaw.laws._branches import END, Array, Loading, Unloading
 from contactlaw.laws._expansion import LoadingCurve, check_yield, horner, law_data
 
 _CORNER = 1e-4  # relative jump of a slope; differences err by 1e-8 of it
@@ -36,7 +36,7 @@ class Law:
         Compressions [d_Y], rising, at which the loading curve changes its formula.
     outcome_kinks : tuple of float
         All largest compressions [d_Y], rising, at which an impact's outcome is not smooth; the
-        first is 1, that of yield. None for a law that never yields.
+        first is 1, that of yield. None for Hertz's law.
     data : ndarray of float64
         The law itself.
     yield_strains : tuple of float, optional
@@ -44,6 +44,13 @@ class Law:
         yielded well.
     from_pair : tuple of str, optional
         Names of the numbers, beside d_Y, that the pair of materials has given it.
+    scale : float, optional
+        d_Y/R* of a law that was made for one pair, whichever of its bodies yields; 1 if neither
+        does, and the compressions of the law are in radii. None: `yield_coefficient` rules.
+    range : tuple of float, optional
+        Compressions [d_Y] from which on the law differs from Hertz's, and up to which it was made.
+    waves : float, optional
+        The b of the plate's next orders, see `contactlaw.equation.waves`; 0: the plate is thin.
     """
 
     name: str
@@ -54,6 +61,9 @@ class Law:
     data: Array
     yield_strains: tuple[float, float] = (0.0, math.inf)
     from_pair: tuple[str, ...] = ()
+    scale: float | None = None
+    range: tuple[float, float] = (1.0, math.inf)
+    waves: float = 0.0
 
     @staticmethod
     def of(
@@ -64,12 +74,15 @@ class Law:
         loading: Sequence[Loading],
         unloading: Sequence[Unloading] = (),
         yield_strains: tuple[float, float] = (0.0, math.inf),
+        scale: float | None = None,
+        range: tuple[float, float] = (1.0, math.inf),
+        waves: float = 0.0,
     ) -> Law:
         """Make a law from its formulas.
 
         Parameters
         ----------
-        name, source, yield_coefficient, yield_strains
+        name, source, yield_coefficient, yield_strains, scale, range, waves
             As of `Law`.
         loading : sequence of Loading
             Branches of the loading curve. They have to meet, and to rise.
@@ -107,8 +120,12 @@ class Law:
         (5.5, 1.3333)
         """
         check_yield(name, yield_coefficient, loading, unloading)
-        curve = LoadingCurve(name, loading, bool(unloading))
+        curve = LoadingCurve(name, loading, bool(unloading), min(range[1], END))
         starts = {*curve.kinks, *(float(branch.start) for branch in unloading)}
+        if curve.stiffer:  # friction takes its share below yield, too: no kink begins with it
+            starts = {start for start in starts if start >= 1.0}
+        if range[1] < END:
+            starts.add(range[1])
         return Law(
             name=name,
             source=source,
@@ -117,6 +134,9 @@ class Law:
             outcome_kinks=tuple(sorted(starts)),
             data=law_data(name, curve, unloading),
             yield_strains=yield_strains,
+            scale=scale,
+            range=range,
+            waves=waves,
         )
 
     @property
@@ -127,7 +147,12 @@ class Law:
     @property
     def yields(self) -> bool:
         """Whether there is a compression from which the sphere yields."""
-        return bool(self.outcome_kinks)
+        return self.yield_coefficient is not None
+
+    @property
+    def is_hertz(self) -> bool:
+        """Whether a contact is Hertz's until it yields."""
+        return bool(_force.is_hertz(self.data))
 
     @property
     def capped(self) -> bool:

@@ -25,6 +25,7 @@ _LABELS = {
     "poissons_ratio": ("Poisson's ratio", ""),
     "density": ("density", " kg/m3"),
     "yield_strength": ("yield strength", " Pa"),
+    "hardness": ("hardness", " Pa"),
 }
 
 
@@ -49,6 +50,9 @@ class Material:
         Where the numbers come from.
     kind : str, optional
         ``"metal"``, ``"ceramic"``, ``"glass"`` or ``"polymer"``; None if that is not known.
+    hardness : float, optional
+        Indentation hardness [Pa], Vickers or Knoop, positive: what limits the contact pressure on
+        a brittle material, which has no yield strength. None if it is unknown.
 
     Raises
     ------
@@ -70,6 +74,7 @@ class Material:
     yield_strength: float | None = None
     source: str = ""
     kind: str | None = None
+    hardness: float | None = None
 
     def __post_init__(self) -> None:
         """Check every value and store it as float."""
@@ -92,12 +97,18 @@ class Material:
         strength = self.yield_strength
         if strength is not None:
             strength = _positive(self.name, "yield_strength", strength, "Pa")
-        _check_units(self.name, modulus, density, strength)
+        hardness = self.hardness
+        if hardness is not None:
+            hardness = _positive(self.name, "hardness", hardness, "Pa")
+        _check_units(self.name, modulus, density)
+        _check_strength(self.name, "yield_strength", strength, modulus)
+        _check_strength(self.name, "hardness", hardness, modulus)
         # A frozen dataclass has no other way to store the converted values.
         object.__setattr__(self, "youngs_modulus", modulus)
         object.__setattr__(self, "poissons_ratio", ratio)
         object.__setattr__(self, "density", density)
         object.__setattr__(self, "yield_strength", strength)
+        object.__setattr__(self, "hardness", hardness)
 
     @property
     def plane_modulus(self) -> float:
@@ -209,6 +220,8 @@ def _from_table(name: str, table: dict[str, Any], references: dict[str, str]) ->
     values = {field: table[field] for field in _LABELS if field in table}
     parts = [table["grade"]]
     for field, (label, unit) in _LABELS.items():
+        if field not in table["source"]:
+            continue  # a hardness that nobody needs, since there is a yield strength
         number = f" {values[field]:g}{unit}" if field in values else ""
         parts.append(f"{label}{number}: {table['source'][field].format_map(references)}")
     return Material(name, **values, source="; ".join(parts), kind=table["kind"])
@@ -235,7 +248,7 @@ def _positive(name: str, field: str, value: object, unit: str) -> float:
     return number
 
 
-def _check_units(name: str, modulus: float, density: float, strength: float | None) -> None:
+def _check_units(name: str, modulus: float, density: float) -> None:
     if not (modulus >= _SOFTEST):
         raise ValueError(
             f"youngs_modulus {modulus!r} of {name!r} is below {_SOFTEST:g} Pa, softer than any "
@@ -253,13 +266,16 @@ def _check_units(name: str, modulus: float, density: float, strength: float | No
             f"{speed:.3g} m/s, faster than in any solid: give density in kg/m3 (not g/cm3) and "
             "youngs_modulus in Pa"
         )
+
+
+def _check_strength(name: str, field: str, strength: float | None, modulus: float) -> None:
     if strength is not None and not (strength < modulus):
         raise ValueError(
-            f"yield_strength {strength!r} of {name!r} must be below youngs_modulus {modulus!r}: "
+            f"{field} {strength!r} of {name!r} must be below youngs_modulus {modulus!r}: "
             "give both in Pa"
         )
     if strength is not None and not (strength >= _WEAKEST * modulus):
         raise ValueError(
-            f"yield_strength {strength!r} of {name!r} must be at least {_WEAKEST:g} of "
+            f"{field} {strength!r} of {name!r} must be at least {_WEAKEST:g} of "
             f"youngs_modulus {modulus!r}, no solid is weaker: give both in Pa"
         )

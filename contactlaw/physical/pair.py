@@ -14,8 +14,8 @@ class Pair:
     Parameters
     ----------
     sphere, plate : Material or str
-        Materials, or names from the catalogue (see `contactlaw.materials`). The sphere is the body
-        that yields, the plate stays elastic.
+        Materials, or names from the catalogue (see `contactlaw.materials`). A body yields that has
+        a yield strength, if the law lets it: most let the sphere alone.
 
     Raises
     ------
@@ -59,17 +59,15 @@ class Pair:
 
     @property
     def yield_speed(self) -> float:
-        """Speed V_Y0 [m/s] from which a sphere yields on a half-space (Peng et al. 2021, Eq. 4).
+        """Speed V_Y0 [m/s] from which one of the bodies yields, on a half-space.
 
-        That is 0.552 sqrt(pi^4 sigma_Y^5/(rho1 E*^4)), whatever the radius, with the yield
-        compression of the MYC law. A thinner plate gives way: see `ImpactModel.yield_speed`.
-
-        Raises
-        ------
-        ValueError
-            If the sphere's material has no yield strength.
+        That is 0.552 sqrt(pi^4 sigma_Y^5/(rho1 E*^4)) (Peng et al. 2021, Eq. 4), whatever the
+        radius, with the yield compression of the MYC law and the weaker body's strength. A thinner
+        plate gives way: see `ImpactModel.yield_speed`. ``inf`` if neither has a yield strength.
         """
-        strength = self.sphere.require_yield_strength("myc")
+        strength = min(body.yield_strength or math.inf for body in (self.sphere, self.plate))
+        if math.isinf(strength):
+            return math.inf
         # V_Y0^2 = (4/5) K dY^2.5/m with K = (4/3) E* R^0.5, m = (4/3) pi rho1 R^3, dY as in Eq. 18
         compression = C_YIELD * (math.pi * strength / self.effective_modulus) ** 2  # d_Y/R
         energy = 0.8 * self.effective_modulus * compression**2.5  # per (4/3) R^3

@@ -32,9 +32,10 @@ class Rebound:
         Largest contact force [N].
     peak_compression, residual_compression
         Largest relative compression of the bodies, and what of it is left at separation [m].
-    plastic_fraction, wave_fraction
-        Shares of the initial kinetic energy lost to plastic flow and to the bending wave [-].
-        1 - restitution^2 is their sum.
+    plastic_fraction, wave_fraction, other_fraction
+        Shares of the initial kinetic energy lost to plastic flow, to the waves in the plate, and to
+        friction, vibration and locked stresses of the bodies, which only the law ``"fem"`` knows
+        [-]. 1 - restitution^2 is their sum.
     inelasticity, overload
         The dimensionless numbers lambda and chi of the impact [-].
     flags
@@ -48,6 +49,7 @@ class Rebound:
     residual_compression: float | Array
     plastic_fraction: float | Array
     wave_fraction: float | Array
+    other_fraction: float | Array
     inelasticity: float | Array
     overload: float | Array
     flags: Validity | NDArray[np.int64]
@@ -92,12 +94,15 @@ def _with_units(
         contact_time = outcome.contact_time[n] * t
         out.contact_time[n] = contact_time
         w = outcome.compression_ratio[n] * outcome.elastic_compression[n]
-        out.peak_compression[n] = w * (v * t)
+        unit = v * t
+        out.peak_compression[n] = w * unit
         out.wave_fraction[n] = outcome.inelasticity[n] * outcome.wave_rate[n]
         out.overload[n] = outcome.elastic_compression[n] / asked_y[n]
         extremes.peak_force[n] *= mass[n] * v / t
-        extremes.residual_compression[n] *= v * t
-        flags[n] |= flags_of(limits, radius[n], thickness[n], asked_y[n], contact_time)
+        extremes.residual_compression[n] *= unit
+        flags[n] |= flags_of(
+            limits, radius[n], thickness[n], unit, contact_time, w * unit, extremes.peak_force[n]
+        )
 
 
 def rebound(

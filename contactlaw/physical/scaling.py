@@ -15,7 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
+from contactlaw.equation.waves import CONTACT_TIME, SATURATION, THIN, Waves, next_orders, waves
 from contactlaw.laws import Law
+from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
@@ -27,8 +29,12 @@ class Contact(NamedTuple):
 
     mass: Array  # [kg], effective
     stiffness: Array  # K in F = K d^1.5 [N/m^1.5]
-    mobility: Array  # alpha, speed of the plate per force [m/(s N)]
+    mobility: Array  # alpha, speed of a thin plate per force [m/(s N)]
     yield_compression: Array  # d_Y [m]
+    transit: Array  # of a shear wave through the plate, over CONTACT_TIME [s]; inf: half-space
+    bulk: Array  # mobility transit^2, for a half-space too [m s/N]
+    local: Array  # eta over the root of V0 T_H [1/m^0.5]
+    waves: Waves  # next orders of the plate
 
 
 class Scales(NamedTuple):
@@ -44,7 +50,11 @@ class Scales(NamedTuple):
 class Factors(NamedTuple):
     """A pair's constants, with which no power has to be taken for a sphere on a plate."""
 
-    inelasticity: float  # lambda at 1 m/s and R = H
+    inelasticity: float  # lambda of a thin plate at 1 m/s and R = H
+    transit: float  # shear waves through it, over CONTACT_TIME T_H, there
+    local: float  # eta, there
+    saturated: float  # V^(1/5) at which eta stops to grow; inf: it never does
+    waves: Waves
     log_overload: float  # ln(chi/w_m) at 1 m/s; -inf for a law that never yields
     time: float  # T_H at 1 m/s, over R [s/m]
     mass: float  # over R^3 [kg/m3]
@@ -65,18 +75,40 @@ def law_of(pair: Pair, law: str | Law) -> Law:
     elif not isinstance(law, str):
         raise TypeError(f"law: expected the name of a law or a contactlaw.laws.Law, got {law!r}")
     elif laws.parameters(law):
-        found = laws.law(
-            law,
-            modulus_ratio=pair.effective_modulus / pair.sphere.require_yield_strength(law),
-            poissons_ratio=pair.sphere.poissons_ratio,
-        )
+        found = laws.law(law, **pair_numbers(pair, law))
     else:
         found = laws.law(law)
     if found.from_pair and isinstance(law, Law) and law_of(pair, found.family) != found:
         found = dataclasses.replace(found, from_pair=())  # those of another pair, held fixed here
-    if found.yields:
+    if found.yields and found.scale is None:
         pair.sphere.require_yield_strength(found.name)
     return found
+
+
+def pair_numbers(pair: Pair, law: str) -> dict[str, float]:
+    """Numbers that laws take from a pair."""
+    numbers = {
+        "poissons_ratio": pair.sphere.poissons_ratio,
+        "plate_poissons_ratio": pair.plate.poissons_ratio,
+        "sphere_ratio": _modulus_ratio(pair, pair.sphere),
+        "plate_ratio": _modulus_ratio(pair, pair.plate),
+        "modulus_share": pair.effective_modulus / pair.plate.plane_modulus,
+    }
+    if "modulus_ratio" in laws.parameters(law):
+        numbers["modulus_ratio"] = pair.effective_modulus / pair.sphere.require_yield_strength(law)
+    return numbers
+
+
+def _modulus_ratio(pair: Pair, body: Material) -> float:
+    """E*/sigma_Y of a body; 0 for one that does not yield."""
+    return 0.0 if body.yield_strength is None else pair.effective_modulus / body.yield_strength
+
+
+def _transit(plate: Material, thickness: Array) -> Array:
+    """Time of a shear wave through a plate, over `CONTACT_TIME` [s]."""
+    shear = 0.5 * plate.youngs_modulus / (1.0 + plate.poissons_ratio)
+    time: Array = thickness * (math.sqrt(plate.density / shear) / CONTACT_TIME)
+    return time
 
 
 def plate_mobility(plate: Material, thickness: Array) -> Array:
@@ -93,10 +125,13 @@ def plate_mobility(plate: Material, thickness: Array) -> Array:
 
 
 def _yield_compression(pair: Pair, radius: Array, law: Law) -> Array:
-    """Yield compression of the sphere's material, Eq. 18; inf for a law that never yields."""
-    if law.yield_coefficient is None:
-        return np.full_like(radius, math.inf)
-    compression: Array = _yield_share(pair, law.yield_coefficient, law.name) * radius
+    """Yield compression, Eq. 18 for the sphere's material; inf for Hertz's law, which has none."""
+    share = law.scale
+    if share is None:
+        if law.yield_coefficient is None:
+            return np.full_like(radius, math.inf)
+        share = _yield_share(pair, law.yield_coefficient, law.name)
+    compression: Array = share * radius
     return compression
 
 
@@ -104,6 +139,20 @@ def _yield_share(pair: Pair, coefficient: float, law: str) -> float:
     """d_Y/R*."""
     strain = math.pi * pair.sphere.require_yield_strength(law) / pair.effective_modulus
     return coefficient * strain**2
+
+
+def yield_share(pair: Pair, law: Law) -> float:
+    """d_Y/R of the body that yields first, by the law's criterion or MYC's; inf if none does."""
+    if law.scale is not None:
+        return law.scale if law.yields else math.inf
+    strength = min(body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
+    coefficient = law.yield_coefficient or C_YIELD
+    return coefficient * (math.pi * strength / pair.effective_modulus) ** 2
+
+
+def log_overload(factors: Factors, share: float) -> float:
+    """ln(chi/w_m) at 1 m/s, of a body that yields at this share d_Y/R: d_Y = share R."""
+    return math.log(factors.time / share)
 
 
 def yield_scales(pair: Pair, coefficient: float, radius: float) -> tuple[float, float]:
@@ -121,11 +170,20 @@ def _mass(material: Material, radius: Array) -> Array:
 
 def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Contact:
     """Contact of a sphere with a large plate: R* = R, m* = m."""
+    one = np.ones(())
+    plate = THIN
+    if law.waves:
+        share = pair.effective_modulus / pair.plate.plane_modulus
+        plate = waves(pair.plate.poissons_ratio, law.waves * share)
     return Contact(
         mass=_mass(pair.sphere, radius),
         stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius),
         mobility=plate_mobility(pair.plate, thickness),
         yield_compression=_yield_compression(pair, radius, law),
+        transit=_transit(pair.plate, thickness),
+        bulk=plate_mobility(pair.plate, one) * _transit(pair.plate, one) ** 2,
+        local=plate.eta * np.sqrt(radius) / thickness,
+        waves=plate,
     )
 
 
@@ -138,6 +196,10 @@ def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -
         stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(reduced),
         mobility=np.zeros_like(reduced),
         yield_compression=_yield_compression(pair, reduced, law),
+        transit=np.zeros_like(reduced),
+        bulk=np.zeros_like(reduced),
+        local=np.zeros_like(reduced),
+        waves=THIN,
     )
 
 
@@ -145,8 +207,19 @@ def scales(contact: Contact, speed: Array) -> Scales:
     """Dimensionless numbers and units of impacts at the given speeds [m/s]."""
     time = (contact.mass / (contact.stiffness * np.sqrt(speed))) ** 0.4
     compression = speed * time
+    over = contact.mass / time
+    # beyond yield the force grows no faster than the compression
+    most = SATURATION * SATURATION * contact.yield_compression
+    inelasticity, stiffer = next_orders(
+        contact.waves,
+        contact.mobility * over,
+        contact.transit / time,
+        contact.bulk * over / time**2,
+        contact.local * np.sqrt(np.minimum(compression, most)),
+    )
+    time, compression = time / stiffer, compression / stiffer
     return Scales(
-        inelasticity=contact.mobility * contact.mass / time,
+        inelasticity=inelasticity,
         yield_ratio=contact.yield_compression / compression,
         time=time,
         compression=compression,
@@ -158,10 +231,15 @@ def factors(pair: Pair, law: Law) -> Factors:
     """Constants of spheres on plates."""
     one = np.ones(())
     contact = sphere_on_plate(pair, law, one, one)
-    units = scales(contact, one)
+    time = (contact.mass / contact.stiffness) ** 0.4
+    most = SATURATION * SATURATION * contact.yield_compression / time  # of V0 T_H, over that
     return Factors(
-        inelasticity=units.inelasticity.item(),
-        log_overload=-math.log(units.yield_ratio.item()),
-        time=units.time.item(),
+        inelasticity=(contact.mobility * contact.mass / time).item(),
+        transit=(contact.transit / time).item(),
+        local=(contact.local * np.sqrt(time)).item(),
+        saturated=(most**0.25).item(),
+        waves=contact.waves,
+        log_overload=-math.log((contact.yield_compression / time).item()),
+        time=time.item(),
         mass=contact.mass.item(),
     )

@@ -1,4 +1,4 @@
-"""Where the modified Zener model may be trusted."""
+"""Where an answer may be trusted, and what the bodies may suffer."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.laws import Law
+from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
@@ -22,90 +23,189 @@ _YIELDED = 2.0  # V0/V_Y0; our choice, between 1.5 and 3.5 of our finite element
 _FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
 _AHEAD = 1.5  # way of the fastest waves that matter over that of the contact's own; see below
 _TRANSITS = 6.0  # contact time over H/c_L; Koller & Kolsky 1987 and Boettcher et al. 2017: 6 to 8
+_BENDING = 1.0  # F/(sigma_Y H^2), of our finite elements; at 1.57 a plate is a hinge altogether
+# Largest pressure over the hardness at which a brittle body begins to flow: 1.65 H/2.8, since flow
+# begins at a mean pressure of 1.1 sigma_Y and is complete at 2.8 (Kharaz & Gorham 2000).
+_FLOW = 1.65 / 2.8
+_HARDNESS = 3.0  # largest mean pressure that a body bears over its yield strength (Tabor 1951)
 
 
 class Validity(enum.IntFlag):
-    """Limits of the model that an impact exceeds; 0 is inside all of them.
+    """Limits that an impact exceeds; 0 is inside all of them.
 
-    What the model leaves out altogether (oblique impact, friction, adhesion, viscosity, strain
-    rate, coatings) raises no flag. In finite elements of normal impacts friction of 0.1 lowers the
-    COR by 0.006 to 0.007.
+    All but `DAMAGE` are limits of the answer's accuracy, `ACCURACY` is all of those. What the model
+    leaves out altogether (oblique impact, friction, adhesion, strain rate in metals, coatings)
+    raises no flag: at 1e4 per second steels are about a third stronger than in the tensile test
+    that the catalogue quotes, and so yield at twice the speed. `explain` puts flags into words.
 
     Examples
     --------
     >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> model.lookup(speed=5.0, radius=0.9e-3, thickness=0.3e-3).flags
     <Validity.THIN_PLATE: 1>
     """
 
     THIN_PLATE = 1
-    """R/H > 1.8: the plate's deflection is no longer small (Peng et al. 2021, section 4.4). At
-    R/H = 2.5 the COR is up to 7.4 % above finite elements up to 7 V_Y0, 19 % at 14 V_Y0."""
+    """The plate is thinner than R/1.8: its deflection is no longer small."""
     FAST_IMPACT = 2
-    """V0 > 7 V_Y0: beyond the paper's finite elements. At 10 and 14 V_Y0 the COR is within 3 % of
-    ours up to R/H = 1, and 5 and 9 % too high at R/H = 1.8."""
+    """Faster than 7 times the yield speed, up to which the laws of the paper were checked."""
     THICK_PLATE = 4
-    """Contact shorter than 6 thickness transits of the pressure wave: bending has no time to
-    develop. The inelasticity is small there and the COR near its bulk value all the same."""
+    """Over before the plate can bend, within 6 transits of its thickness: the law's plate is thin."""
     SOFT_PLATE = 8
-    """The plate's yield strength is below the sphere's: the plate yields first, the law has the
-    sphere yield."""
+    """The plate is weaker than the sphere and yields first; in this law only the sphere yields."""
     CLAMPED = 16
-    """Outside the table; the value is that of the table's border (``outside="clamp"``)."""
+    """Outside the table: the value is that of its border."""
     OTHER_LAW = 32
-    """V0 > 2 V_Y0, and finite elements favour another contact law for the sphere's yield strain
-    sigma_Y/E: ``"myc"`` from 1/40 to 1/20 (the paper's alumina has 1/26), ``"jackson_green"`` and
-    ``"kogut_etsion"`` below 1/60, as metals have. There, at 7 V_Y0, the COR of ``"myc"`` is 7 to
-    11 % too low, and theirs from 1 % too low on thick plates to 6 % too high on thin ones; at 1/26
-    theirs is 10 to 12 % too high. From 1/60 to 1/40 each errs by 4 to 6 %, and above 1/20 none
-    holds: at 1/13 all are 30 % too high or more."""
+    """Another law is nearer to finite elements here: "fem" for any pair."""
+    DEEP_CONTACT = 64
+    """Compressed further over the radius than the finite elements that the law is made of."""
+    BENT_PLATE = 128
+    """The force bends the plate plastically: the law's plate stays elastic but at the contact."""
+    RATE_DEPENDENT = 256
+    """A polymer: its modulus and strength depend on the rate, and it loses energy by viscosity."""
+    DAMAGE = 512
+    """May break or flow: the pressure is above 0.59 of the hardness of a brittle body."""
+
+    ACCURACY = 511
+    """All limits of accuracy."""
+
+
+_WORDS = {
+    Validity.THIN_PLATE: "plate thinner than R/1.8, its deflection is no longer small",
+    Validity.FAST_IMPACT: "faster than 7 yield speeds, beyond what the law was checked for",
+    Validity.THICK_PLATE: "too short for the plate to bend, the law's plate is thin",
+    Validity.SOFT_PLATE: "the plate yields first, the law has the sphere yield: take law fem",
+    Validity.CLAMPED: "outside the table, the value is that of its border",
+    Validity.OTHER_LAW: "finite elements favour another law for these materials: take law fem",
+    Validity.DEEP_CONTACT: "compressed deeper than the finite elements that the law is made of",
+    Validity.BENT_PLATE: "the plate bends plastically, in the law it stays elastic",
+    Validity.RATE_DEPENDENT: "a polymer: modulus and strength depend on the rate",
+    Validity.DAMAGE: "a brittle body may break or flow",
+}
+
+
+def explain(flags: int) -> tuple[str, ...]:
+    """Say in words which limits some flags stand for.
+
+    Examples
+    --------
+    >>> explain(Validity.THIN_PLATE)
+    ('plate thinner than R/1.8, its deflection is no longer small',)
+    """
+    return tuple(words for flag, words in _WORDS.items() if flags & flag)
 
 
 class Limits(NamedTuple):
     """What the limits of a pair and its law are, for kernels."""
 
-    slowness: float  # of the pressure wave in the plate [s/m]
+    slowness: float  # of the pressure wave in the plate [s/m]; 0 where no plate is too thick
     always: int  # flags of every impact
-    yielded: int  # flags of an impact beyond `_YIELDED`
+    yielded: int  # flags of an impact beyond `trusted`
+    trusted: float  # d_Y/(V0 T_H) of the weaker body, from which on `yielded` does not count
+    fastest: float  # likewise, of FAST_IMPACT; 0: none is too fast
+    share: float  # d_Y/R of the weaker body; inf if none yields
+    deepest: float  # compression over R
+    bending: float  # force over H^2 [Pa]
+    damage: float  # force over R^2 [Pa]
 
 
 def limits(pair: Pair, law: Law) -> Limits:
     """Limits of the model for a pair."""
+    sphere, plate = (body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
+    weaker = min(sphere, plate)
+    polymer = "polymer" in (pair.sphere.kind, pair.plate.kind)
+    rate = polymer * Validity.RATE_DEPENDENT
+    share = C_YIELD * (math.pi * weaker / pair.effective_modulus) ** 2
+    common = {
+        "share": share,
+        "bending": _BENDING * plate,
+        "damage": _damage(pair),
+    }
+    if law.waves:
+        return Limits(
+            slowness=0.0, always=int(rate), yielded=0, trusted=0.0, fastest=0.0,
+            deepest=law.range[1] * (law.scale or 0.0), **common,
+        )  # fmt: skip
     nu = pair.plate.poissons_ratio
     # E (1 - nu)/((1 + nu)(1 - 2 nu)) is infinite for an incompressible plate: no transit time then
     slowness = math.sqrt(
         pair.plate.density / pair.plate.youngs_modulus * (1 + nu) * (1 - 2 * nu) / (1 - nu)
     )
-    strength = pair.plate.yield_strength
-    soft = strength is not None and strength < (pair.sphere.yield_strength or 0.0)
+    soft = law.yields and plate < sphere
     least, largest = law.yield_strains
-    strain = (pair.sphere.yield_strength or 0.0) / pair.sphere.youngs_modulus
-    other = not least <= strain <= largest
-    return Limits(slowness, soft * int(Validity.SOFT_PLATE), other * int(Validity.OTHER_LAW))
+    other = not (law.yields and least <= sphere / pair.sphere.youngs_modulus <= largest)
+    return Limits(
+        slowness=slowness,
+        always=int(rate | soft * Validity.SOFT_PLATE),
+        yielded=int((other or soft) * Validity.OTHER_LAW),
+        trusted=_y_at(_YIELDED if law.yields else 1.0),
+        fastest=_y_at(_FASTEST),
+        deepest=math.inf,
+        **common,
+    )
+
+
+def _damage(pair: Pair) -> float:
+    """Least force over R^2 at which Hertz's pressure makes a brittle body flow [Pa].
+
+    p0 = (6 F E*^2/(pi^3 R^2))^(1/3). A body that yields itself limits the pressure.
+    """
+    least = math.inf
+    for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
+        if body.hardness is None or body.yield_strength is not None:
+            continue
+        pressure = _FLOW * body.hardness
+        if (other.yield_strength or math.inf) * _HARDNESS > pressure / 1.5:
+            least = min(least, math.pi**3 * pressure**3 / (6.0 * pair.effective_modulus**2))
+    return least
+
+
+def _y_at(ratio: float) -> float:
+    """d_Y/(V0 T_H) at a speed over V_Y0: a half-space impact at V_Y0 has w_m = y = (5/4)^(2/5)."""
+    return float((math.sqrt(1.25) / ratio) ** 0.8)
 
 
 @kernel
 def flags_of(
-    limits: Limits, radius: float, thickness: float, yield_ratio: float, contact_time: float
+    limits: Limits,
+    radius: float,
+    thickness: float,
+    scale: float,
+    contact_time: float,
+    compression: float,
+    force: float,
 ) -> int:
-    """Flag an impact."""
+    """Flag an impact; scale is V0 T_H [m], compression and force the largest ones [m, N]."""
     flags = limits.always
     if radius > _THINNEST * thickness:
         flags |= _THIN_PLATE
     if thickness < math.inf and contact_time < _TRANSITS * thickness * limits.slowness:
         flags |= _THICK_PLATE
-    if yield_ratio < _Y_YIELDED:
+    yield_ratio = limits.share * radius / scale
+    if yield_ratio < limits.trusted:
         flags |= limits.yielded
-        if yield_ratio < _Y_FASTEST:
-            flags |= _FAST_IMPACT
+    if yield_ratio < limits.fastest:
+        flags |= _FAST_IMPACT
+    if compression > limits.deepest * radius:
+        flags |= _DEEP_CONTACT
+    if force > limits.bending * (thickness * thickness):
+        flags |= _BENT_PLATE
+    if force > limits.damage * (radius * radius):
+        flags |= _DAMAGE
     return flags
 
 
-# V0/V_Y0 = (5/4)^(1/2) y^(-5/4): a half-space impact at V_Y0 has w_m = y = (5/4)^(2/5)
-_Y_YIELDED, _Y_FASTEST = ((math.sqrt(1.25) / ratio) ** 0.8 for ratio in (_YIELDED, _FASTEST))
-_THIN_PLATE, _FAST_IMPACT, _THICK_PLATE = (
-    int(flag) for flag in (Validity.THIN_PLATE, Validity.FAST_IMPACT, Validity.THICK_PLATE)
+_THIN_PLATE, _FAST_IMPACT, _THICK_PLATE, _DEEP_CONTACT, _BENT_PLATE, _DAMAGE = (
+    int(flag)
+    for flag in (
+        Validity.THIN_PLATE,
+        Validity.FAST_IMPACT,
+        Validity.THICK_PLATE,
+        Validity.DEEP_CONTACT,
+        Validity.BENT_PLATE,
+        Validity.DAMAGE,
+    )
 )
 
 

@@ -22,11 +22,8 @@ from contactlaw._folder import folder
 from contactlaw._jit import fingerprint
 from contactlaw.laws import Law
 from contactlaw.table import file
-from contactlaw.table.grid import Settings
+from contactlaw.table.grid import Settings, on_demand
 from contactlaw.table.nodes import Table
-
-ON_DEMAND = Settings(log_overload_step=0.03, rtol=1e-11)
-"""Settings of tables that are built when they are first needed, in a few tenths of a second."""
 
 _PATIENCE = (
     60.0  # [s]: a build takes less than one; a lock held for longer belongs to a process that hangs
@@ -56,11 +53,12 @@ def file_name(law: Law, settings: Settings) -> str:
 
 
 @functools.cache
-def cached(law: Law, settings: Settings = ON_DEMAND) -> Table:
+def cached(law: Law, settings: Settings | None = None) -> Table:
     """Table of a law from the cache; built, and kept there, if it is missing or damaged.
 
     Whatever is wrong with the folder, there is an answer; one warning says that it was not kept.
     """
+    settings = settings or on_demand(law)
 
     def make(found: Table | None) -> Table:
         return found or tables.build(law, settings, progress=progress_bar)

@@ -26,6 +26,7 @@ BOUNDS = {
     "residual_compression": 1e-5,
     "plastic_fraction": 1e-5,
     "wave_fraction": 1e-5,
+    "other_fraction": 1e-5,
     "force_history": 1e-4,
 }
 """What contactlaw promises: COR absolutely, a force history by its peak, the others relatively."""
@@ -132,8 +133,9 @@ def _points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Arr
     lows = [float(segment.start.min()) for segment in grid.segments]
     highs = [float(segment.start.max()) for segment in grid.segments]
     end = float(grid.segments[-1].end[0])
-    strata = [(-2.0, 0.0), *zip(lows, [*highs[1:], end], strict=True)]
-    strata += [(low - _NEAR_KINK, low) for low in lows]
+    hertz = lows[0] == 0.0  # else what is below the table is none of a certificate's business
+    strata = [(-2.0, 0.0)] * hertz + [*zip(lows, [*highs[1:], end], strict=True)]
+    strata += [(low - _NEAR_KINK, low) for low in lows[not hertz :]]
     strata += [(high, high + _NEAR_KINK) for high in highs]
     share = -(-count // len(strata))
     log_chi = np.concatenate([generator.uniform(low, high, share) for low, high in strata])

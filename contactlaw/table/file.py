@@ -37,7 +37,7 @@ from contactlaw.table.grid import Grid, Segment, Settings
 from contactlaw.table.nodes import Table, shape_grid
 
 FORMAT = "contactlaw table"
-SCHEMA = 3
+SCHEMA = 4
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, ours: 700 times the packaged table, and memory that a PC has
 _LARGEST_LAW = 1_000_000  # numbers
@@ -119,7 +119,11 @@ def _fill(file: h5py.File, table: Table) -> None:
         schema=SCHEMA,
         law=law.name,
         law_source=law.source,
-        yield_coefficient=law.yield_coefficient,
+        yield_coefficient=math.nan if law.yield_coefficient is None else law.yield_coefficient,
+        law_scale=math.nan if law.scale is None else law.scale,
+        law_smallest=law.range[0],
+        law_largest=law.range[1],
+        law_waves=law.waves,
         contactlaw_version=VERSION,
         **asdict(table.settings),
     )
@@ -245,13 +249,20 @@ def _law(file: h5py.File) -> Law:
     """Law of a table, in whose data kernels will follow addresses."""
     numbers = _listed(file, "law/data", _LARGEST_LAW)
     force.check(numbers)
+    coefficient, scale, smallest, largest = (
+        guarded.attribute(file, name, float)
+        for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
+    )
     return Law(
         name=guarded.attribute(file, "law", str),
         source=guarded.attribute(file, "law_source", str),
-        yield_coefficient=guarded.attribute(file, "yield_coefficient", float),
+        yield_coefficient=None if math.isnan(coefficient) else coefficient,
         loading_kinks=tuple(_listed(file, "law/loading_kinks", _MOST_KINKS).tolist()),
         outcome_kinks=tuple(_listed(file, "law/outcome_kinks", _MOST_KINKS).tolist()),
         data=numbers,
+        scale=None if math.isnan(scale) else scale,
+        range=(smallest, largest),
+        waves=guarded.attribute(file, "law_waves", float),
     )
 
 

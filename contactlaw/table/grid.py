@@ -32,6 +32,9 @@ Array = NDArray[np.float64]
 SERIES = 48  # Chebyshev nodes along x of what is known along lambda alone: w_m and curved kinks
 _FEWEST = 5  # nodes of a segment; not-a-knot ends need as many
 _FEWEST_GRADED = 24  # our choice: between two kinks of a capped law that are 8 % apart
+_COARSER = 4.0  # steps in ln chi below yield: only the sphere's stiffening is to be seen there
+_BEYOND = 1.5  # of the overload up to which a law was made, for a table of it
+_THINNEST = 6.0  # lambda of a table that is made for a pair: 1 mm of carbide on 0.6 mm at 10 m/s
 _ROOM = 0.02  # in ln chi, between the last kink and the end of the table
 
 
@@ -71,7 +74,7 @@ class Settings:
 
 RANGES = {
     "largest_inelasticity": (1e-3, 10.0),  # 10: COR is 7e-6 there
-    "largest_overload": (1.1, 1e6),
+    "largest_overload": (1e-3, 1e6),
     "inelasticity_nodes": (_FEWEST, 100_000),
     "log_overload_step": (1e-4, 1.0),
     "stretch": (1e-3, 1e3),
@@ -136,6 +139,18 @@ def coarser(grid: Grid, rows: int, step: float) -> Grid:
     return dataclasses.replace(grid, inelasticity=nodes, segments=tuple(segments))
 
 
+def on_demand(law: Law) -> Settings:
+    """Settings of a table that is built when it is first needed, in a few tenths of a second."""
+    if math.isinf(law.range[1]):
+        return Settings(log_overload_step=0.03, rtol=1e-11)
+    w_m = zener.elastic_compression(law.data, 0.0, 1e-11)[1]
+    deepest = zener.overload_at(law.data, 0.0, w_m, law.range[1], 1e-11)
+    return Settings(
+        largest_inelasticity=_THINNEST, largest_overload=float(f"{_BEYOND * deepest:.3g}"),
+        log_overload_step=0.04, inelasticity_nodes=41, rtol=1e-11,
+    )  # fmt: skip
+
+
 def check(segments: Sequence[Segment], law: Law, end: float) -> None:
     """Refuse segments that are none, or not those of a law's kinks.
 
@@ -144,7 +159,9 @@ def check(segments: Sequence[Segment], law: Law, end: float) -> None:
     ValueError
         With what is wrong of the table.
     """
-    kinks = [kink for kink in law.outcome_kinks if kink <= _first_loading_kink(law)]
+    kinks = [kink for kink in law.outcome_kinks if kink <= _straight(law)]
+    if not law.is_hertz:
+        kinks.insert(0, law.range[0])
     starts = [segment.start[0] for segment in segments[: len(kinks)] if not np.ptp(segment.start)]
     if not segments or not np.array_equal(starts, np.log(kinks[: len(segments)])):
         raise ValueError(f"its kinks are not those of the law, {law.outcome_kinks}")
@@ -160,8 +177,10 @@ def check(segments: Sequence[Segment], law: Law, end: float) -> None:
         raise ValueError("its axes are not those of its settings")
 
 
-def _first_loading_kink(law: Law) -> float:
-    """Compression up to which loading follows Hertz's curve."""
+def _straight(law: Law) -> float:
+    """Compression up to which kinks are lines of constant chi: Hertz's curve, or yield alone."""
+    if not law.is_hertz:
+        return 1.0 if law.yields else 0.0
     return law.loading_kinks[0] if law.loading_kinks else math.inf
 
 
@@ -170,6 +189,8 @@ def _with_nodes(segment: Segment, step: float) -> Segment:
     length = float((segment.end - segment.start).max())
     # even steps of the root are twice as far apart at the end as on average
     least, denser = (_FEWEST_GRADED, 1.25) if segment.graded else (_FEWEST, 1.0)
+    if not segment.end.max() > 0.0:
+        denser = 1.0 / _COARSER
     cells = max(least - 1, math.ceil(denser * length / step))
     shares = np.linspace(0.0, 1.0, cells + 1)
     return segment._replace(shares=shares**2 if segment.graded else shares)
@@ -246,11 +267,11 @@ def grid(law: Law, settings: Settings, rows: int, step: float) -> Grid:
     RuntimeError
         If the solver does not find a kink.
     """
-    if not law.yields:
+    if not law.yields and law.is_hertz:
         raise ValueError(f"law: {law.name!r} never yields; the edge chi = 1 of any table serves it")
     c, largest = settings.stretch, settings.largest_inelasticity
     lam = series_inelasticity(c, largest)
-    elastic = elastic_compressions(lam, settings.rtol)
+    elastic = elastic_compressions(law, lam, settings.rtol)
     bounds, graded = _kink_lines(law, settings, lam, elastic)
     segments = [
         _with_nodes(Segment(start, end, np.empty(0), root), step)
@@ -264,8 +285,10 @@ def _kink_lines(
 ) -> tuple[list[Array], list[bool]]:
     """Ln chi of the kinks along lambda, and of the table's end; behind which nodes are graded."""
     end = math.log(settings.largest_overload)
-    leaves = _first_loading_kink(law)
+    leaves = _straight(law)
     lines, graded = [], []
+    if not law.is_hertz:
+        lines, graded = [np.full(lam.size, math.log(law.range[0]))], [False]
     for kink in law.outcome_kinks:
         if kink <= leaves:
             line = np.full(lam.size, math.log(kink))
@@ -290,11 +313,11 @@ def _overloads(law: Law, kink: float, lam: Array, elastic: Array) -> Array:
     return found
 
 
-def elastic_compressions(lam: Array, rtol: float) -> Array:
-    """Largest elastic compressions w_m."""
+def elastic_compressions(law: Law, lam: Array, rtol: float) -> Array:
+    """Largest compressions w_m of impacts that just yield."""
     out = np.empty_like(lam)
     for n, value in enumerate(lam):
-        status, out[n] = zener.elastic_compression(value, rtol)
+        status, out[n] = zener.elastic_compression(law.data, value, rtol)
         if status != zener.OK:
             raise RuntimeError(f"w_m({value:.6g}) did not solve: {zener.MESSAGES[status]}")
     return out

@@ -3,7 +3,7 @@
 A table holds functions of the inelasticity lambda and of ln chi, the logarithm of the overload, on
 the nodes that `contactlaw.table.grid` places. Splines are kept as coefficients of uniform cubic
 B-splines, two more than there are nodes: they need the least memory, and a table that stays in the
-cache is a fast one. Where ln chi < 0 the contact is elastic and the values at ln chi = 0 hold.
+cache is a fast one. Below the first segment, where the contact is elastic, the values at its beginning hold.
 ln w_m is a polynomial in x, and so is ln chi along each kink that is no line of constant chi.
 
 All of it is packed into one array of float64, because a kernel that takes one array and a few
@@ -13,7 +13,7 @@ numbers is called from Python in a third of a microsecond. The array begins with
     X_MAX        x of the largest lambda  CURVED     1 if there are curved kinks
     LOG_CHI_MAX  largest ln chi           COR_AT     where the coefficients of COR begin
     NODES_PER_X  1/(distance of nodes)    OTHERS_AT  where those of the other fields begin
-    COLUMNS      of coefficients
+    COLUMNS      of coefficients           TRANSIT to WAVES  of the plate, see `Plate`
 
 then, at HEADER, the polynomial's coefficients, n blocks and the polynomials of curved kinks:
 
@@ -36,6 +36,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.outcome import Outcome
+from contactlaw.equation.waves import THIN, Waves, with_waves
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -47,11 +48,55 @@ R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = 1e-30
 
 STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X, COLUMNS = range(5)
-SEGMENTS, CURVED, COR_AT, OTHERS_AT, HEADER = range(5, 10)
+SEGMENTS, CURVED, COR_AT, OTHERS_AT, TRANSIT, LOCAL, SATURATED, WAVES = range(5, 13)
+HEADER = WAVES + len(Waves._fields)
 DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
 START, END, PER_LOG, CELLS, COLUMN, GRADED, LINE, BLOCK = range(8)
 _BLOCKS = HEADER + DEGREE + 1
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
+
+
+class Plate(NamedTuple):
+    """Constants of a pair of which the next orders of its plates are made, at 1 m/s and R = H."""
+
+    transit: float  # h of a loss-free contact, see `contactlaw.equation.waves`
+    local: float  # eta
+    saturated: float  # V^(1/5) at which eta stops to grow
+    waves: Waves
+
+
+def with_plate(table: Array, plate: Plate) -> Array:
+    """Copy a table for plates that have next orders; the table itself for others."""
+    if plate.waves == THIN:
+        return table
+    table = table.copy()
+    table[TRANSIT], table[LOCAL], table[SATURATED], table[WAVES:HEADER] = plate
+    return table
+
+
+@kernel
+def _plate(table: Array) -> Plate:
+    """Read the constants of the plate."""
+    w, k = table, WAVES
+    waves = Waves(w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5], w[k + 6], w[k + 7])
+    return Plate(w[TRANSIT], w[LOCAL], w[SATURATED], waves)
+
+
+@kernel(inline=True)
+def _eta(plate: Plate, root: float, ratio: float) -> float:
+    """Stiffening of a contact by its plate, from V^(1/5) and R/H."""
+    slow = min(root, plate.saturated)
+    return plate.local * ratio * (slow * slow)
+
+
+@kernel(inline=True)
+def _inelasticity(plate: Plate, c_lam: float, root: float, ratio: float) -> float:
+    """Inelasticity lambda of an impact; exp(eta) comes with the root, V^(1/5)."""
+    thin = c_lam * root * (ratio * ratio)
+    if plate.waves.bulk_factor == 0.0:
+        return thin
+    h = plate.transit * root
+    return with_waves(plate.waves, thin, h / ratio, c_lam * root * (h * h))
 
 
 def lam_max(table: Array) -> float:
@@ -350,7 +395,8 @@ def _put(
     others = _other_fields(table, np.uint64(int(table[OTHERS_AT]) + 3 * first), s, t)
     out.contact_time[n] = others.contact_time
     out.wave_rate[n] = others.wave_rate
-    out.compression_ratio[n] = math.exp((others.growth - 1.0) * max(log_chi, 0.0))
+    lowest = table[_BLOCKS + START]
+    out.compression_ratio[n] = math.exp((others.growth - 1.0) * max(log_chi, lowest))
     out.elastic_compression[n] = math.exp(log_w)
 
 
@@ -362,15 +408,18 @@ def _blank(out: Outcome, n: int) -> None:
 
 
 @kernel(inline=True)
-def _restitution(
-    table: Array, c_lam: float, c_chi: float, speed: float, radius_2: float, thickness_2: float
-) -> float:
-    """COR for lam = c_lam V^(1/5) R^2/H^2; NaN outside the table."""
+def _restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: float) -> float:
+    """COR for a ratio R/H; NaN outside the table."""
     if not V_MIN <= speed <= V_MAX:
         return math.nan
     log_speed, root = _log_and_root(speed)
-    above = c_lam * root * radius_2
-    x = above / (above + table[STRETCH] * thickness_2)
+    plate = _plate(table)
+    if plate.waves.bulk_factor > 0.0:
+        eta = _eta(plate, root, ratio)
+        root *= _exp(eta)
+        c_chi -= eta
+    lam = _inelasticity(plate, c_lam, root, ratio)
+    x = lam / (lam + table[STRETCH])
     if not x <= table[X_MAX]:
         return math.nan
     log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
@@ -380,9 +429,9 @@ def _restitution(
 
 
 @kernel(cache=True)
-def restitution(table: Array, c_lam: float, c_chi: float, speed: float) -> float:
-    """COR at one speed; NaN where the speed is no positive number and outside the table."""
-    return _restitution(table, c_lam, c_chi, speed, 1.0, 1.0)
+def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: float) -> float:
+    """COR for a ratio R/H; NaN where the speed is no positive number and outside the table."""
+    return _restitution(table, c_lam, c_chi, speed, ratio)
 
 
 @kernel(cache=True)
@@ -392,7 +441,7 @@ def restitution_on_plate(
     """COR of one sphere on a plate; NaN for bad input and outside the table."""
     if not (R_MIN <= radius <= R_MAX and thickness >= R_MIN):
         return math.nan
-    return _restitution(table, c_lam, c_chi, speed, radius * radius, thickness * thickness)
+    return _restitution(table, c_lam, c_chi, speed, radius / thickness)
 
 
 @kernel
@@ -408,7 +457,7 @@ def _coordinates(
     log_w: Array,
     root: Array,
 ) -> bool:
-    """Coordinates ln chi and x of impacts, ln w_m and the fifth root of the speed.
+    """Coordinates ln chi and x of impacts, ln w_m, and the fifth root of the speed times exp(eta).
 
     Whether all of them are valid and in the table.
     """
@@ -416,10 +465,20 @@ def _coordinates(
     power_series, log_chi_max = _power_series(table, HEADER), table[LOG_CHI_MAX]
     for i in range(x.size):
         log_chi[i], root[i] = _log_and_root(speed[i])
-    for i in range(x.size):
-        # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
-        above = c_lam * root[i] * radius[i] * radius[i]
-        x[i] = above / (above + stretch * (thickness[i] * thickness[i]))
+    plate = _plate(table)
+    if plate.waves.bulk_factor == 0.0:
+        for i in range(x.size):
+            # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
+            above = c_lam * root[i] * radius[i] * radius[i]
+            x[i] = above / (above + stretch * (thickness[i] * thickness[i]))
+    else:
+        for i in range(x.size):
+            ratio = radius[i] / thickness[i]
+            eta = _eta(plate, root[i], ratio)
+            root[i] *= _exp(eta)
+            lam = _inelasticity(plate, c_lam, root[i], ratio)
+            x[i] = lam / (lam + stretch)
+            log_chi[i] -= 1.25 * eta  # of the speed, whose power 4/5 it is
     for i in range(x.size):
         log_w[i] = _evaluate(power_series, scale * x[i] - 1.0)
         log_chi[i] = c_chi + 0.8 * log_chi[i] + log_w[i]
@@ -475,11 +534,12 @@ def outcomes(
 ) -> int:
     """All fields of many spheres on plates, of valid input; how many are outside, and are NaN.
 
-    Beside them V^(1/5) into root.
+    Beside them V^(1/5) exp(eta) into root.
     """
     scratch, first = np.empty((6, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
     cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
-    others_at = int(table[OTHERS_AT])
+    others_at, plate = int(table[OTHERS_AT]), _plate(table)
+    lowest = table[_BLOCKS + START]
     x_max, log_chi_max, y_1 = table[X_MAX], table[LOG_CHI_MAX], math.exp(-c_chi)
     outside = 0
     for start in range(0, speed.size, _CHUNK):
@@ -489,9 +549,14 @@ def outcomes(
         x, log_chi, along, log_w = scratch[0, :n], scratch[1, :n], scratch[2, :n], scratch[3, :n]
         inside = _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, log_w, roots)
         for i in range(n):
-            ratio, square = r[i] / h[i], roots[i] * roots[i]
-            out.inelasticity[start + i] = c_lam * roots[i] * (ratio * ratio)
-            out.yield_ratio[start + i] = y_1 / (square * square)
+            out.inelasticity[start + i] = _inelasticity(plate, c_lam, roots[i], r[i] / h[i])
+        if plate.waves.bulk_factor > 0.0:
+            for i in range(n):  # chi = w_m/y
+                out.yield_ratio[start + i] = _exp(log_w[i] - log_chi[i])
+        else:
+            for i in range(n):
+                square = roots[i] * roots[i]
+                out.yield_ratio[start + i] = y_1 / (square * square)
         if inside:
             _locate_all(table, x, log_chi, first[:n], along, scratch[4, :n], scratch[5, :n])
             # by name here: a tuple of arrays that is handed on is counted for each impact
@@ -501,7 +566,7 @@ def outcomes(
                 others = _other_fields(table, np.uint64(others_at + 3 * at), s, t)
                 out.contact_time[start + i] = others.contact_time
                 out.wave_rate[start + i] = others.wave_rate
-                log_chi[i] = (others.growth - 1.0) * max(log_chi[i], 0.0)
+                log_chi[i] = (others.growth - 1.0) * max(log_chi[i], lowest)
             for i in range(n):
                 out.elastic_compression[start + i] = _exp(log_w[i])
             for i in range(n):
@@ -545,17 +610,20 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
 
 
 @kernel(cache=True)
-def yield_speeds(table: Array, c_lam: Array, c_chi: float, out: Array) -> None:
+def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Array) -> None:
     """Speeds at which chi = 1 into out; NaN where lambda leaves the table before.
 
     d(ln chi)/d(ln V) lies between 2/3 and 4/5, so a step with slope 3/4 contracts by 0.12 at least.
     """
+    plate = _plate(table)
     for n in range(out.size):
         log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
-            lam = c_lam[n] * math.exp(0.2 * log_speed)
+            root = math.exp(0.2 * log_speed)
+            eta = _eta(plate, root, ratio[n])
+            lam = _inelasticity(plate, c_lam, root * math.exp(eta), ratio[n])
             x = lam / (lam + table[STRETCH])
             if not x <= table[X_MAX]:
                 break
-            log_speed -= (c_chi + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
+            log_speed -= (c_chi - eta + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
         out[n] = math.exp(log_speed) if x <= table[X_MAX] else math.nan

@@ -103,7 +103,7 @@ def build(
     RuntimeError
         If a node does not solve; the message names it.
     """
-    settings = settings or Settings()
+    settings = settings or (Settings() if law.is_hertz else grids.on_demand(law))
     grid = grids.grid(law, settings, settings.inelasticity_nodes, settings.log_overload_step)
     rows = grid.inelasticity.size
     lam, chi = np.repeat(grid.inelasticity, grid.columns), np.exp(grid.log_overload()).ravel()
@@ -141,7 +141,7 @@ def _states(table: Table, progress: Progress) -> NDArray[np.float32]:
     """Shapes at the nodes; their error is far above that of single precision."""
     law, rtol, grid = table.law, table.settings.rtol, shape_grid(table)
     chi = np.exp(grid.log_overload())
-    w_m = grids.elastic_compressions(grid.inelasticity, rtol)
+    w_m = grids.elastic_compressions(law, grid.inelasticity, rtol)
     out = np.empty((*chi.shape, 2, shapes.SIZE), dtype=np.float32)
 
     def solve(part: slice) -> None:

@@ -85,8 +85,24 @@ def _growth(ratio: Array, grid: Grid) -> Array:
     log_chi = grid.log_overload()
     with np.errstate(invalid="ignore", divide="ignore"):
         growth = 1.0 + np.log(ratio) / log_chi
-    growth[:, 0] = 1.0  # the limit at yield
+    at_yield = log_chi[0] == 0.0
+    if grid.segments[0].start[0] == 0.0:
+        growth[:, at_yield] = 1.0  # Hertz's limit
+        return growth
+    for column in np.flatnonzero(at_yield):
+        side = 1 if column > 0 and not at_yield[column - 1] else -1
+        near = column - side * np.arange(1, 6)
+        growth[:, column] = _lagrange(log_chi[0, near], growth[:, near])
     return growth
+
+
+def _lagrange(x: Array, values: Array) -> Array:
+    """Continue values (n, m) at x (m,) to x = 0, by the polynomial through all of them."""
+    gaps = x[:, None] - x[None, :]
+    ahead = np.broadcast_to(-x, gaps.shape).copy()
+    np.fill_diagonal(gaps, 1.0)
+    np.fill_diagonal(ahead, 1.0)
+    return np.asarray(values @ (ahead / gaps).prod(axis=1))
 
 
 def pack(grid: Grid, fields: dict[str, Array]) -> Array:

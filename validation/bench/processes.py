@@ -44,8 +44,8 @@ model.restitution(0.5, 1e-3, 1e-3)
 first = time.perf_counter() - start
 start = time.perf_counter()
 from contactlaw import laws, table
-from contactlaw.table import cache
-table.build(model.force_law, cache.ON_DEMAND)
+from contactlaw.table.grid import on_demand
+table.build(model.force_law, on_demand(model.force_law))
 print(first, time.perf_counter() - start)
 """
 ATTACH = """

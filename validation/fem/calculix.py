@@ -1,4 +1,4 @@
-"""The same indentation and one impact by CalculiX, a program that shares no line with this solver.
+"""The same indentations and one impact by CalculiX, a program that shares no line with this solver.
 
 G. Dhondt, K. Wittig, CalculiX, www.calculix.de; the Debian package is ``calculix-ccx``. Units in
 its input are mm, N, MPa and us, in which a density has the number that it has in kg/m^3.
@@ -118,7 +118,7 @@ def deck(
     Parameters
     ----------
     pair : contactlaw.Pair
-        Materials of hemisphere and block.
+        Materials of hemisphere and block; what has a yield strength yields.
     radius, depth : float
         Radius of the hemisphere and largest compression [m].
     size : float
@@ -290,8 +290,6 @@ def _bodies(pair: cl.Pair, radius: float, above: Mesh, below: Mesh, hole: float 
     nodes = np.concatenate([above.nodes, below.nodes])
     axis = nodes[:, 0] == 0.0
     nodes[axis, 0] = hole
-    modulus = pair.sphere.youngs_modulus * _MPA
-    strength = pair.sphere.require_yield_strength("calculix") * _MPA
     return (
         "*NODE\n"
         + "".join(f"{n + 1}, {r:.9e}, {z:.9e}, 0.\n" for n, (r, z) in enumerate(nodes * _MM))
@@ -300,7 +298,6 @@ def _bodies(pair: cl.Pair, radius: float, above: Mesh, below: Mesh, hole: float 
         + _surface("ABOVE", above, 0, _REACH * radius)
         + _surface("BELOW", below, len(above.elements), _REACH * radius)
         + _material("SPHERE", pair.sphere)
-        + f"*PLASTIC\n{strength:.6e}, 0.\n{strength + _HARDENING * modulus:.6e}, 1.\n"
         + _material("PLATE", pair.plate)
         + _set("AXIS", np.flatnonzero(axis))
         + "*BOUNDARY\nAXIS, 1, 1\n"
@@ -340,9 +337,12 @@ def _surface(name: str, body: Mesh, first: int, reach: float) -> str:
 
 def _material(name: str, material: cl.Material) -> str:
     modulus, ratio = material.youngs_modulus * _MPA, material.poissons_ratio
+    strength = (material.yield_strength or 0.0) * _MPA  # a body that has none is elastic
     return (
         f"*SOLID SECTION, ELSET={name}, MATERIAL={name}\n*MATERIAL, NAME={name}\n"
         f"*ELASTIC\n{modulus:.6e}, {ratio:g}\n*DENSITY\n{material.density:.6e}\n"
+        + f"*PLASTIC\n{strength:.6e}, 0.\n{strength + _HARDENING * modulus:.6e}, 1.\n"
+        * bool(strength)
     )
 
 

@@ -8,6 +8,7 @@ the radius.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -40,6 +41,11 @@ DEPTHS = {
     700.0: (800.0, 2400.0, 7300.0),
     1200.0: (2400.0, 7200.0, 21400.0),
     2000.0: (7000.0, 20000.0, 59500.0),
+}
+SHARED = {  # for other moduli
+    23.0: (2.5, 5.0, 10.0),
+    100.0: (3.0, 6.0, 12.0, 25.0, 50.0, 149.0),
+    400.0: (60.0, 200.0, 800.0, 2380.0),
 }
 YIELDING = ("sphere", "plate", "both")
 
@@ -112,9 +118,11 @@ def presses() -> list[Press]:
                 listed += [Press(ratio, ratio / factor, way), Press(ratio / factor, ratio, way)]
     # what else may matter: moduli, Poisson's ratios, friction
     for yielding in ("sphere", "plate"):
+        for ratio, depths in SHARED.items():
+            for depth in depths:
+                for share in (0.15, 0.85):
+                    listed.append(_pressed(ratio, yielding, depth, share=share))
         for ratio, depth in ((23.0, 5.0), (100.0, 25.0), (400.0, 2380.0)):
-            for share in (0.15, 0.85):
-                listed.append(_pressed(ratio, yielding, depth, share=share))
             for nu in (0.2, 0.4):
                 listed.append(_pressed(ratio, yielding, depth, poissons_ratio=nu))
             listed.append(_pressed(ratio, yielding, depth, friction=0.0))
@@ -145,7 +153,9 @@ def press(job: Press) -> dict[str, Any]:
     top = int(d.argmax())
     end = top + int(np.argmax(np.append(f[top:] <= 1e-4 * f[top], True)))
     loading = float(np.trapezoid(np.append(0.0, f[: top + 1]), np.append(0.0, d[: top + 1])))
-    left = float(np.interp(0.0, [f[end], f[end - 1]], [d[end], d[end - 1]])) if end < d.size else 0.0
+    left = (
+        float(np.interp(0.0, [f[end], f[end - 1]], [d[end], d[end - 1]])) if end < d.size else 0.0
+    )
     down = np.append(f[top:end], 0.0), np.append(d[top:end], left)
     share = np.linspace(0.0, 1.0, SAMPLES)
     return {
@@ -194,18 +204,26 @@ def indentations(processes: int) -> None:
 _STEEL = "carbon-steel-1020"
 _THICK = 5e-3  # [m]
 IMPACT_DEPTHS = {
-    11.0: (1.5, 2.5, 4.3),
-    16.0: (1.3, 2.5, 5.0, 9.0),
-    23.0: (1.2, 2.0, 4.0, 8.0, 16.0),
-    40.0: (1.5, 4.0, 10.0, 22.0),
-    60.0: (3.0, 10.0, 30.0, 52.0),
-    100.0: (1.3, 2.0, 4.0, 10.0, 30.0, 100.0),
-    200.0: (5.0, 20.0, 100.0, 400.0),
-    400.0: (30.0, 150.0, 600.0, 2000.0),
-    800.0: (100.0, 500.0, 2000.0, 8000.0),
-    1500.0: (500.0, 3000.0, 25000.0),
+    11.0: (1.5, 3.5),
+    16.0: (2.5, 8.0),
+    23.0: (1.2, 3.0, 8.0, 16.0),
+    40.0: (3.0, 15.0),
+    60.0: (6.0, 40.0),
+    100.0: (1.5, 4.0, 15.0, 100.0),
+    200.0: (10.0, 300.0),
+    400.0: (40.0, 300.0, 2000.0),
+    800.0: (150.0, 1500.0, 8000.0),
+    1500.0: (1000.0, 25000.0),
 }
-THIN = {23.0: (3.0,), 100.0: (3.0, 30.0), 400.0: (30.0, 300.0, 1500.0)}
+THIN = {23.0: (3.0,), 100.0: (10.0,), 400.0: (50.0, 1000.0)}
+# and of other moduli: a body that yields, stiffer and softer than the other
+OTHER_MODULI = (
+    ("stainless-steel-304", "glass", "sphere"),
+    ("glass", "stainless-steel-304", "plate"),
+    ("aluminium-6061-t6", "alumina", "sphere"),
+    ("alumina", "aluminium-6061-t6", "plate"),
+)
+OTHER_DEPTHS = {40.0: (2.0, 12.0), 120.0: (6.0, 60.0), 450.0: (50.0, 600.0)}
 ELASTIC_PAIRS = (
     ("glass", "stainless-steel-304"),
     ("stainless-steel-304", "glass"),
@@ -244,20 +262,41 @@ def impacts() -> list[Case]:
     ]
     for depths, thicknesses in (
         (IMPACT_DEPTHS, (_THICK,)),
-        (THIN, (1e-3 / 0.6, 1e-3 / 1.1, 1e-3 / 1.67)),
+        (THIN, (1e-3 / 0.6, 1e-3 / 1.67)),
     ):
         for ratio, ways in depths.items():
             for yielding in YIELDING:
                 for depth in ways:
                     for thickness in thicknesses:
                         listed.append(_impact(ratio, yielding, depth, thickness))
+
+    for sphere, plate, yielding in OTHER_MODULI:
+        for ratio, ways in OTHER_DEPTHS.items():
+            listed += [_other_impact(sphere, plate, yielding, ratio, depth) for depth in ways]
     return listed
 
 
+def _scaled(pair: cl.Pair, name: str, ratio: float) -> str:
+    """Name of a material whose strength is scaled to an E*/sigma_Y in this pair."""
+    strength = cl.material(name).require_yield_strength("fem")
+    return f"{name}, yield strength x {pair.effective_modulus / ratio / strength:.6g}"
+
+
+def _other_impact(sphere: str, plate: str, yielding: str, ratio: float, depth: float) -> Case:
+    pair = cl.Pair(sphere, plate)
+    if yielding == "sphere":
+        sphere = _scaled(pair, sphere, ratio)
+    else:
+        plate = _scaled(pair, plate, ratio)
+    case = Case(
+        1.0, _THICK, 1e-3, sphere, plate,
+        yields=yielding == "sphere", plate_yields=yielding == "plate",
+    )  # fmt: skip
+    return dataclasses.replace(case, speed=_speed(case.pair, depth))
+
+
 def _impact(ratio: float, yielding: str, depth: float, thickness: float) -> Case:
-    steel = cl.Pair(_STEEL, _STEEL)
-    factor = steel.effective_modulus / ratio / steel.sphere.require_yield_strength("fem")
-    body = f"{_STEEL}, yield strength x {factor:.6g}"
+    body = _scaled(cl.Pair(_STEEL, _STEEL), _STEEL, ratio)
     pair = Case(1.0, thickness, 1e-3, body, body).pair
     return Case(
         _speed(pair, depth), thickness, 1e-3, body, body,

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import contactlaw as cl
-from validation.fem import cases, journal, store
+from validation.fem import cases, journal
 from validation.fem.cases import Case
 
 RADIUS = 1e-3  # [m]

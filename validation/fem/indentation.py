@@ -110,7 +110,10 @@ def indent(
     driven = np.flatnonzero(system.x[:first, 1] > radius * (1.0 - 1e-9))
     foot = first + np.flatnonzero(meshes[1].nodes[:, 1] < -block * (1.0 - 1e-9))
     system.inverse_mass[np.concatenate([driven, foot]), 1] = 0.0
-    wave = math.sqrt((system.sphere.bulk + 2 * system.sphere.shear) / pair.sphere.density)
+    wave = min(
+        math.sqrt((body.bulk + 2.0 * body.shear) / material.density)
+        for body, material in zip((system.sphere, system.plate), materials, strict=True)
+    )
     duration = slowness * _TRANSITS * radius / wave
     interval = duration / _SAMPLES
     load = np.zeros_like(system.x)

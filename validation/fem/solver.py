@@ -74,9 +74,7 @@ def advance(system: System, load: Array, dt: float, steps: int) -> tuple[float, 
     return total / steps, touched
 
 
-def body(
-    mesh: Mesh, material: Material, first: int, bending: float | Array, yields: bool
-) -> Body:
+def body(mesh: Mesh, material: Material, first: int, bending: float | Array, yields: bool) -> Body:
     """Elements of a mesh, at rest; `first` is the number of the mesh's first node."""
     m = len(mesh.elements)
     ratio = material.poissons_ratio

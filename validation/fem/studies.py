@@ -17,9 +17,12 @@ from contactlaw.closed_form import eta
 from validation.fem import calculix, cases, store
 from validation.fem.cases import Case
 from validation.fem.impact import expect, free_width, impact
-from validation.fem.indentation import BLOCK, indent
+from validation.fem.indentation import BLOCK, Indentation, indent
 from validation.fem.solver import SETTINGS
+from validation.fem.yielding import BOTH, BOTH_DEPTH, BOTH_SIZE, JOBS, SOFT, press
 from validation.paper import ETA, PAIR, RADIUS, YIELD_COMPRESSION
+
+Pressed = dict[str, tuple[NDArray[Any], str]]  # of one indentation: values and unit by name
 
 SLENDERNESS = (0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.8)  # R/H
 SPEED_RATIO = (0.3, 0.6, 1.0, 1.5, 2.2, 3.5, 5.0, 7.0)  # V0/V_Y0
@@ -61,14 +64,7 @@ def indentation(processes: int) -> None:
     jobs["10_calculix_mesh"] = {"depth": CALCULIX_DEPTH * unit, "size": CALCULIX_SIZE}
     jobs["30_elastic"] = {"depth": 30 * unit, "yields": False}
     jobs["1_elastic"] = {"depth": unit, "yields": False, "size": 0.01}
-    data: dict[str, NDArray[Any]] = {}
-    units: dict[str, str] = {}
-    with cases.workers(processes) as pool:
-        done = pool.map(_indented, jobs.values())
-        bar = tqdm(done, "indentation", len(jobs), disable=None, leave=False)
-        for name, outcome in zip(jobs, bar, strict=True):
-            for key, (values, unit) in outcome.items():
-                data[f"{key}_{name}"], units[f"{key}_{name}"] = values, unit
+    data, units = _all_pressed(_indented, jobs, "indentation", processes)
     store.write(
         "indentation",
         "hemisphere pressed into a block and drawn back; the suffix is the depth in yield "
@@ -82,14 +78,61 @@ def indentation(processes: int) -> None:
     )
 
 
-def _indented(job: dict[str, Any]) -> dict[str, tuple[NDArray[Any], str]]:
-    press = indent(PAIR, RADIUS, **job)
+def yielding(processes: int) -> None:
+    """Hold a block that yields, and two bodies that do, to what is known of them."""
+    data, units = _all_pressed(_yielded, {name: name for name in JOBS}, "yielding", processes)
+    store.write(
+        "yielding",
+        "indentations in which the block may yield, with the plastic work in each body; the suffix "
+        "is the name in `yielding.JOBS`: block (yields under an elastic sphere), flat (sphere "
+        "yields on a rigid mirror), pair (equal materials, both yield) and its image in the "
+        "mirror, both (pair and mesh of study calculix_block)",
+        data,
+        units,
+        mesh=f"element sizes in `yielding.JOBS`, block of {BLOCK:g} R",
+        friction="0; 0.1 in both",
+        radius=RADIUS,
+        yield_strength=SOFT.require_yield_strength("fem"),
+        plane_modulus=SOFT.plane_modulus,
+        **SETTINGS,
+    )
+
+
+def _all_pressed(
+    one: Callable[[Any], Pressed], jobs: dict[str, Any], title: str, processes: int
+) -> tuple[dict[str, NDArray[Any]], dict[str, str]]:
+    """Compute indentations side by side; arrays and units, the job's name added to theirs."""
+    data: dict[str, NDArray[Any]] = {}
+    units: dict[str, str] = {}
+    with cases.workers(processes) as pool:
+        bar = tqdm(pool.map(one, jobs.values()), title, len(jobs), disable=None, leave=False)
+        for name, outcome in zip(jobs, bar, strict=True):
+            for key, (values, unit) in outcome.items():
+                data[f"{key}_{name}"], units[f"{key}_{name}"] = values, unit
+    return data, units
+
+
+def _indented(job: dict[str, Any]) -> Pressed:
+    return _measured(indent(PAIR, RADIUS, **job))
+
+
+def _yielded(name: str) -> Pressed:
+    found = press(name)
+    bodies = {"sphere": found.system.sphere, "block": found.system.plate}
+    works = {
+        f"work_{role}": (np.array(2.0 * math.pi * body.work[0]), "J")
+        for role, body in bodies.items()
+    }
+    return {**_measured(found), **works}
+
+
+def _measured(done: Indentation) -> Pressed:
     return {
-        "compression": (press.compression, "m"),
-        "force": (press.force, "N"),
-        "contact_radius": (press.contact_radius, "m"),
-        "kinetic": (np.array(press.kinetic), "-"),
-        "plastic": (np.array(press.plastic), "-"),
+        "compression": (done.compression, "m"),
+        "force": (done.force, "N"),
+        "contact_radius": (done.contact_radius, "m"),
+        "kinetic": (np.array(done.kinetic), "-"),
+        "plastic": (np.array(done.plastic), "-"),
     }
 
 
@@ -120,6 +163,23 @@ def calculix_indentation(_: int) -> None:
         elements=calculix.elements(calculix.deck(PAIR, RADIUS, depth, CALCULIX_SIZE)),
         **calculix.SETTINGS,
         **calculix.facts(PAIR),
+    )
+
+
+@_where_installed
+def calculix_block(_: int) -> None:
+    """Press into a block that yields, as the sphere does, with CalculiX."""
+    compression, force = calculix.run(BOTH, RADIUS, BOTH_DEPTH, BOTH_SIZE)
+    store.write(
+        "calculix_block",
+        "an indentation in which both bodies yield by CalculiX: CAX4 elements, surface-to-surface "
+        "contact",
+        {"compression": compression, "force": force},
+        {"compression": "m", "force": "N"},
+        mesh=f"element size {BOTH_SIZE:g} R, block of {BLOCK:g} R",
+        elements=calculix.elements(calculix.deck(BOTH, RADIUS, BOTH_DEPTH, BOTH_SIZE)),
+        **calculix.SETTINGS,
+        **calculix.facts(BOTH),
     )
 
 
@@ -276,7 +336,9 @@ def edge(processes: int) -> None:
 STUDIES: dict[str, Callable[[int], None]] = {
     "verification": verification,
     "indentation": indentation,
+    "yielding": yielding,
     "calculix": calculix_indentation,
+    "calculix_block": calculix_block,
     "calculix_impact": calculix_impact,
     "matrix": matrix,
     "paper": paper,

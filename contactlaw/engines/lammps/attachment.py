@@ -236,8 +236,6 @@ class LammpsPlates:
         shared["lammps"] = handle
         for function in ("extract_atom", "get_thermo"):
             shared[function] = _address(self._lmp, f"lammps_{function}")
-        self._law = self._model.force_law.data
-        shared["law"], shared["law_size"] = self._law.ctypes.data, self._law.size
         for field, buffer in self._names.items():
             shared[field] = ctypes.addressof(buffer)
         for name in ("dt", "atime", "atimestep"):

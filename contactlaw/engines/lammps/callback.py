@@ -61,7 +61,6 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     shared.calls += 1
     if n == 0:
         return
-    law = array_at(shared.law, shared.law_size, np.float64)
     dt = array_at(shared.dt, 1, np.float64)[0]
     time, at_step = (
         array_at(shared.atime, 1, np.float64),
@@ -103,7 +102,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         if count > 1 and advancing:
             hand_over(shared, plates, bead)
         for p in range(count):
-            interact(law, shared, clock, plates, p, bead)
+            interact(shared, clock, plates, p, bead)
 
 
 @functools.cache

@@ -20,10 +20,12 @@ from contactlaw.engines.lammps.memory import (
     FIRST,
     FORCE,
     LARGEST,
+    MOBILITY,
     OWNER,
     PLATE,
     SPEED,
     SPRING,
+    STIFFENING,
     TOLD,
     WAVE,
     array_at,
@@ -33,6 +35,7 @@ from contactlaw.engines.lammps.memory import (
 )
 from contactlaw.engines.record import IMPACT
 from contactlaw.equation import force
+from contactlaw.equation.waves import Waves
 from contactlaw.physical.validity import Limits, flags_of
 from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, advance, resized
 
@@ -209,8 +212,10 @@ def _end(
     """Put a contact whose force has ended in this step into the record."""
     row, scale = bead.history, spring.scale
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
+    if last.stiffening > 0.0:
+        unit *= last.stiffening
     dm = last.largest_compression / scale
-    lost = force.loss(law, dm) * unit * scale if dm > 1.0 else 0.0
+    lost, other = force.loss(law, dm) * unit * scale, force.other_loss(law, dm) * unit * scale
     told, row[at + TOLD] = row[at + TOLD], lost
     if not row[at + SPEED] > 0.0:  # it was put there and then left
         return
@@ -229,18 +234,34 @@ def _end(
     record.approach_speed, record.restitution = row[at + SPEED], -u / row[at + SPEED]
     record.contact_time = row[at + DURATION] - since
     record.peak_force = force.loading(law, math.sqrt(dm)) * unit
-    record.plastic_energy, record.wave_energy = lost - told, row[at + WAVE]
-    record.flags = _flags(bead, plate, spring, record.approach_speed, record.contact_time)
+    # a contact that goes on where another has dented the bead loses what is left of the loop
+    share = 1.0 - other / lost if lost > 0.0 else 0.0
+    record.plastic_energy, record.wave_energy = share * (lost - told), row[at + WAVE]
+    record.other_energy = (1.0 - share) * (lost - told)
+    record.flags = _flags(
+        bead, plate, spring, record.approach_speed, record.contact_time,
+        last.largest_compression, record.peak_force,
+    )  # fmt: skip
     shared.record_count = n + 1
 
 
 @kernel
-def _flags(bead: Bead, plate: Any, spring: Spring, speed: float, contact_time: float) -> int:
+def _flags(
+    bead: Bead,
+    plate: Any,
+    spring: Spring,
+    speed: float,
+    contact_time: float,
+    compression: float,
+    force: float,
+) -> int:
     """Limits of the model that an impact exceeds."""
-    unit_time = (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # T_H
-    yield_ratio = plate.yield_compression * bead.r / (speed * unit_time)
-    limits = Limits(plate.slowness, plate.always, plate.yielded)
-    return flags_of(limits, bead.r, plate.thickness, yield_ratio, contact_time)
+    scale = speed * (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # V0 T_H
+    limits = Limits(
+        plate.slowness, plate.always, plate.yielded, plate.trusted, plate.fastest, plate.share,
+        plate.deepest, plate.bending, plate.damage,
+    )  # fmt: skip
+    return flags_of(limits, bead.r, plate.thickness, scale, contact_time, compression, force)
 
 
 @kernel
@@ -259,9 +280,19 @@ def _normal(
             complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, p, touch.x, deepest)
     elif touch.face and side != row[at + PLATE]:
         complain(shared, clock.step, bead.tag, row, memory.CROSSED, p, u, 0.0)
-    unit = Spring(plate.mass, plate.stiffness, plate.mobility, plate.scale, plate.relaxation)
+    waves = Waves(
+        plate.eta, plate.steepest, plate.bulk_factor,
+        plate.p1, plate.p2, plate.p3, plate.p4, plate.p5,
+    )  # fmt: skip
+    unit = Spring(
+        plate.mass, plate.stiffness, plate.mobility, plate.scale, plate.relaxation,
+        plate.transit, plate.bulk, plate.local, waves,
+    )  # fmt: skip
     spring = resized(unit, bead.r)
-    last = State(row[at + DISPLACEMENT], row[at + LARGEST], row[at + FORCE])
+    last = State(
+        row[at + DISPLACEMENT], row[at + LARGEST], row[at + FORCE], row[at + MOBILITY],
+        row[at + STIFFENING],
+    )  # fmt: skip
     state = advance(law, spring, last, touch.x, clock.dt)
     if state.force > 0.0 and last.force == 0.0:
         _begin(shared, clock, bead, p, at, spring, touch.x, u)
@@ -271,13 +302,15 @@ def _normal(
             row[at + SPEED] = u
             _check_step(shared, clock, bead, p, spring, u)
     square = last.force * last.force + state.force * state.force
-    row[at + WAVE] += 0.5 * clock.dt * spring.mobility * square
+    mobility = state.mobility if state.stiffening > 0.0 else spring.mobility
+    row[at + WAVE] += 0.5 * clock.dt * mobility * square
     if state.force == 0.0 and last.force > 0.0:
         _end(law, shared, clock, bead, plate, p, at, spring, last, touch, u)
     row[at + PLATE] = side
     row[at + DISPLACEMENT] = state.plate_displacement
     row[at + LARGEST] = state.largest_compression
     row[at + FORCE] = state.force
+    row[at + MOBILITY], row[at + STIFFENING] = state.mobility, state.stiffening
     if touch.x <= 0.0:
         row[at : at + shared.width] = 0.0
 
@@ -311,7 +344,7 @@ def _slide(
 
 
 @kernel
-def interact(law: Array, shared: Any, clock: Clock, plates: Any, p: int, bead: Bead) -> None:
+def interact(shared: Any, clock: Clock, plates: Any, p: int, bead: Bead) -> None:
     """Add the force of plate p to a bead, and keep the bead's history."""
     plate = plates[p]
     touch = _geometry(plate, bead)
@@ -332,6 +365,7 @@ def interact(law: Array, shared: Any, clock: Clock, plates: Any, p: int, bead: B
     if new and (touch.x <= 0.0 or not clock.advancing):
         return
     if clock.advancing:
+        law = array_at(plate.law, plate.law_size, np.float64)
         _normal(law, shared, clock, bead, plate, p, at, touch)
     push = bead.history[at + FORCE]
     bead.force[0] += push * touch.nx

@@ -22,16 +22,16 @@ carray: Any = numba.carray  # type: ignore[attr-defined]
 # approach speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already
 # [J]; with friction, the three components of the tangential spring [m].
 ERROR, OWNER, FIRST = range(3)
-PLATE, DISPLACEMENT, LARGEST, FORCE, DURATION, SPEED, WAVE, TOLD, SPRING = range(9)
+(PLATE, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD,
+ SPRING) = range(11)  # fmt: skip
 _SLOTS = 3  # plates that a bead may touch at once; a corner has three
 
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, TOO_MANY_PLATES, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST,
  NOT_FINITE) = range(1, 9)  # fmt: skip
 
-# Integers up to "records" are addresses, but for the size of the law; "calls" counts those of the C
-# function.
+# Integers up to "records" are addresses; "calls" counts those of the C function.
 SHARED = np.dtype(
-    [(name, "i8") for name in ("extract_atom", "get_thermo", "law", "law_size")]
+    [(name, "i8") for name in ("extract_atom", "get_thermo")]
     + [
         (name, "i8")
         for name in ("lammps", "v", "f", "radius", "rmass", "omega", "torque", "history")

@@ -10,22 +10,29 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.equation.waves import Waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material
+from contactlaw.physical.validity import Limits
 from contactlaw.softsphere import Spring, unit_spring
 
 Vector = Sequence[float]
 
 _SQUARE = 1e-9  # cosine of two edges that count as perpendicular: rounding of a rotated pair
 
-SPRING = [(name, "f8") for name in Spring._fields]
+SPRING = [(name, "f8") for name in (*Spring._fields[:-1], *Waves._fields)]
 ROW = np.dtype(
     [("corner", "f8", 3), ("a", "f8", 3), ("b", "f8", 3), ("normal", "f8", 3)]
     + [("length_a", "f8"), ("length_b", "f8"), ("tangential", "f8"), *SPRING]
-    # of the flags of an impact: d_Y over the bead's radius, and what a Limits has
-    + [("thickness", "f8"), ("yield_compression", "f8")]
-    + [("slowness", "f8"), ("always", "i8"), ("yielded", "i8")],
+    # of the flags of an impact, beside what a Limits has
+    + [("thickness", "f8")]
+    + [
+        (name, "i8" if "int" in str(kind) else "f8")
+        for name, kind in Limits.__annotations__.items()
+    ]
+    # address and size of the law
+    + [("law", "i8"), ("law_size", "i8")],
     align=True,
 )
 
@@ -95,10 +102,13 @@ def rows(plates: Sequence[Plate], model: ImpactModel) -> NDArray[np.void]:
         row["normal"] = np.cross(row["a"], row["b"])
         row["tangential"] = _tangential(own.pair.sphere, own.pair.plate)
         spring = unit_spring(own, plate.thickness)
-        for name, value in (*spring._asdict().items(), *own.limits._asdict().items()):
+        springs, waves = spring._asdict(), spring.waves._asdict()
+        del springs["waves"]
+        for name, value in {**springs, **waves, **own.limits._asdict()}.items():
             row[name] = value
+        law = own.force_law.data
+        row["law"], row["law_size"] = law.ctypes.data, law.size
         row["thickness"] = plate.thickness
-        row["yield_compression"] = spring.scale if own.force_law.yields else math.inf
     return out
 
 
@@ -132,8 +142,8 @@ def checked(plates: Any, model: Any) -> list[Plate]:
         if not isinstance(plate, Plate):
             raise TypeError(f"plates: expected contactlaw.engines.lammps.Plate, got {plate!r}")
         own = plate.model
-        if own is not None and (own.force_law, own.pair.sphere) != (
-            model.force_law,
+        if own is not None and (own.force_law.family, own.pair.sphere) != (
+            model.force_law.family,
             model.pair.sphere,
         ):
             raise ValueError(

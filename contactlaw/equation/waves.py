@@ -1,0 +1,123 @@
+"""How a plate differs from a dashpot: the next orders of what it gives way to a force.
+
+An infinite thin plate is a dashpot. A real one radiates more the faster the force changes: shear
+and rotary inertia first, then waves through the thickness, until in a contact that is over before
+the lower face has answered it is a half-space. Over an impact all of that is a factor Phi on the
+plate's mobility, and so on lambda. It depends on h = H/(c T), the thickness over the way of a shear
+wave in the contact time T:
+
+    Phi = 1 + k1 h + ...     h << 1
+    Phi = k2 h^2             h > h_c = c_L/(2 c): no echo comes back in time
+
+with k2 h^2 + (1 - x)^3 P(x), x = h/h_c < 1 and a polynomial P, from one limit to the other. And in
+phase with the force a plate gives way less than the half-space of Hertz's law, by F/(E2' H) times a
+number: the contact is stiffer, K exp(2.5 eta), T = T_H exp(-eta), with
+
+    eta = b E1'/(E1' + E2') (R/H) sqrt(d/R)
+
+at the compression d = V0 T_H of an elastic impact; beyond yield the force grows no faster than d,
+and eta stays as it was at a few times the yield speed. See ``validation/derivations/mobility.md``.
+
+The contact time is that of an elastic impact: 3.2181 T without losses, longer by a factor
+1 + 0.175 lambda as far as the frequencies count that it is made of.
+
+Legend: c, c_L speeds of shear and pressure waves, nu Poisson's ratio.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+
+Array = NDArray[np.float64]
+
+CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
+SATURATION = 3.0  # V0 T_H over d_Y, by its root, from which on eta stays
+_LONGER = 0.175  # of the contact with lambda
+_RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
+
+
+class Waves(NamedTuple):
+    """Next orders of a plate, as kernels take them. All zero: there are none."""
+
+    eta: float  # at R = H and V0 T_H = R
+    steepest: float  # 1/h_c
+    bulk_factor: float  # k2
+    p1: float  # P = 1 + p1 x + p2 x^2 + p3 x^3 + p4 x^4 + p5 x^5
+    p2: float
+    p3: float
+    p4: float
+    p5: float
+
+
+THIN = Waves(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""The plate of the paper, a dashpot at any frequency."""
+
+
+def waves(poissons_ratio: float, local: float = 0.0) -> Waves:
+    """Next orders of plates with this Poisson's ratio, and this b E1'/(E1' + E2').
+
+    Examples
+    --------
+    >>> one = waves(0.3)
+    >>> [round(one.bulk_factor * h**2 + near_field(one, h), 2) for h in (0.0, 0.1, 1.0)]
+    [1.0, 1.12, 6.1]
+    """
+    nu = min(max(poissons_ratio, _RANGE[0]), _RANGE[1])
+    h_c = 0.5 * math.sqrt(2.0 * (1.0 - nu) / (1.0 - 2.0 * nu))
+    k1 = 0.54268 * math.sqrt(6.0 * (1.0 - nu))
+    k2 = 6.1035 - 4.848 * (nu - 0.3) + 5.63 * (nu - 0.3) ** 2
+    x = np.linspace(0.0, 1.0, 65)[1:-1]
+    h, n = x * h_c, 6.0 / h_c**1.2
+    exact = ((1.0 + k1 * h + 0.95 * h**2) ** n + (k2 * h**2) ** n) ** (1.0 / n)
+    p1, fall = 3.0 + k1 * h_c, (1.0 - x) ** 3
+    rest = exact - k2 * h**2 - fall * (1.0 + p1 * x)
+    powers = (fall * x ** np.arange(2, 6)[:, None] / exact).T
+    others = np.linalg.lstsq(powers, rest / exact, rcond=None)[0]
+    return Waves(local, 1.0 / h_c, k2, p1, *map(float, others))
+
+
+@kernel(inline=True)
+def near_field(waves: Waves, h: float) -> float:
+    """Phi less its half-space part k2 h^2; 0 for an h that is infinite, or no number."""
+    x = h * waves.steepest
+    powers = 1.0 + x * (waves.p1 + x * (waves.p2 + x * (waves.p3 + x * (waves.p4 + x * waves.p5))))
+    left = 1.0 - x
+    return left * left * left * powers if x < 1.0 else 0.0
+
+
+@kernel(inline=True)
+def with_waves(waves: Waves, thin: float, h: float, bulk: float) -> float:
+    """Inelasticity lambda, all orders in.
+
+    From lambda of the thin plate, h for a loss-free contact, and the product of the first with the
+    square of the second, which stays finite on a half-space.
+    """
+    longer = 1.0 / (1.0 + _LONGER * thin)
+    return thin * near_field(waves, h * longer) + waves.bulk_factor * bulk * (longer * longer)
+
+
+@kernel(cache=True)
+def _fill(
+    waves: Waves, thin: Array, h: Array, bulk: Array, eta: Array, lam: Array, stiffer: Array
+) -> None:
+    for n in range(lam.size):
+        more = math.exp(eta[n])
+        stiffer[n] = more
+        lam[n] = more * with_waves(waves, thin[n], h[n] * more, bulk[n] * more * more)
+
+
+def next_orders(
+    waves: Waves, thin: Array, h: Array, bulk: Array, eta: Array
+) -> tuple[Array, Array]:
+    """Inelasticity with all orders in, and exp(eta), for arrays of one shape."""
+    if waves == THIN:
+        return thin, np.ones_like(thin)
+    lam, stiffer = np.empty(thin.size), np.empty(thin.size)
+    _fill(waves, *(np.ravel(values) for values in (thin, h, bulk, eta)), lam, stiffer)
+    return lam.reshape(thin.shape), stiffer.reshape(thin.shape)

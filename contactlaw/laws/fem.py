@@ -1,0 +1,249 @@
+"""fem: a law read off finite elements, for bodies of which either, both or neither may yield.
+
+`validation.fem.campaign` presses spheres into blocks and lets them fall on plates, E*/sigma_Y from
+11 to 2000 and compressions to a quarter of the radius; `validation.fem.fit` puts what came of it
+into the numbers of fem.json. With d the compression, dm the largest one so far, q = sqrt(d):
+
+    F = q^3 (1 + s q) / (1 + (q - 1) g(q))             loading; g = 0 below yield
+    W = (1 - phi) (1 - v(q)) W_l / (1 + (q - 1) h(q))  what unloading from q = sqrt(dm) gives back
+                                                       of the loading work W_l
+    dr = dm (1 - 1/(1 + (q - 1) k(q)))                 what remains of dm
+    F = Fm ((d - dr)/(dm - dr))^n                      unloading, with the n that gives back W
+
+s is the stiffening of a finite sphere, whose centre comes less near than Hertz's half-spaces let
+it; phi is what friction of 0.1 takes of any contact, v what an impact loses beyond a slow contact:
+the bodies go on vibrating, and flow more where inertia adds to the force. As long as the contact is small beside the sphere, w = sqrt(d/R) << 1, small-strain similarity makes g,
+h and k functions of q alone; where it is not, flattened spheres and indented plates part:
+
+    g = t (sum of g_ij t^i w^j),    t = (q - 1)/(q + 2)
+
+and likewise h, k, v and the plastic share of the loss, each for three cases: the sphere yields, the
+plate, or both alike. Where one body is stronger by a factor 1/z, the answer lies between that of
+both alike and that of the weaker body alone, by a share that falls from 1 at z = 1 to 0 at
+z = 0.36: the weaker body presses on the other with no more than 3 of its strengths, and the other
+yields at a mean pressure of 1.07 of its own.
+
+Legend: compressions in units of d_Y = 0.68 pi^2 sigma_Y^2 R/E*^2 of the weaker body, or of R where
+none yields; forces in K d_Y^1.5.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.polynomial import Polynomial
+from numpy.typing import NDArray
+
+from contactlaw.laws._branches import Loading, Unloading
+from contactlaw.laws._law import Law
+from contactlaw.laws.myc import C_YIELD
+
+Array = NDArray[np.float64]
+
+PARAMETERS = (
+    "sphere_ratio", "plate_ratio", "modulus_share", "poissons_ratio", "plate_poissons_ratio",
+)  # fmt: skip
+
+RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign
+_DEEPEST = (23.0, 0.25), (40.0, 0.1)  # E*/sigma_Y, and its deepest contacts, d/R
+_SMALLEST = 1e-8  # d/R; below, the contact's radius is under 1e-4 R and no stiffening to be seen
+SHIFT = 2.0  # of t
+_ALONE = 0.36  # z, below which the stronger body does not yield
+_POWERS = (5, 4)  # of t and w
+_GAUSS = np.polynomial.legendre.leggauss(40)
+
+
+@functools.cache
+def numbers() -> dict[str, Any]:
+    """Read what the fit has found."""
+    text = files("contactlaw.laws").joinpath("fem.json").read_text("utf-8")
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def friction_loss(
+    modulus_share: float, poissons_ratio: float, plate_poissons_ratio: float, powers: list[float]
+) -> float:
+    """Share phi of the loading work that friction of 0.1 takes of an elastic contact.
+
+    A polynomial in Dundurs' second parameter (Johnson 1985, Eq. 5.3), by which surfaces that are
+    pressed together slip on each other; equal bodies do not slip.
+    """
+    one, other = ((1.0 - 2.0 * nu) / (1.0 - nu) for nu in (poissons_ratio, plate_poissons_ratio))
+    mismatch = 0.5 * ((1.0 - modulus_share) * one - modulus_share * other)
+    return max(0.0, float(np.polynomial.polynomial.polyval(mismatch, powers)))
+
+
+def _sized(powers: list[list[float]]) -> Array:
+    """Powers of t and w, filled up with zeros."""
+    found = np.array(powers)
+    return np.pad(found, [(0, most - n) for most, n in zip(_POWERS, found.shape, strict=True)])
+
+
+def deepest(ratio: float) -> float:
+    """Largest compression over R that the law was made for, at an E*/sigma_Y (0: elastic)."""
+    (low, deep), (high, shallow) = _DEEPEST
+    return float(np.exp(np.interp(ratio, [low, high], np.log([deep, shallow]))))
+
+
+class Curves:
+    """What the law says for a pair, as functions of the root compression q.
+
+    Parameters
+    ----------
+    sphere_ratio, plate_ratio : float
+        E*/sigma_Y; 0 for a body that does not yield.
+    modulus_share : float
+        The sphere's share E1'/(E1' + E2') of the moduli.
+    poissons_ratio, plate_poissons_ratio : float
+        Of the sphere and of the plate.
+    found : dict, optional
+        Numbers of another fit.
+    """
+
+    def __init__(
+        self,
+        sphere_ratio: float,
+        plate_ratio: float,
+        modulus_share: float,
+        poissons_ratio: float,
+        plate_poissons_ratio: float,
+        found: dict[str, Any] | None = None,
+    ) -> None:
+        found = found or numbers()
+        self.ratio = max(sphere_ratio, plate_ratio)
+        self.scale = C_YIELD * (math.pi / self.ratio) ** 2 if self.ratio else 1.0
+        constant, slope = found["stiffening"]
+        self.stiffening = (constant + slope * modulus_share) * math.sqrt(self.scale)
+        self.friction = friction_loss(
+            modulus_share, poissons_ratio, plate_poissons_ratio, found["friction"]
+        )
+        self._terms: dict[str, Array] = {}
+        if not self.ratio:
+            return
+        z = min(sphere_ratio, plate_ratio) / self.ratio
+        both = (max(0.0, z - _ALONE) / (1.0 - _ALONE)) ** float(found["blend"])
+        weaker, share, nu = "sphere", modulus_share, poissons_ratio
+        if plate_ratio > sphere_ratio:
+            weaker, share, nu = "plate", 1.0 - modulus_share, plate_poissons_ratio
+        for name, cases in found["curves"].items():
+            alone, alike = (_sized(cases[case]["usual"]) for case in (weaker, "both"))
+            # equal bodies share the flow, whatever their moduli; Poisson's ratio is that of both
+            for effect, by, left in (
+                ("share", share - 0.5, 1.0 - both), ("poissons_ratio", nu - 0.3, 1.0)
+            ):  # fmt: skip
+                if effect in cases[weaker]:
+                    change = by * left * _sized(cases[weaker][effect])
+                    alone, alike = alone + change, alike + change
+            self._terms[name] = (1.0 - both) * alone + both * alike
+
+    def _sum(self, name: str, q: Array) -> Array:
+        """Sum of the powers of t and w of one of the functions."""
+        t, w = (q - 1.0) / (q + SHIFT), math.sqrt(self.scale) * q
+        return np.asarray(np.polynomial.polynomial.polyval2d(t, w, self._terms[name]))
+
+    def _over(self, name: str, q: Array) -> Array:
+        """Compute 1 + (q - 1) t (sum of powers), the denominators of the law; 1 below yield."""
+        if not self.ratio:
+            return np.ones_like(q)
+        above = np.maximum(q, 1.0)
+        return 1.0 + (above - 1.0) ** 2 / (above + SHIFT) * self._sum(name, above)
+
+    def force(self, q: Array) -> Array:
+        """Loading force."""
+        return q**3 * (1.0 + self.stiffening * q) / self._over("loading", q)
+
+    def work(self, q: Array) -> Array:
+        """Loading work: exact up to yield, by Gauss' rule in ln q beyond."""
+        start = np.minimum(q, 1.0) if self.ratio else q
+        elastic = 0.4 * start**5 + self.stiffening / 3.0 * start**6
+        half = 0.5 * np.log(q / start)
+        u = half[..., None] * (1.0 + _GAUSS[0])
+        at = start[..., None] * np.exp(u)
+        return np.asarray(elastic + half * ((2.0 * at**2 * self.force(at)) @ _GAUSS[1]))
+
+    def residual(self, q: Array) -> Array:
+        """What remains of the compression q^2, over (q^2 - 1)^2; from yield on."""
+        over = (self._sum("residual", q)) / (q + SHIFT)
+        return q**2 * over / ((1.0 + (q - 1.0) ** 2 * over) * (q + 1.0) ** 2)
+
+    def recovery(self, q: Array) -> Array:
+        """Share of the loading work that unloading gives back."""
+        share = (1.0 - self.friction) / self._over("recovery", q)
+        return np.asarray(share * (1.0 - self.impact(q)))
+
+    def impact(self, q: Array) -> Array:
+        """Share of what a slow contact would give back that an impact does not."""
+        if not self.ratio:
+            return np.zeros_like(q)
+        above = np.maximum(q, 1.0)
+        return np.asarray((above - 1.0) / (above + SHIFT) * self._sum("impact", above))
+
+    def plastic(self, q: Array) -> Array:
+        """Plastic work over the loading work."""
+        if not self.ratio:
+            return np.zeros_like(q)
+        above = np.maximum(q, 1.0)
+        lost = 1.0 - self.recovery(above) / (1.0 - self.friction)
+        return np.asarray(lost * self._sum("plastic", above))
+
+
+@functools.cache
+def law(
+    sphere_ratio: float,
+    plate_ratio: float,
+    modulus_share: float,
+    poissons_ratio: float,
+    plate_poissons_ratio: float,
+) -> Law:
+    """Law of a pair, see `Curves`."""
+    given = sphere_ratio, plate_ratio, modulus_share, poissons_ratio, plate_poissons_ratio
+    return law_of(given, numbers())
+
+
+def law_of(given: tuple[float, ...], found: dict[str, Any]) -> Law:
+    """Law of a pair from the numbers of a fit."""
+    curves = Curves(*given, found=found)
+
+    def exponent(dm: Array) -> Array:
+        q = np.sqrt(dm)
+        left = (dm - 1.0) ** 2 * curves.residual(q) if curves.ratio else np.zeros_like(dm)
+        left = np.where(dm > 1.0, left, 0.0) if curves.ratio else left
+        return curves.force(q) * (dm - left) / (curves.recovery(q) * curves.work(q)) - 1.0
+
+    def loss(dm: Array) -> Array:
+        q = np.sqrt(dm)
+        return (1.0 - curves.recovery(q)) * curves.work(q)
+
+    def other(dm: Array) -> Array:
+        q = np.sqrt(dm)
+        return (1.0 - curves.recovery(q) - curves.plastic(q)) * curves.work(q)
+
+    first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
+    start = _SMALLEST / curves.scale
+    end = deepest(curves.ratio) / curves.scale
+    loading = [Loading(0.0, first)]
+    # a table begins at `start`, where it must not meet contacts without any loss
+    unloading = [Unloading(0.1 * start, np.zeros_like, exponent, loss=loss, other=other)]
+    if curves.ratio:
+        loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))
+        unloading.append(
+            Unloading(
+                1.0, lambda dm: curves.residual(np.sqrt(dm)), exponent, loss, other, order=2.0
+            )
+        )
+    return Law.of(
+        name=f"fem({','.join(f'{number:.6g}' for number in given)})",
+        source="finite elements of contactlaw, validation.fem.campaign",
+        yield_coefficient=C_YIELD if curves.ratio else None,
+        loading=loading,
+        unloading=unloading,
+        scale=curves.scale,
+        range=(start, end),
+        waves=float(found["plate"]),
+    )

@@ -1,0 +1,352 @@
+"""From the campaign of finite elements to the numbers of the law ``"fem"``.
+
+``python -m validation.fem fit`` reads the stored campaign and writes ``contactlaw/laws/fem.json``.
+Every step is linear least squares, or a search for one number, so that it gives the same numbers
+on every machine.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+import contactlaw as cl
+from contactlaw.equation import zener
+from contactlaw.laws import fem
+from contactlaw.physical.scaling import pair_numbers, scales, sphere_on_plate
+from validation.fem import cases, store
+from validation.fem.campaign import SAMPLES, YIELDING, yield_depth
+
+Array = NDArray[np.float64]
+
+FILE = Path(fem.__file__).with_name("fem.json")
+POWERS = (5, 4)  # of t and w in each function,
+SHARE_POWERS, RATIO_POWERS = (4, 2), (3, 1)  # and in what other moduli and Poisson's ratios change
+IMPACT_POWERS, IMPACT_SHARE_POWERS = (4, 3), (2, 2)
+_IMPACT_RIDGE = 3e-3
+_MOST_PLASTIC = 0.98  # of the loss; more is noise of losses that are hardly there
+_BEYOND_YIELD, _LEAST = 1.05, 0.1  # root compressions and CORs that v is fitted to
+_THINNEST = 1.85  # R/H
+# Fitted to impacts that yield nowhere, see `elastic`.
+FREE = {"stiffening": [0.84, -0.54], "friction": [0.0005, 0.0, 0.048, 0.135], "plate": 0.19}
+_RIDGE = 1e-4  # holds the powers that the data leave free
+_WELL_MESHED = 0.6  # root of depth over the largest one, from where on a loading curve is used
+
+
+class Pressed(NamedTuple):
+    """One indentation, in terms of the law's functions."""
+
+    q: float  # root of the largest compression over d_Y
+    w: float  # and over R
+    force: float  # over Hertz's
+    recovery: float  # unloading work over loading work
+    plastic: float  # plastic work over loading work
+    residual: float  # over the largest compression
+    path: Array  # (n, 3): q, w and force over Hertz's on the way there
+
+
+def presses(data: dict[str, Array], **chosen: Any) -> Iterator[tuple[int, float]]:
+    """Indices of the indentations with some inputs, and E*/sigma_Y of the weaker body."""
+    wanted = {"friction": 0.1, "slowness": 1.0, **chosen}
+    for n in range(data["depth"].size):
+        if all(math.isclose(data[name][n], value) for name, value in wanted.items()):
+            strains = data["sphere_yield_strain"][n], data["plate_yield_strain"][n]
+            finite = [float(strain) for strain in strains if strain > 0.0]
+            yield n, 1.0 / min(finite) if finite else 0.0
+
+
+def read(data: dict[str, Array], n: int, ratio: float) -> Pressed:
+    """Take one indentation from the campaign."""
+    depth, unit = float(data["depth"][n]), yield_depth(ratio)
+    share = np.linspace(0.0, 1.0, SAMPLES)
+    used = share >= _WELL_MESHED
+    d = share[used] ** 2 * depth
+    path = np.column_stack([np.sqrt(d / unit), np.sqrt(d), data["loading"][n][used] / d**1.5])
+    return Pressed(
+        q=math.sqrt(depth / unit),
+        w=math.sqrt(depth),
+        force=float(data["force"][n]) / depth**1.5,
+        recovery=float(data["unloading_work"][n] / data["loading_work"][n]),
+        plastic=float(data["plastic_work"][n] / data["loading_work"][n]),
+        residual=_residual(data, n),
+        path=path,
+    )
+
+
+def _residual(data: dict[str, Array], n: int) -> float:
+    """Residual over the largest compression: that of the power law with this unloading work.
+
+    The end of an unloading is sampled coarsely, its work and the whole of the curve are not.
+    """
+    depth, left, top = (float(data[name][n]) for name in ("depth", "residual", "force"))
+    d = left + np.linspace(0.0, 1.0, SAMPLES) * (depth - left)
+    f = data["unloading"][n] / top
+    work = float(data["unloading_work"][n]) / (top * depth)
+    used = f > 0.05
+
+    def off(residual: float) -> float:
+        exponent = (1.0 - residual) / work - 1.0
+        q = np.maximum(d[used] / depth - residual, 0.0) / (1.0 - residual)
+        return float(((q**exponent - f[used]) ** 2).sum())
+
+    most = min(1.3 * left / depth + 0.02, 0.999)
+    return float(minimize_scalar(off, bounds=(0.0, most), method="bounded").x)
+
+
+def stiffening(data: dict[str, Array]) -> tuple[list[float], float]:
+    """Fit s = c0 + c1 E1'/(E1' + E2'), and phi, to indentations that yield nowhere."""
+    rows, values, lost = [], [], []
+    for share in np.unique(data["share"]):
+        for friction in (0.0, 0.1):
+            for n, ratio in presses(data, share=float(share), friction=friction, across=11.0):
+                if ratio == 0.0:
+                    root = math.sqrt(data["depth"][n])
+                    rows.append([root, root * share])
+                    values.append(data["force"][n] / root**3 - 1.0)
+                    back = float(data["unloading_work"][n] / data["loading_work"][n])
+                    lost.append((friction, 1.0 - back))
+    found = np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0]
+    means = [np.mean([loss for f, loss in lost if f == friction]) for friction in (0.0, 0.1)]
+    return found.tolist(), float(means[1] - means[0])
+
+
+def case(
+    data: dict[str, Array], yielding: str, stiff: list[float], friction: float
+) -> dict[str, Any]:
+    """Fit the functions of one case: g, h, k and the plastic share."""
+    chosen, moduli, ratios = [], [], []
+    for n, ratio in presses(data):
+        strains = data["sphere_yield_strain"][n], data["plate_yield_strain"][n]
+        beyond = ratio and data["depth"][n] > 1.1 * yield_depth(ratio)
+        if beyond and np.allclose(strains, _strains(yielding, ratio)):
+            chosen.append(read(data, n, ratio))
+            moduli.append(float(data["share"][n]))
+            ratios.append(float(data["poissons_ratio"][n]))
+    share, nu = np.array(moduli), np.array(ratios)
+    q, w, recovery, plastic, residual = (
+        np.array([getattr(one, name) for one in chosen])
+        for name in ("q", "w", "recovery", "plastic", "residual")
+    )
+    own = share if yielding != "plate" else 1.0 - share  # of the body that yields
+    path = np.concatenate([one.path for one in chosen])
+    count = len(chosen[0].path)
+    on, nus, shares = (np.repeat(values, count) for values in (own, nu, share))
+    used = path[:, 0] > 1.0
+    elastic = 1.0 + (stiff[0] + stiff[1] * shares) * path[:, 1]
+    loss = 1.0 - recovery / (1.0 - friction)
+    moved = yielding != "both"
+    return {
+        "loading": _fit(
+            path[used, 0], path[used, 1], on[used], nus[used], (elastic / path[:, 2])[used], moved
+        ),
+        "recovery": _fit(q, w, own, nu, (1.0 - friction) / recovery, moved),
+        "residual": _fit(q, w, own, nu, 1.0 / (1.0 - residual), moved),
+        "plastic": _least_squares(
+            _basis(q, w, own, nu, moved),
+            np.minimum(plastic / loss, _MOST_PLASTIC),
+            np.sqrt(loss),
+            moved,
+        ),
+    }
+
+
+def _strains(yielding: str, ratio: float) -> tuple[float, float]:
+    return (
+        1.0 / ratio if yielding != "plate" else 0.0,
+        1.0 / ratio if yielding != "sphere" else 0.0,
+    )
+
+
+def _basis(q: Array, w: Array, share: Array, nu: Array, moved: bool) -> Array:
+    """Powers of t and w; those again times what the moduli and Poisson's ratio differ by."""
+    t = (q - 1.0) / (q + fem.SHIFT)
+    blocks = [(POWERS, np.ones_like(q))]
+    if moved:
+        blocks += [(SHARE_POWERS, share - 0.5), (RATIO_POWERS, nu - 0.3)]
+    return np.concatenate(
+        [
+            np.polynomial.polynomial.polyvander2d(t, 2.0 * w, [n - 1, m - 1]) * factor[:, None]
+            for (n, m), factor in blocks
+        ],
+        axis=1,
+    )
+
+
+def _fit(q: Array, w: Array, share: Array, nu: Array, over: Array, moved: bool) -> Any:
+    """Powers of which `over` is 1 + (q - 1) t (their sum), weighted by 1/over."""
+    rise = (q - 1.0) ** 2 / (q + fem.SHIFT)
+    basis = _basis(q, w, share, nu, moved)
+    return _least_squares(basis, (over - 1.0) / rise, rise / over, moved)
+
+
+def _least_squares(basis: Array, values: Array, weights: Array, moved: bool) -> Any:
+    count = basis.shape[1]
+    scale = weights / math.sqrt(len(values))
+    system = np.vstack([basis * scale[:, None], _RIDGE * np.eye(count)])
+    found = np.linalg.lstsq(system, np.append(values * scale, np.zeros(count)), rcond=None)[0]
+    blocks = [("usual", POWERS), ("share", SHARE_POWERS), ("poissons_ratio", RATIO_POWERS)]
+    return _parts(found, blocks if moved else blocks[:1])
+
+
+def _parts(found: Array, blocks: list[tuple[str, tuple[int, int]]]) -> Any:
+    """Cut coefficients into tables of powers of t and w, eight digits each."""
+    parts, at = {}, 0
+    for name, (n, m) in blocks:
+        powers = found[at : at + n * m].reshape(n, m) * 2.0 ** np.arange(m)
+        parts[name] = [[float(f"{x:.8g}") for x in row] for row in powers]
+        at += n * m
+    return parts
+
+
+class Blow(NamedTuple):
+    """One impact by finite elements, and what the law takes from its pair."""
+
+    pair: cl.Pair
+    given: tuple[float, ...]
+    speed: float
+    radius: float
+    thickness: float
+    restitution: float
+
+    @property
+    def yielding(self) -> str:
+        """Which body does."""
+        return "both" if all(self.given[:2]) else "sphere" if self.given[0] else "plate"
+
+
+def blows() -> list[Blow]:
+    """Read the impacts of the campaign and of the studies before it, but for plates too thin."""
+    listed = []
+    for study in ("campaign_impact", "matrix", "pairs", "strengths", "limits"):
+        data = store.read(study).data
+        for n in range(data["speed"].size):
+            row = {name: values[n] for name, values in data.items()}
+            pair = _pair(row)
+            blow = Blow(
+                pair, numbers_of(pair), float(row["speed"]), float(row["radius"]),
+                float(row["thickness"]), float(row["restitution"]),
+            )  # fmt: skip
+            if blow.radius <= _THINNEST * blow.thickness and any(blow.given[:2]):
+                listed.append(blow)
+    return listed
+
+
+def _pair(row: dict[str, Any]) -> cl.Pair:
+    """Materials of an impact; those that did not yield have no strength."""
+    yields = row["yields"], row.get("plate_yields", False)
+    bodies = [cases.material(str(row[name])) for name in ("sphere", "plate")]
+    return cl.Pair(
+        *(
+            body if may else dataclasses.replace(body, yield_strength=None)
+            for body, may in zip(bodies, yields, strict=True)
+        )
+    )
+
+
+def numbers_of(pair: cl.Pair) -> tuple[float, ...]:
+    """Numbers that the law takes from a pair."""
+    found = pair_numbers(pair, "fem")
+    return tuple(float(f"{found[name]:.6g}") for name in fem.PARAMETERS)
+
+
+def solved(blow: Blow, found: dict[str, Any]) -> tuple[float, float]:
+    """COR of an impact by the law of some numbers, and its largest compression [d_Y]."""
+    law = fem.law_of(blow.given, found)
+    contact = sphere_on_plate(blow.pair, law, np.array(blow.radius), np.array(blow.thickness))
+    units = scales(contact, np.array(blow.speed))
+    lam, y = float(units.inelasticity), float(units.yield_ratio)
+    solution = zener.solve(law.data, lam, y, 1e-8)
+    return solution.restitution, solution.peak_compression / y
+
+
+def in_impacts(found: dict[str, Any]) -> dict[str, Any]:
+    """Fit v, what impacts lose beyond slow contacts: twice, since v moves the law that it is of."""
+    listed = blows()
+    for _ in range(2):
+        rows: dict[str, list[tuple[float, ...]]] = {name: [] for name in YIELDING}
+        for blow in listed:
+            e, dm = solved(blow, found)
+            q = math.sqrt(dm)
+            if q < _BEYOND_YIELD or blow.restitution < _LEAST:
+                continue
+            curves = fem.Curves(*blow.given, found=found)
+            kept = (1.0 - float(curves.impact(np.array([q]))[0])) * (blow.restitution / e) ** 2
+            w = q * math.sqrt(curves.scale)
+            own = blow.given[2] if blow.yielding != "plate" else 1.0 - blow.given[2]
+            rows[blow.yielding].append((q, w, own, 1.0 - kept))
+        for name, values in rows.items():
+            q, w, own, v = np.array(values).T
+            found["curves"]["impact"][name] = _impact_powers(q, w, own, v, name != "both")
+    return found
+
+
+def _impact_powers(q: Array, w: Array, share: Array, v: Array, moved: bool) -> Any:
+    t = (q - 1.0) / (q + fem.SHIFT)
+    blocks = [("usual", IMPACT_POWERS, np.ones_like(q))]
+    if moved:
+        blocks.append(("share", IMPACT_SHARE_POWERS, share - 0.5))
+    basis = np.concatenate(
+        [
+            np.polynomial.polynomial.polyvander2d(t, 2.0 * w, [n - 1, m - 1]) * factor[:, None]
+            for _, (n, m), factor in blocks
+        ],
+        axis=1,
+    )
+    scale = t / math.sqrt(t.size)
+    count = basis.shape[1]
+    system = np.vstack([basis * scale[:, None], _IMPACT_RIDGE * np.eye(count)])
+    right = np.append(v / math.sqrt(t.size), np.zeros(count))
+    powers = np.linalg.lstsq(system, right, rcond=None)[0]
+    return _parts(powers, [(name, size) for name, size, _ in blocks])
+
+
+def blend(data: dict[str, Array], found: dict[str, Any]) -> float:
+    """Fit how the share of "both" falls with the ratio of the strengths."""
+    mixed = []
+    for n, ratio in presses(data):
+        strains = [data[f"{body}_yield_strain"][n] for body in ("sphere", "plate")]
+        if min(strains) > 0.0 and strains[0] != strains[1]:
+            given = (1.0 / strains[0], 1.0 / strains[1], 0.5, 0.3, 0.3)
+            mixed.append((given, read(data, n, ratio)))
+
+    def off(power: float) -> float:
+        total = 0.0
+        for given, one in mixed:
+            curves, q = fem.Curves(*given, found={**found, "blend": power}), np.array([one.q])
+            total += math.log(curves.recovery(q)[0] / one.recovery) ** 2
+        return total
+
+    return float(minimize_scalar(off, bounds=(1.0, 8.0), method="bounded").x)
+
+
+def numbers() -> dict[str, Any]:
+    """All numbers of the law, from the stored campaign."""
+    data = store.read("campaign_indentation").data
+    stiff, friction = stiffening(data)
+    cases_ = {name: case(data, name, stiff, friction) for name in YIELDING}
+    curves = {name: {one: cases_[one][name] for one in YIELDING} for name in cases_["sphere"]}
+    none = {"usual": [[0.0]]}
+    found: dict[str, Any] = {
+        "stiffening": stiff,
+        "friction": [friction],
+        "blend": 1.0,
+        "plate": 0.0,
+        "curves": {**curves, "impact": dict.fromkeys(YIELDING, none)},
+    }
+    found["blend"] = float(f"{blend(data, found):.3g}")
+    # a sphere that flies is compressed by its own inertia, and stiffer than a hemisphere in a vice
+    found |= FREE
+    return in_impacts(found)
+
+
+def run(_: int) -> None:
+    """Write the numbers that the package ships."""
+    FILE.write_text(json.dumps(numbers(), indent=1) + "\n")
