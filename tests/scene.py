@@ -49,6 +49,7 @@ class Full(Stub):
             peak_force=thickness,
             plastic_fraction=np.full_like(speed, self.answer(speed)),
             wave_fraction=np.full_like(speed, 0.125),
+            other_fraction=np.full_like(speed, 0.0625),
             flags=np.full(speed.shape, self.flags),
         )
 

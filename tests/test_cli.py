@@ -48,8 +48,15 @@ def test_cor_can_integrate(model, capsys):
 
 
 def test_an_infinite_yield_speed_is_valid_json(capsys):
-    assert main([*IMPACT, "--law", "hertz", "--json"]) == 0
+    elastic = ["--sphere", "glass", "--law", "hertz", "--json"]
+    assert main([*IMPACT, *elastic]) == 0
     assert json.loads(capsys.readouterr().out)["yield_speed"] is None
+
+
+def test_the_law_of_hertz_names_the_yield_speed_too(model, capsys):
+    assert main([*IMPACT, "--law", "hertz", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)["yield_speed"]
+    assert printed == pytest.approx(model.yield_speed(0.9e-3, 1e-3), rel=1e-12)
 
 
 def test_cor_of_a_plate_too_thin_for_a_yield_speed(capsys):

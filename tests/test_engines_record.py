@@ -14,7 +14,8 @@ from contactlaw.engines.record import COLUMNS, IMPACT
 def test_every_column_has_a_unit_and_a_description():
     assert IMPACT.names == (
         "time", "bead", "plate", "other", "x", "y", "z", "approach_speed", "restitution",
-        "contact_time", "peak_force", "plastic_energy", "wave_energy", "flags",
+        "contact_time", "peak_force", "plastic_energy", "wave_energy", "other_energy",
+        "flags",
     )  # fmt: skip
     assert tuple(column.name for column in COLUMNS) == IMPACT.names
     units = {"1", "s", "m", "m/s", "N", "J"}
@@ -44,7 +45,7 @@ def test_record_without_lookup_has_no_derived_columns():
     record = Record()
     record.add((0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6))
     rows = record.read(Full(), [R], [(Full(), 1e-3)])
-    assert rows.dtype.names[-2:] == ("wave_energy", "flags")
+    assert rows.dtype.names[-2:] == ("other_energy", "flags")
     assert rows.dtype == IMPACT
 
 
@@ -62,6 +63,7 @@ def test_record_asks_each_model_for_its_own_rows():
     assert rows["peak_force"].tolist() == [1e-3, math.inf, 2 * R]
     np.testing.assert_allclose(rows["plastic_energy"], [0.25, 0.5, 0.25] * kinetic, rtol=1e-14)
     np.testing.assert_allclose(rows["wave_energy"], 0.125 * kinetic, rtol=1e-14)
+    np.testing.assert_allclose(rows["other_energy"], 0.0625 * kinetic, rtol=1e-14)
     assert rows["flags"].tolist() == [3, 4, 3]
     assert (main.speeds, other.speeds) == ([[2.0], [4.0]], [[3.0]])
 

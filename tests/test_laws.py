@@ -323,8 +323,7 @@ def test_a_pair_gives_its_numbers(pair, monkeypatch):
     ratio = pair.effective_modulus / pair.sphere.yield_strength
     assert model.law == f"jackson_green({ratio:.6g},0.21)"
     assert laws.law(model.law) == laws.law("jackson_green", **NUMBERS) == model.force_law
-    with pytest.raises(ValueError, match="two of its spheres have another one"):
-        model.lookup_sphere_sphere(5.0, 1e-3, 1e-3)
+    assert model.force_law.from_pair == ("modulus_ratio", "poissons_ratio")
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Pairs of materials, and the paper's yield speed."""
 
+import dataclasses
 import math
 
 import pytest
@@ -35,9 +36,19 @@ def test_yield_compression_is_that_of_the_law():
     assert laws.law("myc").yield_coefficient == pair.C_YIELD
 
 
-def test_yield_speed_needs_a_yield_strength():
-    with pytest.raises(ValueError, match="glass.*yield.strength.*hertz"):
-        _ = cl.Pair("glass", "glass").yield_speed
+def test_yield_speed_is_that_of_the_weaker_body(pair):
+    steel, aluminium = cl.material("bearing-steel-52100"), cl.material("aluminium-6061-t6")
+    both = cl.Pair(steel, aluminium)
+    alone = cl.Pair(dataclasses.replace(steel, yield_strength=None), aluminium)
+    assert both.yield_speed == alone.yield_speed
+    weak = dataclasses.replace(steel, yield_strength=aluminium.yield_strength)
+    hard = dataclasses.replace(aluminium, yield_strength=None)
+    assert both.yield_speed == cl.Pair(weak, hard).yield_speed
+    assert both.yield_speed < 0.1 * cl.Pair(steel, hard).yield_speed
+
+
+def test_bodies_without_yield_strength_never_yield():
+    assert cl.Pair("glass", "glass").yield_speed == math.inf
 
 
 def test_names_and_materials_are_taken():
