@@ -1,6 +1,7 @@
 """Closed forms of the COR from the literature, corrected where they are misprinted.
 
-Arguments are dimensionless. With the yield speed V_Y0 of the half-space (`Pair.yield_speed`):
+Arguments are dimensionless. With the yield speed V_Y0 of the sphere on a half-space
+(`Pair.yield_speed`, where the plate does not yield first):
 
     speed_ratio              v = V0/V_Y0
     inelasticity             lambda (Eq. 2 with the exponent 2/5); grows as the fifth root of speed
@@ -16,6 +17,7 @@ is a ValueError. Errors of the forms are relative, against the solver, unless th
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -76,7 +78,9 @@ def eta(pair: Pair) -> float:
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     # lambda = alpha m/T_H with T_H = R (pi rho1/(E* sqrt(V0)))^(2/5), at R = H = 1
     density = pair.sphere.density
-    root_speed = math.sqrt(pair.yield_speed)
+    pair.sphere.require_yield_strength("myc")
+    elastic = dataclasses.replace(pair.plate, yield_strength=None)  # V_Y0 is the sphere's
+    root_speed = math.sqrt(Pair(pair.sphere, elastic).yield_speed)
     time = math.pow(math.pi * density / (pair.effective_modulus * root_speed), 0.4)
     mobility = float(plate_mobility(pair.plate, np.ones(())))
     return mobility * 4.0 / 3.0 * math.pi * density / time

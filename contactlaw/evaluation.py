@@ -19,7 +19,7 @@ from contactlaw.laws import Law
 from contactlaw.physical.scaling import Scales
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, lookup, shapes
-from contactlaw.table.certificate import BOUNDS
+from contactlaw.table.certificate import bounds
 from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table
 
@@ -54,11 +54,11 @@ def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None)
         table = cache.cached(served, table)
     elif not isinstance(table, Table):
         table = file.read(table)
-    exceeded = table.certificate.exceeded if table.certificate is not None else {}
+    exceeded = table.exceeded
     if exceeded.keys() - _NEXT_TO_YIELD:
         warnings.warn(
             f"the table is less accurate than contactlaw promises; its largest errors {exceeded} "
-            f"are above {BOUNDS}: take finer Settings",
+            f"are above {bounds(table.law)}: take finer Settings",
             stacklevel=3,
         )
     if not table.law.follows(served):

@@ -43,7 +43,7 @@ from contactlaw._jit import enable_caching, kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.force import Curve
 from contactlaw.equation.integrator import NO_CURVE
-from contactlaw.equation.waves import SATURATION, Waves, with_waves
+from contactlaw.equation.waves import SATURATION, Waves, stiffening, with_waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate
@@ -82,7 +82,8 @@ class Spring(NamedTuple):
     relaxation: Any  # time in which the plate's displacement relaxes [s]
     transit: Any  # of a wave through the plate, see `contactlaw.physical.scaling.Contact` [s]
     bulk: Any  # likewise [m s/N]
-    local: Any  # likewise [1/m^0.5]
+    ratio: Any  # R/H
+    radius: Any  # [m]
     waves: Waves  # next orders of the plate
 
 
@@ -103,7 +104,8 @@ def unit_spring(model: ImpactModel, thickness: float) -> Spring:
         relaxation=_relaxation(mass, stiffness),
         transit=float(contact.transit),
         bulk=float(contact.bulk),
-        local=float(contact.local),
+        ratio=float(contact.ratio),
+        radius=1.0,
         waves=contact.waves,
     )
 
@@ -124,7 +126,8 @@ def resized(unit: Spring, radius: float) -> Spring:
         unit.relaxation * radius,
         unit.transit,
         unit.bulk,
-        unit.local * math.sqrt(radius),
+        unit.ratio * radius,
+        radius,
         unit.waves,
     )
 
@@ -139,7 +142,8 @@ def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> t
         return spring.mobility, 1.0
     time = (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # T_H
     most = SATURATION * SATURATION * spring.scale
-    more = math.exp(spring.local * math.sqrt(min(speed * time, most)))
+    x = math.sqrt(min(speed * time, most) / spring.radius)
+    more = math.exp(stiffening(spring.waves, spring.ratio, x))
     time /= more
     over = spring.mass / time
     lam = with_waves(
@@ -249,7 +253,8 @@ def _advance_all(
             springs.relaxation[n],
             springs.transit[n],
             springs.bulk[n],
-            springs.local[n],
+            springs.ratio[n],
+            springs.radius[n],
             springs.waves,
         )
         state = State(
@@ -323,7 +328,8 @@ class Contacts:
             relaxation=_relaxation(contact.mass, contact.stiffness),
             transit=contact.transit,
             bulk=np.broadcast_to(contact.bulk, r.shape).copy(),
-            local=contact.local,
+            ratio=contact.ratio,
+            radius=r,
             waves=contact.waves,
         )
         self._longest = float(self._springs.relaxation.min(initial=math.inf))

@@ -1,5 +1,6 @@
 """Closed forms against the solver, limits and each other."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -287,3 +288,12 @@ def test_eta_is_of_a_pair():
 def test_a_pair_without_yield_strength_has_no_eta():
     with pytest.raises(ValueError, match="yield"):
         closed_form.eta(cl.Pair("glass", "glass"))
+    with pytest.raises(ValueError, match="yield"):
+        closed_form.eta(cl.Pair("glass", "aluminium-6061-t6"))  # it is the sphere that yields
+
+
+def test_eta_does_not_know_that_the_plate_yields():
+    weak = cl.material("aluminium-6061-t6")
+    elastic = dataclasses.replace(weak, yield_strength=None)
+    ours = closed_form.eta(cl.Pair("bearing-steel-52100", weak))
+    assert ours == closed_form.eta(cl.Pair("bearing-steel-52100", elastic))

@@ -16,6 +16,8 @@ from hypothesis import strategies as st
 
 import contactlaw as cl
 from contactlaw import laws, table
+from contactlaw.equation import zener
+from contactlaw.physical.scaling import law_of, scales, sphere_on_sphere
 
 R, H = 0.9e-3, 1e-3
 FIELDS = (
@@ -25,6 +27,7 @@ FIELDS = (
     "residual_compression",
     "plastic_fraction",
     "wave_fraction",
+    "other_fraction",
     "inelasticity",
     "overload",
 )
@@ -451,19 +454,18 @@ def test_two_spheres_have_the_law_that_was_named(pair, model):
     }
     taking = cl.ImpactModel(pair, law="jackson_green", table=tables[own])
     assert taking.law == own
+    twins = cl.Pair(pair.sphere, pair.sphere)
+    law = law_of(twins, "jackson_green")
+    assert law.name.startswith("jackson_green(13.5")
+    units = scales(sphere_on_sphere(twins, law, np.array(R), np.array(R)), np.array(25.0))
+    exact = zener.solve(law.data, 0.0, units.yield_ratio.item(), 1e-11).restitution
     for one in (taking, pickle.loads(pickle.dumps(taking))):
-        with pytest.raises(
-            ValueError, match=r"'jackson_green' takes .*23.1922.* another one, .*\(13.5"
-        ):
-            one.lookup_sphere_sphere(5.0, R, R)
-    with pytest.raises(
-        ValueError, match=r"restitution_sphere_sphere\(\.\.\., law='jackson_green'\)"
-    ):
-        taking.sphere_sphere_curve(R, R)
+        assert one.lookup_sphere_sphere(25.0, R, R).restitution == pytest.approx(exact, abs=1e-6)
+        assert one.sphere_sphere_curve(R, R)(25.0) == pytest.approx(exact, abs=1e-6)
+    assert abs(exact - taking.solve(25.0, R, math.inf).restitution) > 0.02  # of the other law
 
     given = cl.ImpactModel(pair, law=named, table=tables[named])
     hit = given.lookup_sphere_sphere(0.5, R, R)
-    twins = cl.Pair(pair.sphere, pair.sphere)
     mass = 4 / 3 * math.pi * R**3 * pair.sphere.density / 2
     stiffness = 4 / 3 * twins.effective_modulus * math.sqrt(R / 2)
     peak = (5 / 4 * mass * 0.5**2 / stiffness) ** 0.4  # Hertz

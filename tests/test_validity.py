@@ -6,6 +6,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import Validity
+from contactlaw.physical.validity import explain
 
 R = 0.9e-3
 
@@ -55,11 +56,32 @@ def test_other_law(model):
     assert not steel.lookup(1.99 * speed, R, 2e-3).flags & Validity.OTHER_LAW
     assert steel.lookup(2.01 * speed, R, 2e-3).flags & Validity.OTHER_LAW
     assert not flags(model, speed=3.0 * model.pair.yield_speed) & Validity.OTHER_LAW
-    for law in ("hertz", "kogut_etsion"):
-        other = cl.ImpactModel(steel.pair, law=law, outside="solve")
-        assert not other.solve(3.0 * speed, R, 2e-3).flags & Validity.OTHER_LAW, law
+    fits = cl.ImpactModel(steel.pair, law="kogut_etsion", outside="solve")
+    assert not fits.solve(3.0 * speed, R, 2e-3).flags & Validity.OTHER_LAW
+    elastic = cl.ImpactModel(steel.pair, law="hertz")  # is wrong as soon as the bead yields
+    assert not elastic.lookup(0.99 * speed, R, 2e-3).flags & Validity.OTHER_LAW
+    assert elastic.lookup(1.01 * speed, R, 2e-3).flags & Validity.OTHER_LAW
     metal = cl.ImpactModel(model.pair, law="kogut_etsion", outside="solve")
     assert metal.solve(3.0 * model.pair.yield_speed, R, 2e-3).flags & Validity.OTHER_LAW
+
+
+def test_two_beads_have_the_flags_of_their_own_yield_speed(model):
+    """V^2 goes as R*^3/m*; a bead as large as a wall is a half-space."""
+    beads = cl.ImpactModel(cl.Pair(model.pair.sphere, model.pair.sphere))
+    for other in (0.1 * R, R, 1e3):
+        share = math.sqrt((R**3 + other**3) / (R + other) ** 3)
+        for factor, flag in ((6.99, 0), (7.01, Validity.FAST_IMPACT)):
+            speed = factor * share * beads.pair.yield_speed
+            hit = beads.lookup_sphere_sphere(speed, R, other)
+            assert hit.flags & Validity.FAST_IMPACT == flag
+
+
+def test_every_flag_has_words():
+    single = [flag for flag in Validity if flag != Validity.ACCURACY]
+    assert {flag.value for flag in single} == {1 << n for n in range(len(single))}
+    assert all(len(explain(flag)) == 1 for flag in single)
+    assert explain(0) == () and len(explain(sum(single))) == len(single)
+    assert sum(single) & ~Validity.ACCURACY == Validity.DAMAGE  # no limit of accuracy
 
 
 def test_flags_of_arrays(model):

@@ -4,9 +4,10 @@ A law is known along two lines. The loading curve is a force over the root compr
 in pieces, each a polynomial in t = scale q - offset. The unloading curve from the largest
 compression dm is F = a |q|^b over q = sqrt(d - dr), a such that it begins on the loading curve;
 residual dr and exponent b are functions of dm, and so are the loss, loading work minus unloading
-work, and what of it is not plastic work. These, too, come in pieces, each (dm - 1)^power times a polynomial in t = scale dm - offset,
-so that what begins at yield as (dm - 1)^2 keeps its digits there. With dm below the first piece
-the contact goes back along the loading curve and nothing is lost.
+work, and what of it is not plastic work. These, too, come in pieces, each (dm - 1)^power times a
+polynomial in t = scale dm - offset, so that what begins at yield as (dm - 1)^2 keeps its digits
+there. With dm below the first piece the contact goes back along the loading curve and nothing is
+lost.
 
 A law may be capped: where the unloading curve would lie above the loading curve, from the
 compression `cap_high` down to `cap_low`, the contact goes back along the loading curve.
@@ -176,7 +177,7 @@ def loss(law: Array, dm: float) -> float:
 
 @kernel(cache=True)
 def other_loss(law: Array, dm: float) -> float:
-    """What of the loss is not plastic work."""
+    """Take from the loss what is plastic work."""
     row = _unloading_row(law, dm)
     return _function(law, row, OTHER, dm) if row > 0 else 0.0
 
@@ -200,7 +201,7 @@ def is_hertz(law: Array) -> bool:
     row = row_of(law, 0)
     at = int(law[row + AT])
     same = law[row + DEGREE] == 3.0 and law[row + SCALE] == 1.0 and law[row + OFFSET] == 0.0
-    return same and law[at] == law[at + 1] == law[at + 2] == 0.0 and law[at + 3] == 1.0
+    return bool(same and law[at] == law[at + 1] == law[at + 2] == 0.0 and law[at + 3] == 1.0)
 
 
 @kernel(inline=True)

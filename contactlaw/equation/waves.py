@@ -13,10 +13,11 @@ with k2 h^2 + (1 - x)^3 P(x), x = h/h_c < 1 and a polynomial P, from one limit t
 phase with the force a plate gives way less than the half-space of Hertz's law, by F/(E2' H) times a
 number: the contact is stiffer, K exp(2.5 eta), T = T_H exp(-eta), with
 
-    eta = b E1'/(E1' + E2') (R/H) sqrt(d/R)
+    eta = (R/H) (b E1'/(E1' + E2') x + b4 x^4),    x = sqrt(d/R)
 
 at the compression d = V0 T_H of an elastic impact; beyond yield the force grows no faster than d,
-and eta stays as it was at a few times the yield speed. See ``validation/derivations/mobility.md``.
+and x stays as it was at a few times the yield speed. The second term is empirical: contacts as wide
+as the plate is thick are stiffer still. See ``validation/derivations/mobility.md``.
 
 The contact time is that of an elastic impact: 3.2181 T without losses, longer by a factor
 1 + 0.175 lambda as far as the frequencies count that it is made of.
@@ -38,6 +39,7 @@ Array = NDArray[np.float64]
 
 CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
 SATURATION = 3.0  # V0 T_H over d_Y, by its root, from which on eta stays
+_WIDEST = 0.3  # x up to which its fourth power was fitted; it stays from there on
 _LONGER = 0.175  # of the contact with lambda
 _RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
 
@@ -45,7 +47,8 @@ _RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
 class Waves(NamedTuple):
     """Next orders of a plate, as kernels take them. All zero: there are none."""
 
-    eta: float  # at R = H and V0 T_H = R
+    eta: float  # first term of eta at R = H and x = 1
+    eta4: float  # second term
     steepest: float  # 1/h_c
     bulk_factor: float  # k2
     p1: float  # P = 1 + p1 x + p2 x^2 + p3 x^3 + p4 x^4 + p5 x^5
@@ -55,12 +58,12 @@ class Waves(NamedTuple):
     p5: float
 
 
-THIN = Waves(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+THIN = Waves(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """The plate of the paper, a dashpot at any frequency."""
 
 
-def waves(poissons_ratio: float, local: float = 0.0) -> Waves:
-    """Next orders of plates with this Poisson's ratio, and this b E1'/(E1' + E2').
+def waves(poissons_ratio: float, eta: float = 0.0, eta4: float = 0.0) -> Waves:
+    """Next orders of plates with this Poisson's ratio, b E1'/(E1' + E2'), and b4.
 
     Examples
     --------
@@ -79,7 +82,14 @@ def waves(poissons_ratio: float, local: float = 0.0) -> Waves:
     rest = exact - k2 * h**2 - fall * (1.0 + p1 * x)
     powers = (fall * x ** np.arange(2, 6)[:, None] / exact).T
     others = np.linalg.lstsq(powers, rest / exact, rcond=None)[0]
-    return Waves(local, 1.0 / h_c, k2, p1, *map(float, others))
+    return Waves(eta, eta4, 1.0 / h_c, k2, p1, *map(float, others))
+
+
+@kernel(inline=True)
+def stiffening(waves: Waves, ratio: float, x: float) -> float:
+    """Stiffening eta of a contact by its plate, from R/H and x."""
+    square = min(x * x, _WIDEST * _WIDEST)
+    return ratio * (waves.eta * x + waves.eta4 * (square * square))
 
 
 @kernel(inline=True)
@@ -104,20 +114,28 @@ def with_waves(waves: Waves, thin: float, h: float, bulk: float) -> float:
 
 @kernel(cache=True)
 def _fill(
-    waves: Waves, thin: Array, h: Array, bulk: Array, eta: Array, lam: Array, stiffer: Array
+    waves: Waves,
+    thin: Array,
+    h: Array,
+    bulk: Array,
+    ratio: Array,
+    x: Array,
+    lam: Array,
+    stiffer: Array,
 ) -> None:
     for n in range(lam.size):
-        more = math.exp(eta[n])
+        more = math.exp(stiffening(waves, ratio[n], x[n]))
         stiffer[n] = more
-        lam[n] = more * with_waves(waves, thin[n], h[n] * more, bulk[n] * more * more)
+        lam[n] = with_waves(waves, thin[n] * more, h[n] * more, bulk[n] * (more * more * more))
 
 
 def next_orders(
-    waves: Waves, thin: Array, h: Array, bulk: Array, eta: Array
+    waves: Waves, thin: Array, h: Array, bulk: Array, ratio: Array, x: Array
 ) -> tuple[Array, Array]:
     """Inelasticity with all orders in, and exp(eta), for arrays of one shape."""
     if waves == THIN:
         return thin, np.ones_like(thin)
     lam, stiffer = np.empty(thin.size), np.empty(thin.size)
-    _fill(waves, *(np.ravel(values) for values in (thin, h, bulk, eta)), lam, stiffer)
+    flat = [np.ravel(values) for values in np.broadcast_arrays(thin, h, bulk, ratio, x)]
+    _fill(waves, flat[0], flat[1], flat[2], flat[3], flat[4], lam, stiffer)
     return lam.reshape(thin.shape), stiffer.reshape(thin.shape)

@@ -28,7 +28,7 @@ from typing import Any
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
 from contactlaw.laws._law import Law
 
-__all__ = ["HERTZ", "Law", "Loading", "Unloading", "law", "names", "parameters"]
+__all__ = ["HERTZ", "Law", "Loading", "Unloading", "exact", "law", "names", "parameters"]
 
 _RANGES = {
     "modulus_ratio": (2.0, 1e6),
@@ -114,6 +114,28 @@ def law(name: str, **numbers: float) -> Law:
     values = _values(name, wanted, numbers)
     made: Law = module.law(*values)
     return made if "(" in name else dataclasses.replace(made, from_pair=wanted)
+
+
+def exact(name: str, **numbers: float) -> Law:
+    """Law with all digits of its numbers, to differentiate by them; its name has six.
+
+    Parameters
+    ----------
+    name : str
+        Of a law with `parameters`, without their values.
+    **numbers : float
+        Their values. A law takes what it needs.
+
+    Examples
+    --------
+    >>> from contactlaw.laws import exact
+    >>> near = [exact("kogut_etsion", poissons_ratio=nu) for nu in (0.3, 0.3 + 1e-9)]
+    >>> near[0].name == near[1].name, near[0].yield_coefficient == near[1].yield_coefficient
+    (True, False)
+    """
+    module = _module(name)
+    made: Law = module.law(*(numbers[parameter] for parameter in module.PARAMETERS))
+    return made
 
 
 def _module(name: str) -> ModuleType:

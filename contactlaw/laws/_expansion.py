@@ -213,9 +213,10 @@ class LoadingCurve:
 
 def _begins_as_hertz(force: Formula | Polynomial) -> bool:
     """Whether a branch is q^3, or that and higher powers."""
-    if not isinstance(force, Polynomial) or not (force.coef[4:] >= 0.0).all():
+    if not isinstance(force, Polynomial):
         return False
-    return np.array_equal(force.coef[:4], HERTZ.coef)
+    powers = np.asarray(force.coef, dtype=np.float64)
+    return np.array_equal(powers[:4], HERTZ.coef) and bool((powers[4:] >= 0.0).all())
 
 
 def horner(coefficients: Array, t: Array | float) -> Array:
@@ -348,7 +349,8 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
     if branch.loss is None:
         parts.append(_Part("loss", loss, lost))
     else:
-        parts.append(_Part("loss", branch.loss))
+        # a factor that is taken out leaves what does not vanish
+        parts.append(_Part("loss", branch.loss, None if branch.loss_order else lost))
     low, high = branch.cap or (None, None)
     parts.append(0.0 if low is None else _Part("cap", low, np.positive))
     if high is None:

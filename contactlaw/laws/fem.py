@@ -12,18 +12,20 @@ into the numbers of fem.json. With d the compression, dm the largest one so far,
 
 s is the stiffening of a finite sphere, whose centre comes less near than Hertz's half-spaces let
 it; phi is what friction of 0.1 takes of any contact, v what an impact loses beyond a slow contact:
-the bodies go on vibrating, and flow more where inertia adds to the force. As long as the contact is small beside the sphere, w = sqrt(d/R) << 1, small-strain similarity makes g,
-h and k functions of q alone; where it is not, flattened spheres and indented plates part:
+the bodies go on vibrating, and flow more where inertia adds to the force. As long as the contact is
+small beside the sphere, w = sqrt(d/R) << 1, small-strain similarity makes g, h and k functions of q
+alone; where it is not, flattened spheres and indented plates part:
 
     g = t (sum of g_ij t^i w^j),    t = (q - 1)/(q + 2)
 
-and likewise h, k, v and the plastic share of the loss, each for three cases: the sphere yields, the
+and likewise h, k, v/t and the plastic share 1 - exp(-sum) of the loss, with sums that are linear in
+Poisson's ratio and in the modulus of the body that yields, each for three cases: the sphere yields, the
 plate, or both alike. Where one body is stronger by a factor 1/z, the answer lies between that of
 both alike and that of the weaker body alone, by a share that falls from 1 at z = 1 to 0 at
 z = 0.36: the weaker body presses on the other with no more than 3 of its strengths, and the other
 yields at a mean pressure of 1.07 of its own.
 
-Legend: compressions in units of d_Y = 0.68 pi^2 sigma_Y^2 R/E*^2 of the weaker body, or of R where
+Legend: compressions in units of the yield compression d_Y of the weaker body, or of R where
 none yields; forces in K d_Y^1.5.
 """
 
@@ -33,7 +35,7 @@ import functools
 import json
 import math
 from importlib.resources import files
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -41,18 +43,16 @@ from numpy.typing import NDArray
 
 from contactlaw.laws._branches import Loading, Unloading
 from contactlaw.laws._law import Law
-from contactlaw.laws.myc import C_YIELD
 
 Array = NDArray[np.float64]
-
-PARAMETERS = (
-    "sphere_ratio", "plate_ratio", "modulus_share", "poissons_ratio", "plate_poissons_ratio",
-)  # fmt: skip
 
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign
 _DEEPEST = (23.0, 0.25), (40.0, 0.1)  # E*/sigma_Y, and its deepest contacts, d/R
 _SMALLEST = 1e-8  # d/R; below, the contact's radius is under 1e-4 R and no stiffening to be seen
 SHIFT = 2.0  # of t
+_LEAST_FRICTION = 5e-4  # of bodies that hardly slip
+_SHARES, _RATIOS = 0.36, 0.1  # of the campaign, about 0.5 and 0.3; beyond, what holds there
+_LATE = 0.5  # of the deepest compression; a body that yields later is elastic
 _ALONE = 0.36  # z, below which the stronger body does not yield
 _POWERS = (5, 4)  # of t and w
 _GAUSS = np.polynomial.legendre.leggauss(40)
@@ -66,17 +66,21 @@ def numbers() -> dict[str, Any]:
     return found
 
 
-def friction_loss(
-    modulus_share: float, poissons_ratio: float, plate_poissons_ratio: float, powers: list[float]
-) -> float:
+def friction_loss(given: Given, powers: list[float]) -> float:
     """Share phi of the loading work that friction of 0.1 takes of an elastic contact.
 
     A polynomial in Dundurs' second parameter (Johnson 1985, Eq. 5.3), by which surfaces that are
     pressed together slip on each other; equal bodies do not slip.
     """
-    one, other = ((1.0 - 2.0 * nu) / (1.0 - nu) for nu in (poissons_ratio, plate_poissons_ratio))
-    mismatch = 0.5 * ((1.0 - modulus_share) * one - modulus_share * other)
-    return max(0.0, float(np.polynomial.polynomial.polyval(mismatch, powers)))
+    one, other = (
+        (1.0 - 2.0 * nu) / (1.0 - nu) for nu in (given.poissons_ratio, given.plate_poissons_ratio)
+    )
+    mismatch = 0.5 * ((1.0 - given.modulus_share) * one - given.modulus_share * other)
+    return max(_LEAST_FRICTION, float(np.polynomial.polynomial.polyval(mismatch, powers)))
+
+
+def _within(value: float, most: float) -> float:
+    return min(max(value, -most), most)
 
 
 def _sized(powers: list[list[float]]) -> Array:
@@ -85,10 +89,38 @@ def _sized(powers: list[list[float]]) -> Array:
     return np.pad(found, [(0, most - n) for most, n in zip(_POWERS, found.shape, strict=True)])
 
 
+def yield_scale(ratio: float, poissons_ratio: float) -> float:
+    """Yield compression over R: (pi C/2)^2 (sigma_Y/E*)^2, C = 1.295 exp(0.736 nu).
+
+    Where von Mises' stress first reaches sigma_Y under Hertz's pressure (Jackson & Green, J. Tribol.
+    127 (2005) 343, Eq. 5, with E* for E').
+    """
+    c = 1.295 * math.exp(0.736 * poissons_ratio)
+    return (0.5 * math.pi * c / ratio) ** 2
+
+
 def deepest(ratio: float) -> float:
     """Largest compression over R that the law was made for, at an E*/sigma_Y (0: elastic)."""
     (low, deep), (high, shallow) = _DEEPEST
     return float(np.exp(np.interp(ratio, [low, high], np.log([deep, shallow]))))
+
+
+class Given(NamedTuple):
+    """What the law takes from a pair; in the order of `PARAMETERS`."""
+
+    sphere_ratio: float  # E*/sigma_Y; 0 for a body that does not yield
+    plate_ratio: float
+    modulus_share: float  # the sphere's, E1'/(E1' + E2')
+    poissons_ratio: float
+    plate_poissons_ratio: float
+
+    @property
+    def ratio(self) -> float:
+        """E*/sigma_Y of the weaker body; 0 where neither yields."""
+        return max(self.sphere_ratio, self.plate_ratio)
+
+
+PARAMETERS = Given._fields
 
 
 class Curves:
@@ -96,56 +128,45 @@ class Curves:
 
     Parameters
     ----------
-    sphere_ratio, plate_ratio : float
-        E*/sigma_Y; 0 for a body that does not yield.
-    modulus_share : float
-        The sphere's share E1'/(E1' + E2') of the moduli.
-    poissons_ratio, plate_poissons_ratio : float
-        Of the sphere and of the plate.
+    given : Given
+        Numbers of the pair.
     found : dict, optional
-        Numbers of another fit.
+        Those of a fit; by default what the package ships.
     """
 
-    def __init__(
-        self,
-        sphere_ratio: float,
-        plate_ratio: float,
-        modulus_share: float,
-        poissons_ratio: float,
-        plate_poissons_ratio: float,
-        found: dict[str, Any] | None = None,
-    ) -> None:
+    def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or numbers()
-        self.ratio = max(sphere_ratio, plate_ratio)
-        self.scale = C_YIELD * (math.pi / self.ratio) ** 2 if self.ratio else 1.0
+        self.ratio = given.ratio
+        weaker, share, nu = "sphere", given.modulus_share, given.poissons_ratio
+        if given.plate_ratio > given.sphere_ratio:
+            weaker, share, nu = "plate", 1.0 - share, given.plate_poissons_ratio
+        self.scale = yield_scale(self.ratio, nu) if self.ratio else 1.0
         constant, slope = found["stiffening"]
-        self.stiffening = (constant + slope * modulus_share) * math.sqrt(self.scale)
-        self.friction = friction_loss(
-            modulus_share, poissons_ratio, plate_poissons_ratio, found["friction"]
-        )
-        self._terms: dict[str, Array] = {}
+        self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
+        self.friction = friction_loss(given, found["friction"])
+        self._terms: dict[str, tuple[Array, Array]] = {}
         if not self.ratio:
             return
-        z = min(sphere_ratio, plate_ratio) / self.ratio
+        z = min(given.sphere_ratio, given.plate_ratio) / self.ratio
         both = (max(0.0, z - _ALONE) / (1.0 - _ALONE)) ** float(found["blend"])
-        weaker, share, nu = "sphere", modulus_share, poissons_ratio
-        if plate_ratio > sphere_ratio:
-            weaker, share, nu = "plate", 1.0 - modulus_share, plate_poissons_ratio
         for name, cases in found["curves"].items():
             alone, alike = (_sized(cases[case]["usual"]) for case in (weaker, "both"))
-            # equal bodies share the flow, whatever their moduli; Poisson's ratio is that of both
-            for effect, by, left in (
-                ("share", share - 0.5, 1.0 - both), ("poissons_ratio", nu - 0.3, 1.0)
-            ):  # fmt: skip
+            moved = np.zeros(_POWERS)
+            # equal bodies share the flow, whatever their moduli
+            for effect, by in (
+                ("share", (1.0 - both) * _within(share - 0.5, _SHARES)),
+                ("poissons_ratio", _within(nu - 0.3, _RATIOS)),
+            ):
                 if effect in cases[weaker]:
-                    change = by * left * _sized(cases[weaker][effect])
-                    alone, alike = alone + change, alike + change
-            self._terms[name] = (1.0 - both) * alone + both * alike
+                    moved += by * _sized(cases[weaker][effect])
+            self._terms[name] = (1.0 - both) * alone + both * alike, moved
 
     def _sum(self, name: str, q: Array) -> Array:
         """Sum of the powers of t and w of one of the functions."""
         t, w = (q - 1.0) / (q + SHIFT), math.sqrt(self.scale) * q
-        return np.asarray(np.polynomial.polynomial.polyval2d(t, w, self._terms[name]))
+        usual, moved = self._terms[name]
+        sums = np.polynomial.polynomial.polyval2d(t, w, np.stack([usual, moved], axis=-1))
+        return np.asarray(sums[0] + (1.0 - t) * sums[1])
 
     def _over(self, name: str, q: Array) -> Array:
         """Compute 1 + (q - 1) t (sum of powers), the denominators of the law; 1 below yield."""
@@ -155,11 +176,11 @@ class Curves:
         return 1.0 + (above - 1.0) ** 2 / (above + SHIFT) * self._sum(name, above)
 
     def force(self, q: Array) -> Array:
-        """Loading force."""
-        return q**3 * (1.0 + self.stiffening * q) / self._over("loading", q)
+        """Force while the compression grows."""
+        return np.asarray(q**3 * (1.0 + self.stiffening * q) / self._over("loading", q))
 
     def work(self, q: Array) -> Array:
-        """Loading work: exact up to yield, by Gauss' rule in ln q beyond."""
+        """Integrate the force: exactly up to yield, by Gauss' rule in ln q beyond."""
         start = np.minimum(q, 1.0) if self.ratio else q
         elastic = 0.4 * start**5 + self.stiffening / 3.0 * start**6
         half = 0.5 * np.log(q / start)
@@ -168,7 +189,7 @@ class Curves:
         return np.asarray(elastic + half * ((2.0 * at**2 * self.force(at)) @ _GAUSS[1]))
 
     def residual(self, q: Array) -> Array:
-        """What remains of the compression q^2, over (q^2 - 1)^2; from yield on."""
+        """Compression that is left of q^2, over (q^2 - 1)^2; from yield on."""
         over = (self._sum("residual", q)) / (q + SHIFT)
         return q**2 * over / ((1.0 + (q - 1.0) ** 2 * over) * (q + 1.0) ** 2)
 
@@ -182,7 +203,7 @@ class Curves:
         if not self.ratio:
             return np.zeros_like(q)
         above = np.maximum(q, 1.0)
-        return np.asarray((above - 1.0) / (above + SHIFT) * self._sum("impact", above))
+        return np.asarray(((above - 1.0) / (above + SHIFT)) ** 2 * self._sum("impact", above))
 
     def plastic(self, q: Array) -> Array:
         """Plastic work over the loading work."""
@@ -190,25 +211,21 @@ class Curves:
             return np.zeros_like(q)
         above = np.maximum(q, 1.0)
         lost = 1.0 - self.recovery(above) / (1.0 - self.friction)
-        return np.asarray(lost * self._sum("plastic", above))
+        return np.asarray(lost * -np.expm1(-self._sum("plastic", above)))
 
 
 @functools.cache
-def law(
-    sphere_ratio: float,
-    plate_ratio: float,
-    modulus_share: float,
-    poissons_ratio: float,
-    plate_poissons_ratio: float,
-) -> Law:
-    """Law of a pair, see `Curves`."""
-    given = sphere_ratio, plate_ratio, modulus_share, poissons_ratio, plate_poissons_ratio
-    return law_of(given, numbers())
+def law(*given: float) -> Law:
+    """Law of a pair, from the numbers of `PARAMETERS`."""
+    return law_of(Given(*given), numbers())
 
 
-def law_of(given: tuple[float, ...], found: dict[str, Any]) -> Law:
+def law_of(given: Given, found: dict[str, Any]) -> Law:
     """Law of a pair from the numbers of a fit."""
-    curves = Curves(*given, found=found)
+    curves = Curves(given, found)
+    if curves.ratio and curves.scale > _LATE * deepest(curves.ratio):
+        # so strong that it would yield where the law ends
+        curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 
     def exponent(dm: Array) -> Array:
         q = np.sqrt(dm)
@@ -240,10 +257,11 @@ def law_of(given: tuple[float, ...], found: dict[str, Any]) -> Law:
     return Law.of(
         name=f"fem({','.join(f'{number:.6g}' for number in given)})",
         source="finite elements of contactlaw, validation.fem.campaign",
-        yield_coefficient=C_YIELD if curves.ratio else None,
+        # as `scale` rules, any number: that the law yields
+        yield_coefficient=1.0 if curves.ratio else None,
         loading=loading,
         unloading=unloading,
         scale=curves.scale,
         range=(start, end),
-        waves=float(found["plate"]),
+        waves=(float(found["plate"][0]), float(found["plate"][1])),
     )

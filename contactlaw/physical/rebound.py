@@ -60,7 +60,7 @@ class Impacts:
     """What the user asked for: flat arrays, and the shape of the answer (None: scalars)."""
 
     speed: Array  # [m/s]
-    radius: Array  # [m]
+    radius: Array  # [m], R* of two spheres
     thickness: Array  # [m]
     shape: tuple[int, ...] | None
 

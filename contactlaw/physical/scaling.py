@@ -33,7 +33,8 @@ class Contact(NamedTuple):
     yield_compression: Array  # d_Y [m]
     transit: Array  # of a shear wave through the plate, over CONTACT_TIME [s]; inf: half-space
     bulk: Array  # mobility transit^2, for a half-space too [m s/N]
-    local: Array  # eta over the root of V0 T_H [1/m^0.5]
+    ratio: Array  # R/H
+    radius: Array  # R* [m]
     waves: Waves  # next orders of the plate
 
 
@@ -52,8 +53,8 @@ class Factors(NamedTuple):
 
     inelasticity: float  # lambda of a thin plate at 1 m/s and R = H
     transit: float  # shear waves through it, over CONTACT_TIME T_H, there
-    local: float  # eta, there
-    saturated: float  # V^(1/5) at which eta stops to grow; inf: it never does
+    reach: float  # x of the stiffening by the plate, there
+    saturated: float  # V^(1/5) at which x stops to grow; inf: it never does
     waves: Waves
     log_overload: float  # ln(chi/w_m) at 1 m/s; -inf for a law that never yields
     time: float  # T_H at 1 m/s, over R [s/m]
@@ -174,7 +175,7 @@ def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Co
     plate = THIN
     if law.waves:
         share = pair.effective_modulus / pair.plate.plane_modulus
-        plate = waves(pair.plate.poissons_ratio, law.waves * share)
+        plate = waves(pair.plate.poissons_ratio, law.waves[0] * share, law.waves[1])
     return Contact(
         mass=_mass(pair.sphere, radius),
         stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius),
@@ -182,7 +183,8 @@ def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Co
         yield_compression=_yield_compression(pair, radius, law),
         transit=_transit(pair.plate, thickness),
         bulk=plate_mobility(pair.plate, one) * _transit(pair.plate, one) ** 2,
-        local=plate.eta * np.sqrt(radius) / thickness,
+        ratio=radius / thickness,
+        radius=radius,
         waves=plate,
     )
 
@@ -198,7 +200,8 @@ def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -
         yield_compression=_yield_compression(pair, reduced, law),
         transit=np.zeros_like(reduced),
         bulk=np.zeros_like(reduced),
-        local=np.zeros_like(reduced),
+        ratio=np.zeros_like(reduced),
+        radius=reduced,
         waves=THIN,
     )
 
@@ -215,7 +218,8 @@ def scales(contact: Contact, speed: Array) -> Scales:
         contact.mobility * over,
         contact.transit / time,
         contact.bulk * over / time**2,
-        contact.local * np.sqrt(np.minimum(compression, most)),
+        contact.ratio,
+        np.sqrt(np.minimum(compression, most) / contact.radius),
     )
     time, compression = time / stiffer, compression / stiffer
     return Scales(
@@ -236,7 +240,7 @@ def factors(pair: Pair, law: Law) -> Factors:
     return Factors(
         inelasticity=(contact.mobility * contact.mass / time).item(),
         transit=(contact.transit / time).item(),
-        local=(contact.local * np.sqrt(time)).item(),
+        reach=np.sqrt(time).item(),
         saturated=(most**0.25).item(),
         waves=contact.waves,
         log_overload=-math.log((contact.yield_compression / time).item()),

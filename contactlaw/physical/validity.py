@@ -51,7 +51,7 @@ class Validity(enum.IntFlag):
     FAST_IMPACT = 2
     """Faster than 7 times the yield speed, up to which the laws of the paper were checked."""
     THICK_PLATE = 4
-    """Over before the plate can bend, within 6 transits of its thickness: the law's plate is thin."""
+    """Over within 6 transits of the thickness, before the plate can bend: the law's is thin."""
     SOFT_PLATE = 8
     """The plate is weaker than the sphere and yields first; in this law only the sphere yields."""
     CLAMPED = 16

@@ -5,8 +5,17 @@
 fits what `lookup` and `shapes` evaluate: outcomes of impacts, and force over time.
 """
 
-from contactlaw.table.certificate import BOUNDS, Certificate
+from contactlaw.table.certificate import BOUNDS, Certificate, bounds
 from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table, build, certify, with_shapes
 
-__all__ = ["BOUNDS", "Certificate", "Settings", "Table", "build", "certify", "with_shapes"]
+__all__ = [
+    "BOUNDS",
+    "Certificate",
+    "Settings",
+    "Table",
+    "bounds",
+    "build",
+    "certify",
+    "with_shapes",
+]

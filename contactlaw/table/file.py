@@ -123,7 +123,8 @@ def _fill(file: h5py.File, table: Table) -> None:
         law_scale=math.nan if law.scale is None else law.scale,
         law_smallest=law.range[0],
         law_largest=law.range[1],
-        law_waves=law.waves,
+        law_b=law.waves[0] if law.waves else math.nan,
+        law_b4=law.waves[1] if law.waves else math.nan,
         contactlaw_version=VERSION,
         **asdict(table.settings),
     )
@@ -249,6 +250,7 @@ def _law(file: h5py.File) -> Law:
     """Law of a table, in whose data kernels will follow addresses."""
     numbers = _listed(file, "law/data", _LARGEST_LAW)
     force.check(numbers)
+    plate = guarded.attribute(file, "law_b", float), guarded.attribute(file, "law_b4", float)
     coefficient, scale, smallest, largest = (
         guarded.attribute(file, name, float)
         for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
@@ -262,7 +264,7 @@ def _law(file: h5py.File) -> Law:
         data=numbers,
         scale=None if math.isnan(scale) else scale,
         range=(smallest, largest),
-        waves=guarded.attribute(file, "law_waves", float),
+        waves=None if math.isnan(plate[0]) else plate,
     )
 
 

@@ -140,7 +140,7 @@ def coarser(grid: Grid, rows: int, step: float) -> Grid:
 
 
 def on_demand(law: Law) -> Settings:
-    """Settings of a table that is built when it is first needed, in a few tenths of a second."""
+    """Choose settings of a table that is built when it is first needed, in tenths of a second."""
     if math.isinf(law.range[1]):
         return Settings(log_overload_step=0.03, rtol=1e-11)
     w_m = zener.elastic_compression(law.data, 0.0, 1e-11)[1]
@@ -296,7 +296,7 @@ def _kink_lines(
             line = np.log(_overloads(law, kink, lam, elastic))
         if line.max() < end - _ROOM:
             lines.append(line)
-            graded.append(law.capped or kink in law.loading_kinks)
+            graded.append(law.capped or kink in (*law.loading_kinks, law.range[1]))
     return [*lines, np.full(lam.size, end)], graded
 
 

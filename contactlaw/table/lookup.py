@@ -3,8 +3,9 @@
 A table holds functions of the inelasticity lambda and of ln chi, the logarithm of the overload, on
 the nodes that `contactlaw.table.grid` places. Splines are kept as coefficients of uniform cubic
 B-splines, two more than there are nodes: they need the least memory, and a table that stays in the
-cache is a fast one. Below the first segment, where the contact is elastic, the values at its beginning hold.
-ln w_m is a polynomial in x, and so is ln chi along each kink that is no line of constant chi.
+cache is a fast one. Below the first segment, where the contact is elastic, the values at its
+beginning hold. ln w_m is a polynomial in x, and so is ln chi along each kink that is no line of
+constant chi.
 
 All of it is packed into one array of float64, because a kernel that takes one array and a few
 numbers is called from Python in a third of a microsecond. The array begins with a header:
@@ -36,7 +37,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.outcome import Outcome
-from contactlaw.equation.waves import THIN, Waves, with_waves
+from contactlaw.equation.waves import THIN, Waves, stiffening, with_waves
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -48,7 +49,7 @@ R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = 1e-30
 
 STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X, COLUMNS = range(5)
-SEGMENTS, CURVED, COR_AT, OTHERS_AT, TRANSIT, LOCAL, SATURATED, WAVES = range(5, 13)
+SEGMENTS, CURVED, COR_AT, OTHERS_AT, TRANSIT, REACH, SATURATED, WAVES = range(5, 13)
 HEADER = WAVES + len(Waves._fields)
 DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
 START, END, PER_LOG, CELLS, COLUMN, GRADED, LINE, BLOCK = range(8)
@@ -60,8 +61,8 @@ class Plate(NamedTuple):
     """Constants of a pair of which the next orders of its plates are made, at 1 m/s and R = H."""
 
     transit: float  # h of a loss-free contact, see `contactlaw.equation.waves`
-    local: float  # eta
-    saturated: float  # V^(1/5) at which eta stops to grow
+    reach: float  # x, of which the stiffening eta is made
+    saturated: float  # V^(1/5) at which x stops to grow
     waves: Waves
 
 
@@ -70,7 +71,7 @@ def with_plate(table: Array, plate: Plate) -> Array:
     if plate.waves == THIN:
         return table
     table = table.copy()
-    table[TRANSIT], table[LOCAL], table[SATURATED], table[WAVES:HEADER] = plate
+    table[TRANSIT], table[REACH], table[SATURATED], table[WAVES:HEADER] = plate
     return table
 
 
@@ -78,15 +79,17 @@ def with_plate(table: Array, plate: Plate) -> Array:
 def _plate(table: Array) -> Plate:
     """Read the constants of the plate."""
     w, k = table, WAVES
-    waves = Waves(w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5], w[k + 6], w[k + 7])
-    return Plate(w[TRANSIT], w[LOCAL], w[SATURATED], waves)
+    waves = Waves(
+        w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5], w[k + 6], w[k + 7], w[k + 8]
+    )
+    return Plate(w[TRANSIT], w[REACH], w[SATURATED], waves)
 
 
 @kernel(inline=True)
 def _eta(plate: Plate, root: float, ratio: float) -> float:
     """Stiffening of a contact by its plate, from V^(1/5) and R/H."""
     slow = min(root, plate.saturated)
-    return plate.local * ratio * (slow * slow)
+    return stiffening(plate.waves, ratio, plate.reach * (slow * slow))
 
 
 @kernel(inline=True)

@@ -14,7 +14,7 @@ from contactlaw.equation.outcome import STORED
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import shapes, splines, sweep
-from contactlaw.table.certificate import Certificate, compare_histories, compare_outcomes
+from contactlaw.table.certificate import Certificate, bounds, compare_histories, compare_outcomes
 from contactlaw.table.grid import Grid, Settings
 from contactlaw.table.sweep import Progress, no_progress
 
@@ -50,6 +50,11 @@ class Table:
     fields: dict[str, Array]
     states: NDArray[np.float32] | None = None
     certificate: Certificate | None = None
+
+    @property
+    def exceeded(self) -> dict[str, float]:
+        """Errors of the certificate above what is promised of such a table."""
+        return {} if self.certificate is None else self.certificate.exceeded(bounds(self.law))
 
     @functools.cached_property
     def packed(self) -> Array:

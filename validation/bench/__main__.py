@@ -8,7 +8,17 @@ import sys
 
 from tqdm import tqdm
 
-SUBJECTS = ("lookups", "histories", "solver", "startup", "processes", "rain", "elements", "lammps")
+SUBJECTS = (
+    "lookups",
+    "histories",
+    "solver",
+    "startup",
+    "processes",
+    "rain",
+    "elements",
+    "lammps",
+    "census",
+)
 
 
 def main(names: list[str]) -> int:

@@ -1,7 +1,7 @@
 """Recompute the studies: ``python -m validation.fem [NAME ...] [--processes N]``.
 
-``report`` prints the comparison of the stored results with the model; ``python -m validation``
-draws it.
+``report`` prints the comparison of the stored results with the model, ``acceptance`` that of the
+law ``"fem"`` with what is asked of it; ``python -m validation`` draws them.
 """
 
 from __future__ import annotations
@@ -15,13 +15,17 @@ from concurrent.futures.process import BrokenProcessPool
 
 from tqdm import tqdm
 
-from validation.fem import compare, store
+from validation.fem import acceptance, compare, store
 from validation.fem.studies import STUDIES
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Run what is named, or all; 0 when done, 1 if it failed, 2 for wrong usage, 130 for Ctrl-C."""
-    steps: dict[str, Callable[[int], None]] = {**STUDIES, "report": _report}
+    steps: dict[str, Callable[[int], None]] = {
+        **STUDIES,
+        "report": _report,
+        "acceptance": _acceptance,
+    }
     parser = argparse.ArgumentParser(prog="python -m validation.fem")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
@@ -31,7 +35,7 @@ def main(arguments: list[str] | None = None) -> int:
     wrong = set(options.names) - set(steps)
     if wrong:
         parser.error(f"no such study: {', '.join(wrong)}; there are {', '.join(steps)}")
-    if not os.access(store.FOLDER, os.W_OK) and set(options.names) != {"report"}:
+    if not os.access(store.FOLDER, os.W_OK) and not set(options.names) <= {"report", "acceptance"}:
         parser.error(f"{store.FOLDER}: results cannot be written there; take a writable copy")
     bar = tqdm(options.names or list(steps), disable=None)
     try:
@@ -53,6 +57,10 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _report(_: int) -> None:
     tqdm.write(compare.report())
+
+
+def _acceptance(_: int) -> None:
+    tqdm.write(acceptance.report())
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ _RADIUS = 1e-3  # [m]
 SAMPLES = 48  # of a stored curve
 
 # E*/sigma_Y of the softer body, and the depths of indentation [d_Y]
-DEPTHS = {
+DEPTHS: dict[float, tuple[float, ...]] = {
     11.0: (1.5, 2.0, 3.0, 4.5),
     16.0: (1.5, 2.5, 4.0, 6.5, 9.5),
     23.0: (1.5, 2.5, 5.0, 10.0, 19.7),
@@ -42,7 +42,12 @@ DEPTHS = {
     1200.0: (2400.0, 7200.0, 21400.0),
     2000.0: (7000.0, 20000.0, 59500.0),
 }
-SHARED = {  # for other moduli
+MIXED: dict[float, tuple[float, ...]] = {  # for other ratios of strength
+    23.0: (2.5, 10.0),
+    100.0: (6.0, 25.0, 149.0),
+    400.0: (2380.0,),
+}
+SHARED: dict[float, tuple[float, ...]] = {  # for other moduli
     11.0: (1.6, 2.4, 3.6),
     16.0: (3.0, 7.0),
     23.0: (2.5, 5.0, 10.0),
@@ -114,8 +119,8 @@ def presses() -> list[Press]:
     ]
     # strengths between: the stronger body has 4/3 or 2 times the strength of the other
     for factor in (4 / 3, 2.0):
-        for ratio, depths in ((23.0, (2.5, 10.0)), (100.0, (6.0, 25.0, 149.0)), (400.0, (2380.0,))):
-            for depth in depths:
+        for ratio, some in MIXED.items():
+            for depth in some:
                 way = depth * yield_depth(ratio)
                 listed += [Press(ratio, ratio / factor, way), Press(ratio / factor, ratio, way)]
     # what else may matter: moduli, Poisson's ratios, friction
@@ -238,7 +243,7 @@ ELASTIC_PAIRS = (
 
 
 def _speed(pair: cl.Pair, depth: float) -> float:
-    """Speed [m/s] of an impact that gets about so deep [d_Y]: from Hertz at yield, then hardness."""
+    """Speed [m/s] of an impact that gets about so deep [d_Y]."""
     d = np.linspace(0.0, depth, 1000)
     work = np.trapezoid(d**1.5 / (1.0 + 0.02 * np.maximum(d - 1.0, 0.0)) ** 0.5, d)
     return float(pair.yield_speed * math.sqrt(work / 0.4))

@@ -72,6 +72,17 @@ def material(name: str) -> cl.Material:
     return replace(found, yield_strength=float(factor) * found.require_yield_strength("fem"))
 
 
+def elastic_plate(sphere: str, plate: str) -> cl.Pair:
+    """Pair in which the sphere alone may yield; as `Case`, unless its plate does.
+
+    Examples
+    --------
+    >>> elastic_plate("bearing-steel-52100", "aluminium-6061-t6").plate.yield_strength is None
+    True
+    """
+    return cl.Pair(material(sphere), replace(material(plate), yield_strength=None))
+
+
 def solve(case: Case) -> dict[str, Any]:
     """Compute a case; its inputs and outcomes by name."""
     given = {name: value for name in _DEFAULTED if not math.isnan(value := getattr(case, name))}

@@ -67,7 +67,7 @@ def forget(name: str) -> None:
 
 
 def _read(journal: Path) -> dict[str, dict[str, Any]]:
-    """Read the outcomes of a journal by job; those of another version of the solver do not count."""
+    """Read the outcomes of a journal by job, but for those of another version of the solver."""
     done = {}
     for line in journal.read_text().splitlines() if journal.exists() else ():
         try:

@@ -167,7 +167,7 @@ def assemble(
 
 
 def _plate_hourglass(plate: Mesh, soft: float, yields: bool) -> Array:
-    """Stiffness of the hourglass modes of a plate: soft where it may flow, but not where it bends."""
+    """Stiffness of a plate's hourglass modes: soft where it may flow, but not where it bends."""
     centre = plate.nodes[plate.elements].mean(axis=1)
     near = yields and np.hypot(centre[:, 0], centre[:, 1]) < soft
     return np.where(near, _HOURGLASS, _HOURGLASS_ELASTIC)

@@ -286,7 +286,7 @@ def pairs(processes: int) -> None:
     listed = []
     for slenderness in (0.5, 1.0, 1.5):
         for sphere, plate in ((PAIR.sphere.name, PAIR.plate.name), *OTHER_PAIRS):
-            pair = cl.Pair(sphere, plate)
+            pair = cases.elastic_plate(sphere, plate)
             thickness = RADIUS / slenderness * math.sqrt(eta(pair) / ETA)
             for v in (0.5, 1.5, 3.5, 7.0):
                 listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere, plate=plate))

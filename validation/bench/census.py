@@ -1,0 +1,148 @@
+"""The everyday pairs: how many impacts a law answers, and how many of its answers carry a flag.
+
+Every metal, ceramic and glass of the catalogue falls on every other, as `validation.fem.census`
+says; speed and thickness are drawn anew for each pair.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+import warnings
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+import contactlaw as cl
+from contactlaw import Validity
+from contactlaw.laws import Law
+from contactlaw.physical.scaling import law_of
+from contactlaw.table import file
+from contactlaw.table.grid import Settings, on_demand
+from validation.bench.row import Row
+from validation.fem import acceptance, census
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.int64]
+
+_SEED = 7  # not that of the impacts that are kept out
+_LAWS = "fem", "myc"
+_EACH = 100  # impacts of a pair
+_MOST_FLAGGED = 10.0  # %
+
+
+class Census(NamedTuple):
+    """Shares of all impacts [-]; they overlap but for `inside`, which is none of the others."""
+
+    impacts: int
+    refused: float  # no model of the pair
+    outside: float  # the table ends before
+    inaccurate: float  # with a flag of `Validity.ACCURACY` but that of the table's end
+    damaging: float  # with `Validity.DAMAGE`
+    inside: float
+    flags: dict[Validity, float]  # each flag of accuracy that there is
+    warned: int  # pairs whose table is less accurate than it has to be
+
+
+def draw(each: int) -> tuple[Array, Array]:
+    """Speeds [m/s] and thicknesses [m]: a row of each for every pair."""
+    generator = np.random.default_rng(_SEED)
+
+    def drawn(low: float, high: float) -> Array:
+        shape = len(census.pairs()), each
+        return np.exp(generator.uniform(math.log(low), math.log(high), shape))
+
+    return drawn(*census.SPEED), drawn(*census.THICKNESS)
+
+
+def count(law: str, each: int = _EACH, tables: bool = True) -> Census:
+    """Put impacts to a law, each pair's at once.
+
+    Parameters
+    ----------
+    law : str
+        Name of the law.
+    each : int, optional
+        Impacts of a pair.
+    tables : bool, optional
+        Look up, which builds the table of every pair, or integrate, which takes its extent alone.
+
+    Returns
+    -------
+    Census
+    """
+    found, refused = [], 0
+    with warnings.catch_warnings(record=True) as warned:
+        warnings.simplefilter("always")
+        drawn = zip(census.pairs(), *draw(each), strict=True)
+        for (sphere, plate), speed, thickness in tqdm(
+            drawn, law, len(census.pairs()), disable=None, leave=False
+        ):
+            pair = cl.Pair(sphere, plate)
+            try:
+                answer = _looked_up if tables else _integrated
+                found.append(answer(pair, law, speed, thickness))
+            except (ValueError, RuntimeError):  # it has no law, or its table cannot be built
+                refused += each
+    flags = np.concatenate(found)
+    total = flags.size + refused
+    accuracy = Validity.ACCURACY & ~Validity.CLAMPED
+
+    def share(some: int) -> float:
+        return float(np.count_nonzero(flags & int(some)) / total)
+
+    return Census(
+        impacts=total,
+        refused=refused / total,
+        outside=share(Validity.CLAMPED),
+        inaccurate=share(accuracy),
+        damaging=share(Validity.DAMAGE),
+        inside=1.0 - refused / total - share(Validity.ACCURACY | Validity.DAMAGE),
+        flags={flag: share(flag) for flag in Validity if flag in accuracy and share(flag)},
+        warned=sum("less accurate" in str(one.message) for one in warned),
+    )
+
+
+def _looked_up(pair: cl.Pair, law: str, speed: Array, thickness: Array) -> Flags:
+    model = cl.ImpactModel(pair, law=law, outside="clamp")
+    return np.asarray(model.lookup(speed, census.RADIUS, thickness).flags)
+
+
+def _integrated(pair: cl.Pair, law: str, speed: Array, thickness: Array) -> Flags:
+    found = law_of(pair, law)
+    hit = acceptance.solve(pair, found, speed, np.full_like(speed, census.RADIUS), thickness)
+    extent = settings(found)
+    outside = np.asarray(hit.inelasticity) > extent.largest_inelasticity
+    outside |= np.asarray(hit.overload) > extent.largest_overload
+    flags = np.array(hit.flags, dtype=np.int64)
+    flags[outside] |= int(Validity.CLAMPED)
+    return flags
+
+
+def settings(law: Law) -> Settings:
+    """Extent of the table that a law is served with."""
+    packaged = file.packaged(law)
+    return on_demand(law) if packaged is None else packaged.settings
+
+
+def rows() -> Iterator[Row]:
+    """Count for the law that is made for these pairs, and for that of the paper."""
+    for name in _LAWS:
+        start = time.perf_counter()
+        found = count(name)
+        taken = time.perf_counter() - start
+        made = name == "fem"
+        none = 0.0 if made else None
+        flags = ", ".join(f"{flag.name} {100 * share:.2g}" for flag, share in found.flags.items())
+        yield Row(
+            f"{name}: everyday impacts refused", 100 * found.refused, "%", none,
+            note=f"of {found.impacts}; {found.warned} tables too coarse; {taken:.0f} s",
+        )  # fmt: skip
+        yield Row(f"{name}: outside the table", 100 * found.outside, "%", none)
+        most = _MOST_FLAGGED if made else None
+        yield Row(f"{name}: flagged on accuracy", 100 * found.inaccurate, "%", most, note=flags)
+        yield Row(f"{name}: flagged on damage", 100 * found.damaging, "%")
+        yield Row(f"{name}: inside all limits", 100 * found.inside, "%")

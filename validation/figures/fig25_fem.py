@@ -1,0 +1,129 @@
+"""Fig. 25: the law that was made of finite elements, beside impacts that it has not seen.
+
+Left, its COR over that of finite elements, by the body that yields; crosses are law myc, for those
+pairs that it answers: where the sphere has no yield strength it does not. Right, the errors of law
+fem in COR, above for impacts of the paper's kind, to which it was fitted too, below for everyday
+impacts that were drawn before the fit and kept out of it. The band is what is asked of 95 in 100;
+an open mark carries a flag of accuracy and is not asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from validation.fem import acceptance
+from validation.fem.acceptance import Member, Row
+from validation.figures import _style
+
+_LOOK = {  # by the body that yields: marker, colour and words
+    "none": ("D", _style.SKY, "neither yields"),
+    "sphere": ("o", _style.BLUE, "the sphere yields"),
+    "plate": ("s", _style.VERMILION, "the plate yields"),
+    "both": ("^", _style.GREEN, "both yield"),
+}
+_TITLES = {
+    "paper": "impacts of the paper's kind",
+    "kept out": "everyday impacts, kept out of the fit",
+}
+_RANGE = 0.0, 1.005  # of the COR
+_WIDEST = 5.0  # [%], errors beyond are written at the edge
+
+
+def draw() -> tuple[Figure, dict[str, float]]:
+    """Draw COR over COR, and the errors of both rows."""
+    rows = acceptance.rows()
+    others = {name: acceptance.members(name, "myc") for name in rows}
+    figure = _style.figure(
+        14.0,
+        7.4,
+        "One law, whichever body yields",
+        "COR by the modified Zener equation, beside finite elements; coloured: with law fem, "
+        "crosses: with law myc, in which the sphere alone yields",
+    )
+    panels = figure.subplot_mosaic(
+        [["cor", "paper"], ["cor", "kept out"]], width_ratios=(1.0, 1.15)
+    )
+    _parity(panels["cor"], rows, others)
+    for name, row in rows.items():
+        _errors(panels[name], _TITLES[name], row)
+    panels["paper"].tick_params(labelbottom=False)
+    panels["kept out"].set_xlabel("COR by finite elements")
+    return figure, _numbers(rows, others)
+
+
+def _parity(axes: Axes, rows: dict[str, Row], others: dict[str, tuple[Member, ...]]) -> None:
+    axes.plot([0.0, 1.0], [0.0, 1.0], color=_style.INK, linewidth=1)
+    every = [one for listed in others.values() for one in listed]
+    axes.plot(
+        [one.fem for one in every], [one.law for one in every], "x", color=_style.MUTED,
+        markersize=6, alpha=0.7, label="law myc", zorder=1,
+    )  # fmt: skip
+    for row in rows.values():
+        _marks(axes, row, lambda one: one.law, 8.0)
+    named = dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
+    axes.legend(named.values(), named.keys(), loc="upper left", fontsize=12)
+    axes.set(xlabel="COR by finite elements", ylabel="COR by law", xlim=_RANGE, ylim=_RANGE)
+
+
+def _marks(axes: Axes, row: Row, value: Callable[[Member], float], size: float) -> None:
+    """Mark impacts by the body that yields; those that carry a flag of accuracy are open."""
+    for yielding, (marker, colour, words) in _LOOK.items():
+        for flagged in (False, True):
+            some = [
+                one for one in row.members if (one.yielding, one.flagged) == (yielding, flagged)
+            ]
+            if not some:  # it would have no place, and no layout
+                continue
+            axes.plot(
+                [one.fem for one in some], [value(one) for one in some], marker, color=colour,
+                markersize=size, markerfacecolor="white" if flagged else colour,
+                markeredgecolor=colour if flagged else "white", markeredgewidth=0.8,
+                label=None if flagged else words, clip_on=False, zorder=2,
+            )  # fmt: skip
+
+
+def _errors(axes: Axes, title: str, row: Row) -> None:
+    """Draw errors of law fem in COR, and the band that is asked for."""
+    bound = 100.0 * row.target.bounds.restitution
+    axes.axhspan(-bound, bound, color=_style.PALE, alpha=0.6, linewidth=0)
+    axes.axhline(0.0, color=_style.INK, linewidth=1)
+
+    def error(one: Member) -> float:
+        return float(np.clip(100.0 * one.errors.restitution, -_WIDEST, _WIDEST))
+
+    _marks(axes, row, error, 7.0)
+    far = [one for one in row.members if abs(100.0 * one.errors.restitution) > _WIDEST]
+    for n, one in enumerate(sorted(far, key=lambda one: one.fem)):
+        percent = 100.0 * one.errors.restitution
+        lift = 9 + 12 * (n % 2)  # apart from its neighbours
+        axes.annotate(
+            f"{percent:+.1f}", (one.fem, error(one)), (0, -lift if percent > 0.0 else lift),
+            textcoords="offset points", ha="center", va="center_baseline", fontsize=10,
+        )  # fmt: skip
+    share = row.shares.restitution
+    axes.set_title(f"{title}: {100 * share:.0f} % are within {bound:g} %", loc="left")
+    axes.set(xlim=_RANGE, ylim=(-_WIDEST, _WIDEST), ylabel="error of the COR  [%]")
+
+
+def _numbers(rows: dict[str, Row], others: dict[str, tuple[Member, ...]]) -> dict[str, float]:
+    numbers: dict[str, float] = {}
+    for name, row in rows.items():
+        numbers[f"{name}: impacts"] = len(row.members)
+        numbers[f"{name}: with a flag of accuracy"] = len(row.members) - len(row.counted)
+        numbers[f"{name}: beyond a bound without one"] = len(row.silent)
+        for field, share, largest in zip(
+            acceptance.Errors._fields, row.shares, row.largest, strict=True
+        ):
+            words = field.replace("_", " ")
+            numbers[f"{name}: share within, {words}"] = share
+            numbers[f"{name}: largest error, {words}"] = largest
+        numbers[f"{name}: rms error, restitution"] = row.rms
+        listed = others[name]
+        errors = np.array([one.errors.restitution for one in listed])
+        numbers[f"{name}: answered by myc"] = len(listed)
+        numbers[f"{name}: rms error of myc, restitution"] = float(np.sqrt(np.mean(errors**2)))
+    return numbers
