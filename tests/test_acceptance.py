@@ -17,7 +17,7 @@ from validation.fem.acceptance import TARGETS, Errors, Member, Row
 # What was measured, one line a row: how many impacts there are, how many carry a flag of accuracy,
 # how many are beyond a bound without one, the shares within each bound, and the rms error in COR.
 MEASURED = {
-    "paper": (112, 0, 11, (0.929, 0.955, 0.982, 0.982), 0.0065),
+    "paper": (112, 0, 8, (0.964, 0.964, 0.991, 0.991), 0.0038),
     "kept out": (80, 0, 11, (0.875, 1.0, 0.988, 1.0), 0.0130),
 }
 HOLDS = {"paper": False, "kept out": False}
@@ -49,8 +49,9 @@ def test_bounds_are_those_that_were_agreed():
 
 def test_the_set_that_was_kept_out_is_the_one_that_was_drawn():
     """Each impact of the list, and none else; the list is the draw."""
-    drawn = census.kept_out()
-    assert drawn == census.draw(census.SEED, census.COUNT)
+    drawn = census.drawn("kept_out")
+    assert drawn == census.draw(census.SEEDS["kept_out"], census.COUNT)
+    assert census.SEEDS["kept_out"] != census.SEEDS["everyday"]
     listed = [(one.sphere, one.plate, one.speed) for one in acceptance.members("kept out")]
     assert listed == [(case.sphere, case.plate, case.speed) for case in drawn]
 
@@ -102,14 +103,16 @@ def test_it_integrates_what_a_model_does():
 
 
 def test_weak_impacts_count_over_the_least_cor():
-    (one,) = (one for one in acceptance.members("kept out") if one.fem < 0.1)
-    assert one.errors.restitution == pytest.approx((one.law - one.fem) / 0.3)
+    weak = [one for one in acceptance.members("kept out") if one.fem < 0.3]
+    assert weak
+    for one in weak:
+        assert one.errors.restitution == pytest.approx((one.law - one.fem) / 0.3)
 
 
 def test_the_report_lists_every_impact_kept_out(capsys):
     assert command(["acceptance"]) == 0
     text = capsys.readouterr().out
-    for case in census.kept_out():
+    for case in census.drawn("kept_out"):
         assert any(
             case.sphere in line and case.plate in line and f" {case.speed:6.2f} " in line
             for line in text.splitlines()

@@ -87,7 +87,7 @@ def count(law: str, each: int = _EACH, tables: bool = True) -> Census:
                 found.append(answer(pair, law, speed, thickness))
             except (ValueError, RuntimeError):  # it has no law, or its table cannot be built
                 refused += each
-    flags = np.concatenate(found)
+    flags = np.concatenate([np.empty(0, dtype=np.int64), *found])
     total = flags.size + refused
     accuracy = Validity.ACCURACY & ~Validity.CLAMPED
 

@@ -19,8 +19,8 @@ from validation.fem.cases import Case
 RADIUS = 1e-3  # [m]
 SPEED = (0.5, 10.0)  # [m/s], drawn by its logarithm
 THICKNESS = (0.6e-3, 10e-3)  # [m], likewise
-# The impacts of the first seed were kept out of the law's first fit, and judged it; the law has been
-# fitted to them since. Those of the second were drawn, and committed, before that.
+# The impacts of the first seed were kept out of the law's first fit, and judged it; the law has
+# been fitted to them since. Those of the second were drawn, and committed, before that.
 SEEDS = {"everyday": 20261122, "kept_out": 20261123}
 COUNT = 80
 
@@ -65,7 +65,7 @@ def drawn(name: str) -> list[Case]:
 
 
 def kept_out(processes: int) -> None:
-    """Compute the impacts that the law is judged by: drawn before it was fitted, never fitted to."""
+    """Compute the impacts that judge the law: drawn before it was fitted, never fitted to."""
     _study("kept_out", "everyday impacts that no fit has seen", processes)
 
 

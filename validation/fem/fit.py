@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 FILE = Path(fem.__file__).with_name("fem.json")
 POWERS = (5, 4)  # of t and w in each function,
 SHARE_POWERS, RATIO_POWERS = (4, 2), (3, 1)  # and in what other moduli and Poisson's ratios change
-IMPACT_POWERS, IMPACT_SHARE_POWERS = (5, 3), (4, 3)
+IMPACT_POWERS, IMPACT_SHARE_POWERS = (5, 4), (4, 3)
 _THIN_PLATES = 2.0  # weight of impacts on these: they are what the model is for
 _IMPACT_RIDGE = 1.5e-4
 _MOST_PLASTIC = 0.98  # of the loss; more is noise of losses that are hardly there
@@ -40,6 +40,7 @@ _THINNEST = 1.85  # R/H
 _WEIGHTS = 0.002, 0.005, 0.007  # errors of COR, contact time and peak force that count alike
 _ELASTIC = 1e-4  # plastic share of an impact that counts as elastic
 _FORCE_ALONE = math.inf, math.inf, 0.007
+_ALIKE, _ALONE = 0.93, 0.55  # ratios of the strengths
 _SLENDER = 0.4  # R/H from which on a plate is thin
 _FAST, _WEAK = 60.0, 0.3  # [m/s], COR: impacts beyond are not what the law is for
 _START = 0.84, -0.54, 0.19, 4.0, 0.0, 0.05, 0.14  # of the search in `elastic`
@@ -230,15 +231,18 @@ class Blow(NamedTuple):
 
     @property
     def yielding(self) -> str:
-        """Which body does."""
+        """Case of the law that rules it; none between both alike and the weaker body alone."""
         one, other, *_ = self.given
-        return "both" if one and other else "sphere" if one else "plate"
+        z = min(one, other) / max(one, other)
+        if z > _ALIKE:
+            return "both"
+        return "" if z > _ALONE else "sphere" if one > other else "plate"
 
 
 def blows() -> list[Blow]:
     """Read the impacts of the campaign and of the studies before it, but for plates too thin."""
     listed = []
-    for study in ("campaign_impact", "matrix", "pairs", "strengths", "limits"):
+    for study in ("campaign_impact", "everyday", "matrix", "pairs", "strengths", "limits"):
         data = store.read(study).data
         for n in range(data["speed"].size):
             row = {name: values[n] for name, values in data.items()}
@@ -325,7 +329,7 @@ def in_impacts(found: dict[str, Any]) -> dict[str, Any]:
     for _ in range(2):
         rows: dict[str, list[tuple[float, ...]]] = {name: [] for name in YIELDING}
         for blow in listed:
-            if not blow.given.ratio or blow.restitution < _LEAST:
+            if not (blow.given.ratio and blow.yielding) or blow.restitution < _LEAST:
                 continue
             one, units = solved(blow, found)
             q = math.sqrt(one.peak_compression / float(units.yield_ratio))
@@ -345,9 +349,7 @@ def in_impacts(found: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _impact_powers(
-    q: Array, w: Array, share: Array, v: Array, weights: Array, moved: bool
-) -> Any:
+def _impact_powers(q: Array, w: Array, share: Array, v: Array, weights: Array, moved: bool) -> Any:
     t = (q - 1.0) / (q + fem.SHIFT)
     blocks = [("usual", IMPACT_POWERS, np.ones_like(q))]
     if moved:
