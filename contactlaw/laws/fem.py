@@ -18,9 +18,9 @@ alone; where it is not, flattened spheres and indented plates part:
 
     g = t (sum of g_ij t^i w^j),    t = (q - 1)/(q + 2)
 
-and likewise h, k, v/t and the plastic share 1 - exp(-sum) of the loss, with sums that are linear in
-Poisson's ratio and in the modulus of the body that yields, each for three cases: the sphere yields, the
-plate, or both alike. Where one body is stronger by a factor 1/z, the answer lies between that of
+and likewise h, k, v/t and the plastic share 1 - exp(-sum) of the loss, with sums that are linear
+in Poisson's ratio and the modulus of the body that yields, each for three cases: the sphere yields,
+the plate, or both alike. Where one body is stronger by a factor 1/z, the answer lies between that of
 both alike and that of the weaker body alone, by a share that falls from 1 at z = 1 to 0 at
 z = 0.36: the weaker body presses on the other with no more than 3 of its strengths, and the other
 yields at a mean pressure of 1.07 of its own.
@@ -47,7 +47,7 @@ from contactlaw.laws._law import Law
 Array = NDArray[np.float64]
 
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign
-_DEEPEST = (23.0, 0.25), (40.0, 0.1)  # E*/sigma_Y, and its deepest contacts, d/R
+_DEEPEST = (23.0, 0.2), (40.0, 0.1)  # E*/sigma_Y, and its deepest contacts, d/R
 _SMALLEST = 1e-8  # d/R; below, the contact's radius is under 1e-4 R and no stiffening to be seen
 SHIFT = 2.0  # of t
 _LEAST_FRICTION = 5e-4  # of bodies that hardly slip
@@ -92,8 +92,8 @@ def _sized(powers: list[list[float]]) -> Array:
 def yield_scale(ratio: float, poissons_ratio: float) -> float:
     """Yield compression over R: (pi C/2)^2 (sigma_Y/E*)^2, C = 1.295 exp(0.736 nu).
 
-    Where von Mises' stress first reaches sigma_Y under Hertz's pressure (Jackson & Green, J. Tribol.
-    127 (2005) 343, Eq. 5, with E* for E').
+    Where von Mises' stress first reaches sigma_Y under Hertz's pressure (Jackson & Green,
+    J. Tribol. 127 (2005) 343).
     """
     c = 1.295 * math.exp(0.736 * poissons_ratio)
     return (0.5 * math.pi * c / ratio) ** 2
@@ -257,8 +257,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
     return Law.of(
         name=f"fem({','.join(f'{number:.6g}' for number in given)})",
         source="finite elements of contactlaw, validation.fem.campaign",
-        # as `scale` rules, any number: that the law yields
-        yield_coefficient=1.0 if curves.ratio else None,
+        yield_coefficient=curves.scale * (curves.ratio / math.pi) ** 2 if curves.ratio else None,
         loading=loading,
         unloading=unloading,
         scale=curves.scale,

@@ -31,7 +31,12 @@ BOUNDS = {
 }
 """What contactlaw promises: COR absolutely, a force history by its peak, the others relatively."""
 
-PAIR_BOUNDS = {**dict.fromkeys(BOUNDS, 5e-4), "restitution": 1e-5, "force_history": 1e-3}
+PAIR_BOUNDS = {
+    **dict.fromkeys(BOUNDS, 5e-4),
+    "restitution": 1e-5,
+    "contact_time": 5e-3,  # where nothing comes back, lambda above 4; 1e-4 elsewhere
+    "force_history": 3e-3,
+}
 """Of tables that are made for a pair when its model is: coarser, in a fifth of a second."""
 
 

@@ -47,10 +47,11 @@ _SEGMENT = {
     "end": "ln chi of the kink at which it ends [-]",
     "shares": "of the way from start to end, of the columns of fields/ [-]",
 }
-# Of the numbers beside the fields; w_m is (5/4)^(2/5) at lambda = 0, and falls.
+# Of the numbers beside the fields; w_m is (5/4)^(2/5) at lambda = 0, and falls; more beyond the end
+# of a law.
 _RANGES = {
     **{name: (stored.least, stored.largest) for name, stored in STORED.items()},
-    "elastic_compression": (0.01, 1.1),
+    "elastic_compression": (0.01, 1.3),
     "times of shapes/states": (0.0, 1e4),
     "speeds of shapes/states": (-1.0, 1.0),
 }

@@ -92,7 +92,7 @@ def _states(shapes: Shapes, lam: float, log_chi: float, out: Array) -> None:
 
 @kernel
 def _force(law: Array, curve: Curve, loading: bool, d: float, y: float) -> float:
-    """Force at a compression; a contact that has not yielded has y = inf."""
+    """Force at a compression; a contact that is Hertz's has y = inf."""
     if y == math.inf:
         return d * math.sqrt(d)
     if loading:
@@ -104,7 +104,7 @@ def _force(law: Array, curve: Curve, loading: bool, d: float, y: float) -> float
 @kernel(cache=True)
 def sample(law: Array, shapes: Shapes, outcome: Outcome, out: History) -> None:
     """Contacts at even times from touch to separation, for outcomes inside the table."""
-    samples = out.time.shape[1]
+    samples, leaves = out.time.shape[1], force.leaves_hertz(law)
     inner = np.empty(2 * SIZE)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
@@ -121,7 +121,7 @@ def sample(law: Array, shapes: Shapes, outcome: Outcome, out: History) -> None:
         top = outcome.compression_ratio[n] * w_m
         curve = NO_CURVE
         residual = 0.0
-        if top <= y:
+        if top <= y * leaves:
             y = math.inf
         else:
             curve = force.unloading(law, top / y)

@@ -345,11 +345,13 @@ def in_impacts(found: dict[str, Any]) -> dict[str, Any]:
             weight = _THIN_PLATES if blow.radius > _SLENDER * blow.thickness else 1.0
             rows[blow.yielding].append((q, w, own, 1.0 - kept, weight))
         for name, values in rows.items():
-            found["curves"]["impact"][name] = _impact_powers(*np.array(values).T, name != "both")
+            found["curves"]["impact"][name] = _impact_powers(np.array(values), name != "both")
     return found
 
 
-def _impact_powers(q: Array, w: Array, share: Array, v: Array, weights: Array, moved: bool) -> Any:
+def _impact_powers(rows: Array, moved: bool) -> Any:
+    """Powers of t and w in v/t^2, from rows of q, w, the modulus share, v and a weight."""
+    q, w, share, v, weights = rows.T
     t = (q - 1.0) / (q + fem.SHIFT)
     blocks = [("usual", IMPACT_POWERS, np.ones_like(q))]
     if moved:
