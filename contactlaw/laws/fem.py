@@ -19,7 +19,7 @@ alone; where it is not, flattened spheres and indented plates part:
     g = t (sum of g_ij t^i w^j),    t = (q - 1)/(q + 2)
 
 and likewise h, k, v/t and the plastic share 1 - exp(-sum) of the loss, with sums that are linear
-in Poisson's ratio and the modulus of the body that yields, each for three cases: the sphere yields,
+in Poisson's ratio and, but for deep contacts, the modulus of the body that yields, each for three cases: the sphere yields,
 the plate, or both alike. Where one body is stronger by a factor 1/z, the answer lies between that of
 both alike and that of the weaker body alone, by a share that falls from 1 at z = 1 to 0 at
 z = 0.36: the weaker body presses on the other with no more than 3 of its strengths, and the other
@@ -81,6 +81,10 @@ def friction_loss(given: Given, powers: list[float]) -> float:
 
 def _within(value: float, most: float) -> float:
     return min(max(value, -most), most)
+
+
+def _effect(parts: dict[str, Any], name: str) -> Array:
+    return _sized(parts[name]) if name in parts else np.zeros(_POWERS)
 
 
 def _sized(powers: list[list[float]]) -> Array:
@@ -151,15 +155,12 @@ class Curves:
         both = (max(0.0, z - _ALONE) / (1.0 - _ALONE)) ** float(found["blend"])
         for name, cases in found["curves"].items():
             alone, alike = (_sized(cases[case]["usual"]) for case in (weaker, "both"))
-            moved = np.zeros(_POWERS)
             # equal bodies share the flow, whatever their moduli
-            for effect, by in (
-                ("share", (1.0 - both) * _within(share - 0.5, _SHARES)),
-                ("poissons_ratio", _within(nu - 0.3, _RATIOS)),
-            ):
-                if effect in cases[weaker]:
-                    moved += by * _sized(cases[weaker][effect])
-            self._terms[name] = (1.0 - both) * alone + both * alike, moved
+            change = (1.0 - both) * _within(share - 0.5, _SHARES)
+            moved = change * _effect(cases[weaker], "share")
+            mean = (1.0 - both) * alone + both * alike
+            mean += _within(nu - 0.3, _RATIOS) * _effect(cases[weaker], "poissons_ratio")
+            self._terms[name] = mean, moved
 
     def _sum(self, name: str, q: Array) -> Array:
         """Sum of the powers of t and w of one of the functions."""

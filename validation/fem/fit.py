@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 FILE = Path(fem.__file__).with_name("fem.json")
 POWERS = (5, 4)  # of t and w in each function,
 SHARE_POWERS, RATIO_POWERS = (4, 2), (3, 1)  # and in what other moduli and Poisson's ratios change
-IMPACT_POWERS, IMPACT_SHARE_POWERS = (5, 4), (4, 3)
+IMPACT_POWERS, IMPACT_SHARE_POWERS, IMPACT_RATIO_POWERS = (5, 4), (4, 3), (2, 2)
 _THIN_PLATES = 2.0  # weight of impacts on these: they are what the model is for
 _IMPACT_RIDGE = 1.5e-4
 _MOST_PLASTIC = 0.98  # of the loss; more is noise of losses that are hardly there
@@ -179,7 +179,7 @@ def _basis(q: Array, w: Array, share: Array, nu: Array, moved: bool) -> Array:
     if moved:
         blocks += [
             (SHARE_POWERS, (1.0 - t) * (share - 0.5)),
-            (RATIO_POWERS, (1.0 - t) * (nu - 0.3)),
+            (RATIO_POWERS, nu - 0.3),
         ]
     return np.concatenate(
         [
@@ -242,7 +242,7 @@ class Blow(NamedTuple):
 def blows() -> list[Blow]:
     """Read the impacts of the campaign and of the studies before it, but for plates too thin."""
     listed = []
-    for study in ("campaign_impact", "everyday", "matrix", "pairs", "strengths", "limits"):
+    for study in ("campaign_impact", "everyday", "everyday_2", "matrix", "pairs", "strengths", "limits"):
         data = store.read(study).data
         for n in range(data["speed"].size):
             row = {name: values[n] for name, values in data.items()}
@@ -343,19 +343,24 @@ def in_impacts(found: dict[str, Any]) -> dict[str, Any]:
             share = blow.given.modulus_share
             own = share if blow.yielding != "plate" else 1.0 - share
             weight = _THIN_PLATES if blow.radius > _SLENDER * blow.thickness else 1.0
-            rows[blow.yielding].append((q, w, own, 1.0 - kept, weight))
+            bodies = blow.given.poissons_ratio, blow.given.plate_poissons_ratio
+            nu = bodies[blow.given.plate_ratio > blow.given.sphere_ratio]
+            rows[blow.yielding].append((q, w, own, nu, 1.0 - kept, weight))
         for name, values in rows.items():
             found["curves"]["impact"][name] = _impact_powers(np.array(values), name != "both")
     return found
 
 
 def _impact_powers(rows: Array, moved: bool) -> Any:
-    """Powers of t and w in v/t^2, from rows of q, w, the modulus share, v and a weight."""
-    q, w, share, v, weights = rows.T
+    """Powers of t and w in v/t^2, from rows of q, w, the modulus share, nu, v and a weight."""
+    q, w, share, nu, v, weights = rows.T
     t = (q - 1.0) / (q + fem.SHIFT)
     blocks = [("usual", IMPACT_POWERS, np.ones_like(q))]
     if moved:
-        blocks.append(("share", IMPACT_SHARE_POWERS, (1.0 - t) * (share - 0.5)))
+        blocks += [
+            ("share", IMPACT_SHARE_POWERS, (1.0 - t) * (share - 0.5)),
+            ("poissons_ratio", IMPACT_RATIO_POWERS, nu - 0.3),
+        ]
     basis = np.concatenate(
         [
             np.polynomial.polynomial.polyvander2d(t, 2.0 * w, [n - 1, m - 1]) * factor[:, None]
