@@ -1,4 +1,4 @@
-"""The report: claims, figures, errata and the derivation of the turning-point form on one page."""
+"""The report: claims, figures, errata and derivations on one page."""
 
 from __future__ import annotations
 
@@ -75,13 +75,16 @@ def page(claims: tuple[Claim, ...], figures: list[tuple[str, str, dict[str, floa
         "<h1>The paper, reproduced and corrected</h1>",
         f"<p>{_summary(claims)}</p>",
         "<nav><a href='#claims'>Claims</a><a href='#figures'>Figures</a>"
-        "<a href='#errata'>Errata</a><a href='#turning-point'>Turning-point form</a></nav>",
+        "<a href='#errata'>Errata</a><a href='#turning-point'>Turning-point form</a>"
+        "<a href='#fem'>The law fem</a><a href='#mobility'>Mobility</a></nav>",
         "<h1 id='claims'>Claims</h1>",
         _claims(claims),
         "<h1 id='figures'>Figures</h1>",
         *(_figure(*one) for one in figures),
         f"<div id='errata'>{_derivation('errata')}</div>",
         f"<div id='turning-point'>{_derivation('turning_point')}</div>",
+        f"<div id='fem'>{_derivation('fem_law')}</div>",
+        f"<div id='mobility'>{_derivation('mobility')}</div>",
         f"<p class='note'>contactlaw {cl.__version__}, {today}, python -m validation</p>",
         "</body></html>",
     ]

@@ -1,7 +1,8 @@
 """Recompute the studies: ``python -m validation.fem [NAME ...] [--processes N]``.
 
-``report`` prints the comparison of the stored results with the model, ``acceptance`` that of the
-law ``"fem"`` with what is asked of it; ``python -m validation`` draws them.
+``fit`` makes the numbers of the law ``"fem"`` from what is stored; ``report`` prints the comparison
+of the stored results with the model, ``acceptance`` that of the law with what is asked of it;
+``python -m validation`` draws them.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from concurrent.futures.process import BrokenProcessPool
 
 from tqdm import tqdm
 
-from validation.fem import acceptance, compare, store
+from validation.fem import acceptance, compare, fit, store
 from validation.fem.studies import STUDIES
 
 
@@ -23,6 +24,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Run what is named, or all; 0 when done, 1 if it failed, 2 for wrong usage, 130 for Ctrl-C."""
     steps: dict[str, Callable[[int], None]] = {
         **STUDIES,
+        "fit": fit.run,
         "report": _report,
         "acceptance": _acceptance,
     }

@@ -19,8 +19,8 @@ from validation.fem.cases import Case
 RADIUS = 1e-3  # [m]
 SPEED = (0.5, 10.0)  # [m/s], drawn by its logarithm
 THICKNESS = (0.6e-3, 10e-3)  # [m], likewise
-# The impacts of the first two seeds were kept out of the first two fits of the law, and judged them;
-# later fits have seen them. Those of the last were drawn, and committed, before the last fit.
+# The impacts of the first two seeds were kept out of the first two fits of the law, and judged
+# them; later fits have seen them. Those of the last were drawn, and committed, before the last fit.
 SEEDS = {"everyday": 20261122, "everyday_2": 20261123, "kept_out": 20261124}
 COUNT = 80
 

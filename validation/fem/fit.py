@@ -8,6 +8,7 @@ on every machine.
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
 import math
 from collections.abc import Iterator
@@ -21,7 +22,7 @@ from scipy.optimize import minimize_scalar
 import contactlaw as cl
 from contactlaw.equation import zener
 from contactlaw.equation.zener import Solution
-from contactlaw.laws import fem
+from contactlaw.laws import Law, fem
 from contactlaw.physical.scaling import Scales, pair_numbers, scales, sphere_on_plate
 from validation.fem import cases, store
 from validation.fem.campaign import SAMPLES, YIELDING
@@ -242,7 +243,15 @@ class Blow(NamedTuple):
 def blows() -> list[Blow]:
     """Read the impacts of the campaign and of the studies before it, but for plates too thin."""
     listed = []
-    for study in ("campaign_impact", "everyday", "everyday_2", "matrix", "pairs", "strengths", "limits"):
+    for study in (
+        "campaign_impact",
+        "everyday",
+        "everyday_2",
+        "matrix",
+        "pairs",
+        "strengths",
+        "limits",
+    ):
         data = store.read(study).data
         for n in range(data["speed"].size):
             row = {name: values[n] for name, values in data.items()}
@@ -275,9 +284,8 @@ def numbers_of(pair: cl.Pair) -> fem.Given:
     return fem.Given(*(float(f"{found[name]:.6g}") for name in fem.PARAMETERS))
 
 
-def solved(blow: Blow, found: dict[str, Any]) -> tuple[Solution, Scales]:
-    """Impact by the law of some numbers, and its units."""
-    law = fem.law_of(blow.given, found)
+def solved(blow: Blow, law: Law) -> tuple[Solution, Scales]:
+    """Impact by a law, and its units."""
     contact = sphere_on_plate(blow.pair, law, np.array(blow.radius), np.array(blow.thickness))
     units = scales(contact, np.array(blow.speed))
     lam, y = float(units.inelasticity), float(units.yield_ratio)
@@ -306,9 +314,9 @@ def elastic(found: dict[str, Any]) -> dict[str, Any]:
         return {**found, "stiffening": [constant, slope], "plate": plate, "friction": powers}
 
     def off(x: Array) -> Array:
-        rows = []
+        rows, law_of = [], functools.cache(functools.partial(fem.law_of, found=named(x)))
         for blow, errors in listed:
-            one, units = solved(blow, named(x))
+            one, units = solved(blow, law_of(blow.given))
             ours = one.restitution, one.contact_time * units.time, one.peak_force * units.force
             theirs = blow.restitution, blow.contact_time, blow.peak_force
             rows.append((np.array(ours) / np.array(theirs) - 1.0) / errors)
@@ -328,10 +336,11 @@ def in_impacts(found: dict[str, Any]) -> dict[str, Any]:
     listed = blows()
     for _ in range(2):
         rows: dict[str, list[tuple[float, ...]]] = {name: [] for name in YIELDING}
+        law_of = functools.cache(functools.partial(fem.law_of, found=found))
         for blow in listed:
             if not (blow.given.ratio and blow.yielding) or blow.restitution < _LEAST:
                 continue
-            one, units = solved(blow, found)
+            one, units = solved(blow, law_of(blow.given))
             q = math.sqrt(one.peak_compression / float(units.yield_ratio))
             if q < _BEYOND_YIELD:
                 continue

@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 import contactlaw as cl
 from contactlaw.closed_form import eta
-from validation.fem import calculix, cases, store
+from validation.fem import calculix, campaign, cases, census, store
 from validation.fem.cases import Case
 from validation.fem.impact import expect, free_width, impact
 from validation.fem.indentation import BLOCK, Indentation, indent
@@ -346,4 +346,9 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "strengths": strengths,
     "limits": limits,
     "edge": edge,
+    "campaign_indentation": campaign.indentations,
+    "campaign_impact": campaign.blows,
+    "everyday": census.everyday,
+    "everyday_2": census.everyday_2,
+    "kept_out": census.kept_out,
 }

@@ -1,0 +1,97 @@
+"""The numbers of the law ``"fem"`` are those that the stored campaign gives."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+from contactlaw.laws import fem
+from validation.fem import campaign, census, fit, journal, store
+from validation.fem.campaign import Press
+
+
+def flat(numbers):
+    """All numbers of a tree, in order."""
+    if isinstance(numbers, dict):
+        return [x for name in sorted(numbers) for x in flat(numbers[name])]
+    if isinstance(numbers, list):
+        return [x for one in numbers for x in flat(one)]
+    return [numbers]
+
+
+@pytest.mark.filterwarnings("ignore:divide by zero")
+def test_the_fit_gives_the_numbers_that_are_shipped():
+    # least squares of powers: the last digits of coefficients that hardly matter are the machine's
+    ours, shipped = (np.array(flat(one)) for one in (fit.numbers(), fem.numbers()))
+    assert ours.shape == shipped.shape
+    np.testing.assert_allclose(ours, shipped, rtol=1e-3, atol=1e-3)
+
+
+def test_no_fit_reads_the_set_kept_out(monkeypatch):
+    read = []
+
+    def noted(name):
+        read.append(name)
+        return store.read(name)
+
+    monkeypatch.setattr(fit, "store", type("Store", (), {"read": staticmethod(noted)}))
+    assert len(fit.blows()) > 400
+    assert "kept_out" not in read and "everyday" in read
+
+
+@pytest.mark.parametrize("name", census.SEEDS)
+def test_everyday_impacts_are_those_of_their_seed(name):
+    assert census.drawn(name) == census.draw(census.SEEDS[name], census.COUNT)
+
+
+def test_the_campaign_covers_what_it_says():
+    jobs = campaign.presses()
+    ratios = {max(j.sphere if j.sphere < math.inf else 0, j.plate if j.plate < math.inf else 0)
+              for j in jobs}  # fmt: skip
+    assert len(campaign.DEPTHS) >= 10 and {11.0, 2000.0} <= ratios
+    deepest = {
+        r: max(j.depth for j in jobs if r in (j.sphere, j.plate)) for r in (23.0, 100.0, 2000.0)
+    }
+    assert deepest[23.0] == pytest.approx(0.25, rel=0.01)
+    assert deepest[100.0] == pytest.approx(0.1, rel=0.01)
+    assert deepest[2000.0] == pytest.approx(0.1, rel=0.01)
+
+
+@pytest.mark.parametrize("yielding", campaign.YIELDING)
+def test_a_coarse_indentation_again(yielding):
+    """On a mesh half as fine, three times as quick: within 3 % of what is stored."""
+    data = store.read("campaign_indentation").data
+    depth = 6.0 * campaign.yield_depth(40.0)
+    job = campaign._pressed(40.0, yielding, 6.0, across=6, slowness=0.5)
+    found = campaign.press(job)
+    strains = [1.0 / 40.0 if yielding in (body, "both") else 0.0 for body in ("sphere", "plate")]
+    here = np.isclose(data["sphere_yield_strain"], strains[0])
+    here &= np.isclose(data["plate_yield_strain"], strains[1]) & np.isclose(data["depth"], depth)
+    n = int(np.flatnonzero(here)[0])
+    assert found["force"] == pytest.approx(data["force"][n], rel=0.03)
+    recovered = found["unloading_work"] / found["loading_work"]
+    stored = data["unloading_work"][n] / data["loading_work"][n]
+    assert recovered == pytest.approx(stored, rel=0.03)
+
+
+def job_once(job):
+    return {"depth": job.depth}
+
+
+def test_a_killed_run_goes_on(tmp_path, monkeypatch):
+    monkeypatch.setattr(store, "FOLDER", tmp_path)
+    jobs = [Press(math.inf, math.inf, depth) for depth in (0.01, 0.02, 0.03)]
+    first = journal.complete("some", job_once, jobs[:2], 1)
+    assert [row["depth"] for row in first] == [0.01, 0.02]
+    lines = journal.path("some").read_text().splitlines()
+    # it was killed while it wrote its second line, and an older solver wrote the first
+    journal.path("some").write_text(lines[0] + "\n" + lines[1][:30])
+    assert len(journal._read(journal.path("some"))) == 1
+    again = journal.complete("some", job_once, jobs, 1)
+    assert [row["depth"] for row in again] == [0.01, 0.02, 0.03]
+    old = json.loads(lines[0]) | {"solver_version": -1}
+    journal.path("some").write_text(json.dumps(old) + "\n")
+    assert journal._read(journal.path("some")) == {}
+    journal.forget("some")
+    assert not journal.path("some").exists()
