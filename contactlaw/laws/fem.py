@@ -22,7 +22,8 @@ and likewise h, k, v/t and the plastic share 1 - exp(-sum) of the loss, with sum
 in Poisson's ratio and, but for deep contacts, in the modulus of the body that yields, each for
 three cases: the sphere yields, the plate, or both alike. Where one body is stronger by a factor
 1/z, the answer lies between that of both alike and that of the weaker body alone, by a share that
-falls from 1 at z = 1 to 0 at z = 0.36: the weaker body presses on the other with no more than 3 of its strengths, and the other
+falls from 1 at z = 1 to 0 at z = 0.36: the weaker body presses on the other with no more than 3 of
+its strengths, and the other
 yields at a mean pressure of 1.07 of its own.
 
 Legend: compressions in units of the yield compression d_Y of the weaker body, or of R where

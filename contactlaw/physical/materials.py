@@ -142,9 +142,8 @@ class Material:
         if self.yield_strength is None:
             raise ValueError(
                 f"law {law!r} needs a yield strength, and material {self.name!r} has none "
-                "(brittle, or no citable value): give one in Pa with "
-                "Material(..., yield_strength=...), or take the elastic-only answer with "
-                'law="hertz"'
+                "(brittle, or no citable value): take law=\"fem\", in which such a body is elastic "
+                "and the other may yield, or give one in Pa with Material(..., yield_strength=...)"
             )
         return self.yield_strength
 
