@@ -19,7 +19,7 @@ from contactlaw.physical.materials import Material, material, materials
 from contactlaw.physical.measured import measured_law
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.validity import Validity, edge_distance
+from contactlaw.physical.validity import Validity, edge_distance, explain
 from contactlaw.sensitivity import Sensitivity
 from contactlaw.spheres import restitution_sphere_sphere
 
@@ -34,6 +34,7 @@ __all__ = [
     "Validity",
     "__version__",
     "edge_distance",
+    "explain",
     "load_signal",
     "material",
     "materials",

@@ -19,7 +19,7 @@ from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import material, materials
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.validity import Validity
+from contactlaw.physical.validity import Validity, explain
 from contactlaw.table import cache, file
 
 _UNITS = {
@@ -53,6 +53,8 @@ def _cor(arguments: argparse.Namespace) -> None:
     beyond = "none within the table" if yield_speed == math.inf else f"{yield_speed:.6g} m/s"
     print(f"{'yield_speed':21s} {beyond}")
     print(f"{'flags':21s} {', '.join(_flag_names(rebound)) or 'none: inside every limit'}")
+    for words in explain(int(rebound.flags)):
+        print(f"{'':21s} {words}")
 
 
 def _flag_names(rebound: Rebound) -> list[str]:

@@ -9,10 +9,9 @@ import pytest
 from scene import make_bead, make_plate, make_space
 
 import contactlaw as cl
-from contactlaw import Validity, laws
+from contactlaw import Validity, explain, laws
 from contactlaw.engines.pymunk import attach
 from contactlaw.physical.scaling import law_of
-from contactlaw.physical.validity import explain
 from contactlaw.softsphere import Contacts, time_step
 from validation.fem import census
 

@@ -58,13 +58,19 @@ def test_the_lammps_section():
     names["lmp"].close()
 
 
+def test_the_section_on_the_law_fem():
+    names, compared = run(BLOCKS[4:5], check)
+    assert compared == 2
+    assert names["hit"].flags == cl.Validity(0)
+
+
 def test_the_section_on_laws_of_your_own():
-    _, compared = run(BLOCKS[4:5], check)
+    _, compared = run(BLOCKS[5:6], check)
     assert compared == 2
 
 
 def test_nothing_else_is_unchecked():
-    assert len(BLOCKS) == 5
+    assert len(BLOCKS) == 6
 
 
 def test_the_stated_accuracy_is_that_of_the_certificate():

@@ -5,8 +5,7 @@ import math
 import pytest
 
 import contactlaw as cl
-from contactlaw import Validity
-from contactlaw.physical.validity import explain
+from contactlaw import Validity, explain
 
 R = 0.9e-3
 

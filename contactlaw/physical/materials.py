@@ -45,7 +45,7 @@ class Material:
         Density of the bead or plate itself [kg/m3], positive; for a porous bead with its pores.
     yield_strength : float, optional
         Uniaxial yield strength [Pa], positive; None if the material is brittle or the value
-        unknown. Without it a bead can only be treated as elastic, with ``law="hertz"``.
+        unknown. Without it a body is elastic, and only ``law="fem"`` and ``"hertz"`` take it.
     source : str, optional
         Where the numbers come from.
     kind : str, optional
@@ -142,7 +142,7 @@ class Material:
         if self.yield_strength is None:
             raise ValueError(
                 f"law {law!r} needs a yield strength, and material {self.name!r} has none "
-                "(brittle, or no citable value): take law=\"fem\", in which such a body is elastic "
+                '(brittle, or no citable value): take law="fem", in which such a body is elastic '
                 "and the other may yield, or give one in Pa with Material(..., yield_strength=...)"
             )
         return self.yield_strength

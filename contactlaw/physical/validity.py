@@ -90,6 +90,7 @@ def explain(flags: int) -> tuple[str, ...]:
 
     Examples
     --------
+    >>> from contactlaw import Validity, explain
     >>> explain(Validity.THIN_PLATE)
     ('plate thinner than R/1.8, its deflection is no longer small',)
     """
