@@ -228,7 +228,7 @@ def _of_study(study: str, law: str, least: float) -> list[Member]:
     data = store.read(study).data
     count = data["speed"].size
     impacts = [{key: values[n] for key, values in data.items()} for n in range(count)]
-    pairs = [fit._pair(one) for one in impacts]  # bodies that do not yield have no strength
+    pairs = [fit.pair_of(one) for one in impacts]  # bodies that do not yield have no strength
     found: dict[int, Member] = {}
     for pair in dict.fromkeys(pairs):
         if law == "myc" and pair.sphere.yield_strength is None:

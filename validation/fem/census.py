@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import contactlaw as cl
-from validation.fem import cases, journal
+from validation.fem import journal
 from validation.fem.cases import Case
 
 RADIUS = 1e-3  # [m]
@@ -80,7 +80,5 @@ def everyday_2(processes: int) -> None:
 
 
 def _study(name: str, about: str, processes: int) -> None:
-    rows = journal.complete(name, cases.solve, drawn(name), processes)
-    data = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    cases.save(name, f"{len(rows)} {about}", data)
-    journal.forget(name)
+    listed = drawn(name)
+    journal.impacts(name, f"{len(listed)} {about}", listed, processes)

@@ -1,8 +1,8 @@
 """From the campaign of finite elements to the numbers of the law ``"fem"``.
 
 ``python -m validation.fem fit`` reads the stored campaign and writes ``contactlaw/laws/fem.json``.
-Every step is linear least squares, or a search for one number, so that it gives the same numbers
-on every machine.
+Every step is linear least squares, two steps of Newton's from a start that is near, or a search for
+one number, so that it gives the same numbers on every machine.
 """
 
 from __future__ import annotations
@@ -30,9 +30,11 @@ from validation.fem.campaign import SAMPLES, YIELDING
 Array = NDArray[np.float64]
 
 FILE = Path(fem.__file__).with_name("fem.json")
-POWERS = (5, 4)  # of t and w in each function,
-SHARE_POWERS, RATIO_POWERS = (4, 2), (3, 1)  # and in what other moduli and Poisson's ratios change
-IMPACT_POWERS, IMPACT_SHARE_POWERS, IMPACT_RATIO_POWERS = (5, 4), (4, 3), (2, 2)
+Size = tuple[int, int]
+Blocks = list[tuple[str, Size]]
+# Powers of t and w in each function, in what other moduli change of it, and Poisson's ratios
+STATIC = (5, 4), (4, 2), (3, 1)
+IMPACT = (5, 4), (4, 3), (2, 2)
 _THIN_PLATES = 2.0  # weight of impacts on these: they are what the model is for
 _IMPACT_RIDGE = 1.5e-4
 _MOST_PLASTIC = 0.98  # of the loss; more is noise of losses that are hardly there
@@ -133,9 +135,11 @@ def case(
     chosen, moduli, ratios = [], [], []
     for n, ratio in presses(data):
         strains = data["sphere_yield_strain"][n], data["plate_yield_strain"][n]
-        beyond = ratio and read(data, n, ratio).q > _BEYOND_YIELD
-        if beyond and np.allclose(strains, _strains(yielding, ratio)):
-            chosen.append(read(data, n, ratio))
+        if not (ratio and np.allclose(strains, _strains(yielding, ratio))):
+            continue
+        one = read(data, n, ratio)
+        if one.q > _BEYOND_YIELD:
+            chosen.append(one)
             moduli.append(float(data["share"][n]))
             ratios.append(float(data["poissons_ratio"][n]))
     share, nu = np.array(moduli), np.array(ratios)
@@ -158,7 +162,7 @@ def case(
         "recovery": _fit(q, w, own, nu, (1.0 - friction) / recovery, moved),
         "residual": _fit(q, w, own, nu, 1.0 / (1.0 - residual), moved),
         "plastic": _least_squares(
-            _basis(q, w, own, nu, moved),
+            _basis(q, w, own, nu, _blocks(moved, *STATIC)),
             -np.log1p(-np.minimum(plastic / loss, _MOST_PLASTIC)),
             np.sqrt(loss) * np.maximum(1.0 - plastic / loss, 1.0 - _MOST_PLASTIC),
             moved,
@@ -173,19 +177,25 @@ def _strains(yielding: str, ratio: float) -> tuple[float, float]:
     )
 
 
-def _basis(q: Array, w: Array, share: Array, nu: Array, moved: bool) -> Array:
+def _blocks(moved: bool, *sizes: Size) -> Blocks:
+    """Name the tables of powers; "both" has the usual one only."""
+    names = ("usual", "share", "poissons_ratio")
+    return list(zip(names, sizes, strict=True))[: 3 if moved else 1]
+
+
+def _basis(q: Array, w: Array, share: Array, nu: Array, blocks: Blocks) -> Array:
     """Powers of t and w; those again times what the moduli and Poisson's ratio differ by."""
     t = (q - 1.0) / (q + fem.SHIFT)
-    blocks = [(POWERS, np.ones_like(q))]
-    if moved:
-        blocks += [
-            (SHARE_POWERS, (1.0 - t) * (share - 0.5)),
-            (RATIO_POWERS, nu - 0.3),
-        ]
+    factors = {
+        "usual": np.ones_like(q),
+        "share": (1.0 - t) * (share - 0.5),
+        "poissons_ratio": nu - 0.3,
+    }
     return np.concatenate(
         [
-            np.polynomial.polynomial.polyvander2d(t, 2.0 * w, [n - 1, m - 1]) * factor[:, None]
-            for (n, m), factor in blocks
+            np.polynomial.polynomial.polyvander2d(t, 2.0 * w, [n - 1, m - 1])
+            * factors[name][:, None]
+            for name, (n, m) in blocks
         ],
         axis=1,
     )
@@ -194,21 +204,21 @@ def _basis(q: Array, w: Array, share: Array, nu: Array, moved: bool) -> Array:
 def _fit(q: Array, w: Array, share: Array, nu: Array, over: Array, moved: bool) -> Any:
     """Powers of which `over` is 1 + (q - 1) t (their sum), weighted by 1/over."""
     rise = (q - 1.0) ** 2 / (q + fem.SHIFT)
-    basis = _basis(q, w, share, nu, moved)
+    basis = _basis(q, w, share, nu, _blocks(moved, *STATIC))
     return _least_squares(basis, (over - 1.0) / rise, rise / over, moved)
 
 
 def _least_squares(basis: Array, values: Array, weights: Array, moved: bool) -> Any:
-    count = basis.shape[1]
-    scale = weights / math.sqrt(len(values))
-    system = np.vstack([basis * scale[:, None], _RIDGE * np.eye(count)])
-    found = np.linalg.lstsq(system, np.append(values * scale, np.zeros(count)), rcond=None)[0]
-    blocks = [("usual", POWERS), ("share", SHARE_POWERS), ("poissons_ratio", RATIO_POWERS)]
-    return _parts(found, blocks if moved else blocks[:1])
+    rows, right = basis * weights[:, None], values * weights
+    return _ridge(rows, right, _RIDGE, _blocks(moved, *STATIC))
 
 
-def _parts(found: NDArray[Any], blocks: list[tuple[str, tuple[int, int]]]) -> Any:
-    """Cut coefficients into tables of powers of t and w, eight digits each."""
+def _ridge(rows: Array, right: Array, ridge: float, blocks: Blocks) -> Any:
+    """Solve for coefficients; tables of powers of t and w, eight digits each."""
+    count = rows.shape[1]
+    system = np.vstack([rows / math.sqrt(len(right)), ridge * np.eye(count)])
+    known = np.append(right / math.sqrt(len(right)), np.zeros(count))
+    found = np.linalg.lstsq(system, known, rcond=None)[0]
     parts, at = {}, 0
     for name, (n, m) in blocks:
         powers = found[at : at + n * m].reshape(n, m) * 2.0 ** np.arange(m)
@@ -255,7 +265,7 @@ def blows() -> list[Blow]:
         data = store.read(study).data
         for n in range(data["speed"].size):
             row = {name: values[n] for name, values in data.items()}
-            pair = _pair(row)
+            pair = pair_of(row)
             blow = Blow(
                 pair, numbers_of(pair), float(row["speed"]), float(row["radius"]),
                 float(row["thickness"]), float(row["restitution"]), float(row["contact_time"]),
@@ -266,7 +276,7 @@ def blows() -> list[Blow]:
     return listed
 
 
-def _pair(row: dict[str, Any]) -> cl.Pair:
+def pair_of(row: dict[str, Any]) -> cl.Pair:
     """Materials of an impact; those that did not yield have no strength."""
     yields = row["yields"], row.get("plate_yields", False)
     bodies = [cases.material(str(row[name])) for name in ("sphere", "plate")]
@@ -292,7 +302,7 @@ def solved(blow: Blow, law: Law) -> tuple[Solution, Scales]:
     return zener.solve(law.data, lam, y, 1e-8), units
 
 
-def elastic(found: dict[str, Any]) -> dict[str, Any]:
+def elastic(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
     """Fit what holds of any contact to impacts without plastic flow.
 
     A sphere that flies is compressed by its own inertia, and stiffer than a hemisphere in a vice:
@@ -300,7 +310,7 @@ def elastic(found: dict[str, Any]) -> dict[str, Any]:
     plates the peak force tells how much these stiffen a contact as wide as they are thick.
     """
     listed = []
-    for blow in blows():
+    for blow in measured:
         if blow.speed < _FAST and blow.restitution > _WEAK:
             if blow.plastic < _ELASTIC:
                 given = blow.given._replace(sphere_ratio=0.0, plate_ratio=0.0)
@@ -331,13 +341,12 @@ def elastic(found: dict[str, Any]) -> dict[str, Any]:
     return named(np.array([float(f"{value:.6g}") for value in x]))
 
 
-def in_impacts(found: dict[str, Any]) -> dict[str, Any]:
+def in_impacts(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
     """Fit v, what impacts lose beyond slow contacts: twice, since v moves the law that it is of."""
-    listed = blows()
     for _ in range(2):
         rows: dict[str, list[tuple[float, ...]]] = {name: [] for name in YIELDING}
         law_of = functools.cache(functools.partial(fem.law_of, found=found))
-        for blow in listed:
+        for blow in measured:
             if not (blow.given.ratio and blow.yielding) or blow.restitution < _LEAST:
                 continue
             one, units = solved(blow, law_of(blow.given))
@@ -360,29 +369,14 @@ def in_impacts(found: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def _impact_powers(rows: Array, moved: bool) -> Any:
+def _impact_powers(table: Array, moved: bool) -> Any:
     """Powers of t and w in v/t^2, from rows of q, w, the modulus share, nu, v and a weight."""
-    q, w, share, nu, v, weights = rows.T
+    q, w, share, nu, v, weights = table.T
     t = (q - 1.0) / (q + fem.SHIFT)
-    blocks = [("usual", IMPACT_POWERS, np.ones_like(q))]
-    if moved:
-        blocks += [
-            ("share", IMPACT_SHARE_POWERS, (1.0 - t) * (share - 0.5)),
-            ("poissons_ratio", IMPACT_RATIO_POWERS, nu - 0.3),
-        ]
-    basis = np.concatenate(
-        [
-            np.polynomial.polynomial.polyvander2d(t, 2.0 * w, [n - 1, m - 1]) * factor[:, None]
-            for _, (n, m), factor in blocks
-        ],
-        axis=1,
-    )
-    scale = weights / math.sqrt(t.size)
-    count = basis.shape[1]
-    system = np.vstack([basis * (t * t * scale)[:, None], _IMPACT_RIDGE * np.eye(count)])
-    right = np.append(v * scale, np.zeros(count))
-    powers = np.linalg.lstsq(system, right, rcond=None)[0]
-    return _parts(powers, [(name, size) for name, size, _ in blocks])
+    blocks = _blocks(moved, *IMPACT)
+    rise = t * t * weights
+    rows = _basis(q, w, share, nu, blocks) * rise[:, None]
+    return _ridge(rows, v * weights, _IMPACT_RIDGE, blocks)
 
 
 def blend(data: dict[str, Array], found: dict[str, Any]) -> float:
@@ -419,7 +413,8 @@ def numbers() -> dict[str, Any]:
         "curves": {**curves, "impact": dict.fromkeys(YIELDING, none)},
     }
     found["blend"] = float(f"{blend(data, found):.3g}")
-    return in_impacts(elastic(found))
+    measured = blows()
+    return in_impacts(elastic(found, measured), measured)
 
 
 def run(_: int) -> None:

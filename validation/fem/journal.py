@@ -8,9 +8,11 @@ from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any, TypeVar
 
+import numpy as np
 from tqdm import tqdm
 
 from validation.fem import cases, store
+from validation.fem.cases import Case
 from validation.fem.solver import VERSION
 
 _Job = TypeVar("_Job")
@@ -54,6 +56,13 @@ def complete(
             file.flush()
             bar.update()
     return [done[repr(job)] for job in jobs]
+
+
+def impacts(name: str, about: str, listed: Sequence[Case], processes: int) -> None:
+    """Compute impacts as a study that goes on where it was stopped, and store them."""
+    rows = complete(name, cases.solve, listed, processes)
+    cases.save(name, about, {column: np.array([row[column] for row in rows]) for column in rows[0]})
+    forget(name)
 
 
 def path(name: str) -> Path:
