@@ -257,6 +257,7 @@ def blows() -> list[Blow]:
         "campaign_impact",
         "everyday",
         "everyday_2",
+        "everyday_3",
         "matrix",
         "pairs",
         "strengths",

@@ -350,5 +350,6 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "campaign_impact": campaign.blows,
     "everyday": census.everyday,
     "everyday_2": census.everyday_2,
+    "everyday_3": census.everyday_3,
     "kept_out": census.kept_out,
 }
