@@ -178,7 +178,7 @@ def _parser() -> argparse.ArgumentParser:
         add("--radius", required=True, type=float, help="radius of the bead [m]")
         add("--thickness", required=True, type=float, help="of the plate [m]; inf: bulk")
         add("--speed", required=True, type=float, help="normal approach speed [m/s]")
-        add("--law", default="myc", help=f"one of {', '.join(laws.names())}")
+        add("--law", default=laws.DEFAULT, help=f"one of {', '.join(laws.names())}")
         add("--outside", default="raise", choices=["raise", "solve", "clamp"])
         add("--solve", action="store_true", help="integrate instead of looking up")
     cor.add_argument("--json", action="store_true", help="machine-readable output")

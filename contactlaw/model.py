@@ -30,7 +30,7 @@ from contactlaw.evaluation import (
     table_for,
     tabulated,
 )
-from contactlaw.laws import Law
+from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.pair import Pair
@@ -111,7 +111,7 @@ class ImpactModel:
     def __init__(
         self,
         pair: Pair,
-        law: str | Law = "myc",
+        law: str | Law = DEFAULT,
         table: Table | Settings | str | os.PathLike[str] | None = None,
         outside: Outside = "raise",
     ) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.evaluation import table_for, tabulated
-from contactlaw.laws import Law
+from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
@@ -24,7 +24,7 @@ def restitution_sphere_sphere(
     radius: ArrayLike,
     other_radius: ArrayLike,
     *,
-    law: str | Law = "myc",
+    law: str | Law = DEFAULT,
 ) -> float | Array:
     """Coefficient of restitution of bead on bead: the bulk limit.
 

@@ -80,7 +80,7 @@ def shower(processors="* * *", restart=None):
     lean = Plate((0, -0.05, 0), (0.05, 0, 0.01), (0, 0.1, 0), thickness=1e-3)
     wall = Plate((-0.006, -0.05, 0), (0, 0.1, 0), (0, 0, 0.03), thickness=2e-3)
     plates = [flat(0.5e-3, width=0.05), lean, wall]
-    return lmp, attach(lmp, cl.ImpactModel(PAIR), plates, friction=0.3)
+    return lmp, attach(lmp, cl.ImpactModel(PAIR, law="myc"), plates, friction=0.3)
 
 
 def _beads(processors):
@@ -116,7 +116,7 @@ def main(path, chunks):
         np.savez(Path(path), **arrays, rows=rows, moved_in_contact=moved)
     assert cli.main([*RAIN, "--out", str(Path(path).with_name("rain"))]) == 0
     lmp = make([(0.03, 0, R + 1e-4)], (0, 0, -5), dt=4e-7, processors="2 1 1")
-    attach(lmp, cl.ImpactModel(PAIR), [flat(1e-3)])
+    attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(1e-3)])
     for commands in ("run 100000", "velocity all set 0 0 -5\nrun 150\nno_command", "print told"):
         lmp.command("set group all z 0.001 vz -5")
         try:

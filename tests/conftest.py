@@ -20,4 +20,4 @@ def pair():
 
 @pytest.fixture(scope="session")
 def model(pair):
-    return cl.ImpactModel(pair)
+    return cl.ImpactModel(pair, law="myc")

@@ -247,7 +247,7 @@ def test_a_bead_that_crosses_a_seam_takes_its_contact_along(one, order, friction
         for side in (-1, 1):
             start = (-side * 30e-6 - side * 20e-6, 0, R + 2e-6)
             lmp = make(start, (side * 20, 0, -5), dt=5e-8)
-            walls = attach(lmp, cl.ImpactModel(box.PAIR), plates, friction=friction)
+            walls = attach(lmp, cl.ImpactModel(box.PAIR, law="myc"), plates, friction=friction)
             lmp.command("run 60")
             assert state(lmp)["d2_contactlaw"][0, PLATE] != 0.0
             x = state(lmp)["x"][0, 0]
@@ -426,7 +426,7 @@ def test_detach_after_the_simulation_has_changed_or_gone(one):
     lmp, walls = one()
     lmp.command("unfix contactlaw_force")
     walls.detach()
-    attach(lmp, cl.ImpactModel(box.PAIR), [flat(1e-3)]).detach()
+    attach(lmp, cl.ImpactModel(box.PAIR, law="myc"), [flat(1e-3)]).detach()
     lmp, walls = one()
     lmp.command("clear")
     walls.detach()

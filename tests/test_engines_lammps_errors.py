@@ -258,7 +258,7 @@ def test_an_attachment_that_fails_leaves_nothing_behind(model):
 
 def test_plates_serve_the_same_beads_and_law(model):
     lmp = make(ABOVE, (0, 0, 0))
-    steel = cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1020"))
+    steel = cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1020"), law="myc")
     attach(lmp, model, [flat(1e-3, model=steel)]).detach()
     for other in (
         cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="hertz"),

@@ -14,7 +14,7 @@ from dem_demo.baseline import ConstantRestitution
 @pytest.mark.parametrize(
     ("make", "beads", "rebounds"),
     [
-        (lambda: cl.ImpactModel(cl.Pair("gamma-alumina", "glass")), True, True),
+        (lambda: cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc"), True, True),
         (lambda: ConstantRestitution(cl.Pair("gamma-alumina", "glass"), 0.9), True, False),
         (lambda: SimpleNamespace(curve=lambda radius, thickness: lambda speed: 0.5), False, False),
         (Full, True, True),

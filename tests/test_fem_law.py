@@ -69,7 +69,7 @@ def test_aluminium_yields_under_steel():
     assert model.yield_speed(R, math.inf) == pytest.approx(model.pair.yield_speed, rel=0.05)
     assert model.lookup(0.5, R, 5e-3).plastic_fraction > 0.1
     assert model.lookup(0.5, R, 5e-3).flags == 0
-    other = cl.ImpactModel(model.pair, outside="solve")
+    other = cl.ImpactModel(model.pair, law="myc", outside="solve")
     assert other.lookup(0.5, R, 5e-3).flags & Validity.SOFT_PLATE
     assert other.lookup(0.5, R, 5e-3).plastic_fraction == 0.0  # it is the steel that yields there
 

@@ -179,12 +179,12 @@ def test_outside_the_table(model):
     with pytest.raises(ValueError, match="outside the table, its overload"):
         model.force_history(*beyond)
     both = [np.array(values) for values in zip(inside, beyond, strict=True)]
-    solving = cl.ImpactModel(model.pair, outside="solve").force_history(*both)
+    solving = cl.ImpactModel(model.pair, law="myc", outside="solve").force_history(*both)
     assert solving.force[1] == pytest.approx(
         model.force_history(*beyond, method="solve").force, rel=1e-9
     )
     assert (solving.force[0] == model.force_history(*inside).force).all()
-    clamping = cl.ImpactModel(model.pair, outside="clamp")
+    clamping = cl.ImpactModel(model.pair, law="myc", outside="clamp")
     assert np.isfinite(clamping.force_history(*both).force).all()
     assert clamping.clamped == 1
 

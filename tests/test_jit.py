@@ -20,10 +20,10 @@ VALUES = ("restitution", "contact_time", "peak_force", "plastic_fraction", "wave
 def answers():
     """What every method of a model says; an impact takes milliseconds without the compiler."""
     pair = cl.Pair("gamma-alumina", "glass")
-    model = cl.ImpactModel(pair)
+    model = cl.ImpactModel(pair, law="myc")
     contacts = Contacts(model, 0.9e-3, 1e-3)
     moved = model.sensitivity(*IMPACT)
-    solver = cl.ImpactModel(pair, outside="solve")
+    solver = cl.ImpactModel(pair, law="myc", outside="solve")
     found = {
         "scalar": model.restitution(*IMPACT),
         "batch": model.restitution([5.0, 12.0], 0.9e-3, [[1e-3], [math.inf]]),

@@ -18,7 +18,7 @@ RADIUS = 0.9e-3
 
 
 def solved(pair, speed=SPEED, radius=RADIUS, thickness=THICKNESS):
-    model = cl.ImpactModel(pair)
+    model = cl.ImpactModel(pair, law="myc")
     return np.log(model.solve(speed, radius, thickness, rtol=1e-13).restitution)
 
 

@@ -204,7 +204,7 @@ def test_the_certificate_is_honest():
     """Its figures are those of an independent comparison, through the public model."""
     packaged = file.packaged(MYC)
     assert packaged.certificate.exceeded() == {}
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     rng = np.random.default_rng(5)
     speed = model.pair.yield_speed * np.exp(rng.uniform(np.log(0.5), np.log(90), 3000))
     radius, thickness = np.full(3000, 1e-3), 1e-3 / rng.uniform(0.0, 5.0, 3000)

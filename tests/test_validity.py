@@ -43,14 +43,14 @@ def test_thick_plate(model):
 
 def test_soft_plate():
     bearing, mild = "bearing-steel-52100", "carbon-steel-1020"
-    soft = cl.ImpactModel(cl.Pair(bearing, mild))
+    soft = cl.ImpactModel(cl.Pair(bearing, mild), law="myc")
     assert soft.lookup(0.5, 1e-3, 2e-3).flags & Validity.SOFT_PLATE
-    hard = cl.ImpactModel(cl.Pair(mild, bearing), outside="clamp")
+    hard = cl.ImpactModel(cl.Pair(mild, bearing), law="myc", outside="clamp")
     assert not hard.lookup(0.005, 1e-3, 2e-3).flags & Validity.SOFT_PLATE
 
 
 def test_other_law(model):
-    steel = cl.ImpactModel(cl.Pair("bearing-steel-52100", "soda-lime-glass"))
+    steel = cl.ImpactModel(cl.Pair("bearing-steel-52100", "soda-lime-glass"), law="myc")
     speed = steel.pair.yield_speed
     assert not steel.lookup(1.99 * speed, R, 2e-3).flags & Validity.OTHER_LAW
     assert steel.lookup(2.01 * speed, R, 2e-3).flags & Validity.OTHER_LAW
@@ -66,7 +66,7 @@ def test_other_law(model):
 
 def test_two_beads_have_the_flags_of_their_own_yield_speed(model):
     """V^2 goes as R*^3/m*; a bead as large as a wall is a half-space."""
-    beads = cl.ImpactModel(cl.Pair(model.pair.sphere, model.pair.sphere))
+    beads = cl.ImpactModel(cl.Pair(model.pair.sphere, model.pair.sphere), law="myc")
     for other in (0.1 * R, R, 1e3):
         share = math.sqrt((R**3 + other**3) / (R + other) ** 3)
         for factor, flag in ((6.99, 0), (7.01, Validity.FAST_IMPACT)):

@@ -28,7 +28,10 @@ from typing import Any
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
 from contactlaw.laws._law import Law
 
-__all__ = ["HERTZ", "Law", "Loading", "Unloading", "exact", "law", "names", "parameters"]
+__all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Unloading", "exact", "law", "names", "parameters"]
+
+DEFAULT = "myc"
+"""The law where none is named."""
 
 _RANGES = {
     "modulus_ratio": (2.0, 1e6),

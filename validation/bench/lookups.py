@@ -29,7 +29,7 @@ def impacts(model: cl.ImpactModel) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def rows() -> Iterator[Row]:
     """Measure lookups."""
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     v, r, h = impacts(model)
     batch = seconds(lambda: model.restitution(v, r, h)) / N
     spline, cubic = peers(model, v, r, h)

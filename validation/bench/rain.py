@@ -40,7 +40,7 @@ def rows() -> Iterator[Row]:
     constant = ConstantRestitution(pair, COR)
     times: dict[str, list[float]] = {"model": [], "adapter": [], "plain": []}
     for _ in range(REPEAT):
-        times["model"].append(_run(scene, cl.ImpactModel(pair)))
+        times["model"].append(_run(scene, cl.ImpactModel(pair, law="myc")))
         times["adapter"].append(_run(scene, constant))
         with mock.patch.object(adapter, "attach", _Elasticities):
             times["plain"].append(_run(scene, constant))
