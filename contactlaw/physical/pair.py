@@ -65,13 +65,29 @@ class Pair:
         radius, with the yield compression of the MYC law and the weaker body's strength. A thinner
         plate gives way: see `ImpactModel.yield_speed`. ``inf`` if neither has a yield strength.
         """
-        strength = min(body.yield_strength or math.inf for body in (self.sphere, self.plate))
-        if math.isinf(strength):
+        share = self.yield_share()
+        if math.isinf(share):
             return math.inf
-        # V_Y0^2 = (4/5) K dY^2.5/m with K = (4/3) E* R^0.5, m = (4/3) pi rho1 R^3, dY as in Eq. 18
-        compression = C_YIELD * (math.pi * strength / self.effective_modulus) ** 2  # d_Y/R
-        energy = 0.8 * self.effective_modulus * compression**2.5  # per (4/3) R^3
+        # V_Y0^2 = (4/5) K dY^2.5/m with K = (4/3) E* R^0.5, m = (4/3) pi rho1 R^3
+        energy = 0.8 * self.effective_modulus * share**2.5  # per (4/3) R^3
         return math.sqrt(energy / (math.pi * self.sphere.density))
+
+    def yield_share(self, coefficient: float = C_YIELD) -> float:
+        """Yield compression over R of the body that yields first; ``inf`` if neither does.
+
+        Parameters
+        ----------
+        coefficient : float, optional
+            Of pi^2 (sigma_Y/E*)^2; by default that of the MYC law (Peng et al. 2021, Eq. 18).
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> round(cl.Pair("gamma-alumina", "glass").yield_share(), 5)
+        0.01248
+        """
+        strength = min(body.yield_strength or math.inf for body in (self.sphere, self.plate))
+        return coefficient * (math.pi * strength / self.effective_modulus) ** 2
 
 
 def _resolve(argument: str, value: Material | str) -> Material:

@@ -146,9 +146,7 @@ def yield_share(pair: Pair, law: Law) -> float:
     """d_Y/R of the body that yields first, by the law's criterion or MYC's; inf if none does."""
     if law.scale is not None:
         return law.scale if law.yields else math.inf
-    strength = min(body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
-    coefficient = law.yield_coefficient or C_YIELD
-    return coefficient * (math.pi * strength / pair.effective_modulus) ** 2
+    return pair.yield_share(law.yield_coefficient or C_YIELD)
 
 
 def log_overload(factors: Factors, share: float) -> float:

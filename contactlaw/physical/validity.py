@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.laws import Law
-from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
@@ -114,12 +113,10 @@ class Limits(NamedTuple):
 def limits(pair: Pair, law: Law) -> Limits:
     """Limits of the model for a pair."""
     sphere, plate = (body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
-    weaker = min(sphere, plate)
     polymer = "polymer" in (pair.sphere.kind, pair.plate.kind)
     rate = polymer * Validity.RATE_DEPENDENT
-    share = C_YIELD * (math.pi * weaker / pair.effective_modulus) ** 2
     common = {
-        "share": share,
+        "share": pair.yield_share(),
         "bending": _BENDING * plate,
         "damage": _damage(pair),
     }
