@@ -143,7 +143,8 @@ def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> t
     time = (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # T_H
     most = SATURATION * SATURATION * spring.scale
     x = math.sqrt(min(speed * time, most) / spring.radius)
-    more = math.exp(stiffening(spring.waves, spring.ratio, x))
+    thin, h = spring.mobility * spring.mass / time, spring.transit / time
+    more = math.exp(stiffening(spring.waves, spring.ratio, x, thin, h))
     time /= more
     over = spring.mass / time
     lam = with_waves(

@@ -11,16 +11,19 @@ wave in the contact time T:
 
 with k2 h^2 + (1 - x)^3 P(x), x = h/h_c < 1 and a polynomial P, from one limit to the other. And in
 phase with the force a plate gives way less than the half-space of Hertz's law, by F/(E2' H) times a
-number: the contact is stiffer, K exp(2.5 eta), T = T_H exp(-eta), with
+number that falls as -ln h: the contact is stiffer, K exp(2.5 eta), T = T_H exp(-eta), with
 
-    eta = (R/H) (b E1'/(E1' + E2') x + b4 x^4),    x = sqrt(d/R)
+    eta = (R/H) ((b + b_h g) x E1'/(E1' + E2') + b4 x^4),    x = sqrt(d/R)
+    g = (h - h_0)/(h + h_0),  which is ln(h/h_0)/2 near h_0 and ends at 1
 
-at the compression d = V0 T_H of an elastic impact; beyond yield the force grows no faster than d,
-and x stays as it was at a few times the yield speed. The second term is empirical: contacts as wide
-as the plate is thick are stiffer still. See ``validation/derivations/mobility.md``.
+at the compression d = V0 T_H of an elastic impact, with h over the contact time with losses; beyond
+yield the force grows no faster than d, and x stays as it was at a few times the yield speed. The
+last term is empirical: contacts as wide as the plate is thick are stiffer still. See
+``validation/derivations/mobility.md``.
 
 The contact time is that of an elastic impact: 3.2181 T without losses, longer by a factor
-1 + 0.175 lambda + 0.18 lambda^3 as far as the frequencies count that it is made of.
+1 + 0.175 lambda + 0.18 lambda^3 as far as the frequencies count that it is made of, and by its
+square in g.
 
 Legend: c, c_L speeds of shear and pressure waves, nu Poisson's ratio.
 """
@@ -41,14 +44,16 @@ CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
 SATURATION = 3.0  # V0 T_H over d_Y, by its root, from which on eta stays
 _WIDEST = 0.3  # x up to which its fourth power was fitted; it stays from there on
 _LONGER, _LONGER_3 = 0.175, 0.18  # with lambda and its third power; the second by finite elements
+_USUAL = 0.02  # h_0
 _RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
 
 
 class Waves(NamedTuple):
     """Next orders of a plate, as kernels take them. All zero: there are none."""
 
-    eta: float  # first term of eta at R = H and x = 1
-    eta4: float  # second term
+    eta: float  # first term of eta at R = H, h = h_0 and x = 1
+    eta_h: float  # what h adds to it
+    eta4: float  # last term
     steepest: float  # 1/h_c
     bulk_factor: float  # k2
     p1: float  # P = 1 + p1 x + p2 x^2 + p3 x^3 + p4 x^4 + p5 x^5
@@ -58,12 +63,12 @@ class Waves(NamedTuple):
     p5: float
 
 
-THIN = Waves(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+THIN = Waves(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """The plate of the paper, a dashpot at any frequency."""
 
 
-def waves(poissons_ratio: float, eta: float = 0.0, eta4: float = 0.0) -> Waves:
-    """Next orders of plates with this Poisson's ratio, b E1'/(E1' + E2'), and b4.
+def waves(poissons_ratio: float, eta: float = 0.0, eta_h: float = 0.0, eta4: float = 0.0) -> Waves:
+    """Next orders of plates with this Poisson's ratio; b and b_h by E1'/(E1' + E2'), and b4.
 
     Examples
     --------
@@ -82,14 +87,23 @@ def waves(poissons_ratio: float, eta: float = 0.0, eta4: float = 0.0) -> Waves:
     rest = exact - k2 * h**2 - fall * (1.0 + p1 * x)
     powers = (fall * x ** np.arange(2, 6)[:, None] / exact).T
     others = np.linalg.lstsq(powers, rest / exact, rcond=None)[0]
-    return Waves(eta, eta4, 1.0 / h_c, k2, p1, *map(float, others))
+    return Waves(eta, eta_h, eta4, 1.0 / h_c, k2, p1, *map(float, others))
 
 
 @kernel(inline=True)
-def stiffening(waves: Waves, ratio: float, x: float) -> float:
-    """Stiffening eta of a contact by its plate, from R/H and x."""
+def _lengthening(thin: float) -> float:
+    """Contact time over that without losses, as far as the frequencies count."""
+    return 1.0 + _LONGER * thin + _LONGER_3 * (thin * thin * thin)
+
+
+@kernel(inline=True)
+def stiffening(waves: Waves, ratio: float, x: float, thin: float, h: float) -> float:
+    """Stiffening eta of a contact by its plate, from R/H, x, and lambda and h before it."""
+    longer = _lengthening(thin)
+    usual = _USUAL * (longer * longer)  # by finite elements; the end of a long contact counts
+    g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, _WIDEST * _WIDEST)
-    return ratio * (waves.eta * x + waves.eta4 * (square * square))
+    return ratio * ((waves.eta + waves.eta_h * g) * x + waves.eta4 * (square * square))
 
 
 @kernel(inline=True)
@@ -108,7 +122,7 @@ def with_waves(waves: Waves, thin: float, h: float, bulk: float) -> float:
     From lambda of the thin plate, h for a loss-free contact, and the product of the first with the
     square of the second, which stays finite on a half-space.
     """
-    longer = 1.0 / (1.0 + _LONGER * thin + _LONGER_3 * (thin * thin * thin))
+    longer = 1.0 / _lengthening(thin)
     return thin * near_field(waves, h * longer) + waves.bulk_factor * bulk * (longer * longer)
 
 
@@ -124,7 +138,7 @@ def _fill(
     stiffer: Array,
 ) -> None:
     for n in range(lam.size):
-        more = math.exp(stiffening(waves, ratio[n], x[n]))
+        more = math.exp(stiffening(waves, ratio[n], x[n], thin[n], h[n]))
         stiffer[n] = more
         lam[n] = with_waves(waves, thin[n] * more, h[n] * more, bulk[n] * (more * more * more))
 

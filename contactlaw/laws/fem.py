@@ -20,11 +20,11 @@ alone; where it is not, flattened spheres and indented plates part:
 
 and likewise h, k, v/t and the plastic share 1 - exp(-sum) of the loss, with sums that are linear
 in Poisson's ratio and, but for deep contacts, in the modulus of the body that yields, each for
-three cases: the sphere yields, the plate, or both alike. Where one body is stronger by a factor
+three cases: the sphere yields, the plate, or both alike. v has one term more, of how fast the
+sphere's own waves are: what it goes on vibrating with. Where one body is stronger by a factor
 1/z, the answer lies between that of both alike and that of the weaker body alone, by a share that
 falls from 1 at z = 1 to 0 at z = 0.36: the weaker body presses on the other with no more than 3 of
-its strengths, and the other
-yields at a mean pressure of 1.07 of its own.
+its strengths, and the other yields at a mean pressure of 1.07 of its own.
 
 Legend: compressions in units of the yield compression d_Y of the weaker body, or of R where
 none yields; forces in K d_Y^1.5.
@@ -52,7 +52,7 @@ _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # E*/sigma_Y, and its deepest contacts, d/R
 _SMALLEST = 1e-8  # d/R; below, the contact's radius is under 1e-4 R and no stiffening to be seen
 SHIFT = 2.0  # of t
 _LEAST_FRICTION = 5e-4  # of bodies that hardly slip
-_SHARES, _RATIOS = 0.36, 0.1  # of the campaign, about 0.5 and 0.3; beyond, what holds there
+_SHARES, _RATIOS = 0.45, 0.1  # about 0.5 and 0.3; beyond, what holds there
 _LATE = 0.5  # of the deepest compression; a body that yields later is elastic
 _ALONE = 0.36  # z, below which the stronger body does not yield
 _POWERS = (5, 4)  # of t and w
@@ -82,10 +82,6 @@ def friction_loss(given: Given, powers: list[float]) -> float:
 
 def _within(value: float, most: float) -> float:
     return min(max(value, -most), most)
-
-
-def _effect(parts: dict[str, Any], name: str) -> Array:
-    return _sized(parts[name]) if name in parts else np.zeros(_POWERS)
 
 
 def _sized(powers: list[list[float]]) -> Array:
@@ -124,6 +120,34 @@ class Given(NamedTuple):
         """E*/sigma_Y of the weaker body; 0 where neither yields."""
         return max(self.sphere_ratio, self.plate_ratio)
 
+    @property
+    def weaker(self) -> str:
+        """Body that yields first; "sphere" where both are alike, or neither yields."""
+        return "plate" if self.plate_ratio > self.sphere_ratio else "sphere"
+
+    @property
+    def own_poissons_ratio(self) -> float:
+        """Poisson's ratio of the weaker body."""
+        return self.poissons_ratio if self.weaker == "sphere" else self.plate_poissons_ratio
+
+    def weights(self, blend: float) -> dict[tuple[str, str], float]:
+        """Weights of the tables of powers, by who yields and what of the sum they are.
+
+        Where one body is weaker, the share of both alike falls with the power `blend`; of bodies
+        alike, the moduli do not matter, since they share the flow.
+        """
+        z = min(self.sphere_ratio, self.plate_ratio) / self.ratio
+        both = (max(0.0, z - _ALONE) / (1.0 - _ALONE)) ** blend
+        own = self.modulus_share if self.weaker == "sphere" else 1.0 - self.modulus_share
+        return {
+            ("both", "usual"): both,
+            (self.weaker, "usual"): 1.0 - both,
+            (self.weaker, "share"): (1.0 - both) * _within(own - 0.5, _SHARES),
+            (self.weaker, "poissons_ratio"): _within(self.own_poissons_ratio - 0.3, _RATIOS),
+            # a wave's way through the sphere, over the contact time, goes as sqrt(E*/E1')
+            ("any", "vibration"): math.sqrt(1.0 - self.modulus_share),
+        }
+
 
 PARAMETERS = Given._fields
 
@@ -142,26 +166,21 @@ class Curves:
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or numbers()
         self.ratio = given.ratio
-        weaker, share, nu = "sphere", given.modulus_share, given.poissons_ratio
-        if given.plate_ratio > given.sphere_ratio:
-            weaker, share, nu = "plate", 1.0 - share, given.plate_poissons_ratio
-        self.scale = yield_scale(self.ratio, nu) if self.ratio else 1.0
+        self.scale = yield_scale(self.ratio, given.own_poissons_ratio) if self.ratio else 1.0
         constant, slope = found["stiffening"]
         self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
         self.friction = friction_loss(given, found["friction"])
         self._terms: dict[str, tuple[Array, Array]] = {}
         if not self.ratio:
             return
-        z = min(given.sphere_ratio, given.plate_ratio) / self.ratio
-        both = (max(0.0, z - _ALONE) / (1.0 - _ALONE)) ** float(found["blend"])
+        weights = given.weights(float(found["blend"]))
         for name, cases in found["curves"].items():
-            alone, alike = (_sized(cases[case]["usual"]) for case in (weaker, "both"))
-            # equal bodies share the flow, whatever their moduli
-            change = (1.0 - both) * _within(share - 0.5, _SHARES)
-            moved = change * _effect(cases[weaker], "share")
-            mean = (1.0 - both) * alone + both * alike
-            mean += _within(nu - 0.3, _RATIOS) * _effect(cases[weaker], "poissons_ratio")
-            self._terms[name] = mean, moved
+            terms = np.zeros((2, *_POWERS))
+            for (case, part), weight in weights.items():
+                powers = cases.get(case, {}).get(part)
+                if powers is not None:
+                    terms[int(part == "share")] += weight * _sized(powers)
+            self._terms[name] = terms[0], terms[1]
 
     def _sum(self, name: str, q: Array) -> Array:
         """Sum of the powers of t and w of one of the functions."""
@@ -264,5 +283,5 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         unloading=unloading,
         scale=curves.scale,
         range=(start, end),
-        waves=(float(found["plate"][0]), float(found["plate"][1])),
+        waves=(found["plate"][0], found["plate"][1], found["plate"][2]),
     )

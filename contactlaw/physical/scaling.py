@@ -173,7 +173,8 @@ def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Co
     plate = THIN
     if law.waves:
         share = pair.effective_modulus / pair.plate.plane_modulus
-        plate = waves(pair.plate.poissons_ratio, law.waves[0] * share, law.waves[1])
+        b, b_h, b4 = law.waves
+        plate = waves(pair.plate.poissons_ratio, b * share, b_h * share, b4)
     return Contact(
         mass=_mass(pair.sphere, radius),
         stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius),

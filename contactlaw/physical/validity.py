@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 _THINNEST = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
 _YIELDED = 2.0  # V0/V_Y0; our choice, between 1.5 and 3.5 of our finite elements
 _FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
+_SWIFTEST = 0.0131  # V0/sqrt(E*/rho1), 50 m/s for steel: "fem" is made of impacts up to there
 _AHEAD = 1.5  # way of the fastest waves that matter over that of the contact's own; see below
 _TRANSITS = 6.0  # contact time over H/c_L; Koller & Kolsky 1987 and Boettcher et al. 2017: 6 to 8
 _BENDING = 0.6  # F/(sigma_Y H^2): 0.35 is within 2 % of our finite elements, 0.85 is not
@@ -48,7 +49,8 @@ class Validity(enum.IntFlag):
     THIN_PLATE = 1
     """The plate is thinner than R/1.8: its deflection is no longer small."""
     FAST_IMPACT = 2
-    """Faster than 7 times the yield speed, up to which the laws of the paper were checked."""
+    """Faster than the impacts that the law was checked for: 7 times the yield speed, for "fem"
+    0.0131 sqrt(E*/rho1), 50 m/s for steel."""
     THICK_PLATE = 4
     """Over within 6 transits of the thickness, before the plate can bend: the law's is thin."""
     SOFT_PLATE = 8
@@ -72,7 +74,7 @@ class Validity(enum.IntFlag):
 
 _WORDS = {
     Validity.THIN_PLATE: "plate thinner than R/1.8, its deflection is no longer small",
-    Validity.FAST_IMPACT: "faster than 7 yield speeds, beyond what the law was checked for",
+    Validity.FAST_IMPACT: "faster than the impacts that the law was checked for",
     Validity.THICK_PLATE: "too short for the plate to bend, the law's plate is thin",
     Validity.SOFT_PLATE: "the plate yields first, the law has the sphere yield: take law fem",
     Validity.CLAMPED: "outside the table, the value is that of its border",
@@ -104,6 +106,7 @@ class Limits(NamedTuple):
     yielded: int  # flags of an impact beyond `trusted`
     trusted: float  # d_Y/(V0 T_H) of the weaker body, from which on `yielded` does not count
     fastest: float  # likewise, of FAST_IMPACT; 0: none is too fast
+    swiftest: float  # V0 T_H over R, of FAST_IMPACT too
     share: float  # d_Y/R of the weaker body; inf if none yields
     deepest: float  # compression over R
     bending: float  # force over H^2 [Pa]
@@ -123,6 +126,7 @@ def limits(pair: Pair, law: Law) -> Limits:
     if law.waves:
         return Limits(
             slowness=0.0, always=int(rate), yielded=0, trusted=0.0, fastest=0.0,
+            swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H is that of V0/sqrt(E*/rho1), times R
             deepest=law.range[1] * (law.scale or 0.0), **common,
         )  # fmt: skip
     nu = pair.plate.poissons_ratio
@@ -139,6 +143,7 @@ def limits(pair: Pair, law: Law) -> Limits:
         yielded=int((other or soft) * Validity.OTHER_LAW),
         trusted=_y_at(_YIELDED if law.yields else 1.0),
         fastest=_y_at(_FASTEST),
+        swiftest=math.inf,
         deepest=math.inf,
         **common,
     )
@@ -183,7 +188,7 @@ def flags_of(
     yield_ratio = limits.share * radius / scale
     if yield_ratio < limits.trusted:
         flags |= limits.yielded
-    if yield_ratio < limits.fastest:
+    if yield_ratio < limits.fastest or scale > limits.swiftest * radius:
         flags |= _FAST_IMPACT
     if compression > limits.deepest * radius:
         flags |= _DEEP_CONTACT

@@ -37,10 +37,11 @@ from contactlaw.table.grid import Grid, Segment, Settings
 from contactlaw.table.nodes import Table, shape_grid
 
 FORMAT = "contactlaw table"
-SCHEMA = 4
+SCHEMA = 5
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, ours: 700 times the packaged table, and memory that a PC has
 _LARGEST_LAW = 1_000_000  # numbers
+_PLATE = "law_b", "law_b_h", "law_b4"  # `Law.waves`
 _MOST_KINKS, _MOST_COLUMNS = 1000, 1_000_000
 _SEGMENT = {
     "start": "ln chi of the kink at which it begins, over series_inelasticity [-]",
@@ -124,8 +125,7 @@ def _fill(file: h5py.File, table: Table) -> None:
         law_scale=math.nan if law.scale is None else law.scale,
         law_smallest=law.range[0],
         law_largest=law.range[1],
-        law_b=law.waves[0] if law.waves else math.nan,
-        law_b4=law.waves[1] if law.waves else math.nan,
+        **dict(zip(_PLATE, law.waves or [math.nan] * len(_PLATE), strict=True)),
         contactlaw_version=VERSION,
         **asdict(table.settings),
     )
@@ -251,7 +251,7 @@ def _law(file: h5py.File) -> Law:
     """Law of a table, in whose data kernels will follow addresses."""
     numbers = _listed(file, "law/data", _LARGEST_LAW)
     force.check(numbers)
-    plate = guarded.attribute(file, "law_b", float), guarded.attribute(file, "law_b4", float)
+    b, b_h, b4 = (guarded.attribute(file, name, float) for name in _PLATE)
     coefficient, scale, smallest, largest = (
         guarded.attribute(file, name, float)
         for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
@@ -265,7 +265,7 @@ def _law(file: h5py.File) -> Law:
         data=numbers,
         scale=None if math.isnan(scale) else scale,
         range=(smallest, largest),
-        waves=None if math.isnan(plate[0]) else plate,
+        waves=None if math.isnan(b) else (b, b_h, b4),
     )
 
 

@@ -80,16 +80,18 @@ def _plate(table: Array) -> Plate:
     """Read the constants of the plate."""
     w, k = table, WAVES
     waves = Waves(
-        w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5], w[k + 6], w[k + 7], w[k + 8]
-    )
+        w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4],
+        w[k + 5], w[k + 6], w[k + 7], w[k + 8], w[k + 9],
+    )  # fmt: skip
     return Plate(w[TRANSIT], w[REACH], w[SATURATED], waves)
 
 
 @kernel(inline=True)
-def _eta(plate: Plate, root: float, ratio: float) -> float:
+def _eta(plate: Plate, c_lam: float, root: float, ratio: float) -> float:
     """Stiffening of a contact by its plate, from V^(1/5) and R/H."""
     slow = min(root, plate.saturated)
-    return stiffening(plate.waves, ratio, plate.reach * (slow * slow))
+    thin, h = c_lam * root * (ratio * ratio), plate.transit * root / ratio
+    return stiffening(plate.waves, ratio, plate.reach * (slow * slow), thin, h)
 
 
 @kernel(inline=True)
@@ -418,7 +420,7 @@ def _restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: 
     log_speed, root = _log_and_root(speed)
     plate = _plate(table)
     if plate.waves.bulk_factor > 0.0:
-        eta = _eta(plate, root, ratio)
+        eta = _eta(plate, c_lam, root, ratio)
         root *= _exp(eta)
         c_chi -= eta
     lam = _inelasticity(plate, c_lam, root, ratio)
@@ -477,7 +479,7 @@ def _coordinates(
     else:
         for i in range(x.size):
             ratio = radius[i] / thickness[i]
-            eta = _eta(plate, root[i], ratio)
+            eta = _eta(plate, c_lam, root[i], ratio)
             root[i] *= _exp(eta)
             lam = _inelasticity(plate, c_lam, root[i], ratio)
             x[i] = lam / (lam + stretch)
@@ -623,7 +625,7 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
         log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
             root = math.exp(0.2 * log_speed)
-            eta = _eta(plate, root, ratio[n])
+            eta = _eta(plate, c_lam, root, ratio[n])
             lam = _inelasticity(plate, c_lam, root * math.exp(eta), ratio[n])
             x = lam / (lam + table[STRETCH])
             if not x <= table[X_MAX]:

@@ -9,7 +9,7 @@ import time
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,11 +27,13 @@ _UNITS = {
     "step": "s",
 }  # fmt: skip
 _DEFAULTED = "size", "width", "hourglass_stiffness"  # by `impact`, where a case has NaN
-OUTCOMES = (
+_MEASURED = (
     "restitution", "contact_time", "peak_force", "peak_compression", "residual_compression",
     "plastic", "wave", "vibration", "friction_loss", "hourglass", "touching_loss", "balance",
-    "plastic_strain", "steps", "step", "elements",
+    "plastic_strain",
 )  # fmt: skip
+OUTCOMES = *_MEASURED, "steps", "step", "elements"
+_HALF = 1.027  # ratio of the elements of two meshes whose contacts differ by half an element
 
 
 @dataclass(frozen=True)
@@ -50,6 +52,7 @@ class Case:
     plate_yields: bool = False
     far: float = 1.0
     hourglass_stiffness: float = math.nan
+    meshes: int = 2  # 1 or 2, see `solve`
 
     @property
     def pair(self) -> cl.Pair:
@@ -84,7 +87,24 @@ def elastic_plate(sphere: str, plate: str) -> cl.Pair:
 
 
 def solve(case: Case) -> dict[str, Any]:
-    """Compute a case; its inputs and outcomes by name."""
+    """Compute a case; its inputs and outcomes by name.
+
+    A contact grows from node to node, and what comes of an impact swings with where its edge lies
+    between two of them: with 15 to 20 elements in the radius by 1.3 % in COR and 1.6 % in force if
+    a body flows. On two meshes whose contacts differ by half an element these errors are opposite:
+    the mean of both is kept, and half their difference in COR as ``mesh_error``. On one mesh there
+    is no such number.
+    """
+    one = _on_mesh(case)
+    if case.meshes == 1:
+        return one
+    other = _on_mesh(replace(case, size=one["size"] / _HALF))
+    means = {name: 0.5 * (one[name] + other[name]) for name in _MEASURED}
+    error = 0.5 * abs(other["restitution"] / one["restitution"] - 1.0)
+    return {**one, **means, "mesh_error": error}
+
+
+def _on_mesh(case: Case) -> dict[str, Any]:
     given = {name: value for name in _DEFAULTED if not math.isnan(value := getattr(case, name))}
     hit = impact(
         case.pair, case.speed, case.radius, case.thickness,
@@ -128,8 +148,12 @@ def solve_all(cases: Iterable[Case], title: str, processes: int) -> dict[str, np
     with workers(processes) as pool:
         done = tqdm(pool.map(solve, listed), title, len(listed), disable=None, leave=False)
         rows = list(done)
-    names = [field.name for field in fields(Case)] + list(OUTCOMES)
-    return {name: np.array([row[name] for row in rows]) for name in names}
+    return columns(rows)
+
+
+def columns(rows: list[dict[str, Any]]) -> dict[str, np.ndarray]:
+    """Arrays by name, of the outcomes of cases."""
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 def save(name: str, about: str, data: dict[str, np.ndarray]) -> None:

@@ -8,7 +8,6 @@ from concurrent.futures import as_completed
 from pathlib import Path
 from typing import Any, TypeVar
 
-import numpy as np
 from tqdm import tqdm
 
 from validation.fem import cases, store
@@ -61,7 +60,7 @@ def complete(
 def impacts(name: str, about: str, listed: Sequence[Case], processes: int) -> None:
     """Compute impacts as a study that goes on where it was stopped, and store them."""
     rows = complete(name, cases.solve, listed, processes)
-    cases.save(name, about, {column: np.array([row[column] for row in rows]) for column in rows[0]})
+    cases.save(name, about, cases.columns(rows))
     forget(name)
 
 

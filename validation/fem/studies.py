@@ -39,16 +39,16 @@ def verification(processes: int) -> None:
     """Meshes from 0.04 R to 0.005 R and what else may matter of them; Hertz's limit."""
     listed: list[tuple[str, Case]] = []
     for thickness in (0.5e-3, 1e-3):
-        usual = Case(_SPEED, thickness, size=0.01)
+        usual = Case(_SPEED, thickness, size=0.01, meshes=1)
         listed += [("mesh", replace(usual, size=s)) for s in (0.04, 0.02, 0.01, 0.005)]
         listed.append(("far mesh", replace(usual, far=0.5)))
         listed += [("hourglass", replace(usual, hourglass_stiffness=k)) for k in (0.01, 1.0)]
         listed.append(("no friction", replace(usual, friction=0.0)))
-    thin = Case(PAIR.yield_speed, 0.5e-3, size=0.01)
+    thin = Case(PAIR.yield_speed, 0.5e-3, size=0.01, meshes=1)
     width = free_width(PAIR.plate, expect(PAIR, thin.speed, RADIUS, thin.thickness).time)
     listed += [("width", replace(thin, width=factor * width)) for factor in (1.0, 2.0)]
     for speed in (8.0, 3.0, 1.0, 0.5):
-        listed.append(("hertz", Case(speed, 9e-3, friction=0.0, yields=False)))
+        listed.append(("hertz", Case(speed, 9e-3, friction=0.0, yields=False, meshes=1)))
     data = cases.solve_all([case for _, case in listed], "verification", processes)
     data["check"] = np.array([check for check, _ in listed])
     about = "convergence with the mesh; hourglass stiffness, friction, width of the plate; Hertz"
@@ -327,7 +327,7 @@ def edge(processes: int) -> None:
     time = expect(PAIR, speed, RADIUS, thickness).time
     way = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5  # c_g time/2
     factors = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 4.0)
-    listed = [Case(speed, thickness, width=factor * way) for factor in factors]
+    listed = [Case(speed, thickness, width=factor * way, meshes=1) for factor in factors]
     data = cases.solve_all(listed, "edge", processes)
     about = "free edge at 0.5 to 4 times the way of the contact's own bending wave, there and back"
     cases.save("edge", about, data)

@@ -258,8 +258,8 @@ def _flags(
     """Limits of the model that an impact exceeds."""
     scale = speed * (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # V0 T_H
     limits = Limits(
-        plate.slowness, plate.always, plate.yielded, plate.trusted, plate.fastest, plate.share,
-        plate.deepest, plate.bending, plate.damage,
+        plate.slowness, plate.always, plate.yielded, plate.trusted, plate.fastest, plate.swiftest,
+        plate.share, plate.deepest, plate.bending, plate.damage,
     )  # fmt: skip
     return flags_of(limits, bead.r, plate.thickness, scale, contact_time, compression, force)
 
@@ -281,7 +281,7 @@ def _normal(
     elif touch.face and side != row[at + PLATE]:
         complain(shared, clock.step, bead.tag, row, memory.CROSSED, p, u, 0.0)
     waves = Waves(
-        plate.eta, plate.eta4, plate.steepest, plate.bulk_factor,
+        plate.eta, plate.eta_h, plate.eta4, plate.steepest, plate.bulk_factor,
         plate.p1, plate.p2, plate.p3, plate.p4, plate.p5,
     )  # fmt: skip
     unit = Spring(
