@@ -254,6 +254,7 @@ def blows() -> list[Blow]:
         "everyday",
         "everyday_2",
         "everyday_3",
+        "everyday_4",
         "matrix",
         "pairs",
         "strengths",

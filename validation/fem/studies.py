@@ -351,5 +351,6 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "everyday": census.everyday,
     "everyday_2": census.everyday_2,
     "everyday_3": census.everyday_3,
+    "everyday_4": census.everyday_4,
     "kept_out": census.kept_out,
 }
