@@ -141,16 +141,17 @@ def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> t
     if not speed > 0.0:
         return spring.mobility, 1.0
     time = (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # T_H
-    most = SATURATION * SATURATION * spring.scale
-    x = math.sqrt(min(speed * time, most) / spring.radius)
+    x = math.sqrt(speed * time / spring.radius)
+    least = min(x, SATURATION * math.sqrt(spring.scale / spring.radius))
     thin, h = spring.mobility * spring.mass / time, spring.transit / time
-    more = math.exp(stiffening(spring.waves, spring.ratio, x, thin, h))
+    more = math.exp(stiffening(spring.waves, spring.ratio, least, thin, h))
     time /= more
     over = spring.mass / time
     lam = with_waves(
         spring.waves, spring.mobility * over, spring.transit / time,
         spring.bulk * over / (time * time),
     )  # fmt: skip
+    lam += spring.waves.beyond * spring.ratio * (x - least)
     return lam / over, more * more * math.sqrt(more)
 
 

@@ -17,8 +17,11 @@ number that falls as -ln h: the contact is stiffer, K exp(2.5 eta), T = T_H exp(
     g = (h - h_0)/(h + h_0),  which is ln(h/h_0)/2 near h_0 and ends at 1
 
 at the compression d = V0 T_H of an elastic impact, with h over the contact time with losses; beyond
-yield the force grows no faster than d, and x stays as it was at a few times the yield speed. The
-last term is empirical: contacts as wide as the plate is thick are stiffer still. See
+yield the force grows no faster than d, and x stays at x_s, as it was at a few times the yield
+speed. The last term is empirical: contacts as wide as the plate is thick are stiffer still. Beyond
+yield little of the compression comes back, so that it counts that a plate which gives way less than
+a half-space stores less, too: in proportion to (R/H) x E1'/(E1' + E2'). Since that does not come
+back either, it is in lambda, which grows by b_p (R/H) (x - x_s) E1'/(E1' + E2'). See
 ``validation/derivations/mobility.md``.
 
 The contact time is that of an elastic impact: 3.2181 T without losses, longer by a factor
@@ -54,6 +57,7 @@ class Waves(NamedTuple):
     eta: float  # first term of eta at R = H, h = h_0 and x = 1
     eta_h: float  # what h adds to it
     eta4: float  # last term
+    beyond: float  # what lambda grows by at R = H and x = x_s + 1
     steepest: float  # 1/h_c
     bulk_factor: float  # k2
     p1: float  # P = 1 + p1 x + p2 x^2 + p3 x^3 + p4 x^4 + p5 x^5
@@ -63,12 +67,18 @@ class Waves(NamedTuple):
     p5: float
 
 
-THIN = Waves(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+THIN = Waves(*[0.0] * 11)
 """The plate of the paper, a dashpot at any frequency."""
 
 
-def waves(poissons_ratio: float, eta: float = 0.0, eta_h: float = 0.0, eta4: float = 0.0) -> Waves:
-    """Next orders of plates with this Poisson's ratio; b and b_h by E1'/(E1' + E2'), and b4.
+def waves(
+    poissons_ratio: float,
+    eta: float = 0.0,
+    eta_h: float = 0.0,
+    eta4: float = 0.0,
+    beyond: float = 0.0,
+) -> Waves:
+    """Next orders of plates with this Poisson's ratio; b, b_h, b_p by E1'/(E1' + E2'), and b4.
 
     Examples
     --------
@@ -87,7 +97,7 @@ def waves(poissons_ratio: float, eta: float = 0.0, eta_h: float = 0.0, eta4: flo
     rest = exact - k2 * h**2 - fall * (1.0 + p1 * x)
     powers = (fall * x ** np.arange(2, 6)[:, None] / exact).T
     others = np.linalg.lstsq(powers, rest / exact, rcond=None)[0]
-    return Waves(eta, eta_h, eta4, 1.0 / h_c, k2, p1, *map(float, others))
+    return Waves(eta, eta_h, eta4, beyond, 1.0 / h_c, k2, p1, *map(float, others))
 
 
 @kernel(inline=True)
@@ -134,22 +144,25 @@ def _fill(
     bulk: Array,
     ratio: Array,
     x: Array,
+    most: Array,
     lam: Array,
     stiffer: Array,
 ) -> None:
     for n in range(lam.size):
-        more = math.exp(stiffening(waves, ratio[n], x[n], thin[n], h[n]))
+        least = min(x[n], most[n])
+        more = math.exp(stiffening(waves, ratio[n], least, thin[n], h[n]))
         stiffer[n] = more
         lam[n] = with_waves(waves, thin[n] * more, h[n] * more, bulk[n] * (more * more * more))
+        lam[n] += waves.beyond * ratio[n] * (x[n] - least)
 
 
 def next_orders(
-    waves: Waves, thin: Array, h: Array, bulk: Array, ratio: Array, x: Array
+    waves: Waves, thin: Array, h: Array, bulk: Array, ratio: Array, x: Array, most: Array
 ) -> tuple[Array, Array]:
-    """Inelasticity with all orders in, and exp(eta), for arrays of one shape."""
+    """Inelasticity with all orders in, and exp(eta), for arrays of one shape; most is x_s."""
     if waves == THIN:
         return thin, np.ones_like(thin)
     lam, stiffer = np.empty(thin.size), np.empty(thin.size)
-    flat = [np.ravel(values) for values in np.broadcast_arrays(thin, h, bulk, ratio, x)]
-    _fill(waves, flat[0], flat[1], flat[2], flat[3], flat[4], lam, stiffer)
+    flat = [np.ravel(values) for values in np.broadcast_arrays(thin, h, bulk, ratio, x, most)]
+    _fill(waves, flat[0], flat[1], flat[2], flat[3], flat[4], flat[5], lam, stiffer)
     return lam.reshape(thin.shape), stiffer.reshape(thin.shape)

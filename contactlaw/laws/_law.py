@@ -50,7 +50,8 @@ class Law:
     range : tuple of float, optional
         Compressions [d_Y] from which on the law differs from Hertz's, and up to which it was made.
     waves : tuple of float, optional
-        b, b_h, b4 of the plate's next orders, see `contactlaw.equation.waves`; None: it has none.
+        b, b_h, b4 and b_p of the plate's next orders, see `contactlaw.equation.waves`; None: it
+        has none.
     """
 
     name: str
@@ -63,7 +64,7 @@ class Law:
     from_pair: tuple[str, ...] = ()
     scale: float | None = None
     range: tuple[float, float] = (1.0, math.inf)
-    waves: tuple[float, float, float] | None = None
+    waves: tuple[float, float, float, float] | None = None
 
     @staticmethod
     def of(
@@ -76,7 +77,7 @@ class Law:
         yield_strains: tuple[float, float] = (0.0, math.inf),
         scale: float | None = None,
         range: tuple[float, float] = (1.0, math.inf),
-        waves: tuple[float, float, float] | None = None,
+        waves: tuple[float, float, float, float] | None = None,
     ) -> Law:
         """Make a law from its formulas.
 

@@ -283,5 +283,5 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         unloading=unloading,
         scale=curves.scale,
         range=(start, end),
-        waves=(found["plate"][0], found["plate"][1], found["plate"][2]),
+        waves=tuple(found["plate"]),
     )

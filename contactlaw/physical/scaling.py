@@ -173,8 +173,8 @@ def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Co
     plate = THIN
     if law.waves:
         share = pair.effective_modulus / pair.plate.plane_modulus
-        b, b_h, b4 = law.waves
-        plate = waves(pair.plate.poissons_ratio, b * share, b_h * share, b4)
+        b, b_h, b4, b_p = law.waves
+        plate = waves(pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share)
     return Contact(
         mass=_mass(pair.sphere, radius),
         stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius),
@@ -218,7 +218,8 @@ def scales(contact: Contact, speed: Array) -> Scales:
         contact.transit / time,
         contact.bulk * over / time**2,
         contact.ratio,
-        np.sqrt(np.minimum(compression, most) / contact.radius),
+        np.sqrt(compression / contact.radius),
+        np.sqrt(most / contact.radius),
     )
     time, compression = time / stiffer, compression / stiffer
     return Scales(

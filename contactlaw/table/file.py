@@ -41,7 +41,7 @@ SCHEMA = 5
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, ours: 700 times the packaged table, and memory that a PC has
 _LARGEST_LAW = 1_000_000  # numbers
-_PLATE = "law_b", "law_b_h", "law_b4"  # `Law.waves`
+_PLATE = "law_b", "law_b_h", "law_b4", "law_b_p"  # `Law.waves`
 _MOST_KINKS, _MOST_COLUMNS = 1000, 1_000_000
 _SEGMENT = {
     "start": "ln chi of the kink at which it begins, over series_inelasticity [-]",
@@ -251,7 +251,7 @@ def _law(file: h5py.File) -> Law:
     """Law of a table, in whose data kernels will follow addresses."""
     numbers = _listed(file, "law/data", _LARGEST_LAW)
     force.check(numbers)
-    b, b_h, b4 = (guarded.attribute(file, name, float) for name in _PLATE)
+    b, b_h, b4, b_p = (guarded.attribute(file, name, float) for name in _PLATE)
     coefficient, scale, smallest, largest = (
         guarded.attribute(file, name, float)
         for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
@@ -265,7 +265,7 @@ def _law(file: h5py.File) -> Law:
         data=numbers,
         scale=None if math.isnan(scale) else scale,
         range=(smallest, largest),
-        waves=None if math.isnan(b) else (b, b_h, b4),
+        waves=None if math.isnan(b) else (b, b_h, b4, b_p),
     )
 
 

@@ -80,8 +80,8 @@ def _plate(table: Array) -> Plate:
     """Read the constants of the plate."""
     w, k = table, WAVES
     waves = Waves(
-        w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4],
-        w[k + 5], w[k + 6], w[k + 7], w[k + 8], w[k + 9],
+        w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5],
+        w[k + 6], w[k + 7], w[k + 8], w[k + 9], w[k + 10],
     )  # fmt: skip
     return Plate(w[TRANSIT], w[REACH], w[SATURATED], waves)
 
@@ -95,13 +95,15 @@ def _eta(plate: Plate, c_lam: float, root: float, ratio: float) -> float:
 
 
 @kernel(inline=True)
-def _inelasticity(plate: Plate, c_lam: float, root: float, ratio: float) -> float:
-    """Inelasticity lambda of an impact; exp(eta) comes with the root, V^(1/5)."""
-    thin = c_lam * root * (ratio * ratio)
+def _inelasticity(plate: Plate, c_lam: float, root: float, ratio: float, more: float) -> float:
+    """Inelasticity lambda of an impact, from V^(1/5), R/H and exp(eta)."""
     if plate.waves.bulk_factor == 0.0:
-        return thin
-    h = plate.transit * root
-    return with_waves(plate.waves, thin, h / ratio, c_lam * root * (h * h))
+        return c_lam * root * (ratio * ratio)
+    slow = min(root, plate.saturated)
+    beyond = plate.waves.beyond * ratio * plate.reach * (root * root - slow * slow)
+    root *= more
+    thin, h = c_lam * root * (ratio * ratio), plate.transit * root
+    return with_waves(plate.waves, thin, h / ratio, c_lam * root * (h * h)) + beyond
 
 
 def lam_max(table: Array) -> float:
@@ -418,12 +420,12 @@ def _restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: 
     if not V_MIN <= speed <= V_MAX:
         return math.nan
     log_speed, root = _log_and_root(speed)
-    plate = _plate(table)
+    plate, more = _plate(table), 1.0
     if plate.waves.bulk_factor > 0.0:
         eta = _eta(plate, c_lam, root, ratio)
-        root *= _exp(eta)
+        more = _exp(eta)
         c_chi -= eta
-    lam = _inelasticity(plate, c_lam, root, ratio)
+    lam = _inelasticity(plate, c_lam, root, ratio, more)
     x = lam / (lam + table[STRETCH])
     if not x <= table[X_MAX]:
         return math.nan
@@ -480,8 +482,9 @@ def _coordinates(
         for i in range(x.size):
             ratio = radius[i] / thickness[i]
             eta = _eta(plate, c_lam, root[i], ratio)
-            root[i] *= _exp(eta)
-            lam = _inelasticity(plate, c_lam, root[i], ratio)
+            more = _exp(eta)
+            lam = _inelasticity(plate, c_lam, root[i], ratio, more)
+            root[i] *= more
             x[i] = lam / (lam + stretch)
             log_chi[i] -= 1.25 * eta  # of the speed, whose power 4/5 it is
     for i in range(x.size):
@@ -553,13 +556,15 @@ def outcomes(
         roots = root[start : start + n]
         x, log_chi, along, log_w = scratch[0, :n], scratch[1, :n], scratch[2, :n], scratch[3, :n]
         inside = _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, log_w, roots)
-        for i in range(n):
-            out.inelasticity[start + i] = _inelasticity(plate, c_lam, roots[i], r[i] / h[i])
         if plate.waves.bulk_factor > 0.0:
-            for i in range(n):  # chi = w_m/y
+            for i in range(n):  # x = lam/(lam + stretch), chi = w_m/y
+                out.inelasticity[start + i] = table[STRETCH] * x[i] / (1.0 - x[i])
                 out.yield_ratio[start + i] = _exp(log_w[i] - log_chi[i])
         else:
             for i in range(n):
+                out.inelasticity[start + i] = _inelasticity(
+                    plate, c_lam, roots[i], r[i] / h[i], 1.0
+                )
                 square = roots[i] * roots[i]
                 out.yield_ratio[start + i] = y_1 / (square * square)
         if inside:
@@ -626,7 +631,7 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
         for _ in range(30):  # 0.12^30 is far below rounding
             root = math.exp(0.2 * log_speed)
             eta = _eta(plate, c_lam, root, ratio[n])
-            lam = _inelasticity(plate, c_lam, root * math.exp(eta), ratio[n])
+            lam = _inelasticity(plate, c_lam, root, ratio[n], math.exp(eta))
             x = lam / (lam + table[STRETCH])
             if not x <= table[X_MAX]:
                 break

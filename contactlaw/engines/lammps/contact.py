@@ -281,7 +281,7 @@ def _normal(
     elif touch.face and side != row[at + PLATE]:
         complain(shared, clock.step, bead.tag, row, memory.CROSSED, p, u, 0.0)
     waves = Waves(
-        plate.eta, plate.eta_h, plate.eta4, plate.steepest, plate.bulk_factor,
+        plate.eta, plate.eta_h, plate.eta4, plate.beyond, plate.steepest, plate.bulk_factor,
         plate.p1, plate.p2, plate.p3, plate.p4, plate.p5,
     )  # fmt: skip
     unit = Spring(
