@@ -27,7 +27,8 @@ LAYERS = [
     {"model"},  # where the towers meet
     {"closed_form", "loads", "softsphere", "spheres"},
     {"turning_point"},
-    {"engines", "plots"},
+    {"quantities"},
+    {"engines", "plots", "sheet", "wording"},
     {"cli"},
 ]
 # Within a folder without units, the same: the order of its files.

@@ -1,0 +1,186 @@
+"""Quantities as people write them: ``0.9mm``, ``0.5mm,1mm,inf``, ``0.1:10:50log``.
+
+Ten units of two kinds are one table. A library of units such as pint knows a thousand, would be one
+more dependency of everybody's, and would leave lists and ranges to be read here all the same.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from decimal import Decimal, DecimalException
+from typing import NamedTuple
+
+import numpy as np
+
+_MOST = 100_000  # values of one range
+_NUMBER = re.compile(
+    r"\s*(?P<number>[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|[-+]?inf|nan)"
+    r"\s*(?P<unit>[^\W\d](?:.*\S)?)?\s*"
+)
+_COUNT = re.compile(r"\s*([0-9]+)\s*(log)?\s*")
+
+
+class Quantity(NamedTuple):
+    """What is measured, and the units in which it may be given; the first is that of the SI."""
+
+    name: str
+    units: dict[str, Decimal]
+
+    @property
+    def si(self) -> str:
+        """Unit of a number that has none."""
+        return next(iter(self.units))
+
+
+_METRES = {"m": "1", "cm": "0.01", "mm": "1e-3", "um": "1e-6", "nm": "1e-9"}
+LENGTH = Quantity("length", {unit: Decimal(size) for unit, size in _METRES.items()})
+SPEED = Quantity(
+    "speed",
+    {"m/s": Decimal(1), "cm/s": Decimal("0.01"), "mm/s": Decimal("1e-3"),
+     "km/h": Decimal(1000) / Decimal(3600)},
+)  # fmt: skip
+_MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
+
+
+class _Item(NamedTuple):
+    number: str
+    unit: str
+
+
+def values(text: str, quantity: Quantity) -> tuple[float, ...]:
+    """Read a list of numbers and ranges, each with its unit or all in that of the SI.
+
+    Parameters
+    ----------
+    text : str
+        Items with commas between them: a number, or a range start:stop:count of evenly spaced
+        values, its ends among them; ``log`` after the count spaces them logarithmically.
+    quantity : Quantity
+        `LENGTH` or `SPEED`.
+
+    Returns
+    -------
+    tuple of float
+        In SI units, in the order given, and as they would be typed with the point shifted: 0.9mm is
+        0.9e-3 to the last bit. Any sign, ``inf`` and ``nan`` are read: who takes the values has
+        limits for them.
+
+    Raises
+    ------
+    ValueError
+        What cannot be read, a unit of something else, units at some of the numbers only.
+
+    Examples
+    --------
+    >>> values("0.5mm, 1mm, inf", LENGTH)
+    (0.0005, 0.001, inf)
+    >>> values("0.1:10:3log", SPEED)
+    (0.1, 1.0, 10.0)
+    """
+    items = [[_item(part, quantity) for part in _ends(item)] for item in text.split(",")]
+    _check_units(text, [number for item in items for number in item], quantity)
+    found: list[float] = []
+    for item, numbers in zip(text.split(","), items, strict=True):
+        sizes = [_size(number, quantity) for number in numbers]
+        found += _range(item, *sizes) if ":" in item else sizes
+    return tuple(found)
+
+
+def value(text: str, quantity: Quantity) -> float:
+    """Read one number with its unit, or in that of the SI.
+
+    Examples
+    --------
+    >>> value("36 km/h", SPEED)
+    10.0
+    """
+    found = values(text, quantity)
+    if len(found) > 1:
+        raise ValueError(f"got {text!r}, expected one {quantity.name}")
+    return found[0]
+
+
+def written(size: float, quantity: Quantity) -> str:
+    """Write a value with six digits, a length in the unit that suits it.
+
+    Examples
+    --------
+    >>> written(0.9e-3, LENGTH), written(5.0, SPEED)
+    ('0.9 mm', '5 m/s')
+    """
+    if not math.isfinite(size):
+        return f"{size:g}"
+    unit = quantity.si
+    if quantity is LENGTH:
+        # in mm what people have in mm: a plate of 0.1 mm as much as one of 20 mm
+        unit = next((u for u, least in (("m", 1.0), ("mm", 1e-4), ("um", 1e-7)) if size >= least),
+                    "nm")  # fmt: skip
+    return f"{size / float(quantity.units[unit]):g} {unit}"
+
+
+def _ends(item: str) -> list[str]:
+    """Parts of an item that are numbers with a unit: one, or the two ends of a range."""
+    parts = item.split(":")
+    if len(parts) == 1:
+        return parts
+    if len(parts) != 3 or not _COUNT.fullmatch(parts[2]):
+        raise ValueError(
+            f"got {item!r}; a range is start:stop:count, as 0.1:10:50, or 0.1:10:50log for "
+            "logarithmic steps"
+        )
+    return parts[:2]
+
+
+def _item(text: str, quantity: Quantity) -> _Item:
+    match = _NUMBER.fullmatch(text)
+    if not match:
+        raise ValueError(
+            f"got {text!r}, expected a {quantity.name} such as 0.5 or 0.5{list(quantity.units)[2]}"
+        )
+    unit = (match["unit"] or "").translate(_MICRO)
+    if unit and unit not in quantity.units:
+        *others, last = quantity.units
+        raise ValueError(
+            f"got {text!r}: {unit!r} is no unit of {quantity.name}; take {', '.join(others)} or "
+            f"{last}, or none for {quantity.si}"
+        )
+    return _Item(match["number"], unit)
+
+
+def _check_units(text: str, items: list[_Item], quantity: Quantity) -> None:
+    """Refuse units at some of the numbers: 0.9e-3,1mm and 0.5,1mm mean different things."""
+    finite = [item for item in items if not item.number.endswith("inf")]
+    unit = next((item.unit for item in finite if item.unit), None)
+    bare = next((item.number for item in finite if not item.unit), None)
+    if unit and bare:
+        raise ValueError(
+            f"got {text!r}: {bare!r} has no unit and others have: write {bare}{unit}, or "
+            f"{bare}{quantity.si} if that is meant"
+        )
+
+
+def _size(item: _Item, quantity: Quantity) -> float:
+    if item.number[-1].isalpha():  # inf, nan
+        return float(item.number)
+    try:
+        size = float(Decimal(item.number) * quantity.units[item.unit or quantity.si])
+    except DecimalException:
+        size = math.inf
+    if math.isinf(size):
+        raise ValueError(f"got {item.number + item.unit!r}, too large a {quantity.name}")
+    return size
+
+
+def _range(item: str, start: float, stop: float) -> list[float]:
+    match = _COUNT.fullmatch(item.split(":")[2])
+    assert match  # checked in _ends
+    count, log = int(match[1]), bool(match[2])
+    if not 2 <= count <= _MOST:
+        raise ValueError(f"got {item!r}; a range has from 2 to {_MOST} values")
+    if not (math.isfinite(start) and math.isfinite(stop)):
+        raise ValueError(f"got {item!r}; the ends of a range have to be finite")
+    if log and not (start > 0.0 and stop > 0.0):
+        raise ValueError(f"got {item!r}; logarithmic steps need ends above 0")
+    spaced = np.geomspace if log else np.linspace
+    return [float(number) for number in spaced(start, stop, count)]
