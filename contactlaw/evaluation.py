@@ -33,6 +33,48 @@ _NEXT_TO_YIELD = {"residual_compression", "plastic_fraction"}
 RTOL = 1e-10  # of an integration for which the user names no other
 
 
+class OutsideTableError(ValueError):
+    """An impact that the table does not reach.
+
+    Attributes
+    ----------
+    impact : int
+        Its number among those asked for.
+    reason : str
+        Which limit of the table it exceeds, and by how much.
+    """
+
+    def __init__(self, impact: int, reason: str) -> None:
+        super().__init__(impact, reason)  # as given, or it could not be pickled
+        self.impact, self.reason = impact, reason
+
+    def __str__(self) -> str:
+        return (
+            f"speed, radius, thickness: impact {self.impact} is outside the table, {self.reason}. "
+            'ImpactModel(..., outside="solve") integrates the equation there, "clamp" takes the '
+            "value at the table's border."
+        )
+
+
+class UnsolvedError(RuntimeError):
+    """An impact whose integration did not come to an end.
+
+    Attributes
+    ----------
+    impact : int
+        Its number among those asked for.
+    where, reason : str
+        Its dimensionless numbers, and what happened.
+    """
+
+    def __init__(self, impact: int, where: str, reason: str) -> None:
+        super().__init__(impact, where, reason)
+        self.impact, self.where, self.reason = impact, where, reason
+
+    def __str__(self) -> str:
+        return f"the equation did not solve at {self.where} (element {self.impact}): {self.reason}"
+
+
 @functools.cache
 def _default(law: Law) -> Table:
     """Table that ships with the package, or that of the user's cache."""
@@ -81,10 +123,9 @@ def solved(law: Law, units: Scales, rtol: float, numbers: Numbers | None = None)
     out = _coordinates(units)
     status, n = zener.solve_all(law.data, rtol, out)
     if status != zener.OK:
-        raise RuntimeError(
-            f"the equation did not solve at lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = "
-            f"{out.yield_ratio[n]:.6g} (element {n if numbers is None else numbers[n]}): "
-            f"{zener.MESSAGES[status]}"
+        where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
+        raise UnsolvedError(
+            int(n if numbers is None else numbers[n]), where, zener.MESSAGES[status]
         )
     return out
 
@@ -132,11 +173,7 @@ def _refuse(table: Array, lam: float, y: float, n: int) -> NoReturn:
         chi = math.exp(lookup.log_elastic_compression(table, lam)) / y
         limit = lookup.chi_max(table)
         what = f"its overload chi = {chi:.4g} is above {limit:.4g}: the impact is too fast"
-    raise ValueError(
-        f"speed, radius, thickness: impact {n} is outside the table, {what}. "
-        'ImpactModel(..., outside="solve") integrates the equation there, "clamp" takes the '
-        "value at the table's border."
-    )
+    raise OutsideTableError(n, what)
 
 
 def histories_by_table(law: Law, table: Table, found: Outcome, samples: int) -> History:

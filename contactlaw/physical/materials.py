@@ -29,6 +29,59 @@ _LABELS = {
 }
 
 
+class UnknownMaterialError(ValueError):
+    """A name that the catalogue does not have.
+
+    Attributes
+    ----------
+    name : str
+        As given.
+    near : tuple of str
+        Names of the catalogue that are like it.
+    """
+
+    def __init__(self, name: str, near: tuple[str, ...]) -> None:
+        super().__init__(name, near)  # as given, or it could not be pickled
+        self.name, self.near = name, near
+
+    @property
+    def what(self) -> str:
+        """What is wrong, and which names are like it."""
+        hint = f" did you mean {' or '.join(map(repr, self.near))}?" if self.near else ""
+        return f"unknown material {self.name!r}:{hint}"
+
+    def __str__(self) -> str:
+        return f"{self.what} contactlaw.materials() lists all; Material(...) defines your own"
+
+
+class NoYieldStrengthError(ValueError):
+    """A law that needs a yield strength, and a material that has none.
+
+    Attributes
+    ----------
+    law, material : str
+        Their names.
+    """
+
+    def __init__(self, law: str, material: str) -> None:
+        super().__init__(law, material)
+        self.law, self.material = law, material
+
+    @property
+    def what(self) -> str:
+        """What is wrong."""
+        return (
+            f"law {self.law!r} needs a yield strength, and material {self.material!r} has none "
+            "(brittle, or no citable value)"
+        )
+
+    def __str__(self) -> str:
+        return (
+            f'{self.what}: take law="fem", in which such a body is elastic and the other may '
+            "yield, or give one in Pa with Material(..., yield_strength=...)"
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class Material:
     """An isotropic, elastic-perfectly plastic material.
@@ -140,11 +193,7 @@ class Material:
         472500000.0
         """
         if self.yield_strength is None:
-            raise ValueError(
-                f"law {law!r} needs a yield strength, and material {self.name!r} has none "
-                '(brittle, or no citable value): take law="fem", in which such a body is elastic '
-                "and the other may yield, or give one in Pa with Material(..., yield_strength=...)"
-            )
+            raise NoYieldStrengthError(law, self.name)
         return self.yield_strength
 
 
@@ -180,12 +229,7 @@ def material(name: str) -> Material:
         # "steel" is part of a name rather than like one. Aliases of one material name it once.
         near = [known for known in canonical if key and key in known]
         near += difflib.get_close_matches(key, canonical, n=3, cutoff=0.45)
-        names = dict.fromkeys(canonical[match] for match in near)
-        hint = f"did you mean {' or '.join(map(repr, names))}? " if names else ""
-        raise ValueError(
-            f"unknown material {name!r}: {hint}contactlaw.materials() lists all; "
-            "Material(...) defines your own"
-        )
+        raise UnknownMaterialError(name, tuple(dict.fromkeys(canonical[match] for match in near)))
     return by_name[canonical[key]]
 
 
