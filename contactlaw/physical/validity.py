@@ -72,30 +72,61 @@ class Validity(enum.IntFlag):
     """All limits of accuracy."""
 
 
+_FEM = "take law fem"
+# What a limit is, and what to do about it.
 _WORDS = {
-    Validity.THIN_PLATE: "plate thinner than R/1.8, its deflection is no longer small",
-    Validity.FAST_IMPACT: "faster than the impacts that the law was checked for",
-    Validity.THICK_PLATE: "too short for the plate to bend, the law's plate is thin",
-    Validity.SOFT_PLATE: "the plate yields first, the law has the sphere yield: take law fem",
-    Validity.CLAMPED: "outside the table, the value is that of its border",
-    Validity.OTHER_LAW: "finite elements favour another law for these materials: take law fem",
-    Validity.DEEP_CONTACT: "compressed deeper than the finite elements that the law is made of",
-    Validity.BENT_PLATE: "the plate bends plastically, in the law it stays elastic",
-    Validity.RATE_DEPENDENT: "a polymer: modulus and strength depend on the rate",
-    Validity.DAMAGE: "a brittle body may break or flow",
+    Validity.THIN_PLATE: (
+        "plate thinner than R/1.8, its deflection is no longer small",
+        "finite elements have a lower COR",
+    ),
+    Validity.FAST_IMPACT: (
+        "faster than the impacts that the law was checked for",
+        "take the values for estimates",
+    ),
+    Validity.THICK_PLATE: ("too short for the plate to bend, the law's plate is thin", _FEM),
+    Validity.SOFT_PLATE: ("the plate yields first, the law has the sphere yield", _FEM),
+    Validity.CLAMPED: ("outside the table, the value is that of its border", "integrate there"),
+    Validity.OTHER_LAW: ("finite elements favour another law for these materials", _FEM),
+    Validity.DEEP_CONTACT: (
+        "compressed deeper than the finite elements that the law is made of",
+        "take the values for estimates",
+    ),
+    Validity.BENT_PLATE: (
+        "the plate bends plastically, a loss that the law does not have",
+        "take a thicker plate, or the COR for an upper bound",
+    ),
+    Validity.RATE_DEPENDENT: (
+        "a polymer, modulus and strength depend on the rate",
+        "take those at the rate of the impact",
+    ),
+    Validity.DAMAGE: (
+        "a brittle body may break or flow",
+        "the values are for one that stays whole",
+    ),
 }
 
 
 def explain(flags: int) -> tuple[str, ...]:
-    """Say in words which limits some flags stand for.
+    """Say in words which limits some flags stand for, and what to do about them.
 
     Examples
     --------
     >>> from contactlaw import Validity, explain
-    >>> explain(Validity.THIN_PLATE)
-    ('plate thinner than R/1.8, its deflection is no longer small',)
+    >>> explain(Validity.SOFT_PLATE)
+    ('the plate yields first, the law has the sphere yield: take law fem',)
     """
-    return tuple(words for flag, words in _WORDS.items() if flags & flag)
+    return tuple(": ".join(words) for flag, words in _WORDS.items() if flags & flag)
+
+
+def limits_in_words(flags: int) -> tuple[str, ...]:
+    """Say which limits some flags stand for, and no more, where room is scarce.
+
+    Examples
+    --------
+    >>> limits_in_words(Validity.DAMAGE)
+    ('a brittle body may break or flow',)
+    """
+    return tuple(limit for flag, (limit, _) in _WORDS.items() if flags & flag)
 
 
 class Limits(NamedTuple):
