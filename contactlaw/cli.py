@@ -8,85 +8,126 @@ import math
 import os
 import secrets
 import sys
-from collections.abc import Sequence
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import asdict
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
-from contactlaw import laws, plots, table
+from contactlaw import curves, laws, options, plots, sheet, table, wording
 from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import scalars
+from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.materials import material, materials
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.validity import Validity, explain
+from contactlaw.physical.validity import explain
+from contactlaw.quantities import LENGTH, written
 from contactlaw.table import cache, file
 
-_UNITS = {
-    "contact_time": "s",
-    "peak_force": "N",
-    "peak_compression": "m",
-    "residual_compression": "m",
-}
 _DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage
 
 
 def _model(arguments: argparse.Namespace) -> ImpactModel:
-    pair = Pair(arguments.sphere, arguments.plate)
-    return ImpactModel(pair, law=arguments.law, outside=arguments.outside)
+    bodies = {}
+    for name in ("sphere", "plate"):
+        with wording.material_of(name):
+            bodies[name] = material(getattr(arguments, name))
+    return ImpactModel(Pair(**bodies), law=arguments.law, outside=arguments.outside)
+
+
+def _check_quantities(arguments: argparse.Namespace) -> None:
+    """Refuse each value beyond its limits by itself: in all combinations it has no number."""
+    for name in ("speed", "radius", "thickness"):
+        for value in np.atleast_1d(getattr(arguments, name)).tolist():
+            scalars(**{name: value})
+
+
+@contextmanager
+def _picture(arguments: argparse.Namespace) -> Iterator[None]:
+    """Refuse what cannot be drawn into, before anything is computed."""
+    with wording.file_of("plot", arguments.plot):
+        plots.check_suffix(arguments.plot)
+        yield
+    print(arguments.plot)
 
 
 def _cor(arguments: argparse.Namespace) -> None:
-    model = _model(arguments)
-    impact = (arguments.speed, arguments.radius, arguments.thickness)
-    rebound = model.solve(*impact) if arguments.solve else model.lookup(*impact)
-    try:
-        yield_speed = float(model.yield_speed(arguments.radius, arguments.thickness))
-    except ValueError:  # so thin a plate that V_Y is beyond the table; the impact need not be
-        yield_speed = math.inf
-    if arguments.json:
-        print(json.dumps(_as_json(rebound, yield_speed), indent=2))
+    _check_quantities(arguments)
+    if arguments.plot is not None:
+        with _picture(arguments):
+            _plot_cor(arguments)
         return
-    for name, value in asdict(rebound).items():
-        if name != "flags":
-            print(f"{name:21s} {value:.6g} {_UNITS.get(name, '')}".rstrip())
-    beyond = "none within the table" if yield_speed == math.inf else f"{yield_speed:.6g} m/s"
-    print(f"{'yield_speed':21s} {beyond}")
-    print(f"{'flags':21s} {', '.join(_flag_names(rebound)) or 'none: inside every limit'}")
-    for words in explain(int(rebound.flags)):
+    values = (arguments.speed, arguments.radius, arguments.thickness)
+    found = sheet.impacts(_model(arguments), *values, solve=arguments.solve)
+    if arguments.csv:
+        sheet.write_csv(found, sys.stdout)
+    elif arguments.json:
+        print(json.dumps(_as_json(sheet.records(found)), indent=2))
+    elif len(found) > 1:
+        print(*sheet.text(found), sep="\n")
+    else:
+        _print_one(found)
+
+
+def _as_json(rows: list[dict[str, object]]) -> object:
+    """Rows; of one impact, which its caller knows, what comes of it."""
+    if len(rows) > 1:
+        return rows
+    asked = ("speed", "radius", "thickness")
+    return {name: value for name, value in rows[0].items() if name not in asked}
+
+
+def _print_one(found: sheet.Sheet) -> None:
+    units = sheet.units()
+    for name, (value,) in found.columns.items():
+        if name == "yield_speed" and value == math.inf:
+            print(f"{name:21s} none within the table")
+        elif name not in ("speed", "radius", "thickness"):
+            print(f"{name:21s} {value:.6g} {units[name]}".rstrip())
+    flags = int(found.flags[0])
+    print(f"{'flags':21s} {', '.join(sheet.flag_names(flags)) or 'none: inside every limit'}")
+    for words in explain(flags):
         print(f"{'':21s} {words}")
 
 
-def _flag_names(rebound: Rebound) -> list[str]:
-    return [str(flag.name) for flag in Validity(int(rebound.flags))]
-
-
-def _as_json(rebound: Rebound, yield_speed: float) -> dict[str, object]:
-    """Field names carry no unit: all values are SI. No yield speed is null."""
-    values: dict[str, object] = asdict(rebound)
-    values["yield_speed"] = yield_speed if yield_speed < math.inf else None
-    values["flags"] = _flag_names(rebound)
-    return values
+def _plot_cor(arguments: argparse.Namespace) -> None:
+    model = _model(arguments)
+    drawn = curves.restitution_curves(
+        model, arguments.speed, arguments.radius, arguments.thickness, solve=arguments.solve
+    )
+    title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
+    plots.save_restitution(drawn, title, arguments.plot)
 
 
 def _history(arguments: argparse.Namespace) -> None:
-    contact = _model(arguments).force_history(
-        arguments.speed,
-        arguments.radius,
-        arguments.thickness,
-        samples=arguments.samples,
-        method="solve" if arguments.solve else "table",
-    )
+    _check_quantities(arguments)
     if arguments.plot is not None:
-        title = (
-            f"{arguments.sphere} on {arguments.plate}: radius {arguments.radius * 1e3:g} mm, "
-            f"plate {arguments.thickness * 1e3:g} mm, {arguments.speed:g} m/s"
-        )
-        plots.save_history(contact, title, arguments.plot)
-        print(arguments.plot)
+        with _picture(arguments):
+            _plot_history(arguments)
         return
+    contact = np.column_stack(_contact(arguments))
     print("time_s,force_N,compression_m,impulse_Ns,plate_displacement_m")
-    np.savetxt(sys.stdout, np.column_stack(contact), fmt="%.9g", delimiter=",")
+    np.savetxt(sys.stdout, contact, fmt="%.9g", delimiter=",")
+
+
+def _contact(arguments: argparse.Namespace) -> ForceHistory:
+    impact = (arguments.speed, arguments.radius, arguments.thickness)
+    method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
+    with wording.impacts(*impact):
+        return _model(arguments).force_history(*impact, arguments.samples, method)
+
+
+def _plot_history(arguments: argparse.Namespace) -> None:
+    contact = _contact(arguments)
+    radius, thickness = (written(size, LENGTH) for size in (arguments.radius, arguments.thickness))
+    title = (
+        f"{arguments.sphere} on {arguments.plate}: radius {radius}, plate {thickness}, "
+        f"{arguments.speed:g} m/s"
+    )
+    plots.save_history(contact, title, arguments.plot)
 
 
 def _materials(arguments: argparse.Namespace) -> None:
@@ -109,12 +150,11 @@ def _materials(arguments: argparse.Namespace) -> None:
 
 def _table_build(arguments: argparse.Namespace) -> None:
     out = Path(arguments.out or f"{arguments.law}.h5")
-    if not out.parent.is_dir():
-        raise ValueError(f"--out: there is no folder {out.parent}")
-    law = laws.law(arguments.law)
-    built = table.build(law, progress=cache.progress_bar)
-    built = table.with_shapes(built, points=10_000, progress=cache.progress_bar)
-    file.write(built, out)
+    with wording.file_of("out", out):
+        law = laws.law(arguments.law)
+        built = table.build(law, progress=cache.progress_bar)
+        built = table.with_shapes(built, points=10_000, progress=cache.progress_bar)
+        file.write(built, out)
     _print_certificate(built.certificate, table.bounds(law))
     print(out)
 
@@ -160,54 +200,14 @@ def _print_certificate(certificate: table.Certificate | None, limits: dict[str, 
         print(f"  {name:22s} {figures} {bound:9.0e}")
 
 
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="contactlaw",
-        description="Restitution of a bead that hits a thin plate. All quantities in SI units.",
-    )
-    commands = parser.add_subparsers(required=True, metavar="command")
-
-    cor = commands.add_parser("cor", help="one impact: coefficient of restitution and more")
-    cor.set_defaults(run=_cor)
-    history = commands.add_parser("history", help="one impact: force over time, as CSV or a plot")
-    history.set_defaults(run=_history)
-    for impact in (cor, history):
-        add = impact.add_argument
-        add("--sphere", required=True, help="material of the bead, from the catalogue")
-        add("--plate", required=True, help="material of the plate")
-        add("--radius", required=True, type=float, help="radius of the bead [m]")
-        add("--thickness", required=True, type=float, help="of the plate [m]; inf: bulk")
-        add("--speed", required=True, type=float, help="normal approach speed [m/s]")
-        add("--law", default=laws.DEFAULT, help=f"one of {', '.join(laws.names())}")
-        add("--outside", default="raise", choices=["raise", "solve", "clamp"])
-        add("--solve", action="store_true", help="integrate instead of looking up")
-    cor.add_argument("--json", action="store_true", help="machine-readable output")
-    history.add_argument("--samples", type=int, default=256, help="number of times")
-    history.add_argument("--plot", metavar="FILE", help="draw into FILE (PNG, SVG, PDF)")
-
-    listing = commands.add_parser("materials", help="the catalogue, with the source of each number")
-    listing.set_defaults(run=_materials)
-    listing.add_argument("name", nargs="?", help="one material, with its sources")
-    listing.add_argument("--json", action="store_true", help="machine-readable output")
-
-    tables = commands.add_parser("table", help="lookup tables: build, info, check").add_subparsers(
-        required=True, metavar="action"
-    )
-    for name, run, purpose in (
-        ("info", _table_info, "extent, settings and certificate of a table"),
-        ("check", _table_check, "certify a table at fresh random points; fail above the bounds"),
-    ):
-        action = tables.add_parser(name, help=purpose)
-        action.set_defaults(run=run)
-        action.add_argument("file", nargs="?", help="a table (default: the one in use for LAW)")
-        action.add_argument("--law", default="myc")
-    action.add_argument("--points", type=int, default=10_000)
-    action.add_argument("--seed", type=int, help="of the points (default: a fresh one)")
-    build = tables.add_parser("build", help="solve the equation at every node of a table")
-    build.set_defaults(run=_table_build)
-    build.add_argument("--law", default="myc")
-    build.add_argument("--out", help="file to write (default: LAW.h5)")
-    return parser
+_RUN = {
+    "cor": _cor,
+    "history": _history,
+    "materials": _materials,
+    "table info": _table_info,
+    "table check": _table_check,
+    "table build": _table_build,
+}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -226,17 +226,35 @@ def main(argv: Sequence[str] | None = None) -> int:
     {
       "restitution": 0.7...
     """
-    arguments = _parser().parse_args(argv)
+    arguments = options.parser().parse_args(argv)
+    if sys.stdout is None:  # so Python has it where the shell says >&-
+        print("contactlaw: the standard output is closed", file=sys.stderr)
+        return _REFUSED
     try:
-        arguments.run(arguments)
+        with warnings.catch_warnings():
+            warnings.showwarning = _print_warning  # type: ignore[assignment]
+            _RUN[arguments.command](arguments)
         sys.stdout.flush()  # here, where a reader that has gone can be dealt with
     except KeyboardInterrupt:
         print("contactlaw: interrupted", file=sys.stderr)
         return _INTERRUPTED
     except BrokenPipeError:  # the reader has seen enough, as `head` does
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return _DONE
     except (ValueError, RuntimeError, OSError, ImportError) as error:
-        print(f"contactlaw: {error}", file=sys.stderr)
+        print(f"contactlaw: {wording.sentence(error, vars(arguments))}", file=sys.stderr)
+        try:
+            sys.stdout.flush()
+        except OSError:  # a full disk
+            _drop_output()
         return _REFUSED
     return _DONE
+
+
+def _drop_output() -> None:
+    """Let what is left in the buffer go nowhere, where Python would write it at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _print_warning(message: Warning | str, *_: object) -> None:
+    print(f"contactlaw: warning: {message}", file=sys.stderr)

@@ -2,23 +2,74 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
 import os
-from typing import Any
+import textwrap
+from collections.abc import Iterator, Sequence
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from contactlaw.curves import Curve, is_logarithmic
 from contactlaw.physical.history import ForceHistory
+from contactlaw.physical.validity import Validity, limits_in_words
+from contactlaw.quantities import LENGTH, written
 
-_BLUE, _VERMILION, _MUTED = "#0072B2", "#D55E00", "#6E6E6E"  # Okabe and Ito 2008
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+
+_BLUE, _VERMILION = "#0072B2", "#D55E00"  # Okabe and Ito 2008
+_INK, _MUTED = "#222222", "#6E6E6E"
 _SETTINGS: dict[Any, Any] = {
     "font.size": 12,
+    "axes.labelsize": 13,
+    "axes.labelcolor": _INK,
+    "axes.edgecolor": _MUTED,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
+    "axes.axisbelow": True,
     "grid.color": "#EBEBEB",
+    "xtick.color": _INK,
+    "ytick.color": _INK,
     "legend.frameon": False,
     "savefig.dpi": 150,
 }
+_HALF_SPACE = "half-space"
+_SUFFIXES = (".png", ".svg", ".pdf")
+
+
+def check_suffix(path: str | os.PathLike[str]) -> None:
+    """Refuse a file whose suffix names no format.
+
+    Examples
+    --------
+    >>> check_suffix("cor.xyz")
+    Traceback (most recent call last):
+    ValueError: path: got 'cor.xyz', must end in .png, .svg or .pdf
+    """
+    if PurePath(path).suffix.lower() not in _SUFFIXES:
+        *others, last = _SUFFIXES
+        raise ValueError(
+            f"path: got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
+        )
+
+
+@contextlib.contextmanager
+def _style() -> Iterator[None]:
+    """Load matplotlib, and have the common style within this block."""
+    try:
+        import matplotlib as mpl
+    except ImportError as error:
+        raise ImportError("a plot needs matplotlib: pip install 'contactlaw[demo]'") from error
+    with mpl.rc_context(_SETTINGS):
+        yield
 
 
 def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]) -> None:
@@ -40,12 +91,10 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
     ValueError
         If the suffix names no format.
     """
-    try:
-        import matplotlib as mpl
+    check_suffix(path)
+    with _style():
         from matplotlib.figure import Figure
-    except ImportError as error:
-        raise ImportError("a plot needs matplotlib: pip install contactlaw[demo]") from error
-    with mpl.rc_context(_SETTINGS):
+
         figure = Figure(figsize=(10.0, 4.6), layout="constrained")
         figure.suptitle(title, x=0.012, ha="left", fontsize=13, fontweight="bold")
         left, right = figure.subplots(1, 2, sharey=True)
@@ -70,3 +119,178 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
         right.set(xlabel="compression [µm]", xlim=(0.0, None))
         right.legend(loc="upper left")
         figure.savefig(path)
+
+
+def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLike[str]) -> None:
+    """Draw the COR over speed into a file: a curve per plate or bead, first yield marked.
+
+    A curve is dashed where an answer carries a flag of `Validity.ACCURACY`. Several beads on
+    several plates have a panel per bead.
+
+    Parameters
+    ----------
+    curves : sequence of Curve
+        As `contactlaw.curves.restitution_curves` makes them.
+    title : str
+        What it is.
+    path : path-like
+        PNG, SVG or PDF, by its suffix.
+
+    Raises
+    ------
+    ImportError, ValueError
+        As in `save_history`.
+    """
+    check_suffix(path)
+    radii = dict.fromkeys(curve.radius for curve in curves)
+    by_radius = len(radii) == len(curves) > 1
+    panels = [list(curves)] if by_radius else [[c for c in curves if c.radius == r] for r in radii]
+    with _style():
+        figure = _restitution_figure(panels, title, by_radius)
+        figure.savefig(path)
+
+
+def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) -> Figure:
+    columns = len(panels) if len(panels) < 4 else -(-len(panels) // 2)
+    rows = -(-len(panels) // columns)
+    width = 9.0 if columns == 1 else 2.0 + 4.4 * columns
+    figure = _figure(width, 1.2 + 4.4 * rows, title, _caption(panels, by_radius))
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    for axes, curves in zip(grid.flat, panels, strict=False):
+        for n, curve in enumerate(curves):
+            _draw(axes, curve, _colour(n, len(curves)))
+        if len(panels) > 1:
+            axes.set_title(f"bead radius {_text(curves[0].radius)}", fontweight="bold", fontsize=12)
+    for axes in grid.flat[len(panels) :]:
+        axes.set_visible(False)
+    _axes(grid, panels)
+    figure.draw_without_rendering()  # where the ends of the curves are is known then
+    for axes, curves in zip(grid.flat, panels, strict=False):
+        names = _names(curves, by_radius, short=len(panels) > 1)
+        _label(axes, curves, names)
+    return figure
+
+
+def _figure(width: float, height: float, title: str, caption: str) -> Figure:
+    """Make an empty figure of a size in inches, with a title and what the marks are."""
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    lines = textwrap.wrap(caption, int(10.6 * width))  # letters of 11.5 points to an inch
+    room = 0.5 + 0.2 * len(lines)
+    layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.985, 1.0 - room / height))
+    figure = Figure(figsize=(width, height), layout=layout)
+    figure.text(0.012, 1.0 - 0.14 / height, title, fontsize=16, fontweight="bold", color=_INK,
+                va="top")  # fmt: skip
+    figure.text(0.012, 1.0 - 0.5 / height, "\n".join(lines), fontsize=11.5, color=_MUTED, va="top")
+    return figure
+
+
+def _caption(panels: list[list[Curve]], by_radius: bool) -> str:
+    curves = [curve for panel in panels for curve in panel]
+    least, largest = curves[0].speed[[0, -1]]
+    parts = [f"bead radius {_text(curves[0].radius)}"]
+    if by_radius:
+        parts = [f"plate {_text(curves[0].thickness)}"]
+    elif len(panels) > 1:
+        parts = ["a curve per thickness of the plate"]
+    yields = [curve.yield_speed for curve in curves]
+    if min(yields) < least:
+        parts.append(f"first yield {'' if max(yields) < least else 'of some '}below {least:g} m/s")
+    if any(least <= speed <= largest for speed in yields):
+        parts.append("triangle: first yield")
+    flags = int(np.bitwise_or.reduce(np.concatenate([curve.flags for curve in curves])))
+    reasons = limits_in_words(flags & Validity.ACCURACY)
+    if reasons:
+        parts.append(f"dashed: {'; or '.join(reasons)}")
+    return ". ".join(part[0].upper() + part[1:] for part in parts)
+
+
+def _names(curves: list[Curve], by_radius: bool, short: bool) -> list[str]:
+    if by_radius:
+        return [f"radius {_text(curve.radius)}" for curve in curves]
+    names = [_text(curve.thickness) for curve in curves]
+    return [name if short or name == _HALF_SPACE else f"plate {name}" for name in names]
+
+
+def _text(length: float) -> str:
+    return _HALF_SPACE if length == math.inf else written(length, LENGTH).replace("um", "µm")
+
+
+def _draw(axes: Axes, curve: Curve, colour: Any) -> None:
+    """Draw a curve: solid, and dashed from where the first flag to where the last one is."""
+    flagged = (curve.flags & Validity.ACCURACY) != 0
+    changes = np.flatnonzero(np.diff(flagged)) + 1
+    for part in np.split(np.arange(flagged.size), changes):
+        # to the next part's first point, or there would be a gap
+        to = min(part[-1] + 2, flagged.size)
+        line = (0, (3.0, 1.6)) if flagged[part[0]] else "-"
+        axes.plot(
+            curve.speed[part[0] : to], curve.restitution[part[0] : to],
+            linestyle=line, color=colour, linewidth=2.4,
+        )  # fmt: skip
+    if curve.at_yield == curve.at_yield:  # not NaN
+        axes.plot(
+            curve.yield_speed, curve.at_yield, "v", color=colour, markersize=10,
+            markeredgecolor="white", zorder=3,
+        )  # fmt: skip
+
+
+def _axes(grid: NDArray[Any], panels: list[list[Curve]]) -> None:
+    curves = [curve for panel in panels for curve in panel]
+    least, largest = curves[0].speed[[0, -1]]
+    first = grid[0, 0]
+    if is_logarithmic(least, largest):
+        first.set_xscale("log")
+        few = largest > (1e4 if len(panels) == 1 else 1e2) * least
+        steps = (1.0,) if few else (1.0, 2.0, 5.0)
+        decades = range(math.floor(math.log10(least)), math.ceil(math.log10(largest)) + 1)
+        ticks = [step * 10.0**n for n in decades for step in steps]
+        shown = [tick for tick in ticks if 0.999 * least <= tick <= 1.001 * largest]
+        first.set_xticks(shown, [f"{tick:g}" for tick in shown])
+        first.minorticks_off()
+    first.set_xlim(least, largest)
+    lowest = min(float(curve.restitution.min()) for curve in curves)
+    span = max(1.0 - lowest, 0.05)  # elastic on a half-space it is 1
+    first.set_ylim(max(0.0, 1.0 - 1.06 * span), 1.0 + 0.03 * span)
+    for axes in grid.flat[max(0, len(panels) - grid.shape[1]) :]:  # the lowest of each column
+        axes.set_xlabel("impact speed [m/s]")
+        axes.tick_params(labelbottom=True)
+    for axes in grid[:, 0]:
+        axes.set_ylabel("coefficient of restitution [-]")
+
+
+def _label(axes: Axes, curves: list[Curve], names: list[str]) -> None:
+    """Write at the end of each curve which one it is, none over another."""
+    ends = [axes.transData.transform((curve.speed[-1], curve.restitution[-1])) for curve in curves]
+    heights = axes.transAxes.inverted().transform(ends)[:, 1]
+    line = 1.3 * 12.0 / 72.0 / (axes.bbox.height / axes.figure.dpi)
+    for n, (at, to) in enumerate(zip(heights, _spread(heights, line), strict=True)):
+        colour = _colour(n, len(curves))
+        axes.plot([1.0, 1.02], [at, to], transform=axes.transAxes, color=colour, linewidth=2.0,
+                  clip_on=False)  # fmt: skip
+        axes.text(1.03, to, names[n], transform=axes.transAxes, color=_INK, va="center",
+                  fontweight="bold")  # fmt: skip
+
+
+def _colour(n: int, count: int) -> Any:
+    """Dark to bright, none too pale for a line."""
+    from matplotlib import colormaps
+
+    return colormaps["viridis"](0.82 * n / max(count - 1, 1))
+
+
+def _spread(heights: Array, least: float) -> Array:
+    """Move heights in an axes apart to a least distance, as little as that takes (squared)."""
+    order = np.argsort(heights)
+    shifts = least * np.arange(heights.size)
+    # that is an isotonic regression, of neighbours pooled about their mean where they are too near
+    blocks: list[list[float]] = []
+    for height in heights[order] - shifts:
+        blocks.append([float(height)])
+        while len(blocks) > 1 and np.mean(blocks[-2]) >= np.mean(blocks[-1]):
+            blocks[-2:] = [blocks[-2] + blocks[-1]]
+    level = np.concatenate([[np.mean(block)] * len(block) for block in blocks])
+    spread = np.empty_like(heights)
+    spread[order] = np.clip(level, 0.0, 1.0 - shifts[-1]) + shifts
+    return spread

@@ -28,7 +28,10 @@ LAYERS = [
     {"closed_form", "loads", "softsphere", "spheres"},
     {"turning_point"},
     {"quantities"},
-    {"engines", "plots", "sheet", "wording"},
+    {"wording"},
+    {"sheet", "options"},
+    {"curves"},
+    {"engines", "plots"},
     {"cli"},
 ]
 # Within a folder without units, the same: the order of its files.

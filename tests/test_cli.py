@@ -1,19 +1,24 @@
 """The command line: what it prints, and its exit status."""
 
+import argparse
+import csv
+import io
 import json
+import os
 import signal
 import subprocess
 import sys
+import warnings
 
 import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import laws, table
+from contactlaw import cli, laws, options, table
 from contactlaw.cli import main
 from contactlaw.table import file
 
-COR = ["cor", "--sphere", "gamma-alumina", "--plate", "glass"]
+COR = ["cor", "--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]
 IMPACT = [*COR, "--radius", "0.9e-3", "--thickness", "1e-3", "--speed", "12"]
 
 
@@ -72,35 +77,202 @@ def test_cor_of_a_plate_too_thin_for_a_yield_speed(capsys):
     assert json.loads(capsys.readouterr().out)["yield_speed"] is None
 
 
+MANY = [*COR, "--radius", "0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "1,5"]
+
+
+def test_units_are_those_of_the_si(capsys):
+    assert main([*IMPACT, "--json"]) == 0
+    plain = capsys.readouterr().out
+    units = ["--radius", "900um", "--thickness", "0.1 cm", "--speed", "43.2km/h"]
+    assert main([*IMPACT, *units, "--json"]) == 0
+    assert capsys.readouterr().out == plain
+
+
+def test_several_values_are_every_combination(model, capsys):
+    assert main([*MANY, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    asked = [(row["thickness"], row["speed"]) for row in rows]
+    assert asked == [(0.5e-3, 1), (0.5e-3, 5), (1e-3, 1), (1e-3, 5), (None, 1), (None, 5)]
+    for row in rows:
+        h = np.inf if row["thickness"] is None else row["thickness"]
+        hit = model.lookup(row["speed"], row["radius"], h)
+        assert row["restitution"] == hit.restitution
+        assert row["yield_speed"] == model.yield_speed(row["radius"], h)
+    assert rows[0]["flags"] == []
+    assert set(rows[0]) == {
+        "speed", "radius", "thickness", "yield_speed", *cl.Rebound.__dataclass_fields__
+    }  # fmt: skip
+
+
+def test_a_table_has_a_row_per_impact_and_units(capsys):
+    assert main([*MANY, "--speed", "1,70"]) == 0
+    names, units, *rows = capsys.readouterr().out.splitlines()
+    assert names.split()[:4] == ["speed", "radius", "thickness", "COR"]
+    assert units.split()[:4] == ["[m/s]", "[mm]", "[mm]", "[-]"]
+    assert [row.split()[:3] for row in rows[:6]] == [
+        ["1", "0.9", "0.5"], ["70", "0.9", "0.5"], ["1", "0.9", "1"], ["70", "0.9", "1"],
+        ["1", "0.9", "inf"], ["70", "0.9", "inf"],
+    ]  # fmt: skip
+    columns = {line.partition("  FAST_IMPACT")[0].rstrip().rfind(" ") for line in rows[:6]}
+    assert max(columns) < len(units)
+    assert rows[1].endswith("FAST_IMPACT")
+    assert rows[6] == ""
+    (words,) = cl.explain(cl.Validity.FAST_IMPACT)
+    assert rows[7] == f"FAST_IMPACT, 3 of 6: {words}"
+
+
+def test_csv_has_units_in_its_header_and_every_digit(model, capsys):
+    assert main([*MANY, "--csv"]) == 0
+    out = capsys.readouterr().out
+    header, *rows = csv.reader(io.StringIO(out))
+    assert header[:5] == ["speed_m/s", "radius_m", "thickness_m", "restitution", "contact_time_s"]
+    assert header[-2:] == ["yield_speed_m/s", "flags"]
+    hit = model.lookup([1.0, 5.0] * 3, 0.9e-3, np.repeat([0.5e-3, 1e-3, np.inf], 2))
+    assert [float(row[3]) for row in rows] == list(hit.restitution)
+    assert [float(row[4]) for row in rows] == list(hit.contact_time)
+    assert main([*IMPACT, "--csv"]) == 0
+    assert len(capsys.readouterr().out.splitlines()) == 2
+
+
+def test_a_table_with_a_plate_too_thin_for_a_yield_speed(capsys):
+    thin = ["--thickness", "0.05mm,1mm", "--speed", "5", "--outside", "solve"]
+    assert main([*MANY, *thin, "--csv"]) == 0
+    rows = list(csv.DictReader(io.StringIO(capsys.readouterr().out)))
+    assert [row["yield_speed_m/s"][:4] for row in rows] == ["inf", "7.82"]
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (["--speed", "-1"], "speed: got"),
-        (["--speed", "nan"], "speed: got"),
-        (["--radius", "0"], "radius: got"),
-        (["--thickness=-inf"], "thickness: got"),
-        (["--sphere", "gamma-alumnia"], "gamma-alumina"),
-        (["--sphere", "glass"], 'law="fem"'),
-        (["--law", "herz"], "did you mean 'hertz'"),
-        (["--speed", "1e4"], "outside the table"),
+        (["--speed", "-1"], "--speed: got -1.0; must lie"),
+        (["--speed", "1,nan"], "--speed: got nan; must lie"),
+        (["--radius", "0"], "--radius: got 0.0; must lie"),
+        (["--thickness=-inf"], "--thickness: got -inf; must lie"),
+        (["--speed", "inf"], "--speed: got inf; must lie"),
+        (
+            ["--sphere", "gamma-alumnia"],
+            "--sphere: unknown material 'gamma-alumnia': did you mean 'gamma-alumina' or "
+            "'alumina'? `contactlaw materials` lists all",
+        ),
+        (["--plate", "qqq"], "--plate: unknown material 'qqq': `contactlaw materials` lists all"),
+        (["--sphere", "glass"], "--sphere: law 'myc' needs a yield strength, and material 'glass'"),
+        (["--sphere", "glass"], "take --law fem"),
+        (["--law", "herz"], "--law: unknown law 'herz'; did you mean 'hertz'"),
+        (["--law", "kogut_etsion(9)"], "--law: poissons_ratio must lie between"),
+        (["--speed", "1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the table, its "),
+        (["--speed", "1,1e4"], "--outside solve integrates the equation there, --outside clamp"),
+        (["--speed", "1:100:9", "--radius", "1um:1mm:2000", "--thickness", "1mm:2mm:2000"],
+         "--speed, --radius, --thickness: every combination of them is 36000000 impacts"),
+        (["--plot", "cor.xyz"], "--plot: got 'cor.xyz', must end in .png, .svg or .pdf"),
+        (["--plot", "cor"], "--plot: got 'cor', must end in"),
+        (["--plot", "nowhere/cor.png"], "--plot: there is no folder nowhere"),
+        (["--solve", "--radius", "1mm", "--thickness", "1um"], "the equation did not solve"),
     ],
-)
+)  # fmt: skip
 def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):
     assert main([*IMPACT, *change]) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
     assert captured.err.startswith("contactlaw: ")
     assert message in captured.err
+    for word in ("ImpactModel", "Material(", 'law="', "element 0", "materials()"):  # for Python
+        assert word not in captured.err
 
 
 @pytest.mark.parametrize(
-    "argv", [[], ["core"], COR, [*IMPACT, "--speed", "fast"], [*IMPACT, "--outside", "x"]]
+    ("argv", "message"),
+    [
+        (["history", *IMPACT[1:], "--samples", "1"], "--samples: must be an integer from 2"),
+        (["history", *IMPACT[1:], "--speed", "1e4"], ": 10000 m/s, radius 0.9 mm, thickness 1 mm"),
+        (["history", *IMPACT[1:], "--plot", "contact.xyz"], "--plot: got 'contact.xyz', must end"),
+        (["table", "check", "--points", "5"], "--points: at least 100"),
+        (["table", "check", "--points", "100", "--seed", "-1"], "--seed: must not be negative"),
+        (["table", "info", "--law", "hertz"], "--law: 'hertz' never yields"),
+        (["table", "info", "missing.h5"], "table: there is no file missing.h5"),
+        (["table", "build", "--out", "nowhere/t.h5"], "--out: there is no folder nowhere"),
+        (["table", "build", "--out", "."], "--out: . is a folder"),
+        (["materials", "glas"], "unknown material 'glas': did you mean 'glass'"),
+    ],
 )
-def test_wrong_usage_is_status_2(argv, capsys):
+def test_messages_name_options(argv, message, capsys):
+    assert main(argv) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert message in captured.err
+    assert "ImpactModel" not in captured.err
+
+
+def test_a_file_that_cannot_be_written(tmp_path, monkeypatch, capsys):
+    (tmp_path / "cor.png").mkdir()
+    assert main([*MANY, "--plot", str(tmp_path / "cor.png")]) == 1
+    assert capsys.readouterr().err == f"contactlaw: --plot: {tmp_path}/cor.png is a folder\n"
+    (tmp_path / "link.png").symlink_to(tmp_path / "gone" / "cor.png")
+    assert main([*MANY, "--plot", str(tmp_path / "link.png")]) == 1
+    reason = "No such file or directory"
+    assert capsys.readouterr().err == (
+        f"contactlaw: --plot: cannot write {tmp_path}/link.png: {reason}\n"
+    )
+
+
+def test_a_warning_is_a_sentence_too(monkeypatch, capsys):
+    """As where the cache cannot be written: no path of a source, no line of it."""
+
+    def full():
+        warnings.warn("the cache is full", stacklevel=1)
+        return ("glass",)
+
+    monkeypatch.setattr(cli, "materials", full)
+    with warnings.catch_warnings():
+        warnings.simplefilter("always")
+        assert main(["materials"]) == 0
+    assert capsys.readouterr().err == "contactlaw: warning: the cache is full\n"
+
+
+def test_the_version(capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(["--version"])
+    assert stop.value.code == 0
+    assert capsys.readouterr().out == f"contactlaw {cl.__version__}\n"
+
+
+def parsers(parser, name="contactlaw"):
+    yield name, parser
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for command, inner in action.choices.items():
+                yield from parsers(inner, f"{name} {command}")
+
+
+@pytest.mark.parametrize(("name", "parser"), list(parsers(options.parser())))
+def test_every_option_is_explained(name, parser):
+    for action in parser._actions:
+        assert action.help, (name, action.dest)
+        if action.default not in (None, False, argparse.SUPPRESS):
+            assert "default" in action.help, (name, action.dest)
+    assert parser.format_help()  # no stray per cent sign
+    assert parser.description
+
+
+@pytest.mark.parametrize(
+    ("argv", "message"),
+    [
+        ([], "COMMAND"),
+        (["core"], "invalid choice: 'core'"),
+        (COR, "--radius"),
+        ([*IMPACT, "--speed", "fast"], "argument --speed: got 'fast', expected a speed"),
+        ([*IMPACT, "--radius", "5 inches"], "argument --radius: got '5 inches': 'inches' is no"),
+        ([*IMPACT, "--outside", "x"], "invalid choice: 'x'"),
+        ([*IMPACT, "--json", "--csv"], "not allowed with argument"),
+        (["history", *MANY[1:]], "expected one length"),
+    ],
+)
+def test_wrong_usage_is_status_2(argv, message, capsys):
     with pytest.raises(SystemExit) as stop:
         main(argv)
     assert stop.value.code == 2
-    assert "usage:" in capsys.readouterr().err
+    err = capsys.readouterr().err
+    assert "usage:" in err
+    assert message in err
 
 
 def test_materials(capsys):
@@ -170,10 +342,29 @@ def test_ctrl_c_leaves_a_sentence_and_nothing_else(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_reader_that_goes_away():
-    command = f"{sys.executable} -m contactlaw materials | head -1"
-    done = subprocess.run(command, shell=True, capture_output=True, text=True)
+def shell(command):
+    """What a command leaves in bash: its own status, not that of the end of a pipe."""
+    return subprocess.run(
+        ["bash", "-c", f"{command}; exit ${{PIPESTATUS[0]}}"], capture_output=True, text=True
+    )
+
+
+@pytest.mark.parametrize("command", ["materials", "materials --json"])
+def test_a_reader_that_goes_away(command):
+    done = shell(f"{sys.executable} -u -m contactlaw {command} | head -1")
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("command", ["materials", "materials --json"])
+def test_an_output_that_was_never_open(command):
+    done = shell(f"{sys.executable} -m contactlaw {command} >&-")
+    assert (done.returncode, done.stderr) == (1, "contactlaw: the standard output is closed\n")
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
+def test_an_output_that_is_full():
+    done = shell(f"{sys.executable} -m contactlaw materials > /dev/full")
+    assert (done.returncode, done.stderr) == (1, "contactlaw: No space left on device\n")
 
 
 def test_as_a_module():
@@ -202,6 +393,18 @@ def test_history_draws(tmp_path, capsys):
     assert [file.name for file in tmp_path.iterdir()] == ["contact.png"]
 
 
-def test_history_refuses(capsys):
-    assert main(["history", *IMPACT[1:], "--samples", "1"]) == 1
-    assert "samples: must be an integer from 2" in capsys.readouterr().err
+PLOT = [*COR, "--radius", "0.9mm", "--thickness", "0.5mm,1mm,inf", "--speed", "0.1:70:2"]
+
+
+@pytest.mark.parametrize("speed", ["0.1:70:2", "5"])
+def test_cor_draws(speed, tmp_path, capsys):
+    picture = tmp_path / "cor.png"
+    assert main([*PLOT, "--speed", speed, "--plot", str(picture)]) == 0
+    assert capsys.readouterr().out == f"{picture}\n"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_plot_without_matplotlib_says_what_to_install(monkeypatch, capsys, tmp_path):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert main([*PLOT, "--plot", str(tmp_path / "cor.png")]) == 1
+    assert "pip install 'contactlaw[demo]'" in capsys.readouterr().err

@@ -1,0 +1,136 @@
+"""What went wrong, in the words of the shell: options for arguments, commands for calls.
+
+Errors of the library name its arguments, ``speed: got -1.0``, and what to call instead. On the
+command line arguments are options of the same name, and the remedy is another option.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Container, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from contactlaw.evaluation import OutsideTableError, UnsolvedError
+from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
+from contactlaw.quantities import LENGTH, SPEED, written
+
+_ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
+
+_OTHER_NAMES = {"path": "plot"}  # options that are not called what the argument is
+
+
+class Refused(ValueError):
+    """An error whose message speaks of the command line already."""
+
+
+def sentence(error: Exception, options: Container[str]) -> str:
+    """Say in the words of the shell what an error is about.
+
+    Parameters
+    ----------
+    error : Exception
+        As the library raised it.
+    options : container of str
+        Names of the options of the command; arguments of other names keep theirs.
+
+    Examples
+    --------
+    >>> sentence(ValueError("radius, speed: shapes do not broadcast"), {"radius", "speed"})
+    '--radius, --speed: shapes do not broadcast'
+    >>> sentence(UnknownMaterialError("glas", ("glass",)), {})
+    "unknown material 'glas': did you mean 'glass'? `contactlaw materials` lists all"
+    """
+    match error:
+        case UnknownMaterialError():
+            return f"{error.what} `contactlaw materials` lists all"
+        case NoYieldStrengthError():
+            return (
+                f"--sphere: {error.what}: take --law fem, in which such a body is elastic and the "
+                "other may yield"
+            )
+        case OSError(filename=str(path), strerror=str(reason)):
+            return f"{path}: {reason}"
+        case OSError(strerror=str(reason)):
+            return reason
+    message = str(error)
+    arguments = _ARGUMENTS.match(message)
+    if arguments:
+        names = [_OTHER_NAMES.get(name, name) for name in arguments[0].split(", ")]
+        if all(name in options for name in names):
+            return f"--{', --'.join(names)}{message[arguments.end() :]}"
+    return message
+
+
+@contextmanager
+def material_of(option: str) -> Iterator[None]:
+    """Name the option that an error about a material comes from.
+
+    Examples
+    --------
+    >>> with material_of("plate"):
+    ...     raise UnknownMaterialError("soap", ())
+    Traceback (most recent call last):
+    contactlaw.wording.Refused: --plate: unknown material 'soap': `contactlaw materials` lists all
+    """
+    try:
+        yield
+    except UnknownMaterialError as error:
+        raise Refused(f"--{option}: {sentence(error, {})}") from error
+
+
+@contextmanager
+def file_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
+    """Name the option and the file that could not be written.
+
+    A folder that is not there is told before anything within is done.
+
+    Examples
+    --------
+    >>> with file_of("plot", "nowhere/cor.png"):
+    ...     print("not reached")
+    Traceback (most recent call last):
+    contactlaw.wording.Refused: --plot: there is no folder nowhere
+    """
+    path = os.fspath(path)
+    folder = os.path.dirname(path)
+    if folder and not os.path.isdir(folder):
+        raise Refused(f"--{option}: there is no folder {folder}")
+    if os.path.isdir(path):
+        raise Refused(f"--{option}: {path} is a folder")
+    try:
+        yield
+    except OSError as error:  # which may be about a file beside it, of a temporary name
+        raise Refused(f"--{option}: cannot write {path}: {error.strerror}") from error
+
+
+@contextmanager
+def impacts(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Iterator[None]:
+    """Name the impact that an error within is about by its speed, radius and thickness.
+
+    Examples
+    --------
+    >>> with impacts(1e4, 0.9e-3, [1e-3, 2e-3]):
+    ...     raise UnsolvedError(1, "lambda = 120", "too many steps")
+    Traceback (most recent call last):
+    contactlaw.wording.Refused: 10000 m/s, radius 0.9 mm, thickness 2 mm: the equation did not \
+solve at lambda = 120: too many steps
+    """
+    try:
+        yield
+    except (OutsideTableError, UnsolvedError) as error:
+        v, r, h = (
+            values.flat[error.impact] for values in np.broadcast_arrays(speed, radius, thickness)
+        )
+        impact = f"{written(v, SPEED)}, radius {written(r, LENGTH)}, thickness {written(h, LENGTH)}"
+        if isinstance(error, UnsolvedError):
+            what = f"the equation did not solve at {error.where}: {error.reason}"
+        else:
+            what = (
+                f"outside the table, {error.reason}. --outside solve integrates the equation "
+                "there, --outside clamp takes the value at the table's border"
+            )
+        raise Refused(f"{impact}: {what}") from error
