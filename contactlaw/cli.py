@@ -23,6 +23,7 @@ from contactlaw.physical.arguments import scalars
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.materials import material, materials
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.scaling import law_of
 from contactlaw.physical.validity import explain
 from contactlaw.quantities import LENGTH, written
 from contactlaw.table import cache, file
@@ -31,11 +32,15 @@ _DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wro
 
 
 def _model(arguments: argparse.Namespace) -> ImpactModel:
+    return ImpactModel(_pair(arguments), law=arguments.law, outside=arguments.outside)
+
+
+def _pair(arguments: argparse.Namespace) -> Pair:
     bodies = {}
     for name in ("sphere", "plate"):
         with wording.material_of(name):
             bodies[name] = material(getattr(arguments, name))
-    return ImpactModel(Pair(**bodies), law=arguments.law, outside=arguments.outside)
+    return Pair(**bodies)
 
 
 def _check_quantities(arguments: argparse.Namespace) -> None:
@@ -148,10 +153,21 @@ def _materials(arguments: argparse.Namespace) -> None:
         print(entries[0].source)
 
 
+def _law(arguments: argparse.Namespace) -> laws.Law:
+    """Law of a table: by its name, or by that and a pair of materials."""
+    if not laws.parameters(arguments.law):
+        return laws.law(arguments.law)
+    if arguments.sphere is None or arguments.plate is None:
+        raise wording.Refused(
+            f"--law: {arguments.law!r} takes numbers from a pair: give --sphere and --plate too"
+        )
+    return law_of(_pair(arguments), arguments.law)
+
+
 def _table_build(arguments: argparse.Namespace) -> None:
     out = Path(arguments.out or f"{arguments.law}.h5")
     with wording.file_of("out", out):
-        law = laws.law(arguments.law)
+        law = _law(arguments)
         built = table.build(law, progress=cache.progress_bar)
         built = table.with_shapes(built, points=10_000, progress=cache.progress_bar)
         file.write(built, out)
@@ -162,7 +178,7 @@ def _table_build(arguments: argparse.Namespace) -> None:
 def _stored(arguments: argparse.Namespace) -> table.Table:
     if arguments.file:
         return file.read(arguments.file)
-    law = laws.law(arguments.law)
+    law = _law(arguments)
     return file.packaged(law) or cache.cached_shapes(cache.cached(law))
 
 
@@ -228,21 +244,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     arguments = options.parser().parse_args(argv)
     if sys.stdout is None:  # so Python has it where the shell says >&-
-        print("contactlaw: the standard output is closed", file=sys.stderr)
+        _say("the standard output is closed")
         return _REFUSED
     try:
         with warnings.catch_warnings():
-            warnings.showwarning = _print_warning  # type: ignore[assignment]
+            warnings.showwarning = _say_warning  # type: ignore[assignment]
             _RUN[arguments.command](arguments)
         sys.stdout.flush()  # here, where a reader that has gone can be dealt with
     except KeyboardInterrupt:
-        print("contactlaw: interrupted", file=sys.stderr)
+        _say("interrupted")
         return _INTERRUPTED
     except BrokenPipeError:  # the reader has seen enough, as `head` does
         _drop_output()
         return _DONE
     except (ValueError, RuntimeError, OSError, ImportError) as error:
-        print(f"contactlaw: {wording.sentence(error, vars(arguments))}", file=sys.stderr)
+        _say(wording.sentence(error, vars(arguments)))
         try:
             sys.stdout.flush()
         except OSError:  # a full disk
@@ -256,5 +272,10 @@ def _drop_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _print_warning(message: Warning | str, *_: object) -> None:
-    print(f"contactlaw: warning: {message}", file=sys.stderr)
+def _say(message: str) -> None:
+    if sys.stderr is not None:  # None is where the shell says 2>&-, and to print the output
+        print(f"contactlaw: {message}", file=sys.stderr)
+
+
+def _say_warning(message: Warning | str, *_: object) -> None:
+    _say(f"warning: {message}")

@@ -123,9 +123,15 @@ def _add_tables(actions: Any) -> None:
         action.add_argument("file", nargs="?", metavar="FILE",
                             help="a table (default: the one in use for LAW)")  # fmt: skip
     for action in (info, check, build):
-        # not laws.DEFAULT: tables of laws that take numbers from a pair have no name without them
+        # not laws.DEFAULT, which may take numbers from a pair: this one's table ships
         action.add_argument("--law", default="myc", metavar="LAW",
                             help="force law of the table (default: %(default)s)")  # fmt: skip
+        action.add_argument(
+            "--sphere",
+            metavar="NAME",
+            help="material of the bead, for laws that take numbers from a pair",
+        )
+        action.add_argument("--plate", metavar="NAME", help="material of the plate, likewise")
     check.add_argument("--points", type=int, default=10_000, metavar="N",
                        help="number of points, at least 100 (default: %(default)s)")  # fmt: skip
     check.add_argument("--seed", type=int, metavar="S",

@@ -307,6 +307,19 @@ def test_table_info_and_check(capsys):
     assert "points: at least 100" in capsys.readouterr().err
 
 
+def test_a_table_of_a_law_that_takes_numbers_from_a_pair(capsys):
+    steel = ["--law", "fem", "--sphere", "stainless-steel-304", "--plate", "glass"]
+    assert main(["table", "info", *steel]) == 0
+    law = cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"), law="fem").law
+    assert f"law {law}:" in capsys.readouterr().out
+    assert main(["table", "info", *steel[:4]]) == 1
+    assert capsys.readouterr().err == (
+        "contactlaw: --law: 'fem' takes numbers from a pair: give --sphere and --plate too\n"
+    )
+    assert main(["table", "info", *steel[:2], "--sphere", "steal", "--plate", "glass"]) == 1
+    assert "--sphere: unknown material 'steal'" in capsys.readouterr().err
+
+
 def test_table_check_fails_above_the_bounds(tmp_path, capsys):
     coarse = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
     file.write(table.build(laws.law("myc"), coarse), tmp_path / "coarse.h5")
@@ -359,6 +372,11 @@ def test_a_reader_that_goes_away(command):
 def test_an_output_that_was_never_open(command):
     done = shell(f"{sys.executable} -m contactlaw {command} >&-")
     assert (done.returncode, done.stderr) == (1, "contactlaw: the standard output is closed\n")
+
+
+def test_messages_never_go_where_results_do():
+    done = shell(f"{sys.executable} -m contactlaw materials nothing 2>&-")
+    assert (done.returncode, done.stdout) == (1, "")
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no device that is always full")
