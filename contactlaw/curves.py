@@ -52,7 +52,7 @@ def restitution_curves(
     Returns
     -------
     list of Curve
-        Those of a radius beside each other.
+        By radius, and by thickness for each radius.
 
     Raises
     ------
@@ -88,7 +88,13 @@ def _speeds(least: float, largest: float) -> Array:
 
 
 def is_logarithmic(least: float, largest: float) -> bool:
-    """Whether a range of speeds is so wide that it is spaced and drawn logarithmically."""
+    """Tell whether a range of speeds is so wide that it is spaced and drawn logarithmically.
+
+    Examples
+    --------
+    >>> is_logarithmic(1.0, 10.0), is_logarithmic(0.1, 10.0)
+    (False, True)
+    """
     return largest >= 20.0 * least
 
 

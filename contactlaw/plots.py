@@ -191,7 +191,7 @@ def _caption(panels: list[list[Curve]], by_radius: bool) -> str:
     least, largest = curves[0].speed[[0, -1]]
     parts = [f"bead radius {_text(curves[0].radius)}"]
     if by_radius:
-        parts = [f"plate {_text(curves[0].thickness)}"]
+        parts = [_plate(curves[0].thickness)]
     elif len(panels) > 1:
         parts = ["a curve per thickness of the plate"]
     yields = [curve.yield_speed for curve in curves]
@@ -209,8 +209,11 @@ def _caption(panels: list[list[Curve]], by_radius: bool) -> str:
 def _names(curves: list[Curve], by_radius: bool, short: bool) -> list[str]:
     if by_radius:
         return [f"radius {_text(curve.radius)}" for curve in curves]
-    names = [_text(curve.thickness) for curve in curves]
-    return [name if short or name == _HALF_SPACE else f"plate {name}" for name in names]
+    return [(_text if short else _plate)(curve.thickness) for curve in curves]
+
+
+def _plate(thickness: float) -> str:
+    return _HALF_SPACE if thickness == math.inf else f"plate {_text(thickness)}"
 
 
 def _text(length: float) -> str:
@@ -247,6 +250,7 @@ def _axes(grid: NDArray[Any], panels: list[list[Curve]]) -> None:
         decades = range(math.floor(math.log10(least)), math.ceil(math.log10(largest)) + 1)
         ticks = [step * 10.0**n for n in decades for step in steps]
         shown = [tick for tick in ticks if 0.999 * least <= tick <= 1.001 * largest]
+        shown = shown[:: 1 + len(shown) // 16]  # of thirty decades not every one
         first.set_xticks(shown, [f"{tick:g}" for tick in shown])
         first.minorticks_off()
     first.set_xlim(least, largest)

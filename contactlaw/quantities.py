@@ -18,7 +18,7 @@ _NUMBER = re.compile(
     r"\s*(?P<number>[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|[-+]?inf|nan)"
     r"\s*(?P<unit>[^\W\d](?:.*\S)?)?\s*"
 )
-_COUNT = re.compile(r"\s*([0-9]+)\s*(log)?\s*")
+_COUNT = re.compile(r"\s*[0-9]{1,9}\s*(log)?\s*")
 
 
 class Quantity(NamedTuple):
@@ -173,14 +173,12 @@ def _size(item: _Item, quantity: Quantity) -> float:
 
 
 def _range(item: str, start: float, stop: float) -> list[float]:
-    match = _COUNT.fullmatch(item.split(":")[2])
-    assert match  # checked in _ends
-    count, log = int(match[1]), bool(match[2])
-    if not 2 <= count <= _MOST:
+    digits, log, _ = item.split(":")[2].partition("log")
+    if not 2 <= int(digits) <= _MOST:
         raise ValueError(f"got {item!r}; a range has from 2 to {_MOST} values")
     if not (math.isfinite(start) and math.isfinite(stop)):
         raise ValueError(f"got {item!r}; the ends of a range have to be finite")
     if log and not (start > 0.0 and stop > 0.0):
         raise ValueError(f"got {item!r}; logarithmic steps need ends above 0")
     spaced = np.geomspace if log else np.linspace
-    return [float(number) for number in spaced(start, stop, count)]
+    return [float(number) for number in spaced(start, stop, int(digits))]

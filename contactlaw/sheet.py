@@ -18,12 +18,11 @@ from numpy.typing import NDArray
 
 from contactlaw import wording
 from contactlaw.model import ImpactModel
-from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Validity, explain
 
 Array = NDArray[np.float64]
 
-_MOST = 1_000_000  # impacts; a row of text takes some 20 us and 100 bytes
+_MOST = 1_000_000  # impacts: half a minute of text, 100 MB of it
 
 
 class _Column(NamedTuple):
@@ -114,11 +113,7 @@ def impacts(
     with wording.impacts(v, r, h):
         rebound = model.solve(v, r, h) if solve else model.lookup(v, r, h)
     first = slice(None, None, len(speeds))  # of each bead on each plate
-    yields = yield_speeds(model, r[first], h[first])
-    return _sheet(v, r, h, rebound, np.repeat(yields, len(speeds)))
-
-
-def _sheet(v: Array, r: Array, h: Array, rebound: Rebound, yields: Array) -> Sheet:
+    yields = np.repeat(yield_speeds(model, r[first], h[first]), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
     return Sheet({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
 
@@ -126,7 +121,14 @@ def _sheet(v: Array, r: Array, h: Array, rebound: Rebound, yields: Array) -> She
 def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
     """Yield speeds [m/s]; inf for so thin a plate that it is beyond the table.
 
-    The impact itself need not be beyond it.
+    An impact on that plate need not be beyond it.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    >>> yield_speeds(model, np.array([1e-3, 1e-3]), np.array([1e-3, 0.05e-3])).round(2)
+    array([7.92,  inf])
     """
     try:
         return np.asarray(model.yield_speed(radius, thickness))
@@ -217,10 +219,22 @@ def records(sheet: Sheet) -> list[dict[str, object]]:
 
 
 def units() -> dict[str, str]:
-    """Units of the columns; an empty one for those that have none."""
+    """Units of the columns; an empty one for those that have none.
+
+    Examples
+    --------
+    >>> units()["peak_force"], units()["restitution"]
+    ('N', '')
+    """
     return {column.name: column.unit for column in _COLUMNS}
 
 
 def flag_names(flags: int) -> list[str]:
-    """Names of the limits that some flags stand for."""
+    """Names of the limits that some flags stand for.
+
+    Examples
+    --------
+    >>> flag_names(Validity.THIN_PLATE | Validity.DAMAGE)
+    ['THIN_PLATE', 'DAMAGE']
+    """
     return [str(flag.name) for flag in Validity(int(flags))]

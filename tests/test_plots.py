@@ -101,6 +101,7 @@ def test_nothing_is_explained_that_is_not_there(model, drawn):
          [f"plate {n} mm" for n in range(4, 12)]),
         ([50e-6, 0.3e-3, 0.9e-3], [1e-3], [0.01, 10.0],
          ["radius 50 µm", "radius 0.3 mm", "radius 0.9 mm"]),
+        ([0.3e-3, 0.9e-3], [INF], [1e-25, 50.0], ["radius 0.3 mm", "radius 0.9 mm"]),
         ([0.3e-3, 0.9e-3], [1e-3, INF], [1.0, 20.0], ["1 mm", "half-space"] * 2),
         ([n * 0.2e-3 for n in range(1, 6)], [n * 1e-3 for n in range(1, 9)], [0.1, 50.0],
          [f"{n} mm" for n in range(1, 9)] * 5),
