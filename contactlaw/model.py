@@ -33,6 +33,7 @@ from contactlaw.evaluation import (
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.history import ForceHistory, with_units
+from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
 from contactlaw.physical.scaling import (
@@ -266,9 +267,13 @@ class ImpactModel:
         )
 
     def lookup_sphere_sphere(
-        self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        other_radius: ArrayLike,
+        other: Material | str | None = None,
     ) -> Rebound:
-        """Impact of two spheres of the pair's sphere material, from the table.
+        """Impact of the pair's sphere and another sphere, from the table.
 
         The bulk limit: no energy is carried off by waves. The energy that the fractions refer to
         is that of the relative motion.
@@ -279,6 +284,8 @@ class ImpactModel:
             Normal approach speed of the two [m/s], > 0.
         radius, other_radius : array_like
             Radii of the spheres [m].
+        other : Material or str, optional
+            Material of the other sphere, without it that of the pair's sphere.
 
         Returns
         -------
@@ -293,12 +300,12 @@ class ImpactModel:
         """
         v, r, o, shape = broadcast(speed=speed, radius=radius, other_radius=other_radius)
         check(speed=v, radius=r, other_radius=o)
-        twins, law, table = self._beads
-        contact = sphere_on_sphere(twins, law, r, o)
+        beads, law, table, swapped = self._beads(other)
+        contact = sphere_on_sphere(beads, law, *((o, r) if swapped else (r, o)))
         units = scales(contact, v)
         found, flags = self._fields(units, law, table.packed)
         impacts = Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape)
-        return self._rebound(twins, law, contact, units, impacts, found, flags)
+        return self._rebound(beads, law, contact, units, impacts, found, flags)
 
     def solve(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10
@@ -532,13 +539,17 @@ class ImpactModel:
             lambda: sphere_on_plate(self.pair, self._law, r, h),
         )
 
-    def sphere_sphere_curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
-        """COR of two beads of the pair's sphere material, as a fast function of approach speed.
+    def sphere_sphere_curve(
+        self, radius: float, other_radius: float, other: Material | str | None = None
+    ) -> Callable[[float], float]:
+        """COR of the pair's sphere and another one, as a fast function of approach speed.
 
         Parameters
         ----------
         radius, other_radius : float
             Radii of the beads [m].
+        other : Material or str, optional
+            Material of the other bead, without it that of the pair's sphere.
 
         Returns
         -------
@@ -553,8 +564,8 @@ class ImpactModel:
         0.9608
         """
         r, o = scalars(radius=radius, other_radius=other_radius)
-        twins, law, table = self._beads
-        contact = sphere_on_sphere(twins, law, r, o)
+        beads, law, table, swapped = self._beads(other)
+        contact = sphere_on_sphere(beads, law, *((o, r) if swapped else (r, o)))
         units = scales(contact, np.ones(()))
         c_chi = -math.log(units.yield_ratio.item())
         return self._curve(law, table.packed, 0.0, c_chi, 0.0, lambda: contact)
@@ -603,17 +614,28 @@ class ImpactModel:
         """
         return int(self._c_function.address)
 
+    def _beads(self, other: Material | str | None) -> tuple[Pair, Law, Table, bool]:
+        """Two spheres, the weaker one first, their law, its table, and whether they are swapped."""
+        sphere = self.pair.sphere
+        if other is None or other == sphere:
+            return *self._twins, False
+        pair = Pair(sphere, other)
+        swapped = (pair.plate.yield_strength or math.inf) < (sphere.yield_strength or math.inf)
+        return *self._of_beads(Pair(pair.plate, sphere) if swapped else pair), swapped
+
     @functools.cached_property
-    def _beads(self) -> tuple[Pair, Law, Table]:
-        """Two of the pair's spheres, their law and its table.
+    def _twins(self) -> tuple[Pair, Law, Table]:
+        return self._of_beads(Pair(self.pair.sphere, self.pair.sphere))
+
+    def _of_beads(self, pair: Pair) -> tuple[Pair, Law, Table]:
+        """Two spheres, their law and its table.
 
         A law that takes numbers from the pair takes those of the two spheres. Numbers that the user
         gave in its name hold for them as they do for the plate.
         """
-        twins = Pair(self.pair.sphere, self.pair.sphere)
-        law = law_of(twins, self._law.family) if self._law.from_pair else self._law
+        law = law_of(pair, self._law.family) if self._law.from_pair else self._law
         same = self._whole_table.law.follows(law) or law == self._law
-        return twins, law, self._whole_table if same else table_for(law, None)
+        return pair, law, self._whole_table if same else table_for(law, None)
 
     def _curve(
         self,

@@ -24,7 +24,10 @@ class RestitutionModel(Protocol):
 
 
 class BeadModel(RestitutionModel, Protocol):
-    """Where beads meet: their COR, too."""
+    """Where beads meet: their COR, too.
+
+    Where beads of two materials meet, an engine gives the other bead's as one more argument.
+    """
 
     def sphere_sphere_curve(self, radius: float, other_radius: float, /) -> Curve:
         """COR of two beads of these radii [m]."""

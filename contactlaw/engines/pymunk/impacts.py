@@ -5,54 +5,58 @@ from __future__ import annotations
 import math
 import sys
 import threading
-from collections.abc import Callable, Mapping
-from functools import lru_cache, partial
+from collections import Counter
+from collections.abc import Sequence
+from functools import lru_cache
 from itertools import count
 from typing import TYPE_CHECKING, Any, NoReturn
+from weakref import KeyedRef
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.engines.needs import RestitutionModel
-from contactlaw.engines.pymunk.lookahead import LookAhead, tunnelling
-from contactlaw.engines.pymunk.record import Record
+from contactlaw.engines.pymunk.contacts import Contacts
+from contactlaw.engines.pymunk.handlers import Handlers
+from contactlaw.engines.pymunk.lookahead import LookAhead
+from contactlaw.engines.pymunk.models import Models
+from contactlaw.engines.pymunk.record import Roll
 from contactlaw.engines.pymunk.registry import (
     Bead,
+    Kind,
     Plate,
     body_of,
-    checked_model,
+    check_mass,
+    ends,
+    radius_of,
     scalar,
-    sphere_curve,
-    unregistered,
 )
+from contactlaw.engines.pymunk.seams import Seams
 
 if TYPE_CHECKING:
     import pymunk
 
-# An approach slower than this many times the speed that gravity gives in one step rests. Without
-# it a pile of 120 beads with restitution 0.9 never settles (5000 impacts per bead and second).
-RESTING = 2.0
-# Slower than this many smallest radii per step is rounding, and all that rests without gravity.
-ROUNDING = 1e-12
+    from contactlaw import Material
 
 # Far from the small numbers that people choose; below 2**32, the limit on 32-bit machines.
 _collision_types = count(0xC0A70000)
 
-Callback = Callable[["pymunk.Arbiter", "pymunk.Space", Any], None]
 
-
-def attach(space: pymunk.Space, model: RestitutionModel) -> PymunkImpacts:
+def attach(
+    space: pymunk.Space, model: RestitutionModel | Sequence[RestitutionModel]
+) -> PymunkImpacts:
     """Let a model decide how the beads of a pymunk space rebound.
 
     Parameters
     ----------
     space : pymunk.Space
         In metres and seconds. Its ``step`` is taken over until `PymunkImpacts.detach`.
-    model : RestitutionModel
+    model : RestitutionModel, or list of them
         An `ImpactModel`, or any object with ``curve(radius, thickness)``, which gives a function of
         speed; for bead on bead ``sphere_sphere_curve(radius, other_radius)`` too. One that is no
         `contactlaw.engines.needs.ReboundModel` leaves the record without contact times, forces,
-        energies and flags.
+        energies and flags. For beads or plates of several materials a list with one model for each
+        pair that meets; beads and plates that name no material are those of the first.
 
     Returns
     -------
@@ -90,10 +94,10 @@ def attach(space: pymunk.Space, model: RestitutionModel) -> PymunkImpacts:
         raise ImportError("this adapter needs pymunk: pip install contactlaw[demo]") from error
     if not isinstance(space, pymunk.Space):
         raise TypeError(f"space: expected a pymunk.Space, got {space!r}")
-    checked_model(model)
+    models = Models(model)
     if isinstance(getattr(vars(space).get("step"), "__self__", None), PymunkImpacts):
         raise RuntimeError("space: a model is attached already; detach() that attachment first")
-    return PymunkImpacts(space, model)
+    return PymunkImpacts(space, models)
 
 
 class PymunkImpacts:
@@ -104,55 +108,100 @@ class PymunkImpacts:
     bead_type, plate_type : int
         Collision types of the registered shapes, for handlers of your own:
         ``space.on_collision(impacts.bead_type, my_type, begin=...)``.
-    time : float
-        Sum of the steps so far [s].
-    resting : int
-        Contacts too slow for an impact, one per contact and step.
     """
 
-    def __init__(self, space: pymunk.Space, model: RestitutionModel) -> None:
+    def __init__(self, space: pymunk.Space, models: Models) -> None:
         self.bead_type = next(_collision_types)
         self.plate_type = next(_collision_types)
-        self.time = 0.0
-        self.resting = 0
         self._space = space
-        self._model = model
-        self._beads: dict[Any, Bead] = {}  # by shape
+        self._models = models
+        self._contacts = Contacts()
         self._bodies: dict[int, Bead] = {}  # by id of the body
-        self._plates: dict[Any, Plate] = {}
-        self._record = Record()
-        self._steps = 0
-        self._resting_speed = 0.0
+        self._kinds: Counter[Kind] = Counter()  # of the beads that there are
+        self._gone: list[Any] = []  # references to shapes that the user has let go
+        self._roll = Roll(models)
+        self._seams = Seams()
         self._attached = True
-        self._error: BaseException | None = None
-        self._lookahead = LookAhead(space, self._bodies, self._plates)
+        self._lookahead = LookAhead(space, self._bodies, self._contacts.plates)
         self._slop = space.collision_slop
         # Bounded: a thousand different beads make half a million pairs.
-        self._sphere_curve = lru_cache(maxsize=65536)(partial(sphere_curve, model))
+        self._sphere_curve = lru_cache(maxsize=65536)(models.sphere_curve)
         self._replaced = vars(space).get("step")
         self._engine_step = space.step
         vars(space)["step"] = self._step
-        for kind, others in ((self.plate_type, self._plates), (self.bead_type, self._beads)):
-            space.on_collision(self.bead_type, kind, pre_solve=self._callback(others))
+        bead, plate = self.bead_type, self.plate_type
+        self._handlers = Handlers(
+            space,
+            own={
+                (bead, plate): self._contacts.on_plates,
+                (bead, bead): self._contacts.on_beads,
+            },
+            late=((None, None), (bead, None), (plate, None), (plate, bead)),
+            keep=self._contacts.keep,
+            is_ours=self._contacts.is_ours,
+            undo=self._contacts.undo,
+        )
 
-    def add_bead(self, circle: pymunk.Circle) -> int:
+    @property
+    def time(self) -> float:
+        """Sum of the steps so far [s]."""
+        return self._contacts.time
+
+    @property
+    def resting(self) -> int:
+        """Contacts too slow for an impact, one per contact and step."""
+        return self._contacts.resting
+
+    def add_bead(self, circle: pymunk.Circle, *, material: Material | str | None = None) -> int:
         """Register a sphere; its radius is the circle's.
 
         Parameters
         ----------
         circle : pymunk.Circle
-            Centred on a dynamic body of its own, with collision type 0. Where beads meet, the
-            body's mass should be the sphere's, ``4/3 pi radius**3 density`` [kg].
+            Centred on a dynamic body of its own, with collision type 0. The body's mass should be
+            the sphere's, ``4/3 pi radius**3 density`` [kg]: there is a warning if it is far off.
+        material : Material or str, optional
+            That of the sphere in one of the attached models; without it, in the first.
 
         Returns
         -------
         int
-            Index of the bead in the record.
+            Index of the bead in the record, never given to another one.
+
+        Examples
+        --------
+        >>> import math
+        >>> import pymunk
+        >>> import contactlaw as cl
+        >>> from contactlaw.engines.pymunk import attach
+        >>> space = pymunk.Space()
+        >>> materials = [cl.material(name) for name in ("gamma-alumina", "carbon-steel")]
+        >>> models = [cl.ImpactModel(cl.Pair(bead, "glass"), law="myc") for bead in materials]
+        >>> impacts = attach(space, models)
+        >>> plate = pymunk.Segment(space.static_body, (-1, 0), (1, 0), radius=0)
+        >>> space.add(plate)
+        >>> impacts.add_plate(plate, thickness=1e-3)
+        0
+        >>> for x, material in enumerate(materials):
+        ...     body = pymunk.Body(4 / 3 * math.pi * 0.9e-3**3 * material.density, 1e-12)
+        ...     body.position, body.velocity = (0.1 * x, 1e-3), (0, -1)
+        ...     bead = pymunk.Circle(body, radius=0.9e-3)
+        ...     space.add(body, bead)
+        ...     impacts.add_bead(bead, material=material)
+        0
+        1
+        >>> for _ in range(50):
+        ...     space.step(1e-5)
+        >>> hits = np.sort(impacts.collisions(), order="bead")
+        >>> impacts.beads()["material"][hits["bead"]].tolist()
+        ['gamma-alumina', 'carbon-steel-1020']
+        >>> hits["restitution"].round(2).tolist()
+        [0.93, 0.34]
         """
         import pymunk
 
-        body = self._admit(circle, pymunk.Circle, self.bead_type)
-        radius = scalar(radius=circle.radius)
+        body = self._admit(circle, [pymunk.Circle], self.bead_type)
+        radius, number = radius_of(circle), self._models.bead(material)
         if body.body_type != pymunk.Body.DYNAMIC:
             raise ValueError(f"circle.body: a bead needs a dynamic body, got {body!r}")
         if circle.offset != (0, 0) or body.center_of_gravity != (0, 0):
@@ -162,48 +211,116 @@ class PymunkImpacts:
             )
         if body.id in self._bodies:
             raise ValueError(f"circle.body: carries bead {self._bodies[body.id].index} already")
-        bead = Bead(len(self._beads), circle, body, radius, self._sphere_curve)
-        self._beads[circle] = self._bodies[body.id] = bead
+        check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
+        key, kind = id(circle), (radius, number)
+        noted = self._gone.append
+        shape, owner = KeyedRef(circle, noted, key), KeyedRef(body, noted, key)
+        index = self._roll.bead(number, radius)
+        bead = Bead(index, shape, owner, body.id, radius, kind, self._sphere_curve)
+        self._contacts.beads[key] = self._bodies[body.id] = bead
+        self._kinds[kind] += 1
         circle.collision_type = self.bead_type
         self._lookahead.reach = min(self._lookahead.reach, radius)
         self._space.collision_slop = min(self._space.collision_slop, 0.1 * radius)
-        return bead.index
+        return index
 
     def add_plate(
         self,
-        segment: pymunk.Segment,
+        shape: pymunk.Segment | pymunk.Poly,
         thickness: float,
         *,
-        model: RestitutionModel | None = None,
+        material: Material | str | None = None,
+        model: RestitutionModel | Sequence[RestitutionModel] | None = None,
     ) -> int:
         """Register a plate; its body may be static, kinematic (a sieve) or dynamic.
 
         Parameters
         ----------
-        segment : pymunk.Segment
-            With collision type 0. Its radius is geometry only. If it moves, then by its body's
-            velocity: an engine takes no notice of a position that is set.
+        shape : pymunk.Segment or pymunk.Poly
+            With collision type 0. A polygon or box is solid, and each of its sides a face of the
+            plate. Its size and radius are geometry only. If it moves, then by its body's velocity:
+            an engine takes no notice of a position that is set. Where plates on the same body, or
+            on bodies that never move, share an end or a corner, a bead hits one of them.
         thickness : float
             Thickness for the model [m]; ``inf`` is the half-space.
-        model : RestitutionModel, optional
-            For a plate of another material than that of the attached model.
+        material : Material or str, optional
+            That of the plate in one of the attached models; without it, in the first.
+        model : RestitutionModel or list of them, optional
+            For this plate alone, in place of the attached ones: one, or one for each material of
+            beads.
 
         Returns
         -------
         int
-            Index of the plate in the record.
+            Index of the plate in the record, never given to another one.
         """
         import pymunk
 
-        body = self._admit(segment, pymunk.Segment, self.plate_type)
+        body = self._admit(shape, [pymunk.Segment, pymunk.Poly], self.plate_type)
         thickness = scalar(thickness=thickness)
-        if segment.a == segment.b:
-            raise ValueError(f"segment: has no length, both ends are at {tuple(segment.a)}")
-        model = self._model if model is None else checked_model(model, beads=self._model)
-        plate = Plate(len(self._plates), segment, body, thickness, model)
-        self._plates[segment] = plate
-        segment.collision_type = self.plate_type
-        return plate.index
+        if len(set(ends(shape))) < 2:
+            raise ValueError(f"shape: has no length, all of it is at {tuple(ends(shape)[0])}")
+        if model is not None and material is not None:
+            raise ValueError("material: a plate with a model of its own has that one's material")
+        chosen = self._models.plate(material) if model is None else self._models.own(model)
+        key = id(shape)
+        index = self._roll.plate(chosen, thickness)
+        plate = Plate(index, KeyedRef(shape, self._gone.append, key), thickness, chosen)
+        self._contacts.plates[key] = plate
+        self._seams.join(plate, shape, body)
+        shape.collision_type = self.plate_type
+        return index
+
+    def remove_bead(self, circle: pymunk.Circle) -> None:
+        """Forget a bead: its circle is an ordinary one again, its impacts stay in the record.
+
+        Beads need not be removed to save memory. The attachment does not keep their circles alive,
+        and forgets those that are neither in the space nor held by anyone else.
+
+        Parameters
+        ----------
+        circle : pymunk.Circle
+            As given to `add_bead`; it stays in the space if it is there.
+        """
+        if id(circle) not in self._contacts.beads:
+            raise ValueError(f"circle: {circle!r} is no bead of this attachment")
+        self._forget_bead(id(circle))
+        circle.collision_type = 0
+
+    def remove_plate(self, shape: pymunk.Segment | pymunk.Poly) -> None:
+        """Forget a plate, as `remove_bead` forgets a bead.
+
+        Parameters
+        ----------
+        shape : pymunk.Segment or pymunk.Poly
+            As given to `add_plate`; it stays in the space if it is there.
+        """
+        if id(shape) not in self._contacts.plates:
+            raise ValueError(f"shape: {shape!r} is no plate of this attachment")
+        self._seams.part(self._contacts.plates.pop(id(shape)))
+        shape.collision_type = 0
+
+    def beads(self) -> NDArray[np.void]:
+        """Who has which index in the record: one row for each bead that was ever registered.
+
+        Returns
+        -------
+        structured array
+            radius [m]; material, its name, "" if the model does not tell its pair. The materials of
+            impacts are ``beads()["material"][rows["bead"]]``, those on plates
+            ``plates()["material"][rows["plate"]]``.
+        """
+        return self._roll.beads()
+
+    def plates(self) -> NDArray[np.void]:
+        """Who has which index in the record: one row for each plate that was ever registered.
+
+        Returns
+        -------
+        structured array
+            thickness [m]; material, its name, "" if the model does not tell its pair.
+        """
+        return self._roll.plates()
 
     def collisions(self) -> NDArray[np.void]:
         """Every impact so far, one row each, in SI units.
@@ -217,9 +334,7 @@ class PymunkImpacts:
             flags. Energies are those of solid spheres (bead on bead: of the relative motion, with
             the reduced mass).
         """
-        radii = [bead.radius for bead in self._beads.values()]
-        plates = [(plate.model, plate.thickness) for plate in self._plates.values()]
-        return self._record.read(self._model, radii, plates)
+        return self._contacts.record.read(self._roll)
 
     def detach(self) -> None:
         """Give the space back as it was; the record stays readable. Again: nothing happens.
@@ -227,22 +342,26 @@ class PymunkImpacts:
         Raises
         ------
         RuntimeError
-            If ``space.step`` has been replaced since; detaching would undo that too.
+            If ``space.step`` or ``space.on_collision`` has been replaced since; detaching would
+            undo that too.
         """
-        import pymunk
-
         state = vars(self._space)
         if not self._attached:
             return
         if state.get("step") != self._step:
             raise RuntimeError("space.step has been replaced since attach(); undo that first")
+        if self._handlers.replaced():
+            raise RuntimeError(
+                "space.on_collision has been replaced since attach(); undo that first"
+            )
+        self._handlers.detach()
         del state["step"]
         if self._replaced:
             state["step"] = self._replaced
-        for other in (self.plate_type, self.bead_type):
-            self._space.on_collision(self.bead_type, other, pre_solve=pymunk.empty_callback)
-        for shape in (*self._beads, *self._plates):
-            shape.collision_type = 0
+        beads, plates = self._contacts.beads.values(), self._contacts.plates.values()
+        for shape in [bead.shape() for bead in beads] + [plate.shape() for plate in plates]:
+            if shape is not None:
+                shape.collision_type = 0
         self._space.collision_slop = self._slop
         self._attached = False
 
@@ -252,23 +371,48 @@ class PymunkImpacts:
             "to the copy"
         )
 
-    def _admit(self, shape: Any, kind: type, collision_type: int) -> pymunk.Body:
+    def _admit(self, shape: Any, kinds: Sequence[type], collision_type: int) -> pymunk.Body:
+        self._clean()
         if not self._attached:
             raise RuntimeError("this attachment is detached: call attach(space, model) again")
-        if shape in self._beads or shape in self._plates:
+        if id(shape) in self._contacts.beads or id(shape) in self._contacts.plates:
             raise ValueError(f"{shape!r} is registered already")
-        return body_of(shape, kind, self._space, collision_type)
+        return body_of(shape, kinds, self._space, collision_type)
+
+    def _clean(self) -> None:
+        """Forget beads and plates that are no more: they go at any time, and are noted when so.
+
+        Python's ids and pymunk's go to new ones afterwards.
+        """
+        while self._gone:
+            gone = self._gone.pop()
+            key = gone.key
+            bead, plate = self._contacts.beads.get(key), self._contacts.plates.get(key)
+            if bead is not None and (gone is bead.shape or gone is bead.body):
+                self._forget_bead(key)
+            elif plate is not None and gone is plate.shape:
+                self._seams.part(self._contacts.plates.pop(key))
+
+    def _forget_bead(self, key: int) -> None:
+        bead = self._contacts.beads.pop(key)
+        del self._bodies[bead.body_id]
+        self._kinds[bead.kind] -= 1
+        if not self._kinds[bead.kind]:
+            del self._kinds[bead.kind]
+            for plate in self._contacts.plates.values():
+                plate.curves.pop(bead.kind, None)
+            if bead.radius == self._lookahead.reach:
+                self._lookahead.reach = min((r for r, _ in self._kinds), default=math.inf)
 
     def _step(self, dt: float) -> None:
         """Stand in for ``space.step``."""
         if not 0.0 < dt < math.inf:
             raise ValueError(f"dt: must be positive and finite [s], got {dt!r}")
-        self._error = None
-        self._lookahead.check(dt, self.time)
-        rounding = ROUNDING * self._lookahead.reach / dt
-        self._resting_speed = max(RESTING * self._space.gravity.length * dt, rounding)
-        self.time += dt
-        self._steps += 1
+        self._contacts.error = None
+        self._clean()
+        self._handlers.check()
+        self._lookahead.check(dt, self._contacts.time)
+        self._contacts.begin(dt, self._space.gravity.length, self._lookahead.reach)
         # cffi hands exceptions in callbacks to this hook: those of the user's own handlers, and a
         # Ctrl-C, which as a rule arrives in pymunk's Python code around a callback and not in ours.
         # The hook is for all threads, signals are for the main thread: so only there.
@@ -280,71 +424,13 @@ class PymunkImpacts:
                 sys.unraisablehook = self._hook
         else:
             self._engine_step(dt)
-        if self._error is not None:
-            error, self._error = self._error, None
+        error, self._contacts.error = self._contacts.error, None
+        if error is not None:
             raise error
 
     def _unraisable(self, report: sys.UnraisableHookArgs) -> None:
         here = threading.current_thread() is threading.main_thread()
         if here and report.exc_value and "cffi callback" in (report.err_msg or ""):
-            self._keep(report.exc_value)
+            self._contacts.keep(report.exc_value)
         else:
             self._hook(report)
-
-    def _callback(self, others: Mapping[Any, Bead | Plate]) -> Callback:
-        """Make the callback for contacts of beads with plates, or with each other."""
-        # Found beforehand: it is called for every contact in every step, and a pile has many.
-        on_plate = others is self._plates
-        bead_of, other_of, record = self._beads.get, others.get, self._record.add
-
-        def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
-            try:
-                circle, shape = arbiter.shapes
-                bead, other = bead_of(circle), other_of(shape)
-                if bead is None or other is None:
-                    raise unregistered(circle if bead is None else shape)
-                if not arbiter.process_collision:  # switched off by a user's `begin`
-                    return
-                nx, ny = arbiter.normal  # from the bead to the other
-                vx, vy = bead.body.velocity
-                (ux, uy), point = other.motion(bead, nx, ny)
-                speed = (vx - ux) * nx + (vy - uy) * ny
-                if other.passed(bead, nx, ny, self._steps):
-                    raise tunnelling(bead.index, other.index, self.time, abs(speed), None)
-                if speed <= self._resting_speed + RESTING * other.shake:
-                    arbiter.restitution = 0.0
-                    if speed > 0.0:  # or else they separate, or stay together
-                        self.resting += 1
-                    return
-                arbiter.restitution = restitution = self._restitution(bead, other, speed)
-                x, y = point or bead.contact(nx, ny)
-                plate, target = (other.index, -1) if on_plate else (-1, other.index)
-                record((self.time, bead.index, plate, target, x, y, 0.0, speed, restitution))
-            except BaseException as error:
-                self._keep(error, arbiter)
-
-        return pre_solve
-
-    def _restitution(self, bead: Bead, other: Bead | Plate, speed: float) -> float:
-        """Ask the model, and check for the engine, which checks nothing."""
-        try:
-            restitution = other.curve(bead.radius)(speed)
-        except Exception as error:
-            error.add_note(self._describe(bead, other, speed))
-            raise
-        if not 0.0 <= restitution <= 1.0:
-            where = self._describe(bead, other, speed)
-            raise ValueError(
-                f"restitution must lie in [0, 1], the model gave {restitution!r} {where}"
-            )
-        return restitution
-
-    def _describe(self, bead: Bead, other: Bead | Plate, speed: float) -> str:
-        return f"for {bead} on {other} at {speed:.9g} m/s, t = {self.time:.9g} s"
-
-    def _keep(self, error: BaseException, arbiter: pymunk.Arbiter | None = None) -> None:
-        """Keep the first error of a step; an interrupt goes before everything."""
-        if arbiter is not None:
-            arbiter.restitution = 0.0
-        if self._error is None or not isinstance(error, Exception):
-            self._error = error

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines.pymunk.registry import Bead, Plate
+from contactlaw.engines.pymunk.registry import Bead, Plate, ends, may_meet
 
 if TYPE_CHECKING:
     import pymunk
     import pymunk.batch
+
+    from contactlaw.engines.pymunk.registry import Face
 
 Array = NDArray[np.float64]
 
@@ -98,7 +102,11 @@ class LookAhead:
 
     def _refuse(self, key: int, motion: Array) -> None:
         """Raise for a bead or plate that is nowhere; other bodies are not the adapter's."""
-        names = [f"plate {plate.index}" for plate in self._plates.values() if plate.body.id == key]
+        names = []
+        for plate in self._plates.values():
+            shape = plate.shape()
+            if shape is not None and shape.body is not None and shape.body.id == key:
+                names.append(f"plate {plate.index}")
         names += [f"bead {self._beads[key].index}"] if key in self._beads else []
         if names:
             x, y, vx, vy = motion.tolist()
@@ -108,34 +116,32 @@ class LookAhead:
         """Raise for the bead that needs the smallest step."""
         found = []
         for plate in self._plates.values():
-            line = _line(plate)
-            distance, speed = approach(motion[:, :2], motion[:, 2:], line, dt)
-            for n in np.flatnonzero(speed):
-                if self._collide(beads[n].circle, plate.segment):
-                    reach = beads[n].radius + plate.segment.radius
-                    safe_step = min(reach, distance[n]) / speed[n]
-                    found.append((safe_step, beads[n].index, plate.index, speed[n]))
+            shape = plate.shape()
+            if shape is None or shape.body is None or shape.space is not self._space:
+                continue
+            for line in _lines(shape, shape.body):
+                distance, speed = approach(motion[:, :2], motion[:, 2:], line, dt)
+                for n in np.flatnonzero(speed):
+                    circle = beads[n].shape()
+                    if circle is not None and may_meet(circle, shape):
+                        reach = beads[n].radius + shape.radius
+                        safe_step = min(reach, distance[n]) / speed[n]
+                        found.append((safe_step, beads[n].index, plate.index, speed[n]))
         if found:
             safe_step, bead, plate_index, velocity = min(found)
             raise tunnelling(bead, plate_index, time + dt, float(velocity), float(safe_step))
 
-    def _collide(self, circle: pymunk.Circle, segment: pymunk.Segment) -> bool:
-        """Whether both are in the space, and their filters let them meet."""
-        a, b = circle.filter, segment.filter
-        grouped = a.group != 0 and a.group == b.group
-        masked = not (a.categories & b.mask and b.categories & a.mask)
-        return circle.space is segment.space is self._space and not grouped and not masked
 
-
-def _line(plate: Plate) -> Line:
+def _lines(shape: Face, body: pymunk.Body) -> Iterator[Line]:
+    """Each side of a plate: a segment has one, a polygon as many as corners."""
     import pymunk
 
-    body, segment = plate.body, plate.segment
     still = body.body_type == pymunk.Body.STATIC  # the engine never moves it, whatever its speed
-    start, end = body.local_to_world(segment.a), body.local_to_world(segment.b)
     pivot = body.local_to_world(body.center_of_gravity)
     velocity, spin = ((0.0, 0.0), 0.0) if still else (body.velocity, body.angular_velocity)
-    return Line(start, end, pivot, velocity, spin)
+    corners = [body.local_to_world(end) for end in ends(shape)]
+    for start, end in pairwise(corners if len(corners) == 2 else [*corners, corners[0]]):
+        yield Line(start, end, pivot, velocity, spin)
 
 
 def tunnelling(

@@ -4,16 +4,69 @@ from __future__ import annotations
 
 import math
 from array import array
-from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.lib.recfunctions import repack_fields
 from numpy.typing import NDArray
 
-from contactlaw.engines.needs import Array, ReboundModel, RestitutionModel, knows_rebounds
+from contactlaw.engines.needs import RestitutionModel, knows_rebounds
+from contactlaw.engines.pymunk.models import ByBead, Models
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
 
-Plates = Sequence[tuple[RestitutionModel, float]]  # model and thickness [m], by index
+
+class Roll:
+    """Who was ever registered, by index: a few bytes each, for the record outlives the shapes."""
+
+    def __init__(self, models: Models) -> None:
+        self.models = models
+        self._radii = array("d")
+        self._materials = array("l")
+        self._thicknesses = array("d")
+        self._plates: list[ByBead] = []
+
+    def bead(self, material: int, radius: float) -> int:
+        """Index of one more bead."""
+        self._radii.append(radius)
+        self._materials.append(material)
+        return len(self._radii) - 1
+
+    def plate(self, models: ByBead, thickness: float) -> int:
+        """Index of one more plate."""
+        self._thicknesses.append(thickness)
+        self._plates.append(models)
+        return len(self._plates) - 1
+
+    def beads(self) -> NDArray[np.void]:
+        """Radius [m] and material by index."""
+        names = np.array(self.models.names())
+        return _table(("radius", np.array(self._radii)), ("material", names[self.materials]))
+
+    def plates(self) -> NDArray[np.void]:
+        """Thickness [m] and material by index."""
+        names = np.array([models.plate for models in self._plates], dtype="U")
+        return _table(("thickness", np.array(self._thicknesses)), ("material", names))
+
+    @property
+    def materials(self) -> NDArray[np.int64]:
+        """Number of the material by bead."""
+        return np.array(self._materials, dtype=np.int64)
+
+    def every_model(self) -> list[RestitutionModel]:
+        """Each once."""
+        found = {id(model): model for model in self.models.all}
+        for models in {id(models): models for models in self._plates}.values():
+            found |= {id(model): model for model in models.values()}
+        return list(found.values())
+
+    def by_model(self, rows: NDArray[np.void]) -> list[tuple[Any, NDArray[np.bool_]]]:
+        """Models, and which of these impacts on plates each is to be asked about."""
+        kinds = len(self.models.spheres)
+        pairs = rows["plate"] * kinds + self.materials[rows["bead"]]
+        pairs, place = np.unique(pairs, return_inverse=True)
+        asked = [self._plates[n // kinds][n % kinds] for n in pairs.tolist() if n >= 0]
+        own = np.array([-1] * (len(pairs) - len(asked)) + [id(model) for model in asked])[place]
+        return [(model, own == n) for n, model in {id(model): model for model in asked}.items()]
 
 
 class Record:
@@ -24,54 +77,67 @@ class Record:
         self.add = self._seen.extend  # takes one tuple in the order of OBSERVED
         self._rows = np.empty(0, IMPACT)  # of the first impacts seen: those that were read already
 
-    def read(
-        self, model: RestitutionModel, radii: Sequence[float], plates: Plates
-    ) -> NDArray[np.void]:
+    def undo(self, time: float, bead: int, plate: int, other: int) -> None:
+        """Take the last impact back, if it is this one."""
+        if self._seen[-len(OBSERVED) : -len(OBSERVED) + 4].tolist() == [time, bead, plate, other]:
+            del self._seen[-len(OBSERVED) :]
+            self._rows = self._rows[: len(self._seen) // len(OBSERVED)]
+
+    def read(self, roll: Roll) -> NDArray[np.void]:
         """Structured array of all impacts; each is looked up when it is first read, and not again.
 
         Parameters
         ----------
-        model : RestitutionModel
-            That of the beads. Unless it and those of all plates are a `ReboundModel`, there are
-            only the columns of OBSERVED.
-        radii : sequence of float
-            Of the beads, by index [m].
-        plates : sequence of (model, thickness [m])
-            By index. There may be more than in the last call, as with radii, but no others.
+        roll : Roll
+            Beads, plates and their models: at least those of the last call. Unless every model is a
+            `ReboundModel`, there are only the columns of OBSERVED.
         """
-        models = [m for m in (model, *(m for m, _ in plates)) if knows_rebounds(m)]
-        whole = len(models) == 1 + len(plates)
+        whole = all(knows_rebounds(model) for model in roll.every_model())
         seen = np.array(self._seen[len(self._rows) * len(OBSERVED) :]).reshape(-1, len(OBSERVED))
         if len(seen):
             rows = np.zeros(len(seen), IMPACT)
             for name, column in zip(OBSERVED, seen.T, strict=True):
                 rows[name] = column
             if whole:
-                _complete(rows, models, np.array(radii), np.array([h for _, h in plates]))
+                _complete(rows, roll)
             self._rows = np.concatenate((self._rows, rows))
-        # Plates do not go: where a COR is all that is known, it is so for the rest of the run.
+        # Where a COR was all that was known, it is so for the rest of the run.
         return self._rows.copy() if whole else repack_fields(self._rows[list(OBSERVED)])
 
 
-def _complete(
-    rows: NDArray[np.void], models: Sequence[ReboundModel], radius: Array, thickness: Array
-) -> None:
-    """Look impacts up; the first model is that of the beads, the others are those of the plates."""
-    beads, *plates = models
+def _complete(rows: NDArray[np.void], roll: Roll) -> None:
+    """Look impacts up, each with the model of its materials; every model is a `ReboundModel`."""
+    beads, plates, material = roll.beads(), roll.plates(), roll.materials
+    density = np.array([roll.models.density(n) for n in range(len(roll.models.spheres))])
+    mass = 4.0 / 3.0 * math.pi * density[material] * beads["radius"] ** 3
     on_bead = rows["other"] >= 0
-    bead, other = radius[rows["bead"]], radius[rows["other"]]
-    target = np.where(on_bead, other, np.append(thickness, math.nan)[rows["plate"]])
-    # m1 m2/(m1 + m2), all beads being of one material; a plate counts as a mass without end
-    mass = 4.0 / 3.0 * math.pi * beads.pair.sphere.density * bead**3
-    mass /= 1.0 + np.where(on_bead, bead / other, 0.0) ** 3
-    energy = 0.5 * mass * rows["approach_speed"] ** 2
-    questions = []
-    for model in {id(plate): plate for plate in plates}.values():
-        own = np.array([plate is model for plate in plates] + [False])  # last: plate -1
-        questions.append((model.lookup, own[rows["plate"]]))
-    questions.append((beads.lookup_sphere_sphere, on_bead))
-    for lookup, chosen in questions:
-        if chosen.any():
-            part = rows[chosen]
-            fill(part, lookup(part["approach_speed"], bead[chosen], target[chosen]), energy[chosen])
-            rows[chosen] = part
+    bead, other = rows["bead"], rows["other"]
+    radius = beads["radius"]
+    target = np.where(
+        on_bead, radius[other], np.append(plates["thickness"], math.nan)[rows["plate"]]
+    )
+    # m1 m2/(m1 + m2); a plate counts as a mass without end
+    reduced = mass[bead] / (1.0 + np.where(on_bead, mass[bead] / mass[other], 0.0))
+    energy = 0.5 * reduced * rows["approach_speed"] ** 2
+    questions: list[tuple[Any, NDArray[np.bool_], tuple[Any, ...]]] = [
+        (model.lookup, own, ()) for model, own in roll.by_model(rows)
+    ]
+    for pair in np.unique(
+        np.stack((material[bead], material[other]))[:, on_bead], axis=1
+    ).T.tolist():
+        own = on_bead & (material[bead] == pair[0]) & (material[other] == pair[1])
+        model: Any = roll.models.of_bead(pair[0])
+        questions.append((model.lookup_sphere_sphere, own, roll.models.others(*pair)))
+    for lookup, own, more in questions:
+        part = rows[own]
+        fill(
+            part, lookup(part["approach_speed"], radius[bead[own]], target[own], *more), energy[own]
+        )
+        rows[own] = part
+
+
+def _table(*columns: tuple[str, NDArray[Any]]) -> NDArray[np.void]:
+    table = np.empty(len(columns[0][1]), [(name, column.dtype) for name, column in columns])
+    for name, column in columns:
+        table[name] = column
+    return table

@@ -3,46 +3,72 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+import warnings
+import weakref
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from contactlaw.engines.needs import Curve, RestitutionModel, knows_beads
+from contactlaw.engines.needs import Curve
+from contactlaw.engines.pymunk.models import ByBead
 from contactlaw.physical.arguments import broadcast, check
 
 if TYPE_CHECKING:
     import pymunk
 
+    Face = pymunk.Segment | pymunk.Poly
+
 Vector = tuple[float, float]
-NEVER = (-1, 0.0, 0.0)  # what `Plate.touched` has of a bead that never did
+Kind = tuple[float, int]  # of beads that rebound alike: radius [m], number of the material
+Joint = tuple[float, float, "Plate"]  # an end [m], in coordinates of the body, and who shares it
+NEVER = (-1, 0.0, 0.0)  # what `Bead.touched` has of a plate that it never did
+FEW = 8  # plates that a bead touches at once: what is remembered of more is cleaned up
+# A boulder; what is larger was measured in pixels.
+LARGEST = 1.0  # [m]
+# Beside it, porosity and a density that is not quite the material's; a disc, a mass of 1 or a
+# diameter taken for the radius are far outside.
+MASS_RATIO = 1.5
 
 
+# Shapes and bodies are the user's: an attachment holds them weakly, or else whatever has rained
+# through a space would stay in memory.
 @dataclass(slots=True, eq=False)
 class Bead:
     """A registered sphere, which hits plates and other spheres."""
 
     index: int
-    circle: pymunk.Circle
-    body: pymunk.Body
+    shape: weakref.ref[pymunk.Circle]
+    body: weakref.ref[pymunk.Body]
+    body_id: int  # pymunk gives it to another one after the body
     radius: float
-    pair_curve: Callable[[float, float], Curve]  # of two beads by their radii, the smaller first
+    kind: Kind
+    pair_curve: Callable[[Kind, Kind], Curve]  # of two beads, the smaller first
+    # by plate: the last step in which it touched, and the normal then
+    touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
+    # by plate: the last step in which a neighbour of the plate had the contact
+    left: dict[int, int] = field(default_factory=dict)
     shake: ClassVar[float] = 0.0  # nothing drives a bead; see `Plate`
+    joints: ClassVar[Sequence[Joint]] = ()
 
     def __str__(self) -> str:
         return f"bead {self.index}"
 
-    def contact(self, nx: float, ny: float) -> Vector:
+    def contact(self, body: pymunk.Body, nx: float, ny: float) -> Vector:
         """Point of its surface in the direction of a normal [m]."""
-        x, y = self.body.position
+        x, y = body.position
         return x + self.radius * nx, y + self.radius * ny
 
-    def curve(self, radius: float) -> Curve:
-        """Restitution of a bead of this radius on this one by speed."""
-        return self.pair_curve(*sorted((radius, self.radius)))
+    def curve(self, bead: Bead, shape: pymunk.Circle) -> Curve:
+        """Restitution of a bead on this one by speed."""
+        if shape.radius != self.radius:
+            raise changed(self, shape)
+        return self.pair_curve(*sorted((bead.kind, self.kind)))
 
-    def motion(self, bead: Bead, nx: float, ny: float) -> tuple[Vector, None]:
+    def motion(
+        self, bead: Bead, body: pymunk.Body, shape: pymunk.Shape, nx: float, ny: float
+    ) -> tuple[Vector, None]:
         """Its velocity [m/s]; the normal is through its centre, so that any point will do."""
-        return self.body.velocity, None
+        return shape.body.velocity, None  # type: ignore[union-attr]  # it is in the space
 
     def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
         """Beads that were pressed through each other go unnoticed."""
@@ -54,13 +80,11 @@ class Plate:
     """A registered plate, and what is remembered of it from step to step."""
 
     index: int
-    segment: pymunk.Segment
-    body: pymunk.Body
+    shape: weakref.ref[Face]
     thickness: float
-    model: RestitutionModel
-    curves: dict[float, Curve] = field(default_factory=dict)  # by bead radius
-    # by bead: the last step in which it touched, and the normal then
-    touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
+    models: ByBead
+    joints: list[Joint] = field(default_factory=list)  # ends where the plate goes on as another
+    curves: dict[Kind, Curve] = field(default_factory=dict)
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
     change: float = 0.0  # of that velocity, within the last step [m/s]
     shake: float = 0.0  # the same while it goes on, else about 0 [m/s]
@@ -68,35 +92,42 @@ class Plate:
     def __str__(self) -> str:
         return f"plate {self.index}"
 
-    def curve(self, radius: float) -> Curve:
-        """Restitution of beads of this radius by speed; made once."""
-        curve = self.curves.get(radius)
+    def curve(self, bead: Bead, shape: pymunk.Shape) -> Curve:
+        """Restitution of beads of this kind by speed; made once."""
+        curve = self.curves.get(bead.kind)
         if curve is None:
-            curve = self.curves[radius] = self.model.curve(radius, self.thickness)
+            radius, material = bead.kind
+            curve = self.models[material].curve(radius, self.thickness)
+            self.curves[bead.kind] = curve
         return curve
 
-    def motion(self, bead: Bead, nx: float, ny: float) -> tuple[Vector, Vector]:
+    def motion(
+        self, bead: Bead, body: pymunk.Body, shape: pymunk.Shape, nx: float, ny: float
+    ) -> tuple[Vector, Vector]:
         """Its velocity [m/s] at the point [m] where a bead touches it, and that point."""
-        point = bead.contact(nx, ny)
-        return self.body.velocity_at_world_point(point), point
+        point = bead.contact(body, nx, ny)
+        return shape.body.velocity_at_world_point(point), point  # type: ignore[union-attr]
 
     def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
         """Whether a bead that touches has been pressed through: its normal has turned round."""
-        last, old_nx, old_ny = self.touched.get(bead.index, NEVER)
-        self.touched[bead.index] = (step, nx, ny)
+        last, old_nx, old_ny = bead.touched.get(self.index, NEVER)
+        if len(bead.touched) > FEW:
+            bead.touched = {n: seen for n, seen in bead.touched.items() if seen[0] >= step - 1}
+        bead.touched[self.index] = (step, nx, ny)
         return last == step - 1 and old_nx * nx + old_ny * ny < 0.0
 
     def watch(self, dt: float) -> float:
         """Update `shake` of a kinematic plate; speed of the plate's fastest point [m/s]."""
         import pymunk
 
-        body = self.body
-        if body.body_type == pymunk.Body.STATIC:
+        shape = self.shape()
+        body = shape and shape.body
+        if not shape or not body or body.body_type == pymunk.Body.STATIC:
             self.shake = self.change = 0.0
             return 0.0
         (vx, vy), spin = body.velocity, body.angular_velocity
-        ends, centre = (self.segment.a, self.segment.b), body.center_of_gravity
-        extent = max((end - centre).length for end in ends)
+        centre = body.center_of_gravity
+        extent = max((end - centre).length for end in ends(shape))
         if body.body_type == pymunk.Body.KINEMATIC:  # a dynamic one is moved by the impacts
             old_vx, old_vy, old_spin = self.velocity
             turning = extent * (abs(spin - old_spin) + spin**2 * dt)
@@ -107,10 +138,28 @@ class Plate:
         return math.hypot(vx, vy) + abs(spin) * extent
 
 
-def body_of(shape: Any, kind: type, space: pymunk.Space, collision_type: int) -> pymunk.Body:
+def ends(shape: Face) -> list[pymunk.Vec2d]:
+    """Corners of a plate [m], in coordinates of its body; a polygon's follow each other."""
+    import pymunk
+
+    return [shape.a, shape.b] if isinstance(shape, pymunk.Segment) else shape.get_vertices()
+
+
+def may_meet(circle: pymunk.Circle, shape: pymunk.Shape) -> bool:
+    """Whether both are in one space, and their filters let them meet."""
+    a, b = circle.filter, shape.filter
+    grouped = a.group != 0 and a.group == b.group
+    masked = not (a.categories & b.mask and b.categories & a.mask)
+    return circle.space is not None and circle.space is shape.space and not (grouped or masked)
+
+
+def body_of(
+    shape: Any, kinds: Sequence[type], space: pymunk.Space, collision_type: int
+) -> pymunk.Body:
     """Body of a shape that may be registered."""
-    if not isinstance(shape, kind):
-        raise TypeError(f"expected a pymunk.{kind.__name__}, got {shape!r}")
+    if not isinstance(shape, tuple(kinds)):
+        expected = " or ".join(f"pymunk.{kind.__name__}" for kind in kinds)
+        raise TypeError(f"expected a {expected}, got {shape!r}")
     shape_of: Any = shape
     body: pymunk.Body | None = shape_of.body
     if body is None or shape_of.sensor:
@@ -126,22 +175,6 @@ def body_of(shape: Any, kind: type, space: pymunk.Space, collision_type: int) ->
     return body
 
 
-def checked_model(
-    model: RestitutionModel, beads: RestitutionModel | None = None
-) -> RestitutionModel:
-    """Refuse what cannot answer, or answers for other spheres than the model of the beads."""
-    if not callable(getattr(model, "curve", None)):
-        raise TypeError(f"model: expected an ImpactModel, or a like with curve(), got {model!r}")
-    own, others = _sphere(model), _sphere(beads)
-    if None not in (own, others) and own != others:
-        raise ValueError(f"model: made for spheres of {own}, but the beads are of {others}")
-    return model
-
-
-def _sphere(model: RestitutionModel | None) -> Any:
-    return getattr(getattr(model, "pair", None), "sphere", None)
-
-
 def scalar(**argument: float) -> float:
     """One number within the limits of the argument of that name."""
     values, shape = broadcast(**argument)
@@ -151,11 +184,39 @@ def scalar(**argument: float) -> float:
     return float(values[0])
 
 
-def sphere_curve(model: RestitutionModel, radius: float, other_radius: float) -> Curve:
-    """Restitution of two beads by speed."""
-    if not knows_beads(model):
-        raise TypeError(f"beads meet, but {model!r} has no sphere_sphere_curve()")
-    return model.sphere_sphere_curve(radius, other_radius)
+def radius_of(circle: pymunk.Circle) -> float:
+    """Radius of a bead, in metres."""
+    radius = scalar(radius=circle.radius)
+    if radius > LARGEST:
+        raise ValueError(
+            f"radius: {radius!r} m is no bead's, are these pixels? Space, gravity, speeds and "
+            "shapes must be in metres and seconds; scale where you draw: "
+            "pymunk.SpaceDebugDrawOptions has a transform"
+        )
+    return radius
+
+
+def changed(bead: Bead, circle: pymunk.Circle) -> ValueError:
+    """Make the error for a circle that is no longer what was registered."""
+    return ValueError(
+        f"radius: {bead} was registered with {bead.radius!r} m and has {circle.radius!r} m now; "
+        "remove_bead(circle) before unsafe_set_radius and add_bead(circle) after it, with the mass "
+        "that belongs to the radius"
+    )
+
+
+def check_mass(mass: float, radius: float, density: float | None, name: str) -> None:
+    """Warn of a mass that is not the sphere's; the caller is called by `add_bead`."""
+    if density is None:
+        return
+    sphere = 4.0 / 3.0 * math.pi * radius**3 * density
+    if not sphere / MASS_RATIO <= mass <= sphere * MASS_RATIO:
+        warnings.warn(
+            f"body.mass: {mass:.4g} kg, but a sphere of {name} of radius {radius:.4g} m has "
+            f"{sphere:.4g} kg, and the COR and the energies in the record are that sphere's; set "
+            "body.mass = 4/3*pi*radius**3*density, also where beads meet",
+            stacklevel=3,
+        )
 
 
 def unregistered(shape: Any) -> ValueError:

@@ -1,0 +1,144 @@
+"""Handlers of the user beside the adapter's: nobody's ``pre_solve`` pushes out the other's."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import pymunk
+
+Callback = Callable[["pymunk.Arbiter", "pymunk.Space", Any], None]
+Key = tuple[int | None, int | None]  # two collision types; None: any
+Hook = tuple[Callback, Any]  # a pre_solve of the user, and the data to call it with
+
+
+class Handlers:
+    """Stands in for ``space.on_collision`` from `attach` to `detach`.
+
+    pymunk keeps one ``pre_solve`` for each key, the last one given. A user's for a key of the
+    adapter becomes a hook that the adapter's calls first. Those for a wildcard, or for the two
+    types in the other order, are called by pymunk after the adapter's, when restitution and record
+    are made: they are watched.
+
+    Parameters
+    ----------
+    space : pymunk.Space
+        Whose handlers they are.
+    own : dict
+        The adapter's callbacks by key; the keys have a list each in `hooks`.
+    late : tuple of keys
+        Which of the user's are called after those.
+    keep : callable
+        Told of the errors of late ones.
+    is_ours : callable
+        Whether a contact is one that the adapter answers.
+    undo : callable
+        Told of a contact that a late one has switched off.
+    """
+
+    def __init__(
+        self,
+        space: pymunk.Space,
+        own: dict[Key, Callable[[list[Hook]], Callback]],
+        late: tuple[Key, ...],
+        keep: Callable[[BaseException], None],
+        is_ours: Callable[[pymunk.Arbiter], bool],
+        undo: Callable[[pymunk.Arbiter], None],
+    ) -> None:
+        self._space = space
+        self._keep, self._is_ours, self._undo = keep, is_ours, undo
+        self._late = late
+        self._watched: dict[Key, Hook] = {}
+        self._replaced = vars(space).get("on_collision")
+        self._engine = space.on_collision
+        self._hooks: dict[Key, list[Hook]] = {key: [] for key in own}
+        self._own = {key: make(self._hooks[key]) for key, make in own.items()}
+        earlier = space._handlers.get((None, None))  # the only key that can be older than ours
+        if earlier is not None and earlier.pre_solve is not None:
+            self.on_collision(
+                None, None, pre_solve=earlier.pre_solve, data=earlier.data["pre_solve"]
+            )
+        for key, callback in self._own.items():
+            self._engine(*key, pre_solve=callback)
+        self._installed = [(key, space._handlers[key], own) for key, own in self._own.items()]
+        vars(space)["on_collision"] = self.on_collision
+
+    def on_collision(
+        self,
+        collision_type_a: int | None = None,
+        collision_type_b: int | None = None,
+        begin: Callback | None = None,
+        pre_solve: Callback | None = None,
+        post_solve: Callback | None = None,
+        separate: Callback | None = None,
+        data: Any = None,
+    ) -> None:
+        """Do what pymunk's does, and keep the adapter's ``pre_solve``."""
+        import pymunk
+
+        key = collision_type_a, collision_type_b
+        given = pre_solve
+        if given is not None:
+            hook = None if given == pymunk.empty_callback else (given, data)
+            if key in self._own:
+                self._hooks[key][:] = [hook] if hook else []
+                pre_solve = None
+            elif key in self._late:
+                self._watched.pop(key, None)
+                if hook:
+                    self._watched[key] = hook
+                    pre_solve = self._watch(key, given)
+        self._engine(*key, begin, pre_solve, post_solve, separate, data)
+
+    def check(self) -> None:
+        """Take in what came past us, as by ``pymunk.Space.on_collision(space, ...)``."""
+        for key, handler, callback in self._installed:
+            found = handler.pre_solve
+            if found is not callback:
+                self._hooks[key][:] = [] if found is None else [(found, handler.data["pre_solve"])]
+                handler.pre_solve = callback
+
+    def replaced(self) -> bool:
+        """Whether somebody stands in for us."""
+        return vars(self._space).get("on_collision") != self.on_collision
+
+    def detach(self) -> None:
+        """Leave the space with the user's handlers alone."""
+        import pymunk
+
+        state = vars(self._space)
+        del state["on_collision"]
+        if self._replaced:
+            state["on_collision"] = self._replaced
+        for key, hooks in self._hooks.items():
+            callback, data = hooks[0] if hooks else (pymunk.empty_callback, None)
+            self._engine(*key, pre_solve=callback, data=data)
+        for key, (callback, data) in self._watched.items():
+            self._engine(*key, pre_solve=callback, data=data)
+
+    def _watch(self, key: Key, callback: Callback) -> Callback:
+        """Make a callback that tells what the user's changes in a contact of the adapter's."""
+
+        def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+            try:
+                processed, restitution = arbiter.process_collision, arbiter.restitution
+                callback(arbiter, space, data)
+                if arbiter.restitution != restitution and self._is_ours(arbiter):
+                    given, arbiter.restitution = arbiter.restitution, restitution
+                    raise overridden(key, given)
+                if processed and not arbiter.process_collision and self._is_ours(arbiter):
+                    self._undo(arbiter)
+            except BaseException as error:
+                self._keep(error)
+
+        return pre_solve
+
+
+def overridden(key: Key, restitution: float) -> RuntimeError:
+    """Make the error for a handler that answers in the model's place."""
+    return RuntimeError(
+        f"pre_solve of {key}: sets arbiter.restitution to {restitution!r} where a bead hits, but "
+        "there the model answers; leave it alone, and give what differs a model of its own: "
+        "add_plate(..., model=...), any object with curve()"
+    )

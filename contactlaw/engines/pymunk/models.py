@@ -1,0 +1,184 @@
+"""Which model answers for which bead on which plate."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+from contactlaw import Material
+from contactlaw import material as catalogued
+from contactlaw.engines.needs import Curve, RestitutionModel, knows_beads
+
+
+class ByBead(dict[int, RestitutionModel]):
+    """Models for one plate, by the number of the bead's material in `Models.spheres`."""
+
+    def __init__(self, spheres: list[Any], plate: Any) -> None:
+        super().__init__()
+        self._spheres = spheres
+        self.plate = _name(plate)
+
+    def __missing__(self, number: int) -> NoReturn:
+        """Say which model is wanting."""
+        raise ValueError(
+            f"model: none is attached for Pair({_name(self._spheres[number])!r}, {self.plate!r}): "
+            "attach(space, [model, ...]) takes one for each pair of materials that meets"
+        )
+
+
+class Models:
+    """The models of one space, one for each pair of materials; the first names the usual ones.
+
+    Parameters
+    ----------
+    given : RestitutionModel or sequence of RestitutionModel
+        As `attach` takes them.
+
+    Attributes
+    ----------
+    all : list of RestitutionModel
+        In the order in which they were given.
+    spheres : list
+        Materials of beads; a model that does not tell its pair has None.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> pairs = [cl.Pair(bead, "glass") for bead in ("gamma-alumina", "carbon-steel")]
+    >>> models = Models([cl.ImpactModel(pair, law="myc") for pair in pairs])
+    >>> [sphere.name for sphere in models.spheres]
+    ['gamma-alumina', 'carbon-steel-1020']
+    >>> models.bead("carbon-steel")
+    1
+    """
+
+    def __init__(self, given: RestitutionModel | Sequence[RestitutionModel]) -> None:
+        self.all = _listed(given)
+        self.spheres: list[Any] = []
+        self._plates: list[tuple[Any, ByBead]] = []  # by material
+        seen: list[tuple[Any, Any]] = []
+        for model in self.all:
+            pair = sphere_of(model), plate_of(model)
+            if len(self.all) > 1 and None in pair:
+                raise ValueError(
+                    f"model: several are told apart by their pairs, but {model!r} has none; give "
+                    "it one (an attribute `pair`, a contactlaw.Pair), or attach it alone"
+                )
+            if pair in seen:
+                raise ValueError(f"model: two are for {_name(pair[0])} on {_name(pair[1])}")
+            seen.append(pair)
+            if pair[0] not in self.spheres:
+                self.spheres.append(pair[0])
+            number = self.spheres.index(pair[0])
+            for plate, models in self._plates:
+                if plate == pair[1]:
+                    models[number] = model
+                    break
+            else:
+                models = ByBead(self.spheres, pair[1])
+                models[number] = model
+                self._plates.append((pair[1], models))
+
+    def bead(self, material: Material | str | None) -> int:
+        """Tell the number of a bead's material; without one, that of the first model."""
+        if material is None:
+            return 0
+        for number, sphere in enumerate(self.spheres):
+            if _is(material, sphere):
+                return number
+        raise self._missing("spheres", material, self.spheres)
+
+    def plate(self, material: Material | str | None) -> ByBead:
+        """Models for a plate of a material; without one, that of the first model."""
+        for plate, models in self._plates:
+            if material is None or _is(material, plate):
+                return models
+        raise self._missing("plates", material, [plate for plate, _ in self._plates])
+
+    def own(self, given: RestitutionModel | Sequence[RestitutionModel]) -> ByBead:
+        """Models that were given for one plate."""
+        models = _listed(given)
+        found = ByBead(self.spheres, plate_of(models[0]))
+        for model in models:
+            sphere = sphere_of(model)
+            known = [n for n, s in enumerate(self.spheres) if None in (s, sphere) or s == sphere]
+            if not known:
+                names = ", ".join(_name(s) for s in self.spheres)
+                raise ValueError(
+                    f"model: made for spheres of {_name(sphere)}, but the beads are of {names}"
+                )
+            found.update(dict.fromkeys(known, model))
+        return found
+
+    def of_bead(self, number: int) -> RestitutionModel:
+        """Model that knows how beads of a material meet others."""
+        sphere = self.spheres[number]
+        return next(model for model in self.all if sphere_of(model) == sphere)
+
+    def others(self, number: int, other: int) -> tuple[Any, ...]:
+        """Further argument of that model's questions: the other bead's material if it differs."""
+        return () if number == other else (self.spheres[other],)
+
+    def sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> Curve:
+        """Restitution by speed of two beads, each of a radius [m] and a material."""
+        (radius, number), (other_radius, other) = one, two
+        model = self.of_bead(number)
+        if not knows_beads(model):
+            raise TypeError(f"beads meet, but {model!r} has no sphere_sphere_curve()")
+        return model.sphere_sphere_curve(radius, other_radius, *self.others(number, other))
+
+    def density(self, number: int) -> float | None:
+        """Density of a bead's material [kg/m3], if the model tells."""
+        density: float | None = getattr(self.spheres[number], "density", None)
+        return density
+
+    def names(self) -> list[str]:
+        """Of the bead materials, "" where the model does not tell."""
+        return [_name(sphere) for sphere in self.spheres]
+
+    def _missing(self, kind: str, material: Any, known: list[Any]) -> ValueError:
+        names = ", ".join(dict.fromkeys(repr(_name(one)) for one in known))
+        return ValueError(
+            f"material: no model is attached for {kind} of {_name(material)!r}, only for {names}: "
+            "attach(space, [model, ...]) takes one for each pair of materials"
+        )
+
+
+def sphere_of(model: RestitutionModel) -> Any:
+    """Material of a model's beads, None if it does not tell."""
+    return getattr(getattr(model, "pair", None), "sphere", None)
+
+
+def plate_of(model: RestitutionModel) -> Any:
+    """Material of a model's plates, None if it does not tell."""
+    return getattr(getattr(model, "pair", None), "plate", None)
+
+
+def _listed(given: Any) -> list[RestitutionModel]:
+    models = list(given) if isinstance(given, list | tuple) else [given]
+    if not models:
+        raise ValueError("model: expected at least one ImpactModel, got an empty list")
+    for model in models:
+        if not callable(getattr(model, "curve", None)):
+            raise TypeError(
+                f"model: expected an ImpactModel, or a like with curve(), got {model!r}"
+            )
+    return models
+
+
+def _is(material: Material | str, known: Any) -> bool:
+    if not isinstance(material, str):
+        return bool(material == known)
+    return material == _name(known) or _catalogued(material) == known
+
+
+def _catalogued(name: str) -> Material | None:
+    """Material of a name, which may be an alias; one's own need not be in the catalogue."""
+    try:
+        return catalogued(name)
+    except ValueError:
+        return None
+
+
+def _name(material: Any) -> str:
+    return "" if material is None else str(getattr(material, "name", material))

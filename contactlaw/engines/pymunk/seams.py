@@ -1,0 +1,90 @@
+"""Plates that go on as other plates: a bead on the seam hits one of them."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import TYPE_CHECKING
+
+from contactlaw.engines.pymunk.registry import Bead, Plate, Vector, ends, may_meet
+
+if TYPE_CHECKING:
+    import pymunk
+
+    from contactlaw.engines.pymunk.registry import Face
+
+# Ends that are closer are one: far below any bead, far above the roundings of a drawing [m].
+SAME = 1e-7
+# The nearest point of a plate is its end if it is as near as this share of the bead's radius; the
+# distances themselves have roundings of 1e-13 of it.
+AT_END = 1e-9
+
+Cell = tuple[int, int, int]
+
+
+class Seams:
+    """Ends of all plates, by place."""
+
+    def __init__(self) -> None:
+        self._ends: dict[Cell, list[tuple[Vector, Plate, Vector]]] = {}
+        self._cells: dict[int, list[Cell]] = {}  # by index of the plate
+
+    def join(self, plate: Plate, shape: Face, body: pymunk.Body) -> None:
+        """Make joints of the ends that a new plate shares with others on the same rigid body."""
+        cells = self._cells[plate.index] = []
+        for end in ends(shape):
+            rigid, (x, y) = _place(end, body)
+            if not (math.isfinite(x) and math.isfinite(y)):
+                continue
+            column, row = round(x / SAME), round(y / SAME)
+            for i, j in product((-1, 0, 1), repeat=2):
+                for (u, v), other, its_end in self._ends.get((rigid, column + i, row + j), ()):
+                    if other is not plate and math.hypot(x - u, y - v) <= SAME:
+                        plate.joints.append((*end, other))
+                        other.joints.append((*its_end, plate))
+            cells.append((rigid, column, row))
+            self._ends.setdefault(cells[-1], []).append(((x, y), plate, end))
+
+    def part(self, plate: Plate) -> None:
+        """Forget a plate."""
+        for _, _, other in plate.joints:
+            other.joints[:] = [joint for joint in other.joints if joint[2] is not plate]
+        for cell in self._cells.pop(plate.index):
+            left = [entry for entry in self._ends.pop(cell, []) if entry[1] is not plate]
+            if left:
+                self._ends[cell] = left
+
+
+def is_anothers(bead: Bead, plate: Plate, circle: pymunk.Circle, shape: Face) -> bool:
+    """Whether a contact belongs to a plate that shares the end which the bead touches.
+
+    The nearest one has it; of those that are equally near, the one that was registered first.
+    """
+    ball, rigid = circle.body, shape.body
+    assert ball is not None and rigid is not None  # of shapes that collide
+    place = ball.position
+    x, y = rigid.world_to_local(place)
+    mine = math.inf
+    for u, v, other in plate.joints:
+        from_end = math.hypot(x - u, y - v) - shape.radius
+        if from_end > bead.radius:
+            continue
+        if mine == math.inf:
+            mine = shape.point_query(place).distance
+        if from_end > mine + AT_END * bead.radius:
+            continue  # it touches the plate's own side
+        there = other.shape()
+        if there is not None and may_meet(circle, there):
+            its = there.point_query(place).distance
+            if (its, other.index) < (mine, plate.index):
+                return True
+    return False
+
+
+def _place(end: pymunk.Vec2d, body: pymunk.Body) -> tuple[int, Vector]:
+    """Rigid body that an end moves with, and where it is there: all that never moves is one."""
+    import pymunk
+
+    if body.body_type == pymunk.Body.STATIC:
+        return -1, body.local_to_world(end)
+    return body.id, end

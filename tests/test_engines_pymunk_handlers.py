@@ -1,0 +1,233 @@
+"""Handlers of the user on the adapter's collision types: nobody's pushes out the other's."""
+
+import pymunk
+import pytest
+from scene import DT, EXACT, R, Stub, drop, make_bead, make_space
+
+from contactlaw.engines.pymunk import attach
+
+# Every way to name the contact of a bead and a plate in pymunk.
+KEYS = {
+    "own": lambda i: (i.bead_type, i.plate_type),
+    "the other way round": lambda i: (i.plate_type, i.bead_type),
+    "bead and any": lambda i: (i.bead_type, None),
+    "plate and any": lambda i: (i.plate_type, None),
+    "any": lambda i: (None, None),
+}
+
+
+@pytest.fixture(params=list(KEYS))
+def key(request):
+    return KEYS[request.param]
+
+
+def past_the_instance(space, *args, **kwargs):
+    pymunk.Space.on_collision(space, *args, **kwargs)
+
+
+def as_usual(space, *args, **kwargs):
+    space.on_collision(*args, **kwargs)
+
+
+@pytest.mark.parametrize("register", [as_usual, past_the_instance])
+def test_a_users_pre_solve_and_the_model_are_both_heard(key, register):
+    space, body, impacts = drop(Stub(0.6), gravity=0.0)
+    seen = []
+    register(
+        space,
+        *key(impacts),
+        pre_solve=lambda arbiter, space, data: seen.append(data),
+        data="mine",
+    )
+    space.step(DT)
+    assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
+    assert impacts.collisions()["restitution"].tolist() == [0.6]
+    assert seen == ["mine"]
+
+
+@pytest.mark.parametrize("phase", ["begin", "post_solve", "separate"])
+def test_other_phases_are_as_they_were(key, phase):
+    space, body, impacts = drop(Stub(0.6), gravity=0.0)
+    seen = []
+    handler = {phase: lambda arbiter, space, data: seen.append(data)}
+    space.on_collision(*key(impacts), data="mine", **handler)
+    for _ in range(20):
+        space.step(DT)
+    assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
+    assert len(impacts.collisions()) == 1
+    assert seen[0] == "mine"
+
+
+def test_two_beads_too():
+    space = make_space(0.0)
+    impacts = attach(space, Stub(0.8))
+    for x, v in ((-1, 1), (1, -1)):
+        impacts.add_bead(make_bead(space, (1.01 * x * R, 0), (v, 0)))
+    seen = []
+    space.on_collision(impacts.bead_type, impacts.bead_type, pre_solve=lambda *a: seen.append(a[2]))
+    for _ in range(3):
+        space.step(DT)
+    assert impacts.collisions()["restitution"].tolist() == [0.8]
+    assert seen
+
+
+def test_a_handler_for_any_type_that_was_there_before():
+    space = make_space(0.0)
+    seen = []
+    space.on_collision(None, None, pre_solve=lambda *a: seen.append(a[2]), data=7)
+    circle = make_bead(space, (0, 1.01 * R), (0, -2))
+    impacts = attach(space, Stub(0.6))
+    impacts.add_bead(circle)
+    impacts.add_plate(pymunk.Segment(space.static_body, (-1, 0), (1, 0), 0), 1e-3)
+    space.add(*space.static_body.shapes)
+    space.step(DT)
+    assert circle.body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
+    assert seen == [7]
+
+
+def test_what_the_user_changes_in_a_contact_stays(key):
+    space, body, impacts = drop(Stub(0.6), gravity=0.0)
+    body.velocity = (1.0, -2.0)
+
+    def pre_solve(arbiter, space, data):
+        arbiter.friction = 0.25
+
+    space.on_collision(*key(impacts), pre_solve=pre_solve)
+    space.step(DT)
+    assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
+    # Coulomb: 0.25 times the normal impulse, while the surface still slips (it needs 2/7 of 1 m/s)
+    assert body.velocity.x == pytest.approx(1 - 2 / 7, abs=1e-9)
+    assert 2 / 7 < 0.25 * (1 + 0.6) * 2
+
+
+def test_a_contact_that_the_user_switches_off_in_pre_solve_is_no_impact(key):
+    space, body, impacts = drop(Stub(), gravity=0.0)
+
+    def pre_solve(arbiter, space, data):
+        arbiter.process_collision = False
+
+    space.on_collision(*key(impacts), pre_solve=pre_solve)
+    for _ in range(30):
+        space.step(DT)
+        assert len(impacts.collisions()) == 0
+    assert body.velocity.y == -2 and body.position.y < 0
+
+
+def test_a_contact_of_beads_that_is_switched_off_is_no_impact():
+    for pair in ("own", "bead and any", "any"):
+        space = make_space(0.0)
+        impacts = attach(space, Stub(0.8))
+        for x, v in ((-1, 1), (1, -1)):
+            impacts.add_bead(make_bead(space, (1.01 * x * R, 0), (v, 0)))
+
+        def pre_solve(arbiter, space, data):
+            arbiter.process_collision = False
+
+        own = (impacts.bead_type, impacts.bead_type)
+        key = own if pair == "own" else KEYS[pair](impacts)
+        space.on_collision(*key, pre_solve=pre_solve)
+        for _ in range(5):
+            space.step(DT)
+        assert len(impacts.collisions()) == 0
+
+
+def test_a_restitution_of_the_users_is_refused(key):
+    space, body, impacts = drop(Stub(0.6), gravity=0.0)
+
+    def pre_solve(arbiter, space, data):
+        arbiter.restitution = 0.25
+
+    space.on_collision(*key(impacts), pre_solve=pre_solve)
+    with pytest.raises(RuntimeError, match=r"restitution to 0.25 .* the model answers.*model="):
+        space.step(DT)
+
+
+def test_a_restitution_for_other_shapes_is_the_users(key):
+    """Handlers for any type see contacts that are none of the adapter's."""
+    space, _, impacts = drop(Stub(0.6), gravity=0.0)
+    stranger = make_bead(space, (0.5, 1.01 * R), (0, -2))  # not registered, on the plate
+
+    def pre_solve(arbiter, space, data):
+        if stranger in arbiter.shapes:
+            arbiter.restitution = 0.25
+
+    space.on_collision(*key(impacts), pre_solve=pre_solve)
+    space.step(DT)
+    expected = 2 * 0.25 if None in key(impacts)[1:] and key(impacts)[0] != impacts.bead_type else 0
+    assert stranger.body.velocity.y == pytest.approx(expected, abs=EXACT)
+    assert len(impacts.collisions()) == 1
+
+
+def test_an_error_in_a_pre_solve_of_the_users_reaches_the_caller(key):
+    space, _, impacts = drop(Stub(), gravity=0.0)
+
+    def pre_solve(arbiter, space, data):
+        raise LookupError("mine")
+
+    space.on_collision(*key(impacts), pre_solve=pre_solve)
+    with pytest.raises(LookupError, match="mine"):
+        space.step(DT)
+
+
+def test_a_handler_is_taken_back_as_in_pymunk(key):
+    space, body, impacts = drop(Stub(0.6), gravity=0.0)
+    seen = []
+    for name in ("first", "second"):
+        space.on_collision(*key(impacts), pre_solve=lambda *a: seen.append(a[2]), data=name)
+    space.step(DT)
+    assert seen == ["second"]  # the last one of a key, as ever
+    space.on_collision(*key(impacts), pre_solve=pymunk.empty_callback)
+    body.position, body.velocity = (0, 0.99 * R), (0, -2)
+    space.step(DT)
+    assert seen == ["second"]
+    assert len(impacts.collisions()) == 2
+
+
+def test_a_handler_that_is_made_in_a_step(key):
+    space, body, impacts = drop(Stub(0.6), gravity=0.0)
+    seen = []
+
+    def begin(arbiter, space, data):
+        space.on_collision(*key(impacts), pre_solve=lambda *a: seen.append(1))
+
+    space.on_collision(impacts.bead_type, impacts.plate_type, begin=begin)
+    space.step(DT)
+    assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
+    assert len(impacts.collisions()) == 1
+    # Others than (None, None) and our own were chosen by pymunk before, for this contact.
+    body.position, body.velocity = (0, 0.99 * R), (0, -2)
+    space.step(DT)
+    assert seen in ([1], [1, 1]) and len(impacts.collisions()) == 2
+
+
+def test_detach_leaves_the_users_handlers(key):
+    space, body, impacts = drop(Stub(0.6), gravity=0.0)
+    seen = []
+    space.on_collision(*key(impacts), pre_solve=lambda *a: seen.append(a[2]), data=3)
+    impacts.detach()
+    assert "on_collision" not in vars(space)
+    circle, plate = *body.shapes, *space.static_body.shapes
+    circle.collision_type, plate.collision_type = impacts.bead_type, impacts.plate_type
+    circle.elasticity = plate.elasticity = 0.5
+    space.step(DT)
+    assert seen == [3] and body.velocity.y == pytest.approx(2 * 0.25, abs=EXACT)
+    assert len(impacts.collisions()) == 0
+
+
+def test_an_on_collision_of_the_users_own_is_kept():
+    space = make_space(0.0)
+    calls = []
+
+    def own(*args, **kwargs):
+        calls.append(args)
+        pymunk.Space.on_collision(space, *args, **kwargs)
+
+    space.on_collision = own
+    impacts = attach(space, Stub())
+    wrapped = space.on_collision
+    space.on_collision = lambda *a, **k: wrapped(*a, **k)
+    with pytest.raises(RuntimeError, match="on_collision has been replaced"):
+        impacts.detach()
+    space.on_collision = wrapped
+    impacts.detach()
+    assert calls and space.on_collision is own
