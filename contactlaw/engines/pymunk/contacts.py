@@ -53,63 +53,92 @@ class Contacts:
         self.time += dt
         self.steps += 1
 
+    # What the two callbacks look up is found beforehand, and little is called: they run for every
+    # contact in every step, and a pile has many.
     def on_plates(self, hooks: list[Hook]) -> Callback:
         """Make the callback for contacts of beads with plates; it calls those of the user first."""
-        return self._callback(self.plates, hooks)
-
-    def on_beads(self, hooks: list[Hook]) -> Callback:
-        """Make the callback for contacts of beads with each other."""
-        return self._callback(self.beads, hooks)
-
-    def _callback(self, others: Any, hooks: list[Hook]) -> Callback:
-        """Make the callback for contacts of beads with plates, or with each other."""
-        # Found beforehand: it is called for every contact in every step, and a pile has many.
-        on_plate = others is self.plates
-        bead_of, other_of, record = self.beads.get, others.get, self.record.add
+        bead_of, plate_of, record = self.beads.get, self.plates.get, self.record.add
 
         def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
             try:
-                circle: Any
-                shape: Any
                 circle, shape = arbiter.shapes
-                bead, other = bead_of(id(circle)), other_of(id(shape))
-                if bead is None or other is None:
+                bead, plate = bead_of(id(circle)), plate_of(id(shape))
+                if bead is None or plate is None:
                     raise unregistered(circle if bead is None else shape)
-                off = not arbiter.process_collision
-                if off and on_plate and bead.left.pop(other.index, None) == self.steps - 1:
-                    arbiter.process_collision, off = True, False  # who knows who has it now
-                for hook in hooks:
-                    _call(hook, arbiter, space)
-                    off = not arbiter.process_collision
-                if off:  # by the user
+                if bead.left:
+                    self._take_up(arbiter, bead, plate)
+                if hooks:
+                    _call(hooks, arbiter, space)
+                if not arbiter.process_collision:
                     return
-                if other.joints and is_anothers(bead, other, circle, shape):
-                    arbiter.process_collision = False
-                    bead.left[other.index] = self.steps
+                body: Any = circle.body
+                x, y = body.position
+                if plate.joints and is_anothers(bead, plate, circle, shape, x, y):
+                    self._leave(arbiter, bead, plate)
                     return
-                body = circle.body
-                nx, ny = arbiter.normal  # from the bead to the other
+                nx, ny = arbiter.normal  # from the bead to the plate
+                x, y = x + bead.radius * nx, y + bead.radius * ny
                 vx, vy = body.velocity
-                (ux, uy), point = other.motion(bead, body, shape, nx, ny)
+                ux, uy = plate.velocity_at(shape, x, y)
                 speed = (vx - ux) * nx + (vy - uy) * ny
-                if other.passed(bead, nx, ny, self.steps):
-                    raise tunnelling(bead.index, other.index, self.time, abs(speed), None)
-                if speed <= self._resting_speed + RESTING * other.shake:
-                    arbiter.restitution = 0.0
-                    if speed > 0.0:  # or else they separate, or stay together
-                        self.resting += 1
+                if plate.passed(bead, nx, ny, self.steps):
+                    raise tunnelling(bead.index, plate.index, self.time, abs(speed), None)
+                if speed <= self._resting_speed + RESTING * plate.shake:
+                    self._rest(arbiter, speed)
                     return
-                if circle.radius != bead.radius:
-                    raise changed(bead, circle)
-                restitution = self._restitution(bead, other, shape, speed)
-                arbiter.restitution = restitution
-                x, y = point or bead.contact(body, nx, ny)
-                plate, target = (other.index, -1) if on_plate else (-1, other.index)
-                record((self.time, bead.index, plate, target, x, y, 0.0, speed, restitution))
+                cor = self._answer(arbiter, bead, plate, circle, shape, speed)
+                record((self.time, bead.index, plate.index, -1, x, y, 0.0, speed, cor))
             except BaseException as error:
                 self.keep(error, arbiter)
 
         return pre_solve
+
+    def on_beads(self, hooks: list[Hook]) -> Callback:
+        """Make the callback for contacts of beads with each other."""
+        bead_of, record = self.beads.get, self.record.add
+
+        def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+            try:
+                circle, shape = arbiter.shapes
+                bead, other = bead_of(id(circle)), bead_of(id(shape))
+                if bead is None or other is None:
+                    raise unregistered(circle if bead is None else shape)
+                if hooks:
+                    _call(hooks, arbiter, space)
+                if not arbiter.process_collision:
+                    return
+                body: Any = circle.body
+                other_body: Any = shape.body
+                nx, ny = arbiter.normal  # through both centres, so that spin has no part
+                (vx, vy), (ux, uy) = body.velocity, other_body.velocity
+                speed = (vx - ux) * nx + (vy - uy) * ny
+                if speed <= self._resting_speed:
+                    self._rest(arbiter, speed)
+                    return
+                cor = self._answer(arbiter, bead, other, circle, shape, speed)
+                x, y = body.position
+                x, y = x + bead.radius * nx, y + bead.radius * ny
+                record((self.time, bead.index, -1, other.index, x, y, 0.0, speed, cor))
+            except BaseException as error:
+                self.keep(error, arbiter)
+
+        return pre_solve
+
+    def _take_up(self, arbiter: pymunk.Arbiter, bead: Bead, plate: Plate) -> None:
+        """Let a contact be again that was left to a neighbour: pymunk keeps it off until told."""
+        if bead.left.pop(plate.index, None) == self.steps - 1:
+            arbiter.process_collision = True
+
+    def _leave(self, arbiter: pymunk.Arbiter, bead: Bead, plate: Plate) -> None:
+        """Leave a contact to the plate's neighbour, for this step."""
+        arbiter.process_collision = False
+        bead.left[plate.index] = self.steps
+
+    def _rest(self, arbiter: pymunk.Arbiter, speed: float) -> None:
+        """Settle a contact that is too slow for an impact."""
+        arbiter.restitution = 0.0
+        if speed > 0.0:  # or else they separate, or stay together
+            self.resting += 1
 
     def is_ours(self, arbiter: pymunk.Arbiter) -> bool:
         """Whether a contact is one that is answered here."""
@@ -126,8 +155,18 @@ class Contacts:
         for one, two in ((bead, other), (other, bead)):
             self.record.undo(self.time, one, plate, two)
 
-    def _restitution(self, bead: Bead, other: Bead | Plate, shape: Any, speed: float) -> float:
-        """Ask the model, and check for the engine, which checks nothing."""
+    def _answer(
+        self,
+        arbiter: pymunk.Arbiter,
+        bead: Bead,
+        other: Bead | Plate,
+        circle: Any,
+        shape: Any,
+        speed: float,
+    ) -> float:
+        """Ask the model, check for the engine, which checks nothing, and tell it."""
+        if circle.radius != bead.radius:
+            raise changed(bead, circle)
         try:
             restitution = other.curve(bead, shape)(speed)
         except Exception as error:
@@ -138,6 +177,7 @@ class Contacts:
             raise ValueError(
                 f"restitution must lie in [0, 1], the model gave {restitution!r} {where}"
             )
+        arbiter.restitution = restitution
         return restitution
 
     def _describe(self, bead: Bead, other: Bead | Plate, speed: float) -> str:
@@ -151,11 +191,11 @@ class Contacts:
             self.error = error
 
 
-def _call(hook: Hook, arbiter: pymunk.Arbiter, space: pymunk.Space) -> None:
-    """Call a user's ``pre_solve``; the model's answer comes after it."""
-    callback, data = hook
+def _call(hooks: list[Hook], arbiter: pymunk.Arbiter, space: pymunk.Space) -> None:
+    """Call the user's ``pre_solve``; the model's answer comes after it."""
     before = arbiter.restitution
-    callback(arbiter, space, data)
+    for callback, data in hooks:
+        callback(arbiter, space, data)
     if arbiter.restitution != before:
         one, two = arbiter.shapes
         raise overridden((one.collision_type, two.collision_type), arbiter.restitution)

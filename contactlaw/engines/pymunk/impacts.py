@@ -1,4 +1,4 @@
-"""The attachment of a model to a pymunk space: what its callbacks and its step do."""
+"""The attachment of a model to a pymunk space: who is registered, and what a step does."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from itertools import count
 from typing import TYPE_CHECKING, Any, NoReturn
-from weakref import KeyedRef
+from weakref import KeyedRef, ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from contactlaw.engines.pymunk.record import Roll
 from contactlaw.engines.pymunk.registry import (
     Bead,
     Kind,
+    Mount,
     Plate,
     body_of,
     check_mass,
@@ -40,64 +41,6 @@ if TYPE_CHECKING:
 
 # Far from the small numbers that people choose; below 2**32, the limit on 32-bit machines.
 _collision_types = count(0xC0A70000)
-
-
-def attach(
-    space: pymunk.Space, model: RestitutionModel | Sequence[RestitutionModel]
-) -> PymunkImpacts:
-    """Let a model decide how the beads of a pymunk space rebound.
-
-    Parameters
-    ----------
-    space : pymunk.Space
-        In metres and seconds. Its ``step`` is taken over until `PymunkImpacts.detach`.
-    model : RestitutionModel, or list of them
-        An `ImpactModel`, or any object with ``curve(radius, thickness)``, which gives a function of
-        speed; for bead on bead ``sphere_sphere_curve(radius, other_radius)`` too. One that is no
-        `contactlaw.engines.needs.ReboundModel` leaves the record without contact times, forces,
-        energies and flags. For beads or plates of several materials a list with one model for each
-        pair that meets; beads and plates that name no material are those of the first.
-
-    Returns
-    -------
-    PymunkImpacts
-        Register beads and plates with it, then step the space as ever.
-
-    Raises
-    ------
-    ImportError, TypeError, RuntimeError
-        No pymunk; not a space or a model; a space that has a model attached already.
-
-    Examples
-    --------
-    >>> import pymunk
-    >>> import contactlaw as cl
-    >>> from contactlaw.engines.pymunk import attach
-    >>> space = pymunk.Space()
-    >>> body = pymunk.Body(mass=2.7e-6, moment=8.7e-13)
-    >>> body.position, body.velocity = (0, 1e-3), (0, -5)
-    >>> bead = pymunk.Circle(body, radius=0.9e-3)
-    >>> plate = pymunk.Segment(space.static_body, (-1, 0), (1, 0), radius=0)
-    >>> space.add(body, bead, plate)
-    >>> impacts = attach(space, cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
-    >>> impacts.add_bead(bead), impacts.add_plate(plate, thickness=1e-3)
-    (0, 0)
-    >>> for _ in range(10):
-    ...     space.step(1e-5)
-    >>> hit = impacts.collisions()[0]
-    >>> f"{hit['restitution']:.4f} at {hit['approach_speed']} m/s, {hit['peak_force']:.1f} N"
-    '0.9081 at 5.0 m/s, 9.7 N'
-    """
-    try:
-        import pymunk
-    except ImportError as error:
-        raise ImportError("this adapter needs pymunk: pip install contactlaw[demo]") from error
-    if not isinstance(space, pymunk.Space):
-        raise TypeError(f"space: expected a pymunk.Space, got {space!r}")
-    models = Models(model)
-    if isinstance(getattr(vars(space).get("step"), "__self__", None), PymunkImpacts):
-        raise RuntimeError("space: a model is attached already; detach() that attachment first")
-    return PymunkImpacts(space, models)
 
 
 class PymunkImpacts:
@@ -117,12 +60,13 @@ class PymunkImpacts:
         self._models = models
         self._contacts = Contacts()
         self._bodies: dict[int, Bead] = {}  # by id of the body
+        self._mounts: dict[int, Mount] = {}  # by id of a body with plates
         self._kinds: Counter[Kind] = Counter()  # of the beads that there are
         self._gone: list[Any] = []  # references to shapes that the user has let go
         self._roll = Roll(models)
         self._seams = Seams()
         self._attached = True
-        self._lookahead = LookAhead(space, self._bodies, self._contacts.plates)
+        self._lookahead = LookAhead(space, self._bodies, self._contacts.plates, self._mounts)
         self._slop = space.collision_slop
         # Bounded: a thousand different beads make half a million pairs.
         self._sphere_curve = lru_cache(maxsize=65536)(models.sphere_curve)
@@ -265,7 +209,11 @@ class PymunkImpacts:
         chosen = self._models.plate(material) if model is None else self._models.own(model)
         key = id(shape)
         index = self._roll.plate(chosen, thickness)
-        plate = Plate(index, KeyedRef(shape, self._gone.append, key), thickness, chosen)
+        mount = self._mounts.get(id(body))
+        if mount is None or mount.body() is not body:
+            mount = self._mounts[id(body)] = Mount(id(body), ref(body))
+        plate = Plate(index, KeyedRef(shape, self._gone.append, key), mount, thickness, chosen)
+        mount.plates[index] = plate
         self._contacts.plates[key] = plate
         self._seams.join(plate, shape, body)
         shape.collision_type = self.plate_type
@@ -297,7 +245,7 @@ class PymunkImpacts:
         """
         if id(shape) not in self._contacts.plates:
             raise ValueError(f"shape: {shape!r} is no plate of this attachment")
-        self._seams.part(self._contacts.plates.pop(id(shape)))
+        self._forget_plate(id(shape))
         shape.collision_type = 0
 
     def beads(self) -> NDArray[np.void]:
@@ -391,7 +339,15 @@ class PymunkImpacts:
             if bead is not None and (gone is bead.shape or gone is bead.body):
                 self._forget_bead(key)
             elif plate is not None and gone is plate.shape:
-                self._seams.part(self._contacts.plates.pop(key))
+                self._forget_plate(key)
+
+    def _forget_plate(self, key: int) -> None:
+        plate = self._contacts.plates.pop(key)
+        self._seams.part(plate)
+        mount = plate.mount
+        del mount.plates[plate.index]
+        if not mount.plates and self._mounts.get(mount.key) is mount:
+            del self._mounts[mount.key]
 
     def _forget_bead(self, key: int) -> None:
         bead = self._contacts.beads.pop(key)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines.pymunk.registry import Bead, Plate, ends, may_meet
+from contactlaw.engines.pymunk.registry import Bead, Mount, Plate, ends, may_meet
 
 if TYPE_CHECKING:
     import pymunk
@@ -58,7 +58,11 @@ class LookAhead:
     """Checks of one space; `reach`, the radius of the smallest bead, is kept by the caller."""
 
     def __init__(
-        self, space: pymunk.Space, beads: dict[int, Bead], plates: dict[Any, Plate]
+        self,
+        space: pymunk.Space,
+        beads: dict[int, Bead],
+        plates: dict[int, Plate],
+        mounts: dict[int, Mount],
     ) -> None:
         from pymunk.batch import BodyFields, Buffer
 
@@ -66,13 +70,14 @@ class LookAhead:
         self._space = space
         self._beads = beads  # by id of the body
         self._plates = plates
+        self._mounts = mounts
         self._buffer = Buffer()
         self._motion = BodyFields.POSITION | BodyFields.VELOCITY
         self._body_id = BodyFields.BODY_ID
 
     def check(self, dt: float, time: float) -> None:
         """Raise if the step from `time` on would lose an impact, or starts from a NaN."""
-        plate_speed = max((plate.watch(dt) for plate in self._plates.values()), default=0.0)
+        plate_speed = max((mount.watch(dt) for mount in self._mounts.values()), default=0.0)
         reach = self.reach - plate_speed * dt
         self._read(self._motion)
         motion = np.frombuffer(self._buffer.float_buf()).reshape(-1, 4)

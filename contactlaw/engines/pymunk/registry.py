@@ -48,31 +48,15 @@ class Bead:
     # by plate: the last step in which a neighbour of the plate had the contact
     left: dict[int, int] = field(default_factory=dict)
     shake: ClassVar[float] = 0.0  # nothing drives a bead; see `Plate`
-    joints: ClassVar[Sequence[Joint]] = ()
 
     def __str__(self) -> str:
         return f"bead {self.index}"
-
-    def contact(self, body: pymunk.Body, nx: float, ny: float) -> Vector:
-        """Point of its surface in the direction of a normal [m]."""
-        x, y = body.position
-        return x + self.radius * nx, y + self.radius * ny
 
     def curve(self, bead: Bead, shape: pymunk.Circle) -> Curve:
         """Restitution of a bead on this one by speed."""
         if shape.radius != self.radius:
             raise changed(self, shape)
         return self.pair_curve(*sorted((bead.kind, self.kind)))
-
-    def motion(
-        self, bead: Bead, body: pymunk.Body, shape: pymunk.Shape, nx: float, ny: float
-    ) -> tuple[Vector, None]:
-        """Its velocity [m/s]; the normal is through its centre, so that any point will do."""
-        return shape.body.velocity, None  # type: ignore[union-attr]  # it is in the space
-
-    def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
-        """Beads that were pressed through each other go unnoticed."""
-        return False
 
 
 @dataclass(slots=True, eq=False)
@@ -81,6 +65,7 @@ class Plate:
 
     index: int
     shape: weakref.ref[Face]
+    mount: Mount
     thickness: float
     models: ByBead
     joints: list[Joint] = field(default_factory=list)  # ends where the plate goes on as another
@@ -101,12 +86,16 @@ class Plate:
             self.curves[bead.kind] = curve
         return curve
 
-    def motion(
-        self, bead: Bead, body: pymunk.Body, shape: pymunk.Shape, nx: float, ny: float
-    ) -> tuple[Vector, Vector]:
-        """Its velocity [m/s] at the point [m] where a bead touches it, and that point."""
-        point = bead.contact(body, nx, ny)
-        return shape.body.velocity_at_world_point(point), point  # type: ignore[union-attr]
+    def velocity_at(self, shape: pymunk.Shape, x: float, y: float) -> Vector:
+        """Tell its velocity [m/s] at the point [m] where a bead touches it."""
+        mount = self.mount
+        if mount.still:
+            return 0.0, 0.0
+        body: Any = shape.body
+        if mount.still is None:
+            mount.still = not any(body.velocity) and not body.angular_velocity
+        velocity: Vector = body.velocity_at_world_point((x, y))
+        return velocity
 
     def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
         """Whether a bead that touches has been pressed through: its normal has turned round."""
@@ -116,14 +105,12 @@ class Plate:
         bead.touched[self.index] = (step, nx, ny)
         return last == step - 1 and old_nx * nx + old_ny * ny < 0.0
 
-    def watch(self, dt: float) -> float:
-        """Update `shake` of a kinematic plate; speed of the plate's fastest point [m/s]."""
+    def watch(self, body: pymunk.Body, dt: float) -> float:
+        """Update `shake` of a kinematic plate; speed of a plate's fastest point [m/s]."""
         import pymunk
 
         shape = self.shape()
-        body = shape and shape.body
-        if not shape or not body or body.body_type == pymunk.Body.STATIC:
-            self.shake = self.change = 0.0
+        if shape is None:
             return 0.0
         (vx, vy), spin = body.velocity, body.angular_velocity
         centre = body.center_of_gravity
@@ -136,6 +123,42 @@ class Plate:
             self.shake = min(change, self.change)
             self.velocity, self.change = (vx, vy, spin), change
         return math.hypot(vx, vy) + abs(spin) * extent
+
+
+@dataclass(slots=True, eq=False)
+class Mount:
+    """The rigid body that plates are fixed to, and what is known of it within a step."""
+
+    key: int  # id of the body
+    body: weakref.ref[pymunk.Body]
+    plates: dict[int, Plate] = field(default_factory=dict)
+    # Whether it has no speed; None: static, so very likely. To ask pymunk for the speed of a point
+    # takes a tenth of what a collision does.
+    still: bool | None = False
+    frame: tuple[float, float, float, float] | None = None  # origin [m], cosine and sine of turning
+
+    def watch(self, dt: float) -> float:
+        """Get ready for a step; speed of the fastest point of its plates [m/s]."""
+        import pymunk
+
+        body = self.body()
+        self.frame = None
+        if body is None or body.body_type == pymunk.Body.STATIC:
+            if self.still is False:
+                for plate in self.plates.values():
+                    plate.shake = plate.change = 0.0
+            self.still = None
+            return 0.0
+        self.still = False
+        return max((plate.watch(body, dt) for plate in self.plates.values()), default=0.0)
+
+    def local(self, x: float, y: float) -> Vector:
+        """Place in coordinates of the body [m]."""
+        if self.frame is None:
+            body: Any = self.body()
+            self.frame = (*body.local_to_world((0.0, 0.0)), *body.rotation_vector)
+        u, v, c, s = self.frame
+        return c * (x - u) + s * (y - v), c * (y - v) - s * (x - u)
 
 
 def ends(shape: Face) -> list[pymunk.Vec2d]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import product
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from contactlaw.engines.pymunk.registry import Bead, Plate, Vector, ends, may_meet
 
@@ -55,27 +55,25 @@ class Seams:
                 self._ends[cell] = left
 
 
-def is_anothers(bead: Bead, plate: Plate, circle: pymunk.Circle, shape: Face) -> bool:
-    """Whether a contact belongs to a plate that shares the end which the bead touches.
+def is_anothers(bead: Bead, plate: Plate, circle: Any, shape: Any, x: float, y: float) -> bool:
+    """Whether a contact of a bead at x, y belongs to a plate that shares the end which it touches.
 
     The nearest one has it; of those that are equally near, the one that was registered first.
     """
-    ball, rigid = circle.body, shape.body
-    assert ball is not None and rigid is not None  # of shapes that collide
-    place = ball.position
-    x, y = rigid.world_to_local(place)
+    u, v = plate.mount.local(x, y)
+    reach = bead.radius + shape.radius
     mine = math.inf
-    for u, v, other in plate.joints:
-        from_end = math.hypot(x - u, y - v) - shape.radius
-        if from_end > bead.radius:
+    for end_u, end_v, other in plate.joints:
+        away = math.hypot(u - end_u, v - end_v)
+        if away > reach:
             continue
         if mine == math.inf:
-            mine = shape.point_query(place).distance
-        if from_end > mine + AT_END * bead.radius:
+            mine = shape.point_query((x, y)).distance
+        if away - shape.radius > mine + AT_END * bead.radius:
             continue  # it touches the plate's own side
         there = other.shape()
         if there is not None and may_meet(circle, there):
-            its = there.point_query(place).distance
+            its = there.point_query((x, y)).distance
             if (its, other.index) < (mine, plate.index):
                 return True
     return False
