@@ -74,7 +74,14 @@ def test_two_beads_too():
 def test_a_handler_for_any_type_that_was_there_before():
     space = make_space(0.0)
     seen = []
-    space.on_collision(None, None, pre_solve=lambda *a: seen.append(a[2]), data=7)
+    override = []
+
+    def pre_solve(arbiter, space, data):
+        seen.append(data)
+        if override:
+            arbiter.restitution = override[0]
+
+    space.on_collision(None, None, pre_solve=pre_solve, data=7)
     circle = make_bead(space, (0, 1.01 * R), (0, -2))
     impacts = attach(space, Stub(0.6))
     impacts.add_bead(circle)
@@ -83,6 +90,10 @@ def test_a_handler_for_any_type_that_was_there_before():
     space.step(DT)
     assert circle.body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert seen == [7]
+    override.append(0.25)
+    circle.body.velocity = (0, -2)
+    with pytest.raises(RuntimeError, match=r"\(None, None\).* 0.25"):
+        space.step(DT)
 
 
 def test_what_the_user_changes_in_a_contact_stays(key):

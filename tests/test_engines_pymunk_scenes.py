@@ -245,6 +245,39 @@ def test_a_bead_never_jumps_into_or_over_a_box(ratio):
     assert after.y == pytest.approx(0.6 * speed, rel=1e-9)
 
 
+def test_a_static_plate_may_have_a_speed():
+    """As a conveyor: pymunk never moves it, and counts its speed in every contact."""
+    space, body, impacts = drop(Stub(0.5), gravity=0.0)
+    for _ in range(2):
+        space.static_body.velocity = (0, 1)
+        body.position, body.velocity = (0, 0.99 * R), (0, -2)
+        space.step(DT)
+        assert body.velocity.y == pytest.approx(1 + 0.5 * 3, abs=EXACT)
+        space.static_body.velocity = (0, 0)
+        body.position, body.velocity = (0, 0.99 * R), (0, -2)
+        space.step(DT)
+        assert body.velocity.y == pytest.approx(0.5 * 2, abs=EXACT)
+    assert impacts.collisions()["approach_speed"] == pytest.approx([3, 2, 3, 2], abs=EXACT)
+
+
+def test_a_plate_that_stops_does_not_shake():
+    space = make_space(0.0)
+    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    space.add(body)
+    circle = make_bead(space, (0, 1.5 * R))
+    impacts = attach(space, Stub(0.5))
+    impacts.add_bead(circle)
+    impacts.add_plate(make_plate(space, body=body), 1e-3)
+    for velocity in (0.1, -0.1, 0.1, -0.1):  # changes by 0.2 m/s a step
+        body.velocity = (0, velocity)
+        space.step(1e-6)
+    body.body_type, body.velocity = pymunk.Body.STATIC, (0, 0)
+    circle.body.velocity = (0, -0.3)  # slower than twice the change
+    for _ in range(200):
+        space.step(1e-5)
+    assert impacts.collisions()["approach_speed"] == pytest.approx([0.3], abs=EXACT)
+
+
 # --- several materials ----------------------------------------------------------------------------
 
 STEEL = cl.material("carbon-steel").name
@@ -323,6 +356,27 @@ def test_beads_of_two_materials_meet(models):
     lost = row["plastic_energy"] + row["wave_energy"] + row["other_energy"]
     assert energy - left == pytest.approx(lost, rel=1e-4)
     assert row["contact_time"] > 0.0
+
+
+@pytest.mark.parametrize("law", ["myc", "jackson_green", "hertz"])
+@pytest.mark.parametrize("pair", [("gamma-alumina", STEEL), (STEEL, "gamma-alumina")])
+def test_a_model_answers_for_its_bead_on_one_of_another_material(pair, law):
+    """Against the function that needs no model, and its own balance of energy."""
+    bead, other = pair
+    model = cl.ImpactModel(cl.Pair(bead, "glass"), law=law)
+    speeds = [0.5, 2.0, 10.0]
+    expected = cl.restitution_sphere_sphere(bead, other, speeds, R, 2 * R, law=law)
+    found = model.lookup_sphere_sphere(speeds, R, 2 * R, other)
+    assert found.restitution == pytest.approx(expected, abs=1e-12)
+    curve = model.sphere_sphere_curve(R, 2 * R, other)
+    assert [curve(speed) for speed in speeds] == pytest.approx(expected, abs=1e-9)
+    lost = found.plastic_fraction + found.wave_fraction + found.other_fraction
+    assert 1 - found.restitution**2 == pytest.approx(lost, abs=1e-4)
+    # whoever is called the first
+    there = cl.ImpactModel(cl.Pair(other, "glass"), law=law)
+    back = there.lookup_sphere_sphere(speeds, 2 * R, R, cl.material(bead))
+    assert back.peak_force == pytest.approx(found.peak_force, rel=1e-12)
+    assert model.sphere_sphere_curve(R, R, bead)(0.2) == model.sphere_sphere_curve(R, R)(0.2)
 
 
 def test_a_pair_without_a_model_says_which(models):

@@ -112,6 +112,12 @@ class PymunkImpacts:
         int
             Index of the bead in the record, never given to another one.
 
+        Raises
+        ------
+        TypeError, ValueError
+            Not such a circle; registered already; a radius above 1 m, as of pixels; a material that
+            no attached model is for.
+
         Examples
         --------
         >>> import math
