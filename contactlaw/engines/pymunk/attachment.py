@@ -21,7 +21,8 @@ def attach(
     Parameters
     ----------
     space : pymunk.Space
-        In metres and seconds. Its ``step`` is taken over until `PymunkImpacts.detach`.
+        In metres and seconds. Its ``step`` and ``on_collision`` are taken over until
+        `PymunkImpacts.detach`; use them as ever.
     model : RestitutionModel, or list of them
         An `ImpactModel`, or any object with ``curve(radius, thickness)``, which gives a function of
         speed; for bead on bead ``sphere_sphere_curve(radius, other_radius)`` too. One that is no
@@ -36,8 +37,9 @@ def attach(
 
     Raises
     ------
-    ImportError, TypeError, RuntimeError
-        No pymunk; not a space or a model; a space that has a model attached already.
+    ImportError, TypeError, ValueError, RuntimeError
+        No pymunk; not a space or a model; several models for one pair of materials, or without a
+        pair to tell them apart; a space that has a model attached already.
 
     Examples
     --------
@@ -50,7 +52,8 @@ def attach(
     >>> bead = pymunk.Circle(body, radius=0.9e-3)
     >>> plate = pymunk.Segment(space.static_body, (-1, 0), (1, 0), radius=0)
     >>> space.add(body, bead, plate)
-    >>> impacts = attach(space, cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    >>> impacts = attach(space, model)
     >>> impacts.add_bead(bead), impacts.add_plate(plate, thickness=1e-3)
     (0, 0)
     >>> for _ in range(10):

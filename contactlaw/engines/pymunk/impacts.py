@@ -50,7 +50,8 @@ class PymunkImpacts:
     ----------
     bead_type, plate_type : int
         Collision types of the registered shapes, for handlers of your own:
-        ``space.on_collision(impacts.bead_type, my_type, begin=...)``.
+        ``space.on_collision(impacts.bead_type, my_type, begin=...)``, in any phase. A ``pre_solve``
+        for both of them is called before the model, which has the last word on the restitution.
     """
 
     def __init__(self, space: pymunk.Space, models: Models) -> None:
