@@ -26,7 +26,7 @@ class Handlers:
     space : pymunk.Space
         Whose handlers they are.
     own : dict
-        The adapter's callbacks by key; the keys have a list each in `hooks`.
+        By key, what makes the adapter's callback from the list of the user's that it calls first.
     late : tuple of keys
         Which of the user's are called after those.
     keep : callable
