@@ -71,7 +71,8 @@ def member(error, flags=0):
     ("wrong", "enough", "holds"),
     [
         ([], True, True),
-        ([member(0.5, Validity.BENT_PLATE)] * 20, True, True),  # listed, not counted
+        ([member(0.5, Validity.BENT_PLATE)], True, True),  # wrong, and says so
+        ([member(0.5, Validity.BENT_PLATE)] * 20, False, False),  # too many
         ([member(0.5)], True, False),  # 1 of 20 is wrong and does not say so
         ([member(0.5, Validity.DAMAGE)], True, False),  # that is no limit of accuracy
         ([member(0.5)] * 2, False, False),

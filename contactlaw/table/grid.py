@@ -147,7 +147,7 @@ def on_demand(law: Law) -> Settings:
     deepest = zener.overload_at(law.data, 0.0, w_m, law.range[1], 1e-11)
     return Settings(
         largest_inelasticity=_THINNEST, largest_overload=float(f"{_BEYOND * deepest:.3g}"),
-        log_overload_step=0.04, inelasticity_nodes=41, rtol=1e-11,
+        log_overload_step=0.03, inelasticity_nodes=41, rtol=1e-11,
     )  # fmt: skip
 
 
