@@ -32,8 +32,6 @@ class ConstantRestitution:
     0.9
     """
 
-    law = "constant"
-
     def __init__(self, pair: Pair, restitution: float) -> None:
         if not 0.0 <= restitution <= 1.0:
             raise ValueError(f"constant COR: must lie between 0 and 1, got {restitution!r}")

@@ -12,16 +12,22 @@ import time
 import traceback
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from dem_demo import defaults, engines
-from dem_demo.folder import Interrupted, interruptible, results
+from dem_demo.signals import Interrupted, interruptible
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel
     from dem_demo.baseline import ConstantRestitution
     from dem_demo.engines import Engine
     from dem_demo.scene import Scene
+
+
+_PATIENCE = 300.0  # [s]; more than figures and page of a rain take
+
+
+_FORESEEN = (Interrupted, OSError, ValueError, RuntimeError)  # they say all that is to be said
 
 
 class _Refused(Exception):
@@ -39,8 +45,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0: done; 1: refused, with a message on stderr; 128 + signal: interrupted. Wrong usage exits
-        with 2.
+        0: done; 1: refused or partial, with a message on stderr; 128 + signal: interrupted. Wrong
+        usage exits with 2.
     """
     argv = sys.argv[1:] if argv is None else list(argv)
     arguments = _parser().parse_args(argv)
@@ -48,7 +54,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         with interruptible():
             return _rain(arguments, shlex.join(["dem-demo", *argv]))
     except Interrupted as stop:
-        print("\ndem-demo: interrupted; nothing was written", file=sys.stderr)
+        print(f"\ndem-demo: {stop} before it rained; nothing was written", file=sys.stderr)
         return _stopped(stop.exit_status)
     except (_Refused, OSError, RuntimeError) as error:  # an engine's adapter raises the last one
         print(f"dem-demo: {error}", file=sys.stderr)
@@ -63,7 +69,7 @@ def _stopped(status: int) -> int:
     mpi = sys.modules.get("mpi4py.MPI")
     if mpi is not None and mpi.COMM_WORLD.size > 1:
         if mpi.COMM_WORLD.rank > 0:
-            time.sleep(5.0)  # rank 0 takes its files away before it ends everything
+            time.sleep(_PATIENCE)  # rank 0 keeps what there is before it ends everything
         mpi.COMM_WORLD.Abort(status)
     return status
 
@@ -79,7 +85,9 @@ def _parser() -> argparse.ArgumentParser:
         "rain",
         help="beads rain on plates of different thickness",
         description="Beads rain on a row of plates of different thickness. Writes rain.h5, "
-        "figures (PNG) and summary.txt. All numbers are in SI units.",
+        "index.html with figures and the rain itself as an animation, the figures (PNG), "
+        "rain.gif and summary.txt. What has been computed is kept if the rain is stopped. All "
+        "numbers are in SI units.",
         formatter_class=argparse.ArgumentDefaultsHelpFormatter,
     )
     add = rain.add_argument
@@ -96,6 +104,12 @@ def _parser() -> argparse.ArgumentParser:
         help=f"simulated time [s] (default: {durations})")  # fmt: skip
     add("--seed", type=int, metavar="S", default=defaults.SEED,
         help="the same seed gives the same rain")  # fmt: skip
+    add("--law", metavar="NAME", default=argparse.SUPPRESS,
+        help="contact law, as in contactlaw.laws.names(); fem is for metals, ceramics, glasses "
+        "(default: contactlaw's)")  # fmt: skip
+    add("--outside", choices=("raise", "solve", "clamp"), default="raise",
+        help="impacts outside the law's table stop the rain, are integrated, or get the value at "
+        "its border and a flag")  # fmt: skip
     add("--constant-cor", type=float, metavar="E", default=argparse.SUPPRESS,
         help="the same COR in every contact: the baseline to compare with")  # fmt: skip
     add("--engine", choices=list(known), default=defaults.ENGINE,
@@ -128,34 +142,47 @@ def _range(text: str) -> tuple[float, float]:
 def _rain(arguments: argparse.Namespace, command: str) -> int:
     engine = engines.load(arguments.engine)
     try:
-        from dem_demo import figures
+        from dem_demo import place, products
+        from dem_demo.complaint import sentence
+        from dem_demo.folder import files, workplace
         from dem_demo.reader import read
-        from dem_demo.report import summary
+        from dem_demo.recorder import RECORD
+        from dem_demo.report import progress, summary
 
         named, rank = (arguments.engine, engine.version()), engine.rank()
     except ModuleNotFoundError as error:
         hint = f"pip install contactlaw[{engine.EXTRAS}]"
         raise _Refused(f"{error.name} is missing: {hint}") from error
-    scene, model = _plan(arguments, engine)
+    scene, ruling, model = _plan(arguments, engine)
     if rank > 0:
-        engine.run(scene, model, None)
+        engine.run(scene, ruling, None)
         return 0
-    with results(arguments.out) as folder:
-        _simulate(engine, named, scene, model, folder / "rain.h5", command)
-        run = read(folder / "rain.h5")
-        text = summary(run)
-        (folder / "summary.txt").write_text(text + "\n", encoding="utf-8")
-        figures.draw_all(run, folder)
-        names = ", ".join(sorted(file.name for file in folder.iterdir()))
-    print(f"{text}\n\nWritten to {arguments.out}: {names}")
-    return 0
+    target = place.Place(arguments.out)
+    facts = {"engine": named, "command": command, "files": place.names()}
+    with workplace(arguments.out) as folder:
+        stop = _simulate(engine, scene, (ruling, model), folder / RECORD, facts)
+        if not (folder / RECORD).exists():
+            assert stop is not None
+            raise _Refused(f"{sentence(stop, scene, model)}; nothing could be kept")
+        run = read(folder / RECORD)
+        print(summary(run), flush=True)
+        failed = products.make(run, folder)
+        written = ", ".join(file.name for file in files(folder))
+        reached = target.fill(folder, complete=not run.reason)
+    earlier = ", in the place of an earlier rain" * (target.earlier and reached == target.path)
+    print(f"\nWritten to {reached}{earlier}: {written}", flush=True)
+    for name, why in failed.items():
+        print(f"dem-demo: {name} is missing: {sentence(why, scene, model)}", file=sys.stderr)
+    if run.reason:
+        print(f"dem-demo: partial, {progress(run)}: {run.reason}", file=sys.stderr)
+    return max((getattr(e, "exit_status", 1) for e in (stop, *failed.values()) if e), default=0)
 
 
 def _plan(
     arguments: argparse.Namespace, engine: Engine
-) -> tuple[Scene, ImpactModel | ConstantRestitution]:
-    """Scene and model; whatever they refuse is refused before it rains."""
-    from contactlaw import ImpactModel, Pair, material, materials
+) -> tuple[Scene, ImpactModel | ConstantRestitution, ImpactModel]:
+    """Scene, what rules its impacts, and the model; whatever they refuse is refused now."""
+    from contactlaw import ImpactModel, Pair, laws
     from dem_demo.baseline import ConstantRestitution
     from dem_demo.nozzles import rain
 
@@ -174,43 +201,63 @@ def _plan(
             dimensions=engine.DIMENSIONS,
             frame_rate=engine.FRAME_RATE,
         )
-        if scene.sphere_material.yield_strength is None:
-            known = [name for name in materials() if material(name).yield_strength is not None]
-            raise ValueError(
-                f"sphere: no yield strength is known for {scene.sphere_material.name!r}, so it is "
-                f"not known when it yields; take one of {', '.join(known)}"
-            )
-        model = ImpactModel(Pair(scene.sphere_material, scene.plate_material))
-        hardest = [plate.thickness for plate in scene.plates]
-        model.lookup(scene.top_speed, float(scene.beads.radius.max()), hardest)
+        pair = Pair(scene.sphere_material, scene.plate_material)
+        law = getattr(arguments, "law", laws.DEFAULT)
+        model = ImpactModel(pair, law, outside=arguments.outside)
         if "constant_cor" in arguments:
-            return scene, ConstantRestitution(model.pair, arguments.constant_cor)
+            return scene, ConstantRestitution(pair, arguments.constant_cor), model
     except ValueError as error:
         raise _Refused(error) from error
-    return scene, model
+    return scene, _checked(scene, model), model
+
+
+def _checked(scene: Scene, model: ImpactModel) -> ImpactModel:
+    """Refuse now what could not be answered later: the hardest impact on each plate."""
+    from dem_demo.complaint import sentence
+    from dem_demo.report import label
+
+    speed, radius = scene.top_speed, float(scene.beads.radius.max())
+    for plate in scene.plates:
+        try:
+            model.lookup(speed, radius, plate.thickness)
+        except ValueError as error:
+            error.add_note(
+                f"a bead of {scene.sphere_material.name} of radius {radius * 1e3:.3g} mm on the "
+                f"plate of {label(plate.thickness)} at {speed:.3g} m/s"
+            )
+            raise _Refused(sentence(error, scene, model)) from error
+    return model
 
 
 def _simulate(
     engine: Engine,
-    named: tuple[str, str],
     scene: Scene,
-    model: ImpactModel | ConstantRestitution,
+    models: tuple[ImpactModel | ConstantRestitution, ImpactModel],
     path: Path,
-    command: str,
-) -> None:
+    facts: dict[str, Any],
+) -> BaseException | None:
+    """Let it rain into a file; returns what stopped it, if anything did."""
     from dem_demo.baseline import ConstantRestitution
+    from dem_demo.complaint import sentence
     from dem_demo.recorder import Recorder
 
-    constant = model.restitution if isinstance(model, ConstantRestitution) else None
-    with Recorder(
+    ruling, model = models
+    recorder = Recorder(
         path,
         scene,
-        law=model.law,
-        engine=named,
-        command=command,
-        time_step=engine.time_step(scene, model),
+        model,
+        time_step=engine.time_step(scene, ruling),
         dimensions=engine.DIMENSIONS,
-        constant_cor=constant,
+        constant_cor=ruling.restitution if isinstance(ruling, ConstantRestitution) else None,
         bead_on_bead=engine.BEAD_ON_BEAD,
-    ) as recorder:
-        engine.run(scene, model, recorder)
+        **facts,
+    )
+    with recorder:
+        try:
+            engine.run(scene, ruling, recorder)
+        except (Exception, Interrupted) as error:
+            if not isinstance(error, _FORESEEN):
+                traceback.print_exc()
+            recorder.reason = sentence(error, scene, model)
+            return error
+    return recorder.disk_error

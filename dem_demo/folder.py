@@ -1,66 +1,68 @@
-"""Results appear all at once at the end, or not at all."""
+"""Results appear all at once at the end, and a killed run leaves nothing for ever."""
 
 from __future__ import annotations
 
-import os
 import shutil
-import signal
 import tempfile
-import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
-from typing import Any
 
-_SIGNALS = [
-    getattr(signal, name)
-    for name in ("SIGINT", "SIGTERM", "SIGHUP")  # Windows has no terminal that hangs up
-    if hasattr(signal, name)
-]
+from filelock import FileLock, Timeout
+
+from dem_demo.signals import unstoppable
+
+_UNFINISHED, _LOCK = ".unfinished-", ".lock"
 
 
-class Interrupted(BaseException):
-    """The user or the system asked the run to stop.
+@contextmanager
+def workplace(folder: Path) -> Iterator[Path]:
+    """Give a temporary folder on the file system of another, which may not exist yet.
+
+    It is locked while its process lives, so that the next run can take away what a killed one left.
 
     Parameters
     ----------
-    number : int
-        Number of the signal.
+    folder : Path
+        Where the results shall be.
+
+    Yields
+    ------
+    Path
+        The temporary folder, which is removed whatever happens.
+
+    Raises
+    ------
+    NotADirectoryError
+        If `folder`, or what it shall be in, is a file.
     """
-
-    def __init__(self, number: int) -> None:
-        super().__init__(number)
-        self.exit_status = 128 + number  # what shells report for a process stopped by a signal
-
-
-def _stop(number: int, frame: FrameType | None) -> None:
-    raise Interrupted(number)
-
-
-@contextmanager
-def _on_signals(
-    reaction: Callable[[int, FrameType | None], Any] | signal.Handlers,
-) -> Iterator[None]:
-    if threading.current_thread() is not threading.main_thread():
-        yield  # Python delivers signals to the main thread only
-        return
-    before = {number: signal.getsignal(number) for number in _SIGNALS}
-    heard = {n: handler for n, handler in before.items() if handler != signal.SIG_IGN}  # nohup
+    nearest = folder.absolute()
+    while not nearest.exists():
+        nearest = nearest.parent
+    if not nearest.is_dir():
+        raise NotADirectoryError(f"out: {nearest} is a file, not a folder")
+    for place in {nearest, folder.absolute().parent}:  # of a run before the folder was there
+        _remove_stale(place)
+    temporary = Path(tempfile.mkdtemp(prefix=_UNFINISHED, dir=nearest))
     try:
-        for number in heard:
-            signal.signal(number, reaction)
-        yield
+        with FileLock(temporary / _LOCK):
+            yield temporary
     finally:
-        for number, handler in heard.items():
-            signal.signal(number, handler)
+        with unstoppable():
+            shutil.rmtree(temporary)
 
 
-@contextmanager
-def interruptible() -> Iterator[None]:
-    """Within this block, Ctrl-C, a request to terminate and a hang-up raise `Interrupted`."""
-    with _on_signals(_stop):
-        yield
+def files(temporary: Path) -> list[Path]:
+    """Files that are in a workplace so far, sorted."""
+    return sorted(file for file in temporary.iterdir() if file.name != _LOCK)
+
+
+def move(temporary: Path, folder: Path) -> None:
+    """Move all files of a workplace into a folder, made if need be."""
+    with unstoppable():
+        folder.mkdir(parents=True, exist_ok=True)
+        for file in files(temporary):
+            shutil.move(file, folder / file.name)
 
 
 @contextmanager
@@ -75,26 +77,17 @@ def results(folder: Path) -> Iterator[Path]:
     Yields
     ------
     Path
-        The temporary folder. It is on the same file system, so that each file moves in one step,
-        and it is removed whatever happens.
-
-    Raises
-    ------
-    NotADirectoryError
-        If `folder`, or what it shall be in, is a file.
+        The temporary folder.
     """
-    nearest = folder.absolute()
-    while not nearest.exists():
-        nearest = nearest.parent
-    if not nearest.is_dir():
-        raise NotADirectoryError(f"out: {nearest} is a file, not a folder")
-    temporary = Path(tempfile.mkdtemp(prefix=".unfinished-", dir=nearest))
-    try:
+    with workplace(folder) as temporary:
         yield temporary
-        with _on_signals(signal.SIG_IGN):
-            folder.mkdir(parents=True, exist_ok=True)
-            for file in sorted(temporary.iterdir()):
-                os.replace(file, folder / file.name)
-    finally:
-        with _on_signals(signal.SIG_IGN):
-            shutil.rmtree(temporary)
+        move(temporary, folder)
+
+
+def _remove_stale(place: Path) -> None:
+    for left in place.glob(f"{_UNFINISHED}*"):
+        try:
+            with FileLock(left / _LOCK, timeout=0):
+                shutil.rmtree(left)
+        except (Timeout, OSError):  # of a run that lives, or not ours to remove
+            continue

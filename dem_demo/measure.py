@@ -3,17 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import Validity, edge_distance
+from contactlaw import Validity, edge_distance, explain
 from dem_demo.frame import FLYING
 from dem_demo.reader import Run
-from dem_demo.recorder import CONSTANT
 from dem_demo.scene import GRAVITY, Floats
+
+_NOTHING = math.nan, math.nan, math.nan, math.nan
+_EDGE = "so close to the plate's edge that the bending wave comes back while the contact lasts"
+
+
+class Shares(NamedTuple):
+    """Where energy went: shares that sum to 1.
+
+    All but `kept` are NaN in the baseline: a constant COR does not say where the energy went.
+    """
+
+    kept: float
+    wave: float
+    plastic: float
+    other: float
 
 
 @dataclass(frozen=True)
@@ -28,9 +42,10 @@ class PlateRow:
         Number of impacts; the other numbers are NaN if it is 0.
     speed, restitution, lowest, highest : float
         Mean normal speed [m/s]; mean, smallest and largest COR.
-    kept, wave, plastic : float
-        Shares of the impacts' total kinetic energy (normal part). In the baseline wave is NaN, and
-        so is plastic: a constant COR does not say where the energy went.
+    shares : Shares
+        Of the impacts' total kinetic energy (normal part).
+    outside : int
+        Number of impacts that exceed a limit of the model.
     """
 
     thickness: float
@@ -39,9 +54,8 @@ class PlateRow:
     restitution: float
     lowest: float
     highest: float
-    kept: float
-    wave: float
-    plastic: float
+    shares: Shares
+    outside: int
 
 
 def on_plate(run: Run, plate: int) -> NDArray[np.void]:
@@ -65,10 +79,9 @@ def _plate_row(run: Run, plate: int) -> PlateRow:
     rows = on_plate(run, plate)
     thickness = run.scene.plates[plate].thickness
     if not rows.size:
-        return PlateRow(thickness, 0, *[math.nan] * 7)
+        return PlateRow(thickness, 0, *_NOTHING, Shares(*_NOTHING), 0)
     energy, cor = run.energy(rows), rows["restitution"]
-    total = energy.sum()
-    constant = run.law == CONSTANT
+    kept = float((cor**2 * energy).sum() / energy.sum())
     return PlateRow(
         thickness=thickness,
         impacts=rows.size,
@@ -76,39 +89,94 @@ def _plate_row(run: Run, plate: int) -> PlateRow:
         restitution=float(cor.mean()),
         lowest=float(cor.min()),
         highest=float(cor.max()),
-        kept=float((cor**2 * energy).sum() / total),
-        wave=math.nan if constant else float(rows["wave_energy"].sum() / total),
-        plastic=math.nan if constant else float(rows["plastic_energy"].sum() / total),
+        shares=Shares(kept, *[math.nan] * 3) if run.baseline else model_shares(run, plate),
+        outside=int(outside(run)[run.modelled["plate"] == plate].sum()),
     )
 
 
-def model_shares(run: Run, plate: int) -> tuple[float, float, float]:
-    """Shares kept, lost to waves and lost to plastic flow, had the model ruled the same impacts."""
+def model_shares(run: Run, plate: int) -> Shares:
+    """Where the energy went, or would have gone had the model ruled the baseline's impacts."""
     rows = run.modelled[run.modelled["plate"] == plate]
     total = run.energy(rows).sum()
-    wave, plastic = (float(rows[name].sum() / total) for name in ("wave_energy", "plastic_energy"))
-    return 1.0 - wave - plastic, wave, plastic
+    wave, plastic, other = (
+        float(rows[f"{name}_energy"].sum() / total) for name in ("wave", "plastic", "other")
+    )
+    return Shares(1.0 - wave - plastic - other, wave, plastic, other)
 
 
-def flag_counts(run: Run) -> Counter[str]:
-    """Count the impacts on plates that exceed a limit of the model, by the limit's name.
+def constant_beside_model(run: Run) -> tuple[Floats, Floats]:
+    """Give two CORs for each impact in `Run.modelled`: one for all, and the model's.
 
-    "near an edge" is an impact so close to the plate's edge that the bending wave comes back while
-    the contact lasts.
+    The constant is that of the baseline, or else the best that one could type in: the mean over all
+    impacts of the run.
     """
-    counts: Counter[str] = Counter()
-    for flag in Validity:
-        number = int(((run.modelled["flags"] & flag) != 0).sum())
-        if number:
-            counts[str(flag.name).lower().replace("_", " ")] = number
-    near = _near_edge(run)
-    if near:
-        counts["near an edge"] = near
-    return counts
+    rows = run.modelled
+    own = rows["restitution"].astype(float)
+    if run.constant_cor is None:
+        return np.full(own.size, own.mean() if own.size else math.nan), own
+    thickness = np.array([plate.thickness for plate in run.scene.plates])[rows["plate"]]
+    radius = run.scene.beads.radius[rows["bead"]]
+    return own, np.asarray(run.model.restitution(rows["approach_speed"], radius, thickness))
 
 
-def first_rebounds(run: Run, plate: int) -> tuple[Floats, Floats]:
-    """Impact speed [m/s] and measured rebound height over impact height, of first impacts.
+def restitution_range(run: Run) -> tuple[float, float]:
+    """Range of COR that colours span: from the lowest on a plate, not too narrow, to 1."""
+    on = run.collisions["plate"] >= 0
+    return float(run.collisions["restitution"][on].min(initial=0.99)), 1.0
+
+
+class Limit(NamedTuple):
+    """A limit of the model, what it means, and the number of impacts that exceed it."""
+
+    name: str
+    meaning: str
+    impacts: int
+
+
+def limits(run: Run) -> list[Limit]:
+    """List the limits of the model that impacts on plates exceed."""
+    found = [
+        Limit(_words(flag), explain(flag)[0], int(((run.modelled["flags"] & flag) != 0).sum()))
+        for flag in Validity
+    ]
+    found.append(Limit("near an edge", _EDGE, int(near_edge(run).sum())))
+    return [limit for limit in found if limit.impacts]
+
+
+def outside(run: Run) -> NDArray[np.bool_]:
+    """Tell for each impact in `Run.modelled` whether it exceeds a limit of the model."""
+    found: NDArray[np.bool_] = (run.modelled["flags"] != 0) | near_edge(run)
+    return found
+
+
+def near_edge(run: Run) -> NDArray[np.bool_]:
+    """Tell for each impact in `Run.modelled` whether the plate's edge answers while it lasts."""
+    rows, near = run.modelled, np.zeros(run.modelled.size, dtype=bool)
+    for n, plate in enumerate(run.scene.plates):
+        here = rows["plate"] == n
+        if plate.thickness == math.inf or not here.any():
+            continue
+        edge = np.minimum(rows["x"] - plate.x0, plate.x1 - rows["x"])
+        # It grows with the square root of contact time, so one call serves for all.
+        unit = edge_distance(run.scene.plate_material, plate.thickness, 1.0)
+        near |= here & (edge < unit * np.sqrt(rows["contact_time"]))
+    return near
+
+
+def _words(flag: Validity) -> str:
+    return str(flag.name).lower().replace("_", " ")
+
+
+class Rebounds(NamedTuple):
+    """Impact speed [m/s], measured rebound height over impact height, whether outside a limit."""
+
+    speed: Floats
+    ratio: Floats
+    outside: NDArray[np.bool_]
+
+
+def first_rebounds(run: Run, plate: int) -> Rebounds:
+    """Measure the first impacts of beads.
 
     A bead counts if its first collision is on this plate and it meets nothing until the next frame.
     There its height and vertical speed give the apex it is going to reach, y + v^2/2g, from what
@@ -124,23 +192,13 @@ def first_rebounds(run: Run, plate: int) -> tuple[Floats, Floats]:
     after = np.r_[np.where(bead[1:] == bead[:-1], time[1:], math.inf), math.inf][first]
     frame = np.searchsorted(run.time, time[first], side="right")
     ok = (frame < run.time.size) & (run.time[np.minimum(frame, run.time.size - 1)] < after)
-    n, frame, speed = bead[first][ok], frame[ok], rows["approach_speed"][index[first]][ok]
+    n, frame, row = bead[first][ok], frame[ok], index[first][ok]
     flying = run.status[frame, n] == FLYING
-    n, frame, speed = n[flying], frame[flying], speed[flying]
+    n, frame, row = n[flying], frame[flying], row[flying]
+    far = np.zeros(rows.size, dtype=bool)
+    far[rows["plate"] >= 0] = outside(run)
+    speed = rows["approach_speed"][row]
     surface = run.scene.plates[plate].y + run.scene.beads.radius[n]
     upwards = run.velocity[frame, n, 1].astype(float)
     apex = run.position[frame, n, 1] - surface + upwards * np.abs(upwards) / (2.0 * GRAVITY)
-    return speed, apex * 2.0 * GRAVITY / speed**2
-
-
-def _near_edge(run: Run) -> int:
-    count = 0
-    for n, plate in enumerate(run.scene.plates):
-        here = run.modelled[run.modelled["plate"] == n]
-        if not here.size or plate.thickness == math.inf:
-            continue
-        edge = np.minimum(here["x"] - plate.x0, plate.x1 - here["x"])
-        # It grows with the square root of contact time, so one call serves for all.
-        unit = edge_distance(run.scene.plate_material, plate.thickness, 1.0)
-        count += int((edge < unit * np.sqrt(here["contact_time"])).sum())
-    return count
+    return Rebounds(speed, apex * 2.0 * GRAVITY / speed**2, far[row])

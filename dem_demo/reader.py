@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Literal
 
 import h5py
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from contactlaw import ImpactModel, Material, Pair
 from contactlaw.engines.record import IMPACT, fill
-from dem_demo.recorder import CONSTANT, FORMAT, SCHEMA
+from dem_demo.recorder import COMPLETE, FORMAT, PARTIAL, SCHEMA
 from dem_demo.scene import Beads, Floats, Plate, Scene
 
 
@@ -25,13 +26,21 @@ class Run:
     scene : Scene
         What fell on what.
     law : str
-        Contact law, "constant" in the baseline.
+        Contact law; in the baseline the one that it is to be compared with.
+    outside : str
+        What the model does outside its table.
     constant_cor : float or None
         The COR of every contact, in the baseline.
     engine : str
         Engine that ran it.
     bead_on_bead : str or None
         What is to be said of beads that hit beads, where the engine does not record them.
+    command, created : str
+        Command line that made it, and when.
+    versions : dict of str
+        Of the programs that made it, by name.
+    reason : str
+        Why it is partial; empty if it is complete.
     collisions : structured ndarray
         One row per collision: the impact record of `contactlaw.engines.record`. In the baseline it
         ends with the COR.
@@ -43,9 +52,14 @@ class Run:
 
     scene: Scene
     law: str
+    outside: Literal["raise", "solve", "clamp"]
     constant_cor: float | None
     engine: str
     bead_on_bead: str | None
+    command: str
+    created: str
+    versions: dict[str, str]
+    reason: str
     collisions: NDArray[np.void]
     time: Floats
     position: NDArray[np.float32]
@@ -55,9 +69,14 @@ class Run:
 
     @cached_property
     def model(self) -> ImpactModel:
-        """The impact model; for the baseline the one that it is to be compared with."""
+        """The impact model; for the baseline the one that it is to be compared with.
+
+        Curves and the baseline's impacts may leave the table where no recorded impact has: there it
+        takes the value at the border, and flags it.
+        """
         pair = Pair(self.scene.sphere_material, self.scene.plate_material)
-        return ImpactModel(pair) if self.law == CONSTANT else ImpactModel(pair, self.law)
+        outside = "clamp" if self.outside == "raise" else self.outside
+        return ImpactModel(pair, self.law, outside=outside)
 
     @cached_property
     def modelled(self) -> NDArray[np.void]:
@@ -78,6 +97,11 @@ class Run:
         rebound = self.model.lookup(rows["approach_speed"], radius, thickness)
         fill(rows, rebound, self.energy(rows))
         return rows
+
+    @property
+    def baseline(self) -> bool:
+        """Whether every contact had the same COR."""
+        return self.constant_cor is not None
 
     def energy(self, rows: NDArray[np.void]) -> Floats:
         """Kinetic energy of the normal motion before impacts on plates [J]."""
@@ -101,23 +125,32 @@ def read(path: Path) -> Run:
     Raises
     ------
     ValueError
-        If the file is something else, of another schema, or incomplete.
+        If the file is something else, of another schema, or was never closed.
     """
     with h5py.File(path, "r") as file:
         attributes = dict(file.attrs)
-        found = attributes.get("format"), attributes.get("schema"), attributes.get("complete")
-        if found != (FORMAT, SCHEMA, True):
+        found = [attributes.get(name) for name in ("format", "schema", "state")]
+        if found[:2] != [FORMAT, SCHEMA] or found[2] not in (COMPLETE, PARTIAL):
             raise ValueError(
-                f"{path}: not a complete file of format {FORMAT!r}, schema {SCHEMA}, but "
-                f"format {found[0]!r}, schema {found[1]}, complete {found[2]}: run the rain again"
+                f"{path}: not a closed file of format {FORMAT!r}, schema {SCHEMA}, but "
+                f"format {found[0]!r}, schema {found[1]}, state {found[2]}: run the rain again"
             )
         frames = {name: dataset[()] for name, dataset in file["trajectories"].items()}
         return Run(
             scene=_scene(file),
             law=attributes["law"],
+            outside=attributes["outside"],
             constant_cor=attributes.get("constant_cor"),
             engine=attributes["engine"],
             bead_on_bead=attributes.get("bead_on_bead"),
+            command=attributes["command"],
+            created=attributes["created"],
+            versions={
+                name.removeprefix("version_"): text
+                for name, text in attributes.items()
+                if name.startswith("version_")
+            },
+            reason=attributes["reason"],
             collisions=_table(file["collisions"]),
             **frames,
         )
@@ -139,14 +172,14 @@ def _scene(file: h5py.File) -> Scene:
 
 def _material(group: h5py.Group) -> Material:
     values = group.attrs
-    strength = values.get("yield_strength")
+    optional = {name: values.get(name) for name in ("yield_strength", "kind", "hardness")}
     return Material(
         name=values["name"],
         youngs_modulus=float(values["youngs_modulus"]),
         poissons_ratio=float(values["poissons_ratio"]),
         density=float(values["density"]),
-        yield_strength=None if strength is None else float(strength),
         source=values["source"],
+        **optional,
     )
 
 

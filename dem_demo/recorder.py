@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import datetime
+import io
 import platform
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
@@ -14,13 +15,19 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import Material
-from contactlaw.engines.record import COLUMNS
+from contactlaw import ImpactModel, Material
+from contactlaw.engines.record import COLUMNS, IMPACT, OBSERVED
+from contactlaw.laws import Law
+from dem_demo.disk import Disk, complaint
+from dem_demo.folder import files as _files
 from dem_demo.frame import Frame
 from dem_demo.scene import Scene
+from dem_demo.signals import undisturbed, unstoppable
 
-FORMAT, SCHEMA = "contactlaw-rain", 2
-CONSTANT = "constant"  # the law's name where every contact has the same COR
+RECORD = "rain.h5"
+FORMAT, SCHEMA = "contactlaw-rain", 3
+COMPLETE, PARTIAL = "complete", "partial"  # what the attribute "state" of a closed file says
+_ROWS = 1024  # collisions that are stored together
 
 # The columns' own descriptions are those of any engine; this is what they mean in this file.
 _AXES = (
@@ -38,12 +45,14 @@ class Recorder:
         File to create.
     scene : Scene
         What is recorded.
-    law : str
-        Name of the contact law, or "constant".
+    model : ImpactModel
+        What rules the impacts; in the baseline what to compare them with.
     engine : tuple of str
         Name and version of the engine.
     command : str
         Command line that made the file.
+    files : set of str
+        Names of the files that will be made of it; those of the engine's own join them.
     time_step : float
         The engine's step [s].
     dimensions : int
@@ -52,33 +61,54 @@ class Recorder:
         The COR of every contact, in the baseline.
     bead_on_bead : str, optional
         What is to be said of beads that hit beads, where the engine does not record them.
+
+    Attributes
+    ----------
+    folder : Path
+        Where the file is; an engine may put one of its own there.
+    reason : str or None
+        Why the rain is partial, a sentence; None if nothing has gone wrong.
     """
 
     def __init__(
         self,
         path: Path,
         scene: Scene,
+        model: ImpactModel,
         *,
-        law: str,
         engine: tuple[str, str],
         command: str,
+        files: Set[str],
         time_step: float,
         dimensions: int,
         constant_cor: float | None = None,
         bead_on_bead: str | None = None,
     ) -> None:
         self.folder = path.parent
-        self._file = h5py.File(path, "x")
-        self._frames = 0
-        self._file.attrs.update(_provenance(engine, command))
-        self._file.attrs.update({"law": law, "seed": scene.seed, "duration": scene.duration})
-        self._file.attrs.update({"frame_rate": scene.frame_rate, "time_step": time_step})
-        if constant_cor is not None:
-            self._file.attrs["constant_cor"] = constant_cor
-        if bead_on_bead is not None:
-            self._file.attrs["bead_on_bead"] = bead_on_bead
-        _write_scene(self._file, scene)
-        self._trajectories = _create_trajectories(self._file, scene, dimensions)
+        self.reason: str | None = None
+        self._path, self._disk = path, Disk(path)
+        self._files, self._frame_rate = files, scene.frame_rate
+        self._frames = self._rows = 0
+        with undisturbed():
+            self._file = h5py.File(self._disk, "w")
+            self._file.attrs.update(_provenance(engine, command))
+            self._file.attrs.update({"law": _name(model.force_law), "outside": model.outside})
+            self._file.attrs["seed"] = scene.seed
+            self._file.attrs.update({"duration": scene.duration, "frame_rate": scene.frame_rate})
+            self._file.attrs["time_step"] = time_step
+            if constant_cor is not None:
+                self._file.attrs["constant_cor"] = constant_cor
+            if bead_on_bead is not None:
+                self._file.attrs["bead_on_bead"] = bead_on_bead
+            _write_scene(self._file, scene)
+            self._trajectories = _create_trajectories(self._file, scene, dimensions)
+            self._collisions = self._file.create_group("collisions")
+            self._collisions.attrs["description"] = _AXES
+
+    @property
+    def disk_error(self) -> OSError | None:
+        """What the disk said, if it is full."""
+        return self._disk.error
 
     def __enter__(self) -> Self:
         """Return the recorder."""
@@ -90,32 +120,66 @@ class Recorder:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
-        """Close the file, and declare it complete if nothing went wrong."""
-        if kind is None:
-            self._file.attrs["complete"] = True
-        self._file.close()
+        """Close the file, and say in it whether the rain is complete."""
+        with unstoppable():
+            if not self._collisions.keys():
+                self._append(np.empty(0, IMPACT[list(OBSERVED)]))
+            if self.reason is None and self._disk.error is not None:
+                self.reason = complaint(self._disk.error)
+            self._file.attrs["state"] = COMPLETE if self.reason is None else PARTIAL
+            self._file.attrs["reason"] = self.reason or ""
+            self._file.attrs["files"] = sorted(self._files | {f.name for f in _files(self.folder)})
+            self._file.close()
+            if self._disk.error is not None:
+                _write_shorter(self._path, self._disk.content(), self._frames)
+            self._disk.close()
 
     def frame(self, frame: Frame) -> None:
-        """Append one frame."""
-        for name, values in frame._asdict().items():
-            if values is not None:
-                self._trajectories[name][self._frames] = values
-        self._frames += 1
+        """Append one frame.
+
+        Raises
+        ------
+        OSError
+            If the disk is full; what has been recorded is safe.
+        """
+        with undisturbed():
+            values = {"time": self._frames / self._frame_rate, **frame._asdict()}
+            for name, value in values.items():
+                if value is not None:
+                    dataset = self._trajectories[name]
+                    dataset.resize(self._frames + 1, axis=0)
+                    dataset[self._frames] = value
+            self._frames += 1
+        if self._disk.error is not None:
+            raise self._disk.error
 
     def collisions(self, table: NDArray[np.void]) -> None:
-        """Write all collisions, with those columns of the impact record that the engine gives."""
-        group = self._file.create_group("collisions")
-        group.attrs["description"] = _AXES
-        for name, _, unit, description in COLUMNS:
+        """Append what is new in the table of all collisions so far, in the columns that it has."""
+        with undisturbed():
+            self._append(table)
+
+    def _append(self, table: NDArray[np.void]) -> None:
+        if self._collisions.keys() and table.size == self._rows:
+            return
+        for name, kind, unit, description in COLUMNS:
             if name in (table.dtype.names or ()):
-                _write(group, name, table[name], unit, description)
+                if name not in self._collisions:
+                    _create(self._collisions, name, (_ROWS,), kind, unit, description)
+                column = self._collisions[name]
+                column.resize(table.size, axis=0)
+                column[self._rows :] = table[name][self._rows :]
+        self._rows = table.size
+
+
+def _name(law: Law) -> str:
+    """Name by which the pair gets the law again: without the numbers that are the pair's own."""
+    return law.family if law.from_pair else law.name
 
 
 def _provenance(engine: tuple[str, str], command: str) -> dict[str, object]:
     return {
         "format": FORMAT,
         "schema": SCHEMA,
-        "complete": False,
         "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "command": command,
         "engine": engine[0],
@@ -164,28 +228,56 @@ def _attributes(material: Material) -> Mapping[str, object]:
         "poissons_ratio": material.poissons_ratio,
         "density": material.density,
         "source": material.source,
-        "units": "Pa (moduli, strength), kg/m3",
+        "units": "Pa (moduli, strength, hardness), kg/m3",
     }
-    if material.yield_strength is not None:
-        values["yield_strength"] = material.yield_strength
+    for name in ("yield_strength", "kind", "hardness"):
+        if getattr(material, name) is not None:
+            values[name] = getattr(material, name)
     return values
 
 
+def _create(
+    group: h5py.Group, name: str, chunk: tuple[int, ...], kind: str, units: str, description: str
+) -> None:
+    """Make an empty dataset that grows along its first axis, chunk by chunk."""
+    shape, most = (0, *chunk[1:]), (None, *chunk[1:])
+    dataset = group.create_dataset(
+        name, shape, kind, maxshape=most, chunks=chunk, compression="gzip"
+    )
+    dataset.attrs.update({"units": units, "description": description})
+
+
 def _create_trajectories(file: h5py.File, scene: Scene, dimensions: int) -> h5py.Group:
-    """Datasets of their final size; frames are written into them one by one."""
-    group = file.create_group("trajectories")
-    frames, beads = scene.frames + 1, scene.beads.radius.size
-    time = np.arange(frames) / scene.frame_rate
-    _write(group, "time", time, "s", "time of the frame")
+    group, beads = file.create_group("trajectories"), scene.beads.radius.size
+    _create(group, "time", (_ROWS,), "f8", "s", "time of the frame")
     for name, kind, size, units, description in (
         ("position", "f4", (2,), "m", "centre (x, y); of a bead that is gone: where it left"),
         ("velocity", "f4", (2,), "m/s", "velocity (x, y); of a bead that is gone: 0"),
         ("status", "u1", (), "1", "0 waiting for its emission, 1 flying, 2 gone"),
         *[("depth", "f4", (), "m", "third coordinate of the centre")][: dimensions - 2],
     ):
-        shape = (frames, beads, *size)
-        dataset = group.create_dataset(
-            name, shape, kind, chunks=(1, beads, *size), compression="gzip"
-        )
-        dataset.attrs.update({"units": units, "description": description})
+        _create(group, name, (1, beads, *size), kind, units, description)
     return group
+
+
+def _write_shorter(path: Path, content: bytes, frames: int) -> None:
+    """Write a record that the disk had no room for, with every collision but fewer frames.
+
+    Half of the room is left to what else there is to write.
+    """
+    while frames > 0:
+        frames //= 2
+        with h5py.File(io.BytesIO(content), "r+") as whole:
+            for dataset in whole["trajectories"].values():
+                dataset.resize(frames, axis=0)
+            short = io.BytesIO()
+            with h5py.File(short, "w") as part:
+                part.attrs.update(whole.attrs)
+                for name in whole:
+                    whole.copy(name, part)
+        try:
+            path.write_bytes(short.getvalue())
+        except OSError:
+            continue
+        return
+    path.unlink()

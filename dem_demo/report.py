@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 
-from dem_demo.measure import PlateRow, bead_on_bead, flag_counts, plate_rows
+from dem_demo.measure import PlateRow, bead_on_bead, limits, plate_rows
 from dem_demo.reader import Run
-from dem_demo.recorder import CONSTANT
 
 _HEAD = (
-    "                         speed        COR                  energy of the impacts\n"
-    "   plate     impacts      mean       mean    range         kept    wave  plastic"
+    "                         speed        COR                  energy of the impacts"
+    "             outside\n"
+    "   plate     impacts      mean       mean    range         kept    wave  plastic   other"
+    "   limits"
 )
 
 
@@ -28,10 +29,18 @@ def summary(run: Run) -> str:
         Title, one line per plate, beads on beads, and limits of the model that were exceeded.
         Speeds are normal speeds [m/s]; energy shares are weighted by energy.
     """
-    lines = [_title(run), "", _HEAD]
+    lines = [*title(run), "", _HEAD]
     lines += [_plate_line(row) for row in plate_rows(run)]
-    lines += ["", _bead_line(run), _limits_line(run)]
+    lines += ["", _bead_line(run), *_limits_lines(run)]
+    if run.reason:
+        lines += ["", f"Partial, {progress(run)}: {run.reason}"]
     return "\n".join(lines)
+
+
+def progress(run: Run) -> str:
+    """Say how far a partial rain has come."""
+    reached = max([*run.time[-1:].tolist(), *run.collisions["time"][-1:].tolist()], default=0.0)
+    return f"{reached:.4g} of {run.scene.duration:g} s"
 
 
 def label(thickness: float) -> str:
@@ -45,13 +54,16 @@ def label(thickness: float) -> str:
     return "half-space" if thickness == math.inf else f"{thickness * 1e3:.4g} mm"
 
 
-def _title(run: Run) -> str:
+def title(run: Run) -> tuple[str, str]:
+    """Say in two lines what fell on what, and what computed it."""
     scene, radius = run.scene, run.scene.beads.radius * 1e3
-    law = f"COR {run.constant_cor:g} everywhere" if run.law == CONSTANT else f"law {run.law}"
+    law = f"law {run.law}"
+    if run.baseline:
+        law = f"COR {run.constant_cor:g} everywhere, limits by {law}"
     return (
         f"{radius.size} beads of {scene.sphere_material.name}, radius {radius.min():.2f} to "
-        f"{radius.max():.2f} mm, on {scene.plate_material.name}\n"
-        f"{scene.duration:g} s in {run.engine}, {law}, seed {scene.seed}"
+        f"{radius.max():.2f} mm, on {scene.plate_material.name}",
+        f"{scene.duration:g} s in {run.engine}, {law}, seed {scene.seed}",
     )
 
 
@@ -60,11 +72,8 @@ def _plate_line(row: PlateRow) -> str:
     if not row.impacts:
         return head
     cor = f"{row.restitution:.3f}   {row.lowest:.3f} - {row.highest:.3f}"
-    shares = "".join(
-        "       -" if math.isnan(share) else f"{share:8.1%}"
-        for share in (row.kept, row.wave, row.plastic)
-    )
-    return f"{head} {row.speed:6.2f} m/s      {cor}  {shares}"
+    shares = "".join("       -" if math.isnan(s) else f"{s:8.1%}" for s in row.shares)
+    return f"{head} {row.speed:6.2f} m/s      {cor}  {shares} {row.outside:8d}"
 
 
 def _bead_line(run: Run) -> str:
@@ -80,9 +89,11 @@ def _bead_line(run: Run) -> str:
     )
 
 
-def _limits_line(run: Run) -> str:
-    counts = flag_counts(run)
-    if not counts:
-        return "Limits of the model: all impacts on plates are inside"
-    found = ", ".join(f"{number} {name}" for name, number in counts.items())
-    return f"Limits of the model: impacts outside: {found} (see contactlaw.Validity)"
+def _limits_lines(run: Run) -> list[str]:
+    found = limits(run)
+    if not found:
+        return ["Limits of the model: all impacts on plates are inside"]
+    width = max(len(f"{limit.impacts} {limit.name}") for limit in found)
+    return ["Limits of the model: impacts outside, and what that means"] + [
+        f"  {f'{limit.impacts} {limit.name}':{width}}  {limit.meaning}" for limit in found
+    ]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from contextvars import ContextVar
+from typing import Any, TypeVar
 
 import matplotlib as mpl
 from matplotlib.figure import Figure
@@ -36,21 +37,60 @@ _SETTINGS: dict[Any, Any] = {
 }
 
 
+Number = TypeVar("Number", int, float)
+
+NARROW = 6.0  # inches: the width of a figure that is read on a phone
+_narrow: ContextVar[bool] = ContextVar("narrow", default=False)
+
+
 @contextmanager
-def applied() -> Iterator[None]:
-    """Within this block figures have the common style, and no screen is needed."""
-    with mpl.rc_context(_SETTINGS):
-        yield
+def applied(*, narrow: bool = False) -> Iterator[None]:
+    """Within this block figures have the common style, and no screen is needed.
+
+    Parameters
+    ----------
+    narrow : bool, optional
+        Whether they are for a phone.
+    """
+    before = _narrow.set(narrow)
+    try:
+        with mpl.rc_context(_SETTINGS):
+            yield
+    finally:
+        _narrow.reset(before)
+
+
+def pick(wide: Number, narrow: Number) -> Number:
+    """Choose a number, for a screen or for a phone."""
+    return narrow if _narrow.get() else wide
 
 
 def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
-    """Make an empty figure of a size in inches, with a message and what it shows."""
-    lines = textwrap.wrap(subtitle, int(10.6 * width))  # letters of 11.5 points to an inch
+    """Make an empty figure of a size in inches, with a message and what it shows.
+
+    One for a phone is as high, but no wider than `NARROW`.
+    """
+    width = min(width, NARROW) if _narrow.get() else width
+    head, lines = _wrapped(title, 7.6 * width), _wrapped(subtitle, 10.6 * width)
     # The axes leave room for the lines above them.
-    room = 0.24 + 0.2 * len(lines)
+    below = 0.22 + 0.28 * len(head)
+    room = below + 0.02 + 0.2 * len(lines)
     layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0, 1.0 - room / height))
     made = Figure(figsize=(width, height), layout=layout)
-    made.suptitle(title, x=0.012, ha="left", fontsize=16, fontweight="bold", color=INK)
-    text = "\n".join(lines)
-    made.text(0.012, 1.0 - 0.5 / height, text, fontsize=11.5, color=MUTED, va="top")
+    left = 0.15 / width
+    made.text(
+        left, 1.0 - 0.15 / height, "\n".join(head),
+        fontsize=16, fontweight="bold", color=INK, va="top",
+    )  # fmt: skip
+    made.text(left, 1.0 - below / height, "\n".join(lines), fontsize=11.5, color=MUTED, va="top")
     return made
+
+
+def _wrapped(text: str, letters: float) -> list[str]:
+    """Break a text into as few lines as fit, about equally long: no word alone on the last."""
+    lines = textwrap.wrap(text, int(letters))
+    for width in range(len(text) // max(1, len(lines)), int(letters)):
+        even = textwrap.wrap(text, width)
+        if len(even) == len(lines):
+            return even
+    return lines

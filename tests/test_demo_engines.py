@@ -114,7 +114,8 @@ def test_a_new_file_is_a_new_engine(falling, tmp_path, capsys):
     assert "falling: nothing but free fall" in text
     out = tmp_path / "out"
     assert cli.main([*RAIN, "--out", str(out)]) == 0
-    written = {"rain.h5", "summary.txt", *(f"{name}.png" for name in figures.names())}
+    written = {"rain.h5", "summary.txt", "index.html", "rain.gif"}
+    written |= {f"{name}.png" for name in figures.names()}
     assert {path.name for path in out.iterdir()} == written
     run = read(out / "rain.h5")
     assert (run.engine, run.scene.duration, run.time.size) == ("falling", 0.25, 26)

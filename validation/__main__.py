@@ -11,7 +11,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from dem_demo.folder import Interrupted, interruptible, results
+from dem_demo.folder import results
+from dem_demo.signals import Interrupted, interruptible
 
 
 def main(argv: Sequence[str] | None = None) -> int:

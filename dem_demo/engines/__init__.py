@@ -62,7 +62,7 @@ class Engine(Protocol):
         model: ImpactModel | ConstantRestitution,
         recorder: Recorder | None,
     ) -> None:
-        """Let it rain; the recorder, None on all ranks but 0, gets all frames and collisions."""
+        """Let it rain; the recorder, None on all ranks but 0, gets frames and collisions."""
 
 
 def names() -> list[str]:

@@ -216,7 +216,7 @@ def run(scene: Scene, model: ImpactModel, recorder: Recorder | None) -> None:
     model : ImpactModel
         The law of the plates, and the COR of bead on bead.
     recorder : Recorder or None
-        Gets every frame, and all collisions at the end; None on all ranks but 0. The file for
+        Gets every frame and the collisions until then; None on all ranks but 0. The file for
         OVITO goes beside it.
     """
     from mpi4py import MPI
@@ -230,13 +230,11 @@ def run(scene: Scene, model: ImpactModel, recorder: Recorder | None) -> None:
     for _ in frames:
         rain.advance()
         _record(rain, recorder)
-    rows = rain.collisions()
-    if recorder is not None and rows is not None:
-        recorder.collisions(rows)
     rain.lmp.close()
 
 
 def _record(rain: _Rain, recorder: Recorder | None) -> None:
-    frame = rain.look()
-    if recorder is not None and frame is not None:
+    frame, rows = rain.look(), rain.collisions()
+    if recorder is not None and frame is not None and rows is not None:
         recorder.frame(frame)
+        recorder.collisions(rows)

@@ -129,7 +129,7 @@ def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Record
     model : ImpactModel or ConstantRestitution
         Where each collision's COR comes from.
     recorder : Recorder
-        Gets every frame, and all collisions at the end.
+        Gets every frame and the collisions until then.
     """
     assert recorder is not None  # of rank 0
     rain = Rain(scene, model)
@@ -138,4 +138,4 @@ def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Record
     for _ in tqdm(range(scene.frames), desc="rain", unit="frame", disable=None):
         rain.advance(scene.steps_per_frame)
         recorder.frame(rain.look())
-    recorder.collisions(rain.impacts.collisions())
+        recorder.collisions(rain.impacts.collisions())

@@ -7,10 +7,15 @@ file.
 from __future__ import annotations
 
 import importlib
+import io
 import pkgutil
-from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, NamedTuple
 
 from dem_demo.reader import Run
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def names() -> list[str]:
@@ -24,19 +29,45 @@ def names() -> list[str]:
     return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
 
 
-def draw_all(run: Run, folder: Path) -> None:
-    """Draw every figure of a run as a PNG file.
+def module(name: str) -> ModuleType:
+    """File of a figure; its docstring is the caption."""
+    return importlib.import_module(f"{__name__}.{name}")
+
+
+class Picture(NamedTuple):
+    """One figure, as PNG files."""
+
+    wide: bytes
+    """For a slide or a screen."""
+    narrow: bytes
+    """For a phone."""
+
+
+def draw(name: str, run: Run) -> Picture:
+    """Draw a figure of a run.
 
     Parameters
     ----------
+    name : str
+        One of `names`.
     run : Run
         The run, as read from its file.
-    folder : Path
-        Existing folder for the pictures.
     """
     from dem_demo import style  # matplotlib is loaded when a figure is drawn
 
-    with style.applied():
-        for name in names():
-            figure = importlib.import_module(f"{__name__}.{name}").draw(run)
-            figure.savefig(folder / f"{name}.png")
+    drawn = []
+    for narrow in (False, True):
+        with style.applied(narrow=narrow):
+            drawn.append(_png(module(name).draw(run)))
+    return Picture(*drawn)
+
+
+def _png(figure: Figure) -> bytes:
+    from PIL import Image
+
+    whole, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(whole, format="png")
+    # 256 colours take a third of the room, and nobody sees it
+    reduced = Image.open(whole).convert("RGB").quantize(256, dither=Image.Dither.NONE)
+    reduced.save(small, "PNG", optimize=True)
+    return small.getvalue()

@@ -9,20 +9,23 @@ from dem_demo import style
 from dem_demo.figures._labels import source, thickness_axis
 from dem_demo.measure import model_shares, plate_rows
 from dem_demo.reader import Run
-from dem_demo.recorder import CONSTANT
 from dem_demo.report import label
 
-_KEPT, _WAVE, _PLASTIC, _LOST = (
+_PARTS = _KEPT, *_ = (
     ("kept by the bead", style.PALE),
     ("bending wave in the plate", style.BLUE),
     ("plastic flow at the contact", style.ORANGE),
-    ("lost, nobody knows where", style.MUTED),
+    ("friction and vibration", style.GREEN),
 )
+_LOST = ("lost, nobody knows where", style.MUTED)
+_ROOM = 4.5  # [%]: the height of a number
+_READABLE = {style.BLUE: style.BLUE, style.ORANGE: "#9A6700", style.GREEN: "#00694D",
+             style.PALE: style.INK, style.MUTED: style.INK}  # fmt: skip
 
 
 def draw(run: Run) -> Figure:
     """Draw a stacked bar per plate; beside the baseline, what the model says of its impacts."""
-    constant = run.law == CONSTANT
+    constant = run.baseline
     figure = style.figure(
         10.5,
         6.2,
@@ -37,39 +40,47 @@ def draw(run: Run) -> Figure:
         if not row.impacts:
             continue
         if constant:
-            _bar(axes, n - 0.2, 0.36, [(_KEPT, row.kept), (_LOST, 1.0 - row.kept)])
-            kept, wave, plastic = model_shares(run, n)
-            _bar(axes, n + 0.2, 0.36, [(_KEPT, kept), (_WAVE, wave), (_PLASTIC, plastic)])
+            kept = row.shares.kept
+            _bar(axes, n - 0.25, 0.3, [(_KEPT, kept), (_LOST, 1.0 - kept)])
+            _bar(axes, n + 0.15, 0.3, list(zip(_PARTS, model_shares(run, n), strict=True)))
         else:
-            parts = [(_KEPT, row.kept), (_WAVE, row.wave), (_PLASTIC, row.plastic)]
-            _bar(axes, n, 0.66, parts)
+            _bar(axes, n, style.pick(0.6, 0.5), list(zip(_PARTS, row.shares, strict=True)))
     thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("share of the impact energy [%]")
-    axes.set_ylim(0.0, 100.0)
-    _legend(figure, axes)
+    axes.set_ylim(0.0, 104.0)
+    axes.set_yticks(range(0, 101, 20))
+    _legend(axes)
     return figure
 
 
 def _bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]]) -> None:
-    bottom = 0.0
+    """Stack the shares; each has its number, beside the bar where it is too small for one."""
+    bottom = beside = 0.0
     for (name, colour), share in parts:
         height = 100.0 * share
+        if height < 0.05:
+            continue
         axes.bar(x, height, width, bottom, color=colour, label=name, edgecolor="white")
-        if height >= 2.5:  # smaller parts have no room for a number
-            dark = colour in (style.BLUE, style.MUTED)
+        middle = bottom + 0.5 * height
+        text = f"{height:.0f}" if height >= 9.5 else f"{height:.1f}"
+        if height >= _ROOM:
+            ink = "white" if colour in (style.BLUE, style.MUTED, style.GREEN) else style.INK
+            axes.text(x, middle, text, ha="center", va="center", color=ink, fontsize=11)
+        else:
+            beside = max(middle, beside + _ROOM)
             axes.text(
-                x, bottom + 0.5 * height, f"{height:.0f}", ha="center", va="center",
-                color="white" if dark else style.INK, fontsize=11,
+                x + 0.5 * width, beside, f" {text}", va="center", color=_READABLE[colour],
+                fontsize=11, fontweight="bold",
             )  # fmt: skip
         bottom += height
 
 
-def _legend(figure: Figure, axes: Axes) -> None:
+def _legend(axes: Axes) -> None:
     """One entry per part, above the bars."""
     handles, names = axes.get_legend_handles_labels()
     unique = dict(zip(names, handles, strict=True))
     if unique:
         axes.legend(
             unique.values(), unique.keys(), loc="lower center", bbox_to_anchor=(0.5, 1.0),
-            ncols=len(unique), columnspacing=1.4, handlelength=1.2,
+            ncols=style.pick(len(unique), 2), columnspacing=1.4, handlelength=1.2,
         )  # fmt: skip

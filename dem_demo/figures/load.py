@@ -12,7 +12,6 @@ from contactlaw import load_signal
 from dem_demo import style
 from dem_demo.figures._labels import source
 from dem_demo.reader import Run
-from dem_demo.recorder import CONSTANT
 from dem_demo.report import label
 
 _SAMPLES = 1000  # at least, at a rate of 10^n per second: single impacts can be told apart
@@ -21,7 +20,7 @@ _SAMPLES = 1000  # at least, at a rate of 10^n per second: single impacts can be
 def draw(run: Run) -> Figure:
     """Draw a row per plate: the load over the whole run, and the hardest contact."""
     plates = run.scene.plates
-    constant = run.law == CONSTANT
+    constant = run.baseline
     rate = 10.0 ** math.ceil(math.log10(_SAMPLES / run.scene.duration))
     figure = style.figure(
         13.0,

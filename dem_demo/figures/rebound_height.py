@@ -7,16 +7,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from dem_demo import style
-from dem_demo.figures._labels import source, thickness_axis
-from dem_demo.measure import first_rebounds
+from dem_demo.figures._labels import ring, ringed, source, thickness_axis
+from dem_demo.measure import Rebounds, first_rebounds
 from dem_demo.reader import Run
-from dem_demo.recorder import CONSTANT
 from dem_demo.report import label
 
 
 def draw(run: Run) -> Figure:
     """Draw a column per plate; within it beads are sorted from slow to fast."""
-    constant = run.law == CONSTANT
+    constant = run.baseline
+    columns = [first_rebounds(run, n) for n in range(len(run.scene.plates))]
     figure = style.figure(
         10.5,
         6.2,
@@ -24,28 +24,31 @@ def draw(run: Run) -> Figure:
         if constant
         else "How high beads rebound depends on the plate and on speed",
         f"{source(run)}; first impact of each bead, in each column from slow (left) to fast "
-        "(right)",
+        f"(right){ringed(np.concatenate([far for _, _, far in columns]))}",
     )
     axes = figure.add_subplot()
     fastest = float(np.max(run.collisions["approach_speed"], initial=1.0))
-    for n in range(len(run.scene.plates)):
-        _column(axes, run, n, fastest)
+    for n, column in enumerate(columns):
+        _column(axes, run, n, column, fastest)
     _constant_line(axes, run)
     thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("rebound height / impact height  $v^2/2g$")
     axes.set_ylim(0.0, 1.05)
-    axes.legend(loc="lower right")
+    axes.legend(
+        loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=style.pick(3, 1), columnspacing=1.4
+    )
     return figure
 
 
-def _column(axes: Axes, run: Run, plate: int, fastest: float) -> None:
-    speed, ratio = first_rebounds(run, plate)
+def _column(axes: Axes, run: Run, plate: int, column: Rebounds, fastest: float) -> None:
+    speed, ratio, far = column
     first = plate == 0
     x = plate + 0.8 * (speed / fastest - 0.5)
     axes.scatter(
         x, ratio, s=16, color=style.BLUE, alpha=0.6, linewidths=0,
         label="measured in the run" if first else None,
     )  # fmt: skip
+    ring(axes, x, ratio, far)
     radius = run.scene.beads.radius
     v = np.linspace(0.02, 1.0, 100) * fastest
     x = plate + 0.8 * (v / fastest - 0.5)

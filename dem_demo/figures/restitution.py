@@ -11,33 +11,30 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from dem_demo import style
-from dem_demo.figures._labels import source
-from dem_demo.measure import on_plate
+from dem_demo.figures._labels import ring, ringed, source
+from dem_demo.measure import outside
 from dem_demo.reader import Run
-from dem_demo.recorder import CONSTANT
 from dem_demo.report import label
 
-_PER_ROW = 5
 _COLOURS = "cividis"
 
 
 def draw(run: Run) -> Figure:
     """Draw a panel per plate with a common scale."""
     plates = run.scene.plates
-    rows = math.ceil(len(plates) / _PER_ROW)
-    constant = run.law == CONSTANT
+    columns = min(style.pick(5, 2), len(plates))
+    rows = math.ceil(len(plates) / columns)
+    constant = run.baseline
     figure = style.figure(
         13.0,
-        1.6 + 3.8 * rows,
+        1.6 + style.pick(3.8, 2.6) * rows,
         f"One constant COR, {run.constant_cor:g}, misses every plate's curve"
         if constant
         else "The COR depends on thickness, bead size and speed",
         f"{source(run)}; points: impacts of the run, lines: model for the smallest, middle "
-        "and largest bead, triangle: yield speed",
+        f"and largest bead, triangle: yield speed{ringed(outside(run))}",
     )
-    grid = figure.subplots(
-        rows, min(_PER_ROW, len(plates)), sharex=True, sharey=True, squeeze=False
-    )
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     panels = list(grid.flat)
     radius = run.scene.beads.radius * 1e3
     colours = ScalarMappable(
@@ -64,10 +61,13 @@ def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
     for r in ends:
         colour = colours.to_rgba(r * 1e3)
         axes.plot(speed, run.model.restitution(speed, r, thickness), color=colour, linewidth=1.6)
-        yields = float(run.model.yield_speed(r, thickness))
-        at = run.model.restitution(yields, r, thickness)
-        axes.plot(yields, at, marker="v", color=colour, markersize=9, markeredgecolor="white")
-    rows = on_plate(run, plate)
+        yields = _yield_speed(run, r, thickness)
+        if yields <= speed[-1]:
+            at = run.model.restitution(yields, r, thickness)
+            axes.plot(yields, at, marker="v", color=colour, markersize=9, markeredgecolor="white")
+    here = run.modelled["plate"] == plate
+    rows = run.modelled[here]
+    ring(axes, rows["approach_speed"], rows["restitution"], outside(run)[here])
     axes.scatter(
         rows["approach_speed"],
         rows["restitution"],
@@ -77,6 +77,13 @@ def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
         alpha=0.8,
     )
     axes.set_xlim(0.0, 1.05 * _fastest(run))
+
+
+def _yield_speed(run: Run, radius: float, thickness: float) -> float:
+    try:
+        return float(run.model.yield_speed(radius, thickness))
+    except ValueError:  # so thin a plate that it is beyond the table; impacts need not be
+        return math.inf
 
 
 def _fastest(run: Run) -> float:

@@ -1,0 +1,70 @@
+"""What a constant COR would do instead: error of the energy with which each bead rebounds.
+
+One number for all plates is too high for the thin ones and too low for the thick ones; that the
+mean over all impacts is right does not help any of them. The comparison is per impact, so that
+nothing but the COR differs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+
+from dem_demo import style
+from dem_demo.figures._labels import ring, ringed, source, thickness_axis
+from dem_demo.measure import constant_beside_model, outside
+from dem_demo.reader import Run
+from dem_demo.report import label
+from dem_demo.scene import Floats
+
+_HALO = withStroke(linewidth=3.0, foreground="white")
+
+
+def draw(run: Run) -> Figure:
+    """Draw a column per plate; within it beads are sorted from slow to fast."""
+    constant, model = constant_beside_model(run)
+    error = 100.0 * ((constant / model) ** 2 - 1.0)
+    figure = style.figure(10.5, 6.2, _title(run, constant, error), _subtitle(run))
+    axes = figure.add_subplot()
+    for n in range(len(run.scene.plates)):
+        _column(axes, run, n, error)
+    axes.axhline(0.0, color=style.INK, linewidth=1.4)
+    thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
+    axes.set_ylabel("error of the rebound energy [%]")
+    return figure
+
+
+def _title(run: Run, constant: Floats, error: Floats) -> str:
+    if not error.size:
+        return "What a constant COR would do instead"
+    return (
+        f"One COR for all, {constant[0]:.2f}, gets the rebound energy wrong by "
+        f"{error.min():+.0f} to {error.max():+.0f} %"
+    )
+
+
+def _subtitle(run: Run) -> str:
+    which = "constant over model" if run.baseline else "the mean of all impacts, over the model"
+    return (
+        f"{source(run)}; {which}, for the same impacts, in each column from slow (left) to fast "
+        f"(right); bar: median{ringed(outside(run))}"
+    )
+
+
+def _column(axes: Axes, run: Run, plate: int, error: Floats) -> None:
+    here = run.modelled["plate"] == plate
+    if not here.any():
+        return
+    speed = run.modelled["approach_speed"]
+    x = plate + 0.8 * (speed[here] / speed.max() - 0.5)
+    colour = np.where(error[here] > 0.0, style.VERMILION, style.BLUE)
+    axes.scatter(x, error[here], s=16, c=list(colour), alpha=0.6, linewidths=0)
+    ring(axes, x, error[here], outside(run)[here])
+    middle = float(np.median(error[here]))
+    axes.hlines(middle, plate - 0.42, plate + 0.42, color=style.INK, linewidth=2.5)
+    axes.annotate(
+        f"{middle:+.0f} %", (plate + 0.42, middle), xytext=(0, 3), textcoords="offset points",
+        ha="right", va="bottom", fontweight="bold", path_effects=[_HALO],
+    )  # fmt: skip

@@ -1,0 +1,200 @@
+"""index.html: one page with all that a rain has to show, which needs no other file and no network.
+
+``page.html`` is its frame, ``page.css`` its look, and ``player.js`` moves the beads.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import importlib
+import json
+import math
+from collections.abc import Mapping
+from importlib import resources
+from string import Template
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
+from numpy.typing import NDArray
+
+from dem_demo import figures, paths
+from dem_demo.figures import _rain
+from dem_demo.measure import PlateRow, constant_beside_model, limits, plate_rows, restitution_range
+from dem_demo.reader import Run
+from dem_demo.report import label, progress, title
+
+_SAMPLES = 96  # of a contact's force
+_FIELDS = ("start", "end", "x", "y", "u", "v", "fall", "restitution", "other_v", "outside")
+
+
+def page(run: Run, pictures: Mapping[str, figures.Picture]) -> str:
+    """Write the page of a run.
+
+    Parameters
+    ----------
+    run : Run
+        The run, as read from its file.
+    pictures : mapping of Picture
+        Figures by name; those that are missing are left out.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    first, second = title(run)
+    return _text("page.html").substitute(
+        style=_text("page.css").template,
+        script=_text("player.js").template,
+        data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
+        what=html.escape(first),
+        how=html.escape(second),
+        partial=_partial(run),
+        sample=_sample(run),
+        other=_other(run),
+        rows="".join(_row(row) for row in plate_rows(run)),
+        limits=_limits(run),
+        figures="".join(_figure(*item) for item in pictures.items()),
+        command=html.escape(run.command),
+        made=_made(run),
+    )
+
+
+def _text(name: str) -> Template:
+    return Template((resources.files(__name__) / name).read_text(encoding="utf-8"))
+
+
+def _sample(run: Run) -> str:
+    every, shown = run.scene.beads.radius.size, paths.drawn(run).size
+    return f" {shown} of the {every} beads are shown." if shown < every else ""
+
+
+def _data(run: Run) -> dict[str, object]:
+    """Collect what the player draws, in metres and seconds."""
+    made = paths.pieces(run)
+    columns = [run.scene.beads.radius[made["bead"]], *(made[name] for name in _FIELDS)]
+    low, high = restitution_range(run)
+    map_ = colormaps["viridis"]
+    return {
+        "fields": ["radius", *_FIELDS],
+        "pieces": base64.b64encode(np.column_stack(columns).astype("<f4").tobytes()).decode(),
+        "window": _rain.window(run.scene),
+        "duration": float(run.time[-1]) if run.time.size else 0.0,
+        "magnified": _rain.MAGNIFIED,
+        "exposure": _rain.EXPOSURE,
+        "plates": [
+            {
+                "x0": plate.x0,
+                "x1": plate.x1,
+                "y": plate.y,
+                "depth": _rain.drawn_depth(plate.thickness),
+                "label": label(plate.thickness),
+            }
+            for plate in run.scene.plates
+        ],
+        "range": [low, high],
+        "colours": [to_hex(map_(x)) for x in np.linspace(0.0, 1.0, 33)],
+        "hits": [hit for n in range(len(run.scene.plates)) if (hit := _hardest(run, n))],
+    }
+
+
+def _hardest(run: Run, plate: int) -> dict[str, object] | None:
+    """Describe the hardest contact on a plate, and how its bending wave spreads."""
+    rows = run.modelled
+    here = np.flatnonzero(rows["plate"] == plate)
+    if not here.size:
+        return None
+    n = here[np.argmax(rows["peak_force"][here])]
+    row, thickness = rows[n], run.scene.plates[plate].thickness
+    radius, speed = float(run.scene.beads.radius[row["bead"]]), float(row["approach_speed"])
+    contact = run.model.force_history(speed, radius, thickness, samples=_SAMPLES)
+    constant, model = (float(cor[n]) for cor in constant_beside_model(run))
+    material = run.scene.plate_material
+    # Kirchhoff's plate: it spreads by sqrt(D/(rho H)), with D/(rho H) = E H^2/(12 rho (1 - nu^2))
+    stiffness = material.youngs_modulus / (12.0 * material.density)
+    spread = math.sqrt(stiffness / (1.0 - material.poissons_ratio**2)) * min(thickness, 1.0)
+    return {
+        "label": label(thickness),
+        "thickness": min(thickness, 1.0),
+        "speed": speed,
+        "radius": radius,
+        "duration": float(contact.time[-1]),
+        "force": _rounded(contact.force),
+        "compression": _rounded(contact.compression),
+        "displacement": _rounded(contact.plate_displacement),
+        "spread": spread,
+        "model": model,
+        "constant": constant,
+    }
+
+
+def _rounded(values: NDArray[np.float64]) -> list[float]:
+    return [float(f"{value:.4g}") for value in values]
+
+
+def _other(run: Run) -> str:
+    """Name the COR that the rings follow."""
+    if run.baseline:
+        return "where contactlaw would send them"
+    constant = constant_beside_model(run)[0]
+    return f"where one constant COR, {constant[0]:.2f}, would send them" if constant.size else ""
+
+
+def _partial(run: Run) -> str:
+    if not run.reason:
+        return ""
+    return (
+        f"<p class='partial'><b>Partial: {html.escape(progress(run))}.</b> "
+        f"{html.escape(run.reason)}</p>"
+    )
+
+
+def _row(row: PlateRow) -> str:
+    cells = [("plate", label(row.thickness)), ("impacts", f"{row.impacts}")]
+    if row.impacts:
+        cells += [
+            ("mean speed", f"{row.speed:.2f} m/s"),
+            ("mean COR", f"{row.restitution:.3f}"),
+            ("COR from, to", f"{row.lowest:.3f} &ndash; {row.highest:.3f}"),
+            *(
+                (name, "&ndash;" if math.isnan(share) else f"{share:.1%}")
+                for name, share in zip(
+                    ("kept", "wave", "plastic", "other"), row.shares, strict=True
+                )
+            ),
+            ("outside limits", f"{row.outside}"),
+        ]
+    return "<tr>" + "".join(f"<td data-name='{name}'>{text}</td>" for name, text in cells) + "</tr>"
+
+
+def _limits(run: Run) -> str:
+    found = limits(run)
+    if not found:
+        return "<p>All impacts on plates are inside every limit of the model.</p>"
+    rows = "".join(
+        f"<dt>{limit.impacts} {html.escape(limit.name)}</dt><dd>{html.escape(limit.meaning)}</dd>"
+        for limit in found
+    )
+    return (
+        "<p>Impacts outside a limit of the model are counted here, and ringed in the animation and "
+        f"in the figures. Their numbers deserve less trust.</p><dl>{rows}</dl>"
+    )
+
+
+def _figure(name: str, picture: figures.Picture) -> str:
+    caption, _, rest = str(figures.module(name).__doc__).strip().partition("\n\n")
+    wide, narrow = (
+        f"data:image/png;base64,{base64.b64encode(png).decode('ascii')}" for png in picture
+    )
+    text, more = (html.escape(" ".join(part.split())) for part in (caption, rest))
+    return (
+        f"<figure id='{name}'><picture><source media='(max-width: 640px)' srcset='{narrow}'>"
+        f"<img alt='{text}' src='{wide}'></picture><figcaption>{text} {more}</figcaption></figure>"
+    )
+
+
+def _made(run: Run) -> str:
+    versions = ", ".join(f"{name} {text}" for name, text in sorted(run.versions.items()))
+    return html.escape(f"{run.created}; {versions}")

@@ -1,0 +1,98 @@
+"""The page of a rain: whole in one file, and in a browser what it should be."""
+
+import re
+
+import pytest
+from browser import CHROMIUM, browser
+
+from dem_demo import cli, paths
+from dem_demo.reader import read
+
+RAIN = ["rain", "--beads", "60", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.4"]
+RAIN += ["--law", "myc"]
+PICTURE = "document.getElementById('rain').toDataURL()"
+CONTACT = "document.getElementById('contact').toDataURL()"
+# Elements that reach beyond the screen, and what would have to be scrolled sideways.
+WIDE = """[...document.querySelectorAll("*")]
+  .filter((e) => e.getBoundingClientRect().right > innerWidth + 0.5
+              || e.getBoundingClientRect().left < -0.5 || e.scrollWidth > innerWidth)
+  .map((e) => e.outerHTML.slice(0, 80))"""
+
+
+@pytest.fixture(scope="module", params=[[], ["--constant-cor", "0.9"]], ids=["model", "baseline"])
+def folder(request, tmp_path_factory):
+    out = tmp_path_factory.mktemp("page") / "out"
+    assert cli.main([*RAIN, *request.param, "--out", str(out)]) == 0
+    return out
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    if CHROMIUM is None:
+        pytest.skip("needs Chromium: apt-get install chromium")
+    with browser(tmp_path_factory.mktemp("profile")) as page:
+        yield page
+
+
+def test_the_page_needs_nothing_else_and_is_small(folder):
+    text = (folder / "index.html").read_text()
+    assert len(text.encode()) < 5e6
+    assert (folder / "rain.gif").stat().st_size < 5e6
+    sources = re.findall(r"(?:src|href|srcset)=['\"]([^'\"]*)", text)
+    assert sources
+    assert all(source.startswith("data:") for source in sources)
+    assert "url(" not in text
+    assert "http:" not in text and "https:" not in text
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_page_fits_the_screen_and_moves(folder, page, width):
+    page.complaints.clear()
+    page.open(folder / "index.html", width)
+    assert page.value(WIDE) == []
+    assert page.wait_for_change(PICTURE)
+    assert page.wait_for_change(CONTACT)
+    assert page.value("document.getElementById('play').textContent") == "Pause"
+    page.value("document.getElementById('play').click()")
+    assert page.value(PICTURE) == page.value(PICTURE)
+    page.value("document.getElementById('others').click()")
+    for button in range(3):
+        page.value(f"document.getElementById('plates').children[{button}].click()")
+        assert page.value("document.getElementById('hit').textContent").startswith("The hardest")
+    assert page.value(WIDE) == []
+    assert page.complaints == []
+
+
+def test_nothing_moves_for_those_who_prefer_that(folder, page):
+    page.complaints.clear()
+    page.open(folder / "index.html", 390, prefers_reduced_motion="reduce")
+    assert page.value("document.getElementById('play').textContent") == "Play"
+    assert page.value(PICTURE) == page.value(PICTURE)
+    page.value("document.getElementById('play').click()")
+    assert page.wait_for_change(PICTURE)
+    assert page.complaints == []
+
+
+def test_the_animation_goes_where_the_beads_went(folder):
+    """Its pieces of flight pass through every recorded frame."""
+    run = read(folder / "rain.h5")
+    made = paths.pieces(run)
+    seen = 0
+    for n, time in enumerate(run.time.tolist()):
+        now = paths.at(made, time + 1e-9)
+        where = run.position[n, now["bead"]]
+        flying = run.status[n, now["bead"]] == 1
+        assert flying.sum() == (run.status[n] == 1).sum()
+        off = abs(paths.places(now, time + 1e-9) - where)[flying]
+        assert off.max(initial=0.0) < 1e-4  # metres; a bead's radius is 5e-4 at least
+        seen += off.size
+    assert seen > 1000
+
+
+def test_a_page_of_an_empty_rain(tmp_path, page):
+    few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01"]
+    assert cli.main([*few, "--out", str(tmp_path)]) == 0
+    page.complaints.clear()
+    page.open(tmp_path / "index.html", 390)
+    assert page.value(WIDE) == []
+    assert page.complaints == []
