@@ -5,7 +5,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --ed
 
 .PHONY: demo test lint package validation bench clean
 
-demo: .venv/demo.done  ## rain beads on thin plates; figures and data in rain/
+demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
 
 test: .venv/test.done  ## run the tests

@@ -16,13 +16,11 @@ def complaint(error: OSError) -> str:
     Examples
     --------
     >>> complaint(OSError(errno.ENOSPC, "No space left on device"))
-    'the disk is full (No space left on device): free some of it, or take a folder elsewhere (--out)'
+    'the disk is full (No space left on device): free some of it, or name another --out'
     """
     if error.errno not in _FULL:
         return str(error)
-    return (
-        f"the disk is full ({error.strerror}): free some of it, or take a folder elsewhere (--out)"
-    )
+    return f"the disk is full ({error.strerror}): free some of it, or name another --out"
 
 
 class Disk:

@@ -37,7 +37,7 @@ _SETTINGS: dict[Any, Any] = {
 }
 
 
-Number = TypeVar("Number", int, float)
+Choice = TypeVar("Choice")
 
 NARROW = 6.0  # inches: the width of a figure that is read on a phone
 _narrow: ContextVar[bool] = ContextVar("narrow", default=False)
@@ -60,8 +60,8 @@ def applied(*, narrow: bool = False) -> Iterator[None]:
         _narrow.reset(before)
 
 
-def pick(wide: Number, narrow: Number) -> Number:
-    """Choose a number, for a screen or for a phone."""
+def pick(wide: Choice, narrow: Choice) -> Choice:
+    """Choose what suits a screen, or a phone."""
     return narrow if _narrow.get() else wide
 
 

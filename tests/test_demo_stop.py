@@ -19,7 +19,7 @@ SMALL = ["rain", "--beads", "40", "--plates", "0.5e-3,1e-3,inf", "--duration", "
 SMALL += ["--law", "myc"]
 FILES = {"rain.h5", "summary.txt", "index.html", "rain.gif"}
 FILES |= {f"{name}.png" for name in figures.names()}
-LONG = ["rain", "--beads", "3000", "--duration", "20", "--law", "myc"]  # nobody waits for its end
+LONG = ["rain", "--beads", "1000", "--duration", "6", "--law", "myc"]  # nobody waits for its end
 
 
 def names(folder):
@@ -33,7 +33,7 @@ def start(argv, folder, **more):
     )
 
 
-def wait_for_a_record(folder, size=100_000):
+def wait_for_a_record(folder, size=400_000):
     """Until it rains; gives the file that is being written."""
     end = time.monotonic() + 120
     while time.monotonic() < end:
@@ -58,11 +58,11 @@ def test_an_interrupt_in_the_middle_keeps_what_has_been_computed(number, status,
     assert run.reason == f"interrupted by {number.name}"
     last = errors.splitlines()[-1]
     assert last.startswith("dem-demo: partial, ")
-    assert last.endswith(f" of 20 s: {run.reason}")
+    assert last.endswith(f" of 6 s: {run.reason}")
     assert "Written to out" in output.splitlines()[-1]
     assert names(tmp_path) == {"out"}
     assert names(tmp_path / "out") == FILES
-    assert 0 < run.time.size < 4_000
+    assert 0 < run.time.size < 1_200
     assert run.collisions.size > 0
     for file in ("summary.txt", "index.html"):
         assert run.reason in (tmp_path / "out" / file).read_text()
@@ -148,15 +148,12 @@ def test_an_impact_outside_the_table_names_what_would_help(tmp_path, capsys):
 
 @pytest.mark.parametrize("sphere", cl.materials())
 def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, tmp_path, monkeypatch, capsys):
-    """On glass, of polymers too; only the softest, PTFE, is beyond the table at 15 m/s."""
+    """On glass, at up to 15 m/s."""
     if sphere != "glass":  # figures and page of two bodies that do not yield; the rest is quicker
         monkeypatch.setattr("dem_demo.products.make", lambda run, folder: {})
     few = ["rain", "--law", "fem", "--beads", "15", "--duration", "0.2", "--plates", "1e-3,3e-3"]
     few += ["--sphere", sphere, "--out", str(tmp_path / "out")]
-    assert cli.main(few) == (1 if sphere == "ptfe" else 0), capsys.readouterr().err
-    if sphere == "ptfe":
-        assert "--outside solve" in capsys.readouterr().err
-        assert cli.main([*few, "--outside", "solve"]) == 0
+    assert cli.main(few) == 0, capsys.readouterr().err
     run = read(tmp_path / "out" / "rain.h5")
     assert run.law == "fem"
     assert run.collisions.size > 0
@@ -211,7 +208,7 @@ def test_a_full_disk_keeps_what_fits(tmp_path):
 
 def test_files_that_may_not_grow_keep_what_fits(tmp_path):
     def limit():
-        resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
 
     environment = {**os.environ, "CONTACTLAW_NO_CACHE": "1"}
     process = start([*LONG, "--out", "out"], tmp_path, preexec_fn=limit, env=environment)

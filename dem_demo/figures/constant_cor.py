@@ -41,15 +41,19 @@ def _title(run: Run, constant: Floats, error: Floats) -> str:
         return "What a constant COR would do instead"
     return (
         f"One COR for all, {constant[0]:.2f}, gets the rebound energy wrong by "
-        f"{error.min():+.0f} to {error.max():+.0f} %"
+        f"{_signed(error.min())} to {_signed(error.max())}"
     )
 
 
+def _signed(percent: float) -> str:
+    return f"{percent:+.0f} %".replace("-", "\N{MINUS SIGN}")
+
+
 def _subtitle(run: Run) -> str:
-    which = "constant over model" if run.baseline else "the mean of all impacts, over the model"
+    which = "the run" if run.baseline else "the mean of all impacts"
     return (
-        f"{source(run)}; {which}, for the same impacts, in each column from slow (left) to fast "
-        f"(right); bar: median{ringed(outside(run))}"
+        f"{source(run)}; {which} against the model for the same impacts, in each column from slow "
+        f"(left) to fast (right); bar: median{ringed(outside(run))}"
     )
 
 
@@ -65,6 +69,6 @@ def _column(axes: Axes, run: Run, plate: int, error: Floats) -> None:
     middle = float(np.median(error[here]))
     axes.hlines(middle, plate - 0.42, plate + 0.42, color=style.INK, linewidth=2.5)
     axes.annotate(
-        f"{middle:+.0f} %", (plate + 0.42, middle), xytext=(0, 3), textcoords="offset points",
+        _signed(middle), (plate + 0.42, middle), xytext=(0, 3), textcoords="offset points",
         ha="right", va="bottom", fontweight="bold", path_effects=[_HALO],
     )  # fmt: skip

@@ -1,4 +1,8 @@
-"""Where the energy of the impacts went, per plate."""
+"""Where the energy of the impacts went, per plate.
+
+A thin plate's bending wave carries energy away for good; a thick plate hardly bends, and what is
+lost on it goes into plastic flow where the bead touches.
+"""
 
 from __future__ import annotations
 

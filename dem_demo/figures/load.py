@@ -1,4 +1,7 @@
-"""What a force sensor under each plate would see."""
+"""What a force sensor under each plate would see.
+
+Left the load over time, right the force within the hardest contact, which lasts some microseconds.
+"""
 
 from __future__ import annotations
 

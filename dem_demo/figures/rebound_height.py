@@ -1,4 +1,7 @@
-"""How high beads rebound, measured on their flight, per plate."""
+"""How high beads rebound, measured on their flight, per plate.
+
+One COR for all would put all of them on one level line.
+"""
 
 from __future__ import annotations
 

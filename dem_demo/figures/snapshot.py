@@ -27,6 +27,8 @@ def draw(run: Run) -> Figure:
     axes = figure.add_subplot()
     picture = Picture(axes, run, made)
     picture.show(time)
-    bar = figure.colorbar(picture.circles, ax=axes, pad=0.01, fraction=0.03)
+    bar = figure.colorbar(
+        picture.circles, ax=axes, location=style.pick("right", "bottom"), pad=0.02, fraction=0.03
+    )
     bar.set_label("COR of the last impact")
     return figure

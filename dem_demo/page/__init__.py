@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import base64
 import html
-import importlib
 import json
 import math
 from collections.abc import Mapping
@@ -58,6 +57,8 @@ def page(run: Run, pictures: Mapping[str, figures.Picture]) -> str:
         limits=_limits(run),
         figures="".join(_figure(*item) for item in pictures.items()),
         command=html.escape(run.command),
+        law=html.escape(run.law),
+        source=html.escape(run.model.force_law.source),
         made=_made(run),
     )
 
@@ -157,7 +158,7 @@ def _row(row: PlateRow) -> str:
         cells += [
             ("mean speed", f"{row.speed:.2f} m/s"),
             ("mean COR", f"{row.restitution:.3f}"),
-            ("COR from, to", f"{row.lowest:.3f} &ndash; {row.highest:.3f}"),
+            ("COR range", f"{row.lowest:.3f} &ndash; {row.highest:.3f}"),
             *(
                 (name, "&ndash;" if math.isnan(share) else f"{share:.1%}")
                 for name, share in zip(
