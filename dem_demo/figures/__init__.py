@@ -23,8 +23,8 @@ def names() -> list[str]:
 
     Examples
     --------
-    >>> names()
-    ['energy', 'load', 'rebound_height', 'restitution', 'snapshot']
+    >>> "energy" in names()
+    True
     """
     return sorted(m.name for m in pkgutil.iter_modules(__path__) if not m.name.startswith("_"))
 
