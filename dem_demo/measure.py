@@ -107,8 +107,8 @@ def model_shares(run: Run, plate: int) -> Shares:
 def constant_beside_model(run: Run) -> tuple[Floats, Floats]:
     """Give two CORs for each impact in `Run.modelled`: one for all, and the model's.
 
-    The constant is that of the baseline, or else the best that one could type in: the mean over all
-    impacts of the run.
+    The constant is that of the baseline, or else the mean over all impacts of the run, which nobody
+    would know beforehand.
     """
     rows = run.modelled
     own = rows["restitution"].astype(float)
