@@ -42,9 +42,10 @@ def main(beads=20, duration=0.4):
     found = impacts.collisions()
     for n, thickness in enumerate(WALLS):
         hits = found[found["plate"] == n]
+        cor, speed = hits["restitution"], hits["approach_speed"].mean()
         print(
-            f"{1e3 * thickness:.0f} mm: {hits.size} impacts at {hits['approach_speed'].mean():.2f} "
-            f"m/s on average, COR {hits['restitution'].min():.3f} to {hits['restitution'].max():.3f}"
+            f"{1e3 * thickness:.0f} mm: {hits.size} impacts at {speed:.2f} m/s on average, "
+            f"COR {cor.min():.3f} to {cor.max():.3f}"
         )
     return found
 

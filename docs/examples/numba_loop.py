@@ -1,7 +1,7 @@
 """A bead that bounces on a thin plate, in a compiled loop of one's own.
 
-``model.kernel`` is a numba-jitted function of speed, radius and thickness [m/s, m, m] that gives the
-COR; C and C++ codes take ``model.address``, a pointer to the same function.
+``model.kernel`` is a numba-jitted function of speed, radius and thickness [m/s, m, m] that gives
+the COR; C and C++ codes take ``model.address``, a pointer to the same function.
 """
 
 import numba
