@@ -17,10 +17,10 @@ from validation.fem.acceptance import TARGETS, Errors, Member, Row
 # What was measured, one line a row: how many impacts there are, how many carry a flag of accuracy,
 # how many are beyond a bound without one, the shares within each bound, and the rms error in COR.
 MEASURED = {
-    "paper": (112, 0, 10, (0.946, 0.964, 0.991, 0.991), 0.00404),
-    "kept out": (80, 0, 1, (0.9875, 1.0, 1.0, 1.0), 0.00886),
+    "paper": (112, 14, 0, (0.973, 0.973, 0.991, 0.982), 0.0119),
+    "kept out": (80, 0, 3, (0.975, 0.975, 1.0, 0.9875), 0.00761),
 }
-HOLDS = {"paper": False, "kept out": False}
+HOLDS = {"paper": True, "kept out": False}
 MOST_FLAGGED = 0.1  # of everyday impacts
 
 
