@@ -115,6 +115,8 @@ def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path):
         for path in (tmp_path / "rain", two_ranks[1].with_name("rain"))
     )
     assert {file.name for file in (tmp_path / "rain").iterdir()} == {
+        "index.html",
+        "rain.gif",
         "rain.h5",
         "rain.lammpstrj",
         "summary.txt",

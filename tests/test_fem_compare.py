@@ -1,4 +1,4 @@
-"""The stored finite elements beside the model; what the README says of them."""
+"""The stored finite elements beside the model; what the docs say of them."""
 
 import re
 import signal
@@ -19,7 +19,7 @@ from validation.fem.compare import force_at
 from validation.fem.impact import impact
 from validation.fem.studies import STUDIES
 
-README = (Path(__file__).parent.parent / "README.md").read_text()
+SAID = " ".join((Path(__file__).parent.parent / "docs/laws.md").read_text().split())
 
 
 @pytest.fixture(scope="module")
@@ -112,12 +112,12 @@ def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
 
 
 def test_discretisation_error():
-    """Estimated from three meshes and from the plate's far mesh; what the README says of it."""
+    """Estimated from three meshes and from the plate's far mesh; what the docs say of it."""
     found = compare.discretisation()
     assert all(off.max() < 0.007 for off in found.values())
     stated = re.search(
         r"error of (\S+) % in COR, (\S+) % in peak force, (\S+) % in contact time and (\S+) %",
-        README,
+        SAID,
     )
     for value, name in zip(stated.groups(), found, strict=True):
         assert float(value) == pytest.approx(100 * found[name].max(), abs=0.006), name
@@ -193,7 +193,7 @@ def test_impact_agrees_with_calculix():
         assert apart[size][2] < 0.015  # it comes in whole increments, of 0.009
     assert apart[0.03][0] < 0.01
     assert apart[0.03][0] < 0.5 * apart[0.06][0]
-    stated = re.search(r"within (\d\.\d), (\d\.\d) and (\d\.\d) %", " ".join(README.split()))
+    stated = re.search(r"within (\d\.\d), (\d\.\d) and (\d\.\d) %", SAID)
     assert [float(x) for x in stated.groups()] == [round(100 * x, 1) for x in apart[0.03]]
     # its force is all of the force, and changes the momentum of all of the sphere
     mass = 2 * np.pi * ours.system.mass[: plate.min()].sum()
@@ -296,7 +296,7 @@ def test_one_table_serves_every_pair_below_yield_only():
 
 
 def test_laws_of_metals_suit_steel():
-    """On thick plates and thin ones, as `Validity.OTHER_LAW` and the README say."""
+    """On thick plates and thin ones, as `Validity.OTHER_LAW` and the docs say."""
     case = compare.comparison("pairs")
     fast = np.isclose(case.speed_ratio, 7.0)
     steel = np.char.startswith(case.fem["sphere"].astype(str), "bearing")
@@ -310,7 +310,7 @@ def test_laws_of_metals_suit_steel():
 
 
 def test_the_law_has_to_suit_the_yield_strain():
-    """As `Validity.OTHER_LAW` and the README say."""
+    """As `Validity.OTHER_LAW` and the docs say."""
     rows = compare.by_strain(7.0)
     off = {
         name: np.array([one.laws[name] / one.fem - 1.0 for one in rows])
@@ -355,12 +355,12 @@ def test_friction_hardly_matters():
     assert (gained > 0.005).all() and (gained < 0.0075).all()
 
 
-def test_the_readme_states_what_was_measured(matrix):
+def test_the_docs_state_what_was_measured(matrix):
     largest, rms = 100 * compare.errors(matrix)["modified Zener"]
-    stated = re.search(r"within (\d\.\d) % of them \(rms (\d\.\d) %\)", README)
+    stated = re.search(r"within (\d\.\d) % of them \(rms (\d\.\d) %\)", SAID)
     assert [float(x) for x in stated.groups()] == [round(largest, 1), round(rms, 1)]
     pairs = compare.comparison("pairs")
     steel = np.char.startswith(pairs.fem["sphere"].astype(str), "bearing")
     fast = np.isclose(pairs.speed_ratio, 7.0)
     low = 1 - (pairs.model["restitution"] / pairs.fem["restitution"])[steel & fast]
-    assert f"COR is {100 * low.min():.0f} to {100 * low.max():.0f} % too low" in README
+    assert f"COR is {100 * low.min():.0f} to {100 * low.max():.0f} % too low" in SAID

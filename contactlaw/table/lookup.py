@@ -630,7 +630,7 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
         log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
             root = math.exp(0.2 * log_speed)
-            eta = _eta(plate, c_lam, root, ratio[n])
+            eta = _eta(plate, c_lam, root, ratio[n]) if plate.waves.bulk_factor > 0.0 else 0.0
             lam = _inelasticity(plate, c_lam, root, ratio[n], math.exp(eta))
             x = lam / (lam + table[STRETCH])
             if not x <= table[X_MAX]:

@@ -1,6 +1,6 @@
 """Fig. 15: the COR by finite elements, R/H 0.1 to 1.8, 0.3 to 7 V_Y0, beside the model.
 
-The modified Zener model is within 4.7 % of 64 impacts, 1.9 % rms; Zener's, which knows no yielding,
+The modified Zener model is within 4.6 % of 64 impacts, 1.9 % rms; Zener's, which knows no yielding,
 is up to 37 % high. On thin plates just above yield the model is highest over the finite elements.
 """
 
