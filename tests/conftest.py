@@ -1,11 +1,15 @@
 """Shared set-up; numba must find a fresh cache folder before anything imports it."""
 
 import os
+import signal
 import tempfile
 
 # A stale cache would let an old result pass; and the tests must not write into a user's folders.
 _CACHE = tempfile.TemporaryDirectory(prefix="contactlaw-numba-")
 os.environ["NUMBA_CACHE_DIR"] = _CACHE.name
+
+# A shell starts background jobs with Ctrl-C ignored, and so would be what the tests start.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import pytest  # noqa: E402
 
