@@ -19,11 +19,13 @@ lint: .venv/dev.done  ## check style and types
 package: .venv/dev.done  ## build the wheel and use it in an environment of its own
 	rm -rf dist
 	$(BIN)/python -m build --outdir dist
+	$(BIN)/twine check --strict dist/*
 	$(PYTHON) -m venv dist/env
 	dist/env/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
 	cd dist && env/bin/contactlaw cor --sphere gamma-alumina --plate glass \
 	  --radius 0.9e-3 --thickness 1e-3 --speed 12
 	cd dist && env/bin/contactlaw table check
+	awk '/^```python/ {on = 1; next} /^```/ {if (on) exit} on' README.md | dist/env/bin/python -W error -
 
 validation: .venv/validation.done  ## reproduce the paper; the report is validation/report/index.html
 	$(BIN)/python -m validation
