@@ -149,9 +149,8 @@ def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> t
     over = spring.mass / time
     lam = with_waves(
         spring.waves, spring.mobility * over, spring.transit / time,
-        spring.bulk * over / (time * time),
+        spring.bulk * over / (time * time), spring.ratio * (x - least),
     )  # fmt: skip
-    lam += spring.waves.beyond * spring.ratio * (x - least)
     return lam / over, more * more * math.sqrt(more)
 
 

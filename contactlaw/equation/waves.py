@@ -126,14 +126,15 @@ def near_field(waves: Waves, h: float) -> float:
 
 
 @kernel(inline=True)
-def with_waves(waves: Waves, thin: float, h: float, bulk: float) -> float:
+def with_waves(waves: Waves, thin: float, h: float, bulk: float, plastic: float) -> float:
     """Inelasticity lambda, all orders in.
 
-    From lambda of the thin plate, h for a loss-free contact, and the product of the first with the
-    square of the second, which stays finite on a half-space.
+    From lambda of the thin plate, h for a loss-free contact, the product of the first with the
+    square of the second, which stays finite on a half-space, and (R/H) (x - x_s) beyond yield.
     """
     longer = 1.0 / _lengthening(thin)
-    return thin * near_field(waves, h * longer) + waves.bulk_factor * bulk * (longer * longer)
+    far = waves.bulk_factor * bulk * (longer * longer)
+    return thin * near_field(waves, h * longer) + far + waves.beyond * plastic
 
 
 @kernel(cache=True)
@@ -152,8 +153,8 @@ def _fill(
         least = min(x[n], most[n])
         more = math.exp(stiffening(waves, ratio[n], least, thin[n], h[n]))
         stiffer[n] = more
-        lam[n] = with_waves(waves, thin[n] * more, h[n] * more, bulk[n] * (more * more * more))
-        lam[n] += waves.beyond * ratio[n] * (x[n] - least)
+        plastic, cube = ratio[n] * (x[n] - least), more * more * more
+        lam[n] = with_waves(waves, thin[n] * more, h[n] * more, bulk[n] * cube, plastic)
 
 
 def next_orders(

@@ -18,6 +18,7 @@ from contactlaw.physical.pair import Pair
 Array = NDArray[np.float64]
 
 _THINNEST = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
+_THINNEST_YIELDED = 1.4  # R/H for "fem"; the errors of everyday impacts are twice as large beyond
 _YIELDED = 2.0  # V0/V_Y0; our choice, between 1.5 and 3.5 of our finite elements
 _FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
 _SWIFTEST = 0.0131  # V0/sqrt(E*/rho1), 50 m/s for steel: "fem" is made of impacts up to there
@@ -47,7 +48,8 @@ class Validity(enum.IntFlag):
     """
 
     THIN_PLATE = 1
-    """The plate is thinner than R/1.8: its deflection is no longer small."""
+    """The plate is thinner than R/1.8: its deflection is no longer small. For "fem", thinner than
+    R/1.4 once a body yields."""
     FAST_IMPACT = 2
     """Faster than the impacts that the law was checked for: 7 times the yield speed, for "fem"
     0.0131 sqrt(E*/rho1), 50 m/s for steel."""
@@ -76,7 +78,7 @@ _FEM = "take law fem"
 # What a limit is, and what to do about it.
 _WORDS = {
     Validity.THIN_PLATE: (
-        "plate thinner than R/1.8, its deflection is no longer small",
+        "plate thinner than R/1.8 (law fem: R/1.4 once a body yields), its deflection is not small",
         "finite elements have a lower COR",
     ),
     Validity.FAST_IMPACT: (
@@ -132,6 +134,7 @@ def limits_in_words(flags: int) -> tuple[str, ...]:
 class Limits(NamedTuple):
     """What the limits of a pair and its law are, for kernels."""
 
+    slender: float  # R/H, of THIN_PLATE once a body yields
     slowness: float  # of the pressure wave in the plate [s/m]; 0 where no plate is too thick
     always: int  # flags of every impact
     yielded: int  # flags of an impact beyond `trusted`
@@ -156,7 +159,8 @@ def limits(pair: Pair, law: Law) -> Limits:
     }
     if law.waves:
         return Limits(
-            slowness=0.0, always=int(rate), yielded=0, trusted=0.0, fastest=0.0,
+            slender=_THINNEST_YIELDED, slowness=0.0, always=int(rate), yielded=0, trusted=0.0,
+            fastest=0.0,
             swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H is that of V0/sqrt(E*/rho1), times R
             deepest=law.range[1] * (law.scale or 0.0), **common,
         )  # fmt: skip
@@ -169,6 +173,7 @@ def limits(pair: Pair, law: Law) -> Limits:
     least, largest = law.yield_strains
     other = not (law.yields and least <= sphere / pair.sphere.youngs_modulus <= largest)
     return Limits(
+        slender=_THINNEST,
         slowness=slowness,
         always=int(rate | soft * Validity.SOFT_PLATE),
         yielded=int((other or soft) * Validity.OTHER_LAW),
@@ -212,7 +217,8 @@ def flags_of(
 ) -> int:
     """Flag an impact; scale is V0 T_H [m], compression and force the largest ones [m, N]."""
     flags = limits.always
-    if radius > _THINNEST * thickness:
+    thinnest = limits.slender if compression > limits.share * radius else _THINNEST
+    if radius > thinnest * thickness:
         flags |= _THIN_PLATE
     if thickness < math.inf and contact_time < _TRANSITS * thickness * limits.slowness:
         flags |= _THICK_PLATE

@@ -100,10 +100,10 @@ def _inelasticity(plate: Plate, c_lam: float, root: float, ratio: float, more: f
     if plate.waves.bulk_factor == 0.0:
         return c_lam * root * (ratio * ratio)
     slow = min(root, plate.saturated)
-    beyond = plate.waves.beyond * ratio * plate.reach * (root * root - slow * slow)
+    plastic = ratio * plate.reach * (root * root - slow * slow)
     root *= more
     thin, h = c_lam * root * (ratio * ratio), plate.transit * root
-    return with_waves(plate.waves, thin, h / ratio, c_lam * root * (h * h)) + beyond
+    return with_waves(plate.waves, thin, h / ratio, c_lam * root * (h * h), plastic)
 
 
 def lam_max(table: Array) -> float:

@@ -348,9 +348,5 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "edge": edge,
     "campaign_indentation": campaign.indentations,
     "campaign_impact": campaign.blows,
-    "everyday": census.everyday,
-    "everyday_2": census.everyday_2,
-    "everyday_3": census.everyday_3,
-    "everyday_4": census.everyday_4,
-    "kept_out": census.kept_out,
+    **{name: functools.partial(census.compute, name) for name in census.SEEDS},
 }

@@ -258,8 +258,8 @@ def _flags(
     """Limits of the model that an impact exceeds."""
     scale = speed * (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # V0 T_H
     limits = Limits(
-        plate.slowness, plate.always, plate.yielded, plate.trusted, plate.fastest, plate.swiftest,
-        plate.share, plate.deepest, plate.bending, plate.damage,
+        plate.slender, plate.slowness, plate.always, plate.yielded, plate.trusted, plate.fastest,
+        plate.swiftest, plate.share, plate.deepest, plate.bending, plate.damage,
     )  # fmt: skip
     return flags_of(limits, bead.r, plate.thickness, scale, contact_time, compression, force)
 
