@@ -23,6 +23,15 @@ def test_thin_plate(model):
     assert flags(model, thickness=R / 1.81) == Validity.THIN_PLATE
 
 
+def test_thin_plate_that_yields():
+    """For fem the limit is lower where a body yields, on this plate."""
+    steel = cl.ImpactModel(cl.Pair("bearing-steel-52100", "stainless-steel-304"), law="fem")
+    for thickness, elastic, plastic in ((R / 1.39, 0, 0), (R / 1.41, 0, 1), (R / 1.81, 1, 1)):
+        first = steel.yield_speed(R, thickness)
+        assert flags(steel, 0.99 * first, thickness=thickness) & Validity.THIN_PLATE == elastic
+        assert flags(steel, 1.01 * first, thickness=thickness) & Validity.THIN_PLATE == plastic
+
+
 def test_fast_impact(model):
     assert flags(model, speed=6.99 * model.pair.yield_speed) == Validity(0)
     assert flags(model, speed=7.01 * model.pair.yield_speed) == Validity.FAST_IMPACT

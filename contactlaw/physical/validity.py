@@ -14,6 +14,7 @@ from contactlaw.laws import Law
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.scaling import yield_share
 
 Array = NDArray[np.float64]
 
@@ -153,7 +154,8 @@ def limits(pair: Pair, law: Law) -> Limits:
     polymer = "polymer" in (pair.sphere.kind, pair.plate.kind)
     rate = polymer * Validity.RATE_DEPENDENT
     common = {
-        "share": pair.yield_share(),
+        # laws that differ in when they yield are held to one measure
+        "share": yield_share(pair, law) if law.waves else pair.yield_share(),
         "bending": _BENDING * plate,
         "damage": _damage(pair),
     }
