@@ -50,6 +50,7 @@ def kernel(
         # error_model "numpy": a division by zero gives inf, which the callers' range tests refuse;
         # the default raises, and a raise in nogil code is costly. Of fastmath only "contract",
         # which fuses a product with a sum: under all of it isnan(nan) is False.
+        _tell_apart(python_function)
         dispatcher: Any = numba.njit(
             error_model="numpy",
             nogil=True,
@@ -63,6 +64,19 @@ def kernel(
         return dispatcher  # type: ignore[no-any-return]
 
     return compiled if function is None else compiled(function)
+
+
+def _tell_apart(function: Callable[..., Any]) -> None:
+    """Name a kernel after the kernels that it was made with, as rates[_cubic].
+
+    Machine code knows it by its name, the types and a number that counts anew in each process. Two
+    of one name, one of them from another process's disk cache, may so be one to the linker, which
+    takes either for both.
+    """
+    made_with = (getattr(cell.cell_contents, "__name__", "") for cell in function.__closure__ or ())
+    if names := ", ".join(filter(None, made_with)):
+        function.__name__ += f"[{names}]"
+        function.__qualname__ += f"[{names}]"
 
 
 def switched_off() -> bool:

@@ -181,3 +181,57 @@ def test_two_processes_that_start_at_once_both_answer(tmp_path):
     assert before
     assert output(start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder))) == results[0]
     assert {path: path.stat().st_mtime_ns for path in kept.rglob("*.nbc")} == before  # all read
+
+
+TWINS = """
+import math
+from contactlaw import _jit
+
+def made_with(sign):
+    @_jit.kernel
+    def value(x):
+        y = x
+        {terms}
+        return sign(y)
+    return value
+
+@_jit.kernel
+def plus(y):
+    return y
+
+@_jit.kernel
+def minus(y):
+    return -y
+
+above, below = made_with(plus), made_with(minus)
+
+@_jit.kernel(cache=True)
+def first(x):
+    return above(x)
+
+@_jit.kernel(cache=True)
+def second(x):
+    return below(x)
+
+_jit.enable_caching()
+"""
+
+
+def test_kernels_of_one_name_stay_apart_in_the_code_of_several_processes(tmp_path):
+    """As legs of the equation are, each made of its own force by the same lines."""
+    terms = "\n        ".join(
+        "y += math.sin(y) * math.cos(y + x)" for _ in range(60)
+    )  # not inlined
+    (tmp_path / "twins.py").write_text(TWINS.format(terms=terms))
+    folder = {"CONTACTLAW_CACHE_DIR": str(tmp_path / "kept"), "PYTHONPATH": str(tmp_path)}
+    outputs = [
+        output(start(f"import twins; print({calls})", tmp_path, **folder))
+        for calls in (
+            "twins.first(0.1)",
+            "twins.second(0.1)",
+            "twins.first(0.1), twins.second(0.1)",
+        )
+    ]
+    one, other, *both = [float(word) for out, _ in outputs for word in out.split()]
+    assert one == -other
+    assert both == [one, other]
