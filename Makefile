@@ -9,7 +9,7 @@ demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
 
 test: .venv/test.done  ## run the tests
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
 
 lint: .venv/dev.done  ## check style and types
 	$(BIN)/ruff check .

@@ -5,8 +5,10 @@ import signal
 import tempfile
 
 # A stale cache would let an old result pass; and the tests must not write into a user's folders.
-_CACHE = tempfile.TemporaryDirectory(prefix="contactlaw-numba-")
-os.environ["NUMBA_CACHE_DIR"] = _CACHE.name
+# Workers of one run share theirs.
+if "PYTEST_XDIST_WORKER" not in os.environ:
+    _CACHE = tempfile.TemporaryDirectory(prefix="contactlaw-numba-")
+    os.environ["NUMBA_CACHE_DIR"] = _CACHE.name
 
 # A shell starts background jobs with Ctrl-C ignored, and so would be what the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
