@@ -83,7 +83,7 @@ def load_signal(
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
     >>> load = cl.load_signal([1e-4, 3e-4], [5.0, 8.0], 0.9e-3, 1e-3, model=model, rate=1e4)
     >>> load.force.round(3)
-    array([0.   , 0.256, 0.   , 0.408])
+    array([0.   , 0.255, 0.   , 0.404])
     """
     start, v, r, h, _ = broadcast(times=times, speed=speed, radius=radius, thickness=thickness)
     check(speed=v, radius=r, thickness=h)

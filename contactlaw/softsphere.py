@@ -451,7 +451,7 @@ def time_step(
     >>> from contactlaw.softsphere import time_step
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
     >>> f"{time_step(model, speed=10.0, radius=0.9e-3, thickness=1e-3):.1e} s"
-    '2.1e-07 s'
+    '2.0e-07 s'
     """
     error = number("error", error)
     if not 2e-5 <= error <= 1e-2:

@@ -165,7 +165,9 @@ def test_import_and_models_write_nothing_but_the_cache_of_the_compiler(tmp_path)
     code = "import contactlaw as cl"
     subprocess.run([sys.executable, "-c", code], check=True, env=environment)
     assert list(tmp_path.rglob("*")) == []
-    code += "; cl.ImpactModel(cl.Pair('gamma-alumina', 'glass')).restitution(5.0, 1e-3, 1e-3)"
+    code += (
+        "; cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc').restitution(5.0, 1e-3, 1e-3)"
+    )
     subprocess.run([sys.executable, "-c", code], check=True, env=environment)
     assert {path.name for path in tmp_path.iterdir()} == {"numba"}
 
@@ -175,7 +177,7 @@ import numpy as np
 import contactlaw as cl
 from contactlaw.equation import force, zener
 from contactlaw.softsphere import Contacts
-model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'))
+model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc')
 law = model.force_law.data
 print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0],
       force.loading(law, 2.5), zener.elastic_compression(force.HERTZ, 0.1, 1e-9)[1],
@@ -247,7 +249,7 @@ def test_every_source_has_its_part_in_the_name_of_the_cache(tmp_path, monkeypatc
 def test_a_full_disk_under_numbas_cache_costs_a_warning_only(tmp_path):
     code = (
         "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
-        "import contactlaw as cl; model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'))\n"
+        "import contactlaw as cl; model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc')\n"
         "print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0])"
     )
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}

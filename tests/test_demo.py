@@ -112,7 +112,7 @@ def test_each_collision_has_the_cor_of_the_model(run):
     pairs = rows[rows["other"] >= 0]
     bead = run.scene.sphere_material
     both = [
-        cl.restitution_sphere_sphere(bead, bead, v, radius[i], radius[j])
+        cl.restitution_sphere_sphere(bead, bead, v, radius[i], radius[j], law="myc")
         for v, i, j in zip(pairs["approach_speed"], pairs["bead"], pairs["other"], strict=True)
     ]
     np.testing.assert_allclose(pairs["restitution"], both, rtol=0, atol=1e-10)

@@ -93,7 +93,7 @@ def test_all_answers_without_the_compiler(tmp_path):
 
 REFUSALS = """
 import contactlaw as cl
-model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
 def refused(attempt):
     try:
         attempt()
@@ -124,7 +124,7 @@ def test_lammps_is_refused_in_one_line(tmp_path):
 
 FIRST = """
 import contactlaw as cl
-model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
 print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0])
 """
 HOMELESS = """

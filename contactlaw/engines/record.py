@@ -78,7 +78,7 @@ def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) 
     >>> rows = np.zeros(1, IMPACT)
     >>> fill(rows, model.lookup([5.0], radius=0.9e-3, thickness=1e-3), np.array([3.4e-5]))
     >>> f"{rows['peak_force'][0]:.1f} N, {rows['wave_energy'][0] * 1e6:.1f} uJ to the plate"
-    '9.7 N, 6.0 uJ to the plate'
+    '10.0 N, 6.5 uJ to the plate'
     """
     rows["contact_time"] = rebound.contact_time
     rows["peak_force"] = rebound.peak_force

@@ -30,8 +30,8 @@ from contactlaw.laws._law import Law
 
 __all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Unloading", "exact", "law", "names", "parameters"]
 
-DEFAULT = "myc"
-"""The law where none is named."""
+DEFAULT = "fem"
+"""The law where none is named; it holds what was asked of it in ``validation.fem.acceptance``."""
 
 _RANGES = {
     "modulus_ratio": (2.0, 1e6),

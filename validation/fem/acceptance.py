@@ -171,7 +171,7 @@ def solve(pair: cl.Pair, law: Law, speed: Array, radius: Array, thickness: Array
     >>> pair = cl.Pair("gamma-alumina", "glass")
     >>> v, r, h = np.array([12.0]), np.array([0.9e-3]), np.array([1e-3])
     >>> ours = solve(pair, law_of(pair, "myc"), v, r, h)
-    >>> bool(ours.restitution == cl.ImpactModel(pair).solve(v, r, h).restitution)
+    >>> bool(ours.restitution == cl.ImpactModel(pair, "myc").solve(v, r, h).restitution)
     True
     """
     contact = sphere_on_plate(pair, law, radius, thickness)
