@@ -49,6 +49,7 @@ def test_the_page_needs_nothing_else_and_is_small(folder):
 def test_the_page_fits_the_screen_and_moves(folder, page, width):
     page.complaints.clear()
     page.open(folder / "index.html", width)
+    assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
     assert page.value(WIDE) == []
     assert page.wait_for_change(PICTURE)
     assert page.wait_for_change(CONTACT)

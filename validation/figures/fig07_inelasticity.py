@@ -26,7 +26,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         6.2,
         "Elastic models hold below yield only",
         "COR against Zener's inelasticity; points: gamma-alumina on glass, R/H 0.05 to 2.2, "
-        "at multiples of V$_{Y0}$, modified Zener model; crosses: finite elements",
+        "at multiples of the yield speed V$_{Y0}$, modified Zener model; crosses: finite elements",
     )
     axes = figure.subplots()
     lam = np.linspace(0.0, 0.6, 241)

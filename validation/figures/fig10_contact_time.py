@@ -27,8 +27,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         11.0,
         6.0,
         "Plastic flow shortens the contact by a tenth at most",
-        "gamma-alumina of 0.9 mm radius on glass; along each line radius over thickness, R/H, goes "
-        "from 0.05 to 1.8",
+        "gamma-alumina of 0.9 mm radius on glass at multiples of the yield speed V$_{Y0}$; along "
+        "each line radius over thickness, R/H, goes from 0.05 to 1.8",
     )
     axes = figure.subplots()
     ratio = np.linspace(0.05, 1.8, 60)

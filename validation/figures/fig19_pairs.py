@@ -31,8 +31,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         13.0,
         5.8,
         "One table serves all pairs until they yield; steel then keeps more",
-        "three pairs with the same inelasticity at the yield speed, the plates of each in the "
-        f"order of the panels; {_style.RATIO}",
+        "points: finite elements of three pairs with the same inelasticity at the yield speed, "
+        f"plates in the order of the panels; {_style.RATIO}",
     )
     names = list(dict.fromkeys(_pair(case, n) for n in range(case.slenderness.size)))
     panels = figure.subplots(1, 3, sharey=True)
