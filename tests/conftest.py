@@ -12,6 +12,7 @@ os.environ["NUMBA_CACHE_DIR"] = _CACHE.name
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import pytest  # noqa: E402
+from browser import CHROMIUM, browser  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 
@@ -25,3 +26,12 @@ def pair():
 @pytest.fixture(scope="session")
 def model(pair):
     return cl.ImpactModel(pair, law="myc")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """A blank page in a browser."""
+    if CHROMIUM is None:
+        pytest.skip("needs Chromium: apt-get install chromium")
+    with browser(tmp_path_factory.mktemp("profile")) as page:
+        yield page

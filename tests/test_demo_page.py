@@ -3,7 +3,6 @@
 import re
 
 import pytest
-from browser import CHROMIUM, browser
 
 from dem_demo import cli, paths
 from dem_demo.reader import read
@@ -24,14 +23,6 @@ def folder(request, tmp_path_factory):
     out = tmp_path_factory.mktemp("page") / "out"
     assert cli.main([*RAIN, *request.param, "--out", str(out)]) == 0
     return out
-
-
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
-    if CHROMIUM is None:
-        pytest.skip("needs Chromium: apt-get install chromium")
-    with browser(tmp_path_factory.mktemp("profile")) as page:
-        yield page
 
 
 def test_the_page_needs_nothing_else_and_is_small(folder):

@@ -177,7 +177,7 @@ def _row(cells: Iterable[str], numbers: Iterable[str]) -> str:
 
 def _scores(title: str, found: Mapping[str, list[Score]]) -> str:
     """Set both laws beside each other."""
-    kinds = ("right", "rms error in COR", "largest")
+    kinds = ("right", "rms error", "largest error")
     heads = [title, *(f"<code>{law}</code>: {kind}#" for law in trust.LAWS for kind in kinds)]
     rows = []
     for name, scores in found.items():
@@ -287,13 +287,14 @@ def _number(value: float | None) -> str:
 
 def _claims(claims: tuple[Claim, ...]) -> str:
     rows = (
-        f"<tr><td>{html.escape(claim.where)}</td><td class='text'>{_formula(claim.statement)}"
-        f"<br><span class='note'>{_formula(claim.note)}</span></td>"
+        f"<tr><td>{html.escape(claim.where)}<br>{_pill(claim.verdict)}</td>"
+        f"<td class='text'>{_formula(claim.statement)}<br>"
+        f"<span class='note'>{_formula(claim.note)}</span></td>"
         f"<td class='n'>{_number(claim.printed)}</td><td class='n'>{_number(claim.ours)}</td>"
-        f"<td>{_formula(claim.tolerance)}</td><td>{_pill(claim.verdict)}</td></tr>"
+        f"<td>{_formula(claim.tolerance)}</td></tr>"
         for claim in claims
     )
-    heads = ("where", "claim", "printed#", "ours#", "agreement", "verdict")
+    heads = ("where, verdict", "claim", "printed#", "ours#", "agreement")
     return _table("claims of the paper", heads, rows)
 
 
