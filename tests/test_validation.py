@@ -355,6 +355,8 @@ def test_what_is_wrong_is_listed():
     assert (round(carbide.fem, 3), round(carbide.law, 3)) == (0.047, 0.039)
     assert carbide.beyond["COR"] == pytest.approx((carbide.law - carbide.fem) / 0.3)
     assert list(carbide.beyond) == ["COR", "contact time"]
+    alumina = next(one for one in listed if "alumina" in one.what)
+    assert list(alumina.beyond) == ["COR", "plastic share"]  # not the force, 3 % off of 4
 
 
 def test_a_law_without_answers_has_no_score():
