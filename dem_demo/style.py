@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -84,6 +85,18 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     )  # fmt: skip
     made.text(left, 1.0 - below / height, "\n".join(lines), fontsize=11.5, color=MUTED, va="top")
     return made
+
+
+def png(figure: Figure) -> bytes:
+    """Render a figure as a small file."""
+    from PIL import Image
+
+    whole, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(whole, format="png")
+    # 256 colours take a third of the room, and nobody sees it
+    reduced = Image.open(whole).convert("RGB").quantize(256, dither=Image.Dither.NONE)
+    reduced.save(small, "PNG", optimize=True)
+    return small.getvalue()
 
 
 def _wrapped(text: str, letters: float) -> list[str]:

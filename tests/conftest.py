@@ -14,6 +14,7 @@ if "PYTEST_XDIST_WORKER" not in os.environ:
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import pytest  # noqa: E402
+from browser import CHROMIUM, browser  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 
@@ -27,3 +28,12 @@ def pair():
 @pytest.fixture(scope="session")
 def model(pair):
     return cl.ImpactModel(pair, law="myc")
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory):
+    """A blank page in a browser."""
+    if CHROMIUM is None:
+        pytest.skip("needs Chromium: apt-get install chromium")
+    with browser(tmp_path_factory.mktemp("profile")) as page:
+        yield page

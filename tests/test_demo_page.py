@@ -3,7 +3,6 @@
 import re
 
 import pytest
-from browser import CHROMIUM, browser
 
 from dem_demo import cli, paths
 from dem_demo.reader import read
@@ -26,14 +25,6 @@ def folder(request, tmp_path_factory):
     return out
 
 
-@pytest.fixture(scope="module")
-def page(tmp_path_factory):
-    if CHROMIUM is None:
-        pytest.skip("needs Chromium: apt-get install chromium")
-    with browser(tmp_path_factory.mktemp("profile")) as page:
-        yield page
-
-
 def test_the_page_needs_nothing_else_and_is_small(folder):
     text = (folder / "index.html").read_text()
     assert len(text.encode()) < 5e6
@@ -49,6 +40,7 @@ def test_the_page_needs_nothing_else_and_is_small(folder):
 def test_the_page_fits_the_screen_and_moves(folder, page, width):
     page.complaints.clear()
     page.open(folder / "index.html", width)
+    assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
     assert page.value(WIDE) == []
     assert page.wait_for_change(PICTURE)
     assert page.wait_for_change(CONTACT)

@@ -1,4 +1,4 @@
-"""Reproduce the paper: ``python -m validation [--out DIR]``.
+"""Judge the model and reproduce the paper: ``python -m validation [--out DIR]``.
 
 What takes long to import is imported inside `_write`, where Ctrl-C is already caught.
 """
@@ -26,7 +26,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     parser = argparse.ArgumentParser(
         prog="python -m validation",
-        description="Reproduce the paper: its figures and numbers, and what holds of its claims.",
+        description="Say how right the model is, and reproduce the paper: its figures and numbers, "
+        "and what holds of its claims.",
     )
     parser.add_argument(
         "--out",
@@ -57,19 +58,20 @@ def _write(folder: Path) -> collections.Counter[str]:
     """Draw, judge and write; count the verdicts."""
     from tqdm import tqdm
 
+    from dem_demo.style import png
     from validation import figures
     from validation.claims import SECTIONS, of_section
     from validation.figures import _style
-    from validation.report import page, png
+    from validation.report import Picture, page
 
     drawn = []
     with _style.applied():
         for name in tqdm(figures.names(), "validation: figures", disable=None):
             module = figures.module(name)
             figure, numbers = module.draw()
-            image = png(figure)
-            (folder / f"{name}.png").write_bytes(image)
-            drawn.append((name, str(module.__doc__), numbers, image))
+            one = Picture(name, module.PART, str(module.__doc__), numbers, png(figure))
+            (folder / one.file).write_bytes(one.png)
+            drawn.append(one)
     sections = tqdm(SECTIONS, "validation: claims", disable=None)
     found = tuple(claim for section in sections for claim in of_section(section))
     (folder / "index.html").write_text(page(found, drawn), encoding="utf-8")

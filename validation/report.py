@@ -1,94 +1,260 @@
-"""The report: claims, figures, errata and derivations on one page."""
+"""The report: how right the laws are, finite elements, claims and figures of the paper.
+
+``page.html`` is the frame of its page, ``page.css`` the look.
+"""
 
 from __future__ import annotations
 
-import base64
 import datetime
 import html
-import io
 import re
+import struct
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from string import Template
+from typing import NamedTuple
 
 import markdown
-from matplotlib.figure import Figure
 
 import contactlaw as cl
+from contactlaw import Validity
+from validation import figures, trust
+from validation.bench import census
+from validation.fem import acceptance, compare
+from validation.fem.census import pairs
+from validation.trust import Score
 from validation.typeset import typeset
 from validation.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 
 _MANY = 20  # numbers of a figure, from which on they are folded away
-_DERIVATIONS = Path(__file__).parent / "derivations"
+_EACH = 100  # impacts of a pair in the census
+_FOLDER = Path(__file__).parent
+_DERIVATIONS = {
+    "errata": "errata",
+    "turning-point": "turning_point",
+    "fem-law": "fem_law",
+    "mobility": "mobility",
+}
 _COLOURS = {
-    HOLDS: "#009E73",
-    MISPRINT: "#D55E00",
-    LIMITED: "#B87E00",
-    FAILS: "#D55E00",
+    HOLDS: "#007A5A",
+    MISPRINT: "#B34E00",
+    LIMITED: "#8F6400",
+    FAILS: "#B34E00",
     OPEN: "#6E6E6E",
 }
-_STYLE = """
-body { font: 16px/1.5 system-ui, sans-serif; color: #222; max-width: 62rem; margin: 2rem auto;
-       padding: 0 1rem; }
-h1 { font-size: 1.7rem; line-height: 1.2; margin: 2.5rem 0 .5rem; }
-h2 { font-size: 1.2rem; margin: 2rem 0 .3rem; }
-nav a { margin-right: 1.2rem; } a { color: #0072B2; }
-img { max-width: 100%; border: 1px solid #eee; }
-figure { margin: 2rem 0; } figcaption { color: #444; max-width: 50rem; }
-table { border-collapse: collapse; font-size: .88rem; margin: .5rem 0; }
-th, td { text-align: left; padding: .3rem .6rem; border-bottom: 1px solid #e5e5e5;
-         vertical-align: top; }
-th { border-bottom: 2px solid #999; } td.n { text-align: right; font-variant-numeric: tabular-nums;
-     white-space: nowrap; }
-pre { background: #f6f6f6; padding: .6rem .9rem; overflow-x: auto; font-size: .86rem; }
-.verdict { color: white; border-radius: .7rem; padding: .05rem .55rem; white-space: nowrap;
-           font-size: .82rem; }
-.note { color: #555; }
-"""
+_NUMBER = " class='n'"
+_SIZE = "(size)"  # of the page, until that is known
 
 
-def png(figure: Figure) -> bytes:
-    """Render a figure."""
-    image = io.BytesIO()
-    figure.savefig(image, format="png")
-    return image.getvalue()
+class Picture(NamedTuple):
+    """A figure as the report has it."""
+
+    name: str
+    part: str  # of the report
+    caption: str
+    numbers: dict[str, float]
+    png: bytes
+
+    @property
+    def file(self) -> str:
+        """Name of the file beside the page."""
+        return f"{self.name}.png"
 
 
-def page(claims: tuple[Claim, ...], figures: list[tuple[str, str, dict[str, float], bytes]]) -> str:
+def page(claims: tuple[Claim, ...], pictures: Iterable[Picture]) -> str:
     """Write the page.
 
     Parameters
     ----------
     claims : tuple of Claim
         What `validation.claims.claims` returned.
-    figures : list of tuple
-        Name, caption, numbers and PNG of each.
+    pictures : iterable of Picture
+        Figures, which are files beside the page.
 
     Returns
     -------
     str
-        HTML that needs no other file.
+        HTML.
     """
-    today = datetime.datetime.now(datetime.UTC).date().isoformat()
-    parts = [
-        "<!doctype html><html lang='en'><head><meta charset='utf-8'>",
-        "<title>contactlaw: the paper, reproduced and corrected</title>",
-        f"<style>{_STYLE}</style></head><body>",
-        "<h1>The paper, reproduced and corrected</h1>",
-        f"<p>{_summary(claims)}</p>",
-        "<nav><a href='#claims'>Claims</a><a href='#figures'>Figures</a>"
-        "<a href='#errata'>Errata</a><a href='#turning-point'>Turning-point form</a>"
-        "<a href='#fem'>The law fem</a><a href='#mobility'>Mobility</a></nav>",
-        "<h1 id='claims'>Claims</h1>",
-        _claims(claims),
-        "<h1 id='figures'>Figures</h1>",
-        *(_figure(*one) for one in figures),
-        f"<div id='errata'>{_derivation('errata')}</div>",
-        f"<div id='turning-point'>{_derivation('turning_point')}</div>",
-        f"<div id='fem'>{_derivation('fem_law')}</div>",
-        f"<div id='mobility'>{_derivation('mobility')}</div>",
-        f"<p class='note'>contactlaw {cl.__version__}, {today}, python -m validation</p>",
-        "</body></html>",
-    ]
-    return "\n".join(parts)
+    pictures = tuple(pictures)
+    drawn = {
+        part: "".join(_figure(one) for one in pictures if one.part == part)
+        for part in (figures.PRACTICE, figures.FINITE_ELEMENTS, figures.PAPER)
+    }
+    words = {
+        "style": (_FOLDER / "page.css").read_text(encoding="utf-8"),
+        "size": _SIZE,
+        "count": f"{len(pictures)}",
+        "pictures": f"{1e-6 * sum(len(one.png) for one in pictures):.1f}",
+        **_practice(),
+        "figures_practice": drawn[figures.PRACTICE],
+        "mesh": _mesh(),
+        "figures_fem": drawn[figures.FINITE_ELEMENTS],
+        "summary": _summary(claims),
+        "claims": _claims(claims),
+        "figures_paper": drawn[figures.PAPER],
+        "derivations": "".join(_derivation(*one) for one in _DERIVATIONS.items()),
+        "version": cl.__version__,
+        "today": datetime.datetime.now(datetime.UTC).date().isoformat(),
+    }
+    frame = Template((_FOLDER / "page.html").read_text(encoding="utf-8"))
+    text = frame.substitute(words)
+    return text.replace(_SIZE, f"{1e-3 * len(text.encode()):.0f}")
+
+
+def _practice() -> dict[str, str]:
+    """Fill what people who simulate read."""
+    overall = trust.overall()
+    (everyday, others), (_, pair), _ = overall.values()
+    bounds = acceptance.TARGETS[trust.EVERYDAY].bounds
+    right = round(everyday.shares.restitution * everyday.answered)
+    wrong = round((1.0 - others.shares.restitution) * others.answered)
+    return {
+        "everyday": f"{right} of {everyday.impacts} everyday impacts that it was not made from "
+        f"have the COR of finite elements within {_percent(bounds.restitution)}; the root mean "
+        f"square error is {_percent(everyday.rms, 2)}.",
+        "pair": f"It is within {_percent(abs(pair.largest), 1)} of finite elements over "
+        f"{pair.impacts} impacts; the root mean square error is {_percent(pair.rms, 1)}. Law "
+        "<code>fem</code> has that pair, too.",
+        "others": f"Of the {everyday.impacts} everyday impacts it answers {others.answered}, and "
+        f"{wrong} of these are more than {_percent(bounds.restitution)} off; the root mean square "
+        f"error is {_percent(others.rms)}. All but {others.silent} of those beyond a bound carry a "
+        "flag that says so.",
+        "kept": f"{everyday.impacts}",
+        "overall": _scores("set of impacts", overall),
+        "shares": _shares(overall),
+        "bounds": _bounds(),
+        "where": _scores("everyday impacts", trust.where()),
+        "silent": f"{everyday.silent}",
+        "misses": _misses(),
+        "materials": _scores("bead on plate", trust.materials()),
+        **_census(),
+    }
+
+
+def _bounds() -> str:
+    words = []
+    for name, what in ((trust.EVERYDAY, "everyday impacts"), (trust.PAPER, "the other sets")):
+        bounds = acceptance.TARGETS[name].bounds
+        words.append(
+            f"for {what} {_percent(bounds.restitution)} in COR, {_percent(bounds.contact_time)} in "
+            f"contact time, {_percent(bounds.peak_force)} in peak force, and plastic work within "
+            f"{_percent(bounds.plastic_share)} of the initial energy"
+        )
+    return f"Bounds: {'; '.join(words)}."
+
+
+def _percent(share: float, digits: int = 0) -> str:
+    return f"{100.0 * share:.{digits}f} %"
+
+
+def _signed(share: float) -> str:
+    return f"{100.0 * share:+.1f} %".replace("-", "\N{MINUS SIGN}")
+
+
+def _table(about: str, heads: Iterable[str], rows: Iterable[str]) -> str:
+    """Make a table that scrolls where it is wider than the screen; heads of numbers end in #."""
+    head = "".join(
+        f"<th{_NUMBER if name.endswith('#') else ''}>{name.removesuffix('#')}</th>"
+        for name in heads
+    )
+    return _scrolled(about, f"<table><tr>{head}</tr>{''.join(rows)}</table>")
+
+
+def _scrolled(about: str, content: str) -> str:
+    label = html.escape(about, quote=True)
+    return f"<div class='wide' tabindex='0' role='region' aria-label='{label}'>{content}</div>"
+
+
+def _row(cells: Iterable[str], numbers: Iterable[str]) -> str:
+    return (
+        "<tr>"
+        + "".join(f"<td>{cell}</td>" for cell in cells)
+        + "".join(f"<td{_NUMBER}>{cell}</td>" for cell in numbers)
+        + "</tr>"
+    )
+
+
+def _scores(title: str, found: Mapping[str, list[Score]]) -> str:
+    """Set both laws beside each other."""
+    kinds = ("right", "rms error", "largest error")
+    heads = [title, *(f"<code>{law}</code>: {kind}#" for law in trust.LAWS for kind in kinds)]
+    rows = []
+    for name, scores in found.items():
+        cells = {law: ["refused", *[""] * (len(kinds) - 1)] for law in trust.LAWS}
+        for one in scores:
+            right = f"{one.right} of {one.answered}"
+            cells[one.law] = [right, _percent(one.rms, 1), _signed(one.largest)]
+        rows.append(_row((name,), (cell for law in trust.LAWS for cell in cells[law])))
+    return _table(f"laws beside finite elements, by {title}", heads, rows)
+
+
+def _shares(found: Mapping[str, list[Score]]) -> str:
+    fields = ("COR", "contact time", "peak force", "plastic work")
+    heads = ("within its bound", "law", *(f"{field}#" for field in fields))
+    rows = (
+        _row((name, f"<code>{one.law}</code>"), (_percent(share, 1) for share in one.shares))
+        for name, scores in found.items()
+        for one in scores
+    )
+    return _table("shares of impacts within each bound", heads, rows)
+
+
+def _misses() -> str:
+    rows = (
+        _row(
+            (
+                html.escape(one.what),
+                ", ".join(f"{name} {_signed(error)}" for name, error in one.beyond.items()),
+            ),
+            (f"{one.fem:.3f}", f"{one.law:.3f}"),
+        )
+        for one in trust.misses()
+    )
+    heads = ("beyond a bound of <code>fem</code>", "by", "COR by finite elements#", "by law fem#")
+    return _table("everyday impacts beyond a bound", heads, rows)
+
+
+def _census() -> dict[str, str]:
+    """Count what is answered and flagged."""
+    found = {law: census.count(law, _EACH, tables=False) for law in trust.LAWS}
+    rows = (
+        _row(
+            (f"<code>{law}</code>",),
+            (
+                _percent(share, 1)
+                for share in (one.refused, one.outside, one.inaccurate, one.damaging, one.inside)
+            ),
+        )
+        for law, one in found.items()
+    )
+    shares = ("refused", "outside its table", "accuracy in doubt", "may break or flow")
+    heads = ("law", *(f"{share}#" for share in shares), "inside every limit#")
+    flags = (
+        _row(
+            (f"<code>{flag.name}</code>", html.escape(cl.explain(flag)[0])),
+            (_percent(one.flags.get(flag, 0.0), 1) for one in found.values()),
+        )
+        for flag in Validity
+        if flag in Validity.ACCURACY & ~Validity.CLAMPED
+    )
+    return {
+        "census": f"{found['fem'].impacts}",
+        "pairs": f"{len(pairs())}",
+        "answers": _table("what is answered, by law", heads, rows),
+        "flags": _table(
+            "flags of accuracy", ("flag", "what it says", *(f"{law}#" for law in found)), flags
+        ),
+    }
+
+
+def _mesh() -> str:
+    error = {name: float(found.max()) for name, found in compare.discretisation().items()}
+    return (
+        "At 26 m/s, elements of a hundredth of the bead's radius leave an estimated error of "
+        f"{_percent(error['restitution'], 2)} in COR, {_percent(error['peak_force'], 2)} in peak "
+        f"force and {_percent(error['contact_time'], 2)} in contact time."
+    )
 
 
 def _summary(claims: tuple[Claim, ...]) -> str:
@@ -101,8 +267,7 @@ def _summary(claims: tuple[Claim, ...]) -> str:
         "restitution of an elastoplastic sphere impacting an elastic plate</i>, Int. J. Solids "
         "Struct. 222-223 (2021) 111036. Its equations, figures and numbers, computed again by "
         "contactlaw and, where the paper used ABAQUS, by finite elements of our own, which are "
-        f"stored. Figs. 3 to 10 are the paper's, the others ours. {len(claims)} claims; verdicts: "
-        f"{counts}. "
+        f"stored. {len(claims)} claims; verdicts: {counts}. "
         "The model itself stands; what is wrong is on paper: exponents, a factor, a slope."
     )
 
@@ -121,34 +286,43 @@ def _number(value: float | None) -> str:
 
 
 def _claims(claims: tuple[Claim, ...]) -> str:
-    rows = "".join(
-        f"<tr><td>{html.escape(claim.where)}</td><td>{_formula(claim.statement)}"
-        f"<br><span class='note'>{_formula(claim.note)}</span></td>"
+    rows = (
+        f"<tr><td>{html.escape(claim.where)}<br>{_pill(claim.verdict)}</td>"
+        f"<td class='text'>{_formula(claim.statement)}<br>"
+        f"<span class='note'>{_formula(claim.note)}</span></td>"
         f"<td class='n'>{_number(claim.printed)}</td><td class='n'>{_number(claim.ours)}</td>"
-        f"<td>{_formula(claim.tolerance)}</td><td>{_pill(claim.verdict)}</td></tr>"
+        f"<td>{_formula(claim.tolerance)}</td></tr>"
         for claim in claims
     )
-    heads = ("where", "claim", "printed", "ours", "agreement", "verdict")
-    head = "".join(f"<th>{name}</th>" for name in heads)
-    return f"<table><tr>{head}</tr>{rows}</table>"
+    heads = ("where, verdict", "claim", "printed#", "ours#", "agreement")
+    return _table("claims of the paper", heads, rows)
 
 
-def _figure(name: str, caption: str, numbers: dict[str, float], image: bytes) -> str:
-    data = base64.b64encode(image).decode("ascii")
-    title, _, text = _formula(" ".join(caption.split())).partition(": ")
-    rows = "".join(
-        f"<tr><td>{_formula(key)}</td><td class='n'>{_number(value)}</td></tr>"
-        for key, value in numbers.items()
+def _figure(picture: Picture) -> str:
+    title, _, text = _formula(" ".join(picture.caption.split())).partition(": ")
+    rows = (_row((_formula(key),), (_number(one),)) for key, one in picture.numbers.items())
+    table = _scrolled(f"numbers of {title}", f"<table>{''.join(rows)}</table>")
+    if len(picture.numbers) > _MANY:
+        table = f"<details><summary>{len(picture.numbers)} numbers</summary>{table}</details>"
+    first = picture.caption.split("\n\n")[0]  # what is drawn; what it shows comes after it
+    alt = re.sub("<[^>]*>", "", _formula(" ".join(first.split())))
+    width, height = struct.unpack(">II", picture.png[16:24])
+    image = (
+        f"<a href='{picture.file}'><img src='{picture.file}' alt='{html.escape(alt, quote=True)}' "
+        f"width='{width}' height='{height}' loading='lazy'></a>"
     )
-    table = f"<table>{rows}</table>"
-    if len(numbers) > _MANY:
-        table = f"<details><summary>{len(numbers)} numbers</summary>{table}</details>"
     return (
-        f"<figure id='{name}'><img alt='{title}' src='data:image/png;base64,{data}'>"
-        f"<figcaption><b>{title}</b>: {text}{table}</figcaption></figure>"
+        f"<figure id='{picture.name}'>{_scrolled(title, image)}"
+        f"<figcaption><b>{title}</b>: {text}</figcaption>{table}</figure>"
     )
 
 
-def _derivation(name: str) -> str:
-    text = (_DERIVATIONS / f"{name}.md").read_text(encoding="utf-8")
-    return typeset(markdown.markdown(text, extensions=["tables"]))
+def _derivation(anchor: str, name: str) -> str:
+    """Set a page of Markdown below the page's own headings."""
+    text = (_FOLDER / "derivations" / f"{name}.md").read_text(encoding="utf-8")
+    made = typeset(markdown.markdown(text, extensions=["tables"]))
+    made = re.sub(r"(</?h)([1-3])", lambda found: f"{found[1]}{int(found[2]) + 2}", made)
+    made = re.sub(
+        "<table>.*?</table>", lambda found: _scrolled("table", found[0]), made, flags=re.DOTALL
+    )
+    return f"<div id='{anchor}'>{made}</div>"

@@ -7,15 +7,11 @@ file.
 from __future__ import annotations
 
 import importlib
-import io
 import pkgutil
 from types import ModuleType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from dem_demo.reader import Run
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def names() -> list[str]:
@@ -58,16 +54,5 @@ def draw(name: str, run: Run) -> Picture:
     drawn = []
     for narrow in (False, True):
         with style.applied(narrow=narrow):
-            drawn.append(_png(module(name).draw(run)))
+            drawn.append(style.png(module(name).draw(run)))
     return Picture(*drawn)
-
-
-def _png(figure: Figure) -> bytes:
-    from PIL import Image
-
-    whole, small = io.BytesIO(), io.BytesIO()
-    figure.savefig(whole, format="png")
-    # 256 colours take a third of the room, and nobody sees it
-    reduced = Image.open(whole).convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    reduced.save(small, "PNG", optimize=True)
-    return small.getvalue()

@@ -128,6 +128,7 @@ def by_strain(speed_ratio: float) -> list[Yielded]:
                 name: paper.restitution(speed_ratio, paper.ETA, law)
                 for name, law in paper.all_laws(pair).items()
             }
+            cor["fem"] = float(by_fem(study)[n])
             found.append(Yielded(ratio, pair.plate.name, float(case.fem["restitution"][n]), cor))
     return sorted(found, key=lambda one: one.ratio)
 

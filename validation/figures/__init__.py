@@ -1,7 +1,8 @@
 """The paper's figures and the project's own: each file ``figNN_<topic>.py`` is one figure.
 
-It has a function ``draw() -> (Figure, numbers)``; its docstring is the caption, and the numbers,
-named, are what the tests assert and the report prints. To add a figure, add a file.
+It has a function ``draw() -> (Figure, numbers)``; its docstring is the caption, the numbers, named,
+are what the tests assert and the report prints, and `PART` is the part of the report that it is in.
+To add a figure, add a file.
 """
 
 from __future__ import annotations
@@ -9,6 +10,10 @@ from __future__ import annotations
 import importlib
 import pkgutil
 from types import ModuleType
+
+PRACTICE = "practice"  # for people who simulate
+FINITE_ELEMENTS = "finite elements"
+PAPER = "paper"
 
 
 def names() -> list[str]:

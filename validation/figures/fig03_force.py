@@ -12,10 +12,13 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.evidence import FASTEST_COMPRESSION
 from validation.fem import compare
 from validation.figures import _style
 from validation.paper import PAIR, all_laws, force, unloading
+
+PART = figures.PAPER
 
 _TOP = 5.0  # d_Y
 
@@ -27,7 +30,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         6.0,
         "Which law? They differ by a factor of three, and MYC has the force",
         "gamma-alumina on glass, compression and force in units of the yield of the MYC law; left: "
-        "loading and unloading from 5 d$_Y$, right: loading against finite elements",
+        "loading (thick) and unloading (thin) from 5 d$_Y$, right: loading against finite elements",
     )
     left, right = figure.subplots(1, 2, width_ratios=[1.35, 1.0])
     d = np.linspace(0.0, _TOP, 501)
@@ -44,15 +47,24 @@ def draw() -> tuple[Figure, dict[str, float]]:
     left.plot(way[::8], load[::8], "o", color=_style.INK, markersize=4.5, label="finite elements")
     left.set(xlim=(0, _TOP), ylim=(0, 17), xlabel="compression  d / d$_Y$")
     left.set_ylabel("force  F / F$_Y$")
+    _style.key(left, "thin: unloading", "-", 1.2)
     left.legend(loc="upper left")
     right.axhspan(-6, 6, color=_style.PALE, alpha=0.5, linewidth=0)
     right.axhline(0.0, color=_style.INK, linewidth=1)
-    for level, text in ((-64, "paper: -64 %"), (40, "paper: +40 %")):
+    for level, text in ((-64, "paper: \N{MINUS SIGN}64 %"), (40, "paper: +40 %")):
         right.axhline(level, color=_style.INK, linewidth=1.0, linestyle=":")
         right.text(0.43, level - 2, text, va="top", fontsize=10.5)
     right.text(0.43, 8, "paper: 6 %", va="bottom", fontsize=10.5)
     right.axvline(FASTEST_COMPRESSION, color=_style.MUTED, linewidth=1.0, linestyle=":")
-    right.text(4.5, -82, "7 V$_{Y0}$", fontsize=10.5, color=_style.MUTED, ha="right", va="bottom")
+    right.text(
+        4.5,
+        -83,
+        "reached at\n7 V$_{Y0}$",
+        fontsize=10.5,
+        color=_style.MUTED,
+        ha="right",
+        va="bottom",
+    )
     right.set_xscale("log")
     right.set_xticks([0.5, 1, 2, 5, 10, 30], ["0.5", "1", "2", "5", "10", "30"])
     right.minorticks_off()

@@ -12,8 +12,11 @@ from matplotlib.figure import Figure
 
 from contactlaw import turning_point
 from contactlaw.closed_form import elastic_compression
+from validation import figures
 from validation.figures import _style
 from validation.formulas import eq_6
+
+PART = figures.PAPER
 
 INTERCEPT = 1.25**-0.6
 
@@ -42,12 +45,12 @@ def draw() -> tuple[Figure, dict[str, float]]:
     )
     left.plot(lam, lam + INTERCEPT, color=_style.VERMILION, linewidth=2, label="Eq. 6, slope 1.00")
     left.plot(lam, quadratic, color=_style.GREEN, linewidth=2, label="derived slope + quadratic")
-    left.set(xlabel=r"inelasticity  $\lambda$", ylabel=r"$w_m^{-1.5}$", xlim=(0, 2))
+    left.set(xlabel=_style.INELASTICITY, ylabel=r"largest compression  $w_m^{-1.5}$", xlim=(0, 2))
     left.legend(loc="upper left")
     printed = eq_6(lam)
     right.plot(lam, 100 * (printed / exact - 1), color=_style.VERMILION, linewidth=2)
     right.plot(lam, 100 * (quadratic ** (-2 / 3) / exact - 1), color=_style.GREEN, linewidth=2)
-    right.set(xlabel=r"inelasticity  $\lambda$", ylabel=r"error of $w_m$  [%]", xlim=(0, 2))
+    right.set(xlabel=_style.INELASTICITY, ylabel=r"error of $w_m$  [%]", xlim=(0, 2))
     slope = float((lam * (exact**-1.5 - INTERCEPT)).sum() / (lam**2).sum())
     near = lam <= 0.6
     start = float(elastic_compression(1e-4)) ** -1.5 - INTERCEPT

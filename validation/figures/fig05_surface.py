@@ -10,10 +10,14 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw.closed_form import mueller, yield_speed_ratio
+from validation import figures
 from validation.figures import _style
 from validation.paper import ETA, FASTEST, THINNEST, impacts
 
+PART = figures.PAPER
+
 _RATIOS = (0.2, 0.5, 1.0, 1.4, 1.8)
+_LINES = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)  # COR
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -23,17 +27,18 @@ def draw() -> tuple[Figure, dict[str, float]]:
         6.0,
         "The COR falls with speed and as the plate gets thinner",
         "gamma-alumina on glass, modified Zener model; A: contours of COR, dashed: yield speed; "
-        "B: lines are the model, dashes Mueller's elastic formula, triangles the yield speed",
+        "B: COR against speed, dashes: Mueller's elastic formula",
     )
     left, right = figure.subplots(1, 2)
     v, ratio = np.linspace(0.05, FASTEST, 200), np.linspace(0.0, THINNEST, 120)
     e = np.asarray(impacts(v, ratio[:, None]).restitution)
     filled = left.contourf(v, ratio, e, levels=np.arange(0.3, 1.001, 0.05), cmap="cividis")
-    lines = left.contour(v, ratio, e, levels=np.arange(0.4, 1.0, 0.1), colors="white", linewidths=1)
+    inks = [_style.INK if level > 0.65 else "white" for level in _LINES]
+    lines = left.contour(v, ratio, e, levels=_LINES, colors=inks, linewidths=1)
     left.clabel(lines, fmt="%.1f", fontsize=10)
-    left.plot(yield_speed_ratio(ETA * ratio**2), ratio, "--", color="white", linewidth=2)
-    figure.colorbar(filled, ax=left, label="coefficient of restitution")
-    left.set(xlabel="impact speed  V$_0$ / V$_{Y0}$", ylabel="R / H", title="A")
+    left.plot(yield_speed_ratio(ETA * ratio**2), ratio, "--", color=_style.INK, linewidth=2)
+    figure.colorbar(filled, ax=left, label=_style.RESTITUTION)
+    left.set(xlabel=_style.SPEED, ylabel=_style.SLENDERNESS, title="A")
     left.grid(visible=False)
     for k, one in enumerate(_RATIOS):
         colour = (_style.BLUE, _style.SKY, _style.GREEN, _style.ORANGE, _style.VERMILION)[k]
@@ -42,8 +47,10 @@ def draw() -> tuple[Figure, dict[str, float]]:
         right.plot(v, elastic, "--", color=colour, linewidth=1.2)
         yields = float(yield_speed_ratio(ETA * one**2))
         right.plot(yields, impacts(yields, one).restitution, "v", color=colour, markersize=9)
-    right.set(xlabel="impact speed  V$_0$ / V$_{Y0}$", ylabel="coefficient of restitution")
+    right.set(xlabel=_style.SPEED, ylabel=_style.RESTITUTION)
     right.set(title="B", xlim=(0, FASTEST), ylim=(0.3, 1.01))
+    _style.key(right, "Mueller, elastic", "--", 1.2)
+    _style.key(right, "yield speed", "v", markersize=9)
     right.legend(loc="lower left", ncols=2)
     over = float(mueller(ETA * 0.25 * FASTEST**0.2) / impacts(FASTEST, 0.5).restitution - 1)
     return figure, {

@@ -11,10 +11,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw.closed_form import yield_speed_ratio
+from validation import figures
 from validation.evidence import eq_10
 from validation.figures import _style
 from validation.formulas import eq_14
 from validation.paper import ETA, SHARE, THINNEST
+
+PART = figures.PAPER
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -35,13 +38,16 @@ def draw() -> tuple[Figure, dict[str, float]]:
     )
     left.plot(ratio, printed, color=_style.VERMILION, label=r"Eq. 14, $\eta$ corrected")
     left.plot(ratio, misprint, ":", color=_style.MUTED, label=r"Eq. 14, exponent 4/5 in $\eta$")
-    left.set(xlabel="R / H", ylabel="V$_Y$ / V$_{Y0}$", xlim=(0, 2.2))
+    left.set(xlabel=_style.SLENDERNESS, ylabel="yield speed  V$_Y$ / V$_{Y0}$", xlim=(0, 2.2))
     left.legend(loc="upper left")
     right.plot(ratio, 100 * (printed / exact - 1), color=_style.VERMILION)
     right.axvline(THINNEST, color=_style.MUTED, linestyle=":")
+    right.text(
+        THINNEST - 0.04, 0.05, "the paper's thinnest", fontsize=10.5, color=_style.MUTED, ha="right"
+    )
     right.axhline(1.2, color=_style.INK, linewidth=1, linestyle=":")
     right.text(0.05, 1.21, "paper: 1.2 %", fontsize=10.5, va="bottom")
-    right.set(xlabel="R / H", ylabel="error of Eq. 14  [%]", xlim=(0, 2.2))
+    right.set(xlabel=_style.SLENDERNESS, ylabel="error of Eq. 14  [%]", xlim=(0, 2.2))
     inside = ratio <= THINNEST
     at = int(np.argmin(np.abs(ratio - THINNEST)))
     return figure, {

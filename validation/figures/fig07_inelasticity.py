@@ -11,9 +11,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw.closed_form import mueller, zener
+from validation import figures
 from validation.figures import _matrix, _style
 from validation.formulas import raman
 from validation.paper import FASTEST, impacts
+
+PART = figures.PAPER
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -23,7 +26,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         6.2,
         "Elastic models hold below yield only",
         "COR against Zener's inelasticity; points: gamma-alumina on glass, R/H 0.05 to 2.2, "
-        "at multiples of V$_{Y0}$, modified Zener model; crosses: finite elements",
+        "at multiples of the yield speed V$_{Y0}$, modified Zener model; crosses: finite elements",
     )
     axes = figure.subplots()
     lam = np.linspace(0.0, 0.6, 241)
@@ -38,8 +41,11 @@ def draw() -> tuple[Figure, dict[str, float]]:
             label=f"{v:g} V$_{{Y0}}$",
         )  # fmt: skip
         _matrix.marks(axes, "restitution", v)
-    axes.set(xlabel=r"inelasticity  $\lambda$", ylabel="coefficient of restitution")
+    axes.set(xlabel=_style.INELASTICITY, ylabel=_style.RESTITUTION)
     axes.set(xlim=(0, 0.6), ylim=(0.25, 1.01))
+    _style.key(
+        axes, "finite elements", "X", color=_style.PALE, markersize=9, markeredgecolor=_style.INK
+    )
     axes.legend(ncols=3, loc="upper right")
     thick = impacts(FASTEST, 0.2)
     near = lam[lam <= 0.5]

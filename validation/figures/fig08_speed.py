@@ -11,10 +11,13 @@ from matplotlib.figure import Figure
 
 from contactlaw import turning_point
 from contactlaw.closed_form import peng
+from validation import figures
 from validation.fem import compare
 from validation.figures import _style
 from validation.formulas import eq_22
 from validation.paper import ETA, FASTEST, impacts
+
+PART = figures.PAPER
 
 _RATIOS = (0.25, 0.75, 1.25, 1.8)  # where there are finite elements
 
@@ -25,7 +28,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         13.0,
         5.2,
         "Eq. 22 as printed jumps at yield; one factor mends it",
-        "COR against speed, gamma-alumina on glass; dots: solver, crosses: finite elements",
+        f"COR against speed, gamma-alumina on glass; {_style.RATIO}",
     )
     panels = figure.subplots(1, len(_RATIOS), sharey=True)
     v = np.linspace(0.05, FASTEST, 400)
@@ -51,7 +54,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
             case.speed_ratio[here], case.fem["restitution"][here], "x", color=_style.INK,
             markersize=8, markeredgewidth=2, label="finite elements",
         )  # fmt: skip
-        axes.set(title=f"R/H = {ratio:g}", xlabel="V$_0$ / V$_{Y0}$", xlim=(0, FASTEST + 0.3))
-    panels[0].set(ylabel="coefficient of restitution", ylim=(0.3, 1.02))
+        axes.set(title=f"R/H = {ratio:g}", xlim=(0, FASTEST + 0.3))
+    figure.supxlabel(_style.SPEED)
+    panels[0].set(ylabel=_style.RESTITUTION, ylim=(0.3, 1.02))
     panels[0].legend(loc="lower left")
     return figure, {f"largest error, {name}": error for name, error in errors.items()}

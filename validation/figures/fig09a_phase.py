@@ -13,10 +13,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw.closed_form import yield_speed_ratio
+from validation import figures
 from validation.evidence import fitted_border
 from validation.figures import _style
 from validation.formulas import border
 from validation.paper import ETA, borderline, impacts
+
+PART = figures.PAPER
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -50,7 +53,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         axes.text(x, y - 0.03, cited, fontsize=10, color=colour, va="top")
     axes.text(0.15, 0.75, "I  elastic", fontsize=15, fontweight="bold", color="white", rotation=90)
     axes.text(0.55, 0.75, "as cited: Mueller et al. 2015", fontsize=10, color="white", rotation=90)
-    axes.set(xlabel="impact speed  V$_0$ / V$_{Y0}$", ylabel="R / H", xlim=(0, 10), ylim=(0, 1.8))
+    axes.set(xlabel=_style.SPEED, ylabel=_style.SLENDERNESS, xlim=(v[0], 10), ylim=(ratio[0], 1.8))
     axes.grid(visible=False)
     off = np.abs(border(half) / exact - 1)
     return figure, {

@@ -9,8 +9,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.figures import _style
 from validation.paper import FASTEST, borderline, impacts
+
+PART = figures.PAPER
 
 _RATIOS = (0.2, 0.5, 1.2)
 
@@ -21,7 +24,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         13.0,
         5.0,
         "Thin plates lose energy to the wave, thick ones to plastic flow",
-        "shares of the initial kinetic energy, gamma-alumina on glass",
+        f"shares of the initial kinetic energy, gamma-alumina on glass; {_style.RATIO}",
     )
     v = np.linspace(0.05, FASTEST, 300)
     open_balance = 0.0
@@ -35,13 +38,16 @@ def draw() -> tuple[Figure, dict[str, float]]:
         )  # fmt: skip
         overtakes = borderline(ratio)
         if overtakes < FASTEST:
-            axes.axvline(overtakes, color=_style.INK, linestyle=":", linewidth=1.5)
-        axes.set(
-            title=f"R/H = {ratio:g}", xlabel="V$_0$ / V$_{Y0}$", xlim=(0, FASTEST), ylim=(0, 1)
-        )
+            axes.axvline(
+                overtakes, color=_style.INK, linestyle=":", linewidth=1.5,
+                label="more plastic than wave beyond",
+            )  # fmt: skip
+        axes.set(title=f"R/H = {ratio:g}", xlim=(v[0], FASTEST), ylim=(0, 1))
         open_balance = max(open_balance, float(np.abs(kept + wave + plastic - 1).max()))
     figure.axes[0].set_ylabel("share of the initial kinetic energy")
-    figure.axes[2].legend(loc="lower left", frameon=True)
+    figure.axes[1].set_xlabel(_style.SPEED)
+    named = figure.axes[0].get_legend_handles_labels()
+    figure.axes[2].legend(*named, loc="lower left", frameon=True)
     return figure, {
         "plastic overtakes wave at R/H = 0.2": borderline(0.2),
         "plastic overtakes wave at R/H = 0.5": borderline(0.5),

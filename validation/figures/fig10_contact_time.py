@@ -13,9 +13,12 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.evidence import contact_time_errors
 from validation.figures import _matrix, _style
 from validation.paper import impacts
+
+PART = figures.PAPER
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -24,8 +27,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         11.0,
         6.0,
         "Plastic flow shortens the contact by a tenth at most",
-        "gamma-alumina of 0.9 mm radius on glass; lines: modified Zener model, dashes: Zener's, "
-        "elastic, crosses: finite elements; along each line R/H goes from 0.05 to 1.8",
+        "gamma-alumina of 0.9 mm radius on glass at multiples of the yield speed V$_{Y0}$; along "
+        "each line radius over thickness, R/H, goes from 0.05 to 1.8",
     )
     axes = figure.subplots()
     ratio = np.linspace(0.05, 1.8, 60)
@@ -37,8 +40,14 @@ def draw() -> tuple[Figure, dict[str, float]]:
         axes.plot(one.inelasticity, elastic * 1e6, "--", color=colour, linewidth=1.4)
         _matrix.marks(axes, "contact_time", v, unit=1e-6)
         shorter = max(shorter, float((1 - time / elastic).max()))
-    axes.set(xlabel=r"inelasticity  $\lambda$", ylabel=r"contact time  [$\mu$s]", xlim=(0, 0.37))
-    axes.legend(ncols=2)
+    axes.set(xlabel=_style.INELASTICITY, ylabel="contact time  [µs]", xlim=(0, 0.37))
+    _style.key(axes, "modified Zener model", "-")
+    _style.key(axes, "Zener's, elastic", "--", 1.4)
+    _style.key(
+        axes, "finite elements", "X", color=_style.PALE, markersize=9, markeredgecolor=_style.INK
+    )
+    axes.set_ylim(top=5.8)
+    axes.legend(ncols=3, loc="upper right")
     model, zener = contact_time_errors()
     thin, thick = impacts(1.0, 1.8), impacts(1.0, 0.05)
     return figure, {

@@ -15,8 +15,11 @@ from matplotlib.figure import Figure
 
 from contactlaw import closed_form, laws, turning_point
 from contactlaw.laws.myc import P
+from validation import figures
 from validation.figures import _style
 from validation.paper import ETA, restitution
+
+PART = figures.PAPER
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -35,10 +38,15 @@ def draw() -> tuple[Figure, dict[str, float]]:
     error = turning_point.restitution(v, lam_y[:, None]) / exact - 1.0
     levels = np.linspace(-0.15, 0.15, 13)
     filled = axes.contourf(v, lam_y, 100 * error, levels=levels, cmap="PuOr", extend="both")
-    figure.colorbar(filled, ax=axes, label="error of the COR  [%]", pad=0.12)
+    figure.colorbar(filled, ax=axes, label="error of the COR  [%]", pad=0.03)
     axes.axhline(ETA * 1.8**2, color=_style.INK, linestyle=":", linewidth=1.2)
     overload = v**0.8 * turning_point.loading(lam_y[:, None] * v**0.2)
     axes.contour(v, lam_y, overload, levels=[P], colors=_style.INK, linewidths=1.2)
+    for x, text, side in (
+        (4.1, "loads along\nHertz's curve", "right"),
+        (4.7, "and\nbeyond it", "left"),
+    ):
+        axes.text(x, 0.02, text, fontsize=10.5, ha=side, color=_style.INK)
     other = axes.secondary_yaxis(
         "right",
         functions=(
@@ -46,10 +54,10 @@ def draw() -> tuple[Figure, dict[str, float]]:
             lambda ratio: ETA * np.square(ratio),
         ),
     )
-    other.set_ylabel("R / H")
+    other.set_ylabel(_style.SLENDERNESS)
     other.set_yticks([0.5, 1.0, 1.4, 1.8])
     axes.set_xticks([0, 5, 10, 15, 20])
-    axes.set(xlabel="impact speed  V$_0$ / V$_{Y0}$", ylabel=r"inelasticity at yield  $\lambda_Y$")
+    axes.set(xlabel=_style.SPEED, ylabel=r"inelasticity at yield  $\lambda_Y$")
     axes.grid(visible=False)
     slow = error[:, v <= 10.0]
     peng = closed_form.peng(v, np.sqrt(lam_y / ETA)[:, None], ETA) / exact - 1.0

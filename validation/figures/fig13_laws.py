@@ -15,10 +15,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw import laws
+from validation import figures
 from validation.evidence import slope
 from validation.figures import _style
 from validation.formulas import thornton_asymptote
 from validation.paper import ETA, SPEED, Array, all_laws, restitution, yield_unit
+
+PART = figures.PAPER
 
 _SLOWER = yield_unit(laws.law("thornton")) ** 1.25  # yield speed of its law in that of MYC
 _MODERATE = 3.5  # V0/V_Y0
@@ -44,12 +47,13 @@ def draw() -> tuple[Figure, dict[str, float]]:
             cor[name, lam_y] = e
     fast = v[v > 1.5]
     left.plot(
-        fast, thornton_asymptote(fast / _SLOWER), ":", color=_style.INK, label=r"1.185 v$^{-1/4}$"
-    )
-    for axes, title in ((left, "half-space"), (right, "R/H = 1")):
-        axes.set(xscale="log", xlabel="V$_0$ / V$_{Y0}$", title=title, ylim=(0.3, 1.02))
+        fast, thornton_asymptote(fast / _SLOWER), ":", color=_style.INK,
+        label=r"Thornton, 1.185 v$^{-1/4}$",
+    )  # fmt: skip
+    for axes, title in ((left, "half-space"), (right, "plate as thick as the radius, R/H = 1")):
+        axes.set(xscale="log", xlabel=_style.SPEED, title=title, ylim=(0.3, 1.02))
         axes.set_xticks([0.1, 1, 10], ["0.1", "1", "10"])
-    left.set_ylabel("coefficient of restitution")
+    left.set_ylabel(_style.RESTITUTION)
     left.legend(loc="lower left")
     moderate = v <= _MODERATE
     numbers: dict[str, float] = {}

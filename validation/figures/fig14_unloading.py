@@ -13,9 +13,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw.laws import Law
+from validation import figures
 from validation.fem import compare
 from validation.figures import _style
 from validation.paper import all_laws, force, unloading
+
+PART = figures.FINITE_ELEMENTS
 
 _DEEPEST = 30.0  # d_Y
 _DEPTHS = ("2", "5", "10", "30")
@@ -63,6 +66,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     right.plot(10.0, compare.returned(*curve), "s", markersize=13, **square)
     left.set(xlim=(0, _DEEPEST), ylim=(0, 95), xlabel="compression  d / d$_Y$")
     left.set_ylabel("force  F / F$_Y$")
+    _style.key(left, "thin: unloading", "-", 1.2)
     left.legend(loc="upper left")
     right.set_xscale("log")
     right.set_xticks([1, 2, 5, 10, 30], ["1", "2", "5", "10", "30"])

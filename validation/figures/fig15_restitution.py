@@ -10,10 +10,13 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw.closed_form import zener
+from validation import figures
 from validation.fem import compare
 from validation.fem.studies import SLENDERNESS
 from validation.figures import _style
 from validation.paper import impacts
+
+PART = figures.FINITE_ELEMENTS
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -23,8 +26,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         13.0,
         6.4,
         "The modified Zener model holds where yielding ends Zener's",
-        "gamma-alumina on glass; points: finite elements (open: no plastic strain), lines: the "
-        "modified Zener model, dotted: Zener",
+        f"gamma-alumina on glass, each colour a thickness; {_style.RATIO}",
     )
     left, right = figure.subplots(1, 2)
     fine = np.geomspace(0.25, 7.6, 100)
@@ -47,10 +49,15 @@ def draw() -> tuple[Figure, dict[str, float]]:
     right.plot(lam, zener(lam), ":", color=_style.INK)
     _style.speed_axis(left, (0.3, 0.6, 1, 2, 3.5, 7))
     left.set_xlim(0.27, 9.0)
-    right.set_xlabel(r"inelasticity  $\lambda$")
+    right.set_xlabel(_style.INELASTICITY)
+    _style.key(right, "finite elements", "o")
+    _style.key(right, "finite elements, no plastic strain", "o", markerfacecolor="white")
+    _style.key(right, "modified Zener model", "-", 1.6)
+    _style.key(right, "Zener's model", ":", 1.5)
+    right.legend(loc="upper right")
     for axes in (left, right):
         axes.set_ylim(0.3, 1.02)
-        axes.set_ylabel("coefficient of restitution")
+        axes.set_ylabel(_style.RESTITUTION)
     numbers = {}
     for name, (largest, rms) in compare.errors(case).items():
         numbers[f"{name}: largest error"] = float(largest)

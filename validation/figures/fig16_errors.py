@@ -2,9 +2,8 @@
 
 Contact time and peak force are within 4 %. The peak compression, in finite elements the way of the
 sphere's centre towards the plate's lower face, is up to 8.6 % too large, most on thin plates. The
-model has up to 9 % of the energy too much
-in plastic flow on thick plates at 7 V_Y0, and up to 3.5 % too little in the plate; residual stress
-and vibration keep a part of the difference.
+model has up to 9 % of the energy too much in plastic flow on thick plates at 7 V_Y0, and up to
+3.5 % too little in the plate; residual stress and vibration keep a part of the difference.
 """
 
 from __future__ import annotations
@@ -13,9 +12,14 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.fem import compare
 from validation.fem.studies import SLENDERNESS, SPEED_RATIO
 from validation.figures import _style
+
+PART = figures.FINITE_ELEMENTS
+
+_MINUS = "\N{MINUS SIGN}"
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -50,10 +54,12 @@ def error_map(axes: Axes, title: str, values: np.ndarray, widest: float = 10.0) 
     axes.imshow(table, cmap="RdBu_r", vmin=-widest, vmax=widest, aspect="auto", origin="lower")
     for (i, j), value in np.ndenumerate(table):
         ink = "white" if abs(value) > 0.55 * widest else _style.INK
-        axes.text(j, i, f"{value:+.1f}", ha="center", va="center", fontsize=10, color=ink)
-    axes.set_title(title, fontweight="bold", loc="left")
+        text = f"{value:+z.1f}".replace("-", _MINUS)
+        axes.text(j, i, text, ha="center", va="center", fontsize=10, color=ink)
+    axes.set_title(title)
     axes.set_xticks(range(len(SPEED_RATIO)), [f"{v:g}" for v in SPEED_RATIO])
     axes.set_yticks(range(len(SLENDERNESS)), [f"{s:g}" for s in SLENDERNESS])
-    axes.set_xlabel("impact speed  V$_0$ / V$_{Y0}$")
-    axes.set_ylabel("R / H")
+    axes.set_xlabel(_style.SPEED)
+    axes.set_ylabel(_style.SLENDERNESS)
+    axes.label_outer()
     axes.grid(visible=False)

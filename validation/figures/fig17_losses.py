@@ -9,14 +9,17 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.fem import compare
 from validation.figures import _style
 
+PART = figures.FINITE_ELEMENTS
+
 _SHARES = {
     "wave": (_style.BLUE, "plate"),
-    "plastic": (_style.VERMILION, "plastic work"),
-    "vibration": (_style.ORANGE, "left in the sphere"),
-    "friction_loss": (_style.GREEN, "friction"),
+    "plastic": (_style.ORANGE, "plastic work"),
+    "vibration": (_style.GREEN, "left in the sphere"),
+    "friction_loss": (_style.VERMILION, "friction"),
 }
 
 
@@ -27,7 +30,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         13.0,
         5.2,
         "Where the energy goes: plate, plastic flow, and little else",
-        "gamma-alumina on glass; areas: finite elements, lines: the modified Zener model",
+        "gamma-alumina on glass; areas: finite elements, lines: the modified Zener model; "
+        f"{_style.RATIO}",
     )
     panels = figure.subplots(1, 3, sharey=True)
     for axes, slenderness in zip(panels, (0.25, 0.75, 1.8), strict=True):
@@ -41,9 +45,13 @@ def draw() -> tuple[Figure, dict[str, float]]:
         wave, plastic = case.model["wave_fraction"][rows], case.model["plastic_fraction"][rows]
         axes.plot(v, wave, color=_style.INK, linewidth=1.6)
         axes.plot(
-            v, wave + plastic, color=_style.INK, linewidth=1.6, label="model: plate, and plastic"
+            v,
+            wave + plastic,
+            color=_style.INK,
+            linewidth=1.6,
+            label="model: plate; with plastic work",
         )
-        axes.set_title(f"R/H = {slenderness:g}", fontweight="bold", loc="left")
+        axes.set_title(f"R/H = {slenderness:g}")
         _style.speed_axis(axes, (0.3, 1, 2, 3.5, 7))
         axes.set(xlim=(0.3, 7.0), ylim=(0.0, 1.0))
     panels[0].set_ylabel("share of the initial energy")

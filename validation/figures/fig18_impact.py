@@ -13,9 +13,12 @@ import numpy as np
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.fem import store
 from validation.figures import _style
 from validation.paper import RADIUS, model
+
+PART = figures.FINITE_ELEMENTS
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -27,7 +30,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
         9.0,
         "One impact in full: 26 m/s on 0.5 mm of glass",
         f"gamma-alumina sphere, R = 0.9 mm; largest plastic strain {strain:.4f} (paper: about "
-        "0.039); dashes and crosses: modified Zener model",
+        "0.039)",
     )
     (a, b), (c, d) = figure.subplots(2, 2)
     contact = model().force_history(made["speed"], RADIUS, made["thickness"])
@@ -36,25 +39,37 @@ def draw() -> tuple[Figure, dict[str, float]]:
     )
     a.plot(
         contact.time * 1e6, contact.force, "--", color=_style.BLUE, linewidth=2,
-        label="modified Zener",
+        label="modified Zener model",
     )  # fmt: skip
     other = store.read("calculix_impact").data
     a.plot(
         other["time"][::8] * 1e6, other["force"][::8], "s", color=_style.INK, markersize=6,
         markerfacecolor="none", label="CalculiX",
     )  # fmt: skip
-    a.set(xlabel="time  [us]", ylabel="contact force  [N]")
+    a.set(xlabel="time  [µs]", ylabel="contact force  [N]")
     a.legend(loc="lower center")
     colours = _style.ORANGE, _style.GREEN, _style.VERMILION
     sunk = np.interp(data["snapshot_time"], contact.time, contact.plate_displacement)
     for at, way, deep, colour in zip(
         data["snapshot_time"], data["deflection"], sunk, colours, strict=True
     ):
-        b.plot(data["r"] * 1e3, -way * 1e6, color=colour, linewidth=2, label=f"{at * 1e6:.0f} us")
-        b.plot(0.0, deep * 1e6, "X", color=colour, markersize=10, clip_on=False)
+        b.plot(data["r"] * 1e3, -way * 1e6, color=colour, linewidth=2, label=f"{at * 1e6:.0f} µs")
+        b.plot(
+            0.0,
+            deep * 1e6,
+            "X",
+            color=colour,
+            markersize=10,
+            markeredgecolor=_style.INK,
+            clip_on=False,
+            zorder=3,
+        )
     b.set_xlim(0.0, 6.0)
     b.invert_yaxis()
-    b.set(xlabel="distance from the axis  [mm]", ylabel="deflection of the plate  [um]")
+    b.set(xlabel="distance from the axis  [mm]", ylabel="deflection of the plate  [µm]")
+    _style.key(
+        b, "model, on the axis", "X", color=_style.PALE, markersize=10, markeredgecolor=_style.INK
+    )
     b.legend(loc="lower right")
     corners = data["corners"] * 1e3
     corners[..., 1] -= corners[..., 1].min()
@@ -69,8 +84,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         axes.add_collection(drawn)
         axes.set_aspect("equal")
         axes.grid(visible=False)
-        axes.set_title(title, loc="left")
-        axes.set(xlabel="r  [mm]", ylabel="z  [mm]")
+        axes.set_title(title)
+        axes.set(xlabel="distance from the axis  [mm]", ylabel="height  [mm]")
     c.set(xlim=(0.0, 1.4), ylim=(-0.02, 1.82))
     d.set(xlim=(0.0, 0.45), ylim=(0.0, 0.3))
     return figure, {

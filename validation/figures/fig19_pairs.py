@@ -10,11 +10,18 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.fem import compare
 from validation.figures import _style
 from validation.paper import impacts
 
-_MARKERS = "os^"
+PART = figures.FINITE_ELEMENTS
+
+_LOOKS = (  # of the pairs, which lie on each other
+    {"marker": "o", "markersize": 8, "color": _style.BLUE},
+    {"marker": "s", "markersize": 12, "color": _style.INK, "markerfacecolor": "none"},
+    {"marker": "^", "markersize": 7, "color": _style.VERMILION},
+)
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -22,32 +29,32 @@ def draw() -> tuple[Figure, dict[str, float]]:
     case = compare.comparison("pairs")
     figure = _style.figure(
         13.0,
-        5.2,
+        5.8,
         "One table serves all pairs until they yield; steel then keeps more",
-        "points: finite elements of pairs with the same inelasticity at the yield speed; line: the "
-        "model, one for all",
+        "points: finite elements of three pairs with the same inelasticity at the yield speed, "
+        f"plates in the order of the panels; {_style.RATIO}",
     )
-    names = list(dict.fromkeys(zip(case.fem["sphere"], case.fem["plate"], strict=True)))
-    looks = _style.BLUE, _style.ORANGE, _style.VERMILION
+    names = list(dict.fromkeys(_pair(case, n) for n in range(case.slenderness.size)))
     panels = figure.subplots(1, 3, sharey=True)
     blocks = np.split(np.arange(case.slenderness.size), 3)
     for axes, block in zip(panels, blocks, strict=True):
-        for name, marker, colour in zip(names, _MARKERS, looks, strict=True):
-            rows = [n for n in block if (case.fem["sphere"][n], case.fem["plate"][n]) == name]
-            axes.plot(
-                case.speed_ratio[rows], case.fem["restitution"][rows], marker, markersize=9,
-                color=colour, alpha=0.85,
-                label=f"{name[0]} on {name[1]}, R/H {case.slenderness[rows[0]]:.2f}",
-            )  # fmt: skip
+        for name, look in zip(names, _LOOKS, strict=True):
+            rows = [n for n in block if _pair(case, n) == name]
+            at, cor = case.speed_ratio[rows], case.fem["restitution"][rows]
+            axes.plot(at, cor, linestyle="none", label=_label(case, name), **look)
         fine = np.geomspace(0.45, 7.4, 80)
         line = impacts(fine, case.slenderness[block[0]])  # the paper's pair comes first
-        axes.plot(fine, line.restitution, color=_style.INK, linewidth=1.6)
+        axes.plot(
+            fine, line.restitution, color=_style.INK, linewidth=1.6, zorder=1,
+            label="modified Zener model with law MYC, one line for all",
+        )  # fmt: skip
         at_yield = case.inelasticity[block[0]] * case.speed_ratio[block[0]] ** -0.2
-        axes.set_title(rf"$\lambda_Y$ = {at_yield:.3f}", fontweight="bold", loc="left")
+        axes.set_title(rf"inelasticity at yield  $\lambda_Y$ = {at_yield:.3f}")
         _style.speed_axis(axes, (0.5, 1.5, 3.5, 7))
-        axes.set_ylim(0.35, 1.02)
-        axes.legend(loc="lower left", fontsize=8.5)
-    panels[0].set_ylabel("coefficient of restitution")
+        axes.set_ylim(0.45, 1.02)
+    panels[0].set_ylabel(_style.RESTITUTION)
+    named = panels[0].get_legend_handles_labels()
+    figure.legend(*named, loc="outside lower center", ncols=2)
     cor = case.fem["restitution"].reshape(3, 3, 4)  # inelasticity, pair, speed
     spread = np.ptp(cor, axis=1)
     low = case.model["restitution"] / case.fem["restitution"] - 1.0
@@ -67,3 +74,13 @@ def draw() -> tuple[Figure, dict[str, float]]:
         "model over finite elements, steel at 7 V_Y0, less 1: nearest": float(low.max()),
         "model over finite elements, steel at 7 V_Y0, less 1: farthest": float(low.min()),
     }
+
+
+def _pair(case: compare.Comparison, impact: int) -> tuple[str, str]:
+    return case.fem["sphere"][impact], case.fem["plate"][impact]
+
+
+def _label(case: compare.Comparison, pair: tuple[str, str]) -> str:
+    rows = [n for n in range(case.slenderness.size) if _pair(case, n) == pair]
+    ratios = ", ".join(f"{ratio:.2f}" for ratio in dict.fromkeys(case.slenderness[rows].round(2)))
+    return f"{pair[0]} on {pair[1]}, R/H {ratios}"

@@ -11,9 +11,12 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import contactlaw as cl
+from validation import figures
 from validation.fem import compare, store
 from validation.figures import _style
 from validation.paper import PAIR, RADIUS, model
+
+PART = figures.FINITE_ELEMENTS
 
 _MARKERS = "os^D"
 
@@ -26,8 +29,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         13.0,
         5.6,
         "Beyond the limits the model errs slowly; an edge too near matters at once",
-        "left: gamma-alumina on glass, error of the modified Zener model in COR; right: plate of "
-        "finite radius, R/H = 1.5, at the yield speed",
+        "gamma-alumina on glass; left: error of the modified Zener model in COR by radius over "
+        "thickness, R/H; right: plate of finite radius, R/H = 1.5, at the yield speed",
     )
     left, right = figure.subplots(1, 2)
     values = sorted(set(case.slenderness.round(3)))
@@ -43,7 +46,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     left.axvline(7.0, color=_style.MUTED, linestyle=":")
     left.text(7.2, 19.0, "the paper's fastest", color=_style.MUTED, va="top", fontsize=10.5)
     left.axhline(0.0, color=_style.INK, linewidth=1)
-    left.set(xlabel="impact speed  V$_0$ / V$_{Y0}$", ylabel="error of the COR  [%]")
+    left.set(xlabel=_style.SPEED, ylabel="error of the COR  [%]")
     left.legend(loc="upper left")
     free = model().lookup(edge["speed"][0], RADIUS, edge["thickness"][0])
     ratio = edge["width"] / cl.edge_distance(PAIR.plate, edge["thickness"][0], free.contact_time)
@@ -52,7 +55,7 @@ def draw() -> tuple[Figure, dict[str, float]]:
     right.axvline(1.0, color=_style.MUTED, linestyle=":")
     right.text(1.03, 0.667, "cl.edge_distance", color=_style.MUTED, fontsize=10.5)
     right.set(xlabel="distance of the edge over cl.edge_distance")
-    right.set_ylabel("coefficient of restitution")
+    right.set_ylabel(_style.RESTITUTION)
     right.legend(loc="lower right")
     far = edge["restitution"][-1]
     change = np.abs(edge["restitution"] / far - 1.0)

@@ -14,11 +14,13 @@ import math
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.ticker import PercentFormatter
 
+from validation import figures
 from validation.fem import compare, store
 from validation.figures import _style
 from validation.paper import RADIUS, model
+
+PART = figures.FINITE_ELEMENTS
 
 _FIELDS = {
     "restitution": (_style.VERMILION, "COR"),
@@ -33,10 +35,10 @@ def draw() -> tuple[Figure, dict[str, float]]:
     data = store.read("verification").data
     figure = _style.figure(
         12.0,
-        5.4,
+        6.0,
         "The finite elements converge, and tend to Hertz for small contacts",
-        "left: gamma-alumina at 26 m/s on 0.5 mm (full) and 1 mm (dashed) of glass, difference "
-        "from the finest mesh; right: elastic, frictionless, 9 mm block, difference from Hertz",
+        "left: gamma-alumina at 26 m/s on glass, difference from the finest mesh; right: elastic, "
+        "frictionless, 9 mm block, difference from Hertz",
     )
     left, right = figure.subplots(1, 2)
     worst = dict.fromkeys(_FIELDS, 0.0)
@@ -47,32 +49,33 @@ def draw() -> tuple[Figure, dict[str, float]]:
             value = data[name][rows]
             off = np.maximum(np.abs(value[:-1] / value[-1] - 1.0), 1e-5)
             worst[name] = max(worst[name], float(off[-1]))
-            left.loglog(
-                size, off, line, marker="o", color=colour, label=label if line == "-" else None
-            )
-    left.loglog([0.01, 0.04], [0.001, 0.004], color=_style.MUTED, linewidth=1)
-    left.text(0.0245, 0.0029, "first order", color=_style.MUTED, fontsize=10.5)
+            named = label if line == "-" else None
+            left.loglog(size, 100.0 * off, line, marker="o", color=colour, label=named)
+    left.loglog(
+        [0.01, 0.04], [0.1, 0.4], color=_style.PALE, linewidth=5, label="first order", zorder=1
+    )
+    _style.key(left, "plate of 0.5 mm", "-", 1.5)
+    _style.key(left, "plate of 1 mm", "--", 1.5)
     left.set_xticks([0.01, 0.02, 0.04], ["0.01 R", "0.02 R", "0.04 R"])
+    left.set_yticks([0.01, 0.1, 1.0], ["0.01", "0.1", "1"])
     left.minorticks_off()
-    left.set(xlabel="smallest element", ylabel="difference from elements of 0.005 R")
-    left.legend()
+    left.set(xlabel="smallest element", ylabel="difference from 0.005 R  [%]")
     hertz = data["check"] == "hertz"
     elastic = model("hertz").lookup(data["speed"][hertz], RADIUS, math.inf)
     width = np.sqrt(np.asarray(elastic.peak_compression) / RADIUS)
-    for name, label, colour in (
-        ("peak_force", "peak force", _style.BLUE),
-        ("contact_time", "contact time", _style.ORANGE),
-        ("peak_compression", "peak compression", _style.GREEN),
+    for name, label, line, colour in (
+        ("peak_force", "peak force", "o-", _style.BLUE),
+        ("contact_time", "contact time", "s-", _style.ORANGE),
+        ("peak_compression", "peak compression", ".--", _style.GREEN),
     ):
         off = data[name][hertz] / getattr(elastic, name) - 1.0
-        right.plot(width, off, "o-", color=colour, label=label)
+        right.plot(width, 100.0 * off, line, color=colour, label=label, markersize=8)
     right.axhline(0.0, color=_style.INK, linewidth=1)
     right.set_xlim(0.0)
     right.set_xlabel("radius of the contact over that of the sphere")
-    right.set_ylabel("difference from Hertz")
-    right.legend()
-    for axes in (left, right):
-        axes.yaxis.set_major_formatter(PercentFormatter(1.0))
+    right.set_ylabel("difference from Hertz  [%]")
+    for axes in (left, right):  # below the axes, where no line is
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
     estimated = compare.discretisation()
     numbers = {}
     for name, (_, label) in _FIELDS.items():

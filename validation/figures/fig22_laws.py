@@ -13,9 +13,12 @@ import math
 
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.fem import compare
 from validation.figures import _style
 from validation.figures.fig16_errors import error_map
+
+PART = figures.FINITE_ELEMENTS
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -25,8 +28,8 @@ def draw() -> tuple[Figure, dict[str, float]]:
         15.0,
         9.0,
         "By their COR, MYC and Stronge's law are right; by its force, MYC alone",
-        "COR of the modified Zener equation with each law less finite elements, in percent; "
-        "gamma-alumina on glass",
+        "COR of the modified Zener equation with each law less that of finite elements, in percent "
+        "of it; gamma-alumina on glass",
     )
     numbers = {}
     panels = figure.subplots(2, math.ceil(len(cor) / 2))

@@ -3,7 +3,7 @@
 Each field has the largest error over its impacts, and the rms. Before anything yields all but
 Thornton's law, which has its own yield speed, are within 6 %. The errors of the model are largest
 on thin plates where the wave takes more than plastic flow; Zener and Mueller fail wherever the
-sphere yields.
+sphere yields. Law fem, which was made of these impacts among others, is within 1 %.
 """
 
 from __future__ import annotations
@@ -12,8 +12,13 @@ import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.fem import compare
 from validation.figures import _style
+
+PART = figures.FINITE_ELEMENTS
+
+_AT_MOST = "\N{LESS-THAN OR EQUAL TO}"
 
 
 def draw() -> tuple[Figure, dict[str, float]]:
@@ -24,15 +29,16 @@ def draw() -> tuple[Figure, dict[str, float]]:
     for law, cor in compare.by_law().items():
         if law not in ("myc", "hertz"):  # the modified Zener model, and Zener's
             cors[f"{_style.law(law)[2]}'s law"] = cor
+    cors["law fem"] = compare.by_fem("matrix")
     errors = np.array(
         [[compare.deviation(cor, case, where) for where in parts.values()] for cor in cors.values()]
     )
     figure = _style.figure(
         13.0,
-        7.4,
+        8.0,
         "The modified Zener model and its closed form hold in every region",
         f"COR of {case.slenderness.size} impacts, gamma-alumina on glass, against finite elements: "
-        "largest error, and in brackets rms, in percent",
+        "largest error, and in brackets rms, in percent; R/H: radius over thickness",
     )
     axes = figure.subplots()
     largest = errors[..., 0]
@@ -41,7 +47,9 @@ def draw() -> tuple[Figure, dict[str, float]]:
         big, rms = 100.0 * errors[i, j]
         ink = "white" if big > 30.0 else _style.INK
         axes.text(j, i, f"{big:.1f}  ({rms:.1f})", ha="center", va="center", color=ink)
-    counts = [f"{part}\n{where.sum()} impacts" for part, where in parts.items()]
+    counts = [
+        f"{part.replace('<=', _AT_MOST)}\n{where.sum()} impacts" for part, where in parts.items()
+    ]
     axes.set_xticks(range(len(parts)), counts)
     axes.set_yticks(range(len(cors)), list(cors))
     axes.xaxis.tick_top()

@@ -15,9 +15,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from validation import figures
 from validation.fem import acceptance
 from validation.fem.acceptance import Member, Row
 from validation.figures import _style
+
+PART = figures.PRACTICE
 
 _LOOK = {  # by the body that yields: marker, colour and words
     "none": ("D", _style.SKY, "neither yields"),
@@ -40,9 +43,9 @@ def draw() -> tuple[Figure, dict[str, float]]:
     figure = _style.figure(
         14.0,
         7.4,
-        "One law, whichever body yields",
-        "COR by the modified Zener equation, beside finite elements; coloured: with law fem, "
-        "crosses: with law myc, in which the sphere alone yields",
+        "Law fem has the COR of finite elements, whichever body yields",
+        "left: the coefficient of restitution (COR) of each impact, coloured: law fem, crosses: "
+        "law myc, in which the sphere alone yields; right: errors of law fem, band: what is asked",
     )
     panels = figure.subplot_mosaic(
         [["cor", "paper"], ["cor", "kept out"]], width_ratios=(1.0, 1.15)
@@ -64,6 +67,7 @@ def _parity(axes: Axes, rows: dict[str, Row], others: dict[str, tuple[Member, ..
     )  # fmt: skip
     for row in rows.values():
         _marks(axes, row, lambda one: one.law, 8.0)
+    _style.key(axes, "open: with a flag", "o", markerfacecolor="white", color=_style.BLUE)
     named = dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
     axes.legend(named.values(), named.keys(), loc="upper left", fontsize=12)
     axes.set(xlabel="COR by finite elements", ylabel="COR by law", xlim=_RANGE, ylim=_RANGE)
@@ -104,8 +108,8 @@ def _errors(axes: Axes, title: str, row: Row) -> None:
             f"{percent:+.1f}", (one.fem, error(one)), (0, -lift if percent > 0.0 else lift),
             textcoords="offset points", ha="center", va="center_baseline", fontsize=10,
         )  # fmt: skip
-    share = row.shares.restitution
-    axes.set_title(f"{title}: {100 * share:.0f} % are within {bound:g} %", loc="left")
+    right = sum(abs(one.errors.restitution) <= 0.01 * bound for one in row.members)
+    axes.set_title(f"{title}: {right} of {len(row.members)} within {bound:g} %")
     axes.set(xlim=_RANGE, ylim=(-_WIDEST, _WIDEST), ylabel="error of the COR  [%]")
 
 
