@@ -249,7 +249,8 @@ def test_every_source_has_its_part_in_the_name_of_the_cache(tmp_path, monkeypatc
 def test_a_full_disk_under_numbas_cache_costs_a_warning_only(tmp_path):
     code = (
         "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
-        "import contactlaw as cl; model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc')\n"
+        "import contactlaw as cl\n"
+        "model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc')\n"
         "print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0])"
     )
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
