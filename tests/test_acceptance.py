@@ -51,7 +51,7 @@ def test_the_set_that_was_kept_out_is_the_one_that_was_drawn():
     drawn = census.drawn("kept_out")
     assert drawn == census.draw(census.SEEDS["kept_out"], census.COUNT)
     assert census.SEEDS["kept_out"] != census.SEEDS["everyday"]
-    listed = [(one.sphere, one.plate, one.speed) for one in acceptance.members("kept out")]
+    listed = [(one.sphere, one.plate, one.speed) for one in acceptance.members(TARGETS["kept out"])]
     assert listed == [(case.sphere, case.plate, case.speed) for case in drawn]
 
 
@@ -103,7 +103,7 @@ def test_it_integrates_what_a_model_does():
 
 
 def test_weak_impacts_count_over_the_least_cor():
-    weak = [one for one in acceptance.members("kept out") if one.fem < 0.3]
+    weak = [one for one in acceptance.members(TARGETS["kept out"]) if one.fem < 0.3]
     assert weak
     for one in weak:
         assert one.errors.restitution == pytest.approx((one.law - one.fem) / 0.3)

@@ -320,8 +320,8 @@ def counted(score):
 def test_how_right_the_laws_are():
     """Recorded, as README and docs say it; what counts is in `test_acceptance`."""
     fem, myc = trust.overall()["everyday impacts, kept out of the fit"]
-    assert counted(fem) == (80, 77, 0.008, -0.044)
-    assert counted(myc) == (51, 4, 0.308, 0.934)
+    assert counted(fem) == (160, 157, 0.006, -0.044)
+    assert counted(myc) == (108, 10, 0.323, 1.047)
     fem, myc = trust.overall()["the paper's pair, gamma-alumina on glass"]
     assert counted(fem) == (64, 63, 0.003, -0.010)
     assert counted(myc) == (64, 4, 0.019, 0.046)
@@ -349,7 +349,8 @@ def test_law_fem_is_right_on_plates_that_are_not_thin():
 def test_what_is_wrong_is_listed():
     listed = trust.misses()
     whole = trust.score("fem", trust.EVERYDAY)
-    assert len(listed) == whole.impacts - whole.right == whole.silent
+    assert len(listed) == whole.impacts - whole.right == 3
+    assert whole.silent == 0  # each carries a flag
     carbide = next(one for one in listed if "titanium" in one.what)
     assert carbide.what == "tungsten-carbide on 0.64 mm of titanium-ti-6al-4v at 3.7 m/s"
     assert (round(carbide.fem, 3), round(carbide.law, 3)) == (0.047, 0.039)

@@ -20,7 +20,7 @@ import contactlaw as cl
 from contactlaw import Validity
 from validation import figures, trust
 from validation.bench import census
-from validation.fem import acceptance, compare
+from validation.fem import compare
 from validation.fem.census import pairs
 from validation.trust import Score
 from validation.typeset import typeset
@@ -106,7 +106,7 @@ def _practice() -> dict[str, str]:
     """Fill what people who simulate read."""
     overall = trust.overall()
     (everyday, others), (_, pair), _ = overall.values()
-    bounds = acceptance.TARGETS[trust.EVERYDAY].bounds
+    bounds = trust.EVERYDAY.bounds
     right = round(everyday.shares.restitution * everyday.answered)
     wrong = round((1.0 - others.shares.restitution) * others.answered)
     return {
@@ -134,8 +134,8 @@ def _practice() -> dict[str, str]:
 
 def _bounds() -> str:
     words = []
-    for name, what in ((trust.EVERYDAY, "everyday impacts"), (trust.PAPER, "the other sets")):
-        bounds = acceptance.TARGETS[name].bounds
+    for target, what in ((trust.EVERYDAY, "everyday impacts"), (trust.PAPER, "the other sets")):
+        bounds = target.bounds
         words.append(
             f"for {what} {_percent(bounds.restitution)} in COR, {_percent(bounds.contact_time)} in "
             f"contact time, {_percent(bounds.peak_force)} in peak force, and plastic work within "

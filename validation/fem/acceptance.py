@@ -189,13 +189,13 @@ def solve(pair: cl.Pair, law: Law, speed: Array, radius: Array, thickness: Array
 
 
 @functools.cache
-def members(name: str, law: str = LAW) -> tuple[Member, ...]:
+def members(target: Target, law: str = LAW) -> tuple[Member, ...]:
     """List the impacts of a row, and what a law says of them.
 
     Parameters
     ----------
-    name : str
-        Of `TARGETS`.
+    target : Target
+        As in `TARGETS`.
     law : str, optional
         Another law; impacts of pairs that it refuses are left out.
 
@@ -211,10 +211,9 @@ def members(name: str, law: str = LAW) -> tuple[Member, ...]:
 
     Examples
     --------
-    >>> len(members("paper"))
+    >>> len(members(TARGETS["paper"]))
     112
     """
-    target = TARGETS[name]
     found = [one for study in target.studies for one in _of_study(study, law, target.least)]
     return tuple(
         one
@@ -285,7 +284,7 @@ def rows(names: Iterable[str] = TARGETS) -> dict[str, Row]:
     >>> rows(["paper"])["paper"].rms < 0.02
     True
     """
-    return {name: Row(TARGETS[name], members(name)) for name in names}
+    return {name: Row(TARGETS[name], members(TARGETS[name])) for name in names}
 
 
 class Rubbed(NamedTuple):

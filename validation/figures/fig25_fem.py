@@ -39,7 +39,7 @@ _WIDEST = 5.0  # [%], errors beyond are written at the edge
 def draw() -> tuple[Figure, dict[str, float]]:
     """Draw COR over COR, and the errors of both rows."""
     rows = acceptance.rows()
-    others = {name: acceptance.members(name, "myc") for name in rows}
+    others = {name: acceptance.members(row.target, "myc") for name, row in rows.items()}
     figure = _style.figure(
         14.0,
         7.4,
