@@ -21,6 +21,9 @@ from numpy.typing import NDArray
 
 from contactlaw import _whole
 from contactlaw._version import VERSION
+from contactlaw.equation import waves
+from contactlaw.equation.integrator import MAX_STEPS
+from contactlaw.evaluation import RTOL
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
 from contactlaw.physical.scaling import factors
@@ -33,6 +36,8 @@ Array = NDArray[np.float64]
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
 ERROR = 4e-6  # of COR beside the model's table: 1e-5 is promised, beside the equation
 _WIDTH = 96
+_OF_WAVES = "LONGER", "LONGER_3", "USUAL", "WIDEST", "SATURATION", "CONTACT_TIME"
+_LIMITS = "R_MIN", "R_MAX", "V_MIN", "V_MAX"
 _SECTION = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 
 
@@ -119,6 +124,10 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         "c_lam": _number(made.inelasticity),
         "c_chi": _number(made.log_overload),
         "table": "" if table is None else _array(packed(model, table)),
+        **{name: _number(getattr(waves, name)) for name in _OF_WAVES},
+        **{name: _number(getattr(lookup, name)) for name in _LIMITS},
+        "MAX_STEPS": str(MAX_STEPS),
+        "RTOL": _number(RTOL),
         "root_series": _array(lookup.ROOT),
         "fifths": _array(2.0 ** (n / 5) for n in range(1, 6)),
     }
