@@ -220,7 +220,10 @@ def test_a_rebound_is_the_solvers(compiled):
     expected = dataclasses.asdict(model.solve(v, r, h))
     units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
     y = np.where(np.isfinite(units.yield_ratio), units.yield_ratio, 1.0)
-    solved = [zener.solve(model.force_law.data, *at, 1e-10) for at in zip(units.inelasticity, y)]
+    solved = [
+        zener.solve(model.force_law.data, *at, 1e-10)
+        for at in zip(units.inelasticity, y, strict=True)
+    ]
     expected["loading_time"] = [one.loading_time for one in solved] * units.time
     for name, values in zip(FIELDS, found.T, strict=True):
         # residual compression begins at yield as (chi - 1)^2; lambda is 0 on a half-space
@@ -420,8 +423,10 @@ def test_nothing_that_threads_could_share(tmp_path):
 def test_several_source_files_may_include_it(tmp_path):
     exported(tmp_path, model_of("myc"))
     other = tmp_path / "other.c"
-    other.write_text('#include "contactlaw.h"\n#include "contactlaw.h"\ndouble f(double v);\n'
-                     "double f(double v) { return contactlaw_restitution(v, 1e-3, 1e-3); }\n")  # fmt: skip
+    other.write_text(
+        '#include "contactlaw.h"\n#include "contactlaw.h"\ndouble f(double v);\n'
+        "double f(double v) { return contactlaw_restitution(v, 1e-3, 1e-3); }\n"
+    )
     source = (
         '#include "contactlaw.h"\ndouble f(double v);\n'
         "int main(void) { return f(5.0) != contactlaw_restitution(5.0, 1e-3, 1e-3); }\n"
