@@ -571,6 +571,16 @@ def test_the_event_driven_example_is_pythons(tmp_path):
         assert row[-7:] == pytest.approx([*expected, speed, time], abs=1.1e-9)
 
 
+def test_the_documented_c_compiles(tmp_path):
+    (shown,) = re.findall(r"```c\n(.*?)```", (ROOT / "docs/engines.md").read_text(), re.DOTALL)
+    include, _, calls = shown.partition("\n")
+    exported(tmp_path, model_of("myc"))
+    arguments = "double speed, double radius, double thickness, double overlap, double dt"
+    body = f"{calls} return e + force + impact.peak_force;"
+    source = f"{include}\ndouble f({arguments});\ndouble f({arguments}) {{ {body} }}\n"
+    build(tmp_path, source, "-c", *WARNINGS)
+
+
 def test_the_soft_sphere_example_is_pythons(tmp_path):
     model = model_of("myc")
     found = example(tmp_path, "soft_sphere")
