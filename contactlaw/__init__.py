@@ -11,6 +11,7 @@ its solutions. All quantities are in SI units.
 array([0.666, 0.896, 0.984])
 """
 
+from contactlaw import export
 from contactlaw._version import VERSION as __version__
 from contactlaw.loads import LoadSignal, load_signal
 from contactlaw.model import ImpactModel
@@ -35,6 +36,7 @@ __all__ = [
     "__version__",
     "edge_distance",
     "explain",
+    "export",
     "load_signal",
     "material",
     "materials",

@@ -1,4 +1,4 @@
-"""Command line: ``contactlaw cor | history | materials | table``."""
+"""Command line: ``contactlaw cor | history | materials | table | export``."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 
-from contactlaw import curves, laws, options, plots, sheet, table, wording
+from contactlaw import curves, export, laws, options, plots, sheet, table, wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.history import ForceHistory
@@ -216,6 +216,13 @@ def _print_certificate(certificate: table.Certificate | None, limits: dict[str, 
         print(f"  {name:22s} {figures} {bound:9.0e}")
 
 
+def _export_header(arguments: argparse.Namespace) -> None:
+    with wording.file_of("out", arguments.out):
+        model = ImpactModel(_pair(arguments), law=arguments.law)
+        export.header(arguments.out, model, arguments.table)
+    print(arguments.out)
+
+
 _RUN = {
     "cor": _cor,
     "history": _history,
@@ -223,6 +230,7 @@ _RUN = {
     "table info": _table_info,
     "table check": _table_check,
     "table build": _table_build,
+    "export header": _export_header,
 }
 
 

@@ -164,6 +164,11 @@ class ImpactModel:
         return self._law
 
     @property
+    def table(self) -> Table:
+        """The table that answers; for Hertz's law that of MYC, whose edge it is."""
+        return self._whole_table
+
+    @property
     def limits(self) -> Limits:
         """Limits of the model for this pair, as kernels take them."""
         return self._limits

@@ -57,6 +57,10 @@ def parser() -> argparse.ArgumentParser:
     about = "lookup tables: build, info, check"
     tables = commands.add_parser("table", help=about, description=_sentence(about))
     _add_tables(tables.add_subparsers(required=True, metavar="ACTION", help="what to do"))
+
+    about = "files for codes that Python cannot reach: header"
+    exports = commands.add_parser("export", help=about, description=_sentence(about))
+    _add_exports(exports.add_subparsers(required=True, metavar="KIND", help="what to write"))
     return made
 
 
@@ -72,19 +76,25 @@ def _sentence(about: str) -> str:
     return f"{about[0].upper()}{about[1:]}."
 
 
-def _add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
-    """Add the options of commands about impacts; quantities are read as one or as several."""
+def _add_pair(command: argparse.ArgumentParser) -> None:
+    """Add materials and law."""
     add = command.add_argument
     add("--sphere", required=True, metavar="NAME", help="material of the bead (see materials)")
     add("--plate", required=True, metavar="NAME", help="material of the plate")
+    add("--law", default=laws.DEFAULT, metavar="LAW",
+        help=f"force law: {', '.join(laws.names())} (default: %(default)s)")  # fmt: skip
+
+
+def _add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
+    """Add the options of commands about impacts; quantities are read as one or as several."""
+    _add_pair(command)
+    add = command.add_argument
     add("--radius", required=True, metavar="R", type=_quantity(read, LENGTH),
         help="radius of the bead [m], or with a unit")  # fmt: skip
     add("--thickness", required=True, metavar="H", type=_quantity(read, LENGTH),
         help="thickness of the plate [m], or with a unit; inf: a half-space")  # fmt: skip
     add("--speed", required=True, metavar="V", type=_quantity(read, SPEED),
         help="normal approach speed [m/s], or with a unit")  # fmt: skip
-    add("--law", default=laws.DEFAULT, metavar="LAW",
-        help=f"force law: {', '.join(laws.names())} (default: %(default)s)")  # fmt: skip
     add("--outside", default="raise", choices=["raise", "solve", "clamp"],
         help="outside the table: refuse, integrate the equation, or take the value at its border "
         "(default: %(default)s)")  # fmt: skip
@@ -137,3 +147,15 @@ def _add_tables(actions: Any) -> None:
     check.add_argument("--seed", type=int, metavar="S",
                        help="seed of the points (default: a fresh one)")  # fmt: skip
     build.add_argument("--out", metavar="FILE", help="file to write (default: LAW.h5)")
+
+
+def _add_exports(kinds: Any) -> None:
+    header = _command(
+        kinds, "export header", "the law and a table of COR as one file in C, which C++ takes too"
+    )
+    _add_pair(header)
+    header.add_argument("--out", default="contactlaw.h", metavar="FILE",
+                        help="file to write (default: %(default)s)")  # fmt: skip
+    header.add_argument("--table", default="cor", choices=["cor", "none"],
+                        help="with a table of COR, or without: law and integration alone "
+                        "(default: %(default)s)")  # fmt: skip

@@ -16,7 +16,7 @@ ROOT = Path(contactlaw.__file__).parent
 # From the bottom to the top; what stands in one layer imports from layers below and from its own.
 LAYERS = [
     {"_version"},
-    {"_folder"},
+    {"_folder", "_whole"},
     {"_jit"},
     {"equation"},  # no units
     {"laws"},
@@ -26,7 +26,7 @@ LAYERS = [
     {"sensitivity"},
     {"model"},  # where the towers meet
     {"closed_form", "loads", "softsphere", "spheres"},
-    {"turning_point"},
+    {"export", "turning_point"},
     {"quantities"},
     {"wording"},
     {"sheet", "options"},

@@ -45,9 +45,9 @@ Array = NDArray[np.float64]
 
 CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
 SATURATION = 3.0  # V0 T_H over d_Y, by its root, from which on eta stays
-_WIDEST = 0.3  # x up to which its fourth power was fitted; it stays from there on
-_LONGER, _LONGER_3 = 0.175, 0.18  # with lambda and its third power; the second by finite elements
-_USUAL = 0.02  # h_0
+WIDEST = 0.3  # x up to which its fourth power was fitted; it stays from there on
+LONGER, LONGER_3 = 0.175, 0.18  # with lambda and its third power; the second by finite elements
+USUAL = 0.02  # h_0
 _RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
 
 
@@ -103,16 +103,16 @@ def waves(
 @kernel(inline=True)
 def _lengthening(thin: float) -> float:
     """Contact time over that without losses, as far as the frequencies count."""
-    return 1.0 + _LONGER * thin + _LONGER_3 * (thin * thin * thin)
+    return 1.0 + LONGER * thin + LONGER_3 * (thin * thin * thin)
 
 
 @kernel(inline=True)
 def stiffening(waves: Waves, ratio: float, x: float, thin: float, h: float) -> float:
     """Stiffening eta of a contact by its plate, from R/H, x, and lambda and h before it."""
     longer = _lengthening(thin)
-    usual = _USUAL * (longer * longer)  # by finite elements; the end of a long contact counts
+    usual = USUAL * (longer * longer)  # by finite elements; the end of a long contact counts
     g = 1.0 - 2.0 * usual / (h + usual)
-    square = min(x * x, _WIDEST * _WIDEST)
+    square = min(x * x, WIDEST * WIDEST)
     return ratio * ((waves.eta + waves.eta_h * g) * x + waves.eta4 * (square * square))
 
 

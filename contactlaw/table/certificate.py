@@ -111,7 +111,7 @@ def compare_outcomes(
         raise ValueError(f"points: at least 100 and at most 10 000 000 are taken, got {points!r}")
     if seed < 0:
         raise ValueError(f"seed: must not be negative, got {seed!r}")
-    lam, chi = _points(grid, points, np.random.default_rng(seed))
+    lam, chi = random_points(grid, points, np.random.default_rng(seed))
     parts = -(-lam.size // _PART)
     exact = sweep.solve_overloads(law, lam, chi, _finer(settings), parts, progress)
     looked = outcome.at(exact.inelasticity, exact.yield_ratio)
@@ -141,7 +141,7 @@ def _finer(settings: Settings) -> float:
     return max(settings.rtol / 10, RANGES["rtol"][0])
 
 
-def _points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array]:
+def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array]:
     """Lambda and chi of points; kinks that are curves are taken where they begin and end."""
     lows = [float(segment.start.min()) for segment in grid.segments]
     highs = [float(segment.start.max()) for segment in grid.segments]

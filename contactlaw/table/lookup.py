@@ -124,7 +124,7 @@ def _root_series() -> tuple[float, ...]:
     return tuple(c)
 
 
-_ROOT = _root_series()
+ROOT = _root_series()
 _ABOVE = np.int64((1024 << 52) - 0x3FE6A09E667F3BCD)  # 1024 exponents, less sqrt(1/2)
 _TWO_52 = np.int64(0x433 << 52)  # bits of 2^52
 _LN_2_HIGH, _LN_2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10  # fdlibm
@@ -152,7 +152,7 @@ def _log_and_root(v: float) -> tuple[float, float]:
     w4 = w2 * w2
     odd = (2.0 + w * (2 / 3)) + (2 / 5 + w * (2 / 7)) * w2  # next term of ln m: 1e-13
     odd += ((2 / 9 + w * (2 / 11)) + (2 / 13 + w * (2 / 15)) * w2) * w4
-    c = _ROOT  # next term of the root: 5e-12
+    c = ROOT  # next term of the root: 5e-12
     root = (c[0] + c[1] * z) + (c[2] + c[3] * z) * w
     root += ((c[4] + c[5] * z) + (c[6] + c[7] * z) * w) * w2
     root += ((c[8] + c[9] * z) + (c[10] + c[11] * z) * w + c[12] * w2) * w4

@@ -9,18 +9,26 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.equation import zener
-from contactlaw.equation.outcome import STORED
+from contactlaw.equation import outcome, zener
+from contactlaw.equation.outcome import STORED, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
-from contactlaw.table import shapes, splines, sweep
-from contactlaw.table.certificate import Certificate, bounds, compare_histories, compare_outcomes
-from contactlaw.table.grid import Grid, Settings
+from contactlaw.table import lookup, shapes, splines, sweep
+from contactlaw.table.certificate import (
+    Certificate,
+    bounds,
+    compare_histories,
+    compare_outcomes,
+    random_points,
+)
+from contactlaw.table.grid import RANGES, Grid, Settings
 from contactlaw.table.sweep import Progress, no_progress
 
 Array = NDArray[np.float64]
 
 POINTS = 1000  # of the certificate of a table that is built on the way to a first answer
+_COMPARED = 20_000  # points at which a coarser table is compared
+_COARSER = (4, 8), (4, 4), (2, 4), (2, 2), (1, 4), (1, 2)  # rows fewer, columns wider, by these
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,6 +124,53 @@ def build(
     fields = {name: getattr(values, name).reshape(rows, grid.columns) for name in STORED}
     table = Table(law, settings, grid, fields)
     return dataclasses.replace(table, certificate=certify(table, points))
+
+
+def coarser(table: Table, error: float) -> Table:
+    """Table on as few nodes as it takes for a COR near that of a given one.
+
+    Parameters
+    ----------
+    table : Table
+        Where the values are looked up.
+    error : float
+        Largest difference of COR at random points.
+
+    Returns
+    -------
+    Table
+        Without shapes; the given one if fewer nodes do not suffice. It has a certificate.
+    """
+    rows, step = table.settings.inelasticity_nodes - 1, table.settings.log_overload_step
+    fewest, widest = RANGES["inelasticity_nodes"][0], RANGES["log_overload_step"][1]
+    lam, chi = random_points(table.grid, _COMPARED, np.random.default_rng(0))
+    exact = _looked_up(table, lam, chi).restitution
+    for fewer, wider in _COARSER:
+        found = _resampled(table, max(rows // fewer + 1, int(fewest)), min(step * wider, widest))
+        if np.abs(_looked_up(found, lam, chi).restitution - exact).max() <= error:
+            break
+    else:
+        found = table
+    if found.certificate is None:
+        found = dataclasses.replace(found, certificate=certify(found, POINTS))
+    return found
+
+
+def _looked_up(table: Table, lam: Array, chi: Array) -> Outcome:
+    w_m = np.array([lookup.log_elastic_compression(table.packed, one) for one in lam])
+    found = outcome.at(lam, np.exp(w_m) / chi)
+    lookup.fields(table.packed, True, found)  # rounding may put an edge outside
+    return found
+
+
+def _resampled(table: Table, rows: int, step: float) -> Table:
+    """Table on other nodes."""
+    grid = grids.coarser(table.grid, rows, step)
+    chi = np.exp(grid.log_overload())
+    found = _looked_up(table, np.repeat(grid.inelasticity, grid.columns), chi.ravel())
+    fields = {name: getattr(found, name).reshape(chi.shape) for name in STORED}
+    settings = dataclasses.replace(table.settings, inelasticity_nodes=rows, log_overload_step=step)
+    return Table(table.law, settings, grid, fields)
 
 
 def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_progress) -> Table:

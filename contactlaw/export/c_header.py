@@ -1,0 +1,185 @@
+"""One C header for a pair of materials: the law and a table of COR as data, and what reads them.
+
+The functions are the same for every law, those of ``contactlaw.h.in``; they are what
+`contactlaw.equation`, `contactlaw.softsphere` and `contactlaw.table.lookup` do. The data are the
+arrays that these read.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import string
+import textwrap
+from collections.abc import Iterable
+from importlib import resources
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import _whole
+from contactlaw._version import VERSION
+from contactlaw.equation import waves
+from contactlaw.equation.integrator import MAX_STEPS
+from contactlaw.evaluation import RTOL
+from contactlaw.model import ImpactModel
+from contactlaw.physical.materials import Material
+from contactlaw.physical.scaling import factors
+from contactlaw.softsphere import unit_spring
+from contactlaw.table import Table, lookup
+from contactlaw.table.nodes import coarser
+
+Array = NDArray[np.float64]
+
+LARGEST = 500_000  # bytes: a header is read by each source file that includes it
+ERROR = 4e-6  # of COR beside the model's table: 1e-5 is promised, beside the equation
+_WIDTH = 96
+_OF_WAVES = "LONGER", "LONGER_3", "USUAL", "WIDEST", "SATURATION", "CONTACT_TIME"
+_LIMITS = "R_MIN", "R_MAX", "V_MIN", "V_MAX"
+_SECTION = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
+
+
+def header(
+    path: str | os.PathLike[str], model: ImpactModel, table: Literal["cor", "none"] = "cor"
+) -> None:
+    """Write a C header that answers for a pair of materials: C99 and C++11, one file.
+
+    Its first lines say how it is used.
+
+    Parameters
+    ----------
+    path : path-like
+        Where to; an existing file is replaced.
+    model : ImpactModel
+        Pair, law and table.
+    table : {"cor", "none"}, optional
+        Whether the header has a table, and with it ``contactlaw_restitution``. The table is coarser
+        than the model's: its COR is within 1e-5 of the integrated equation, or as near as the
+        model's own table.
+
+    Raises
+    ------
+    TypeError
+        If the model is no ImpactModel.
+    ValueError
+        An unknown kind of table, or a header that would exceed 500 kB, by a large table.
+    OSError
+        If the file cannot be written; nothing is left behind then.
+
+    Notes
+    -----
+    With ``contactlaw_step`` any law acts as in `contactlaw.softsphere`, with ``contactlaw_rebound``
+    as in `ImpactModel.solve`, with ``contactlaw_restitution`` as in `ImpactModel.kernel`.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    >>> folder = getfixture("tmp_path")
+    >>> cl.export.header(folder / "contactlaw.h", model)
+    >>> "double contactlaw_restitution(" in (folder / "contactlaw.h").read_text()
+    True
+    """
+    if not isinstance(model, ImpactModel):
+        raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
+    if table not in ("cor", "none"):
+        raise ValueError(f"table: must be 'cor' or 'none', got {table!r}")
+    content = _text(model, coarser(model.table, ERROR) if table == "cor" else None).encode()
+    if len(content) > LARGEST:
+        raise ValueError(
+            f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
+            "a model with coarser Settings"
+        )
+    _whole.write(path, content)
+
+
+def packed(model: ImpactModel, table: Table) -> Array:
+    """COR's part of the array that the lookup kernels read."""
+    made = factors(model.pair, model.force_law)
+    plate = lookup.Plate(made.transit, made.reach, made.saturated, made.waves)
+    whole = lookup.with_plate(table.packed, plate)
+    return whole[: int(whole[lookup.OTHERS_AT])]
+
+
+def _text(model: ImpactModel, table: Table | None) -> str:
+    """Fill the template."""
+    template = resources.files("contactlaw.export").joinpath("contactlaw.h.in").read_text("utf-8")
+    template = _SECTION.sub("" if table is None else r"\1", template)
+    spring = unit_spring(model, 1.0)
+    made = factors(model.pair, model.force_law)
+    values = {
+        "version": VERSION,
+        "about": "\n".join(_about(model, table)),
+        "mass": _number(spring.mass),
+        "stiffness": _number(spring.stiffness),
+        "mobility": _number(spring.mobility),
+        "scale": _number(spring.scale),
+        "relaxation": _number(spring.relaxation),
+        "transit": _number(spring.transit),
+        "bulk": _number(spring.bulk),
+        "waves": _array(spring.waves),
+        "law": _array(model.force_law.data),
+        "c_lam": _number(made.inelasticity),
+        "c_chi": _number(made.log_overload),
+        "table": "" if table is None else _array(packed(model, table)),
+        **{name: _number(getattr(waves, name)) for name in _OF_WAVES},
+        **{name: _number(getattr(lookup, name)) for name in _LIMITS},
+        "MAX_STEPS": str(MAX_STEPS),
+        "RTOL": _number(RTOL),
+        "root_series": _array(lookup.ROOT),
+        "fifths": _array(2.0 ** (n / 5) for n in range(1, 6)),
+    }
+    return string.Template(template).substitute(values)
+
+
+def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
+    """Lines of the first comment: law, pair, certificate."""
+    law, pair = model.force_law, model.pair
+    yield from _comment(f"law {law.name}: {law.source}")
+    yield from _comment(f"sphere {_body(pair.sphere)}")
+    yield from _comment(f"plate {_body(pair.plate)}")
+    if table is None:
+        yield from _comment("no table")
+        return
+    certificate, settings = table.certificate, table.settings
+    assert certificate is not None
+    yield from _comment(
+        f"table of COR, lambda to {settings.largest_inelasticity:g} and chi to "
+        f"{settings.largest_overload:g}; certificate: at {certificate.points} random points, seed "
+        f"{certificate.seed}, within {certificate.largest['restitution']:.1e} of the integrated "
+        f"equation, 99 % of them within {certificate.percentile_99['restitution']:.1e}"
+    )
+
+
+def _body(material: Material) -> str:
+    strength = material.yield_strength
+    limit = "no yield strength" if strength is None else f"yield strength {strength:.6g} Pa"
+    return (
+        f"{material.name}: E {material.youngs_modulus:.6g} Pa, nu {material.poissons_ratio:.6g}, "
+        f"rho {material.density:.6g} kg/m3, {limit}"
+    )
+
+
+def _comment(text: str) -> list[str]:
+    """Lines within a comment of C, whatever a user calls a law or a material."""
+    plain = text.encode("ascii", "replace").decode()
+    plain = "".join(c if c.isprintable() else " " for c in plain)
+    plain = plain.replace("*/", "* /").replace("/*", "/ *").replace("\\", "/").replace("??", "?")
+    return textwrap.wrap(
+        plain, _WIDTH, initial_indent=" * ", subsequent_indent=" *     ", break_on_hyphens=False
+    )
+
+
+def _number(value: float) -> str:
+    """Write a number of C that is read back as it is."""
+    if math.isinf(value):
+        return "HUGE_VAL" if value > 0.0 else "-HUGE_VAL"
+    return repr(float(value))
+
+
+def _array(values: Iterable[float]) -> str:
+    """Lines of an array of C."""
+    text = ", ".join(map(_number, values))
+    return "\n".join(textwrap.wrap(text, _WIDTH, break_on_hyphens=False))

@@ -1,0 +1,617 @@
+"""The C header: compiled by gcc and g++, called through ctypes, beside what Python answers."""
+
+import ctypes
+import dataclasses
+import math
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_own_laws import measured, own
+from test_softsphere import drop
+
+import contactlaw as cl
+from contactlaw import cli, laws
+from contactlaw import table as tables
+from contactlaw._jit import kernel
+from contactlaw._version import VERSION
+from contactlaw.equation import zener
+from contactlaw.export import c_header
+from contactlaw.physical.scaling import scales, sphere_on_plate
+from contactlaw.softsphere import Contacts, resized, unit_spring
+from contactlaw.table import Settings, lookup
+from contactlaw.table.nodes import POINTS, coarser
+
+ROOT = Path(__file__).parent.parent
+COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
+PAIR = cl.Pair("gamma-alumina", "glass")
+STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
+# every registered law, the one with next orders of the plate for three kinds of bodies, and two of
+# a user's own
+MODELS = {name: (PAIR, name) for name in laws.names()}
+MODELS |= {"fem, metals": (STEEL, "fem"), "fem, elastic": (cl.Pair("glass", "glass"), "fem")}
+MODELS |= {"own": (PAIR, own()), "measured": (PAIR, measured())}
+FIELDS = (
+    "restitution", "contact_time", "loading_time", "peak_force", "peak_compression",
+    "residual_compression", "plastic_fraction", "wave_fraction", "other_fraction", "inelasticity",
+)  # fmt: skip
+CALLS = """
+#include "contactlaw.h"
+#ifdef __cplusplus
+extern "C"
+#endif
+void lookups(int n, const double *v, const double *r, const double *h, double *out)
+{
+    int k;
+    for (k = 0; k < n; ++k)
+        out[k] = contactlaw_restitution(v[k], r[k], h[k]);
+}
+
+#ifdef __cplusplus
+extern "C"
+#endif
+void rebounds(int n, const double *v, const double *r, const double *h, contactlaw_impact *out)
+{
+    int k;
+    for (k = 0; k < n; ++k)
+        out[k] = contactlaw_rebound(v[k], r[k], h[k]);
+}
+
+#ifdef __cplusplus
+extern "C"
+#endif
+double step(const contactlaw_spring *spring, contactlaw_state *state, double x, double u, double dt)
+{
+    return contactlaw_step(spring, state, x, u, dt);
+}
+
+#ifdef __cplusplus
+extern "C"
+#endif
+contactlaw_spring spring_of(double radius, double thickness)
+{
+    return contactlaw_spring_of(radius, thickness);
+}
+
+#ifdef __cplusplus
+extern "C"
+#endif
+void drops(int n, const double *v, const double *r, const double *h, const double *dt,
+           const double *phase, double *out)
+{
+    int i, k;
+    for (k = 0; k < n; ++k) {
+        const contactlaw_spring spring = contactlaw_spring_of(r[k], h[k]);
+        contactlaw_state state = CONTACTLAW_APART;
+        double x = -phase[k] * v[k] * dt[k], u = v[k];
+        out[k] = (double)NAN;
+        for (i = 0; i < 10000000; ++i) {
+            u -= 0.5 * dt[k] * state.force / spring.mass;
+            x += u * dt[k];
+            contactlaw_step(&spring, &state, x, u, dt[k]);
+            u -= 0.5 * dt[k] * state.force / spring.mass;
+            if (i > 2 && state.force == 0.0 && u < 0.0) {
+                out[k] = -u / v[k];
+                break;
+            }
+        }
+    }
+}
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def compilers():
+    for name in COMPILERS:
+        if not shutil.which(name):
+            pytest.skip(f"no {name} on PATH: the header is not compiled")
+
+
+def model_of(name, **options):
+    pair, law = MODELS[name]
+    return cl.ImpactModel(pair, law=law, **options)
+
+
+def build(folder, source, *flags, compiler="gcc", out="out"):
+    """Compile a source beside a header; the file that comes of it."""
+    path = folder / "source.c"
+    path.write_text(source)
+    command = [compiler, *COMPILERS[compiler], *flags, path, "-o", folder / out, "-lm"]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr[:2000]
+    assert done.stderr == ""
+    return folder / out
+
+
+@pytest.fixture(scope="module", params=MODELS, ids=str)
+def compiled(request, tmp_path_factory):
+    """A model, its header's table, and the header as a library."""
+    model, folder = model_of(request.param), tmp_path_factory.mktemp("header")
+    cl.export.header(folder / "contactlaw.h", model)
+    library = ctypes.CDLL(build(folder, CALLS, "-O2", "-shared", "-fPIC", *WARNINGS, out="out.so"))
+    return model, library, folder
+
+
+def pointer(values):
+    return values.ctypes.data_as(ctypes.c_void_p)
+
+
+def called(function, size, *columns, fields=1):
+    """Call a C function of arrays; rows of what it gives."""
+    out = np.full((size, fields), -1.0)
+    columns = [np.ascontiguousarray(column, dtype=np.float64) for column in columns]
+    assert all(column.size == size for column in columns)
+    function(ctypes.c_int(size), *map(pointer, columns), pointer(out))
+    return out[:, 0] if fields == 1 else out
+
+
+def impacts(count, seed):
+    """Speeds, radii and thicknesses: lambda from 0 to 100, speeds far below and above yield."""
+    rng = np.random.default_rng(seed)
+    v = np.exp(rng.uniform(math.log(1e-3), math.log(60.0), count))
+    r = np.exp(rng.uniform(math.log(1e-4), math.log(1e-2), count))
+    h = r * np.exp(rng.uniform(math.log(0.05), math.log(30.0), count))
+    h[rng.random(count) < 0.05] = math.inf
+    return v, r, h
+
+
+@kernel
+def lookups(table, c_lam, c_chi, v, r, h, out):
+    for n in range(out.size):
+        out[n] = lookup.restitution_on_plate(table, c_lam, c_chi, v[n], r[n], h[n])
+
+
+def test_a_lookup_is_that_of_numba_in_the_same_table(compiled):
+    """1e5 random impacts, some of them outside."""
+    model, library, _ = compiled
+    table = coarser(model.table, c_header.ERROR)
+    bare = dataclasses.replace(table, certificate=None)  # which a model would warn of
+    peer = cl.ImpactModel(model.pair, model.force_law, table=bare)
+    v, r, h = impacts(100_000, seed=1)
+    expected = np.empty(v.size)
+    lookups(peer._table, peer._c_lam, peer._c_chi, v, r, h, expected)
+    found = called(library.lookups, v.size, v, r, h)
+    outside = np.isnan(expected)
+    assert 0.005 < outside.mean() < 0.6
+    assert (np.isnan(found) == outside).all()
+    assert np.abs(found - expected)[~outside].max() < 1e-12
+    whole = np.empty(v.size)
+    lookups(model._table, model._c_lam, model._c_chi, v, r, h, whole)
+    assert np.abs(found - whole)[~outside].max() < 1e-5
+    assert table.certificate.largest["restitution"] < 1e-5
+
+
+def test_a_contact_by_steps_is_that_of_softsphere(compiled):
+    """2000 random impacts at 15 to 120 steps a contact."""
+    model, library, _ = compiled
+    v, r, h = impacts(2000, seed=2)
+    rng = np.random.default_rng(3)
+    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
+    keep = units.inelasticity < 3.0  # at most; beyond, nothing comes back
+    v, r, h = v[keep], r[keep], h[keep]
+    dt = 3.2 * units.time[keep] / np.exp(rng.uniform(math.log(15.0), math.log(120.0), v.size))
+    phase = rng.uniform(0.02, 0.98, v.size)
+    expected = np.array(
+        [
+            drop(
+                model.force_law.data, resized(unit_spring(model, h[n]), r[n]), v[n], dt[n], phase[n]
+            )
+            for n in range(v.size)
+        ]
+    )
+    found = called(library.drops, v.size, v, r, h, dt, phase)
+    assert v.size > 1000
+    assert 0.0 < found.min() <= found.max() <= 1.001
+    assert np.abs(found - expected).max() < 1e-10
+
+
+def test_a_rebound_is_the_solvers(compiled):
+    model, library, _ = compiled
+    v, r, h = impacts(300, seed=4)
+    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
+    keep = units.inelasticity < 10.0
+    v, r, h = v[keep], r[keep], h[keep]
+    found = called(library.rebounds, v.size, v, r, h, fields=len(FIELDS))
+    expected = dataclasses.asdict(model.solve(v, r, h))
+    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
+    y = np.where(np.isfinite(units.yield_ratio), units.yield_ratio, 1.0)
+    solved = [
+        zener.solve(model.force_law.data, *at, 1e-10)
+        for at in zip(units.inelasticity, y, strict=True)
+    ]
+    expected["loading_time"] = [one.loading_time for one in solved] * units.time
+    for name, values in zip(FIELDS, found.T, strict=True):
+        # residual compression begins at yield as (chi - 1)^2; lambda is 0 on a half-space
+        absolute = name.endswith("fraction") or name in ("restitution", "inelasticity")
+        whole = name.replace("residual", "peak")
+        scale = 1.0 if absolute else expected[whole]
+        assert np.abs((values - expected[name]) / scale).max() < 1e-10, name
+    energy = found[:, 0] ** 2 + found[:, 6] + found[:, 7] + found[:, 8]
+    assert np.abs(energy - 1.0).max() < 1e-8
+
+
+@pytest.mark.parametrize("table", ["cor", "none"])
+@pytest.mark.parametrize("name", MODELS)
+def test_compilers_have_nothing_to_say(name, table, tmp_path):
+    cl.export.header(tmp_path / "contactlaw.h", model_of(name), table)
+    assert (tmp_path / "contactlaw.h").stat().st_size <= 500_000
+    source = CALLS if table == "cor" else '#include "contactlaw.h"\n'
+    for compiler in COMPILERS:
+        build(tmp_path, source, "-c", "-O1", *WARNINGS, compiler=compiler)
+
+
+# Calls with numbers of all kinds, in any order: everything that is no answer has to be NaN.
+ANY_INPUT = """
+#include "contactlaw.h"
+#include <stdio.h>
+
+static uint64_t seed = 88172645463325252u;
+
+static double uniform(void)
+{
+    seed ^= seed << 13;
+    seed ^= seed >> 7;
+    seed ^= seed << 17;
+    return (double)(seed >> 11) * 0x1p-53;
+}
+
+static double any(double low, double high)
+{
+    static const double odd[] = { 0.0, -0.0, 1e-308, 5e-324, -5e-324, 1.7e308, -1.7e308, 1e-30,
+                                  1e-9, 1e3, 1e5, -1.0, 1.0, 1e-160, 1e160, 2.2e-16 };
+    const double kind = 48.0 * uniform();
+    uint64_t bits;
+    double x;
+    if (kind < 16.0)
+        return odd[(int)kind];
+    if (kind < 17.0)
+        return (double)NAN;
+    if (kind < 18.0)
+        return HUGE_VAL;
+    if (kind < 19.0)
+        return -HUGE_VAL;
+    if (kind < 22.0) {
+        bits = (uint64_t)(uniform() * 9007199254740992.0) * 2049u;
+        memcpy(&x, &bits, sizeof x);
+        return x;
+    }
+    return low * pow(high / low, uniform());
+}
+
+static double near(double value) { return uniform() < 0.9 ? value : any(1e-9, 1e3); }
+
+int main(void)
+{
+    long n, k, numbers = 0, none = 0, wrong = 0;
+    for (n = 0; n < 400000; ++n) {
+        const double v = any(1e-4, 1e2), r = any(1e-5, 1e-1), h = any(1e-5, 1e-1);
+        const double e = contactlaw_restitution(v, r, h);
+        numbers += e >= 0.0 && e <= 1.0;
+        none += e != e;
+        wrong += !(e != e) && !(e >= 0.0 && e <= 1.0);
+        wrong += e == e && !(v > 0.0 && r > 0.0 && h > 0.0);
+    }
+    printf("%ld %ld\\n", numbers, none);
+    numbers = none = 0;
+    for (n = 0; n < 3000; ++n) {
+        contactlaw_spring spring = contactlaw_spring_of(any(1e-5, 1e-1), any(1e-5, 1e-1));
+        contactlaw_state state = CONTACTLAW_APART;
+        if (uniform() < 0.3) {
+            spring = contactlaw_spring_of(1e-3, 1e-3);
+            spring.mass = near(spring.mass);
+            spring.stiffness = near(spring.stiffness);
+            spring.mobility = near(spring.mobility);
+            spring.scale = near(spring.scale);
+            spring.relaxation = near(spring.relaxation);
+            spring.transit = near(spring.transit);
+            spring.ratio = near(spring.ratio);
+        }
+        for (k = 0; k < 60; ++k) {
+            double x = any(1e-3, 1.0) * 1e-5, dt = any(1e-9, 1e-5), f;
+            contactlaw_state before;
+            if (uniform() < 0.05) {
+                state.plate_displacement = any(1e-9, 1e-3);
+                state.largest_compression = any(1e-9, 1e-3);
+                state.force = any(1e-3, 1e3);
+                state.mobility = any(1e-3, 1e3);
+                state.stiffening = any(0.5, 2.0);
+            }
+            before = state;
+            f = contactlaw_step(&spring, &state, x, any(1e-3, 1e2), dt);
+            numbers += f == f;
+            none += f != f;
+            wrong += f < 0.0 || f == HUGE_VAL;
+            wrong += f == f && !(x > -HUGE_VAL && x < HUGE_VAL && dt > 0.0);
+            wrong += f != f && memcmp(&before, &state, sizeof state) != 0;
+        }
+    }
+    printf("%ld %ld\\n", numbers, none);
+    numbers = none = 0;
+    for (n = 0; n < 600; ++n) {
+        const contactlaw_impact one
+            = contactlaw_rebound(any(1e-3, 1e2), any(1e-4, 1e-2), any(1e-3, 1e-1));
+        numbers += one.restitution >= 0.0 && one.restitution <= 1.0;
+        none += one.restitution != one.restitution && one.peak_force != one.peak_force;
+    }
+    printf("%ld %ld\\n", numbers, none);
+    printf("%ld\\n", wrong + 600 - numbers - none);
+    return 0;
+}
+"""
+SANITIZERS = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize-recover=all"]
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_sanitizers_find_nothing_whatever_the_input(name, tmp_path):
+    """NaN, inf, zero, negative, denormal numbers and any bits, in arguments, springs and states."""
+    cl.export.header(tmp_path / "contactlaw.h", model_of(name))
+    program = build(tmp_path, ANY_INPUT, "-O1", "-g", *SANITIZERS)
+    done = subprocess.run([program], capture_output=True, text=True, timeout=300)
+    assert (done.returncode, done.stderr) == (0, "")
+    *counts, wrong = done.stdout.splitlines()
+    for line in counts:
+        answers, none = map(int, line.split())
+        assert min(answers, none) > 0.02 * (answers + none), line
+    assert wrong == "0"
+
+
+def exported(folder, model, **options):
+    cl.export.header(folder / "contactlaw.h", model, **options)
+    return (folder / "contactlaw.h").read_text()
+
+
+def test_the_first_lines_say_what_it_is(tmp_path):
+    model = model_of("fem, metals")
+    text = exported(tmp_path, model)
+    first = " ".join(line.strip(" *") for line in text.splitlines()[:14])
+    assert f"contactlaw {VERSION}" in first
+    assert f"law {model.law}: {model.force_law.source}" in first
+    assert "sphere bearing-steel-52100: E 2.034e+11 Pa, nu 0.296, rho 7833 kg/m3" in first
+    assert "plate aluminium-6061-t6: E 6.89e+10 Pa" in first
+    error = coarser(model.table, c_header.ERROR).certificate.largest["restitution"]
+    assert f"within {error:.1e} of the integrated equation" in first
+    assert "SPDX-License-Identifier: BSD-3-Clause" in first
+    licence = [line.removeprefix(" *").strip() for line in text.splitlines()[-40:]]
+    for line in (ROOT / "LICENSE").read_text().splitlines():
+        assert line.strip() in licence
+
+
+def test_the_data_are_those_that_python_reads(compiled):
+    model, _, folder = compiled
+    text = (folder / "contactlaw.h").read_text()
+    table = coarser(model.table, c_header.ERROR).packed.copy()
+    plate = slice(lookup.TRANSIT, lookup.HEADER)
+    table[plate] = model._table[plate]  # which the pair adds
+    for array, values in (("law", model.force_law.data), ("table", table)):
+        inside = re.search(rf"contactlaw_{array}\[\] = {{(.*?)}}", text, re.DOTALL)[1]
+        found = np.array(inside.replace("HUGE_VAL", "inf").split(","), dtype=np.float64)
+        assert found.size == (values.size if array == "law" else table[lookup.OTHERS_AT])
+        assert (found == values[: found.size]).all()
+
+
+def test_a_table_of_ones_own_without_a_certificate(tmp_path):
+    """Too coarse to be made coarser: taken as it is, and its error is told."""
+    settings = Settings(
+        inelasticity_nodes=6, log_overload_step=0.4, largest_inelasticity=1.0, largest_overload=3.0
+    )
+    table = dataclasses.replace(tables.build(laws.law("myc"), settings), certificate=None)
+    model = cl.ImpactModel(PAIR, law="myc", table=table)
+    text = " ".join(line.strip(" *") for line in exported(tmp_path, model).splitlines()[:12])
+    assert "table of COR, lambda to 1 and chi to 3" in text
+    error = tables.certify(table, POINTS).largest["restitution"]
+    assert error > 1e-5
+    assert f"within {error:.1e} of the integrated equation" in text
+    program = (
+        '#include "contactlaw.h"\n#include <stdio.h>\n'
+        'int main(void) { printf("%.17g", contactlaw_restitution(9.0, 0.9e-3, 1e-3)); return 0; }\n'
+    )
+    found = subprocess.run([build(tmp_path, program)], capture_output=True, text=True).stdout
+    assert float(found) == pytest.approx(model.restitution(9.0, 0.9e-3, 1e-3), abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "name", ["*/ int x; /*", "a\nb\\", "\u202eback", "??/ \\u", 'q"%d$law', "x" * 300]
+)
+def test_whatever_a_law_or_a_material_is_called(name, tmp_path):
+    sphere = dataclasses.replace(cl.material("gamma-alumina"), name=name)
+    model = cl.ImpactModel(cl.Pair(sphere, "glass"), law=own(name=name, source=name))
+    assert exported(tmp_path, model, table="none").isascii()
+    for compiler in COMPILERS:
+        source = '#include "contactlaw.h"\n'
+        build(tmp_path, source, "-c", *WARNINGS, compiler=compiler)
+
+
+def test_nothing_that_threads_could_share(tmp_path):
+    """Functions and constants alone, and no call but of the mathematical library."""
+    exported(tmp_path, model_of("fem"))
+    symbols = subprocess.run(
+        ["nm", build(tmp_path, CALLS, "-c", "-O1", out="out.o")], capture_output=True, text=True
+    ).stdout.split("\n")
+    kinds = {tuple(line.split()[-2:]) for line in symbols if line}
+    assert {kind for kind, _ in kinds} <= {"T", "t", "r", "U"}
+    outside = {name for kind, name in kinds if kind == "U"}
+    assert outside <= {"sqrt", "pow", "exp", "_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"}
+
+
+def test_several_source_files_may_include_it(tmp_path):
+    exported(tmp_path, model_of("myc"))
+    other = tmp_path / "other.c"
+    other.write_text(
+        '#include "contactlaw.h"\n#include "contactlaw.h"\ndouble f(double v);\n'
+        "double f(double v) { return contactlaw_restitution(v, 1e-3, 1e-3); }\n"
+    )
+    source = (
+        '#include "contactlaw.h"\ndouble f(double v);\n'
+        "int main(void) { return f(5.0) != contactlaw_restitution(5.0, 1e-3, 1e-3); }\n"
+    )
+    assert subprocess.run([build(tmp_path, source, *WARNINGS, other)]).returncode == 0
+
+
+def test_a_spring_is_that_of_softsphere(compiled):
+    model, library, _ = compiled
+    values = ctypes.c_double * 8
+    for radius, thickness in ((0.9e-3, 1e-3), (1e-9, math.inf), (1e3, 1e-9)):
+        library.spring_of.argtypes = (ctypes.c_double, ctypes.c_double)
+        library.spring_of.restype = type(
+            "Spring", (ctypes.Structure,), {"_fields_": [("v", values)]}
+        )
+        found = list(library.spring_of(radius, thickness).v)
+        spring = resized(unit_spring(model, thickness), radius)._asdict()
+        names = "mass", "stiffness", "mobility", "scale", "relaxation", "transit", "ratio", "radius"
+        assert found == pytest.approx([spring[name] for name in names], rel=1e-14)
+    for radius, thickness in ((0.0, 1e-3), (-1.0, 1e-3), (1e-3, 0.0), (1e-3, math.nan), (2e3, 1.0)):
+        assert np.isnan(list(library.spring_of(radius, thickness).v)).all()
+
+
+def test_a_blown_up_simulation_is_told_and_leaves_the_state(tmp_path):
+    exported(tmp_path, model_of("myc"), table="none")
+    source = """
+#include "contactlaw.h"
+int main(void)
+{
+    const contactlaw_spring spring = contactlaw_spring_of(1e-3, 1e-3);
+    contactlaw_state state = CONTACTLAW_APART, before;
+    int good = contactlaw_step(&spring, &state, 1e-6, 1.0, 1e-7) > 0.0;
+    before = state;
+    good &= isnan(contactlaw_step(&spring, &state, 2.1e-3, 1.0, 1e-7));
+    good &= isnan(contactlaw_step(&spring, &state, NAN, 1.0, 1e-7));
+    good &= isnan(contactlaw_step(&spring, &state, -HUGE_VAL, 1.0, 1e-7));
+    good &= isnan(contactlaw_step(&spring, &state, 1e-6, NAN, 1e-7));
+    good &= isnan(contactlaw_step(&spring, &state, 1e-6, 2e5, 1e-7));
+    good &= isnan(contactlaw_step(&spring, &state, 1e-6, 1.0, 0.0));
+    good &= isnan(contactlaw_step(&spring, &state, 1e-6, 1.0, 1.0e2));
+    good &= memcmp(&before, &state, sizeof state) == 0;
+    good &= contactlaw_step(&spring, &state, 0.0, -1.0, 1e-7) == 0.0 && state.force == 0.0;
+    good &= state.plate_displacement == 0.0 && state.largest_compression == 0.0;
+    return !good;
+}
+"""
+    assert subprocess.run([build(tmp_path, source, *WARNINGS)]).returncode == 0
+
+
+def test_what_is_refused(tmp_path, monkeypatch):
+    path, model = tmp_path / "contactlaw.h", model_of("myc")
+    with pytest.raises(TypeError, match="model: expected a contactlaw.ImpactModel, got 'myc'"):
+        cl.export.header(path, "myc")
+    with pytest.raises(ValueError, match="table: must be 'cor' or 'none', got 'all'"):
+        cl.export.header(path, model, table="all")
+    with pytest.raises(FileNotFoundError):
+        cl.export.header(tmp_path / "nowhere" / "contactlaw.h", model, table="none")
+    monkeypatch.setattr(c_header, "LARGEST", 100_000)
+    with pytest.raises(ValueError, match=r"table: the header would have \d+ bytes, above 100000"):
+        cl.export.header(path, model)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_leaves_the_file_that_was_there(tmp_path):
+    path, model = tmp_path / "contactlaw.h", model_of("myc")
+    path.write_text("before")
+    code = (
+        "import resource, signal, contactlaw as cl\n"
+        "model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), law='myc')\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
+        f"cl.export.header({str(path)!r}, model, table='none')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert "OSError: [Errno 27] File too large" in done.stderr
+    assert path.read_text() == "before"
+    assert list(tmp_path.iterdir()) == [path]
+    cl.export.header(path, model, table="none")
+    assert path.stat().st_mode & 0o777 == 0o644
+
+
+PLAIN = ["export", "header", "--sphere", "bearing-steel-52100", "--plate", "aluminium-6061-t6"]
+
+
+def test_the_command_writes_the_same_file(tmp_path, capsys):
+    for options in (["--law", "fem"], ["--law", "myc", "--table", "none"]):
+        out = tmp_path / "out.h"
+        assert cli.main([*PLAIN, *options, "--out", str(out)]) == 0
+        assert capsys.readouterr().out == f"{out}\n"
+        model, table = cl.ImpactModel(STEEL, law=options[1]), (*options, "", "cor")[3]
+        assert out.read_text() == exported(tmp_path, model, table=table)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (["--out", "nowhere/contactlaw.h"], "--out: there is no folder nowhere"),
+        (["--out", "."], "--out: . is a folder"),
+        (["--sphere", "stel"], "--sphere: unknown material 'stel'"),
+        (["--sphere", "glass", "--law", "myc"], "--sphere: law 'myc' needs a yield strength"),
+        (["--law", "mcy"], "--law: unknown law 'mcy'"),
+    ],
+)
+def test_the_command_refuses_in_its_own_words(change, message, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main([*PLAIN, *change]) == 1
+    assert message in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def example(folder, name):
+    """What an example prints, its numbers line by line; compiled as its first lines say."""
+    path = ROOT / "docs/examples" / f"{name}.c"
+    text = path.read_text()
+    assert len(text.splitlines()) <= 40
+    export, compilation = re.findall(r"^ \*     (.*)$", text, re.MULTILINE)
+    assert shlex.split(export)[0] == "contactlaw"
+    (folder / path.name).write_text(text)
+    done = subprocess.run([sys.executable, "-m", *shlex.split(export)], cwd=folder)
+    assert done.returncode == 0
+    command = compilation.replace("cc ", "gcc -std=c99 " + " ".join(WARNINGS) + " ")
+    done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    numbers = re.compile(r"(?<![\w.])-?\d+\.\d+")
+    return [[float(one) for one in numbers.findall(line)] for line in done.stdout.splitlines()]
+
+
+def test_the_event_driven_example_is_pythons(tmp_path):
+    model = model_of("myc")
+    peer = cl.ImpactModel(
+        model.pair, "myc",
+        table=dataclasses.replace(coarser(model.table, c_header.ERROR), certificate=None),
+    )  # fmt: skip
+    found = example(tmp_path, "event_driven")
+    for row, thickness in zip(found, (0.5e-3, 1e-3, 3e-3, math.inf), strict=True):
+        speed = math.sqrt(2 * 9.81 * 0.5)
+        time, expected = speed / 9.81, []
+        for _ in range(5):
+            expected.append(peer.restitution(speed, 0.9e-3, thickness))
+            speed *= expected[-1]
+            time += 2 * speed / 9.81
+        assert row[-7:] == pytest.approx([*expected, speed, time], abs=1.1e-9)
+
+
+def test_the_documented_c_compiles(tmp_path):
+    (shown,) = re.findall(r"```c\n(.*?)```", (ROOT / "docs/engines.md").read_text(), re.DOTALL)
+    include, _, calls = shown.partition("\n")
+    exported(tmp_path, model_of("myc"))
+    arguments = "double speed, double radius, double thickness, double overlap, double dt"
+    body = f"{calls} return e + force + impact.peak_force;"
+    source = f"{include}\ndouble f({arguments});\ndouble f({arguments}) {{ {body} }}\n"
+    build(tmp_path, source, "-c", *WARNINGS)
+
+
+def test_the_soft_sphere_example_is_pythons(tmp_path):
+    model = model_of("myc")
+    found = example(tmp_path, "soft_sphere")
+    v = np.linspace(2.0, 10.0, 5)
+    dt = model.solve(10.0, 0.9e-3, 1e-3).contact_time / 50
+    contacts = Contacts(model, np.full(5, 0.9e-3), 1e-3)
+    x, u, peak = np.full(5, -1e-5), v.copy(), np.zeros(5)
+    for _ in range(500):
+        u += 0.5 * dt * (9.81 - contacts.force / contacts.mass)
+        x += dt * u
+        u += 0.5 * dt * (9.81 - contacts.advance(x, dt) / contacts.mass)
+        peak = np.maximum(peak, contacts.force)
+    assert np.array(found) == pytest.approx(np.column_stack([v, peak, -u]), abs=1e-6)
+    # and its COR is the integrated one's, gravity aside
+    assert -u / v == pytest.approx(model.solve(v, 0.9e-3, 1e-3).restitution, abs=2e-4)
