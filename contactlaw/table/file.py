@@ -7,7 +7,6 @@ altered is refused with a sentence, whatever HDF5 would have made of it.
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import errno
 import functools
@@ -16,7 +15,6 @@ import io
 import json
 import math
 import os
-import tempfile
 from dataclasses import asdict
 from importlib import resources
 from pathlib import Path
@@ -26,6 +24,7 @@ import h5py
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
@@ -80,7 +79,6 @@ def write(table: Table, path: str | os.PathLike[str]) -> None:
         If the folder does not exist, is not writable or full, or the table larger than what `read`
         takes; nothing is left behind then.
     """
-    path = Path(path)
     content = _serialise(table)
     if len(content) > LARGEST:
         raise OSError(
@@ -88,18 +86,7 @@ def write(table: Table, path: str | os.PathLike[str]) -> None:
             f"table: it has {len(content)} bytes, above the limit of {LARGEST}: take coarser "
             "Settings",
         )
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-            file.flush()
-            os.fsync(file.fileno())  # or a power cut could leave the name without the content
-        os.chmod(name, 0o644)  # mkstemp makes it private; a table is for everyone
-        os.replace(name, path)
-    except BaseException:
-        with contextlib.suppress(FileNotFoundError):
-            os.unlink(name)
-        raise
+    _atomic.write(path, content)
 
 
 def _serialise(table: Table) -> bytes:
