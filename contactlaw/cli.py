@@ -135,8 +135,8 @@ def _sweep(arguments: argparse.Namespace) -> None:
         model = _model(arguments)
         found = sheet.impacts(model, *axes, solve=arguments.solve)
         sweep.save(found, model, axes, arguments.out)
-    print(f"{arguments.out}: {len(found)} impacts")
-    print(*sheet.explained(count_flags(found.flags), len(found)), sep="\n")
+    flags = sheet.explained(count_flags(found.flags), len(found))
+    print(f"{arguments.out}: {len(found)} impacts", *flags, sep="\n")
 
 
 def _constant(arguments: argparse.Namespace) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 from collections.abc import Callable, Sequence
@@ -103,20 +104,22 @@ def read(path: str | os.PathLike[str]) -> Recorded:
     >>> found.speed, found.radius
     (array([0.5, 1.2]), array([0.0009, 0.0011]))
     """
-    readers: dict[str, Callable[[Path], Recorded]] = {".h5": _hdf5, ".hdf5": _hdf5, ".npy": _npy}
+    readers = {".h5": _hdf5, ".hdf5": _hdf5, ".npy": _npy}
     path = Path(path)
+    content = path.read_bytes()
     try:
-        found = readers.get(path.suffix.lower(), _text)(path)
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: neither text, nor HDF5 (.h5), nor of numpy (.npy)") from None
-    if found.speed.size == 0:
-        raise ValueError(f"{path}: it has no impact on a plate")
-    sizes = {name: getattr(found, name) for name in ("speed", "radius", "thickness")}
-    try:
-        check(**{name: values for name, values in sizes.items() if values is not None})
+        found = readers.get(path.suffix.lower(), _text)(content)
+        _check(found)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     return found
+
+
+def _check(found: Recorded) -> None:
+    if found.speed.size == 0:
+        raise ValueError("it has no impact on a plate")
+    sizes = {name: getattr(found, name) for name in ("speed", "radius", "thickness")}
+    check(**{name: values for name, values in sizes.items() if values is not None})
 
 
 def combined(
@@ -207,15 +210,18 @@ def material_of(group: h5py.Group) -> Material:
     )
 
 
-def _hdf5(path: Path) -> Recorded:
-    with h5py.File(path, "r") as file:
+def _hdf5(content: bytes) -> Recorded:
+    try:
+        file = h5py.File(io.BytesIO(content), "r")
+    except OSError:
+        raise ValueError("no HDF5 file, or a damaged one") from None
+    with file:
         if file.attrs.get("format") != _DEMO:
-            raise ValueError(f"{path}: no record of dem-demo, whose format is {_DEMO!r}")
-        hits = {
-            name: file[f"collisions/{name}"][()] for name in ("approach_speed", "bead", "plate")
-        }
-        on_plates = hits["plate"] >= 0
-        speed, bead, plate = (values[on_plates] for values in hits.values())
+            raise ValueError(f"no record of dem-demo, whose format is {_DEMO!r}")
+        hits = file["collisions"]
+        on_plates = hits["plate"][()] >= 0
+        names = ("approach_speed", "bead", "plate")
+        speed, bead, plate = (hits[name][()][on_plates] for name in names)
         pair = Pair(*(material_of(file[f"materials/{body}"]) for body in ("sphere", "plate")))
         return Recorded(
             speed=speed,
@@ -226,27 +232,32 @@ def _hdf5(path: Path) -> Recorded:
         )
 
 
-def _npy(path: Path) -> Recorded:
-    rows = np.load(path, allow_pickle=False)
+def _npy(content: bytes) -> Recorded:
+    if not content.startswith(b"\x93NUMPY"):
+        raise ValueError("no file of np.save")
+    rows = np.load(io.BytesIO(content), allow_pickle=False)
     names = rows.dtype.names or ()
-    return _impacts(path, names, lambda wanted: np.column_stack([rows[names[n]] for n in wanted]))
+    return _columns(names, lambda wanted: np.column_stack([rows[names[n]] for n in wanted]))
 
 
-def _text(path: Path) -> Recorded:
-    with open(path, encoding="utf-8-sig") as file:
-        first = file.readline()
-        delimiter = next((mark for mark in "\t;" if mark in first), ",")
-        heads = [head.strip().strip('"') for head in first.lstrip("#").split(delimiter)]
+def _text(content: bytes) -> Recorded:
+    try:
+        first, *lines = content.decode("utf-8-sig").splitlines() or [""]
+    except UnicodeDecodeError:
+        raise ValueError("neither text, nor HDF5 (.h5), nor of np.save (.npy)") from None
+    delimiter = next((mark for mark in "\t;" if mark in first), ",")
+    heads = [head.strip().strip('"') for head in first.lstrip("#").split(delimiter)]
+    rows = [line for line in lines if line.strip() and not line.startswith("#")]
 
-        def numbers(wanted: list[int]) -> Array:
-            return np.loadtxt(
-                file, delimiter=delimiter, usecols=wanted, ndmin=2, quotechar='"', dtype=float
-            )
+    def numbers(wanted: list[int]) -> Array:
+        if not rows:  # of which loadtxt would warn
+            return np.empty((0, len(wanted)))
+        return np.loadtxt(rows, delimiter=delimiter, usecols=wanted, ndmin=2, quotechar='"')
 
-        return _impacts(path, heads, numbers)
+    return _columns(heads, numbers)
 
 
-def _impacts(path: Path, heads: Any, numbers: Callable[[list[int]], Array]) -> Recorded:
+def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Recorded:
     """Pick the columns that are known by their names, and give them SI units."""
     found: dict[str, tuple[int, float]] = {}
     for n, head in enumerate(heads):
@@ -255,20 +266,14 @@ def _impacts(path: Path, heads: Any, numbers: Callable[[list[int]], Array]) -> R
         field = next((f for f, column in _COLUMNS.items() if name in column.names), None)
         if match and field:
             if field in found:
-                raise ValueError(
-                    f"{path}: two columns of {field}: {heads[found[field][0]]}, {head}"
-                )
+                raise ValueError(f"two columns of {field}, {heads[found[field][0]]!r} and {head!r}")
             unit = (match["bracket"] or match["unit"] or "").strip()
-            found[field] = n, _per_unit(path, head, unit, _COLUMNS[field].quantity)
+            found[field] = n, _per_unit(head, unit, _COLUMNS[field].quantity)
     if "speed" not in found:
         raise ValueError(
-            f"{path}: no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one "
-            "speed_m/s"
+            f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s"
         )
-    try:
-        rows = numbers([n for n, _ in found.values()])
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+    rows = numbers([n for n, _ in found.values()])
     columns: dict[str, Any] = {
         field: column / per for (field, (_, per)), column in zip(found.items(), rows.T, strict=True)
     }
@@ -279,13 +284,13 @@ def _impacts(path: Path, heads: Any, numbers: Callable[[list[int]], Array]) -> R
     return Recorded(**columns)
 
 
-def _per_unit(path: Path, head: str, unit: str, quantity: Quantity | None) -> float:
+def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
     """How many of a column's units are one of the SI: to divide by, which rounds but once."""
     if quantity is None or not unit:
         return 1.0
     if unit not in quantity.units:
         raise ValueError(
-            f"{path}: column {head!r}: {unit!r} is no unit of {quantity.name}; take "
+            f"column {head!r}: {unit!r} is no unit of {quantity.name}; take "
             f"{', '.join(quantity.units)}"
         )
     return float(1 / quantity.units[unit])

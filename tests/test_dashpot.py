@@ -10,7 +10,7 @@ from contactlaw.dashpot import betan
 
 
 def restitution(beta):
-    """COR of YADE's contact in units K = m = V = 1, by scipy; it ends where the force has fallen."""
+    """COR of YADE's contact in units K = m = V = 1, by scipy; it ends where the force does."""
 
     def force(x, u):
         x = max(x, 0.0)
