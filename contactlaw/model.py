@@ -586,8 +586,8 @@ class ImpactModel:
         Returns
         -------
         SpeedTable
-            Speeds and their own CORs. No other choice among 4000 speeds (logarithmic, and the yield
-            speed) has fewer rows and lets straight lines between them err less than `error`.
+            Speeds and their own CORs. No other choice among 4000 logarithmically spaced speeds has
+            fewer rows and lets straight lines between them err no more than `error`.
 
         Raises
         ------
@@ -604,11 +604,7 @@ class ImpactModel:
         (array([ 0.1 ,  0.13,  1.17, 10.  ]), array([0.957, 0.954, 0.93 , 0.888]))
         """
         r, h = scalars(radius=radius, thickness=thickness)
-        try:
-            kink = float(self.yield_speed(r[0], h[0]))
-        except ValueError:  # beyond the table, whatever is done there
-            kink = math.inf
-        return speed_table(lambda v: self.lookup(v, r, h), error, (slowest, fastest), kink)
+        return speed_table(lambda v: self.lookup(v, r, h), error, (slowest, fastest))
 
     def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
         """COR of one bead class on one plate, as a fast function of speed.

@@ -15,7 +15,7 @@ from contactlaw.physical.validity import Validity, count_flags
 Array = NDArray[np.float64]
 
 _CHOICE = 4000  # speeds that may become rows: 0.1 % apart over two decades
-_FINER = 4  # speeds between two of them at which the error is measured
+_FINER = 4  # speeds between two of them at which the error is measured, across kinks too
 _ROUNDS = 10
 
 
@@ -39,7 +39,7 @@ class SpeedTable(NamedTuple):
 
 
 def speed_table(
-    lookup: Callable[[Array], Rebound], error: float, ends: tuple[float, float], kink: float
+    lookup: Callable[[Array], Rebound], error: float, ends: tuple[float, float]
 ) -> SpeedTable:
     """Choose the rows.
 
@@ -51,8 +51,6 @@ def speed_table(
         Largest error of the COR.
     ends : tuple of float
         First and last speed [m/s].
-    kink : float
-        Speed at which the slope may jump [m/s].
 
     Raises
     ------
@@ -67,8 +65,6 @@ def speed_table(
         raise ValueError(f"slowest: must be below the fastest speed, {fastest!r}, got {slowest!r}")
     lookup(np.array([slowest, fastest]))  # what is outside the table is so at an end
     speed = np.geomspace(slowest, fastest, _CHOICE)
-    if slowest < kink < fastest:
-        speed = np.unique(np.append(speed, kink))
     between = np.arange(1, _FINER + 1) / (_FINER + 1)
     probe = np.ravel(speed[:-1, None] + np.diff(speed)[:, None] * between)
     e, there = (np.asarray(lookup(v).restitution) for v in (speed, probe))

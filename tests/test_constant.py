@@ -1,6 +1,7 @@
 """One COR for many impacts against direct sums, and against beads dropped in an engine."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pymunk
@@ -9,6 +10,7 @@ from scene import make_bead, make_plate
 
 import contactlaw as cl
 from contactlaw import laws
+from contactlaw.constant import constant
 from contactlaw.engines.pymunk import attach
 from dem_demo.baseline import ConstantRestitution
 
@@ -80,6 +82,13 @@ def test_nothing_is_lost_on_a_half_space_below_yield(pair):
     assert best.restitution == pytest.approx(1.0, abs=1e-12)
     assert (best.energy_error, best.mean_energy_error) == (0.0, 0.0)
     assert best.rebound_error < 1e-12
+
+
+@pytest.mark.parametrize("e", [[1.0, 1.0], [1.0, 1 - 2e-16]])
+def test_a_loss_of_a_rounding_has_no_error(e):
+    hits = SimpleNamespace(restitution=np.array(e), flags=np.zeros(2, dtype=int))
+    best = constant(np.array([1.0, 2.0]), np.ones(2), np.ones(2), hits, "energy")
+    assert (best.energy_error, best.mean_energy_error) == (0.0, 0.0)
 
 
 def drops(model, speed, radius):

@@ -63,14 +63,23 @@ def test_more_speeds_to_choose_from_do_not_save_a_row(model, error, monkeypatch)
     assert len(model.speed_table(R, 0.5e-3, error).speed) == len(rows.speed)
 
 
-def test_the_yield_speed_is_a_row_where_that_helps(model):
-    """On the half-space the COR is 1 below yield: one line, to about there."""
+def test_the_error_is_measured_between_the_speeds_too():
+    """Where these alone would let it be 1.0013e-5; and across the kink at yield."""
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), law="fem")
+    rows = model.speed_table(R, 0.5e-3, error=1e-5)
+    v = np.geomspace(0.1, 10, 200_001)
+    assert np.abs(np.interp(v, *rows[:2]) - model.restitution(v, R, 0.5e-3)).max() <= 1.0001e-5
+
+
+def test_on_a_half_space_one_line_leads_to_yield(model):
+    """The COR is 1 below."""
     rows = model.speed_table(R, math.inf, error=1e-5)
     yields = model.yield_speed(R, math.inf)
     assert rows.speed[1] == pytest.approx(yields, rel=0.01)
-    assert rows.error <= 1e-5
-    exact = model.speed_table(R, math.inf, error=1e-5, fastest=yields)
-    assert exact.speed.tolist() == [0.1, yields]
+    assert model.speed_table(R, math.inf, error=1e-5, fastest=yields).speed.tolist() == [
+        0.1,
+        yields,
+    ]
 
 
 def test_half_the_rows_that_geometric_speeds_take(model):
@@ -91,7 +100,7 @@ def test_flags_and_what_is_outside(pair, model):
     clamping = cl.ImpactModel(pair, law="myc", outside="clamp")
     assert clamping.speed_table(R, H, fastest=1e4).flags[cl.Validity.CLAMPED] > 0
     solving = cl.ImpactModel(pair, law="myc", outside="solve")
-    thin = solving.speed_table(R, 0.05e-3, error=1e-2, slowest=1.0)  # no yield speed in the table
+    thin = solving.speed_table(R, 0.05e-3, error=1e-2, slowest=1.0)
     assert thin.error <= 1e-2
 
 
@@ -106,9 +115,15 @@ def test_flags_and_what_is_outside(pair, model):
         ({"slowest": 10.0}, "slowest: must be below the fastest speed, 10.0, got 10.0"),
         ({"radius": -1.0}, "radius: got -1.0"),
         ({"thickness": [1e-3, 2e-3]}, "thickness: expected one number"),
-        ({"slowest": 1e-25, "fastest": 60.0, "error": 1e-5}, "error: 1e-05 is too small from"),
     ],
 )
 def test_what_is_refused(model, change, message):
     with pytest.raises(ValueError, match=message):
         model.speed_table(**{"radius": R, "thickness": H, **change})
+
+
+def test_a_range_too_wide_for_the_error(pair):
+    """34 decades in 4000 speeds, and a corner at the table's border."""
+    clamping = cl.ImpactModel(pair, law="myc", outside="clamp")
+    with pytest.raises(ValueError, match="error: 1e-05 is too small from 1e-29 to 100000 m/s"):
+        clamping.speed_table(R, H, 1e-5, 1e-29, 1e5)
