@@ -1,4 +1,4 @@
-"""Command line: ``contactlaw cor | history | materials | table | export``."""
+"""Command line: ``contactlaw cor | sweep | constant | speed-table | history | export | ...``."""
 
 from __future__ import annotations
 
@@ -17,14 +17,27 @@ from typing import Literal
 
 import numpy as np
 
-from contactlaw import curves, export, laws, options, plots, sheet, table, wording
+from contactlaw import (
+    curves,
+    export,
+    laws,
+    lines,
+    options,
+    plots,
+    records,
+    sheet,
+    sweep,
+    table,
+    walls,
+    wording,
+)
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.materials import material, materials
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import law_of
-from contactlaw.physical.validity import explain
+from contactlaw.physical.validity import count_flags, explain
 from contactlaw.quantities import LENGTH, written
 from contactlaw.table import cache, file
 
@@ -35,18 +48,26 @@ def _model(arguments: argparse.Namespace) -> ImpactModel:
     return ImpactModel(_pair(arguments), law=arguments.law, outside=arguments.outside)
 
 
-def _pair(arguments: argparse.Namespace) -> Pair:
+def _pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
+    """Materials that are named, or else known."""
     bodies = {}
     for name in ("sphere", "plate"):
-        with wording.material_of(name):
-            bodies[name] = material(getattr(arguments, name))
+        asked = getattr(arguments, name)
+        if asked is None:
+            if known is None:
+                raise wording.Refused(f"--{name}: has to be given, no record says it")
+            bodies[name] = getattr(known, name)
+        else:
+            with wording.material_of(name):
+                bodies[name] = material(asked)
     return Pair(**bodies)
 
 
 def _check_quantities(arguments: argparse.Namespace) -> None:
     """Refuse each value beyond its limits by itself: in all combinations it has no number."""
     for name in ("speed", "radius", "thickness"):
-        for value in np.atleast_1d(getattr(arguments, name)).tolist():
+        given = getattr(arguments, name, None)
+        for value in () if given is None else np.atleast_1d(given).tolist():
             scalars(**{name: value})
 
 
@@ -105,6 +126,57 @@ def _plot_cor(arguments: argparse.Namespace) -> None:
     )
     title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
     plots.save_restitution(drawn, title, arguments.plot)
+
+
+def _sweep(arguments: argparse.Namespace) -> None:
+    _check_quantities(arguments)
+    with wording.file_of("out", arguments.out):
+        sweep.check_suffix(arguments.out)
+        axes = (arguments.speed, arguments.radius, arguments.thickness)
+        model = _model(arguments)
+        found = sheet.impacts(model, *axes, solve=arguments.solve)
+        sweep.save(found, model, axes, arguments.out)
+    flags = sheet.explained(count_flags(found.flags), len(found))
+    print(f"{arguments.out}: {len(found)} impacts", *flags, sep="\n")
+
+
+def _constant(arguments: argparse.Namespace) -> None:
+    happened = _happened(arguments)
+    pair = _pair(arguments, happened.pair)
+    law = arguments.law or happened.law or laws.DEFAULT
+    model = ImpactModel(pair, law=law, outside=arguments.outside)
+    found = walls.walls(model, happened, arguments.keep)
+    formats = {"lammps": lines.lammps, "liggghts": lines.liggghts, "yade": lines.yade}
+    write = next((write for name, write in formats.items() if getattr(arguments, name)), None)
+    if write is not None:
+        print(*list(write(model, found, arguments.keep)), sep="\n")
+    elif arguments.csv:
+        walls.write_csv(found, arguments.keep, sys.stdout)
+    else:
+        print(*walls.text(found, arguments.keep), sep="\n")
+
+
+def _happened(arguments: argparse.Namespace) -> records.Impacts:
+    """Impacts of the record, or every combination of the speeds with what else options say."""
+    _check_quantities(arguments)
+    sizes = (arguments.radius, arguments.thickness)
+    if arguments.record is None:
+        return records.combined(arguments.speed, *sizes)
+    return records.completed(records.read(arguments.record), *sizes)
+
+
+def _speed_table(arguments: argparse.Namespace) -> None:
+    _check_quantities(arguments)
+    ends = (arguments.slowest, arguments.fastest)
+    with wording.impacts(ends, arguments.radius, arguments.thickness):
+        found = _model(arguments).speed_table(
+            arguments.radius, arguments.thickness, arguments.error, *ends
+        )
+    if arguments.csv:
+        print("speed_m/s,restitution")
+        np.savetxt(sys.stdout, np.column_stack(found[:2]), fmt="%.17g", delimiter=",")
+    else:
+        print(*sheet.speed_table(found), sep="\n")
 
 
 def _history(arguments: argparse.Namespace) -> None:
@@ -225,6 +297,9 @@ def _export_header(arguments: argparse.Namespace) -> None:
 
 _RUN = {
     "cor": _cor,
+    "sweep": _sweep,
+    "constant": _constant,
+    "speed-table": _speed_table,
     "history": _history,
     "materials": _materials,
     "table info": _table_info,

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.compiled import c_function, entries, jitted
+from contactlaw.constant import Constant, Keep, constant
 from contactlaw.equation import outcome
 from contactlaw.equation.outcome import Outcome
 from contactlaw.evaluation import (
@@ -57,6 +58,7 @@ from contactlaw.sensitivity import (
     elasticities,
     follows,
 )
+from contactlaw.speedtable import SpeedTable, speed_table
 from contactlaw.table import Settings, Table, lookup
 
 Array = NDArray[np.float64]
@@ -514,6 +516,102 @@ class ImpactModel:
             by_lam, by_y = by_solver(self._law, found)
         by_ratio = by_modulus_ratio(self.pair, self._law, found)
         return elasticities(self.pair, by_lam, by_y, by_ratio, shape)
+
+    def constant(
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        keep: Keep = "energy",
+        weights: ArrayLike = 1.0,
+    ) -> Constant:
+        """One COR in place of those of many impacts, for engines that take nothing else.
+
+        Parameters
+        ----------
+        speed, radius, thickness : array_like
+            Of the impacts that happen on a wall, as in `restitution`: samples, or values that
+            `weights` belong to.
+        keep : {"energy", "momentum"}, optional
+            What the wall takes in all with this COR as it does with each impact's own: the
+            dissipated energy, e^2 = sum(w R^3 V^2 e_i^2)/sum(w R^3 V^2), or the momentum,
+            e = sum(w R^3 V e_i)/sum(w R^3 V).
+        weights : array_like, optional
+            How often each impact happens, in any unit; broadcast with the others.
+
+        Returns
+        -------
+        Constant
+            The COR, what it gets wrong in all and for single beads, what the plain mean of the
+            CORs would, and how many impacts exceed which limit.
+
+        Raises
+        ------
+        ValueError
+            As in `restitution`; no impact, another `keep`, or weights that are negative, not
+            finite or all zero.
+
+        Notes
+        -----
+        The impacts are taken as they are. Where beads bounce again and again, a simulation with
+        another COR has other impacts: take those of its own record, and repeat.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> best = model.constant([0.1, 1.0, 10.0], radius=0.9e-3, thickness=0.5e-3)
+        >>> round(best.restitution, 4), round(best.mean, 4)
+        (0.6488, 0.7487)
+        >>> round(best.energy_error, 4), round(best.mean_energy_error, 4)
+        (0.0, -0.2411)
+        >>> f"single beads rebound to within {best.rebound_error:.0%} of their height"
+        'single beads rebound to within 40% of their height'
+        """
+        v, r, h, w, _ = broadcast(speed=speed, radius=radius, thickness=thickness, weights=weights)
+        return constant(v, r, w, self.lookup(v, r, h), keep)
+
+    def speed_table(
+        self,
+        radius: float,
+        thickness: float,
+        error: float = 1e-3,
+        slowest: float = 0.1,
+        fastest: float = 10.0,
+    ) -> SpeedTable:
+        """COR over speed in the fewest rows, for engines that interpolate in a table.
+
+        Parameters
+        ----------
+        radius, thickness : float
+            As in `restitution`.
+        error : float, optional
+            Largest error of the COR between rows, from 1e-5 to 0.1.
+        slowest, fastest : float, optional
+            First and last speed of the table [m/s].
+
+        Returns
+        -------
+        SpeedTable
+            Speeds and their own CORs. No other choice among 4000 logarithmically spaced speeds has
+            fewer rows and lets straight lines between them err no more than `error`.
+
+        Raises
+        ------
+        ValueError
+            As in `restitution`; an error out of its range, a first speed above the last, or a
+            range too wide for the error.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> rows = model.speed_table(radius=0.9e-3, thickness=1e-3, error=5e-3)
+        >>> rows.speed.round(2), rows.restitution.round(3)
+        (array([ 0.1 ,  0.13,  1.17, 10.  ]), array([0.957, 0.954, 0.93 , 0.888]))
+        """
+        r, h = scalars(radius=radius, thickness=thickness)
+        return speed_table(lambda v: self.lookup(v, r, h), error, (slowest, fastest))
 
     def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
         """COR of one bead class on one plate, as a fast function of speed.

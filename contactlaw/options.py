@@ -43,6 +43,16 @@ def parser() -> argparse.ArgumentParser:
     _add_output(cor)
     cor.epilog = f"{_UNITS} {_LISTS}"
 
+    sweep = _command(commands, "sweep", "all fields and flags over a grid, as a file")
+    _add_impact(sweep, quantities.values)
+    sweep.add_argument("--out", required=True, metavar="FILE",
+                       help="file to write: .csv, or .h5 with the grid's axes")  # fmt: skip
+    sweep.epilog = f"{_UNITS} {_LISTS}"
+
+    _add_constant(_command(commands, "constant", "one COR for each wall, and what it gets wrong"))
+    about = "COR over speed in the fewest rows that straight lines may join"
+    _add_speed_table(_command(commands, "speed-table", about))
+
     history = _command(commands, "history", "force over time of one impact, as CSV or a plot")
     _add_impact(history, quantities.value)
     history.add_argument("--samples", type=int, default=256, metavar="N",
@@ -76,29 +86,104 @@ def _sentence(about: str) -> str:
     return f"{about[0].upper()}{about[1:]}."
 
 
-def _add_pair(command: argparse.ArgumentParser) -> None:
-    """Add materials and law."""
-    add = command.add_argument
-    add("--sphere", required=True, metavar="NAME", help="material of the bead (see materials)")
-    add("--plate", required=True, metavar="NAME", help="material of the plate")
-    add("--law", default=laws.DEFAULT, metavar="LAW",
-        help=f"force law: {', '.join(laws.names())} (default: %(default)s)")  # fmt: skip
-
-
 def _add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     """Add the options of commands about impacts; quantities are read as one or as several."""
     _add_pair(command)
-    add = command.add_argument
-    add("--radius", required=True, metavar="R", type=_quantity(read, LENGTH),
-        help="radius of the bead [m], or with a unit")  # fmt: skip
-    add("--thickness", required=True, metavar="H", type=_quantity(read, LENGTH),
-        help="thickness of the plate [m], or with a unit; inf: a half-space")  # fmt: skip
-    add("--speed", required=True, metavar="V", type=_quantity(read, SPEED),
-        help="normal approach speed [m/s], or with a unit")  # fmt: skip
-    add("--outside", default="raise", choices=["raise", "solve", "clamp"],
+    _add_sizes(command, read)
+    command.add_argument("--speed", required=True, metavar="V", type=_quantity(read, SPEED),
+                         help="normal approach speed [m/s], or with a unit")  # fmt: skip
+    _add_law(command)
+    command.add_argument(
+        "--solve", action="store_true", help="integrate the equation instead of looking up"
+    )
+
+
+_OF_RECORD = " (default: that of the record)"
+
+
+def _add_pair(command: argparse.ArgumentParser, required: bool = True) -> None:
+    """Add materials; what is not required has a record that may know it."""
+    add, known = command.add_argument, "" if required else _OF_RECORD
+    add("--sphere", required=required, metavar="NAME",
+        help=f"material of the bead, see materials{known}")  # fmt: skip
+    add("--plate", required=required, metavar="NAME", help=f"material of the plate{known}")
+
+
+def _add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = True) -> None:
+    add, known = command.add_argument, "" if required else _OF_RECORD
+    add("--radius", required=required, metavar="R", type=_quantity(read, LENGTH),
+        help=f"radius of the bead [m], or with a unit{known}")  # fmt: skip
+    add("--thickness", required=required, metavar="H", type=_quantity(read, LENGTH),
+        help=f"thickness of the plate [m], or with a unit; inf: a half-space{known}")  # fmt: skip
+
+
+def _add_name_of_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
+    stated = default or f"that of the record, or {laws.DEFAULT}"
+    command.add_argument("--law", default=default, metavar="LAW",
+        help=f"force law: {', '.join(laws.names())} (default: {stated})")  # fmt: skip
+
+
+def _add_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
+    """Add the law, and what to do outside its table."""
+    _add_name_of_law(command, default)
+    command.add_argument("--outside", default="raise", choices=["raise", "solve", "clamp"],
         help="outside the table: refuse, integrate the equation, or take the value at its border "
         "(default: %(default)s)")  # fmt: skip
-    add("--solve", action="store_true", help="integrate the equation instead of looking up")
+
+
+def _add_constant(command: argparse.ArgumentParser) -> None:
+    _add_pair(command, required=False)
+    _add_sizes(command, quantities.values, required=False)
+    add = command.add_mutually_exclusive_group(required=True).add_argument
+    add(
+        "--speed",
+        metavar="V",
+        type=_quantity(quantities.values, SPEED),
+        help="normal approach speeds [m/s], or with a unit, one as frequent as the other",
+    )
+    add(
+        "--record",
+        metavar="FILE",
+        help="impacts that have happened: rain.h5 of dem-demo, an engine's record (.npy), or CSV "
+        "with a column speed_m/s, and perhaps radius_m, thickness_m, weight and plate",
+    )
+    _add_law(command, default=None)
+    command.add_argument(
+        "--keep",
+        default="energy",
+        choices=["energy", "momentum"],
+        help="what the wall takes in all as with each impact's own COR (default: %(default)s)",
+    )
+    add = command.add_mutually_exclusive_group().add_argument
+    add("--csv", action="store_true", help="print a row per wall in SI units, every digit")
+    add("--lammps", action="store_true", help="print pair_coeff and fix wall/gran of LAMMPS")
+    add("--liggghts", action="store_true", help="print fix property/global of LIGGGHTS")
+    add("--yade", action="store_true", help="print betan of YADE")
+    command.epilog = (
+        f"{_UNITS} Several are a list or a range, as in `contactlaw cor`. Where a record has a "
+        "column plate, --thickness may have a value for each plate, in their order."
+    )
+
+
+def _add_speed_table(command: argparse.ArgumentParser) -> None:
+    _add_pair(command)
+    _add_sizes(command, quantities.value)
+    speed = _quantity(quantities.value, SPEED)
+    add = command.add_argument
+    add("--slowest", default=0.1, metavar="V", type=speed,
+        help="first speed [m/s], or with a unit (default: %(default)s)")  # fmt: skip
+    add("--fastest", default=10.0, metavar="V", type=speed,
+        help="last speed, likewise (default: %(default)s)")  # fmt: skip
+    add(
+        "--error",
+        default=1e-3,
+        metavar="E",
+        type=float,
+        help="largest error in COR of straight lines between rows (default: %(default)s)",
+    )
+    _add_law(command)
+    add("--csv", action="store_true", help="print the two columns alone, every digit")
+    command.epilog = _UNITS
 
 
 def _quantity(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
@@ -154,6 +239,7 @@ def _add_exports(kinds: Any) -> None:
         kinds, "export header", "the law and a table of COR as one file in C, which C++ takes too"
     )
     _add_pair(header)
+    _add_name_of_law(header)
     header.add_argument("--out", default="contactlaw.h", metavar="FILE",
                         help="file to write (default: %(default)s)")  # fmt: skip
     header.add_argument("--table", default="cor", choices=["cor", "none"],

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import csv
 import math
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import NamedTuple, TextIO
@@ -18,7 +17,8 @@ from numpy.typing import NDArray
 
 from contactlaw import wording
 from contactlaw.model import ImpactModel
-from contactlaw.physical.validity import Validity, explain
+from contactlaw.physical.validity import Validity, count_flags, explain
+from contactlaw.speedtable import SpeedTable
 
 Array = NDArray[np.float64]
 
@@ -159,17 +159,67 @@ def text(sheet: Sheet) -> Iterator[str]:
         + [f"{value:.4g}" for value in sheet.columns[column.name] * column.scale]
         for column in shown
     ]
-    widths = [max(map(len, column)) for column in cells]
-    flags = ["flags", "", *map(", ".join, map(flag_names, sheet.flags))]
-    for *row, last in zip(*cells, flags, strict=True):
+    cells.append(["flags", "", *map(", ".join, map(flag_names, sheet.flags))])
+    yield from aligned(cells)
+    yield from explained(count_flags(sheet.flags), len(sheet))
+
+
+def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Lines of columns that end at one place; the last one begins at one.
+
+    Examples
+    --------
+    >>> for line in aligned([["COR", "[-]", "0.9"], ["flags", "", "FAST_IMPACT"]]):
+    ...     print(line)
+    COR  flags
+    [-]
+    0.9  FAST_IMPACT
+    """
+    *numbers, words = columns
+    widths = [max(map(len, column)) for column in numbers]
+    for *row, last in zip(*numbers, words, strict=True):
         padded = (cell.rjust(width) for cell, width in zip(row, widths, strict=True))
         yield f"{'  '.join(padded)}  {last}".rstrip()
-    counted = Counter(flag for value in sheet.flags for flag in Validity(int(value)))
-    if counted:
+
+
+def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
+    """Lines that say what flags mean, and of how many impacts; none where there is no flag.
+
+    Examples
+    --------
+    >>> [line[:24] for line in explained({Validity.FAST_IMPACT: 3}, 7)]
+    ['', 'FAST_IMPACT, 3 of 7: fas']
+    """
+    if flags:
         yield ""
-    for flag in sorted(counted):
+    for flag, count in sorted(flags.items()):
         (words,) = explain(flag)
-        yield f"{flag.name}, {counted[flag]} of {len(sheet)}: {words}"
+        yield f"{flag.name}, {count} of {total}: {words}"
+
+
+def speed_table(found: SpeedTable) -> Iterator[str]:
+    """Lines for a terminal: rows of COR over speed, how right they are, and what the flags say.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    >>> for line in speed_table(model.speed_table(0.9e-3, 1e-3, error=0.05)):
+    ...     print(line)
+    speed     COR
+    [m/s]     [-]
+      0.1  0.9567
+       10  0.8878
+    <BLANKLINE>
+    2 rows, straight lines between them within 0.021 in COR
+    """
+    rows = [
+        (f"{v:.6g}", f"{e:.4g}", "") for v, e in zip(found.speed, found.restitution, strict=True)
+    ]
+    yield from aligned(list(zip(("speed", "COR", ""), ("[m/s]", "[-]", ""), *rows, strict=True)))
+    yield ""
+    yield f"{len(rows)} rows, straight lines between them within {found.error:.2g} in COR"
+    yield from explained(found.flags, len(rows))
 
 
 def write_csv(sheet: Sheet, out: TextIO) -> None:

@@ -11,8 +11,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import ImpactModel, Material, Pair
+from contactlaw import ImpactModel, Pair
 from contactlaw.engines.record import IMPACT, fill
+from contactlaw.records import material_of
 from dem_demo.recorder import COMPLETE, FORMAT, PARTIAL, SCHEMA
 from dem_demo.scene import Beads, Floats, Plate, Scene
 
@@ -162,24 +163,11 @@ def _scene(file: h5py.File) -> Scene:
     return Scene(
         beads=Beads(**{name: file[f"beads/{name}"][()] for name in fields}),
         plates=[Plate(*values) for values in zip(*plates, strict=True)],
-        sphere_material=_material(file["materials/sphere"]),
-        plate_material=_material(file["materials/plate"]),
+        sphere_material=material_of(file["materials/sphere"]),
+        plate_material=material_of(file["materials/plate"]),
         duration=float(file.attrs["duration"]),
         seed=int(file.attrs["seed"]),
         frame_rate=float(file.attrs["frame_rate"]),
-    )
-
-
-def _material(group: h5py.Group) -> Material:
-    values = group.attrs
-    optional = {name: values.get(name) for name in ("yield_strength", "kind", "hardness")}
-    return Material(
-        name=values["name"],
-        youngs_modulus=float(values["youngs_modulus"]),
-        poissons_ratio=float(values["poissons_ratio"]),
-        density=float(values["density"]),
-        source=values["source"],
-        **optional,
     )
 
 

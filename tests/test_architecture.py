@@ -16,21 +16,22 @@ ROOT = Path(contactlaw.__file__).parent
 # From the bottom to the top; what stands in one layer imports from layers below and from its own.
 LAYERS = [
     {"_version"},
-    {"_folder", "_whole"},
+    {"_folder", "_atomic"},
     {"_jit"},
     {"equation"},  # no units
     {"laws"},
     {"table"},
     {"physical"},  # SI units
     {"evaluation", "compiled"},
-    {"sensitivity"},
+    {"sensitivity", "constant", "speedtable"},
     {"model"},  # where the towers meet
-    {"closed_form", "loads", "softsphere", "spheres"},
+    {"closed_form", "dashpot", "loads", "softsphere", "spheres"},
     {"export", "turning_point"},
     {"quantities"},
-    {"wording"},
+    {"wording", "records"},
     {"sheet", "options"},
-    {"curves"},
+    {"curves", "sweep", "walls"},
+    {"lines"},
     {"engines", "plots"},
     {"cli"},
 ]

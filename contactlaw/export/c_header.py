@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import _whole
+from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.equation import waves
 from contactlaw.equation.integrator import MAX_STEPS
@@ -92,7 +92,7 @@ def header(
             f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
             "a model with coarser Settings"
         )
-    _whole.write(path, content)
+    _atomic.write(path, content)
 
 
 def packed(model: ImpactModel, table: Table) -> Array:

@@ -16,11 +16,13 @@ Array = NDArray[np.float64]
 # Units by argument; of the others, which are dimensionless, pint and astropy make "" a number.
 _SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")
 _SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
-_SI |= {"speed": "m/s", "rate": "1/s"}
+_SI |= dict.fromkeys(("speed", "slowest", "fastest"), "m/s") | {"rate": "1/s"}
 
 _BARE = frozenset({float, int, np.float64})  # what long lists hold, not worth a closer look
 _LIMITS = {
     "speed": (lookup.V_MIN, lookup.V_MAX, "m/s, the approach speed"),
+    "slowest": (lookup.V_MIN, lookup.V_MAX, "m/s"),
+    "fastest": (lookup.V_MIN, lookup.V_MAX, "m/s"),
     "radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
     "other_radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
     "thickness": (lookup.R_MIN, math.inf, "metres; inf is the half-space"),

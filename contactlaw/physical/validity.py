@@ -132,6 +132,18 @@ def limits_in_words(flags: int) -> tuple[str, ...]:
     return tuple(limit for flag, (limit, _) in _WORDS.items() if flags & flag)
 
 
+def count_flags(flags: NDArray[np.int64]) -> dict[Validity, int]:
+    """Count the impacts that exceed each limit which any of them does.
+
+    Examples
+    --------
+    >>> count_flags(np.array([0, 2, 6]))
+    {<Validity.FAST_IMPACT: 2>: 2, <Validity.THICK_PLATE: 4>: 1}
+    """
+    counted = {limit: int(np.count_nonzero(flags & limit)) for limit in Validity}
+    return {limit: count for limit, count in counted.items() if count}
+
+
 class Limits(NamedTuple):
     """What the limits of a pair and its law are, for kernels."""
 

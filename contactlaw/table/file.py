@@ -24,7 +24,7 @@ import h5py
 import numpy as np
 from numpy.typing import ArrayLike, DTypeLike, NDArray
 
-from contactlaw import _whole
+from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
@@ -86,7 +86,7 @@ def write(table: Table, path: str | os.PathLike[str]) -> None:
             f"table: it has {len(content)} bytes, above the limit of {LARGEST}: take coarser "
             "Settings",
         )
-    _whole.write(path, content)
+    _atomic.write(path, content)
 
 
 def _serialise(table: Table) -> bytes:

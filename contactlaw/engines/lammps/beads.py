@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contactlaw.engines.lammps.plate import check_friction
+from contactlaw.lines import hertz_material
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material, material
 from contactlaw.spheres import restitution_sphere_sphere
@@ -53,7 +54,6 @@ def pair_coeff(
     check_friction(friction)
     restitution = restitution_sphere_sphere(one, one, speed, radius, radius)
     tangential = f"mindlin NULL 0 {friction:g}" if friction else "linear_nohistory 0 0"
-    return (
-        f"pair_coeff * * hertz/material {one.youngs_modulus:g} {restitution:.6g} "
-        f"{one.poissons_ratio:g} tangential {tangential} damping coeff_restitution"
+    return "pair_coeff * * " + hertz_material(
+        one.youngs_modulus, float(restitution), one.poissons_ratio, tangential
     )

@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def write(path: str | os.PathLike[str], content: bytes) -> None:
-    """Write a file; one that is there is replaced when the new one is complete.
+    """Write a file under a temporary name and rename it; an existing one is replaced.
 
     Raises
     ------
@@ -23,7 +23,7 @@ def write(path: str | os.PathLike[str], content: bytes) -> None:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())  # or a power cut could leave the name without the content
-        os.chmod(name, 0o644)  # mkstemp makes it private; what is written here is for everyone
+        os.chmod(name, 0o644)  # mkstemp makes it private; a result is for everyone
         os.replace(name, path)
     except BaseException:
         with contextlib.suppress(FileNotFoundError):

@@ -1,0 +1,110 @@
+"""One COR for a wall, from the impacts that happen there, and what it gets wrong."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.validity import Validity, count_flags
+
+Array = NDArray[np.float64]
+Keep = Literal["energy", "momentum"]
+
+_BEADS = 0.95  # of them are within `rebound_error`; our choice
+_ROUNDING = 1e-12  # of the energy: a smaller loss is none
+
+
+@dataclass(frozen=True)
+class Constant:
+    """One COR in place of many, and the errors that it makes.
+
+    Attributes
+    ----------
+    restitution
+        The COR that keeps what it was asked to keep [-].
+    spread
+        Standard deviation of the CORs of the impacts [-].
+    energy_error
+        What the wall dissipates in all with this COR, over what it does with each impact's own,
+        minus 1 [-]; 0 where the energy is kept.
+    rebound_error
+        95 % of the impacts rebound to a height that is within this of their own, relatively [-].
+    mean, mean_energy_error
+        The plain mean of the CORs, and the `energy_error` of that [-].
+    impacts
+        How many there were.
+    flags
+        How many of them exceed each `Validity` limit that any does.
+    """
+
+    restitution: float
+    spread: float
+    energy_error: float
+    rebound_error: float
+    mean: float
+    mean_energy_error: float
+    impacts: int
+    flags: dict[Validity, int]
+
+
+def constant(speed: Array, radius: Array, weights: Array, rebound: Rebound, keep: Keep) -> Constant:
+    """Put one COR in place of those of some impacts.
+
+    Parameters
+    ----------
+    speed, radius, weights : ndarray (n,)
+        Of the impacts [m/s, m, -]; how often each happens, in any unit.
+    rebound : Rebound
+        What comes of each.
+    keep : {"energy", "momentum"}
+        What the wall shall take in all, as it does with each impact's own COR.
+
+    Raises
+    ------
+    ValueError
+        No impact, another `keep`, or weights that are negative, not finite or all zero.
+    """
+    if keep not in ("energy", "momentum"):
+        raise ValueError(f"keep: must be 'energy' or 'momentum', got {keep!r}")
+    if speed.size == 0:
+        raise ValueError("speed: got no impact, one at least has to happen")
+    if not (np.isfinite(weights) & (weights >= 0.0)).all():
+        wrong = float(weights[~(np.isfinite(weights) & (weights >= 0.0))][0])
+        raise ValueError(f"weights: must be finite and not negative, got {wrong!r}")
+    if not weights.any():
+        raise ValueError("weights: all of them are 0, one at least has to be positive")
+    e = np.atleast_1d(np.asarray(rebound.restitution))
+    share = weights / weights.max()
+    mass = share * (radius / radius.max()) ** 3
+    momentum = mass * (speed / speed.max())
+    energy = momentum * (speed / speed.max())
+
+    kept, power = (energy, 2) if keep == "energy" else (momentum, 1)
+    best = float(np.average(e**power, weights=kept)) ** (1.0 / power)
+    mean = float(np.average(e, weights=share))
+    return Constant(
+        restitution=best,
+        spread=float(np.sqrt(np.average((e - mean) ** 2, weights=share))),
+        energy_error=_energy_error(best, e, energy),
+        rebound_error=_rebound_error(best, e, share),
+        mean=mean,
+        mean_energy_error=_energy_error(mean, e, energy),
+        impacts=speed.size,
+        flags=count_flags(np.atleast_1d(np.asarray(rebound.flags))),
+    )
+
+
+def _energy_error(one: float, e: Array, energy: Array) -> float:
+    lost = float(np.average(1.0 - e**2, weights=energy))
+    too_much = float(np.average(e**2, weights=energy)) - one**2
+    return too_much / lost if lost > _ROUNDING else 0.0
+
+
+def _rebound_error(one: float, e: Array, share: Array) -> float:
+    height = np.maximum(e**2, np.finfo(float).tiny)
+    errors = np.abs(one**2 - e**2) / height
+    return float(np.quantile(errors, _BEADS, weights=share, method="inverted_cdf"))

@@ -1,0 +1,173 @@
+"""One COR per wall as lines that engines read: LAMMPS, LIGGGHTS, YADE."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from contactlaw._version import VERSION
+from contactlaw.constant import Constant, Keep, constant
+from contactlaw.dashpot import betan
+from contactlaw.evaluation import OutsideTableError
+from contactlaw.model import ImpactModel
+from contactlaw.physical.validity import explain
+from contactlaw.quantities import LENGTH, written
+from contactlaw.walls import Wall, meaning
+
+Lines = Callable[[ImpactModel, list[Wall], Keep], Iterator[str]]
+
+_LEAST = 0.05  # LIGGGHTS 3.8.0: "0.05 < coefficientRestitution <= 1 required"
+
+
+def hertz_material(
+    youngs_modulus: float, restitution: float, poissons_ratio: float, tangential: str
+) -> str:
+    """Write a contact of LAMMPS's ``pair_style granular`` that has the COR it is asked for.
+
+    Of its kinds of damping, ``coeff_restitution`` alone does so at any speed.
+
+    Examples
+    --------
+    >>> hertz_material(7e10, 0.9, 0.3, "linear_nohistory 0 0")
+    'hertz/material 7e+10 0.9 0.3 tangential linear_nohistory 0 0 damping coeff_restitution'
+    """
+    return (
+        f"hertz/material {youngs_modulus:g} {restitution:.6g} {poissons_ratio:g} "
+        f"tangential {tangential} damping coeff_restitution"
+    )
+
+
+def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
+    """Lines of LAMMPS: ``pair_coeff`` for bead on bead, a ``fix wall/gran`` for each wall.
+
+    LAMMPS reads the modulus of a wall as E/(2 (1 - nu^2)), whatever the bead's: it is given the
+    one that makes this the pair's.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> from contactlaw.records import combined
+    >>> from contactlaw.walls import walls
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    >>> found = walls(model, combined([5.0], [0.9e-3], [1e-3]), "energy")
+    >>> print(list(lammps(model, found, "energy"))[-1].split(" tangential")[0])
+    fix wall1 all wall/gran granular hertz/material 2.09501e+10 0.908113 0.21
+    """
+    yield from _head("#", model, found, keep)
+    sphere, pair = model.pair.sphere, model.pair
+    beads = _bead_on_bead(model, found, keep)
+    free = "linear_nohistory 0 0"
+    yield "# No friction: put your own after `tangential`. Say first where each wall is, as in"
+    yield '#     variable wall1 string "zplane 0 NULL"'
+    yield "# Bead on bead, by the same law at the same speeds; after `pair_style granular`."
+    yield "pair_coeff * * " + hertz_material(
+        sphere.youngs_modulus, beads.restitution, sphere.poissons_ratio, free
+    )
+    modulus = 2.0 * (1.0 - sphere.poissons_ratio**2) * pair.effective_modulus
+    for n, wall in enumerate(found, start=1):
+        contact = hertz_material(modulus, wall.best.restitution, sphere.poissons_ratio, free)
+        yield f"fix wall{n} all wall/gran granular {contact} ${{wall{n}}}"
+
+
+def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
+    """Lines of LIGGGHTS: ``fix property/global``, type 1 for beads, one more for each wall.
+
+    Raises
+    ------
+    ValueError
+        A COR that LIGGGHTS does not take.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> from contactlaw.records import combined
+    >>> from contactlaw.walls import walls
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    >>> found = walls(model, combined([5.0], [0.9e-3], [1e-3]), "energy")
+    >>> for line in list(liggghts(model, found, "energy"))[-3:]:
+    ...     print(line)
+    fix cor all property/global coefficientRestitution peratomtypepair 2 &
+        1 0.908113 &
+        0.908113 1
+    """
+    yield from _head("#", model, found, keep)
+    beads = _bead_on_bead(model, found, keep)
+    for where, best in [("bead on bead", beads), *((_name(wall), wall.best) for wall in found)]:
+        if not best.restitution > _LEAST:
+            raise ValueError(
+                f"{where}: the COR is {best.restitution:.3g}, and LIGGGHTS takes none below "
+                f"{_LEAST}"
+            )
+    types = (f"{n} {_name(wall)}" for n, wall in enumerate(found, start=2))
+    yield f"# Atom types: 1 beads, {', '.join(types)}. Wall on wall never happens: 1."
+    yield "# Bead on bead by the same law at the same speeds. `model hertz` gives what it is told;"
+    yield "# its moduli are property/global, too, and above 1 GPa it needs `hard_particles yes`."
+    size = 1 + len(found)
+    matrix = np.ones((size, size))
+    matrix[0] = matrix[:, 0] = [beads.restitution, *(wall.best.restitution for wall in found)]
+    yield f"fix cor all property/global coefficientRestitution peratomtypepair {size} &"
+    for n, row in enumerate(matrix, start=1):
+        yield "    " + " ".join(f"{e:.6g}" for e in row) + " &" * (n < size)
+
+
+def yade(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
+    """Lines of YADE, which is Python: ``betan`` by materials ``bead``, ``wall1`` and so on.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> from contactlaw.records import combined
+    >>> from contactlaw.walls import walls
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    >>> found = walls(model, combined([40.0], [0.9e-3], [1e-3]), "energy")
+    >>> print(list(yade(model, found, "energy"))[-1])
+    betan = MatchMaker(matches=[(bead, bead, 0.0404234), (bead, wall1, 0.109426)])
+    """
+    yield from _head("#", model, found, keep)
+    yield "# For Ip2_FrictMat_FrictMat_MindlinPhys(betan=betan), without en; bead, wall1 and so on:"
+    yield "# what O.materials.append gives. Bead on bead by the same law at the same speeds."
+    pairs = [("bead", _bead_on_bead(model, found, keep))]
+    pairs += [(f"wall{n}", wall.best) for n, wall in enumerate(found, start=1)]
+    matches = (f"(bead, {other}, {betan(best.restitution):.6g})" for other, best in pairs)
+    yield f"betan = MatchMaker(matches=[{', '.join(matches)}])"
+
+
+def _name(wall: Wall) -> str:
+    if math.isinf(wall.thickness):
+        return "half-space"
+    return f"plate of {written(wall.thickness, LENGTH)}"
+
+
+def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
+    """Say where the numbers come from, and what each of them gets wrong."""
+    pair = f"{model.pair.sphere.name} on {model.pair.plate.name}"
+    yield f"{mark} contactlaw {VERSION}: {pair}, law {model.law}; SI units"
+    yield from (f"{mark} {sentence}." for sentence in meaning(keep).rstrip(".").split(". "))
+    for n, wall in enumerate(found, start=1):
+        best = wall.best
+        yield (
+            f"{mark} wall{n}, {_name(wall)}: {best.impacts} impacts, COR {best.restitution:.6g}, "
+            f"spread {best.spread:.4f}, energy {best.energy_error:+z.2%} (mean "
+            f"{best.mean_energy_error:+z.2%}), rebound {best.rebound_error:.1%}"
+        )
+        for flag, count in best.flags.items():
+            (words,) = explain(flag)
+            yield f"{mark}     {flag.name}, {count} of {best.impacts}: {words}"
+
+
+def _bead_on_bead(model: ImpactModel, found: list[Wall], keep: Keep) -> Constant:
+    """One COR of beads that hit one of their own size as fast as they hit the walls."""
+    v, r, w = (
+        np.concatenate([getattr(wall, name) for wall in found])
+        for name in ("speed", "radius", "weights")
+    )
+    try:
+        rebound = model.lookup_sphere_sphere(v, r, r)
+    except OutsideTableError as error:
+        raise ValueError(
+            f"bead on bead, {v[error.impact]:g} m/s: outside the table, {error.reason}. --outside "
+            "clamp takes the value at its border"
+        ) from error
+    return constant(v, r, w, rebound, keep)

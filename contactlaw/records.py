@@ -1,0 +1,296 @@
+"""Impacts that have happened: the record of a run, or any table with a column of speeds."""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.physical.arguments import check
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
+from contactlaw.quantities import LENGTH, SPEED, Quantity
+
+Array = NDArray[np.float64]
+
+
+class Recorded(NamedTuple):
+    """Impacts on plates in SI units, each column an array of one length; None where unknown.
+
+    Attributes
+    ----------
+    speed, radius, thickness
+        Normal approach speed [m/s], of the bead and of the plate [m].
+    weights
+        How often each happens.
+    plate
+        Number of the plate that is hit.
+    pair, law
+        Materials and name of the law of the run.
+    """
+
+    speed: Array
+    radius: Array | None = None
+    thickness: Array | None = None
+    weights: Array | None = None
+    plate: NDArray[np.int64] | None = None
+    pair: Pair | None = None
+    law: str | None = None
+
+
+class _Column(NamedTuple):
+    names: tuple[str, ...]
+    quantity: Quantity | None  # None for bare numbers
+
+
+class Impacts(NamedTuple):
+    """Impacts on plates in SI units, and which materials and law a run had; None where unknown."""
+
+    speed: Array
+    radius: Array
+    thickness: Array
+    weights: Array
+    pair: Pair | None = None
+    law: str | None = None
+
+
+_COLUMNS = {
+    "speed": _Column(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
+    "radius": _Column(("radius",), LENGTH),
+    "thickness": _Column(("thickness",), LENGTH),
+    "weights": _Column(("weight", "weights"), None),
+    "plate": _Column(("plate",), None),
+}
+_HEAD = re.compile(
+    r"(?P<name>.*?)(?:[_ ]*[\[(](?P<bracket>[^])]*)[\])]|[_ ](?P<unit>\w+/\w+|\w?m))?"
+)
+_DEMO = "contactlaw-rain"
+
+
+def read(path: str | os.PathLike[str]) -> Recorded:
+    r"""Read impacts on plates; those of bead on bead are left out.
+
+    Parameters
+    ----------
+    path : path-like
+        ``rain.h5`` of ``dem-demo``; an impact record of an engine, as ``np.save`` writes it
+        (``.npy``); or else text: columns between commas, semicolons or tabs, with names and units
+        in the first line, as in ``speed_m/s,radius_mm`` or ``Speed [m/s];Radius [mm]``. Speeds may
+        be called speed, approach speed, normal speed or impact speed; a column without a unit is in
+        that of the SI. Columns called radius, thickness, weight and plate are optional.
+
+    Raises
+    ------
+    ValueError
+        A file without a column of speeds, of another kind, or with a unit or a number that cannot
+        be read.
+    OSError
+        A file that cannot be opened.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+    ...     _ = file.write("Speed [cm/s];Radius [mm]\n50;0.9\n120;1.1\n")
+    ...     file.flush()
+    ...     found = read(file.name)
+    >>> found.speed, found.radius
+    (array([0.5, 1.2]), array([0.0009, 0.0011]))
+    """
+    readers = {".h5": _hdf5, ".hdf5": _hdf5, ".npy": _npy}
+    path = Path(path)
+    content = path.read_bytes()
+    try:
+        found = readers.get(path.suffix.lower(), _text)(content)
+        _check(found)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    return found
+
+
+def _check(found: Recorded) -> None:
+    if found.speed.size == 0:
+        raise ValueError("it has no impact on a plate")
+    sizes = {name: getattr(found, name) for name in ("speed", "radius", "thickness")}
+    check(**{name: values for name, values in sizes.items() if values is not None})
+
+
+def combined(
+    speeds: Sequence[float], radii: Sequence[float] | None, thicknesses: Sequence[float] | None
+) -> Impacts:
+    """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once.
+
+    Examples
+    --------
+    >>> combined([1.0, 2.0], [1e-3], [1e-3, 3e-3]).thickness
+    array([0.001, 0.001, 0.003, 0.003])
+    """
+    sizes = {"radius": radii, "thickness": thicknesses}
+    grid = np.meshgrid(*(_given(*size) for size in sizes.items()), speeds, indexing="ij")
+    r, h, v = (part.ravel() for part in grid)
+    return Impacts(v, r, h, np.ones(v.size))
+
+
+def completed(
+    found: Recorded, radii: Sequence[float] | None, thicknesses: Sequence[float] | None
+) -> Impacts:
+    """Add what a record does not say: the radius of its beads, and the thickness of its plates.
+
+    Parameters
+    ----------
+    found : Recorded
+        As `read` gives it.
+    radii, thicknesses : sequence of float or None
+        One value [m]; thicknesses one for each plate, too, if the record has their numbers.
+
+    Raises
+    ------
+    ValueError
+        A value that is missing, or one that the record has itself.
+
+    Examples
+    --------
+    >>> run = Recorded(np.array([1.0, 2.0]), plate=np.array([1, 0]))
+    >>> completed(run, [1e-3], [0.5e-3, 2e-3]).thickness
+    array([0.002 , 0.0005])
+    """
+    one = np.zeros(found.speed.size, dtype=np.int64)
+    plate = one if found.plate is None or len(thicknesses or ()) == 1 else found.plate
+    return Impacts(
+        found.speed,
+        _sized("radius", found.radius, radii, one),
+        _sized("thickness", found.thickness, thicknesses, plate),
+        np.ones(one.size) if found.weights is None else found.weights,
+        found.pair,
+        found.law,
+    )
+
+
+def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
+    if values is None:
+        raise ValueError(f"{name}: has to be given, no record says it")
+    return values
+
+
+def _sized(
+    name: str, recorded: Array | None, values: Sequence[float] | None, which: NDArray[np.int64]
+) -> Array:
+    """Size of each impact's bead or plate: the record's own, or the one of some that it is of."""
+    if recorded is None:
+        sizes = np.array(_given(name, values))
+        if sizes.size != which.max() + 1:
+            raise ValueError(
+                f"{name}: got {sizes.size} values for {which.max() + 1} in the record: give one "
+                "for all, or thicknesses for the numbers in a column plate"
+            )
+        return sizes[which]
+    if values is not None:
+        raise ValueError(f"{name}: the record has its own: leave this one out")
+    return recorded
+
+
+def material_of(group: h5py.Group) -> Material:
+    """Material as the record of a run has it, in the attributes of a group."""
+    values = group.attrs
+    optional = {name: values.get(name) for name in ("yield_strength", "kind", "hardness")}
+    return Material(
+        name=values["name"],
+        youngs_modulus=float(values["youngs_modulus"]),
+        poissons_ratio=float(values["poissons_ratio"]),
+        density=float(values["density"]),
+        source=values["source"],
+        **optional,
+    )
+
+
+def _hdf5(content: bytes) -> Recorded:
+    try:
+        file = h5py.File(io.BytesIO(content), "r")
+    except OSError:
+        raise ValueError("no HDF5 file, or a damaged one") from None
+    with file:
+        if file.attrs.get("format") != _DEMO:
+            raise ValueError(f"no record of dem-demo, whose format is {_DEMO!r}")
+        hits = file["collisions"]
+        on_plates = hits["plate"][()] >= 0
+        names = ("approach_speed", "bead", "plate")
+        speed, bead, plate = (hits[name][()][on_plates] for name in names)
+        pair = Pair(*(material_of(file[f"materials/{body}"]) for body in ("sphere", "plate")))
+        return Recorded(
+            speed=speed,
+            radius=file["beads/radius"][()][bead],
+            thickness=file["plates/thickness"][()][plate],
+            pair=pair,
+            law=file.attrs["law"],
+        )
+
+
+def _npy(content: bytes) -> Recorded:
+    if not content.startswith(b"\x93NUMPY"):
+        raise ValueError("no file of np.save")
+    rows = np.load(io.BytesIO(content), allow_pickle=False)
+    names = rows.dtype.names or ()
+    return _columns(names, lambda wanted: np.column_stack([rows[names[n]] for n in wanted]))
+
+
+def _text(content: bytes) -> Recorded:
+    try:
+        first, *lines = content.decode("utf-8-sig").splitlines() or [""]
+    except UnicodeDecodeError:
+        raise ValueError("neither text, nor HDF5 (.h5), nor of np.save (.npy)") from None
+    delimiter = next((mark for mark in "\t;" if mark in first), ",")
+    heads = [head.strip().strip('"') for head in first.lstrip("#").split(delimiter)]
+    rows = [line for line in lines if line.strip() and not line.startswith("#")]
+
+    def numbers(wanted: list[int]) -> Array:
+        if not rows:  # of which loadtxt would warn
+            return np.empty((0, len(wanted)))
+        return np.loadtxt(rows, delimiter=delimiter, usecols=wanted, ndmin=2, quotechar='"')
+
+    return _columns(heads, numbers)
+
+
+def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Recorded:
+    """Pick the columns that are known by their names, and give them SI units."""
+    found: dict[str, tuple[int, float]] = {}
+    for n, head in enumerate(heads):
+        match = _HEAD.fullmatch(head.strip().lower())
+        name = re.sub(r"\s+", "_", match["name"].strip()) if match else ""
+        field = next((f for f, column in _COLUMNS.items() if name in column.names), None)
+        if match and field:
+            if field in found:
+                raise ValueError(f"two columns of {field}, {heads[found[field][0]]!r} and {head!r}")
+            unit = (match["bracket"] or match["unit"] or "").strip()
+            found[field] = n, _per_unit(head, unit, _COLUMNS[field].quantity)
+    if "speed" not in found:
+        raise ValueError(
+            f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s"
+        )
+    rows = numbers([n for n, _ in found.values()])
+    columns: dict[str, Any] = {
+        field: column / per for (field, (_, per)), column in zip(found.items(), rows.T, strict=True)
+    }
+    if "plate" in columns:
+        on_plates = columns["plate"] >= 0
+        columns = {field: values[on_plates] for field, values in columns.items()}
+        columns["plate"] = columns["plate"].astype(np.int64)
+    return Recorded(**columns)
+
+
+def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
+    """How many of a column's units are one of the SI: to divide by, which rounds but once."""
+    if quantity is None or not unit:
+        return 1.0
+    if unit not in quantity.units:
+        raise ValueError(
+            f"column {head!r}: {unit!r} is no unit of {quantity.name}; take "
+            f"{', '.join(quantity.units)}"
+        )
+    return float(1 / quantity.units[unit])

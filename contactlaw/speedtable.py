@@ -1,0 +1,126 @@
+"""COR over speed as a table that engines interpolate: the fewest rows for an error."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.physical.arguments import check, number, within
+from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.validity import Validity, count_flags
+
+Array = NDArray[np.float64]
+
+_CHOICE = 4000  # speeds that may become rows: 0.1 % apart over two decades
+_FINER = 4  # speeds between two of them at which the error is measured, across kinks too
+_ROUNDS = 10
+
+
+class SpeedTable(NamedTuple):
+    """COR over normal approach speed.
+
+    Attributes
+    ----------
+    speed, restitution
+        Rows: speeds [m/s], rising, and the CORs there [-].
+    error
+        Largest error of straight lines between the rows [-].
+    flags
+        How many rows exceed each `Validity` limit that any does.
+    """
+
+    speed: Array
+    restitution: Array
+    error: float
+    flags: dict[Validity, int]
+
+
+def speed_table(
+    lookup: Callable[[Array], Rebound], error: float, ends: tuple[float, float]
+) -> SpeedTable:
+    """Choose the rows.
+
+    Parameters
+    ----------
+    lookup : callable
+        What comes of impacts at some speeds [m/s].
+    error : float
+        Largest error of the COR.
+    ends : tuple of float
+        First and last speed [m/s].
+
+    Raises
+    ------
+    ValueError
+        As `contactlaw.ImpactModel.speed_table` says.
+    """
+    slowest, fastest = (number(n, v) for n, v in zip(("slowest", "fastest"), ends, strict=True))
+    error = number("error", error)
+    within("error", np.array([error]), 1e-5, 0.1, "[-], in COR")
+    check(slowest=np.array([slowest]), fastest=np.array([fastest]))
+    if not slowest < fastest:
+        raise ValueError(f"slowest: must be below the fastest speed, {fastest!r}, got {slowest!r}")
+    lookup(np.array([slowest, fastest]))  # what is outside the table is so at an end
+    speed = np.geomspace(slowest, fastest, _CHOICE)
+    between = np.arange(1, _FINER + 1) / (_FINER + 1)
+    probe = np.ravel(speed[:-1, None] + np.diff(speed)[:, None] * between)
+    e, there = (np.asarray(lookup(v).restitution) for v in (speed, probe))
+    allowed = error
+    for _ in range(_ROUNDS):
+        rows = fewest(speed, e, allowed)
+        measured = float(np.abs(np.interp(probe, speed[rows], e[rows]) - there).max())
+        if measured <= error:
+            flags = np.asarray(lookup(speed[rows]).flags)
+            return SpeedTable(speed[rows], e[rows], measured, count_flags(flags))
+        allowed -= 1.01 * (measured - error)
+    raise ValueError(
+        f"error: {error:g} is too small from {slowest:g} to {fastest:g} m/s: give a narrower range "
+        "or a larger error"
+    )
+
+
+def fewest(x: Array, y: Array, error: float) -> NDArray[np.intp]:
+    """Fewest points, ends included, between which straight lines miss no point by more than error.
+
+    Parameters
+    ----------
+    x, y : ndarray (n,)
+        Points, x rising.
+    error : float
+        Allowed in y.
+
+    Returns
+    -------
+    ndarray of int
+        Which of the points.
+
+    Notes
+    -----
+    The shortest path through the graph of all lines that may be drawn (Imai and Iri, Comput.
+    Vision Graph. 36 (1986) 31). To take the longest line each time is not enough where the
+    curvature changes sign. A line from point i may be drawn if its slope is within those to all
+    points on its way, moved up and down by the error.
+
+    Examples
+    --------
+    >>> x = np.linspace(0.0, 1.0, 11)
+    >>> fewest(x, np.abs(x - 0.5), 0.01)
+    array([ 0,  5, 10])
+    """
+    count = np.full(x.size, x.size)
+    count[0] = 0
+    before = np.zeros(x.size, dtype=np.intp)
+    for i in range(x.size - 1):
+        run, rise = x[i + 1 :] - x[i], y[i + 1 :] - y[i]
+        slope = rise / run
+        low = np.maximum.accumulate((rise - error) / run)
+        high = np.minimum.accumulate((rise + error) / run)
+        shorter = (low <= slope) & (slope <= high) & (count[i] + 1 < count[i + 1 :])
+        count[i + 1 :][shorter], before[i + 1 :][shorter] = count[i] + 1, i
+    rows = [x.size - 1]
+    while rows[-1] > 0:
+        rows.append(int(before[rows[-1]]))
+    return np.array(rows[::-1])

@@ -1,0 +1,97 @@
+"""A grid of impacts as a file: every field and flag over speed, thickness and radius."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Sequence
+from pathlib import Path
+
+import h5py
+
+from contactlaw import _atomic
+from contactlaw._version import VERSION
+from contactlaw.model import ImpactModel
+from contactlaw.physical.validity import Validity
+from contactlaw.sheet import Sheet, units, write_csv
+
+_FORMAT, _SCHEMA = "contactlaw-sweep", 1
+_AXES = ("radius", "thickness", "speed")  # speeds change fastest along a sheet
+_SUFFIXES = (".csv", ".h5", ".hdf5")
+
+
+def check_suffix(path: str | os.PathLike[str]) -> None:
+    """Refuse a name that does not tell which kind of file is meant.
+
+    Examples
+    --------
+    >>> check_suffix("cor.xls")
+    Traceback (most recent call last):
+    ValueError: out: got 'cor.xls', must end in .csv, .h5 or .hdf5
+    """
+    if Path(path).suffix.lower() not in _SUFFIXES:
+        raise ValueError(f"out: got {os.fspath(path)!r}, must end in .csv, .h5 or .hdf5")
+
+
+def save(
+    sheet: Sheet, model: ImpactModel, axes: Sequence[Sequence[float]], path: str | os.PathLike[str]
+) -> None:
+    """Write a grid of impacts; the file appears complete or not at all.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        Of every combination, as `contactlaw.sheet.impacts` gives it.
+    model : ImpactModel
+        That answered.
+    axes : sequence of sequence of float
+        Speeds, radii and thicknesses [m/s, m, m].
+    path : path-like
+        ``.csv``: a row per impact, units in the header. ``.h5``: radius, thickness and speed are
+        the axes (HDF5 dimension scales), each field an array over them with its unit in the
+        attribute ``units`` (``"1"`` without one), and the limits that a flag stands for in the
+        attributes of ``flags``.
+
+    Raises
+    ------
+    ValueError
+        A file of another kind.
+    OSError
+        If the folder does not exist, is not writable or full.
+    """
+    check_suffix(path)
+    if Path(path).suffix.lower() == ".csv":
+        text = io.StringIO()
+        write_csv(sheet, text)
+        _atomic.write(path, text.getvalue().encode())
+        return
+    image = io.BytesIO()
+    with h5py.File(image, "w") as file:
+        _fill(file, sheet, model, dict(zip(("speed", "radius", "thickness"), axes, strict=True)))
+    _atomic.write(path, image.getvalue())
+
+
+def _fill(
+    file: h5py.File, sheet: Sheet, model: ImpactModel, axes: dict[str, Sequence[float]]
+) -> None:
+    file.attrs.update(
+        format=_FORMAT,
+        schema=_SCHEMA,
+        contactlaw_version=VERSION,
+        sphere=model.pair.sphere.name,
+        plate=model.pair.plate.name,
+        law=model.law,
+        outside=model.outside,
+    )
+    for name in _AXES:
+        file[name] = axes[name]
+        file[name].attrs["units"] = units()[name]
+        file[name].make_scale(name)
+    shape = tuple(len(axes[name]) for name in _AXES)
+    for name, values in {**sheet.columns, "flags": sheet.flags}.items():
+        if name not in _AXES:
+            field = file.create_dataset(name, data=values.reshape(shape))
+            field.attrs["units"] = units().get(name) or "1"
+            for axis, scale in zip(field.dims, _AXES, strict=True):
+                axis.attach_scale(file[scale])
+    file["flags"].attrs.update({str(limit.name): int(limit) for limit in Validity})

@@ -1,0 +1,128 @@
+"""One COR for each wall of a machine: constants by thickness, printed or as CSV."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator
+from typing import NamedTuple, TextIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import wording
+from contactlaw.constant import Constant, Keep
+from contactlaw.model import ImpactModel
+from contactlaw.physical.validity import Validity
+from contactlaw.records import Impacts
+from contactlaw.sheet import aligned, explained
+
+Array = NDArray[np.float64]
+
+_MOST = 100  # walls of different thickness, each of them a type of its own in an engine
+
+
+class Wall(NamedTuple):
+    """A wall: its thickness [m], its impacts [m/s, m, -], and one COR for all of them."""
+
+    thickness: float
+    speed: Array
+    radius: Array
+    weights: Array
+    best: Constant
+
+
+def walls(model: ImpactModel, happened: Impacts, keep: Keep) -> list[Wall]:
+    """Put one COR in place of those of all impacts on plates of one thickness.
+
+    Parameters
+    ----------
+    model : ImpactModel
+        Of beads and plates.
+    happened : Impacts
+        On all plates.
+    keep : {"energy", "momentum"}
+        As in `ImpactModel.constant`.
+
+    Returns
+    -------
+    list of Wall
+        By rising thickness.
+
+    Raises
+    ------
+    ValueError
+        More than a hundred thicknesses, and what `ImpactModel.constant` refuses.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> from contactlaw.records import combined
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    >>> found = walls(model, combined([1.0, 10.0], [0.9e-3], [0.5e-3, 3e-3]), "energy")
+    >>> [(wall.thickness, round(wall.best.restitution, 3)) for wall in found]
+    [(0.0005, 0.649), (0.003, 0.977)]
+    """
+    plates = np.unique(happened.thickness)
+    if plates.size > _MOST:
+        raise ValueError(
+            f"thickness: {plates.size} different ones, {_MOST} is the most: round them to those of "
+            "the walls"
+        )
+    found = []
+    for plate in plates:
+        on_it = happened.thickness == plate
+        v, r, _, w = (column[on_it] for column in happened[:4])
+        with wording.impacts(v, r, plate):
+            found.append(Wall(float(plate), v, r, w, model.constant(v, r, plate, keep, w)))
+    return found
+
+
+def flags_of(found: list[Wall]) -> dict[Validity, int]:
+    """How many impacts on any wall exceed each limit."""
+    counts = ((flag, count) for wall in found for flag, count in wall.best.flags.items())
+    total: dict[Validity, int] = {}
+    for flag, count in counts:
+        total[flag] = total.get(flag, 0) + count
+    return total
+
+
+def meaning(keep: Keep) -> str:
+    """Say what the numbers beside a constant are."""
+    return (
+        f"COR keeps the {keep} that the wall takes in all. energy: how far the dissipated energy "
+        "is off with it, and with the plain mean of the CORs. rebound: 95 of 100 impacts rebound "
+        "to a height that is within this of their own."
+    )
+
+
+def text(found: list[Wall], keep: Keep) -> Iterator[str]:
+    """Lines for a terminal: a row per wall, with what its COR gets wrong, and what that means."""
+    best = [wall.best for wall in found]
+    yield from aligned(
+        [
+            ["thickness", "[mm]", *(f"{1e3 * wall.thickness:g}" for wall in found)],
+            ["impacts", "[-]", *(f"{one.impacts}" for one in best)],
+            ["COR", "[-]", *(f"{one.restitution:.4f}" for one in best)],
+            ["spread", "[-]", *(f"{one.spread:.4f}" for one in best)],
+            ["energy", "[%]", *(f"{100 * one.energy_error:z.2f}" for one in best)],
+            ["rebound", "[%]", *(f"{100 * one.rebound_error:.3g}" for one in best)],
+            ["mean", "[-]", *(f"{one.mean:.4f}" for one in best)],
+            ["energy", "[%]", *(f"{100 * one.mean_energy_error:z.2f}" for one in best)],
+            ["flags", "", *(", ".join(str(flag.name) for flag in one.flags) for one in best)],
+        ]
+    )
+    yield ""
+    yield meaning(keep)
+    yield from explained(flags_of(found), sum(one.impacts for one in best))
+
+
+def write_csv(found: list[Wall], keep: Keep, out: TextIO) -> None:
+    """Write a row per wall with every digit; flags are NAME:impacts, with bars between them."""
+    writer = csv.writer(out, lineterminator="\n")
+    errors = ("energy_error", "rebound_error", "mean", "mean_energy_error")
+    numbers = ("restitution", "spread", *errors)
+    writer.writerow(["thickness_m", "impacts", "keep", *numbers, "flags"])
+    for wall in found:
+        flags = "|".join(f"{flag.name}:{count}" for flag, count in wall.best.flags.items())
+        values = (getattr(wall.best, name) for name in numbers)
+        writer.writerow([wall.thickness, wall.best.impacts, keep, *values, flags])

@@ -1,0 +1,219 @@
+"""Commands for other people's engines: what they print and write, and their exit status."""
+
+import csv
+import io
+
+import h5py
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw import _atomic
+from contactlaw.cli import main
+from contactlaw.sheet import units
+from dem_demo import cli as demo
+
+PAIR = ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]
+SIZES = ["--radius", "0.9mm", "--thickness", "0.5mm,inf"]
+SWEEP = ["sweep", *PAIR, "--radius", "0.5mm,0.9mm", "--thickness", "0.5mm,1mm,inf",
+         "--speed", "0.5:60:4log"]  # fmt: skip
+CONSTANT = ["constant", *PAIR, *SIZES, "--speed", "1:60:30log"]
+
+
+def read_csv(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+@pytest.fixture
+def grid(model):
+    v, r = np.geomspace(0.5, 60, 4), np.array([0.5e-3, 0.9e-3])
+    h = np.array([0.5e-3, 1e-3, np.inf])
+    return (r, h, v), model.lookup(v, r[:, None, None], h[:, None])
+
+
+def test_a_sweep_as_hdf5(tmp_path, grid, model, capsys):
+    (r, h, v), hit = grid
+    out = tmp_path / "cor.h5"
+    assert main([*SWEEP, "--out", str(out)]) == 0
+    first, _, flag = capsys.readouterr().out.splitlines()
+    assert first == f"{out}: 24 impacts"
+    assert flag.startswith("FAST_IMPACT, 6 of 24: ")
+    with h5py.File(out) as file:
+        assert dict(file.attrs) == {
+            "format": "contactlaw-sweep", "schema": 1, "contactlaw_version": cl.__version__,
+            "sphere": "gamma-alumina", "plate": "glass", "law": "myc", "outside": "raise",
+        }  # fmt: skip
+        fields = [*cl.Rebound.__dataclass_fields__, "yield_speed"]
+        assert set(file) == {"speed", "radius", "thickness", *fields}
+        for name, values in (("radius", r), ("thickness", h), ("speed", v)):
+            assert file[name][()].tolist() == values.tolist()
+        for name in cl.Rebound.__dataclass_fields__:
+            assert file[name][()].tolist() == getattr(hit, name).tolist(), name
+        assert file["yield_speed"][1, 0, 2] == model.yield_speed(0.9e-3, 0.5e-3)
+        for name, dataset in file.items():
+            assert dataset.attrs["units"] == (units().get(name) or "1"), name
+            if dataset.ndim == 3:
+                axes = [axis[0].name for axis in dataset.dims]
+                assert axes == ["/radius", "/thickness", "/speed"]
+        limits = {limit.name: limit.value for limit in cl.Validity}
+        assert limits.items() <= dict(file["flags"].attrs).items()
+    assert [path.name for path in tmp_path.iterdir()] == ["cor.h5"]
+
+
+def test_a_sweep_as_csv(tmp_path, grid, capsys):
+    _, hit = grid
+    out = tmp_path / "cor.csv"
+    assert main([*SWEEP, "--out", str(out)]) == 0
+    rows = read_csv(out.read_text())
+    assert len(rows) == 24
+    assert list(rows[0])[:4] == ["speed_m/s", "radius_m", "thickness_m", "restitution"]
+    for name, unit in (("restitution", ""), ("contact_time", "_s"), ("peak_force", "_N")):
+        found = [float(row[name + unit]) for row in rows]
+        assert found == np.ravel(getattr(hit, name)).tolist()
+    assert [row["flags"] == "FAST_IMPACT" for row in rows].count(True) == 6
+    assert rows[-1]["thickness_m"] == "inf"
+
+
+def test_a_sweep_by_integration(tmp_path, model):
+    one = ["sweep", *PAIR, "--radius", "0.9mm", "--thickness", "1mm", "--speed", "5", "--solve"]
+    assert main([*one, "--out", str(tmp_path / "a.hdf5")]) == 0
+    with h5py.File(tmp_path / "a.hdf5") as file:
+        assert file["restitution"][0, 0, 0] == model.solve(5.0, 0.9e-3, 1e-3).restitution
+
+
+@pytest.mark.parametrize("name", ["cor.csv", "cor.h5"])
+def test_a_sweep_is_written_whole_or_not_at_all(name, tmp_path, monkeypatch, capsys):
+    (tmp_path / name).write_text("before")
+
+    def full(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(_atomic.os, "fsync", full)
+    assert main([*SWEEP, "--out", str(tmp_path / name)]) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert f"--out: cannot write {tmp_path / name}: No space left" in captured.err
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [(name, "before")]
+
+
+def test_a_constant_has_its_errors_beside_it(model, capsys):
+    assert main(CONSTANT) == 0
+    names, units, thin, thick, _, meaning, _, flag = capsys.readouterr().out.splitlines()
+    titles = "thickness impacts COR spread energy rebound mean energy flags".split()
+    assert names.split() == titles
+    assert units.split() == ["[mm]", "[-]", "[-]", "[-]", "[%]", "[%]", "[-]", "[%]"]
+    best = model.constant(np.geomspace(1, 60, 30), 0.9e-3, 0.5e-3)
+    assert thin.split() == [
+        "0.5", "30", f"{best.restitution:.4f}", f"{best.spread:.4f}", "0.00",
+        f"{100 * best.rebound_error:.3g}", f"{best.mean:.4f}",
+        f"{100 * best.mean_energy_error:.2f}", "FAST_IMPACT",
+    ]  # fmt: skip
+    assert thick.split()[0] == "inf"
+    assert "95 of 100 impacts rebound to a height that is within this of their own" in meaning
+    assert flag.startswith("FAST_IMPACT, 4 of 60: ")
+
+
+@pytest.mark.parametrize("keep", ["energy", "momentum"])
+def test_a_constant_as_csv(keep, model, capsys):
+    assert main([*CONSTANT, "--keep", keep, "--csv"]) == 0
+    rows = read_csv(capsys.readouterr().out)
+    for row, thickness in zip(rows, (0.5e-3, np.inf), strict=True):
+        best = model.constant(np.geomspace(1, 60, 30), 0.9e-3, thickness, keep)
+        assert float(row["thickness_m"]) == thickness
+        assert (row["keep"], int(row["impacts"]), row["flags"]) == (keep, 30, "FAST_IMPACT:2")
+        for name in ("restitution", "spread", "energy_error", "rebound_error", "mean",
+                     "mean_energy_error"):  # fmt: skip
+            assert float(row[name]) == pytest.approx(getattr(best, name), rel=1e-12, abs=1e-13)
+
+
+def test_a_constant_from_the_record_of_a_run(tmp_path, capsys):
+    """Materials, law, sizes and plates are those of the run; the energy is what it lost."""
+    rain = ["rain", "--beads", "20", "--plates", "0.5e-3,3e-3", "--duration", "0.2"]
+    rain += ["--law", "fem", "--sphere", "glass"]
+    assert demo.main([*rain, "--out", str(tmp_path / "rain")]) == 0
+    capsys.readouterr()
+    assert main(["constant", "--record", str(tmp_path / "rain/rain.h5"), "--csv"]) == 0
+    rows = read_csv(capsys.readouterr().out)
+    with h5py.File(tmp_path / "rain/rain.h5") as file:
+        hits = {name: file[f"collisions/{name}"][()] for name in file["collisions"]}
+        mass, plates = file["beads/mass"][()], file["plates/thickness"][()]
+    for row in rows:
+        plate = np.flatnonzero(plates == float(row["thickness_m"]))
+        on_it = np.isin(hits["plate"], plate)
+        energy = mass[hits["bead"]] * hits["approach_speed"] ** 2 * on_it
+        lost = np.sum(energy * (1 - hits["restitution"] ** 2))
+        constant = np.sum(energy) * (1 - float(row["restitution"]) ** 2)
+        assert int(row["impacts"]) == np.count_nonzero(on_it) > 5
+        assert constant == pytest.approx(lost, rel=1e-6)
+    assert len(rows) == 2
+
+
+def test_a_constant_from_a_table_of_ones_own(tmp_path, model, capsys):
+    path = tmp_path / "impacts.csv"
+    path.write_text("Speed [cm/s];weight;plate\n50;3;0\n900;1;1\n800;2;0\n")
+    assert main(["constant", *PAIR, *SIZES, "--record", str(path), "--csv"]) == 0
+    thin, thick = read_csv(capsys.readouterr().out)
+    best = model.constant([0.5, 8.0], 0.9e-3, 0.5e-3, weights=[3, 2])
+    assert float(thin["restitution"]) == pytest.approx(best.restitution, rel=1e-12)
+    assert float(thick["restitution"]) == pytest.approx(
+        model.restitution(9.0, 0.9e-3, np.inf), rel=1e-12
+    )
+
+
+TABLE = ["speed-table", *PAIR, "--radius", "0.9mm", "--thickness", "1mm"]
+
+
+def test_a_speed_table(model, capsys):
+    assert main([*TABLE, "--error", "1e-4", "--fastest", "216km/h", "--csv"]) == 0
+    head, *rows = capsys.readouterr().out.splitlines()
+    assert head == "speed_m/s,restitution"
+    found = np.array([row.split(",") for row in rows], dtype=float)
+    wanted = model.speed_table(0.9e-3, 1e-3, 1e-4, fastest=60.0)
+    assert found.T.tolist() == [wanted.speed.tolist(), wanted.restitution.tolist()]
+    assert main([*TABLE, "--fastest", "60"]) == 0
+    names, units, *rows, _, said, _, flag = capsys.readouterr().out.splitlines()
+    assert (names.split(), units.split()) == (["speed", "COR"], ["[m/s]", "[-]"])
+    assert said.startswith(f"{len(rows)} rows, straight lines between them within 0.001 in COR")
+    assert flag.startswith("FAST_IMPACT, ")
+
+
+@pytest.mark.parametrize(
+    ("argv", "message"),
+    [
+        ([*SWEEP, "--out", "cor.xls"], "--out: got 'cor.xls', must end in .csv, .h5 or .hdf5"),
+        ([*SWEEP, "--out", "nowhere/cor.h5"], "--out: there is no folder nowhere"),
+        ([*SWEEP, "--speed", "1e4", "--out", "cor.h5"], "10000 m/s, radius 0.5 mm, thickness 0.5 "),
+        ([*SWEEP, "--speed", "0", "--out", "cor.h5"], "--speed: got 0.0; must lie"),
+        (["constant", *SIZES, "--speed", "1"], "--sphere: has to be given, no record says it"),
+        (["constant", *PAIR, "--speed", "1", *SIZES[:2]], "--thickness: has to be given"),
+        ([*CONSTANT, "--speed", "1,1e4"], "10000 m/s, radius 0.9 mm, thickness 0.5 mm: outside"),
+        (["constant", *PAIR, "--record", "no.csv"], "no.csv: No such file or directory"),
+        (["constant", *PAIR, "--record", "no.h5"], "no.h5: No such file or directory"),
+        ([*TABLE, "--error", "1"], "--error: got 1.0; must lie between 1e-05 and 0.1"),
+        ([*TABLE, "--slowest", "20"], "--slowest: must be below the fastest speed, 10.0, got 20.0"),
+        ([*TABLE, "--slowest", "0"], "--slowest: got 0.0; must lie"),
+        ([*TABLE, "--fastest", "1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the "),
+        ([*CONSTANT, "--thickness", "1:2:101"], "--thickness: 101 different ones, 100 is the most"),
+    ],
+)
+def test_refused_physics_is_status_1_and_one_sentence(argv, message, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(argv) == 1
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert captured.err.startswith("contactlaw: ")
+    assert len(captured.err.splitlines()) == 1
+    assert message in captured.err
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    "argv",
+    [["constant", *PAIR, *SIZES], [*CONSTANT, "--record", "a.csv"], SWEEP,
+     [*CONSTANT, "--lammps", "--yade"], [*TABLE, "--thickness", "1mm,2mm"]],
+)  # fmt: skip
+def test_wrong_usage_is_status_2(argv, capsys):
+    with pytest.raises(SystemExit) as stop:
+        main(argv)
+    assert stop.value.code == 2
+    assert "usage:" in capsys.readouterr().err

@@ -1,0 +1,64 @@
+"""YADE's damping ratio against an independent integration, and against what YADE was seen to do."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from contactlaw.dashpot import betan
+
+
+def restitution(beta):
+    """COR of YADE's contact in units K = m = V = 1, by scipy; it ends where the force does."""
+
+    def force(x, u):
+        x = max(x, 0.0)
+        return x**1.5 + 2 * beta * math.sqrt(1.5 * math.sqrt(x)) * u
+
+    def parted(t, s):
+        return force(*s) if t > 0.01 else 1.0
+
+    parted.terminal, parted.direction = True, -1
+    run = solve_ivp(lambda t, s: (s[1], -force(*s)), (0, 1e3), (0.0, 1.0), events=parted,
+                    method="DOP853", rtol=1e-11, atol=1e-14)  # fmt: skip
+    return -run.y[1, -1]
+
+
+@pytest.mark.parametrize("e", [0.06, 0.1353, 0.1354, 0.3, 0.5, 0.7, 0.9, 0.94, 0.97, 0.99, 0.999])
+def test_yades_contact_has_the_cor_that_was_asked_for(e):
+    assert restitution(betan(e)) == pytest.approx(e, abs=1e-8)
+
+
+def thornton(e):
+    """What YADE 2023.02a makes of ``en``: Thornton, Cummins, Cleary 2013, Eqs. B6 and B7."""
+    h = (-6.918798, -16.41105, 146.8049, -796.4559, 2928.711, -7206.864, 11494.29, -11342.18,
+         6276.757, -1489.915)  # fmt: skip
+    alpha = sum(c * e ** (n + 1) for n, c in enumerate(h))
+    return math.sqrt(1 / (1 - (1 + e) ** 2 * math.exp(alpha)) - 1)
+
+
+# asked of YADE itself, and got from it
+@pytest.mark.parametrize(("asked", "got"), [(0.95, 0.9481), (0.97, 0.9650), (0.99, 0.9790)])
+def test_what_yade_makes_of_en_is_what_its_betan_gives(asked, got):
+    """The damping of its own fit, put into this contact, gives what YADE was seen to give."""
+    beta = thornton(asked)
+    assert betan(got) == pytest.approx(beta, rel=5e-3)
+    assert abs(betan(asked) / beta - 1) > 0.03
+
+
+def test_small_losses_and_large_ones():
+    assert betan(1.0) == 0.0
+    loss = np.array([1e-9, 1e-6])
+    assert betan(1 - loss) == pytest.approx(loss / math.pi * math.sqrt(5 / 6), rel=1e-5)
+    assert betan(math.exp(-2)) == pytest.approx(math.sqrt(5 / 6), rel=1e-9)  # critical
+    assert betan(1e-100) == pytest.approx(1e50 * math.sqrt(5 / 6) / 2, rel=1e-9)
+    many = betan(np.linspace(0.01, 1, 1000).reshape(10, 100))
+    assert many.shape == (10, 100)
+    assert (np.diff(many.ravel()) < 0).all()
+
+
+@pytest.mark.parametrize("e", [0.0, -0.5, 1.0001, math.nan, math.inf])
+def test_what_no_damping_gives(e):
+    with pytest.raises(ValueError, match="restitution: got"):
+        betan(e)

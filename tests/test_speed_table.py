@@ -1,0 +1,129 @@
+"""The fewest rows against trying all choices, and their error against the model itself."""
+
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw import laws, speedtable
+from contactlaw.speedtable import fewest
+
+R, H = 0.9e-3, 1e-3
+RNG = np.random.default_rng(5)
+X = np.sort(RNG.uniform(0, 1, 13))
+# convex, of changing curvature, with a corner, and without any shape
+CURVES = {
+    "root": np.sqrt(X), "wave": np.sin(9 * X), "corner": np.abs(X - X[5]),
+    "noise": RNG.uniform(0, 1, X.size), "step": np.where(X > 0.4, 1.0, 0.0),
+}  # fmt: skip
+
+
+def largest_miss(x, y, rows):
+    return np.abs(np.interp(x, x[rows], y[rows]) - y).max()
+
+
+@pytest.mark.parametrize("curve", CURVES)
+@pytest.mark.parametrize("error", [0.005, 0.05, 0.2])
+def test_no_choice_has_fewer_rows(curve, error):
+    """All choices of points, by brute force."""
+    y = CURVES[curve]
+    rows = fewest(X, y, error)
+    assert largest_miss(X, y, rows) <= error * (1 + 1e-12)
+    inner = range(1, X.size - 1)
+    for count in range(len(rows) - 2):
+        for chosen in combinations(inner, count):
+            assert largest_miss(X, y, [0, *chosen, X.size - 1]) > error
+
+
+def test_the_longest_line_each_time_is_not_enough():
+    """Where the curvature changes sign: what makes this a search."""
+    x = np.arange(6.0)
+    y = np.array([0.0, 1.0, 0.0, 1.0, 2.0, 3.0])
+    assert fewest(x, y, 1.0).tolist() == [0, 2, 5]  # greed takes [0, 3, ...] or stops at 4
+
+
+@pytest.mark.parametrize("law", laws.names())
+def test_straight_lines_are_within_the_error(law):
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), law=law)
+    rows = model.speed_table(1e-3, 2e-3, error=2e-3, slowest=0.05, fastest=5.0)
+    v = np.geomspace(0.05, 5.0, 200_001)
+    miss = np.abs(np.interp(v, *rows[:2]) - model.restitution(v, 1e-3, 2e-3))
+    assert miss.max() <= 2e-3 + 1e-9
+    assert rows.error == pytest.approx(miss.max(), rel=1e-3)
+    assert rows.restitution.tolist() == model.restitution(rows.speed, 1e-3, 2e-3).tolist()
+    assert (rows.speed[0], rows.speed[-1]) == (0.05, 5.0)
+
+
+@pytest.mark.parametrize("error", [1e-2, 1e-3, 1e-4])
+def test_more_speeds_to_choose_from_do_not_save_a_row(model, error, monkeypatch):
+    rows = model.speed_table(R, 0.5e-3, error)
+    monkeypatch.setattr(speedtable, "_CHOICE", 9001)
+    assert len(model.speed_table(R, 0.5e-3, error).speed) == len(rows.speed)
+
+
+def test_the_error_is_measured_between_the_speeds_too():
+    """Where these alone would let it be 1.0013e-5; and across the kink at yield."""
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), law="fem")
+    rows = model.speed_table(R, 0.5e-3, error=1e-5)
+    v = np.geomspace(0.1, 10, 200_001)
+    assert np.abs(np.interp(v, *rows[:2]) - model.restitution(v, R, 0.5e-3)).max() <= 1.0001e-5
+
+
+def test_on_a_half_space_one_line_leads_to_yield(model):
+    """The COR is 1 below."""
+    rows = model.speed_table(R, math.inf, error=1e-5)
+    yields = model.yield_speed(R, math.inf)
+    assert rows.speed[1] == pytest.approx(yields, rel=0.01)
+    assert model.speed_table(R, math.inf, error=1e-5, fastest=yields).speed.tolist() == [
+        0.1,
+        yields,
+    ]
+
+
+def test_half_the_rows_that_geometric_speeds_take(model):
+    rows = model.speed_table(R, H, error=1e-4)
+    probe = np.geomspace(0.1, 10, 20_001)
+    e = model.restitution(probe, R, H)
+    for count in range(2, 2 * len(rows.speed)):
+        v = np.geomspace(0.1, 10, count)
+        assert np.abs(np.interp(probe, v, model.restitution(v, R, H)) - e).max() > 1e-4
+
+
+def test_flags_and_what_is_outside(pair, model):
+    assert model.speed_table(R, H).flags == {}
+    fast = model.speed_table(R, H, fastest=60.0)
+    assert fast.flags == {cl.Validity.FAST_IMPACT: int((fast.speed > 7 * 7.4265).sum())}
+    with pytest.raises(ValueError, match="outside the table"):
+        model.speed_table(R, H, fastest=1e4)
+    clamping = cl.ImpactModel(pair, law="myc", outside="clamp")
+    assert clamping.speed_table(R, H, fastest=1e4).flags[cl.Validity.CLAMPED] > 0
+    solving = cl.ImpactModel(pair, law="myc", outside="solve")
+    thin = solving.speed_table(R, 0.05e-3, error=1e-2, slowest=1.0)
+    assert thin.error <= 1e-2
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"error": 1e-6}, "error: got 1e-06; must lie between 1e-05 and 0.1"),
+        ({"error": math.nan}, "error: got nan"),
+        ({"error": "small"}, "error: expected one number"),
+        ({"slowest": 0.0}, "slowest: got 0.0"),
+        ({"fastest": math.inf}, "fastest: got inf"),
+        ({"slowest": 10.0}, "slowest: must be below the fastest speed, 10.0, got 10.0"),
+        ({"radius": -1.0}, "radius: got -1.0"),
+        ({"thickness": [1e-3, 2e-3]}, "thickness: expected one number"),
+    ],
+)
+def test_what_is_refused(model, change, message):
+    with pytest.raises(ValueError, match=message):
+        model.speed_table(**{"radius": R, "thickness": H, **change})
+
+
+def test_a_range_too_wide_for_the_error(pair):
+    """34 decades in 4000 speeds, and a corner at the table's border."""
+    clamping = cl.ImpactModel(pair, law="myc", outside="clamp")
+    with pytest.raises(ValueError, match="error: 1e-05 is too small from 1e-29 to 100000 m/s"):
+        clamping.speed_table(R, H, 1e-5, 1e-29, 1e5)
