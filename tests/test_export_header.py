@@ -574,9 +574,9 @@ def example(folder, name):
 
 
 def test_the_event_driven_example_is_pythons(tmp_path):
-    model = model_of("myc")
+    model = cl.ImpactModel(PAIR)
     peer = cl.ImpactModel(
-        model.pair, "myc",
+        model.pair,
         table=dataclasses.replace(coarser(model.table, c_header.ERROR), certificate=None),
     )  # fmt: skip
     found = example(tmp_path, "event_driven")
@@ -601,7 +601,7 @@ def test_the_documented_c_compiles(tmp_path):
 
 
 def test_the_soft_sphere_example_is_pythons(tmp_path):
-    model = model_of("myc")
+    model = cl.ImpactModel(PAIR)
     found = example(tmp_path, "soft_sphere")
     v = np.linspace(2.0, 10.0, 5)
     dt = model.solve(10.0, 0.9e-3, 1e-3).contact_time / 50
