@@ -12,6 +12,7 @@ import functools
 import hashlib
 import os
 import shutil
+import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
@@ -175,6 +176,12 @@ def _code_folder() -> Path | None:
         if not folder.is_dir():
             folder.mkdir(parents=True, exist_ok=True)
             _sweep(home)
+            if sys.stderr is not None and sys.stderr.isatty():
+                print(
+                    "contactlaw: the first use of this version compiles it, for about half a "
+                    f"minute; kept in {home}",
+                    file=sys.stderr,
+                )
         os.utime(folder)  # refused where the folder is not ours to write
         return folder
     except (OSError, RuntimeError) as error:

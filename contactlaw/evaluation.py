@@ -105,7 +105,9 @@ def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None)
         )
     if not table.law.follows(served):
         raise ValueError(
-            f"table: it belongs to law {table.law.name!r}, the model needs one of {served.name!r}"
+            f"table: it belongs to law {table.law.name!r}, the model needs one of {served.name!r}: "
+            f"leave it out, or contactlaw table build --law {served.family}, with --sphere and "
+            "--plate if the law takes numbers from them"
         )
     return table
 

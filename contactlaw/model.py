@@ -83,7 +83,7 @@ class ImpactModel:
         A table for it is built when it is first needed, in less than a second, and kept in the
         user's cache folder.
     table : Table, path-like or Settings, optional
-        A table to use in place of the packaged one; `contactlaw.table.Settings` of a larger or
+        A table to use in place of the law's own; `contactlaw.table.Settings` of a larger or
         finer one are built, in less than a second as a rule, and kept in the user's cache folder.
     outside : {"raise", "solve", "clamp"}, optional
         What to do outside the table: refuse, integrate the equation, or take the value at the
@@ -564,9 +564,9 @@ class ImpactModel:
         >>> round(best.restitution, 4), round(best.mean, 4)
         (0.6223, 0.7343)
         >>> round(best.energy_error, 4), round(best.mean_energy_error, 4)
-        (0.0, -0.2411)
+        (0.0, -0.2479)
         >>> f"single beads rebound to within {best.rebound_error:.0%} of their height"
-        'single beads rebound to within 40% of their height'
+        'single beads rebound to within 44% of their height'
         """
         v, r, h, w, _ = broadcast(speed=speed, radius=radius, thickness=thickness, weights=weights)
         return constant(v, r, w, self.lookup(v, r, h), keep)

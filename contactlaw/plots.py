@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import math
 import os
-import textwrap
 from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw import wording
 from contactlaw.curves import Curve, is_logarithmic
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import Validity, limits_in_words
@@ -176,7 +176,7 @@ def _figure(width: float, height: float, title: str, caption: str) -> Figure:
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    lines = textwrap.wrap(caption, int(10.6 * width))  # letters of 11.5 points to an inch
+    lines = wording.balanced(caption, 10.6 * width)  # letters of 11.5 points to an inch
     room = 0.5 + 0.2 * len(lines)
     layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.985, 1.0 - room / height))
     figure = Figure(figsize=(width, height), layout=layout)

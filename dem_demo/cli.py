@@ -6,6 +6,7 @@ What takes long to import is imported inside the commands, where Ctrl-C is alrea
 from __future__ import annotations
 
 import argparse
+import functools
 import shlex
 import sys
 import time
@@ -49,9 +50,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         usage exits with 2.
     """
     argv = sys.argv[1:] if argv is None else list(argv)
-    arguments = _parser().parse_args(argv)
     try:
         with interruptible():
+            arguments = _parser().parse_args(argv)
             return _rain(arguments, shlex.join(["dem-demo", *argv]))
     except Interrupted as stop:
         print(f"\ndem-demo: {stop} before it rained; nothing was written", file=sys.stderr)
@@ -92,21 +93,25 @@ def _parser() -> argparse.ArgumentParser:
     )
     add = rain.add_argument
     add("--beads", type=int, metavar="N", default=defaults.BEADS, help="number of beads")
-    add("--plates", type=_numbers, metavar="H,...", default=_text(defaults.THICKNESSES),
-        help="thickness of each plate [m], inf for a half-space")  # fmt: skip
+    add("--plates", type=_quantities, metavar="H,...", default=_text(defaults.THICKNESSES),
+        help="thickness of each plate [m], or with units; inf: a half-space")  # fmt: skip
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
     add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the plates")
-    add("--radius", type=_range, metavar="MIN,MAX", default=_text(defaults.RADIUS),
-        help="bead radii [m]")  # fmt: skip
-    add("--speed", type=_range, metavar="MIN,MAX", default=_text(defaults.SPEED),
-        help="speeds at which beads are thrown down [m/s]")  # fmt: skip
+    add("--radius", type=functools.partial(_range, kind="LENGTH"), metavar="MIN,MAX",
+        default=_text(defaults.RADIUS), help="bead radii [m], or with units")  # fmt: skip
+    add("--speed", type=functools.partial(_range, kind="SPEED"), metavar="MIN,MAX",
+        default=_text(defaults.SPEED),
+        help="speeds at which beads are thrown down [m/s], or with units")  # fmt: skip
     add("--duration", type=float, metavar="T", default=argparse.SUPPRESS,
         help=f"simulated time [s] (default: {durations})")  # fmt: skip
     add("--seed", type=int, metavar="S", default=defaults.SEED,
         help="the same seed gives the same rain")  # fmt: skip
-    add("--law", metavar="NAME", default=argparse.SUPPRESS,
-        help="contact law, as in contactlaw.laws.names(); fem is for metals, ceramics, glasses "
-        "(default: contactlaw's)")  # fmt: skip
+    add(
+        "--law",
+        metavar="NAME",
+        default=argparse.SUPPRESS,
+        help="contact law, of those that contactlaw cor --help lists (default: the one there)",
+    )
     add("--outside", choices=("raise", "solve", "clamp"), default="raise",
         help="impacts outside the law's table stop the rain, are integrated, or get the value at "
         "its border and a flag")  # fmt: skip
@@ -123,20 +128,20 @@ def _text(numbers: Sequence[float]) -> str:
     return ",".join(f"{number:g}" for number in numbers)
 
 
-def _numbers(text: str) -> list[float]:
+def _quantities(text: str, kind: str = "LENGTH") -> tuple[float, ...]:
+    from contactlaw import quantities
+
     try:
-        return [float(part) for part in text.split(",")]
-    except ValueError:
-        raise argparse.ArgumentTypeError(
-            f"expected numbers with commas between them, as in 0.5e-3,1e-3, got {text!r}"
-        ) from None
+        return quantities.values(text, getattr(quantities, kind))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
-def _range(text: str) -> tuple[float, float]:
-    values = _numbers(text)
-    if len(values) != 2:
+def _range(text: str, kind: str) -> tuple[float, float]:
+    found = _quantities(text, kind)
+    if len(found) != 2:
         raise argparse.ArgumentTypeError(f"expected two numbers MIN,MAX, got {text!r}")
-    return values[0], values[1]
+    return found[0], found[1]
 
 
 def _rain(arguments: argparse.Namespace, command: str) -> int:
@@ -182,7 +187,7 @@ def _plan(
     arguments: argparse.Namespace, engine: Engine
 ) -> tuple[Scene, ImpactModel | ConstantRestitution, ImpactModel]:
     """Scene, what rules its impacts, and the model; whatever they refuse is refused now."""
-    from contactlaw import ImpactModel, Pair, laws
+    from contactlaw import ImpactModel, Pair, laws, wording
     from dem_demo.baseline import ConstantRestitution
     from dem_demo.nozzles import rain
 
@@ -207,7 +212,7 @@ def _plan(
         if "constant_cor" in arguments:
             return scene, ConstantRestitution(pair, arguments.constant_cor), model
     except ValueError as error:
-        raise _Refused(error) from error
+        raise _Refused(wording.sentence(error, vars(arguments))) from error
     return scene, _checked(scene, model), model
 
 

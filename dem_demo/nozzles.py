@@ -14,6 +14,7 @@ from dem_demo.scene import GRAVITY, Beads, Floats, Plate, Scene
 # Our own choices, made so that the figures show something.
 WIDTH, GAP = 0.060, 0.020  # [m], of a plate and between two
 DEPTH = 0.060  # [m], of a plate in three dimensions
+_LARGEST = 0.05  # [m], radius of a bead that suits plates of this size
 MARGIN = 0.012  # [m]: nozzles keep off the edges, whose reflected waves the model leaves out
 HEIGHT = 0.2  # [m], of the nozzles above the plates
 SIDEWAYS = 0.05  # [m/s], largest sideways speed: beads wander over to the next plate or the gap
@@ -78,6 +79,10 @@ def rain(
     if seed < 0:
         raise ValueError(f"seed: must not be negative, got {seed!r}")
     _check_range("radius", radius, "m", positive=True)
+    if radius[1] > _LARGEST:
+        raise ValueError(
+            f"radius: {radius[1]:g} m is above {_LARGEST} m; a unit says mm, as 1mm,2mm"
+        )
     _check_range("speed", speed, "m/s", positive=False)
     pitch = WIDTH + GAP
     plates = tuple(Plate(h, i * pitch, i * pitch + WIDTH) for i, h in enumerate(thicknesses))

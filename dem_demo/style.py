@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -12,6 +11,8 @@ from typing import Any, TypeVar
 import matplotlib as mpl
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from contactlaw import wording
 
 # Okabe and Ito (2008), Color Universal Design.
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -72,7 +73,7 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     One for a phone is as high, but no wider than `NARROW`.
     """
     width = min(width, NARROW) if _narrow.get() else width
-    head, lines = _wrapped(title, 7.6 * width), _wrapped(subtitle, 10.6 * width)
+    head, lines = wording.balanced(title, 7.6 * width), wording.balanced(subtitle, 10.6 * width)
     # The axes leave room for the lines above them.
     below = 0.22 + 0.28 * len(head)
     room = below + 0.02 + 0.2 * len(lines)
@@ -97,13 +98,3 @@ def png(figure: Figure) -> bytes:
     reduced = Image.open(whole).convert("RGB").quantize(256, dither=Image.Dither.NONE)
     reduced.save(small, "PNG", optimize=True)
     return small.getvalue()
-
-
-def _wrapped(text: str, letters: float) -> list[str]:
-    """Break a text into as few lines as fit, about equally long: no word alone on the last."""
-    lines = textwrap.wrap(text, int(letters))
-    for width in range(len(text) // max(1, len(lines)), int(letters)):
-        even = textwrap.wrap(text, width)
-        if len(even) == len(lines):
-            return even
-    return lines

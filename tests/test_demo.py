@@ -1,5 +1,6 @@
 """`dem-demo rain`: its file, its physics, its figures, and what it leaves when it fails."""
 
+import math
 import subprocess
 import sys
 
@@ -242,14 +243,15 @@ def test_figures_are_pictures(request, which, name):
         (["--plate", "no-such-thing"], "unknown material"),
         (["--sphere", "glass"], "needs a yield strength"),
         (["--law", "mcy"], "did you mean 'myc'"),
-        (["--plates", "-1e-3"], "plates: thickness must be positive"),
-        (["--plates", "0"], "plates: thickness must be positive"),
-        (["--plates", "nan"], "plates: thickness must be positive"),
+        (["--plates", "-1e-3"], "--plates: thickness must be positive"),
+        (["--plates", "0"], "--plates: thickness must be positive"),
+        (["--plates", "nan"], "--plates: thickness must be positive"),
         (["--plates", "1e-5"], "too thin"),
-        (["--speed", "nan,5"], "speed: needs MIN,MAX"),
+        (["--speed", "nan,5"], "--speed: needs MIN,MAX"),
         (["--speed", "5,1e4"], "outside the table"),
-        (["--radius", "0,1e-3"], "radius: needs MIN,MAX"),
-        (["--beads", "0"], "beads: at least one"),
+        (["--radius", "0,1e-3"], "--radius: needs MIN,MAX"),
+        (["--radius", "1,2"], "with units: 1mm,2mm"),
+        (["--beads", "0"], "--beads: at least one"),
         (["--beads", "100000"], "emitted into each other"),
         (["--seed", "-1"], "seed"),
         (["--duration", "-1"], "duration"),
@@ -267,6 +269,14 @@ def test_refused_physics_is_one_sentence(flags, message, tmp_path, capsys):
     assert message in captured.err
     assert captured.out == ""
     assert list(tmp_path.iterdir()) == []
+
+
+def test_quantities_may_have_units():
+    units = ["rain", "--plates", "0.5mm, inf", "--radius", "500um,0.9mm", "--speed", "18km/h,10m/s"]
+    given = cli._parser().parse_args(units)
+    assert given.plates == pytest.approx((0.5e-3, math.inf))
+    assert given.radius == pytest.approx((0.5e-3, 0.9e-3))
+    assert given.speed == pytest.approx((5.0, 10.0))
 
 
 @pytest.mark.parametrize(

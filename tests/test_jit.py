@@ -235,3 +235,19 @@ def test_kernels_of_one_name_stay_apart_in_the_code_of_several_processes(tmp_pat
     one, other, *both = [float(word) for out, _ in outputs for word in out.split()]
     assert one == -other
     assert both == [one, other]
+
+
+def test_the_first_process_says_that_it_compiles(tmp_path):
+    """On a terminal, once; pipes stay quiet, as the tests above show."""
+    import pty
+
+    for expected in (1, 0):
+        ours, its = pty.openpty()
+        environment = {**os.environ, "CONTACTLAW_CACHE_DIR": str(tmp_path)}
+        del environment["NUMBA_CACHE_DIR"]
+        subprocess.run([sys.executable, "-c", FIRST], env=environment, stderr=its, check=True)
+        os.write(its, b"end\n")
+        said = os.read(ours, 10_000).decode()
+        assert said.count("compiles") == expected and said.count("\n") == expected + 1
+        os.close(ours)
+        os.close(its)

@@ -105,7 +105,7 @@ def page(claims: tuple[Claim, ...], pictures: Iterable[Picture]) -> str:
 def _practice() -> dict[str, str]:
     """Fill what people who simulate read."""
     overall = trust.overall()
-    (everyday, others), (_, pair), _ = overall.values()
+    (everyday, others), (fem, pair), _ = overall.values()
     bounds = trust.EVERYDAY.bounds
     right = round(everyday.shares.restitution * everyday.answered)
     wrong = round((1.0 - others.shares.restitution) * others.answered)
@@ -113,9 +113,9 @@ def _practice() -> dict[str, str]:
         "everyday": f"{right} of {everyday.impacts} everyday impacts that it was not made from "
         f"have the COR of finite elements within {_percent(bounds.restitution)}; the root mean "
         f"square error is {_percent(everyday.rms, 2)}.",
-        "pair": f"It is within {_percent(abs(pair.largest), 1)} of finite elements over "
-        f"{pair.impacts} impacts; the root mean square error is {_percent(pair.rms, 1)}. Law "
-        "<code>fem</code> has that pair, too.",
+        "pair": f"Over {pair.impacts} impacts <code>fem</code> is within "
+        f"{_percent(abs(fem.largest), 1)} of finite elements, <code>myc</code>, to the letter of "
+        f"the paper, within {_percent(abs(pair.largest), 1)}.",
         "others": f"Of the {everyday.impacts} everyday impacts it answers {others.answered}, and "
         f"{wrong} of these are more than {_percent(bounds.restitution)} off; the root mean square "
         f"error is {_percent(others.rms)}. All but {others.silent} of those beyond a bound carry a "

@@ -176,7 +176,7 @@ def read(path: str | os.PathLike[str]) -> Table:
         that no table has; the message says how to rebuild it.
     """
     path = Path(path)
-    remedy = "Build it again with: contactlaw table build --out FILE"
+    remedy = "Build it again with: contactlaw table build --law LAW --out FILE"
     try:
         content = guarded.content(path, LARGEST)
     except FileNotFoundError:
