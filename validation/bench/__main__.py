@@ -17,6 +17,7 @@ SUBJECTS = (
     "rain",
     "elements",
     "lammps",
+    "liggghts",
     "census",
 )
 
