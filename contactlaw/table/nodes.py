@@ -21,7 +21,7 @@ from contactlaw.table.certificate import (
     compare_outcomes,
     random_points,
 )
-from contactlaw.table.grid import Grid, Settings
+from contactlaw.table.grid import RANGES, Grid, Settings
 from contactlaw.table.sweep import Progress, no_progress
 
 Array = NDArray[np.float64]
@@ -139,16 +139,21 @@ def coarser(table: Table, error: float) -> Table:
     Returns
     -------
     Table
-        With a certificate of its own, but no shapes; the given one if fewer nodes do not suffice.
+        Without shapes; the given one if fewer nodes do not suffice. It has a certificate.
     """
     rows, step = table.settings.inelasticity_nodes - 1, table.settings.log_overload_step
+    fewest, widest = RANGES["inelasticity_nodes"][0], RANGES["log_overload_step"][1]
     lam, chi = random_points(table.grid, _COMPARED, np.random.default_rng(0))
     exact = _looked_up(table, lam, chi).restitution
     for fewer, wider in _COARSER:
-        found = _resampled(table, rows // fewer + 1, step * wider)
+        found = _resampled(table, max(rows // fewer + 1, int(fewest)), min(step * wider, widest))
         if np.abs(_looked_up(found, lam, chi).restitution - exact).max() <= error:
-            return dataclasses.replace(found, certificate=certify(found, POINTS))
-    return table
+            break
+    else:
+        found = table
+    if found.certificate is None:
+        found = dataclasses.replace(found, certificate=certify(found, POINTS))
+    return found
 
 
 def _looked_up(table: Table, lam: Array, chi: Array) -> Outcome:

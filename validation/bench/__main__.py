@@ -16,6 +16,7 @@ SUBJECTS = (
     "processes",
     "rain",
     "elements",
+    "c_header",
     "lammps",
     "liggghts",
     "census",

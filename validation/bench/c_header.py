@@ -1,0 +1,137 @@
+"""The C header beside the numba kernels: lookups and steps, in one run, the same impacts."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import shutil
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import contactlaw as cl
+from contactlaw._jit import kernel
+from contactlaw.softsphere import PARTED, Spring, advance, resized, unit_spring
+from validation.bench.row import Row
+
+Array = NDArray[np.float64]
+
+N, WALK = 200_000, 400  # impacts; overlaps along a path, in and out
+ROUNDS = 30  # the two take turns, so that both see the same noise
+_SOURCE = """
+#include "contactlaw.h"
+void lookups(int n, const double *v, const double *r, const double *h, double *out)
+{
+    int k;
+    for (k = 0; k < n; ++k)
+        out[k] = contactlaw_restitution(v[k], r[k], h[k]);
+}
+void steps(int n, const double *x, int walks, double radius, double thickness, double dt,
+           double *out)
+{
+    const contactlaw_spring spring = contactlaw_spring_of(radius, thickness);
+    int i, k;
+    for (i = 0; i < walks; ++i) {
+        contactlaw_state state = CONTACTLAW_APART;
+        for (k = 0; k < n; ++k)
+            out[k] = contactlaw_step(&spring, &state, x[k], 1.0, dt);
+    }
+}
+"""
+
+
+def rows() -> Iterator[Row]:
+    """Measure for the law of the paper and for that of finite elements."""
+    compiler = shutil.which("gcc")
+    if compiler is None:
+        raise RuntimeError("no gcc on PATH: the C header cannot be measured")
+    pairs = {"myc": ("gamma-alumina", "glass"), "fem": ("bearing-steel-52100", "aluminium-6061-t6")}
+    for law, bodies in pairs.items():
+        model = cl.ImpactModel(cl.Pair(*bodies), law=law)
+        with tempfile.TemporaryDirectory() as folder:
+            library = _compiled(model, Path(folder), compiler)
+        yield _lookups(model, library)
+        yield _steps(model, library)
+
+
+def _compiled(model: cl.ImpactModel, folder: Path, compiler: str) -> ctypes.CDLL:
+    cl.export.header(folder / "contactlaw.h", model)
+    source, library = folder / "bench.c", folder / "bench.so"
+    source.write_text(_SOURCE)
+    command = [compiler, "-std=c99", "-O3", "-shared", "-fPIC", source, "-o", library, "-lm"]
+    subprocess.run(list(map(str, command)), check=True)
+    return ctypes.CDLL(str(library))
+
+
+def _pointer(values: Array) -> Any:
+    return values.ctypes.data_as(ctypes.c_void_p)
+
+
+def _in_turns(one: Callable[[], object], other: Callable[[], object]) -> tuple[float, float]:
+    """Least times of both after a first call, of the processor alone: others may use it too [s]."""
+    least = [math.inf, math.inf]
+    for turn in range(ROUNDS + 1):
+        for n, function in enumerate((one, other)):
+            start = time.process_time()
+            function()
+            if turn > 0:
+                least[n] = min(least[n], time.process_time() - start)
+    return least[0], least[1]
+
+
+def _lookups(model: cl.ImpactModel, library: ctypes.CDLL) -> Row:
+    rng = np.random.default_rng(0)
+    v = np.exp(rng.uniform(math.log(0.05), math.log(20.0), N))
+    r = rng.uniform(0.2e-3, 3e-3, N)
+    h = r * rng.uniform(0.8, 10.0, N)
+    cor, ours, theirs = model.kernel, np.empty(N), np.empty(N)
+
+    @kernel
+    def loop(v: Array, r: Array, h: Array, out: Array) -> None:
+        for n in range(v.size):
+            out[n] = cor(v[n], r[n], h[n])
+
+    arguments = (ctypes.c_int(N), *map(_pointer, (v, r, h, ours)))
+    in_c, in_numba = _in_turns(lambda: library.lookups(*arguments), lambda: loop(v, r, h, theirs))
+    inside = ~np.isnan(theirs)
+    assert np.abs(ours - theirs)[inside].max() < 1e-5
+    return Row(
+        f"C header, {model.force_law.family}: lookup", in_c / N * 1e9, "ns",
+        peer="model.kernel", ratio=in_numba / in_c, least_ratio=1.0, note="gcc -O3, one by one",
+    )  # fmt: skip
+
+
+@kernel
+def _walk(law: Array, spring: Spring, x: Array, walks: int, dt: float, out: Array) -> None:
+    for _ in range(walks):
+        state = PARTED
+        for n in range(x.size):
+            state = advance(law, spring, state, x[n], dt)
+            out[n] = state.force
+
+
+def _steps(model: cl.ImpactModel, library: ctypes.CDLL) -> Row:
+    """Contacts along the path of an impact far above yield."""
+    radius, thickness = 0.9e-3, 3e-3
+    hit = model.solve(10.0, radius, thickness)
+    dt = float(hit.contact_time) / WALK
+    x = float(hit.peak_compression) * np.sin(np.pi * (np.arange(WALK) + 0.5) / WALK)
+    spring = resized(unit_spring(model, thickness), radius)
+    ours, theirs, walks = np.empty(WALK), np.empty(WALK), N // WALK
+    law, double = model.force_law.data, ctypes.c_double
+    arguments = (ctypes.c_int(WALK), _pointer(x), ctypes.c_int(walks), double(radius),
+                 double(thickness), double(dt), _pointer(ours))  # fmt: skip
+    in_c, in_numba = _in_turns(
+        lambda: library.steps(*arguments), lambda: _walk(law, spring, x, walks, dt, theirs)
+    )
+    assert np.abs(ours - theirs).max() < 1e-10 * theirs.max()
+    return Row(
+        f"C header, {model.force_law.family}: step", in_c / N * 1e9, "ns",
+        peer="softsphere.advance", ratio=in_numba / in_c, least_ratio=1.0, note="gcc -O3",
+    )  # fmt: skip
