@@ -434,6 +434,21 @@ def test_liggghts_refuses(wrong, scene):
     assert message in " ".join(done.stdout.split())
 
 
+@needs_liggghts
+def test_the_rain_comes_back_from_the_thick_sheet_faster(scene):
+    """Every bead hits one of two sheets at 3 m/s; beads that meet on the way lose more."""
+    for path in (ROOT / "docs/examples/liggghts").iterdir():
+        shutil.copy(path, scene.folder)
+    done = scene.start((scene.folder / "in.rain").read_text())
+    assert done.returncode == 0, done.stdout[-2000:]
+    found = re.findall(r"upward speed over ([0-9.]+) mm: ([0-9.]+) m/s", done.stdout)
+    for thickness, speed in found:
+        cor = scene.model.restitution(3.0, 0.9e-3, 1e-3 * float(thickness))
+        assert 0.75 < float(speed) / (3.0 * cor) < 1.0
+    assert [thickness for thickness, _ in found] == ["0.5", "3"]
+    assert float(found[0][1]) < 0.85 * float(found[1][1])
+
+
 PLAIN = ["export", "liggghts", "--sphere", "gamma-alumina", "--plate", "glass"]
 FILES = {
     "README.txt", "build.sh", "contactlaw.h", "normal_model_contactlaw.h", "wall_contactlaw.cpp",
