@@ -3,13 +3,20 @@ PYTHON ?= python3
 BIN := .venv/bin
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
 
-.PHONY: demo test lint package validation bench clean
+.PHONY: demo test test-engines lint package validation bench clean
 
 demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
 
 test: .venv/test.done  ## run the tests
 	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
+
+ENGINES := liggghts libliggghts-dev libopenmpi-dev g++
+
+test-engines: .venv/test.done  ## run the tests of engines that PyPI does not have
+	@dpkg-query --show $(ENGINES) >/dev/null || \
+	  { echo "for LIGGGHTS: apt-get install --no-install-recommends $(ENGINES)"; exit 1; }
+	$(BIN)/python -m pytest tests/test_export_liggghts.py
 
 lint: .venv/dev.done  ## check style and types
 	$(BIN)/ruff check .

@@ -295,6 +295,13 @@ def _export_header(arguments: argparse.Namespace) -> None:
     print(arguments.out)
 
 
+def _export_liggghts(arguments: argparse.Namespace) -> None:
+    with wording.folder_of("out", arguments.out):
+        model = ImpactModel(_pair(arguments), law=arguments.law)
+        export.liggghts(arguments.out, model)
+    print(arguments.out)
+
+
 _RUN = {
     "cor": _cor,
     "sweep": _sweep,
@@ -306,6 +313,7 @@ _RUN = {
     "table check": _table_check,
     "table build": _table_build,
     "export header": _export_header,
+    "export liggghts": _export_liggghts,
 }
 
 

@@ -68,7 +68,7 @@ def parser() -> argparse.ArgumentParser:
     tables = commands.add_parser("table", help=about, description=_sentence(about))
     _add_tables(tables.add_subparsers(required=True, metavar="ACTION", help="what to do"))
 
-    about = "files for codes that Python cannot reach: header"
+    about = "files for codes that Python cannot reach: header, liggghts"
     exports = commands.add_parser("export", help=about, description=_sentence(about))
     _add_exports(exports.add_subparsers(required=True, metavar="KIND", help="what to write"))
     return made
@@ -245,3 +245,9 @@ def _add_exports(kinds: Any) -> None:
     header.add_argument("--table", default="cor", choices=["cor", "none"],
                         help="with a table of COR, or without: law and integration alone "
                         "(default: %(default)s)")  # fmt: skip
+    liggghts = _command(
+        kinds, "export liggghts", "a normal model for the walls of LIGGGHTS, and how it is built"
+    )
+    _add_pair(liggghts)
+    liggghts.add_argument("--out", required=True, metavar="DIR",
+                          help="folder to write into, made if need be")  # fmt: skip

@@ -113,11 +113,35 @@ def file_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     contactlaw.wording.Refused: --plot: there is no folder nowhere
     """
     path = os.fspath(path)
+    if os.path.isdir(path):
+        raise Refused(f"--{option}: {path} is a folder")
+    with _written(option, path):
+        yield
+
+
+@contextmanager
+def folder_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
+    """Name the option and the folder that could not be made or written into.
+
+    Examples
+    --------
+    >>> with folder_of("out", "nowhere/liggghts"):
+    ...     print("not reached")
+    Traceback (most recent call last):
+    contactlaw.wording.Refused: --out: there is no folder nowhere
+    """
+    path = os.path.normpath(path)
+    if os.path.lexists(path) and not os.path.isdir(path):
+        raise Refused(f"--{option}: {path} is no folder")
+    with _written(option, path):
+        yield
+
+
+@contextmanager
+def _written(option: str, path: str) -> Iterator[None]:
     folder = os.path.dirname(path)
     if folder and not os.path.isdir(folder):
         raise Refused(f"--{option}: there is no folder {folder}")
-    if os.path.isdir(path):
-        raise Refused(f"--{option}: {path} is a folder")
     try:
         yield
     except OSError as error:  # which may be about a file beside it, of a temporary name

@@ -320,6 +320,15 @@ def test_a_folder_that_is_not_there(built, tmp_path):
         store.write(built, tmp_path / "missing" / "t.h5")
 
 
+def test_a_file_of_another_numpy_is_read(monkeypatch, path):
+    """Its sines and powers end in another digit."""
+    monkeypatch.setattr(store.shapes, "SHARES", store.shapes.SHARES * (1 + 4e-16))
+    store.read(path)
+    monkeypatch.setattr(store.shapes, "SHARES", store.shapes.SHARES * (1 + 1e-9))
+    with pytest.raises(store.DamagedTableError, match="shapes/shares are not those"):
+        store.read(path)
+
+
 def test_packaged(monkeypatch, path):
     store.packaged.cache_clear()
     (path.parent / "data").mkdir()

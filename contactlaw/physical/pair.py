@@ -58,6 +58,18 @@ class Pair:
         return 1.0 / (1.0 / self.sphere.plane_modulus + 1.0 / self.plate.plane_modulus)
 
     @property
+    def effective_shear_modulus(self) -> float:
+        """G* [Pa]: 1/G* = (2 - nu1)/G1 + (2 - nu2)/G2, G = E/(2 (1 + nu)) (Johnson 1985, Eq. 7.43).
+
+        A contact of radius a has the tangential stiffness 8 G* a.
+        """
+        compliance = sum(
+            (2.0 - one.poissons_ratio) * 2.0 * (1.0 + one.poissons_ratio) / one.youngs_modulus
+            for one in (self.sphere, self.plate)
+        )
+        return 1.0 / compliance
+
+    @property
     def yield_speed(self) -> float:
         """Speed V_Y0 [m/s] from which one of the bodies yields, on a half-space.
 

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from contactlaw.equation.waves import Waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
-from contactlaw.physical.materials import Material
 from contactlaw.physical.validity import Limits
 from contactlaw.softsphere import Spring, unit_spring
 
@@ -100,7 +99,7 @@ def rows(plates: Sequence[Plate], model: ImpactModel) -> NDArray[np.void]:
         row["length_a"], row["length_b"] = np.linalg.norm(a), np.linalg.norm(b)
         row["a"], row["b"] = a / row["length_a"], b / row["length_b"]
         row["normal"] = np.cross(row["a"], row["b"])
-        row["tangential"] = _tangential(own.pair.sphere, own.pair.plate)
+        row["tangential"] = 8.0 * own.pair.effective_shear_modulus
         spring = unit_spring(own, plate.thickness)
         springs, waves = spring._asdict(), spring.waves._asdict()
         del springs["waves"]
@@ -118,15 +117,6 @@ def bounds(plates: NDArray[np.void]) -> NDArray[np.float64]:
     b = plates["b"] * plates["length_b"][:, None]
     corners = np.concatenate([plates["corner"] + p * a + q * b for p in (0, 1) for q in (0, 1)])
     return np.array([corners.min(axis=0), corners.max(axis=0)])
-
-
-def _tangential(sphere: Material, plate: Material) -> float:
-    """8 G*, the tangential stiffness per contact radius [Pa] (Johnson 1985, Eq. 7.43)."""
-    compliance = sum(
-        (2.0 - one.poissons_ratio) * 2.0 * (1.0 + one.poissons_ratio) / one.youngs_modulus
-        for one in (sphere, plate)
-    )
-    return 8.0 / compliance
 
 
 def checked(plates: Any, model: Any) -> list[Plate]:
