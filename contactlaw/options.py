@@ -249,5 +249,6 @@ def _add_exports(kinds: Any) -> None:
         kinds, "export liggghts", "a normal model for the walls of LIGGGHTS, and how it is built"
     )
     _add_pair(liggghts)
+    _add_name_of_law(liggghts)
     liggghts.add_argument("--out", required=True, metavar="DIR",
                           help="folder to write into, made if need be")  # fmt: skip

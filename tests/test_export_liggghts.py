@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import _whole, cli
+from contactlaw import _atomic, cli
 from contactlaw.softsphere import Contacts, time_step
 
 ROOT = Path(__file__).parent.parent
@@ -500,12 +500,12 @@ def test_the_command_refuses_in_its_own_words(out, message, tmp_path, monkeypatc
 
 
 def test_a_failure_leaves_nothing_behind(tmp_path, monkeypatch):
-    def full(path, content, write=_whole.write):
+    def full(path, content, write=_atomic.write):
         if path.name == "README.txt":
             raise OSError(28, "No space left on device")
         write(path, content)
 
-    monkeypatch.setattr(_whole, "write", full)
+    monkeypatch.setattr(_atomic, "write", full)
     with pytest.raises(OSError, match="No space"):
         cl.export.liggghts(tmp_path / "out", cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
     assert list(tmp_path.iterdir()) == []
