@@ -17,20 +17,9 @@ from typing import Literal
 
 import numpy as np
 
-from contactlaw import (
-    curves,
-    export,
-    laws,
-    lines,
-    options,
-    plots,
-    records,
-    sheet,
-    sweep,
-    table,
-    walls,
-    wording,
-)
+from contactlaw import export, laws, table
+from contactlaw.command import curves, lines, options, plots, records, sheet, sweep, walls, wording
+from contactlaw.command.quantities import LENGTH, written
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.history import ForceHistory
@@ -38,7 +27,6 @@ from contactlaw.physical.materials import material, materials
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import law_of
 from contactlaw.physical.validity import count_flags, explain
-from contactlaw.quantities import LENGTH, written
 from contactlaw.table import cache, file
 
 _DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage

@@ -129,7 +129,7 @@ def _text(numbers: Sequence[float]) -> str:
 
 
 def _quantities(text: str, kind: str = "LENGTH") -> tuple[float, ...]:
-    from contactlaw import quantities
+    from contactlaw.command import quantities
 
     try:
         return quantities.values(text, getattr(quantities, kind))
@@ -187,7 +187,8 @@ def _plan(
     arguments: argparse.Namespace, engine: Engine
 ) -> tuple[Scene, ImpactModel | ConstantRestitution, ImpactModel]:
     """Scene, what rules its impacts, and the model; whatever they refuse is refused now."""
-    from contactlaw import ImpactModel, Pair, laws, wording
+    from contactlaw import ImpactModel, Pair, laws
+    from contactlaw.command import wording
     from dem_demo.baseline import ConstantRestitution
     from dem_demo.nozzles import rain
 

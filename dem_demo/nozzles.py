@@ -80,9 +80,7 @@ def rain(
         raise ValueError(f"seed: must not be negative, got {seed!r}")
     _check_range("radius", radius, "m", positive=True)
     if radius[1] > _LARGEST:
-        raise ValueError(
-            f"radius: {radius[1]:g} m is above {_LARGEST} m; a unit says mm, as 1mm,2mm"
-        )
+        raise ValueError(f"radius: {radius[1]:g} m is above {_LARGEST} m; with units: 1mm,2mm")
     _check_range("speed", speed, "m/s", positive=False)
     pitch = WIDTH + GAP
     plates = tuple(Plate(h, i * pitch, i * pitch + WIDTH) for i, h in enumerate(thicknesses))

@@ -27,12 +27,8 @@ LAYERS = [
     {"model"},  # where the towers meet
     {"closed_form", "dashpot", "loads", "softsphere", "spheres"},
     {"export", "turning_point"},
-    {"quantities"},
-    {"wording", "records"},
-    {"sheet", "options"},
-    {"curves", "sweep", "walls"},
-    {"lines"},
-    {"engines", "plots"},
+    {"engines"},
+    {"command"},
     {"cli"},
 ]
 # Within a folder without units, the same: the order of its files.
@@ -40,6 +36,8 @@ FILES = {
     "equation": ["force", "outcome", "waves", "integrator", "zener"],
     "table": ["lookup", "grid", "splines", "shapes", "sweep", "certificate", "nodes", "guarded",
               "file", "cache"],
+    "command": ["quantities", "wording", "records", "sheet", "options", "curves", "sweep", "walls",
+                "lines", "plots"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
                  "rebound"],
 }  # fmt: skip

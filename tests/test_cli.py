@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import cli, laws, options, table
+from contactlaw import cli, laws, table
 from contactlaw.cli import main
+from contactlaw.command import options
 from contactlaw.table import file
 
 COR = ["cor", "--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]

@@ -6,8 +6,8 @@ import h5py
 import numpy as np
 import pytest
 
+from contactlaw.command.records import Recorded, combined, completed, read
 from contactlaw.engines.record import IMPACT
-from contactlaw.records import Recorded, combined, completed, read
 from dem_demo import cli, reader
 
 SPEED, RADIUS = [0.5, 1.2, 3.0], [0.9e-3, 1.1e-3, 1.0e-3]

@@ -5,7 +5,7 @@ import pickle
 import pytest
 
 import contactlaw as cl
-from contactlaw import wording
+from contactlaw.command import wording
 from contactlaw.evaluation import OutsideTableError, UnsolvedError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 

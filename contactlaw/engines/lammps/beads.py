@@ -3,10 +3,27 @@
 from __future__ import annotations
 
 from contactlaw.engines.lammps.plate import check_friction
-from contactlaw.lines import hertz_material
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material, material
 from contactlaw.spheres import restitution_sphere_sphere
+
+
+def hertz_material(
+    youngs_modulus: float, restitution: float, poissons_ratio: float, tangential: str
+) -> str:
+    """Write a contact of LAMMPS's ``pair_style granular`` that has the COR it is asked for.
+
+    Of its kinds of damping, ``coeff_restitution`` alone does so at any speed.
+
+    Examples
+    --------
+    >>> hertz_material(7e10, 0.9, 0.3, "linear_nohistory 0 0")
+    'hertz/material 7e+10 0.9 0.3 tangential linear_nohistory 0 0 damping coeff_restitution'
+    """
+    return (
+        f"hertz/material {youngs_modulus:g} {restitution:.6g} {poissons_ratio:g} "
+        f"tangential {tangential} damping coeff_restitution"
+    )
 
 
 def pair_coeff(

@@ -8,35 +8,18 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from contactlaw._version import VERSION
+from contactlaw.command.quantities import LENGTH, written
+from contactlaw.command.walls import Wall, meaning
 from contactlaw.constant import Constant, Keep, constant
 from contactlaw.dashpot import betan
+from contactlaw.engines.lammps.beads import hertz_material
 from contactlaw.evaluation import OutsideTableError
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import explain
-from contactlaw.quantities import LENGTH, written
-from contactlaw.walls import Wall, meaning
 
 Lines = Callable[[ImpactModel, list[Wall], Keep], Iterator[str]]
 
 _LEAST = 0.05  # LIGGGHTS 3.8.0: "0.05 < coefficientRestitution <= 1 required"
-
-
-def hertz_material(
-    youngs_modulus: float, restitution: float, poissons_ratio: float, tangential: str
-) -> str:
-    """Write a contact of LAMMPS's ``pair_style granular`` that has the COR it is asked for.
-
-    Of its kinds of damping, ``coeff_restitution`` alone does so at any speed.
-
-    Examples
-    --------
-    >>> hertz_material(7e10, 0.9, 0.3, "linear_nohistory 0 0")
-    'hertz/material 7e+10 0.9 0.3 tangential linear_nohistory 0 0 damping coeff_restitution'
-    """
-    return (
-        f"hertz/material {youngs_modulus:g} {restitution:.6g} {poissons_ratio:g} "
-        f"tangential {tangential} damping coeff_restitution"
-    )
 
 
 def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
@@ -48,8 +31,8 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.records import combined
-    >>> from contactlaw.walls import walls
+    >>> from contactlaw.command.records import combined
+    >>> from contactlaw.command.walls import walls
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> found = walls(model, combined([5.0], [0.9e-3], [1e-3]), "energy")
     >>> print(list(lammps(model, found, "energy"))[-1].split(" tangential")[0])
@@ -82,8 +65,8 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.records import combined
-    >>> from contactlaw.walls import walls
+    >>> from contactlaw.command.records import combined
+    >>> from contactlaw.command.walls import walls
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> found = walls(model, combined([5.0], [0.9e-3], [1e-3]), "energy")
     >>> for line in list(liggghts(model, found, "energy"))[-3:]:
@@ -118,8 +101,8 @@ def yade(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.records import combined
-    >>> from contactlaw.walls import walls
+    >>> from contactlaw.command.records import combined
+    >>> from contactlaw.command.walls import walls
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> found = walls(model, combined([40.0], [0.9e-3], [1e-3]), "energy")
     >>> print(list(yade(model, found, "energy"))[-1])

@@ -15,9 +15,9 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contactlaw.command.quantities import LENGTH, SPEED, written
 from contactlaw.evaluation import OutsideTableError, UnsolvedError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
-from contactlaw.quantities import LENGTH, SPEED, written
 
 _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
 
@@ -91,7 +91,8 @@ def material_of(option: str) -> Iterator[None]:
     >>> with material_of("plate"):
     ...     raise UnknownMaterialError("soap", ())
     Traceback (most recent call last):
-    contactlaw.wording.Refused: --plate: unknown material 'soap': `contactlaw materials` lists all
+    contactlaw.command.wording.Refused: --plate: unknown material 'soap': `contactlaw materials` \
+lists all
     """
     try:
         yield
@@ -110,7 +111,7 @@ def file_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     >>> with file_of("plot", "nowhere/cor.png"):
     ...     print("not reached")
     Traceback (most recent call last):
-    contactlaw.wording.Refused: --plot: there is no folder nowhere
+    contactlaw.command.wording.Refused: --plot: there is no folder nowhere
     """
     path = os.fspath(path)
     if os.path.isdir(path):
@@ -128,7 +129,7 @@ def folder_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     >>> with folder_of("out", "nowhere/liggghts"):
     ...     print("not reached")
     Traceback (most recent call last):
-    contactlaw.wording.Refused: --out: there is no folder nowhere
+    contactlaw.command.wording.Refused: --out: there is no folder nowhere
     """
     path = os.path.normpath(path)
     if os.path.lexists(path) and not os.path.isdir(path):
@@ -157,8 +158,8 @@ def impacts(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Iterat
     >>> with impacts(1e4, 0.9e-3, [1e-3, 2e-3]):
     ...     raise UnsolvedError(1, "lambda = 120", "too many steps")
     Traceback (most recent call last):
-    contactlaw.wording.Refused: 10000 m/s, radius 0.9 mm, thickness 2 mm: the equation did not \
-solve at lambda = 120: too many steps
+    contactlaw.command.wording.Refused: 10000 m/s, radius 0.9 mm, thickness 2 mm: the equation \
+did not solve at lambda = 120: too many steps
     """
     try:
         yield

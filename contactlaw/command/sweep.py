@@ -11,9 +11,9 @@ import h5py
 
 from contactlaw import _atomic
 from contactlaw._version import VERSION
+from contactlaw.command.sheet import Sheet, units, write_csv
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity
-from contactlaw.sheet import Sheet, units, write_csv
 
 _FORMAT, _SCHEMA = "contactlaw-sweep", 1
 _AXES = ("radius", "thickness", "speed")  # speeds change fastest along a sheet
@@ -41,7 +41,7 @@ def save(
     Parameters
     ----------
     sheet : Sheet
-        Of every combination, as `contactlaw.sheet.impacts` gives it.
+        Of every combination, as `contactlaw.command.sheet.impacts` gives it.
     model : ImpactModel
         That answered.
     axes : sequence of sequence of float

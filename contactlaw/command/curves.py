@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import wording
+from contactlaw.command import wording
+from contactlaw.command.sheet import yield_speeds
 from contactlaw.model import ImpactModel
-from contactlaw.sheet import yield_speeds
 
 Array = NDArray[np.float64]
 

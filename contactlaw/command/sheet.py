@@ -15,7 +15,7 @@ from typing import NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import wording
+from contactlaw.command import wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity, count_flags, explain
 from contactlaw.speedtable import SpeedTable

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import wording
-from contactlaw.curves import Curve, is_logarithmic
+from contactlaw.command import wording
+from contactlaw.command.curves import Curve, is_logarithmic
+from contactlaw.command.quantities import LENGTH, written
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import Validity, limits_in_words
-from contactlaw.quantities import LENGTH, written
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -130,7 +130,7 @@ def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLik
     Parameters
     ----------
     curves : sequence of Curve
-        As `contactlaw.curves.restitution_curves` makes them.
+        As `contactlaw.command.curves.restitution_curves` makes them.
     title : str
         What it is.
     path : path-like

@@ -9,12 +9,12 @@ from typing import NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import wording
+from contactlaw.command import wording
+from contactlaw.command.records import Impacts
+from contactlaw.command.sheet import aligned, explained
 from contactlaw.constant import Constant, Keep
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity
-from contactlaw.records import Impacts
-from contactlaw.sheet import aligned, explained
 
 Array = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ def walls(model: ImpactModel, happened: Impacts, keep: Keep) -> list[Wall]:
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.records import combined
+    >>> from contactlaw.command.records import combined
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> found = walls(model, combined([1.0, 10.0], [0.9e-3], [0.5e-3, 3e-3]), "energy")
     >>> [(wall.thickness, round(wall.best.restitution, 3)) for wall in found]

@@ -13,10 +13,10 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.command.quantities import LENGTH, SPEED, Quantity
 from contactlaw.physical.arguments import check
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.quantities import LENGTH, SPEED, Quantity
 
 Array = NDArray[np.float64]
 

@@ -6,9 +6,10 @@ import argparse
 from collections.abc import Callable
 from typing import Any
 
-from contactlaw import laws, quantities
+from contactlaw import laws
 from contactlaw._version import VERSION
-from contactlaw.quantities import LENGTH, SPEED, Quantity
+from contactlaw.command import quantities
+from contactlaw.command.quantities import LENGTH, SPEED, Quantity
 
 Reader = Callable[[str, Quantity], Any]
 
