@@ -80,7 +80,7 @@ _FEM = "take law fem"
 _WORDS = {
     Validity.THIN_PLATE: (
         "plate thinner than R/1.8 (law fem: R/1.4 once a body yields), its deflection is not small",
-        "finite elements have a lower COR",
+        "take the values for estimates",
     ),
     Validity.FAST_IMPACT: (
         "faster than the impacts that the law was checked for",
