@@ -247,7 +247,9 @@ def test_the_first_process_says_that_it_compiles(tmp_path):
         del environment["NUMBA_CACHE_DIR"]
         subprocess.run([sys.executable, "-c", FIRST], env=environment, stderr=its, check=True)
         os.write(its, b"end\n")
-        said = os.read(ours, 10_000).decode()
+        said = ""
+        while not said.endswith("end\r\n"):  # a terminal gives line by line
+            said += os.read(ours, 10_000).decode()
         assert said.count("compiles") == expected and said.count("\n") == expected + 1
         os.close(ours)
         os.close(its)
