@@ -16,7 +16,7 @@ from contactlaw._jit import enable_caching
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
-from contactlaw.physical.scaling import Scales
+from contactlaw.physical.scaling import Factors, Scales
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, lookup, shapes
 from contactlaw.table.certificate import bounds
@@ -110,6 +110,12 @@ def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None)
             "--plate if the law takes numbers from them"
         )
     return table
+
+
+def with_plates(table: Table, made: Factors) -> Array:
+    """Put the plates of a pair into the array of a table that kernels look up in."""
+    plate = lookup.Plate(made.transit, made.reach, made.saturated, made.waves)
+    return lookup.with_plate(table.packed, plate)
 
 
 def _coordinates(units: Scales) -> Outcome:

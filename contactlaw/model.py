@@ -30,6 +30,7 @@ from contactlaw.evaluation import (
     solved,
     table_for,
     tabulated,
+    with_plates,
 )
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
@@ -134,9 +135,7 @@ class ImpactModel:
         self._whole_table = table_for(self._law, table)
         self._factors = factors(pair, self._law)
         self._c_lam, self._c_chi = self._factors.inelasticity, self._factors.log_overload
-        made = self._factors
-        plate = lookup.Plate(made.transit, made.reach, made.saturated, made.waves)
-        self._table = lookup.with_plate(self._whole_table.packed, plate)
+        self._table = with_plates(self._whole_table, self._factors)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # compiled functions do not travel; the receiving process has its own

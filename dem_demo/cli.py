@@ -6,7 +6,6 @@ What takes long to import is imported inside the commands, where Ctrl-C is alrea
 from __future__ import annotations
 
 import argparse
-import functools
 import shlex
 import sys
 import time
@@ -93,13 +92,13 @@ def _parser() -> argparse.ArgumentParser:
     )
     add = rain.add_argument
     add("--beads", type=int, metavar="N", default=defaults.BEADS, help="number of beads")
-    add("--plates", type=_quantities, metavar="H,...", default=_text(defaults.THICKNESSES),
+    add("--plates", type=_lengths, metavar="H,...", default=_text(defaults.THICKNESSES),
         help="thickness of each plate [m], or with units; inf: a half-space")  # fmt: skip
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
     add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the plates")
-    add("--radius", type=functools.partial(_range, kind="LENGTH"), metavar="MIN,MAX",
+    add("--radius", type=_radii, metavar="MIN,MAX",
         default=_text(defaults.RADIUS), help="bead radii [m], or with units")  # fmt: skip
-    add("--speed", type=functools.partial(_range, kind="SPEED"), metavar="MIN,MAX",
+    add("--speed", type=_speeds, metavar="MIN,MAX",
         default=_text(defaults.SPEED),
         help="speeds at which beads are thrown down [m/s], or with units")  # fmt: skip
     add("--duration", type=float, metavar="T", default=argparse.SUPPRESS,
@@ -128,17 +127,24 @@ def _text(numbers: Sequence[float]) -> str:
     return ",".join(f"{number:g}" for number in numbers)
 
 
-def _quantities(text: str, kind: str = "LENGTH") -> tuple[float, ...]:
-    from contactlaw.command import quantities
+def _lengths(text: str) -> tuple[float, ...]:
+    from contactlaw.command import options, quantities
 
-    try:
-        return quantities.values(text, getattr(quantities, kind))
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
+    found: tuple[float, ...] = options.reader_of(quantities.values, quantities.LENGTH)(text)
+    return found
 
 
-def _range(text: str, kind: str) -> tuple[float, float]:
-    found = _quantities(text, kind)
+def _radii(text: str) -> tuple[float, float]:
+    return _range(text, _lengths(text))
+
+
+def _speeds(text: str) -> tuple[float, float]:
+    from contactlaw.command import options, quantities
+
+    return _range(text, options.reader_of(quantities.values, quantities.SPEED)(text))
+
+
+def _range(text: str, found: tuple[float, ...]) -> tuple[float, float]:
     if len(found) != 2:
         raise argparse.ArgumentTypeError(f"expected two numbers MIN,MAX, got {text!r}")
     return found[0], found[1]

@@ -91,7 +91,7 @@ def _add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     """Add the options of commands about impacts; quantities are read as one or as several."""
     _add_pair(command)
     _add_sizes(command, read)
-    command.add_argument("--speed", required=True, metavar="V", type=_quantity(read, SPEED),
+    command.add_argument("--speed", required=True, metavar="V", type=reader_of(read, SPEED),
                          help="normal approach speed [m/s], or with a unit")  # fmt: skip
     _add_law(command)
     command.add_argument(
@@ -112,9 +112,9 @@ def _add_pair(command: argparse.ArgumentParser, required: bool = True) -> None:
 
 def _add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = True) -> None:
     add, known = command.add_argument, "" if required else _OF_RECORD
-    add("--radius", required=required, metavar="R", type=_quantity(read, LENGTH),
+    add("--radius", required=required, metavar="R", type=reader_of(read, LENGTH),
         help=f"radius of the bead [m], or with a unit{known}")  # fmt: skip
-    add("--thickness", required=required, metavar="H", type=_quantity(read, LENGTH),
+    add("--thickness", required=required, metavar="H", type=reader_of(read, LENGTH),
         help=f"thickness of the plate [m], or with a unit; inf: a half-space{known}")  # fmt: skip
 
 
@@ -139,7 +139,7 @@ def _add_constant(command: argparse.ArgumentParser) -> None:
     add(
         "--speed",
         metavar="V",
-        type=_quantity(quantities.values, SPEED),
+        type=reader_of(quantities.values, SPEED),
         help="normal approach speeds [m/s], or with a unit, one as frequent as the other",
     )
     add(
@@ -169,7 +169,7 @@ def _add_constant(command: argparse.ArgumentParser) -> None:
 def _add_speed_table(command: argparse.ArgumentParser) -> None:
     _add_pair(command)
     _add_sizes(command, quantities.value)
-    speed = _quantity(quantities.value, SPEED)
+    speed = reader_of(quantities.value, SPEED)
     add = command.add_argument
     add("--slowest", default=0.1, metavar="V", type=speed,
         help="first speed [m/s], or with a unit (default: %(default)s)")  # fmt: skip
@@ -187,8 +187,8 @@ def _add_speed_table(command: argparse.ArgumentParser) -> None:
     command.epilog = _UNITS
 
 
-def _quantity(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
-    """Read an option's value, with errors that argparse takes over."""
+def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
+    """Make of a reader of quantities one for an option, with errors that argparse takes over."""
 
     def one(text: str) -> Any:
         try:

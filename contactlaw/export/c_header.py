@@ -23,7 +23,7 @@ from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.equation import waves
 from contactlaw.equation.integrator import MAX_STEPS
-from contactlaw.evaluation import RTOL
+from contactlaw.evaluation import RTOL, with_plates
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
 from contactlaw.physical.scaling import factors
@@ -97,9 +97,7 @@ def header(
 
 def packed(model: ImpactModel, table: Table) -> Array:
     """COR's part of the array that the lookup kernels read."""
-    made = factors(model.pair, model.force_law)
-    plate = lookup.Plate(made.transit, made.reach, made.saturated, made.waves)
-    whole = lookup.with_plate(table.packed, plate)
+    whole = with_plates(table, factors(model.pair, model.force_law))
     return whole[: int(whole[lookup.OTHERS_AT])]
 
 
