@@ -40,6 +40,18 @@ What it leaves out
 
 from contactlaw.engines.lammps.attachment import LammpsPlates, attach
 from contactlaw.engines.lammps.beads import pair_coeff
+from contactlaw.engines.lammps.mesh import Mesh
+from contactlaw.engines.lammps.motion import Rotation, Tabulated, Translation, Vibration
 from contactlaw.engines.lammps.plate import Plate
 
-__all__ = ["LammpsPlates", "Plate", "attach", "pair_coeff"]
+__all__ = [
+    "LammpsPlates",
+    "Mesh",
+    "Plate",
+    "Rotation",
+    "Tabulated",
+    "Translation",
+    "Vibration",
+    "attach",
+    "pair_coeff",
+]

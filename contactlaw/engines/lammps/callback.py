@@ -16,9 +16,11 @@ import numpy as np
 from numba import types
 
 from contactlaw._jit import c_function, kernel
-from contactlaw.engines.lammps.contact import NEAR, Bead, Clock, hand_over, interact
+from contactlaw.engines.lammps.contact import Clock, Walls, interact
+from contactlaw.engines.lammps.geometry import Bead
 from contactlaw.engines.lammps.memory import (
     NOT_FINITE,
+    OWNER,
     SHARED,
     TOO_FAST,
     array_at,
@@ -28,7 +30,9 @@ from contactlaw.engines.lammps.memory import (
     matrix_at,
     thermo,
 )
-from contactlaw.engines.lammps.plate import ROW
+from contactlaw.engines.lammps.motion import place
+from contactlaw.engines.lammps.surface import MOST, OVERLAP
+from contactlaw.engines.lammps.walls import FACET, FRAME, SHEET
 
 _EVERY = 100  # steps between looks for beads that fly further than their radius in a step
 
@@ -45,64 +49,91 @@ _SIGNATURE = types.void(
 
 @kernel
 def _look_for_jumps(
-    shared: Any, clock: Clock, tags: Any, v: Any, radius: Any, history: Any
+    shared: Any, clock: Clock, walls: Walls, tags: Any, v: Any, radius: Any, history: Any, last: Any
 ) -> None:
-    """Complain of beads that could be on the other side of a plate after one step."""
+    """Complain of beads that could be on the other side of a wall after one step.
+
+    And forget the impacts of beads that are no more, whose rows new ones have taken.
+    """
+    fastest = 0.0
+    for frame in walls.frames:
+        fastest = max(fastest, frame.fastest)
+    per = shared.length / shared.time
     for i in range(len(radius)):
-        speed = math.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2)
-        if not speed * clock.dt < radius[i]:
+        speed = per * math.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2) + fastest
+        size = shared.length * radius[i]
+        if not speed * clock.dt < size:
             code = TOO_FAST if speed < math.inf else NOT_FINITE
-            complain(shared, clock.step, tags[i], history[i], code, -1, speed, radius[i])
+            complain(shared, clock.step, tags[i], history[i], code, -1, speed, size)
+        if history[i, OWNER] != tags[i]:
+            last[i] = 0.0
+
+
+@kernel
+def _tick(shared: Any, clock: Clock, frames: Any) -> None:
+    """Let the walls' own clock go on by a step, and put the walls to where they are then."""
+    if clock.dt != shared.tick:
+        shared.base += shared.ticks * shared.tick
+        shared.ticks, shared.tick = 0, clock.dt
+    if clock.advancing:
+        shared.ticks += 1
+    time = shared.base + shared.ticks * shared.tick
+    for frame in frames:
+        if frame.moves != 0:
+            place(frame, time, clock.dt)
 
 
 def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces: Any) -> None:
-    """Add the force of the plates to all beads of this rank."""
+    """Add the force of the walls to all beads of this rank."""
     shared = carray(memory, 1, SHARED)[0]
     shared.calls += 1
-    if n == 0:
-        return
-    dt = array_at(shared.dt, 1, np.float64)[0]
+    length, seconds = shared.length, shared.time
+    dt = array_at(shared.dt, 1, np.float64)[0] * seconds
     time, at_step = (
         array_at(shared.atime, 1, np.float64),
         array_at(shared.atimestep, 1, np.int64),
     )
     # No step of a run has passed in a set-up; the number of the step can be reset at will.
     advancing = thermo(shared, shared.elapsed) > 0.0
-    clock = Clock(step, time[0] + (step - at_step[0]) * dt, dt, advancing)
+    clock = Clock(step, time[0] * seconds + (step - at_step[0]) * dt, dt, advancing)
+    walls = Walls(
+        array_at(shared.sheets, shared.types * shared.sheet_count, SHEET),
+        array_at(shared.frames, shared.frame_count, FRAME),
+        array_at(shared.facets, shared.facet_count, FACET),
+        array_at(shared.overlaps, MOST, OVERLAP),
+    )
+    _tick(shared, clock, walls.frames)
+    if n == 0:
+        return
     v = matrix_at(extract(shared, shared.v), n, 3)
     radius = array_at(extract(shared, shared.radius), n, np.float64)
     mass = array_at(extract(shared, shared.rmass), n, np.float64)
+    kind = array_at(extract(shared, shared.type), n, np.int32)
     history = matrix_at(extract(shared, shared.history), n, shared.columns)
+    last = array_at(extract(shared, shared.last), n, np.float64)
     omega, torque = v, v
     if shared.friction > 0.0:
         omega = matrix_at(extract(shared, shared.omega), n, 3)
         torque = matrix_at(extract(shared, shared.torque), n, 3)
     if step % _EVERY == 0:
-        _look_for_jumps(shared, clock, tags, v, radius, history)
+        _look_for_jumps(shared, clock, walls, tags, v, radius, history, last)
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
-    plates = array_at(shared.plates, shared.plate_count, ROW)
-    # Local numbers: the compiler cannot know that nothing below changes `shared`.
-    count = shared.plate_count
-    x0, y0, z0 = shared.low[0], shared.low[1], shared.low[2]
-    x1, y1, z1 = shared.high[0], shared.high[1], shared.high[2]
+    per = length / seconds
     for i in range(n):
-        reach = NEAR * radius[i]
-        if (
-            x[i, 2] > z1 + reach
-            or x[i, 2] < z0 - reach
-            or x[i, 0] > x1 + reach
-            or x[i, 0] < x0 - reach
-            or x[i, 1] > y1 + reach
-            or x[i, 1] < y0 - reach
-        ):
-            continue
         bead = Bead(
-            tags[i], x[i], v[i], omega[i], torque[i], force[i], history[i], radius[i], mass[i]
+            tags[i],
+            kind[i] - 1,
+            (x[i, 0] * length, x[i, 1] * length, x[i, 2] * length),
+            (v[i, 0] * per, v[i, 1] * per, v[i, 2] * per),
+            (omega[i, 0] / seconds, omega[i, 1] / seconds, omega[i, 2] / seconds),
+            radius[i] * length,
+            mass[i] * shared.mass,
+            force[i],
+            torque[i],
+            history[i],
+            last[i : i + 1],
         )
-        if count > 1 and advancing:
-            hand_over(shared, plates, bead)
-        for p in range(count):
-            interact(shared, clock, plates, p, bead)
+        interact(shared, clock, walls, bead)
 
 
 @functools.cache

@@ -1,7 +1,7 @@
-"""One bead near one plate in one time step: geometry, force, friction, record.
+"""One bead near walls in one time step: contacts, force, friction, record.
 
-Legend: r radius, x overlap of the sphere with the undeformed plate, u speed towards the plate,
-n normal from the plate to the bead, s height over the plate's plane.
+Legend: r radius, x overlap of the sphere with the undeformed wall, u speed towards the wall, n
+normal from the wall to the bead, s height over the facet's plane.
 """
 
 from __future__ import annotations
@@ -14,25 +14,28 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.engines.lammps import memory
+from contactlaw.engines.lammps.geometry import Bead, Point, Touch, nearest, seen, velocity
 from contactlaw.engines.lammps.memory import (
     DISPLACEMENT,
     DURATION,
+    FACET,
     FIRST,
     FORCE,
     LARGEST,
     MOBILITY,
     OWNER,
-    PLATE,
     SPEED,
     SPRING,
     STIFFENING,
     TOLD,
     WAVE,
+    WORK,
     array_at,
     complain,
     slot_of,
     touches,
 )
+from contactlaw.engines.lammps.surface import join, on_it, overlaps, touch_of
 from contactlaw.engines.record import IMPACT
 from contactlaw.equation import force
 from contactlaw.equation.waves import Waves
@@ -41,12 +44,9 @@ from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, adv
 
 Array = NDArray[np.float64]
 
-NEAR = 2.0  # [r] from the plate: from here on a bead's history is kept up to date
-_AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a plate
+_AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a wall
 # times its approach speed: a bead in contact that has been hit, not one that falls on
 _FASTER = 1.01
-_SEAM = 1e-4  # [r] between plates that are one surface to a bead
-_TIE = 1e-9  # [r] of overlap: rounding
 _SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
 
 
@@ -59,140 +59,57 @@ class Clock(NamedTuple):
     advancing: bool  # else a set-up, which asks for the forces of the last step again
 
 
-class Bead(NamedTuple):
-    """A bead: views of LAMMPS's arrays."""
+class Walls(NamedTuple):
+    """What beads may touch: the kernel's arrays, and one for the facets that a bead overlaps."""
 
-    tag: int
-    x: Any
-    v: Any
-    omega: Any
-    torque: Any
-    force: Any
-    history: Any
-    r: float
-    mass: float
+    sheets: Any
+    frames: Any
+    facets: Any
+    found: Any
 
 
-class Touch(NamedTuple):
-    """Where a bead is with respect to a plate."""
+class Contact(NamedTuple):
+    """A bead's contact with a facet."""
 
-    x: float
-    s: float
-    nx: float
-    ny: float
-    nz: float
-    face: bool  # else the nearest point is on an edge
+    facet: int
+    wall: int  # number of the plate or mesh
+    triangle: int
+    touch: Touch
+    point: Point  # [m]
+    v: Point  # of the bead relative to the wall, half a step before [m/s]
 
 
 @kernel
-def _geometry(plate: Any, bead: Bead) -> Touch:
-    """Overlap and normal at the plate's nearest point; an overlap of -r where it is not near."""
-    corner, a, b, normal = plate.corner, plate.a, plate.b, plate.normal
-    px, py, pz = bead.x[0] - corner[0], bead.x[1] - corner[1], bead.x[2] - corner[2]
-    s = px * normal[0] + py * normal[1] + pz * normal[2]
-    if not abs(s) < NEAR * bead.r:
-        return Touch(-bead.r, s, 0.0, 0.0, 0.0, False)
-    along_a = px * a[0] + py * a[1] + pz * a[2]
-    along_b = px * b[0] + py * b[1] + pz * b[2]
-    at_a = min(max(along_a, 0.0), plate.length_a)
-    at_b = min(max(along_b, 0.0), plate.length_b)
-    if at_a == along_a and at_b == along_b:
-        sign = math.copysign(1.0, s)
-        return Touch(bead.r - abs(s), s, sign * normal[0], sign * normal[1], sign * normal[2], True)
-    dx = px - at_a * a[0] - at_b * b[0]
-    dy = py - at_a * a[1] - at_b * b[1]
-    dz = pz - at_a * a[2] - at_b * b[2]
-    distance = math.sqrt(dx * dx + dy * dy + dz * dz)
-    return Touch(bead.r - distance, s, dx / distance, dy / distance, dz / distance, False)
+def _contact(walls: Walls, bead: Bead, facet: int, touch: Touch) -> Contact:
+    row, point = walls.facets[facet], nearest(touch, bead)
+    frame = walls.frames[row.frame]
+    w, v = velocity(frame, frame.half_rate, point), bead.v
+    u = (v[0] - w[0], v[1] - w[1], v[2] - w[2])
+    return Contact(facet, row.wall, row.triangle, touch, point, u)
 
 
 @kernel
-def _nearest(touch: Touch, bead: Bead) -> tuple[float, float, float]:
-    """Point of a plate that is nearest to the bead's centre."""
-    reach, x = bead.r - touch.x, bead.x
-    return x[0] - reach * touch.nx, x[1] - reach * touch.ny, x[2] - reach * touch.nz
-
-
-@kernel
-def _has(plate: Any, point: tuple[float, float, float], margin: float) -> Any:
-    """Whether a point is on a plate."""
-    corner, a, b, normal = plate.corner, plate.a, plate.b, plate.normal
-    px, py, pz = point[0] - corner[0], point[1] - corner[1], point[2] - corner[2]
-    along_a = px * a[0] + py * a[1] + pz * a[2]
-    along_b = px * b[0] + py * b[1] + pz * b[2]
-    return (
-        abs(px * normal[0] + py * normal[1] + pz * normal[2]) <= margin
-        and -margin <= along_a <= plate.length_a + margin
-        and -margin <= along_b <= plate.length_b + margin
-    )
-
-
-@kernel
-def _order(touch: Touch, p: int, r: float) -> tuple[bool, int, int]:
-    """Sort plates that share a point: face before edge, then the nearest, then the first."""
-    return not touch.face, math.floor(-touch.x / (_TIE * r)), p
-
-
-@kernel
-def _home(plates: Any, p: int, touch: Touch, bead: Bead) -> int:
-    """Plate that a contact with plate p belongs to: another one, if p goes on there without a gap.
-
-    Where plates meet, the nearest points of all of them may be one, or one of them may be on a
-    plate that comes nearer. The bead feels one surface.
-    """
-    point, q = _nearest(touch, bead), 0
-    while q < len(plates):
-        if q != p and _has(plates[q], point, _SEAM * bead.r):
-            other = _geometry(plates[q], bead)
-            if _order(other, q, bead.r) < _order(touch, p, bead.r):
-                p, touch, q = q, other, -1
-                point = _nearest(touch, bead)
-        q += 1
-    return p
-
-
-@kernel
-def hand_over(shared: Any, plates: Any, bead: Bead) -> None:
-    """Let a bead that crosses from plate to plate take its contact along."""
-    row = bead.history
-    if row[OWNER] != bead.tag:
-        return
-    for k in range(shared.slots):
-        at = FIRST + k * shared.width
-        if row[at + PLATE] == 0.0:
-            continue
-        p = int(abs(row[at + PLATE])) - 1
-        home = _home(plates, p, _geometry(plates[p], bead), bead)
-        if home == p:
-            continue
-        touch, own = _geometry(plates[home], bead), slot_of(row, shared, home)
-        # In a flat valley the bead presses on both already: then each contact ends by itself.
-        if touch.x > 0.0 and (own == 0 or row[own + PLATE] == 0.0):
-            row[at + PLATE] = math.copysign(home + 1.0, touch.s)
-
-
-@kernel
-def _check_step(shared: Any, clock: Clock, bead: Bead, p: int, spring: Spring, u: float) -> None:
+def _check_step(shared: Any, clock: Clock, bead: Bead, wall: int, spring: Spring, u: float) -> None:
     """Refuse a step that is too long for an impact at this speed."""
     shortest = CONTACT_TIME * (spring.mass / (spring.stiffness * math.sqrt(u))) ** 0.4
     limit = shortest / FEWEST_STEPS
     if clock.dt > limit:
-        complain(shared, clock.step, bead.tag, bead.history, memory.STEP_TOO_LARGE, p, u, limit)
+        complain(shared, clock.step, bead.tag, bead.history, memory.STEP_TOO_LARGE, wall, u, limit)
 
 
 @kernel
 def _begin(
-    shared: Any, clock: Clock, bead: Bead, p: int, at: int, spring: Spring, x: float, u: float
+    shared: Any, clock: Clock, bead: Bead, wall: int, at: int, spring: Spring, x: float, u: float
 ) -> None:
     """Start a contact, or the next one of a bead that comes back before it has parted."""
     row = bead.history
     first = u > 0.0 and row[at + LARGEST] == 0.0
     row[at + DURATION] = min(x / u, clock.dt) if first else 0.0
-    row[at + SPEED], row[at + WAVE] = u, 0.0
+    row[at + SPEED], row[at + WAVE], row[at + WORK] = u, 0.0, 0.0
     if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
-        complain(shared, clock.step, bead.tag, row, memory.WRONG_MASS, p, bead.mass, spring.mass)
+        complain(shared, clock.step, bead.tag, row, memory.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
-        _check_step(shared, clock, bead, p, spring, u)
+        _check_step(shared, clock, bead, wall, spring, u)
 
 
 @kernel
@@ -201,12 +118,11 @@ def _end(
     shared: Any,
     clock: Clock,
     bead: Bead,
-    plate: Any,
-    p: int,
+    sheet: Any,
+    contact: Contact,
     at: int,
     spring: Spring,
     last: State,
-    touch: Touch,
     u: float,
 ) -> None:
     """Put a contact whose force has ended in this step into the record."""
@@ -221,25 +137,28 @@ def _end(
         return
     n = shared.record_count
     if n == shared.record_capacity:
-        complain(shared, clock.step, bead.tag, row, memory.TOO_MANY_RECORDS, p, 0.0, n)
+        complain(shared, clock.step, bead.tag, row, memory.TOO_MANY_RECORDS, contact.wall, 0.0, n)
         return
     since = 0.0
     if u < 0.0:  # between the steps, where the compression was down to the residual one
-        gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
+        gap = force.residual(law, dm) * scale + last.plate_displacement - contact.touch.x
         since = min(max(gap / -u, 0.0), clock.dt)
     record = array_at(shared.records, shared.record_capacity, IMPACT)[n]
     record.time = clock.now - row[at + DURATION]
-    record.bead, record.plate, record.other = bead.tag, p, -1
-    record.x, record.y, record.z = _nearest(touch, bead)
+    record.bead, record.other = bead.tag, -1
+    record.plate, record.triangle = contact.wall, contact.triangle
+    record.x, record.y, record.z = contact.point
     record.approach_speed, record.restitution = row[at + SPEED], -u / row[at + SPEED]
+    bead.last[0] = record.restitution
     record.contact_time = row[at + DURATION] - since
     record.peak_force = force.loading(law, math.sqrt(dm)) * unit
     # a contact that goes on where another has dented the bead loses what is left of the loop
     share = 1.0 - other / lost if lost > 0.0 else 0.0
     record.plastic_energy, record.wave_energy = share * (lost - told), row[at + WAVE]
     record.other_energy = (1.0 - share) * (lost - told)
+    record.wall_work = row[at + WORK]
     record.flags = _flags(
-        bead, plate, spring, record.approach_speed, record.contact_time,
+        bead, sheet, spring, record.approach_speed, record.contact_time,
         last.largest_compression, record.peak_force,
     )  # fmt: skip
     shared.record_count = n + 1
@@ -248,7 +167,7 @@ def _end(
 @kernel
 def _flags(
     bead: Bead,
-    plate: Any,
+    sheet: Any,
     spring: Spring,
     speed: float,
     contact_time: float,
@@ -258,35 +177,36 @@ def _flags(
     """Limits of the model that an impact exceeds."""
     scale = speed * (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # V0 T_H
     limits = Limits(
-        plate.slender, plate.slowness, plate.always, plate.yielded, plate.trusted, plate.fastest,
-        plate.swiftest, plate.share, plate.deepest, plate.bending, plate.damage,
+        sheet.slender, sheet.slowness, sheet.always, sheet.yielded, sheet.trusted, sheet.fastest,
+        sheet.swiftest, sheet.share, sheet.deepest, sheet.bending, sheet.damage,
     )  # fmt: skip
-    return flags_of(limits, bead.r, plate.thickness, scale, contact_time, compression, force)
+    return flags_of(limits, bead.r, sheet.thickness, scale, contact_time, compression, force)
 
 
 @kernel
 def _normal(
-    law: Array, shared: Any, clock: Clock, bead: Bead, plate: Any, p: int, at: int, touch: Touch
+    law: Array, shared: Any, clock: Clock, bead: Bead, sheet: Any, contact: Contact, at: int
 ) -> None:
     """Advance a contact by a step; its slot is empty afterwards if the bodies have parted."""
-    row, v = bead.history, bead.v
+    row, v, touch = bead.history, contact.v, contact.touch
     u = -(v[0] * touch.nx + v[1] * touch.ny + v[2] * touch.nz)
-    side = math.copysign(p + 1.0, touch.s)
-    if row[at + PLATE] == 0.0:
+    side = math.copysign(contact.facet + 1.0, touch.s)
+    if row[at + FACET] == 0.0:
         # no deeper than a step's way; on an edge the way is not along the normal
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + _AT_REST * bead.r
-        # (but in a flat valley a bead may come from one plate deep into the next)
+        # (but a bead may come from one surface deep into the next)
         if touch.x > deepest and not touches(row, shared):
-            complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, p, touch.x, deepest)
-    elif touch.face and side != row[at + PLATE]:
-        complain(shared, clock.step, bead.tag, row, memory.CROSSED, p, u, 0.0)
+            complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, contact.wall,
+                     touch.x, deepest)  # fmt: skip
+    elif touch.face and side != row[at + FACET]:
+        complain(shared, clock.step, bead.tag, row, memory.CROSSED, contact.wall, u, 0.0)
     waves = Waves(
-        plate.eta, plate.eta_h, plate.eta4, plate.beyond, plate.steepest, plate.bulk_factor,
-        plate.p1, plate.p2, plate.p3, plate.p4, plate.p5,
+        sheet.eta, sheet.eta_h, sheet.eta4, sheet.beyond, sheet.steepest, sheet.bulk_factor,
+        sheet.p1, sheet.p2, sheet.p3, sheet.p4, sheet.p5,
     )  # fmt: skip
     unit = Spring(
-        plate.mass, plate.stiffness, plate.mobility, plate.scale, plate.relaxation,
-        plate.transit, plate.bulk, plate.ratio, plate.radius, waves,
+        sheet.mass, sheet.stiffness, sheet.mobility, sheet.scale, sheet.relaxation,
+        sheet.transit, sheet.bulk, sheet.ratio, sheet.radius, waves,
     )  # fmt: skip
     spring = resized(unit, bead.r)
     last = State(
@@ -295,18 +215,18 @@ def _normal(
     )  # fmt: skip
     state = advance(law, spring, last, touch.x, clock.dt)
     if state.force > 0.0 and last.force == 0.0:
-        _begin(shared, clock, bead, p, at, spring, touch.x, u)
+        _begin(shared, clock, bead, contact.wall, at, spring, touch.x, u)
     else:
         row[at + DURATION] += clock.dt
         if u > _FASTER * max(row[at + SPEED], 0.0):
             row[at + SPEED] = u
-            _check_step(shared, clock, bead, p, spring, u)
+            _check_step(shared, clock, bead, contact.wall, spring, u)
     square = last.force * last.force + state.force * state.force
     mobility = state.mobility if state.stiffening > 0.0 else spring.mobility
     row[at + WAVE] += 0.5 * clock.dt * mobility * square
     if state.force == 0.0 and last.force > 0.0:
-        _end(law, shared, clock, bead, plate, p, at, spring, last, touch, u)
-    row[at + PLATE] = side
+        _end(law, shared, clock, bead, sheet, contact, at, spring, last, u)
+    row[at + FACET] = side
     row[at + DISPLACEMENT] = state.plate_displacement
     row[at + LARGEST] = state.largest_compression
     row[at + FORCE] = state.force
@@ -317,10 +237,11 @@ def _normal(
 
 @kernel
 def _slide(
-    clock: Clock, bead: Bead, friction: float, touch: Touch, at: int, modulus: float
-) -> None:
-    """Add a spring's tangential force, k = 8 G* sqrt(r d) with Coulomb's limit."""
-    nx, ny, nz, r, v, omega = touch.nx, touch.ny, touch.nz, bead.r, bead.v, bead.omega
+    clock: Clock, bead: Bead, friction: float, contact: Contact, at: int, modulus: float
+) -> Point:
+    """Force of a tangential spring, k = 8 G* sqrt(r d) with Coulomb's limit."""
+    touch, r, v, omega = contact.touch, bead.r, contact.v, bead.omega
+    nx, ny, nz = touch.nx, touch.ny, touch.nz
     row = bead.history
     spring = row[at + SPRING : at + SPRING + 3]
     k = modulus * math.sqrt(r * max(touch.x - row[at + DISPLACEMENT], 0.0))
@@ -334,42 +255,120 @@ def _slide(
         pull, most = k * math.sqrt(gx * gx + gy * gy + gz * gz), friction * row[at + FORCE]
         share = most / pull if pull > most else 1.0
         spring[0], spring[1], spring[2] = share * gx, share * gy, share * gz
-    tx, ty, tz = -k * spring[0], -k * spring[1], -k * spring[2]
-    bead.force[0] += tx
-    bead.force[1] += ty
-    bead.force[2] += tz
-    bead.torque[0] -= r * (ny * tz - nz * ty)
-    bead.torque[1] -= r * (nz * tx - nx * tz)
-    bead.torque[2] -= r * (nx * ty - ny * tx)
+    return -k * spring[0], -k * spring[1], -k * spring[2]
 
 
 @kernel
-def interact(shared: Any, clock: Clock, plates: Any, p: int, bead: Bead) -> None:
-    """Add the force of plate p to a bead, and keep the bead's history."""
-    plate = plates[p]
-    touch = _geometry(plate, bead)
-    if not touch.x > (1.0 - NEAR) * bead.r:
-        return
-    if bead.history[OWNER] != bead.tag:
-        bead.history[:] = 0.0
-        bead.history[OWNER] = bead.tag
-    at = slot_of(bead.history, shared, p)
-    new = at == 0 or bead.history[at + PLATE] == 0.0
-    if new and touch.x > 0.0 and len(plates) > 1 and _home(plates, p, touch, bead) != p:
-        return
-    if at == 0:
-        if touch.x > 0.0:
-            complain(shared, clock.step, bead.tag, bead.history, memory.TOO_MANY_PLATES, p, 0.0,
-                     shared.slots)  # fmt: skip
-        return
-    if new and (touch.x <= 0.0 or not clock.advancing):
+def _press(shared: Any, clock: Clock, walls: Walls, bead: Bead, contact: Contact, at: int) -> None:
+    """Add the force of one contact to a bead, and keep the bead's history."""
+    facet, row, touch = walls.facets[contact.facet], bead.history, contact.touch
+    sheet = walls.sheets[bead.kind * shared.sheet_count + facet.sheet]
+    if sheet.law == 0:
+        complain(shared, clock.step, bead.tag, row, memory.NO_MODEL, contact.wall,
+                 bead.kind + 1.0, 0.0)  # fmt: skip
         return
     if clock.advancing:
-        law = array_at(plate.law, plate.law_size, np.float64)
-        _normal(law, shared, clock, bead, plate, p, at, touch)
-    push = bead.history[at + FORCE]
-    bead.force[0] += push * touch.nx
-    bead.force[1] += push * touch.ny
-    bead.force[2] += push * touch.nz
+        law = array_at(sheet.law, sheet.law_size, np.float64)
+        _normal(law, shared, clock, bead, sheet, contact, at)
+    push, n = row[at + FORCE], (touch.nx, touch.ny, touch.nz)
+    if push == 0.0:
+        return
+    pull = (0.0, 0.0, 0.0)
     if shared.friction > 0.0:
-        _slide(clock, bead, shared.friction, touch, at, plate.tangential)
+        pull = _slide(clock, bead, shared.friction, contact, at, sheet.tangential)
+        arm = -bead.r * shared.time**2 / (shared.mass * shared.length**2)
+        bead.torque[0] += arm * (n[1] * pull[2] - n[2] * pull[1])
+        bead.torque[1] += arm * (n[2] * pull[0] - n[0] * pull[2])
+        bead.torque[2] += arm * (n[0] * pull[1] - n[1] * pull[0])
+    scale = shared.time**2 / (shared.mass * shared.length)
+    frame, work = walls.frames[facet.frame], 0.0
+    w = velocity(frame, frame.rate, contact.point)
+    for k in range(3):
+        both = push * n[k] + pull[k]
+        bead.force[k] += scale * both
+        work += both * w[k]
+    if clock.advancing:
+        row[at + WORK] += clock.dt * work
+
+
+@kernel
+def _place_of(found: Any, count: int, facet: int) -> int:
+    """Place of a facet in the list of those that a bead overlaps, else -1."""
+    for n in range(count):
+        if found[n].facet == facet:
+            return n
+    return -1
+
+
+@kernel
+def _home(walls: Walls, bead: Bead, facet: int, count: int) -> int:
+    """Place in the list of what a contact with a facet goes on with, else -1."""
+    found = walls.found
+    at = _place_of(found, count, facet)
+    if at >= 0:
+        return int(found[at].surface)
+    row = walls.facets[facet]
+    touch = seen(walls.frames[row.frame], row, bead)
+    if touch.x > -bead.r:  # else it was taken away
+        point = nearest(touch, bead)
+        for n in range(count):
+            if on_it(walls.frames, walls.facets, found[n], point, bead.r):
+                return int(found[n].surface)
+    return -1
+
+
+@kernel
+def _hand_over(shared: Any, walls: Walls, bead: Bead, count: int) -> None:
+    """Let contacts go along with a bead that crosses from facet to facet."""
+    row, found = bead.history, walls.found
+    for k in range(shared.slots):
+        at = FIRST + k * shared.width
+        if row[at + FACET] == 0.0:
+            continue
+        facet = int(abs(row[at + FACET])) - 1
+        home = _home(walls, bead, facet, count)
+        if home >= 0 and slot_of(row, shared, found[home].facet) == 0:
+            row[at + FACET] = math.copysign(found[home].facet + 1.0, found[home].s)
+
+
+@kernel
+def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
+    """Add the force of the walls to a bead, and keep the bead's history."""
+    found, row = walls.found, bead.history
+    count, near = overlaps(walls.frames, walls.facets, bead, found)
+    if count == 0 and not (near and row[OWNER] == bead.tag and touches(row, shared)):
+        return
+    if row[OWNER] != bead.tag:
+        row[:] = 0.0
+        row[OWNER], bead.last[0] = bead.tag, 0.0
+    join(walls.frames, walls.facets, bead, found, count)
+    if clock.advancing:
+        _hand_over(shared, walls, bead, count)
+    for k in range(shared.slots):
+        at = FIRST + k * shared.width
+        if row[at + FACET] == 0.0:
+            continue
+        facet = int(abs(row[at + FACET])) - 1
+        n = _place_of(found, count, facet)
+        if n >= 0 and found[n].surface == n:
+            contact = _contact(walls, bead, facet, touch_of(found[n]))
+            _press(shared, clock, walls, bead, contact, at)
+        elif clock.advancing:
+            one = walls.facets[facet]
+            t = seen(walls.frames[one.frame], one, bead)
+            if t.x > -bead.r:
+                t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
+                _press(shared, clock, walls, bead, _contact(walls, bead, facet, t), at)
+            else:  # it was taken away
+                row[at : at + shared.width] = 0.0
+    if not clock.advancing:
+        return
+    for n in range(count):
+        if found[n].surface != n or slot_of(row, shared, found[n].facet) > 0:
+            continue
+        at = slot_of(row, shared, -1)
+        if at == 0:
+            shared.unserved += 1
+            continue
+        contact = _contact(walls, bead, found[n].facet, touch_of(found[n]))
+        _press(shared, clock, walls, bead, contact, at)

@@ -18,9 +18,6 @@ _MESSAGES = {
         "its centre went through the plate at {value:.4g} m/s, pushed by what is stronger than the "
         "contact: take a shorter timestep, or less load"
     ),
-    memory.TOO_MANY_PLATES: (
-        "plates: it touches more than {limit:.0f} of them at once; join those that lie in one plane"
-    ),
     memory.WRONG_MASS: (
         "density: its mass is {value:.6g} kg, a sphere of the model's material has {limit:.6g} kg; "
         "'set group all density' to that of model.pair.sphere"
@@ -32,6 +29,10 @@ _MESSAGES = {
     memory.TOO_FAST: (
         "timestep: at {value:.4g} m/s it flies further than its radius of {limit:.4g} m in a step, "
         "and could jump through a plate; take {quotient:.2g} s at most"
+    ),
+    memory.NO_MODEL: (
+        "model: there is none for beads of its atom type {value:.0f} here; attach(lmp, "
+        "{{{value:.0f}: model, ...}}, ...)"
     ),
     memory.NOT_FINITE: "its velocity is not finite; the simulation has blown up before",
 }

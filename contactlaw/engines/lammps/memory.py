@@ -14,42 +14,42 @@ from contactlaw._jit import kernel
 
 carray: Any = numba.carray  # type: ignore[attr-defined]
 
-# A bead's history is the code of an error, the bead's ID, and slots for the plates that it touches.
-# (LAMMPS gives a new bead the row that another one has left behind: by the ID it is known.) A slot:
-# the plate's number, counted from 1, negative if the bead is on the side from which the normal
-# points away, 0 if the slot is empty; the state of the contact; the time since first touch [s],
-# summed up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset);
-# approach speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already
-# [J]; with friction, the three components of the tangential spring [m].
+# A bead's history is the code of an error, the bead's ID, and slots for its contacts. (LAMMPS gives
+# a new bead the row that another one has left behind: by the ID it is known.) A slot: the facet's
+# number, counted from 1, negative if the bead is on the side from which the normal points away, 0
+# if the slot is empty; the state of the contact; the time since first touch [s], summed up
+# (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset); approach speed
+# [m/s]; energy to the wave, and energy to plastic flow that is in the record already [J]; work of a
+# moving wall [J]; with friction, the three components of the tangential spring [m].
 ERROR, OWNER, FIRST = range(3)
-(PLATE, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD,
- SPRING) = range(11)  # fmt: skip
-_SLOTS = 3  # plates that a bead may touch at once; a corner has three
+(FACET, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD, WORK,
+ SPRING) = range(12)  # fmt: skip
+_SLOTS = 4  # contacts that a bead may have at once: the three of a corner, and one more
 
-(STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, TOO_MANY_PLATES, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST,
- NOT_FINITE) = range(1, 9)  # fmt: skip
+(STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE,
+ NO_MODEL) = range(1, 9)  # fmt: skip
 
-# Integers up to "records" are addresses; "calls" counts those of the C function.
+# Integers up to "overlaps" are addresses; "calls" counts those of the C function. Walls move by a
+# clock of their own: `ticks` steps of length `tick` since `base`. LAMMPS's has other bits when a
+# run is cut into pieces, and can be reset.
 SHARED = np.dtype(
-    [(name, "i8") for name in ("extract_atom", "get_thermo")]
-    + [
-        (name, "i8")
-        for name in ("lammps", "v", "f", "radius", "rmass", "omega", "torque", "history")
-    ]
-    + [("elapsed", "i8")]
-    + [(name, "i8") for name in ("dt", "atime", "atimestep", "plates", "records")]
-    + [(name, "i8") for name in ("plate_count", "slots", "width", "columns", "calls")]
-    + [(name, "i8") for name in ("record_capacity", "record_count")]
+    [(name, "i8") for name in ("extract_atom", "get_thermo", "lammps")]
+    + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "omega", "torque")]
+    + [(name, "i8") for name in ("history", "last", "elapsed", "dt", "atime", "atimestep")]
+    + [(name, "i8") for name in ("sheets", "frames", "facets", "records", "overlaps")]
+    + [(name, "i8") for name in ("types", "sheet_count", "frame_count", "facet_count")]
+    + [(name, "i8") for name in ("slots", "width", "columns", "calls")]
+    + [(name, "i8") for name in ("record_capacity", "record_count", "unserved", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
-    + [(name, "f8") for name in ("error_value", "error_limit", "friction")]
-    + [("low", "f8", 3), ("high", "f8", 3)],
+    + [(name, "f8") for name in ("error_value", "error_limit", "friction", "base", "tick")]
+    + [(name, "f8") for name in ("length", "time", "mass")],  # LAMMPS's units, in SI
     align=True,
 )
 
 
-def history_shape(plates: int, friction: bool) -> tuple[int, int, int]:
+def history_shape(facets: int, friction: bool) -> tuple[int, int, int]:
     """Slots per bead, columns of a slot, and columns of the history."""
-    slots, width = min(plates, _SLOTS), SPRING + 3 * friction
+    slots, width = min(facets, _SLOTS), SPRING + 3 * friction
     return slots, width, FIRST + slots * width
 
 
@@ -101,21 +101,18 @@ def matrix_at(address: int, rows: int, columns: int) -> Any:
 
 
 @kernel
-def slot_of(row: Any, shared: Any, plate: int) -> Any:
-    """First column of the plate's slot, else of an empty one, else 0."""
-    empty = 0
+def slot_of(row: Any, shared: Any, facet: int) -> int:
+    """First column of a facet's slot, else 0; of an empty one for facet -1."""
     for k in range(shared.slots):
         at = FIRST + k * shared.width
-        if abs(row[at]) == plate + 1:
-            return at
-        if row[at] == 0.0 and empty == 0:
-            empty = at
-    return empty
+        if abs(row[at]) == facet + 1:
+            return int(at)
+    return 0
 
 
 @kernel
 def touches(row: Any, shared: Any) -> bool:
-    """Whether a bead is in contact with any plate."""
+    """Whether a bead has a contact."""
     for k in range(shared.slots):
         if row[FIRST + k * shared.width] != 0.0:
             return True

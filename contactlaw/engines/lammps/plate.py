@@ -1,44 +1,26 @@
-"""Plates as the adapter knows them: rectangles with a thickness, and what its kernel reads."""
+"""Plates: rectangles with a thickness."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from contactlaw.equation.waves import Waves
+from contactlaw.engines.lammps.motion import Motion, check_motion, vector
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
-from contactlaw.physical.validity import Limits
-from contactlaw.softsphere import Spring, unit_spring
 
 Vector = Sequence[float]
+Models = ImpactModel | Mapping[int, ImpactModel]  # for all beads, or by their atom type
 
 _SQUARE = 1e-9  # cosine of two edges that count as perpendicular: rounding of a rotated pair
-
-SPRING = [(name, "f8") for name in (*Spring._fields[:-1], *Waves._fields)]
-ROW = np.dtype(
-    [("corner", "f8", 3), ("a", "f8", 3), ("b", "f8", 3), ("normal", "f8", 3)]
-    + [("length_a", "f8"), ("length_b", "f8"), ("tangential", "f8"), *SPRING]
-    # of the flags of an impact, beside what a Limits has
-    + [("thickness", "f8")]
-    + [
-        (name, "i8" if "int" in str(kind) else "f8")
-        for name, kind in Limits.__annotations__.items()
-    ]
-    # address and size of the law
-    + [("law", "i8"), ("law_size", "i8")],
-    align=True,
-)
 
 
 @dataclass(frozen=True, slots=True)
 class Plate:
-    """A rectangular plate that does not move.
+    """A rectangular plate.
 
     Parameters
     ----------
@@ -49,8 +31,10 @@ class Plate:
     thickness : float
         Thickness for the model [m]; ``inf`` is the half-space. It is no geometry: beads touch the
         rectangle itself, from either side.
-    model : ImpactModel, optional
-        For a plate of another material than that of the attached model.
+    model : ImpactModel or dict of int to ImpactModel, optional
+        For a plate of another material than that of the attached model; by atom type.
+    motion : Translation, Rotation, Vibration or Tabulated, optional
+        How it moves; it stands still otherwise.
 
     Raises
     ------
@@ -67,17 +51,13 @@ class Plate:
     edge_a: Vector
     edge_b: Vector
     thickness: float
-    model: ImpactModel | None = None
+    model: Models | None = None
+    motion: Motion | None = None
 
     def __post_init__(self) -> None:
         """Refuse what is no plate."""
-        for name in ("corner", "edge_a", "edge_b"):
-            vector = np.asarray(getattr(self, name), dtype=float)
-            if vector.shape != (3,) or not np.isfinite(vector).all():
-                raise ValueError(
-                    f"{name}: expected three finite numbers [m], got {getattr(self, name)!r}"
-                )
-        a, b = np.asarray(self.edge_a, dtype=float), np.asarray(self.edge_b, dtype=float)
+        vector("corner", self.corner)
+        a, b = vector("edge_a", self.edge_a), vector("edge_b", self.edge_b)
         area = float(np.linalg.norm(a) * np.linalg.norm(b))
         if not area > 0.0 or not abs(a @ b) <= _SQUARE * area:
             raise ValueError(
@@ -85,67 +65,23 @@ class Plate:
                 f"{self.edge_a!r} and {self.edge_b!r}"
             )
         scalars(thickness=self.thickness)
-        if self.model is not None and not isinstance(self.model, ImpactModel):
-            raise TypeError(f"model: expected a contactlaw.ImpactModel, got {self.model!r}")
+        check_models(self.model)
+        check_motion(self.motion)
 
 
-def rows(plates: Sequence[Plate], model: ImpactModel) -> NDArray[np.void]:
-    """Plates as the kernel reads them."""
-    out = np.zeros(len(plates), ROW)
-    for row, plate in zip(out, plates, strict=True):
-        own = model if plate.model is None else plate.model
-        a, b = np.asarray(plate.edge_a, dtype=float), np.asarray(plate.edge_b, dtype=float)
-        row["corner"] = plate.corner
-        row["length_a"], row["length_b"] = np.linalg.norm(a), np.linalg.norm(b)
-        row["a"], row["b"] = a / row["length_a"], b / row["length_b"]
-        row["normal"] = np.cross(row["a"], row["b"])
-        row["tangential"] = 8.0 * own.pair.effective_shear_modulus
-        spring = unit_spring(own, plate.thickness)
-        springs, waves = spring._asdict(), spring.waves._asdict()
-        del springs["waves"]
-        for name, value in {**springs, **waves, **own.limits._asdict()}.items():
-            row[name] = value
-        law = own.force_law.data
-        row["law"], row["law_size"] = law.ctypes.data, law.size
-        row["thickness"] = plate.thickness
-    return out
-
-
-def bounds(plates: NDArray[np.void]) -> NDArray[np.float64]:
-    """Lowest and highest coordinates of all plates, shape (2, 3) [m]."""
-    a = plates["a"] * plates["length_a"][:, None]
-    b = plates["b"] * plates["length_b"][:, None]
-    corners = np.concatenate([plates["corner"] + p * a + q * b for p in (0, 1) for q in (0, 1)])
-    return np.array([corners.min(axis=0), corners.max(axis=0)])
-
-
-def checked(plates: Any, model: Any) -> list[Plate]:
-    """Refuse plates that the model of the beads cannot serve."""
-    if not isinstance(model, ImpactModel):
-        raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
-    if not isinstance(plates, Sequence):
-        raise TypeError(f"plates: expected a list of plates, got {plates!r}")
-    found = list(plates)
-    if not found:
-        raise ValueError("plates: at least one contactlaw.engines.lammps.Plate is needed")
-    for plate in found:
-        if not isinstance(plate, Plate):
-            raise TypeError(f"plates: expected contactlaw.engines.lammps.Plate, got {plate!r}")
-        own = plate.model
-        if own is not None and (own.force_law.family, own.pair.sphere) != (
-            model.force_law.family,
-            model.pair.sphere,
-        ):
-            raise ValueError(
-                f"plates: {own!r} is for another law or other beads than {model!r}; plates may "
-                "differ in their own material only"
+def check_models(models: Any) -> None:
+    """Refuse what is no model, and no model for each of some atom types."""
+    if models is None or isinstance(models, ImpactModel):
+        return
+    if not isinstance(models, Mapping):
+        raise TypeError(
+            "model: expected a contactlaw.ImpactModel, or a dict of them by atom type, got "
+            f"{models!r}"
+        )
+    for kind, model in models.items():
+        if not isinstance(kind, int | np.integer) or isinstance(kind, bool) or kind < 1:
+            raise ValueError(f"model: atom types are integers from 1 on, got {kind!r}")
+        if not isinstance(model, ImpactModel):
+            raise TypeError(
+                f"model: expected a contactlaw.ImpactModel for atom type {kind}, got {model!r}"
             )
-    return found
-
-
-def check_friction(friction: Any) -> None:
-    """Refuse what is no coefficient of friction."""
-    if not isinstance(friction, int | float | np.number) or isinstance(friction, bool):
-        raise TypeError(f"friction: expected a number, got {friction!r}")
-    if not 0.0 <= friction < math.inf:
-        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")

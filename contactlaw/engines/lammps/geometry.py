@@ -1,0 +1,190 @@
+"""Where a bead is with respect to a facet, and which facets are near it.
+
+Legend: r radius, x overlap of the sphere with the facet, n normal from the facet to the bead, s
+height over the facet's plane, u velocity of the bead relative to the surface.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlaw._jit import kernel
+from contactlaw.engines.lammps.memory import array_at
+from contactlaw.engines.lammps.walls import RECTANGLE
+
+Point = tuple[float, float, float]
+
+
+class Bead(NamedTuple):
+    """A bead in SI units, with views of LAMMPS's arrays for what is written."""
+
+    tag: int
+    kind: int  # atom type, from 0
+    x: Point
+    v: Point  # half a step before
+    omega: Point
+    r: float
+    mass: float
+    force: Any
+    torque: Any
+    history: Any
+    last: Any  # COR of its last impact
+
+
+class Touch(NamedTuple):
+    """Where a bead is with respect to a facet."""
+
+    x: float
+    s: float
+    nx: float
+    ny: float
+    nz: float
+    face: bool  # else the nearest point is on an edge
+
+
+@kernel
+def to_frame(frame: Any, x: Point) -> Point:
+    """Point of space in a frame's own coordinates."""
+    if frame.moves == 0:
+        return x
+    hub, shift, turn = frame.hub, frame.shift, frame.turn
+    px, py, pz = x[0] - hub[0] - shift[0], x[1] - hub[1] - shift[1], x[2] - hub[2] - shift[2]
+    return (
+        hub[0] + turn[0] * px + turn[3] * py + turn[6] * pz,
+        hub[1] + turn[1] * px + turn[4] * py + turn[7] * pz,
+        hub[2] + turn[2] * px + turn[5] * py + turn[8] * pz,
+    )
+
+
+@kernel
+def turned(frame: Any, t: Touch) -> Touch:
+    """Touch whose normal is that in space."""
+    if frame.moves == 0:
+        return t
+    turn = frame.turn
+    return Touch(
+        t.x,
+        t.s,
+        turn[0] * t.nx + turn[1] * t.ny + turn[2] * t.nz,
+        turn[3] * t.nx + turn[4] * t.ny + turn[5] * t.nz,
+        turn[6] * t.nx + turn[7] * t.ny + turn[8] * t.nz,
+        t.face,
+    )
+
+
+@kernel
+def velocity(frame: Any, rate: Any, x: Point) -> Point:
+    """Velocity of a frame's material at a point of space, `rate` being that of its shift."""
+    if frame.moves == 0:
+        return 0.0, 0.0, 0.0
+    hub, shift, axis, spin = frame.hub, frame.shift, frame.axis, frame.spin
+    px, py, pz = x[0] - hub[0] - shift[0], x[1] - hub[1] - shift[1], x[2] - hub[2] - shift[2]
+    return (
+        rate[0] + spin * (axis[1] * pz - axis[2] * py),
+        rate[1] + spin * (axis[2] * px - axis[0] * pz),
+        rate[2] + spin * (axis[0] * py - axis[1] * px),
+    )
+
+
+@kernel
+def _away(r: float, s: float, dx: float, dy: float, dz: float) -> Touch:
+    """Touch of a point on an edge, from there to the bead's centre."""
+    distance = math.sqrt(dx * dx + dy * dy + dz * dz)
+    return Touch(r - distance, s, dx / distance, dy / distance, dz / distance, False)
+
+
+@kernel
+def _over(facet: Any, r: float, s: float) -> Touch:
+    """Touch of the face itself."""
+    sign, n = math.copysign(1.0, s), facet.normal
+    return Touch(r - abs(s), s, sign * n[0], sign * n[1], sign * n[2], True)
+
+
+@kernel
+def on_facet(facet: Any, p: Point, r: float) -> Touch:
+    """Overlap and normal at the facet's nearest point, in the coordinates of the facet."""
+    corner, a, b, normal = facet.corner, facet.a, facet.b, facet.normal
+    px, py, pz = p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]
+    s = px * normal[0] + py * normal[1] + pz * normal[2]
+    along_a = px * a[0] + py * a[1] + pz * a[2]
+    along_b = px * b[0] + py * b[1] + pz * b[2]
+    if facet.kind == RECTANGLE:
+        at_a = min(max(along_a, 0.0), facet.length_a)
+        at_b = min(max(along_b, 0.0), facet.length_b)
+        if at_a == along_a and at_b == along_b:
+            return _over(facet, r, s)
+        return _away(
+            r, s, px - at_a * a[0] - at_b * b[0], py - at_a * a[1] - at_b * b[1],
+            pz - at_a * a[2] - at_b * b[2],
+        )  # fmt: skip
+    aa, bb, ab = facet.length_a**2, facet.length_b**2, facet.between
+    size = aa * bb - ab * ab
+    v, w = (bb * along_a - ab * along_b) / size, (aa * along_b - ab * along_a) / size
+    if v >= 0.0 and w >= 0.0 and v + w <= 1.0:
+        return _over(facet, r, s)
+    best, best_v, best_w = math.inf, 0.0, 0.0
+    for edge in range(3):
+        if edge == 0:
+            v, w = min(max(along_a / aa, 0.0), 1.0), 0.0
+        elif edge == 1:
+            v, w = 0.0, min(max(along_b / bb, 0.0), 1.0)
+        else:
+            w = min(max((aa - ab + along_b - along_a) / (aa - 2.0 * ab + bb), 0.0), 1.0)
+            v = 1.0 - w
+        dx, dy, dz = (
+            px - v * a[0] - w * b[0],
+            py - v * a[1] - w * b[1],
+            pz - v * a[2] - w * b[2],
+        )
+        square = dx * dx + dy * dy + dz * dz
+        if square < best:
+            best, best_v, best_w = square, v, w
+    v, w = best_v, best_w
+    return _away(r, s, px - v * a[0] - w * b[0], py - v * a[1] - w * b[1], pz - v * a[2] - w * b[2])
+
+
+@kernel
+def has(facet: Any, p: Point, margin: float) -> bool:
+    """Whether a point is on a facet, in the coordinates of the facet."""
+    corner, a, b, normal = facet.corner, facet.a, facet.b, facet.normal
+    px, py, pz = p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]
+    if not abs(px * normal[0] + py * normal[1] + pz * normal[2]) <= margin:
+        return False
+    if facet.kind == RECTANGLE:
+        along_a = px * a[0] + py * a[1] + pz * a[2]
+        along_b = px * b[0] + py * b[1] + pz * b[2]
+        return bool(
+            -margin <= along_a <= facet.length_a + margin
+            and -margin <= along_b <= facet.length_b + margin
+        )
+    return bool(on_facet(facet, p, margin).x >= 0.0)
+
+
+@kernel
+def seen(frame: Any, facet: Any, bead: Bead) -> Touch:
+    """Touch of a bead and a facet of a frame, in space."""
+    return turned(frame, on_facet(facet, to_frame(frame, bead.x), bead.r))
+
+
+@kernel
+def nearest(touch: Touch, bead: Bead) -> Point:
+    """Point of a facet that is nearest to the bead's centre, in space."""
+    reach, x = bead.r - touch.x, bead.x
+    return x[0] - reach * touch.nx, x[1] - reach * touch.ny, x[2] - reach * touch.nz
+
+
+@kernel
+def cell_of(frame: Any, k: int, coordinate: float) -> int:
+    """Cell in direction k."""
+    return int(math.floor((coordinate - frame.origin[k]) * frame.per_length))
+
+
+@kernel
+def entries_of(frame: Any) -> tuple[Any, Any]:
+    """Where each cell's list begins, and the lists."""
+    cells = frame.cells
+    starts = array_at(frame.starts, cells[0] * cells[1] * cells[2] + 1, np.int64)
+    return starts, array_at(frame.entries, frame.entry_count, np.int32)

@@ -1,0 +1,140 @@
+"""A grid over the facets of a frame: those near a bead, without looking at all of them.
+
+A cell lists the facets that a bead of at most a certain radius may touch whose centre is in the
+cell, so that one cell is enough for it; for a larger bead the cells around are read too.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import enable_caching, kernel
+
+Floats = NDArray[np.float64]
+
+GRID: list[tuple[Any, ...]] = [
+    ("origin", "f8", 3), ("per_length", "f8"), ("cells", "i8", 3),
+    ("starts", "i8"), ("entries", "i8"), ("entry_count", "i8"),  # addresses of the lists
+    ("reach", "f8"),
+]  # fmt: skip
+
+_MOST = 1 << 20  # cells; their starts are then 4 MB
+_MARGIN = 1.1  # a bead that parts is still in the cell's list in the next step
+
+
+class Grid:
+    """Lists of facets by cell.
+
+    Parameters
+    ----------
+    corners : ndarray, shape (n, 4, 3)
+        Corners of the facets [m]; a triangle has its last but one twice or lies in their hull.
+    first : int
+        Number of the first of them.
+    largest : float
+        Largest radius of beads that find all they touch in one cell [m]; 0: not known yet.
+    """
+
+    def __init__(self, corners: Floats, first: int, largest: float) -> None:
+        extent = float(np.median(np.linalg.norm(np.ptp(corners, axis=1), axis=1)))
+        self.reach = _MARGIN * (largest if largest > 0.0 else 0.5 * extent)
+        low = corners.min(axis=(0, 1)) - self.reach
+        size = corners.max(axis=(0, 1)) + self.reach - low
+        cell = max(self.reach, float((np.prod(size) / _MOST) ** (1.0 / 3.0)))
+        cells = np.maximum(np.ceil(size / cell), 1.0).astype(np.int64)
+        while np.prod(cells.astype(float)) > 2 * _MOST:  # a slab: one cell in some direction
+            cell *= 1.1
+            cells = np.maximum(np.ceil(size / cell), 1.0).astype(np.int64)
+        self.origin, self.per_length, self.cells = low, 1.0 / cell, cells
+        enable_caching()
+        corners = np.ascontiguousarray(corners)
+        counts = np.zeros(int(cells.prod()) + 1, np.int64)
+        nothing = np.empty(0, np.int32)
+        _list(corners, low, cell, cells, self.reach, counts, nothing)
+        self.starts = np.cumsum(counts)
+        self.entries = np.empty(int(self.starts[-1]), np.int32)
+        ends = self.starts[:-1].copy()
+        _list(corners, low, cell, cells, self.reach, ends, self.entries)
+        self.entries += first
+
+    def fill(self, row: Any) -> None:
+        """Write it into a frame of the kernel's memory."""
+        row["origin"], row["per_length"], row["cells"] = self.origin, self.per_length, self.cells
+        row["starts"], row["entries"] = self.starts.ctypes.data, self.entries.ctypes.data
+        row["entry_count"], row["reach"] = self.entries.size, self.reach
+
+
+@kernel
+def _segment(p: Any, a: Any, b: Any) -> float:
+    """Square of the distance of a point from a segment."""
+    along = square = 0.0
+    for k in range(3):
+        along += (p[k] - a[k]) * (b[k] - a[k])
+        square += (b[k] - a[k]) ** 2
+    t = min(max(along / square, 0.0), 1.0) if square > 0.0 else 0.0
+    distance = 0.0
+    for k in range(3):
+        distance += (p[k] - a[k] - t * (b[k] - a[k])) ** 2
+    return distance
+
+
+@kernel
+def _near(p: Any, corners: Any, most: float) -> bool:
+    """Whether a point is at most so far from a facet: flat, convex, of four corners."""
+    a, b, d = corners[0], corners[1], corners[3]
+    for n in range(4):
+        if _segment(p, corners[n], corners[(n + 1) % 4]) <= most * most:
+            return True
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vz = d[0] - a[0], d[1] - a[1], d[2] - a[2]
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    square = nx * nx + ny * ny + nz * nz
+    height = (p[0] - a[0]) * nx + (p[1] - a[1]) * ny + (p[2] - a[2]) * nz
+    if height * height > most * most * square:
+        return False
+    for n in range(4):  # over the face: on the inner side of every edge
+        here, there = corners[n], corners[(n + 1) % 4]
+        ex, ey, ez = there[0] - here[0], there[1] - here[1], there[2] - here[2]
+        px, py, pz = p[0] - here[0], p[1] - here[1], p[2] - here[2]
+        side = (ey * pz - ez * py) * nx + (ez * px - ex * pz) * ny + (ex * py - ey * px) * nz
+        if side < 0.0:
+            return False
+    return True
+
+
+@kernel(cache=True)
+def _list(
+    corners: Floats, low: Floats, cell: float, cells: Any, reach: float, ends: Any, entries: Any
+) -> None:
+    """Count the facets of each cell (one place on), or, if there is room for them, write them."""
+    writing = entries.size > 0
+    half = 0.5 * math.sqrt(3.0) * cell
+    middle = np.empty(3)
+    first, last = np.empty(3, np.int64), np.empty(3, np.int64)
+    for n in range(len(corners)):
+        for k in range(3):
+            small, large = math.inf, -math.inf
+            for c in range(4):
+                small, large = min(small, corners[n, c, k]), max(large, corners[n, c, k])
+            first[k] = max(int(math.floor((small - reach - low[k]) / cell)), 0)
+            last[k] = min(int(math.floor((large + reach - low[k]) / cell)), cells[k] - 1)
+        for i in range(first[0], last[0] + 1):
+            for j in range(first[1], last[1] + 1):
+                for k in range(first[2], last[2] + 1):
+                    middle[0], middle[1], middle[2] = (
+                        low[0] + (i + 0.5) * cell,
+                        low[1] + (j + 0.5) * cell,
+                        low[2] + (k + 0.5) * cell,
+                    )
+                    if not _near(middle, corners[n], reach + half):
+                        continue
+                    at = (i * cells[1] + j) * cells[2] + k
+                    if writing:
+                        entries[ends[at]] = n
+                        ends[at] += 1
+                    else:
+                        ends[at + 1] += 1

@@ -1,0 +1,361 @@
+"""Walls of triangles: from a file, from arrays, or a cylinder, a cone, a disc."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contactlaw.engines.lammps.motion import FARTHEST, Motion, check_motion, vector
+from contactlaw.engines.lammps.plate import Models, check_models
+from contactlaw.physical.arguments import check, number
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Vector = Sequence[float]
+
+_FLAT = 1e-10  # height of a triangle over its longest side; below, it has no normal to speak of
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A wall of triangles, which beads touch from either side.
+
+    It need not be closed, nor its triangles wound in one sense. Faces that meet at less than 20
+    degrees, as those of a tessellated cylinder, are one smooth surface to a bead.
+
+    Parameters
+    ----------
+    vertices : array_like, shape (n, 3)
+        Corners of the triangles [m].
+    triangles : array_like of int, shape (m, 3)
+        For each triangle the numbers of its three corners.
+    thickness : float or array_like, shape (m,)
+        Thickness of the sheet for the model, of all triangles or of each [m]; ``inf`` is the
+        half-space. It is no geometry.
+    model : ImpactModel or dict of int to ImpactModel, optional
+        For a wall of another material than that of the attached model; by atom type.
+    motion : Translation, Rotation, Vibration or Tabulated, optional
+        How it moves; it stands still otherwise.
+
+    Attributes
+    ----------
+    dropped : int
+        Triangles without area, or there already, that have been left out; a warning tells of them.
+    kept : ndarray of int
+        Number that each triangle left had in what was given.
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not fit together, a coordinate is not finite or beyond 1e6 m, no triangle
+        has an area, or a thickness is no positive number.
+
+    Examples
+    --------
+    A square of two sheets, a thin one and a thick one:
+
+    >>> corners = [[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0]]
+    >>> mesh = Mesh(corners, [[0, 1, 2], [0, 2, 3]], thickness=[0.5e-3, 2e-3])
+    >>> mesh.area.sum().round(6).item()
+    0.01
+    """
+
+    vertices: Any
+    triangles: Any
+    thickness: Any
+    model: Models | None = None
+    motion: Motion | None = None
+    dropped: int = field(default=0, init=False)
+    kept: Any = field(default=None, init=False)
+
+    def __post_init__(self) -> None:
+        """Refuse what is no mesh, and drop triangles that are none."""
+        vertices = _vertices(self.vertices)
+        triangles = _triangles(self.triangles, len(vertices))
+        thickness = _thickness(self.thickness, len(triangles))
+        check_models(self.model)
+        check_motion(self.motion)
+        good = _sound(vertices, triangles)
+        lost = len(triangles) - len(good)
+        if not good.size:
+            raise ValueError(f"triangles: none of {len(triangles)} has an area [m2]")
+        if lost:
+            warnings.warn(
+                f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or there "
+                "already",
+                stacklevel=3,
+            )
+        for name, value in (
+            ("vertices", vertices),
+            ("triangles", triangles[good]),
+            ("thickness", thickness[good]),
+            ("dropped", lost),
+            ("kept", good),
+        ):
+            object.__setattr__(self, name, value)
+
+    @property
+    def area(self) -> Floats:
+        """Area of each triangle [m2]."""
+        a, b, c = (self.vertices[self.triangles[:, n]] for n in range(3))
+        area: Floats = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        return area
+
+    @classmethod
+    def read(
+        cls,
+        path: str | Path,
+        thickness: ArrayLike,
+        *,
+        scale: float = 1.0,
+        model: Models | None = None,
+        motion: Motion | None = None,
+    ) -> Self:
+        """Read a mesh from a file: STL (binary or text), PLY, OBJ or what else trimesh reads.
+
+        Parameters
+        ----------
+        path : str or Path
+            The file.
+        thickness : float or array_like
+            As of `Mesh`; for each triangle in the order of the file.
+        scale : float, optional
+            Length of the file's unit [m]: 1e-3 for a drawing in millimetres.
+        model, motion
+            As of `Mesh`.
+
+        Raises
+        ------
+        ImportError, FileNotFoundError, ValueError
+            No trimesh; no such file; no mesh in it, or as `Mesh`.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> ascii_stl = '''solid one
+        ... facet normal 0 0 1
+        ... outer loop
+        ... vertex 0 0 0
+        ... vertex 100 0 0
+        ... vertex 0 100 0
+        ... endloop
+        ... endfacet
+        ... endsolid one'''
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     file = Path(folder) / "part.stl"
+        ...     _ = file.write_text(ascii_stl)
+        ...     mesh = Mesh.read(file, thickness=1e-3, scale=1e-3)
+        >>> mesh.area.tolist()
+        [0.005]
+        """
+        try:
+            import trimesh
+        except ImportError as error:
+            raise ImportError("Mesh.read needs trimesh: pip install contactlaw[lammps]") from error
+        size = number("scale", scale)
+        if not 0.0 < size < math.inf:
+            raise ValueError(f"scale: must be positive, metres per unit of the file, got {scale!r}")
+        if not Path(path).is_file():
+            raise FileNotFoundError(f"path: no file {str(path)!r}")
+        try:
+            found = trimesh.load_mesh(str(path), process=False)
+            vertices, triangles = np.asarray(found.vertices), np.asarray(found.faces)
+        except Exception as error:  # each of its readers raises what it will
+            raise ValueError(
+                f"path: {str(path)!r} is no mesh that trimesh reads: {error}"
+            ) from error
+        return cls(size * vertices, triangles, thickness, model, motion)
+
+    @classmethod
+    def cone(
+        cls,
+        start: Vector,
+        end: Vector,
+        start_radius: float,
+        end_radius: float,
+        thickness: float,
+        *,
+        facets: int = 72,
+        model: Models | None = None,
+        motion: Motion | None = None,
+    ) -> Self:
+        """Wall of a cone, or a part of one: a hopper's, open at both ends.
+
+        Parameters
+        ----------
+        start, end : sequence of 3 floats
+            Ends of its axis [m].
+        start_radius, end_radius : float
+            Radii there [m]; one of them may be 0. The corners of the facets are on the cone.
+        thickness : float
+            Of the sheet [m].
+        facets : int, optional
+            Facets around, at least 3; fewer than 18 meet at more than 20 degrees and are no smooth
+            surface to a bead.
+        model, motion
+            As of `Mesh`.
+
+        Examples
+        --------
+        >>> hopper = Mesh.cone((0, 0, 0.1), (0, 0, 0), 0.1, 0.02, thickness=1e-3)
+        >>> f"{hopper.area.sum():.4f} m2"
+        '0.0482 m2'
+        """
+        first, last = vector("start", start), vector("end", end)
+        axis = last - first
+        length = float(np.linalg.norm(axis))
+        radii = number("start_radius", start_radius), number("end_radius", end_radius)
+        if not length > 0.0:
+            raise ValueError(f"start, end: must differ, got {start!r} and {end!r}")
+        if not (min(radii) >= 0.0 and 0.0 < max(radii) <= FARTHEST):
+            raise ValueError(f"start_radius, end_radius: must not be negative [m], got {radii}")
+        around = _circle(axis / length, facets)
+        n = len(around)
+        rings = [place + r * around for place, r in zip((first, last), radii, strict=True)]
+        here, there = np.arange(n), np.roll(np.arange(n), -1)
+        lower = np.column_stack((here, there, here + n))
+        upper = np.column_stack((there, there + n, here + n))
+        parts = [part for part, r in zip((lower, upper), radii, strict=True) if r > 0.0]
+        return cls(np.concatenate(rings), np.concatenate(parts), thickness, model, motion)
+
+    @classmethod
+    def cylinder(
+        cls,
+        start: Vector,
+        end: Vector,
+        radius: float,
+        thickness: float,
+        *,
+        facets: int = 72,
+        model: Models | None = None,
+        motion: Motion | None = None,
+    ) -> Self:
+        """Wall of a cylinder, open at both ends; as `cone` with one radius [m].
+
+        Examples
+        --------
+        >>> drum = Mesh.cylinder((0, -0.05, 0), (0, 0.05, 0), radius=0.1, thickness=2e-3)
+        >>> len(drum.triangles)
+        144
+        """
+        return cls.cone(
+            start, end, radius, radius, thickness, facets=facets, model=model, motion=motion
+        )
+
+    @classmethod
+    def disc(
+        cls,
+        centre: Vector,
+        normal: Vector,
+        radius: float,
+        thickness: float,
+        *,
+        facets: int = 72,
+        model: Models | None = None,
+        motion: Motion | None = None,
+    ) -> Self:
+        """Flat disc: the end of a drum, a spinning plate.
+
+        Parameters
+        ----------
+        centre, normal : sequence of 3 floats
+            Its centre [m], and a direction across it.
+        radius, thickness : float
+            Of the disc, and of its sheet [m].
+        facets, model, motion
+            As of `cone`.
+
+        Examples
+        --------
+        >>> plate = Mesh.disc((0, 0, 0), (0, 0, 1), radius=0.05, thickness=1e-3)
+        >>> len(plate.triangles)
+        72
+        """
+        middle, across = vector("centre", centre), vector("normal", normal, "-")
+        size = float(np.linalg.norm(across))
+        if not size > 0.0:
+            raise ValueError(f"normal: must have a direction, got {normal!r}")
+        if not 0.0 < number("radius", radius) <= FARTHEST:
+            raise ValueError(f"radius: must be positive [m], got {radius!r}")
+        around = _circle(across / size, facets)
+        n = len(around)
+        here = np.arange(n)
+        fan = np.column_stack((here, np.roll(here, -1), np.full(n, n)))
+        return cls(np.vstack((middle + radius * around, middle)), fan, thickness, model, motion)
+
+
+def _circle(axis: Floats, facets: int) -> Floats:
+    """Corners of a polygon on the unit circle around an axis."""
+    if not isinstance(facets, int | np.integer) or isinstance(facets, bool) or facets < 3:
+        raise ValueError(f"facets: expected an integer of 3 or more, got {facets!r}")
+    first = np.cross(axis, np.eye(3)[np.argmin(abs(axis))])
+    first /= np.linalg.norm(first)
+    angle = 2.0 * math.pi * np.arange(facets)[:, None] / facets
+    circle: Floats = np.cos(angle) * first + np.sin(angle) * np.cross(axis, first)
+    return circle
+
+
+def _vertices(given: Any) -> Floats:
+    try:
+        found = np.array(given, dtype=float, order="C")
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.ndim != 2 or found.shape[1] != 3 or not len(found):
+        raise ValueError(f"vertices: expected an array of shape (n, 3) [m], got {given!r}")
+    wrong = np.flatnonzero(~(abs(found) <= FARTHEST).all(axis=1))
+    if wrong.size:
+        raise ValueError(
+            f"vertices: must be finite [m], none beyond {FARTHEST:g}, got "
+            f"{found[wrong[0]].tolist()} (vertex {wrong[0]}, {wrong.size} in all)"
+        )
+    return found
+
+
+def _triangles(given: Any, vertices: int) -> Integers:
+    try:
+        found = np.asarray(given)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.ndim != 2 or found.shape[1] != 3 or found.dtype.kind not in "iu" or not len(found):
+        raise ValueError(f"triangles: expected integers of shape (m, 3), got {given!r}")
+    if found.min() < 0 or found.max() >= vertices:
+        raise ValueError(
+            f"triangles: must be numbers of vertices, 0 to {vertices - 1}, got {found.min()} to "
+            f"{found.max()}"
+        )
+    return found.astype(np.int64)
+
+
+def _thickness(given: Any, triangles: int) -> Floats:
+    try:
+        found = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.shape not in ((), (triangles,)):
+        raise ValueError(
+            f"thickness: expected a number or one for each of {triangles} triangles [m], got "
+            f"{given!r}"
+        )
+    check(thickness=np.atleast_1d(found))
+    return np.broadcast_to(found, triangles).copy()
+
+
+def _sound(vertices: Floats, triangles: Integers) -> Integers:
+    """Numbers of the triangles that have an area, each place once."""
+    corners = vertices[triangles]
+    sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    twice = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+                           axis=1)  # fmt: skip
+    some = np.flatnonzero(twice > _FLAT * sides.max(axis=1) ** 2)
+    # the same three places, in whatever order and under whatever numbers
+    _, number_of = np.unique(vertices, axis=0, return_inverse=True)
+    key = np.sort(number_of.ravel()[triangles[some]], axis=1)
+    _, first = np.unique(key, axis=0, return_index=True)
+    return some[np.sort(first)]

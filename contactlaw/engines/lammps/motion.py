@@ -1,0 +1,301 @@
+"""How walls move: rigid motions, told as data, and where they put a wall at a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.engines.lammps.memory import array_at
+from contactlaw.physical.arguments import number
+
+Vector = Sequence[float]
+Floats = NDArray[np.float64]
+
+FARTHEST = 1e6  # [m]: beyond it a double no longer knows the thickness of a hair
+
+# A motion as the kernel reads it: the sum of all kinds, of which each fills its own part.
+MOTION: list[tuple[Any, ...]] = [
+    ("moves", "i8"),
+    ("velocity", "f8", 3),  # of a translation
+    ("axis", "f8", 3), ("spin", "f8"), ("hub", "f8", 3),  # spin [rad/s]
+    ("amplitude", "f8", 3), ("frequency", "f8"), ("phase", "f8"),  # [rad/s], [rad]
+    ("times", "i8"), ("displacements", "i8"), ("count", "i8"),  # addresses
+]  # fmt: skip
+
+
+def vector(name: str, value: Any, unit: str = "m") -> Floats:
+    """Three finite numbers that are no nonsense, or an error that names them."""
+    try:
+        found = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        found = np.empty(0)
+    if found.shape != (3,) or not (abs(found) <= FARTHEST).all():
+        raise ValueError(
+            f"{name}: expected three numbers [{unit}], none beyond {FARTHEST:g}, got {value!r}"
+        )
+    return found
+
+
+@dataclass(frozen=True)
+class Translation:
+    """A wall that moves at a constant velocity: a belt without an end, a plate in a lift.
+
+    Parameters
+    ----------
+    velocity : sequence of 3 floats
+        Its velocity [m/s].
+
+    Raises
+    ------
+    ValueError
+        If that is no velocity.
+
+    Examples
+    --------
+    >>> Translation((0, 0, 0.5)).velocity
+    (0.0, 0.0, 0.5)
+    """
+
+    velocity: Vector
+
+    def __post_init__(self) -> None:
+        """Refuse what is no velocity."""
+        _keep(self, velocity=vector("velocity", self.velocity, "m/s"))
+
+    def fill(self, row: Any) -> None:
+        """Write it into a row of the kernel's memory."""
+        row["moves"], row["velocity"] = 1, self.velocity
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """A wall that turns about an axis at a constant speed: a drum, a screw, a mixer.
+
+    Parameters
+    ----------
+    axis : sequence of 3 floats
+        Direction of the axis; of any length but zero.
+    speed : float
+        Angular speed, right-handed about the axis [rad/s].
+    centre : sequence of 3 floats, optional
+        A point of the axis [m].
+
+    Raises
+    ------
+    ValueError
+        If these are no axis, no finite speed or no point.
+
+    Examples
+    --------
+    A drum at 30 revolutions per minute:
+
+    >>> drum = Rotation(axis=(0, 1, 0), speed=30 * 2 * math.pi / 60)
+    >>> f"{drum.speed:.3f} rad/s"
+    '3.142 rad/s'
+    """
+
+    axis: Vector
+    speed: float
+    centre: Vector = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        """Refuse what is no rotation."""
+        axis = vector("axis", self.axis, "-")
+        if not np.linalg.norm(axis) > 0.0:
+            raise ValueError(f"axis: must have a direction, got {self.axis!r}")
+        _keep(self, axis=axis, centre=vector("centre", self.centre))
+        _keep_number(self, "speed", self.speed, "rad/s")
+
+    def fill(self, row: Any) -> None:
+        """Write it into a row of the kernel's memory."""
+        row["moves"], row["spin"], row["hub"] = 1, self.speed, self.centre
+        row["axis"] = np.asarray(self.axis) / np.linalg.norm(self.axis)
+
+
+@dataclass(frozen=True)
+class Vibration:
+    """A wall that swings harmonically about its place: a sieve, a feeder.
+
+    Parameters
+    ----------
+    amplitude : sequence of 3 floats
+        Largest displacement and its direction [m].
+    frequency : float
+        Frequency [Hz].
+    phase : float, optional
+        Phase at time zero [rad]: the displacement is amplitude sin(2 pi frequency t + phase).
+
+    Raises
+    ------
+    ValueError
+        If these are no displacement, no positive frequency or no finite phase.
+
+    Examples
+    --------
+    >>> deck = Vibration(amplitude=(1e-3, 0, 2e-3), frequency=50)
+    >>> deck.frequency
+    50.0
+    """
+
+    amplitude: Vector
+    frequency: float
+    phase: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no vibration."""
+        _keep(self, amplitude=vector("amplitude", self.amplitude))
+        _keep_number(self, "frequency", self.frequency, "Hz")
+        _keep_number(self, "phase", self.phase, "rad")
+        if not self.frequency > 0.0:
+            raise ValueError(f"frequency: must be positive [Hz], got {self.frequency!r}")
+
+    def fill(self, row: Any) -> None:
+        """Write it into a row of the kernel's memory."""
+        row["moves"], row["amplitude"] = 1, self.amplitude
+        row["frequency"], row["phase"] = 2.0 * math.pi * self.frequency, self.phase
+
+
+@dataclass(frozen=True, eq=False)
+class Tabulated:
+    """A wall whose displacement is a table over time.
+
+    Parameters
+    ----------
+    times : sequence of n floats
+        Ascending times [s], at least two. Between them the wall moves at a constant velocity;
+        before the first and after the last it stands still.
+    displacements : array_like, shape (n, 3)
+        Displacement from the given place at these times [m].
+
+    Raises
+    ------
+    ValueError
+        If the two do not fit together or hold impossible values.
+
+    Examples
+    --------
+    A gate that opens within a tenth of a second:
+
+    >>> gate = Tabulated([0.5, 0.6], [[0, 0, 0], [0, 0, 0.08]])
+    >>> gate.displacements[-1].tolist()
+    [0.0, 0.0, 0.08]
+    """
+
+    times: Any
+    displacements: Any
+
+    def __post_init__(self) -> None:
+        """Refuse what is no table."""
+        try:
+            times = np.array(self.times, dtype=float)
+            places = np.array(self.displacements, dtype=float)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"times, displacements: expected numbers [s], [m]: {error}") from error
+        n = times.size
+        if times.shape != (n,) or n < 2 or places.shape != (n, 3):
+            raise ValueError(
+                "times, displacements: expected shapes (n,) and (n, 3) with n of 2 or more, got "
+                f"{times.shape} and {places.shape}"
+            )
+        if not (np.isfinite(times).all() and (np.diff(times) > 0.0).all()):
+            raise ValueError(f"times: must be finite and ascend [s], got {self.times!r}")
+        if not (abs(places) <= FARTHEST).all():
+            raise ValueError(f"displacements: must be finite [m], none beyond {FARTHEST:g}")
+        object.__setattr__(self, "times", times)
+        object.__setattr__(self, "displacements", places)
+
+    def fill(self, row: Any) -> None:
+        """Write it into a row of the kernel's memory."""
+        row["moves"], row["count"] = 1, self.times.size
+        row["times"] = self.times.ctypes.data
+        row["displacements"] = self.displacements.ctypes.data
+
+
+Motion = Translation | Rotation | Vibration | Tabulated
+
+
+def _keep(motion: Any, **vectors: Floats) -> None:
+    for name, value in vectors.items():
+        object.__setattr__(motion, name, tuple(value.tolist()))
+
+
+def _keep_number(motion: Any, name: str, value: Any, unit: str) -> None:
+    found = number(name, value)
+    if not math.isfinite(found):
+        raise ValueError(f"{name}: must be finite [{unit}], got {value!r}")
+    object.__setattr__(motion, name, found)
+
+
+def check_motion(motion: Any) -> None:
+    """Refuse what is no motion."""
+    if motion is not None and not isinstance(motion, Motion):
+        raise TypeError(
+            "motion: expected a Translation, Rotation, Vibration or Tabulated of "
+            f"contactlaw.engines.lammps, got {motion!r}"
+        )
+
+
+# Where a motion has put its wall: a point p of it is at hub + shift + turn (p - hub) then.
+POSE: list[tuple[Any, ...]] = [
+    ("turn", "f8", 9),  # row by row
+    ("shift", "f8", 3),
+    ("rate", "f8", 3),  # of the shift [m/s]
+    ("half_rate", "f8", 3),  # half a step before: engines of Verlet's kind have velocities there
+]
+
+
+@kernel
+def _interval(times: Any, time: float) -> int:
+    """Interval of a table that a time is in; -1 before it, the last number after it."""
+    low, high = -1, len(times)
+    while high - low > 1:
+        middle = (low + high) // 2
+        if times[middle] <= time:
+            low = middle
+        else:
+            high = middle
+    return low
+
+
+@kernel
+def _shift(row: Any, time: float, shift: Any, rate: Any) -> None:
+    """Displacement of all but the rotation, and its rate."""
+    swing = row.frequency * time + row.phase
+    out, speed = math.sin(swing), row.frequency * math.cos(swing)
+    for k in range(3):
+        shift[k] = row.velocity[k] * time + row.amplitude[k] * out
+        rate[k] = row.velocity[k] + row.amplitude[k] * speed
+    if row.count == 0:
+        return
+    times = array_at(row.times, row.count, np.float64)
+    places = array_at(row.displacements, (row.count, 3), np.float64)
+    n = _interval(times, time)
+    if 0 <= n < row.count - 1:
+        span, age = times[n + 1] - times[n], time - times[n]
+        for k in range(3):
+            rate[k] = (places[n + 1, k] - places[n, k]) / span
+            shift[k] = places[n, k] + rate[k] * age
+    else:
+        for k in range(3):
+            rate[k] = 0.0
+            shift[k] = places[max(n, 0), k]
+
+
+@kernel
+def place(row: Any, time: float, dt: float) -> None:
+    """Put a wall to where it is at a time, the end of a step of length dt [s]."""
+    _shift(row, time - 0.5 * dt, row.shift, row.half_rate)
+    _shift(row, time, row.shift, row.rate)
+    angle = row.spin * time
+    c, s = math.cos(angle), math.sin(angle)
+    a, b, d, k = row.axis[0], row.axis[1], row.axis[2], 1.0 - c
+    turn = row.turn
+    turn[0], turn[1], turn[2] = c + a * a * k, a * b * k - d * s, a * d * k + b * s
+    turn[3], turn[4], turn[5] = a * b * k + d * s, c + b * b * k, b * d * k - a * s
+    turn[6], turn[7], turn[8] = a * d * k - b * s, b * d * k + a * s, c + d * d * k

@@ -1,0 +1,164 @@
+"""Which of the facets that a bead overlaps it is in contact with: one, where they are one surface.
+
+A bead feels one surface where facets meet. Of facets whose nearest points are one, or of which one
+has the other's nearest point, the contact is with that which has it on its face, else with the
+nearest, else with the first. Of faces that meet at a small angle, as those of a tessellated
+cylinder, it is with the deepest: the overlap, and with it the force, so has no jump where the bead
+goes on from one to the next.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from contactlaw._jit import kernel
+from contactlaw.engines.lammps.geometry import (
+    Bead,
+    Point,
+    Touch,
+    cell_of,
+    entries_of,
+    has,
+    nearest,
+    on_facet,
+    to_frame,
+    turned,
+)
+
+_SEAM = 1e-4  # [r] between facets that are one surface to a bead
+_TIE = 1e-9  # [r] of overlap: rounding
+_SMOOTH = math.cos(math.radians(20.0))  # faces of one surface
+MOST = 64  # facets that a bead may overlap before the shallowest are left out; none of these is in
+# contact: where facets are that small, deeper ones are beside them
+
+# A facet that a bead overlaps. `surface` is the place in the list of what it is the surface of
+# together with: its own, if it is in contact.
+OVERLAP = np.dtype(
+    [(name, "i8") for name in ("facet", "face", "surface")]
+    + [(name, "f8") for name in ("x", "s", "nx", "ny", "nz")],
+    align=True,
+)
+
+
+@kernel
+def touch_of(row: Any) -> Touch:
+    """Read a row of the list."""
+    return Touch(row.x, row.s, row.nx, row.ny, row.nz, row.face != 0)
+
+
+@kernel
+def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
+    """Put a facet into the list, once; the list is in the order of the facets' numbers."""
+    at = count
+    while at > 0 and found[at - 1].facet >= facet:
+        at -= 1
+    if at < count and found[at].facet == facet:
+        return count
+    if count == MOST:
+        least = 0
+        for n in range(1, count):
+            if found[n].x < found[least].x:
+                least = n
+        if not touch.x > found[least].x:
+            return count
+        for n in range(least, count - 1):
+            found[n] = found[n + 1]
+        count -= 1
+        at -= int(least < at)
+    for n in range(count, at, -1):
+        found[n] = found[n - 1]
+    row = found[at]
+    row.facet, row.face = facet, int(touch.face)
+    row.x, row.s, row.nx, row.ny, row.nz = touch.x, touch.s, touch.nx, touch.ny, touch.nz
+    return count + 1
+
+
+@kernel
+def overlaps(frames: Any, facets: Any, bead: Bead, found: Any) -> tuple[int, bool]:
+    """List the facets that a bead overlaps; how many, and whether any is near at all."""
+    count, near = 0, False
+    for f in range(len(frames)):
+        frame = frames[f]
+        p = to_frame(frame, bead.x)
+        more = max(bead.r - frame.reach, 0.0)
+        cells = frame.cells
+        i0, i1 = cell_of(frame, 0, p[0] - more), cell_of(frame, 0, p[0] + more)
+        if i1 < 0 or i0 >= cells[0]:
+            continue
+        j0, j1 = cell_of(frame, 1, p[1] - more), cell_of(frame, 1, p[1] + more)
+        if j1 < 0 or j0 >= cells[1]:
+            continue
+        k0, k1 = cell_of(frame, 2, p[2] - more), cell_of(frame, 2, p[2] + more)
+        if k1 < 0 or k0 >= cells[2]:
+            continue
+        starts, entries = entries_of(frame)
+        for i in range(max(i0, 0), min(i1 + 1, cells[0])):
+            for j in range(max(j0, 0), min(j1 + 1, cells[1])):
+                row = (i * cells[1] + j) * cells[2]
+                for k in range(max(k0, 0), min(k1 + 1, cells[2])):
+                    for e in range(starts[row + k], starts[row + k + 1]):
+                        near = True
+                        n = entries[e]
+                        facet = facets[n]
+                        corner, normal = facet.corner, facet.normal
+                        s = (
+                            (p[0] - corner[0]) * normal[0]
+                            + (p[1] - corner[1]) * normal[1]
+                            + (p[2] - corner[2]) * normal[2]
+                        )
+                        if not abs(s) < bead.r:
+                            continue
+                        touch = on_facet(facet, p, bead.r)
+                        if touch.x > 0.0:
+                            count = _insert(found, count, n, turned(frame, touch))
+    return count, near
+
+
+@kernel
+def _rank(row: Any, r: float) -> tuple[int, int]:
+    """Sort facets that share a point: face before edge, then the nearest."""
+    return 1 - row.face, math.floor(-row.x / (_TIE * r))
+
+
+@kernel
+def _one_face(a: Any, b: Any, r: float) -> bool:
+    """Whether a face belongs to a deeper one, which it meets at a small angle."""
+    if a.face == 0 or b.face == 0:
+        return False
+    return bool(a.nx * b.nx + a.ny * b.ny + a.nz * b.nz > _SMOOTH)
+
+
+@kernel
+def on_it(frames: Any, facets: Any, row: Any, point: Point, r: float) -> bool:
+    """Whether a point of space is on a facet of the list."""
+    facet = facets[row.facet]
+    return has(facet, to_frame(frames[facet.frame], point), _SEAM * r)
+
+
+@kernel
+def join(frames: Any, facets: Any, bead: Bead, found: Any, count: int) -> None:
+    """Tell for each facet of the list which one it is the surface of together with."""
+    r = bead.r
+    for n in range(count):
+        found[n].surface = n
+    if count < 2:
+        return
+    for n in range(count):
+        point, best = nearest(touch_of(found[n]), bead), n
+        for m in range(count):
+            # the list is in the order of the facets: of two of one rank the first is before
+            mine, its = _rank(found[best], r), _rank(found[m], r)
+            if its < mine or (its == mine and m < best):
+                if _one_face(found[n], found[m], r) or on_it(frames, facets, found[m], point, r):
+                    best = m
+        found[n].surface = best
+    for n in range(count):
+        home = found[n].surface
+        for _ in range(count):
+            if found[home].surface == home:
+                break
+            home = found[home].surface
+        found[n].surface = home
