@@ -26,14 +26,14 @@ def test_every_column_has_a_unit_and_a_description():
     assert IMPACT.names == (
         "time", "bead", "plate", "other", "x", "y", "z", "approach_speed", "restitution",
         "contact_time", "peak_force", "plastic_energy", "wave_energy", "other_energy",
-        "flags",
+        "wall_work", "triangle", "flags",
     )  # fmt: skip
     assert tuple(column.name for column in COLUMNS) == IMPACT.names
     units = {"1", "s", "m", "m/s", "N", "J"}
     for column in COLUMNS:
         assert column.unit in units, column
         assert len(column.description) > 10, column
-        whole = column.name in ("bead", "plate", "other", "flags")
+        whole = column.name in ("bead", "plate", "other", "triangle", "flags")
         assert IMPACT[column.name] == (np.int64 if whole else np.float64), column
 
 
@@ -56,7 +56,7 @@ def test_record_without_lookup_has_no_derived_columns():
     record = Record()
     record.add((0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6))
     rows = record.read(roll_of(Full(), [R], [(Full(), 1e-3)]))
-    assert rows.dtype.names[-2:] == ("other_energy", "flags")
+    assert rows.dtype.names[-2:] == ("triangle", "flags")
     assert rows.dtype == IMPACT
 
 

@@ -40,7 +40,6 @@ COLUMNS = (
     Column("time", "f8", "s", "first touch; of an impact within one step, the end of that step"),
     Column("bead", "i8", "1", "number of the bead"),
     Column("plate", "i8", "1", "number of the plate, -1: bead on bead"),
-    Column("triangle", "i8", "1", "number of the mesh's triangle, -1: the plate is no mesh"),
     Column("other", "i8", "1", "number of the other bead, -1: bead on plate"),
     Column("x", "f8", "m", "contact point"),
     Column("y", "f8", "m", "contact point"),
@@ -53,6 +52,7 @@ COLUMNS = (
     Column("wave_energy", "f8", "J", "energy carried off by the bending wave in the plate"),
     Column("other_energy", "f8", "J", "energy lost to friction and vibration of the bodies"),
     Column("wall_work", "f8", "J", "work of a moving wall on the bead during the contact"),
+    Column("triangle", "i8", "1", "number of the mesh's triangle, -1: the plate is no mesh"),
     Column("flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_LIMITS}"),
 )
 IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
@@ -87,4 +87,5 @@ def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) 
     rows["plastic_energy"] = rebound.plastic_fraction * energy
     rows["wave_energy"] = rebound.wave_fraction * energy
     rows["other_energy"] = rebound.other_fraction * energy
+    rows["wall_work"], rows["triangle"] = 0.0, -1
     rows["flags"] = rebound.flags
