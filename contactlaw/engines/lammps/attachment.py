@@ -290,6 +290,11 @@ class LammpsPlates:
         shared = self._shared[0]
         return float(shared["base"] + shared["ticks"] * shared["tick"])
 
+    @property
+    def left_out(self) -> int:
+        """Contacts without a force on this rank, counted in steps: a bead has 8, the deepest."""
+        return int(self._shared["unserved"][0])
+
     def _register(self) -> None:
         """Hand the C function to LAMMPS, without Python in between."""
         self._callback = callback()

@@ -31,7 +31,7 @@ from contactlaw.engines.lammps.memory import (
     thermo,
 )
 from contactlaw.engines.lammps.motion import place
-from contactlaw.engines.lammps.surface import MOST, OVERLAP
+from contactlaw.engines.lammps.surface import MOST, OVERLAP, near
 from contactlaw.engines.lammps.walls import FACET, FRAME, SHEET
 
 _EVERY = 100  # steps between looks for beads that fly further than their radius in a step
@@ -120,10 +120,13 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
     per = length / seconds
     for i in range(n):
+        centre = (x[i, 0] * length, x[i, 1] * length, x[i, 2] * length)
+        if not near(walls.frames, centre, radius[i] * length):
+            continue
         bead = Bead(
             tags[i],
             kind[i] - 1,
-            (x[i, 0] * length, x[i, 1] * length, x[i, 2] * length),
+            centre,
             (v[i, 0] * per, v[i, 1] * per, v[i, 2] * per),
             (omega[i, 0] / seconds, omega[i, 1] / seconds, omega[i, 2] / seconds),
             radius[i] * length,

@@ -185,7 +185,14 @@ def _flags(
 
 @kernel
 def _normal(
-    law: Array, shared: Any, clock: Clock, bead: Bead, sheet: Any, contact: Contact, at: int
+    law: Array,
+    shared: Any,
+    clock: Clock,
+    bead: Bead,
+    sheet: Any,
+    contact: Contact,
+    at: int,
+    held: bool,
 ) -> None:
     """Advance a contact by a step; its slot is empty afterwards if the bodies have parted."""
     row, v, touch = bead.history, contact.v, contact.touch
@@ -195,7 +202,7 @@ def _normal(
         # no deeper than a step's way; on an edge the way is not along the normal
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + _AT_REST * bead.r
         # (but a bead may come from one surface deep into the next)
-        if touch.x > deepest and not touches(row, shared):
+        if touch.x > deepest and not held:
             complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, contact.wall,
                      touch.x, deepest)  # fmt: skip
     elif touch.face and side != row[at + FACET]:
@@ -259,7 +266,9 @@ def _slide(
 
 
 @kernel
-def _press(shared: Any, clock: Clock, walls: Walls, bead: Bead, contact: Contact, at: int) -> None:
+def _press(
+    shared: Any, clock: Clock, walls: Walls, bead: Bead, contact: Contact, at: int, held: bool
+) -> None:
     """Add the force of one contact to a bead, and keep the bead's history."""
     facet, row, touch = walls.facets[contact.facet], bead.history, contact.touch
     sheet = walls.sheets[bead.kind * shared.sheet_count + facet.sheet]
@@ -269,7 +278,7 @@ def _press(shared: Any, clock: Clock, walls: Walls, bead: Bead, contact: Contact
         return
     if clock.advancing:
         law = array_at(sheet.law, sheet.law_size, np.float64)
-        _normal(law, shared, clock, bead, sheet, contact, at)
+        _normal(law, shared, clock, bead, sheet, contact, at, held)
     push, n = row[at + FORCE], (touch.nx, touch.ny, touch.nz)
     if push == 0.0:
         return
@@ -332,15 +341,58 @@ def _hand_over(shared: Any, walls: Walls, bead: Bead, count: int) -> None:
 
 
 @kernel
+def _part(shared: Any, clock: Clock, walls: Walls, bead: Bead, facet: int, at: int) -> None:
+    """End a contact: the bead is off the facet, or it is one with another now."""
+    one, row = walls.facets[facet], bead.history
+    t = seen(walls.frames[one.frame], one, bead)
+    if t.x > -bead.r:  # else it was taken away
+        t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
+        _press(shared, clock, walls, bead, _contact(walls, bead, facet, t), at, True)
+    row[at : at + shared.width] = 0.0
+
+
+@kernel
+def _begin_all(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int, held: bool) -> None:
+    """Begin contacts, the deepest first; without an empty slot, in place of a shallower one.
+
+    So the force has no jump where a contact takes the place of another.
+    """
+    row, found = bead.history, walls.found
+    for _ in range(count):
+        new = -1
+        for n in range(count):
+            if found[n].surface == n and (new < 0 or found[n].x > found[new].x):
+                if slot_of(row, shared, found[n].facet) == 0:
+                    new = n
+        if new < 0:
+            return
+        at = slot_of(row, shared, -1)
+        if at == 0:
+            least = -1
+            for k in range(shared.slots):
+                slot = FIRST + k * shared.width
+                n = _place_of(found, count, int(abs(row[slot + FACET])) - 1)
+                if least < 0 or found[n].x < found[least].x:
+                    least, at = n, slot
+            if not found[new].x > found[least].x:
+                shared.unserved += 1
+                return
+            _part(shared, clock, walls, bead, found[least].facet, at)
+        contact = _contact(walls, bead, found[new].facet, touch_of(found[new]))
+        _press(shared, clock, walls, bead, contact, at, held)
+
+
+@kernel
 def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
     """Add the force of the walls to a bead, and keep the bead's history."""
     found, row = walls.found, bead.history
-    count, near = overlaps(walls.frames, walls.facets, bead, found)
-    if count == 0 and not (near and row[OWNER] == bead.tag and touches(row, shared)):
+    count = overlaps(walls.frames, walls.facets, bead, found)
+    if count == 0 and not (row[OWNER] == bead.tag and touches(row, shared)):
         return
     if row[OWNER] != bead.tag:
         row[:] = 0.0
         row[OWNER], bead.last[0] = bead.tag, 0.0
+    held = touches(row, shared)
     join(walls.frames, walls.facets, bead, found, count)
     if clock.advancing:
         _hand_over(shared, walls, bead, count)
@@ -352,23 +404,8 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
         n = _place_of(found, count, facet)
         if n >= 0 and found[n].surface == n:
             contact = _contact(walls, bead, facet, touch_of(found[n]))
-            _press(shared, clock, walls, bead, contact, at)
+            _press(shared, clock, walls, bead, contact, at, held)
         elif clock.advancing:
-            one = walls.facets[facet]
-            t = seen(walls.frames[one.frame], one, bead)
-            if t.x > -bead.r:
-                t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
-                _press(shared, clock, walls, bead, _contact(walls, bead, facet, t), at)
-            else:  # it was taken away
-                row[at : at + shared.width] = 0.0
-    if not clock.advancing:
-        return
-    for n in range(count):
-        if found[n].surface != n or slot_of(row, shared, found[n].facet) > 0:
-            continue
-        at = slot_of(row, shared, -1)
-        if at == 0:
-            shared.unserved += 1
-            continue
-        contact = _contact(walls, bead, found[n].facet, touch_of(found[n]))
-        _press(shared, clock, walls, bead, contact, at)
+            _part(shared, clock, walls, bead, facet, at)
+    if clock.advancing:
+        _begin_all(shared, clock, walls, bead, count, held)

