@@ -108,7 +108,7 @@ def height(facet: Any, p: Point) -> float:
     """Height of a point over a facet's plane, in the coordinates of the facet."""
     corner, normal = facet.corner, facet.normal
     px, py, pz = p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]
-    return px * normal[0] + py * normal[1] + pz * normal[2]
+    return float(px * normal[0] + py * normal[1] + pz * normal[2])
 
 
 @kernel
