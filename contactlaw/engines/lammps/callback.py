@@ -18,6 +18,8 @@ from numba import types
 from contactlaw._jit import c_function, kernel
 from contactlaw.engines.lammps.contact import NEAR, Bead, Clock, hand_over, interact
 from contactlaw.engines.lammps.memory import (
+    MINIMIZING,
+    NO_STEPS,
     NOT_FINITE,
     SHARED,
     TOO_FAST,
@@ -25,7 +27,9 @@ from contactlaw.engines.lammps.memory import (
     carray,
     complain,
     extract,
+    keep,
     matrix_at,
+    running,
     thermo,
 )
 from contactlaw.engines.lammps.plate import ROW
@@ -59,20 +63,25 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     """Add the force of the plates to all beads of this rank."""
     shared = carray(memory, 1, SHARED)[0]
     shared.calls += 1
-    if n == 0:
+    # No step of a run has passed in a set-up; the number of the step can be reset at will.
+    advancing = thermo(shared, shared.elapsed) > 0.0
+    follows, shared.step = step == shared.step + 1, step
+    if running(shared) == MINIMIZING or (advancing and not follows):
+        keep(shared, step, -1, NO_STEPS, -1, 0.0, 0.0)
+        return
+    history_address = extract(shared, shared.history)
+    if n == 0 or history_address == 0:  # 0: a command has taken it away
         return
     dt = array_at(shared.dt, 1, np.float64)[0]
     time, at_step = (
         array_at(shared.atime, 1, np.float64),
         array_at(shared.atimestep, 1, np.int64),
     )
-    # No step of a run has passed in a set-up; the number of the step can be reset at will.
-    advancing = thermo(shared, shared.elapsed) > 0.0
     clock = Clock(step, time[0] + (step - at_step[0]) * dt, dt, advancing)
     v = matrix_at(extract(shared, shared.v), n, 3)
     radius = array_at(extract(shared, shared.radius), n, np.float64)
     mass = array_at(extract(shared, shared.rmass), n, np.float64)
-    history = matrix_at(extract(shared, shared.history), n, shared.columns)
+    history = matrix_at(history_address, n, shared.columns)
     omega, torque = v, v
     if shared.friction > 0.0:
         omega = matrix_at(extract(shared, shared.omega), n, 3)
