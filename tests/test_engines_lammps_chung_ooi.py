@@ -330,7 +330,7 @@ def test_5_tangential_speeds(case):
 
 
 # Test 6: 0.2 m/s normal and a spin; 3.5 mu (1 + e) times the normal speed, and minus slip
-# afterwards, over slip before (benchmark6_graph1), and the tangents of both angles (benchmark6_graph2)
+# afterwards, over slip before (benchmark6_graph1); tangents of both angles (benchmark6_graph2)
 ALLOY_6 = Case(7e10, 0.33, 2700, 0.1, 0.2, 0.5, 0.4)
 TURNED = [(0.176, -0.820), (0.352, -0.633), (0.551, -0.445), (0.771, -0.243), (0.969, -0.028)]
 STEEP = [(2.749, 1.272), (3.733, 3.241), (5.677, 7.127), (6.106, 7.985)]
