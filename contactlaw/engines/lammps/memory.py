@@ -8,6 +8,7 @@ import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from contactlaw._jit import kernel
@@ -27,18 +28,20 @@ ERROR, OWNER, FIRST = range(3)
 _SLOTS = 8  # contacts that a bead may have at once: a corner has three, a hole as many as edges
 
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE,
- NO_MODEL) = range(1, 9)  # fmt: skip
+ NO_MODEL, NO_STEPS) = range(1, 10)  # fmt: skip
 
-# Integers up to "overlaps" are addresses; "calls" counts those of the C function. Walls move by a
-# clock of their own: `ticks` steps of length `tick` since `base`. LAMMPS's has other bits when a
-# run is cut into pieces, and can be reset.
+MINIMIZING = 2  # of LAMMPS's states; 1 is time steps
+
+# Integers up to "overlaps" are addresses; "calls" counts those of the C function, the last of them
+# in "step". Walls move by a clock of their own: `ticks` steps of length `tick` since `base`.
+# LAMMPS's has other bits when a run is cut into pieces, and can be reset.
 SHARED = np.dtype(
-    [(name, "i8") for name in ("extract_atom", "get_thermo", "lammps")]
+    [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "lammps")]
     + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "omega", "torque")]
     + [(name, "i8") for name in ("history", "last", "elapsed", "dt", "atime", "atimestep")]
     + [(name, "i8") for name in ("sheets", "frames", "facets", "records", "overlaps")]
     + [(name, "i8") for name in ("types", "sheet_count", "frame_count", "facet_count")]
-    + [(name, "i8") for name in ("slots", "width", "columns", "calls")]
+    + [(name, "i8") for name in ("slots", "width", "columns", "calls", "step")]
     + [(name, "i8") for name in ("record_capacity", "record_count", "unserved", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
     + [(name, "f8") for name in ("error_value", "error_limit", "friction", "base", "tick")]
@@ -64,28 +67,34 @@ def _pointer(typing_context: Any, address: Any) -> Any:
 
 
 @intrinsic
-def _call(typing_context: Any, address: Any, result: Any, first: Any, second: Any) -> Any:
-    """Call a C function of two addresses whose result has the type of `result`."""
+def _call(typing_context: Any, address: Any, result: Any, given: Any) -> Any:
+    """Call a C function with a tuple of addresses; its result has the type of `result`."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        kinds = [context.get_value_type(kind) for kind in signature.args]
-        function = ir.FunctionType(kinds[1], kinds[2:]).as_pointer()
-        pointer = builder.inttoptr(arguments[0], function)
-        return builder.call(pointer, arguments[2:])
+        values = cgutils.unpack_tuple(builder, arguments[2])  # type: ignore[no-untyped-call]
+        kind = context.get_value_type(signature.args[1])
+        function = ir.FunctionType(kind, [value.type for value in values]).as_pointer()
+        return builder.call(builder.inttoptr(arguments[0], function), values)
 
-    return result(types.intp, result, types.intp, types.intp), generate
+    return result(types.intp, result, given), generate
 
 
 @kernel
 def extract(shared: Any, name: int) -> Any:
     """Address of one of LAMMPS's arrays, by the address of its name."""
-    return _call(shared.extract_atom, np.int64(0), shared.lammps, name)  # type: ignore[call-arg]
+    return _call(shared.extract_atom, np.int64(0), (shared.lammps, name))  # type: ignore[call-arg]
 
 
 @kernel
 def thermo(shared: Any, name: int) -> Any:
     """One of LAMMPS's numbers, by the address of its name."""
-    return _call(shared.get_thermo, 0.0, shared.lammps, name)  # type: ignore[call-arg]
+    return _call(shared.get_thermo, 0.0, (shared.lammps, name))  # type: ignore[call-arg]
+
+
+@kernel
+def running(shared: Any) -> Any:
+    """Tell what LAMMPS is doing."""
+    return _call(shared.is_running, np.int32(0), (shared.lammps,))  # type: ignore[call-arg]
 
 
 @kernel
@@ -125,6 +134,14 @@ def complain(
 ) -> None:
     """Keep the first error of a rank, and mark the bead, which stops the run on all ranks."""
     row[ERROR] = code
+    keep(shared, step, tag, code, plate, value, limit)
+
+
+@kernel
+def keep(
+    shared: Any, step: int, tag: int, code: int, plate: int, value: float, limit: float
+) -> None:
+    """Keep the first error of a rank; a bead or plate of -1 is none."""
     if shared.error == 0:
         shared.error, shared.error_step, shared.error_bead = code, step, tag
         shared.error_plate, shared.error_value, shared.error_limit = plate, value, limit

