@@ -103,7 +103,10 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         array_at(shared.atime, 1, np.float64),
         array_at(shared.atimestep, 1, np.int64),
     )
-    clock = Clock(step, time[0] * seconds + (step - at_step[0]) * dt, dt, advancing)
+    before = shared.before if shared.before > 0.0 else dt
+    if advancing:
+        shared.before = dt
+    clock = Clock(step, time[0] * seconds + (step - at_step[0]) * dt, dt, before, advancing)
     walls = Walls(
         array_at(shared.sheets, shared.types * shared.sheet_count, SHEET),
         array_at(shared.frames, shared.frame_count, FRAME),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.engines.lammps import memory
+from contactlaw.engines.lammps import ledger, memory
 from contactlaw.engines.lammps.geometry import Bead, Point, Touch, nearest, seen, velocity
 from contactlaw.engines.lammps.memory import (
     DISPLACEMENT,
@@ -21,13 +21,16 @@ from contactlaw.engines.lammps.memory import (
     FACET,
     FIRST,
     FORCE,
+    KICK,
     LARGEST,
     MOBILITY,
+    OVERLAP,
     OWNER,
     SPEED,
     SPRING,
     STIFFENING,
     TOLD,
+    WALL_WORK,
     WAVE,
     WORK,
     array_at,
@@ -40,7 +43,7 @@ from contactlaw.engines.record import IMPACT
 from contactlaw.equation import force
 from contactlaw.equation.waves import Waves
 from contactlaw.physical.validity import Limits, flags_of
-from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, advance, resized
+from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, resized
 
 Array = NDArray[np.float64]
 
@@ -56,6 +59,7 @@ class Clock(NamedTuple):
     step: int
     now: float  # [s]
     dt: float  # [s]
+    before: float  # the last step [s]
     advancing: bool  # else a set-up, which asks for the forces of the last step again
 
 
@@ -105,7 +109,7 @@ def _begin(
     row = bead.history
     first = u > 0.0 and row[at + LARGEST] == 0.0
     row[at + DURATION] = min(x / u, clock.dt) if first else 0.0
-    row[at + SPEED], row[at + WAVE], row[at + WORK] = u, 0.0, 0.0
+    row[at + SPEED], row[at + WAVE], row[at + WORK], row[at + WALL_WORK] = u, 0.0, 0.0, 0.0
     if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
         complain(shared, clock.step, bead.tag, row, memory.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
@@ -124,8 +128,8 @@ def _end(
     spring: Spring,
     last: State,
     u: float,
-) -> None:
-    """Put a contact whose force has ended in this step into the record."""
+) -> float:
+    """Put a contact whose force has ended in this step into the record; the force that it lacks."""
     row, scale = bead.history, spring.scale
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     if last.stiffening > 0.0:
@@ -134,21 +138,28 @@ def _end(
     lost, other = force.loss(law, dm) * unit * scale, force.other_loss(law, dm) * unit * scale
     told, row[at + TOLD] = row[at + TOLD], lost
     if not row[at + SPEED] > 0.0:  # it was put there and then left
-        return
+        return 0.0
+    missing = told - lost - row[at + WAVE] - row[at + WORK]
+    kick = ledger.settle(missing, bead.mass, u, clock.dt, row[at + DURATION] / clock.dt)
     n = shared.record_count
     if n == shared.record_capacity:
         complain(shared, clock.step, bead.tag, row, memory.TOO_MANY_RECORDS, contact.wall, 0.0, n)
-        return
+        return kick
+    touch = contact.touch
+    leaves = kick * clock.dt / bead.mass - u
+    if not touch.face and u < 0.0:
+        around = ledger.turning(bead.r, row[at + OVERLAP], touch.x, u, clock.dt)
+        leaves = ledger.free_speed(leaves, around, bead.r, touch.x)
     since = 0.0
     if u < 0.0:  # between the steps, where the compression was down to the residual one
-        gap = force.residual(law, dm) * scale + last.plate_displacement - contact.touch.x
+        gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
         since = min(max(gap / -u, 0.0), clock.dt)
     record = array_at(shared.records, shared.record_capacity, IMPACT)[n]
     record.time = clock.now - row[at + DURATION]
     record.bead, record.other = bead.tag, -1
     record.plate, record.triangle = contact.wall, contact.triangle
     record.x, record.y, record.z = contact.point
-    record.approach_speed, record.restitution = row[at + SPEED], -u / row[at + SPEED]
+    record.approach_speed, record.restitution = row[at + SPEED], leaves / row[at + SPEED]
     bead.last[0] = record.restitution
     record.contact_time = row[at + DURATION] - since
     record.peak_force = force.loading(law, math.sqrt(dm)) * unit
@@ -156,12 +167,13 @@ def _end(
     share = 1.0 - other / lost if lost > 0.0 else 0.0
     record.plastic_energy, record.wave_energy = share * (lost - told), row[at + WAVE]
     record.other_energy = (1.0 - share) * (lost - told)
-    record.wall_work = row[at + WORK]
+    record.wall_work = row[at + WALL_WORK]
     record.flags = _flags(
         bead, sheet, spring, record.approach_speed, record.contact_time,
         last.largest_compression, record.peak_force,
     )  # fmt: skip
     shared.record_count = n + 1
+    return kick
 
 
 @kernel
@@ -192,7 +204,7 @@ def _normal(
     sheet: Any,
     contact: Contact,
     at: int,
-    held: bool,
+    touching: bool,
 ) -> None:
     """Advance a contact by a step; its slot is empty afterwards if the bodies have parted."""
     row, v, touch = bead.history, contact.v, contact.touch
@@ -202,7 +214,7 @@ def _normal(
         # no deeper than a step's way; on an edge the way is not along the normal
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + _AT_REST * bead.r
         # (but a bead may come from one surface deep into the next)
-        if touch.x > deepest and not held:
+        if touch.x > deepest and not touching:
             complain(shared, clock.step, bead.tag, row, memory.STARTS_INSIDE, contact.wall,
                      touch.x, deepest)  # fmt: skip
     elif touch.face and side != row[at + FACET]:
@@ -220,26 +232,38 @@ def _normal(
         row[at + DISPLACEMENT], row[at + LARGEST], row[at + FORCE], row[at + MOBILITY],
         row[at + STIFFENING],
     )  # fmt: skip
-    state = advance(law, spring, last, touch.x, clock.dt)
+    state, kick = ledger.step(law, spring, last, touch.x, u, clock.dt, clock.before)
     if state.force > 0.0 and last.force == 0.0:
         _begin(shared, clock, bead, contact.wall, at, spring, touch.x, u)
     else:
+        if not touch.face and last.force > 0.0 and 0.0 < row[at + DURATION] < clock.before:
+            # the second step: the first one does not know how fast the normal turns
+            around = ledger.turning(bead.r, row[at + OVERLAP], touch.x, u, clock.dt)
+            row[at + SPEED] = ledger.free_speed(row[at + SPEED], around, bead.r, row[at + OVERLAP])
         row[at + DURATION] += clock.dt
         if u > _FASTER * max(row[at + SPEED], 0.0):
             row[at + SPEED] = u
             _check_step(shared, clock, bead, contact.wall, spring, u)
-    square = last.force * last.force + state.force * state.force
-    mobility = state.mobility if state.stiffening > 0.0 else spring.mobility
-    row[at + WAVE] += 0.5 * clock.dt * mobility * square
+        elif clock.dt > clock.before and row[at + SPEED] > 0.0:
+            _check_step(shared, clock, bead, contact.wall, spring, row[at + SPEED])
+    row[at + WAVE] += ledger.wave_energy(spring, last, state, clock.dt)
+    held = last.force + row[at + KICK] if last.force > 0.0 else 0.0
+    row[at + WORK] += ledger.work(
+        spring, bead.r, held, state.force + kick, row[at + OVERLAP],
+        touch.x, u, clock.dt, clock.before,
+    )  # fmt: skip
     if state.force == 0.0 and last.force > 0.0:
-        _end(law, shared, clock, bead, sheet, contact, at, spring, last, u)
-    row[at + FACET] = side
+        kick = _end(law, shared, clock, bead, sheet, contact, at, spring, last, u)
     row[at + DISPLACEMENT] = state.plate_displacement
     row[at + LARGEST] = state.largest_compression
     row[at + FORCE] = state.force
     row[at + MOBILITY], row[at + STIFFENING] = state.mobility, state.stiffening
+    row[at + FACET], row[at + OVERLAP] = side, touch.x
     if touch.x <= 0.0:
-        row[at : at + shared.width] = 0.0
+        row[at : at + (shared.width if kick == 0.0 else SPRING)] = 0.0
+    if kick != 0.0:
+        row[at + FACET] = side  # also of a bead that has parted: a set-up asks for the force again
+    row[at + KICK] = kick
 
 
 @kernel
@@ -252,6 +276,8 @@ def _slide(
     row = bead.history
     spring = row[at + SPRING : at + SPRING + 3]
     k = modulus * math.sqrt(r * max(touch.x - row[at + DISPLACEMENT], 0.0))
+    push, kick = row[at + FORCE], row[at + KICK]
+    parted = push == 0.0 and kick != 0.0
     if clock.advancing:
         # the sphere's point of contact is at -r n from its centre
         gx = spring[0] + clock.dt * (v[0] - r * (omega[1] * nz - omega[2] * ny))
@@ -259,9 +285,16 @@ def _slide(
         gz = spring[2] + clock.dt * (v[2] - r * (omega[0] * ny - omega[1] * nx))
         along = gx * nx + gy * ny + gz * nz
         gx, gy, gz = gx - along * nx, gy - along * ny, gz - along * nz
-        pull, most = k * math.sqrt(gx * gx + gy * gy + gz * gz), friction * row[at + FORCE]
-        share = most / pull if pull > most else 1.0
+        pull, most = k * math.sqrt(gx * gx + gy * gy + gz * gz), friction * push
+        share = 1.0 if push > 0.0 or parted else 0.0
+        if push > 0.0 and pull > most:
+            share = most / pull
         spring[0], spring[1], spring[2] = share * gx, share * gy, share * gz
+    if parted:  # a contact that ends slides
+        size = math.sqrt(spring[0] ** 2 + spring[1] ** 2 + spring[2] ** 2)
+        k = friction * kick / size if size > 0.0 else 0.0
+    elif kick != 0.0:
+        k *= 1.0 + kick / push
     return -k * spring[0], -k * spring[1], -k * spring[2]
 
 
@@ -279,8 +312,8 @@ def _press(
     if clock.advancing:
         law = array_at(sheet.law, sheet.law_size, np.float64)
         _normal(law, shared, clock, bead, sheet, contact, at, held)
-    push, n = row[at + FORCE], (touch.nx, touch.ny, touch.nz)
-    if push == 0.0:
+    push, n = row[at + FORCE] + row[at + KICK], (touch.nx, touch.ny, touch.nz)
+    if push == 0.0 and row[at + FORCE] == 0.0:
         return
     pull = (0.0, 0.0, 0.0)
     if shared.friction > 0.0:
@@ -297,7 +330,7 @@ def _press(
         bead.force[k] += scale * both
         work += both * w[k]
     if clock.advancing:
-        row[at + WORK] += clock.dt * work
+        row[at + WALL_WORK] += clock.dt * work
 
 
 @kernel
@@ -348,7 +381,8 @@ def _part(shared: Any, clock: Clock, walls: Walls, bead: Bead, facet: int, at: i
     if t.x > -bead.r:  # else it was taken away
         t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
         _press(shared, clock, walls, bead, _contact(walls, bead, facet, t), at, True)
-    row[at : at + shared.width] = 0.0
+    else:
+        row[at : at + shared.width] = 0.0
 
 
 @kernel
@@ -378,6 +412,7 @@ def _begin_all(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int, 
                 shared.unserved += 1
                 return
             _part(shared, clock, walls, bead, found[least].facet, at)
+            row[at : at + shared.width] = 0.0
         contact = _contact(walls, bead, found[new].facet, touch_of(found[new]))
         _press(shared, clock, walls, bead, contact, at, held)
 
@@ -405,7 +440,7 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
         if n >= 0 and found[n].surface == n:
             contact = _contact(walls, bead, facet, touch_of(found[n]))
             _press(shared, clock, walls, bead, contact, at, held)
-        elif clock.advancing:
+        elif clock.advancing or row[at + KICK] != 0.0:
             _part(shared, clock, walls, bead, facet, at)
     if clock.advancing:
         _begin_all(shared, clock, walls, bead, count, held)

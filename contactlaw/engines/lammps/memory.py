@@ -15,16 +15,18 @@ from contactlaw._jit import kernel
 
 carray: Any = numba.carray  # type: ignore[attr-defined]
 
-# A bead's history is the code of an error, the bead's ID, and slots for its contacts. (LAMMPS gives
-# a new bead the row that another one has left behind: by the ID it is known.) A slot: the facet's
-# number, counted from 1, negative if the bead is on the side from which the normal points away, 0
-# if the slot is empty; the state of the contact; the time since first touch [s], summed up
-# (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset); approach speed
-# [m/s]; energy to the wave, and energy to plastic flow that is in the record already [J]; work of a
-# moving wall [J]; with friction, the three components of the tangential spring [m].
+# A bead's history is the code of an error, the bead's ID, and slots for its contacts. (LAMMPS
+# gives a new bead the row that another one has left behind: by the ID it is known.) A slot: the
+# facet's number, counted from 1, negative if the bead is on the side from which the normal points
+# away, 0 if the slot is empty; the state of the contact; the time since first touch [s], summed
+# up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset); approach
+# speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already [J];
+# the overlap [m]; work of the contact's force on the bead, in the wall's frame, and of the wall
+# that moves [J]; a force of this step alone, beside that of the state [N]; with friction, the
+# three components of the tangential spring [m].
 ERROR, OWNER, FIRST = range(3)
-(FACET, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD, WORK,
- SPRING) = range(12)  # fmt: skip
+(FACET, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD, OVERLAP,
+ WORK, WALL_WORK, KICK, SPRING) = range(15)  # fmt: skip
 _SLOTS = 8  # contacts that a bead may have at once: a corner has three, a hole as many as edges
 
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE,
@@ -44,7 +46,10 @@ SHARED = np.dtype(
     + [(name, "i8") for name in ("slots", "width", "columns", "calls", "step")]
     + [(name, "i8") for name in ("record_capacity", "record_count", "unserved", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
-    + [(name, "f8") for name in ("error_value", "error_limit", "friction", "base", "tick")]
+    + [
+        (name, "f8")
+        for name in ("error_value", "error_limit", "friction", "base", "tick", "before")
+    ]
     + [(name, "f8") for name in ("length", "time", "mass")],  # LAMMPS's units, in SI
     align=True,
 )
