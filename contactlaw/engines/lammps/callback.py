@@ -59,8 +59,6 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     """Add the force of the plates to all beads of this rank."""
     shared = carray(memory, 1, SHARED)[0]
     shared.calls += 1
-    if n == 0:
-        return
     dt = array_at(shared.dt, 1, np.float64)[0]
     time, at_step = (
         array_at(shared.atime, 1, np.float64),
@@ -68,7 +66,12 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     )
     # No step of a run has passed in a set-up; the number of the step can be reset at will.
     advancing = thermo(shared, shared.elapsed) > 0.0
-    clock = Clock(step, time[0] + (step - at_step[0]) * dt, dt, advancing)
+    before = shared.before if shared.before > 0.0 else dt
+    if advancing:
+        shared.before = dt
+    if n == 0:
+        return
+    clock = Clock(step, time[0] + (step - at_step[0]) * dt, dt, before, advancing)
     v = matrix_at(extract(shared, shared.v), n, 3)
     radius = array_at(extract(shared, shared.radius), n, np.float64)
     mass = array_at(extract(shared, shared.rmass), n, np.float64)

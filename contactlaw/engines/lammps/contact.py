@@ -13,14 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.engines.lammps import memory
+from contactlaw.engines.lammps import ledger, memory
 from contactlaw.engines.lammps.memory import (
     DISPLACEMENT,
     DURATION,
     FIRST,
     FORCE,
+    KICK,
     LARGEST,
     MOBILITY,
+    OVERLAP,
     OWNER,
     PLATE,
     SPEED,
@@ -28,6 +30,7 @@ from contactlaw.engines.lammps.memory import (
     STIFFENING,
     TOLD,
     WAVE,
+    WORK,
     array_at,
     complain,
     slot_of,
@@ -37,7 +40,7 @@ from contactlaw.engines.record import IMPACT
 from contactlaw.equation import force
 from contactlaw.equation.waves import Waves
 from contactlaw.physical.validity import Limits, flags_of
-from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, advance, resized
+from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, resized
 
 Array = NDArray[np.float64]
 
@@ -56,6 +59,7 @@ class Clock(NamedTuple):
     step: int
     now: float  # [s]
     dt: float  # [s]
+    before: float  # the last step [s]
     advancing: bool  # else a set-up, which asks for the forces of the last step again
 
 
@@ -188,7 +192,7 @@ def _begin(
     row = bead.history
     first = u > 0.0 and row[at + LARGEST] == 0.0
     row[at + DURATION] = min(x / u, clock.dt) if first else 0.0
-    row[at + SPEED], row[at + WAVE] = u, 0.0
+    row[at + SPEED], row[at + WAVE], row[at + WORK] = u, 0.0, 0.0
     if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
         complain(shared, clock.step, bead.tag, row, memory.WRONG_MASS, p, bead.mass, spring.mass)
     if u > 0.0:
@@ -208,8 +212,8 @@ def _end(
     last: State,
     touch: Touch,
     u: float,
-) -> None:
-    """Put a contact whose force has ended in this step into the record."""
+) -> float:
+    """Put a contact whose force has ended in this step into the record; the force that it lacks."""
     row, scale = bead.history, spring.scale
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     if last.stiffening > 0.0:
@@ -218,11 +222,17 @@ def _end(
     lost, other = force.loss(law, dm) * unit * scale, force.other_loss(law, dm) * unit * scale
     told, row[at + TOLD] = row[at + TOLD], lost
     if not row[at + SPEED] > 0.0:  # it was put there and then left
-        return
+        return 0.0
+    missing = told - lost - row[at + WAVE] - row[at + WORK]
+    kick = ledger.settle(missing, bead.mass, u, clock.dt, row[at + DURATION] / clock.dt)
     n = shared.record_count
     if n == shared.record_capacity:
         complain(shared, clock.step, bead.tag, row, memory.TOO_MANY_RECORDS, p, 0.0, n)
-        return
+        return kick
+    leaves = kick * clock.dt / bead.mass - u
+    if not touch.face and u < 0.0:
+        around = ledger.turning(bead.r, row[at + OVERLAP], touch.x, u, clock.dt)
+        leaves = ledger.free_speed(leaves, around, bead.r, touch.x)
     since = 0.0
     if u < 0.0:  # between the steps, where the compression was down to the residual one
         gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
@@ -231,7 +241,7 @@ def _end(
     record.time = clock.now - row[at + DURATION]
     record.bead, record.plate, record.other = bead.tag, p, -1
     record.x, record.y, record.z = _nearest(touch, bead)
-    record.approach_speed, record.restitution = row[at + SPEED], -u / row[at + SPEED]
+    record.approach_speed, record.restitution = row[at + SPEED], leaves / row[at + SPEED]
     record.contact_time = row[at + DURATION] - since
     record.peak_force = force.loading(law, math.sqrt(dm)) * unit
     # a contact that goes on where another has dented the bead loses what is left of the loop
@@ -243,6 +253,7 @@ def _end(
         last.largest_compression, record.peak_force,
     )  # fmt: skip
     shared.record_count = n + 1
+    return kick
 
 
 @kernel
@@ -293,26 +304,37 @@ def _normal(
         row[at + DISPLACEMENT], row[at + LARGEST], row[at + FORCE], row[at + MOBILITY],
         row[at + STIFFENING],
     )  # fmt: skip
-    state = advance(law, spring, last, touch.x, clock.dt)
+    state, kick = ledger.step(law, spring, last, touch.x, u, clock.dt, clock.before)
     if state.force > 0.0 and last.force == 0.0:
         _begin(shared, clock, bead, p, at, spring, touch.x, u)
     else:
+        if not touch.face and last.force > 0.0 and 0.0 < row[at + DURATION] < clock.before:
+            # the second step: the first one does not know how fast the normal turns
+            around = ledger.turning(bead.r, row[at + OVERLAP], touch.x, u, clock.dt)
+            row[at + SPEED] = ledger.free_speed(row[at + SPEED], around, bead.r, row[at + OVERLAP])
         row[at + DURATION] += clock.dt
         if u > _FASTER * max(row[at + SPEED], 0.0):
             row[at + SPEED] = u
             _check_step(shared, clock, bead, p, spring, u)
-    square = last.force * last.force + state.force * state.force
-    mobility = state.mobility if state.stiffening > 0.0 else spring.mobility
-    row[at + WAVE] += 0.5 * clock.dt * mobility * square
+    row[at + WAVE] += ledger.wave_energy(spring, last, state, clock.dt)
+    held = last.force + row[at + KICK] if last.force > 0.0 else 0.0
+    row[at + WORK] += ledger.work(
+        spring, bead.r, held, state.force + kick, row[at + OVERLAP],
+        touch.x, u, clock.dt, clock.before,
+    )  # fmt: skip
     if state.force == 0.0 and last.force > 0.0:
-        _end(law, shared, clock, bead, plate, p, at, spring, last, touch, u)
+        kick = _end(law, shared, clock, bead, plate, p, at, spring, last, touch, u)
     row[at + PLATE] = side
     row[at + DISPLACEMENT] = state.plate_displacement
     row[at + LARGEST] = state.largest_compression
     row[at + FORCE] = state.force
     row[at + MOBILITY], row[at + STIFFENING] = state.mobility, state.stiffening
+    row[at + OVERLAP] = touch.x
     if touch.x <= 0.0:
         row[at : at + shared.width] = 0.0
+    if kick != 0.0:
+        row[at + PLATE] = side  # also of a bead that has parted: a set-up asks for the force again
+    row[at + KICK] = kick
 
 
 @kernel
@@ -367,7 +389,7 @@ def interact(shared: Any, clock: Clock, plates: Any, p: int, bead: Bead) -> None
     if clock.advancing:
         law = array_at(plate.law, plate.law_size, np.float64)
         _normal(law, shared, clock, bead, plate, p, at, touch)
-    push = bead.history[at + FORCE]
+    push = bead.history[at + FORCE] + bead.history[at + KICK]
     bead.force[0] += push * touch.nx
     bead.force[1] += push * touch.ny
     bead.force[2] += push * touch.nz

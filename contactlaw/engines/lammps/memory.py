@@ -20,10 +20,11 @@ carray: Any = numba.carray  # type: ignore[attr-defined]
 # points away, 0 if the slot is empty; the state of the contact; the time since first touch [s],
 # summed up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset);
 # approach speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already
-# [J]; with friction, the three components of the tangential spring [m].
+# [J]; the overlap [m]; the work of the contact's force on the bead [J]; a force of this step alone,
+# beside that of the state [N]; with friction, the three components of the tangential spring [m].
 ERROR, OWNER, FIRST = range(3)
 (PLATE, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD,
- SPRING) = range(11)  # fmt: skip
+ OVERLAP, WORK, KICK, SPRING) = range(14)  # fmt: skip
 _SLOTS = 3  # plates that a bead may touch at once; a corner has three
 
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, TOO_MANY_PLATES, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST,
@@ -41,7 +42,7 @@ SHARED = np.dtype(
     + [(name, "i8") for name in ("plate_count", "slots", "width", "columns", "calls")]
     + [(name, "i8") for name in ("record_capacity", "record_count")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
-    + [(name, "f8") for name in ("error_value", "error_limit", "friction")]
+    + [(name, "f8") for name in ("error_value", "error_limit", "friction", "before")]
     + [("low", "f8", 3), ("high", "f8", 3)],
     align=True,
 )

@@ -1,0 +1,124 @@
+"""What the force of a contact does in LAMMPS's scheme, and what makes it what the law says.
+
+Velocity Verlet pushes a bead at whole steps only, but a contact begins and ends inside a step. The
+force sets in as (t - t0)^1.5, and a sum over steps misses the integral of that by a zeta function
+of the phase (Navot, J. Math. and Phys. 40, 1961, 271): the force of the first step is corrected by
+it. Where the contact ends, the bead is given what its energy then lacks of what law and wave have
+left it. The work is summed up just as Verlet's scheme does it, whatever other forces act, so that
+an elastic bead keeps its energy to rounding.
+
+Legend: x overlap, u speed towards the plate, m mass, r radius, s distance of the bead's centre from
+the nearest point of the plate, h step, f force; 0 and 1 are the beginning and the end of a step.
+u is that of the middle of the step, by the normal at its end.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.equation import force
+from contactlaw.softsphere import Spring, State, advance
+
+Array = NDArray[np.float64]
+
+# zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6: a least-squares fit
+_ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 0.0013675)
+# Largest relative change of the speed with which a bead leaves, times (steps per contact)^2.5:
+# twice what the scheme errs without it (`contactlaw.softsphere.time_step`). A bead that more is
+# missing of has been hit in between, or hardly leaves.
+_MOST = 1.8
+
+
+@kernel
+def step(
+    law: Array, spring: Spring, state: State, x: float, u: float, h: float, before: float
+) -> tuple[State, float]:
+    """State at the end of a step, and a force to add to the state's there and then only.
+
+    Verlet's position differs from the sphere's by h^2 f/(12 m), see `contactlaw.softsphere`, and so
+    does its speed. Where the step was another one before, the sphere must not jump: the change of
+    position goes into the plate's displacement, that of the speed into the force to add.
+    """
+    f0, u2 = state.force, state.plate_displacement
+    shift = (h * h - before * before) / (12.0 * spring.mass) if f0 > 0.0 else 0.0
+    last = State(
+        u2 - shift * f0, state.largest_compression, f0, state.mobility, state.stiffening
+    )  # fmt: skip
+    new = advance(law, spring, last, x, h)
+    f1 = new.force
+    if f1 > 0.0 and shift != 0.0:
+        u2 = new.plate_displacement + shift * (f1 - f0)
+        new = State(u2, new.largest_compression, f1, new.mobility, new.stiffening)
+        return new, spring.mass * shift * (f1 - f0) / (h * h)
+    if f1 > 0.0 and state.largest_compression == 0.0 and x <= u * h and force.is_hertz(law):
+        return new, _before_the_first(spring, x, u * h)
+    return new, 0.0
+
+
+@kernel
+def _before_the_first(spring: Spring, x: float, way: float) -> float:
+    """Force that the sum over the steps of a contact lacks where it begins."""
+    t, zeta = x / way, 0.0
+    for coefficient in _ZETA[::-1]:
+        zeta = zeta * t + coefficient
+    return -(t * math.sqrt(t) + zeta) * spring.stiffness * way * math.sqrt(way)
+
+
+@kernel
+def wave_energy(spring: Spring, last: State, state: State, h: float) -> float:
+    """Energy that the plate takes in a step [J]."""
+    mobility = state.mobility if state.stiffening > 0.0 else spring.mobility
+    speed_0 = mobility * last.force - last.plate_displacement / spring.relaxation
+    speed_1 = mobility * state.force - state.plate_displacement / spring.relaxation
+    return 0.5 * h * (last.force * speed_0 + state.force * speed_1)
+
+
+@kernel
+def work(
+    spring: Spring, r: float, f0: float, f1: float, x0: float, x1: float, u: float,
+    h: float, before: float,
+) -> float:  # fmt: skip
+    """Work of the forces on the bead in a step, half of that of either end [J].
+
+    The normal turns where the nearest point is on an edge: the way along the first one follows from
+    the two distances.
+    """
+    s0, s1 = r - x0, r - x1
+    way_0 = ((x0 - x1) * (s0 + s1) + s1 * u * h) / s0
+    # where the step changes, Verlet's force acts for half of either
+    uneven = (h * h - before * before) * f0 * f0 / (8.0 * spring.mass)
+    return 0.5 * (f0 * way_0 - f1 * u * h) - uneven
+
+
+@kernel
+def settle(missing: float, m: float, u: float, h: float, steps: float) -> float:
+    """Force to add in the last step, for a bead that leaves with so much energy too little [N]."""
+    square = u * u + 2.0 * missing / m
+    if not (u < 0.0 and square > 0.0):
+        return 0.0
+    change = math.sqrt(square) + u
+    if not abs(change) <= -u * _MOST / (steps * steps * math.sqrt(steps)):
+        return 0.0
+    return m * change / h
+
+
+@kernel
+def turning(r: float, x0: float, x1: float, u: float, h: float) -> float:
+    """Square of the speed around an edge or a corner [m^2/s^2]."""
+    way = 2.0 * r - x0 - x1 + u * h
+    return max((x1 - x0 - u * h) * way, 0.0) / (h * h)
+
+
+@kernel
+def free_speed(u: float, turning: float, r: float, x: float) -> float:
+    """Normal speed at overlap 0 of a bead in free flight that has the speed u at overlap x.
+
+    Around an edge a bead in free flight has no steady normal speed. With this one at either end of
+    the contact, the energies of an impact add up.
+    """
+    s = 1.0 - x / r
+    return math.sqrt(u * u + turning * (1.0 - s * s))
