@@ -316,6 +316,8 @@ def _normal(
         if u > _FASTER * max(row[at + SPEED], 0.0):
             row[at + SPEED] = u
             _check_step(shared, clock, bead, p, spring, u)
+        elif clock.dt > clock.before and row[at + SPEED] > 0.0:
+            _check_step(shared, clock, bead, p, spring, row[at + SPEED])
     row[at + WAVE] += ledger.wave_energy(spring, last, state, clock.dt)
     held = last.force + row[at + KICK] if last.force > 0.0 else 0.0
     row[at + WORK] += ledger.work(

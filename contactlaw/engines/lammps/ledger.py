@@ -31,6 +31,7 @@ _ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 
 # twice what the scheme errs without it (`contactlaw.softsphere.time_step`). A bead that more is
 # missing of has been hit in between, or hardly leaves.
 _MOST = 1.8
+_ONE = 1.01  # step's way at most between first touch and the end of that step; an edge is round
 
 
 @kernel
@@ -54,7 +55,7 @@ def step(
         u2 = new.plate_displacement + shift * (f1 - f0)
         new = State(u2, new.largest_compression, f1, new.mobility, new.stiffening)
         return new, spring.mass * shift * (f1 - f0) / (h * h)
-    if f1 > 0.0 and state.largest_compression == 0.0 and x <= u * h and force.is_hertz(law):
+    if f1 > 0.0 and state.largest_compression == 0.0 and x <= _ONE * u * h and force.is_hertz(law):
         return new, _before_the_first(spring, x, u * h)
     return new, 0.0
 

