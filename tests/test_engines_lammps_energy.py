@@ -1,4 +1,4 @@
-"""Energy of beads in LAMMPS: what they keep, what the record says of it, steps that change, edges."""
+"""Energy of beads in LAMMPS: what they keep and what the record says; steps that change, edges."""
 
 import math
 
@@ -55,7 +55,7 @@ PHASES = np.linspace(0.0, 1.0, 13)
 
 @pytest.mark.parametrize("steps", [21, 50])
 def test_an_elastic_bead_keeps_its_energy_for_ten_thousand_bounces(steps):
-    """Between two plates; a part of the step more than the last bounce is each one's phase."""
+    """Between two plates, at ever another phase of the step."""
     dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / steps
     plates = [flat(math.inf), flat(math.inf, height=2 * R + 2e-5)]
     lmp = make((0, 0, R + 1e-5), (0, 0, -3.0), dt=dt)
@@ -69,7 +69,7 @@ def test_an_elastic_bead_keeps_its_energy_for_ten_thousand_bounces(steps):
 
 
 def test_and_in_a_field_of_gravity():
-    """So strong a one that a flight takes 11 contacts: the last force does not know of it."""
+    """So strong a one that a flight takes as long as 11 contacts."""
     speed, gravity, start = 3.0, 1e5, R + 1e-6
     dt = float(HERTZ.solve(speed, R, math.inf).contact_time) / 50
     lmp = make((0, 0, start), (0, 0, -speed), dt=dt, gravity=gravity)
@@ -109,7 +109,7 @@ def test_two_contacts_at_once_do_no_harm():
     edges = [(sign * side * math.cos(lean), 0, side * math.sin(lean)) for sign in (1, -1)]
     plates = [Plate((0, -0.05, 0), edge, (0, 0.1, 0), math.inf) for edge in edges]
     dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / 65
-    start = R / math.cos(lean) + 2e-5
+    start = R / math.cos(lean) + 2e-5  # [m] above the groove's bottom
     lmp = make((3e-6, 0, start), (0.9, 0, -3.0), dt=dt, gravity=1e4)
     walls = attach(lmp, HERTZ, plates)
     energies = []
@@ -123,17 +123,18 @@ def test_two_contacts_at_once_do_no_harm():
     assert np.array(energies) == pytest.approx(0.5 * (0.81 + 9.0) + 1e4 * start, rel=1e-4)
 
 
-def test_a_run_in_pieces_gives_the_last_push_once():
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+def test_a_run_in_pieces_gives_the_last_push_once(friction):
     """A set-up asks for the forces of the last step again, also for those of a bead that parted."""
     ends = []
+    dt = float(MYC.solve(5.0, R, 1e-3).contact_time) / 40
     for pieces in (1, 120):
-        dt = float(MYC.solve(5.0, R, 1e-3).contact_time) / 40
-        lmp = make((0, 0, R + 3.3 * dt * 5), (0, 0, -5), dt=dt)
-        walls = attach(lmp, MYC, [flat(1e-3)])
+        lmp = make((0, 0, R + 3.3 * dt * 5), (3, 0, -5), dt=dt)
+        walls = attach(lmp, MYC, [flat(1e-3)], friction=friction)
         for _ in range(pieces):
             lmp.command(f"run {120 // pieces}")
         own = state(lmp)
-        ends.append((own["x"][0, 2], own["v"][0, 2], walls.collisions()["restitution"][0]))
+        ends.append((*own["x"][0], *own["v"][0], walls.collisions()["restitution"][0]))
         assert not own["d2_contactlaw"][0, PLATE:].any()
         lmp.close()
     assert ends[0] == ends[1]

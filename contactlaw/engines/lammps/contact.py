@@ -333,7 +333,7 @@ def _normal(
     row[at + MOBILITY], row[at + STIFFENING] = state.mobility, state.stiffening
     row[at + OVERLAP] = touch.x
     if touch.x <= 0.0:
-        row[at : at + shared.width] = 0.0
+        row[at : at + (shared.width if kick == 0.0 else SPRING)] = 0.0
     if kick != 0.0:
         row[at + PLATE] = side  # also of a bead that has parted: a set-up asks for the force again
     row[at + KICK] = kick
@@ -348,6 +348,8 @@ def _slide(
     row = bead.history
     spring = row[at + SPRING : at + SPRING + 3]
     k = modulus * math.sqrt(r * max(touch.x - row[at + DISPLACEMENT], 0.0))
+    push, kick = row[at + FORCE], row[at + KICK]
+    parted = push == 0.0 and kick != 0.0
     if clock.advancing:
         # the sphere's point of contact is at -r n from its centre
         gx = spring[0] + clock.dt * (v[0] - r * (omega[1] * nz - omega[2] * ny))
@@ -355,9 +357,16 @@ def _slide(
         gz = spring[2] + clock.dt * (v[2] - r * (omega[0] * ny - omega[1] * nx))
         along = gx * nx + gy * ny + gz * nz
         gx, gy, gz = gx - along * nx, gy - along * ny, gz - along * nz
-        pull, most = k * math.sqrt(gx * gx + gy * gy + gz * gz), friction * row[at + FORCE]
-        share = most / pull if pull > most else 1.0
+        pull, most = k * math.sqrt(gx * gx + gy * gy + gz * gz), friction * push
+        share = 1.0 if push > 0.0 or parted else 0.0
+        if push > 0.0 and pull > most:
+            share = most / pull
         spring[0], spring[1], spring[2] = share * gx, share * gy, share * gz
+    if parted:  # a contact that ends slides
+        size = math.sqrt(spring[0] ** 2 + spring[1] ** 2 + spring[2] ** 2)
+        k = friction * kick / size if size > 0.0 else 0.0
+    elif kick != 0.0:
+        k *= 1.0 + kick / push
     tx, ty, tz = -k * spring[0], -k * spring[1], -k * spring[2]
     bead.force[0] += tx
     bead.force[1] += ty

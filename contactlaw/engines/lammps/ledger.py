@@ -15,13 +15,14 @@ u is that of the middle of the step, by the normal at its end.
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.softsphere import Spring, State, advance
+from contactlaw.softsphere import FEWEST_STEPS, Spring, State, advance
 
 Array = NDArray[np.float64]
 
@@ -45,7 +46,7 @@ def step(
     position goes into the plate's displacement, that of the speed into the force to add.
     """
     f0, u2 = state.force, state.plate_displacement
-    shift = (h * h - before * before) / (12.0 * spring.mass) if f0 > 0.0 else 0.0
+    shift = (h - before) * (h + before) / (12.0 * spring.mass) if f0 > 0.0 else 0.0
     last = State(
         u2 - shift * f0, state.largest_compression, f0, state.mobility, state.stiffening
     )  # fmt: skip
@@ -61,7 +62,7 @@ def step(
 
 
 @kernel
-def _before_the_first(spring: Spring, x: float, way: float) -> float:
+def _before_the_first(spring: Spring, x: float, way: float) -> Any:
     """Force that the sum over the steps of a contact lacks where it begins."""
     t, zeta = x / way, 0.0
     for coefficient in _ZETA[::-1]:
@@ -70,7 +71,7 @@ def _before_the_first(spring: Spring, x: float, way: float) -> float:
 
 
 @kernel
-def wave_energy(spring: Spring, last: State, state: State, h: float) -> float:
+def wave_energy(spring: Spring, last: State, state: State, h: float) -> Any:
     """Energy that the plate takes in a step [J]."""
     mobility = state.mobility if state.stiffening > 0.0 else spring.mobility
     speed_0 = mobility * last.force - last.plate_displacement / spring.relaxation
@@ -82,7 +83,7 @@ def wave_energy(spring: Spring, last: State, state: State, h: float) -> float:
 def work(
     spring: Spring, r: float, f0: float, f1: float, x0: float, x1: float, u: float,
     h: float, before: float,
-) -> float:  # fmt: skip
+) -> Any:  # fmt: skip
     """Work of the forces on the bead in a step, half of that of either end [J].
 
     The normal turns where the nearest point is on an edge: the way along the first one follows from
@@ -91,7 +92,7 @@ def work(
     s0, s1 = r - x0, r - x1
     way_0 = ((x0 - x1) * (s0 + s1) + s1 * u * h) / s0
     # where the step changes, Verlet's force acts for half of either
-    uneven = (h * h - before * before) * f0 * f0 / (8.0 * spring.mass)
+    uneven = (h - before) * (h + before) * f0 * f0 / (8.0 * spring.mass)
     return 0.5 * (f0 * way_0 - f1 * u * h) - uneven
 
 
@@ -101,7 +102,7 @@ def settle(missing: float, m: float, u: float, h: float, steps: float) -> float:
     square = u * u + 2.0 * missing / m
     if not (u < 0.0 and square > 0.0):
         return 0.0
-    change = math.sqrt(square) + u
+    change, steps = math.sqrt(square) + u, max(steps, FEWEST_STEPS)
     if not abs(change) <= -u * _MOST / (steps * steps * math.sqrt(steps)):
         return 0.0
     return m * change / h
@@ -116,10 +117,10 @@ def turning(r: float, x0: float, x1: float, u: float, h: float) -> float:
 
 @kernel
 def free_speed(u: float, turning: float, r: float, x: float) -> float:
-    """Normal speed at overlap 0 of a bead in free flight that has the speed u at overlap x.
+    """Take a normal speed u at overlap x to overlap 0, along a free flight.
 
-    Around an edge a bead in free flight has no steady normal speed. With this one at either end of
-    the contact, the energies of an impact add up.
+    Around an edge the normal turns during the contact. With speeds at one distance from the edge
+    the energies of an impact add up, and an elastic bead has a COR of 1.
     """
     s = 1.0 - x / r
     return math.sqrt(u * u + turning * (1.0 - s * s))
