@@ -18,6 +18,7 @@ SUBJECTS = (
     "elements",
     "c_header",
     "lammps",
+    "meshes",
     "liggghts",
     "census",
 )

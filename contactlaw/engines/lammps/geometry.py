@@ -193,6 +193,5 @@ def cell_of(frame: Any, k: int, coordinate: float) -> int:
 @kernel
 def entries_of(frame: Any) -> tuple[Any, Any]:
     """Where each cell's list begins, and the lists."""
-    cells = frame.cells
-    starts = array_at(frame.starts, cells[0] * cells[1] * cells[2] + 1, np.int64)
+    starts = array_at(frame.starts, frame.cell_count + 1, np.int64)
     return starts, array_at(frame.entries, frame.entry_count, np.int32)

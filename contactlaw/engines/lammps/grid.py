@@ -19,6 +19,7 @@ Floats = NDArray[np.float64]
 GRID: list[tuple[Any, ...]] = [
     ("origin", "f8", 3), ("per_length", "f8"), ("cells", "i8", 3),
     ("starts", "i8"), ("entries", "i8"), ("entry_count", "i8"),  # addresses of the lists
+    ("busy", "i8"), ("cell_count", "i8"),  # a bit per cell, set if its list is not empty
     ("reach", "f8"),
 ]  # fmt: skip
 
@@ -56,6 +57,7 @@ class Grid:
         nothing = np.empty(0, np.int32)
         _list(corners, low, cell, cells, self.reach, counts, nothing)
         self.starts = np.cumsum(counts)
+        self.busy = np.packbits(counts[1:] > 0, bitorder="little")
         self.entries = np.empty(int(self.starts[-1]), np.int32)
         ends = self.starts[:-1].copy()
         _list(corners, low, cell, cells, self.reach, ends, self.entries)
@@ -66,6 +68,7 @@ class Grid:
         row["origin"], row["per_length"], row["cells"] = self.origin, self.per_length, self.cells
         row["starts"], row["entries"] = self.starts.ctypes.data, self.entries.ctypes.data
         row["entry_count"], row["reach"] = self.entries.size, self.reach
+        row["busy"], row["cell_count"] = self.busy.ctypes.data, self.starts.size - 1
 
 
 @kernel

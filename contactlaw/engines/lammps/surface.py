@@ -28,6 +28,7 @@ from contactlaw.engines.lammps.geometry import (
     to_frame,
     turned,
 )
+from contactlaw.engines.lammps.memory import array_at
 
 _SEAM = 1e-4  # [r] between facets that are one surface to a bead
 _TIE = 1e-9  # [r] of overlap: rounding
@@ -88,9 +89,9 @@ def near(frames: Any, x: Point, r: float) -> bool:
         i, j, k = cell_of(frame, 0, p[0]), cell_of(frame, 1, p[1]), cell_of(frame, 2, p[2])
         cells = frame.cells
         if 0 <= i < cells[0] and 0 <= j < cells[1] and 0 <= k < cells[2]:
-            starts, _ = entries_of(frame)
             at = (i * cells[1] + j) * cells[2] + k
-            if starts[at + 1] > starts[at]:
+            busy = array_at(frame.busy, (frame.cell_count + 7) >> 3, np.uint8)
+            if busy[at >> 3] >> (at & 7) & 1:
                 return True
     return False
 
