@@ -123,14 +123,15 @@ def test_two_contacts_at_once_do_no_harm():
     assert np.array(energies) == pytest.approx(0.5 * (0.81 + 9.0) + 1e4 * start, rel=1e-4)
 
 
+@pytest.mark.parametrize("thickness", [math.inf, 1e-3])  # parted at the push, and not quite yet
 @pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_a_run_in_pieces_gives_the_last_push_once(friction):
+def test_a_run_in_pieces_gives_the_last_push_once(friction, thickness):
     """A set-up asks for the forces of the last step again, also for those of a bead that parted."""
     ends = []
-    dt = float(MYC.solve(5.0, R, 1e-3).contact_time) / 40
+    dt = float(MYC.solve(5.0, R, thickness).contact_time) / 40
     for pieces in (1, 120):
         lmp = make((0, 0, R + 3.3 * dt * 5), (3, 0, -5), dt=dt)
-        walls = attach(lmp, MYC, [flat(1e-3)], friction=friction)
+        walls = attach(lmp, MYC, [flat(thickness)], friction=friction)
         for _ in range(pieces):
             lmp.command(f"run {120 // pieces}")
         own = state(lmp)
