@@ -50,11 +50,12 @@ def test_shifts_and_rates_are_those_of_the_formulas(time):
     assert row["shift"] == pytest.approx(
         np.array([1e-3, 0, -2e-3]) * math.sin(omega * time + 0.4), abs=1e-15
     )
-    assert row["rate"] == pytest.approx(
-        np.array([1e-3, 0, -2e-3]) * omega * math.cos(omega * time + 0.4), abs=1e-12
+    speed = np.array([1e-3, 0, -2e-3]) * omega
+    # a mean over one step and over two differs from the rate in mid-step by (omega dt)^2/24, /6
+    assert row["half_rate"] == pytest.approx(
+        speed * math.cos(omega * (time - 0.5e-6) + 0.4), rel=1e-7, abs=1e-9
     )
-    half = placed(swing, time - 0.5e-6)
-    assert row["half_rate"] == pytest.approx(half["rate"], abs=1e-12)
+    assert row["rate"] == pytest.approx(speed * math.cos(omega * time + 0.4), rel=1e-7, abs=1e-9)
     row = placed(Translation((1, 2, 3)), time)
     assert row["shift"] == pytest.approx(np.array([1, 2, 3]) * time, rel=1e-15)
     assert row["rate"].tolist() == [1, 2, 3]
@@ -118,7 +119,7 @@ def test_the_work_of_the_wall_closes_the_account(model, motion):
     before = 0.5 * MASS * 25
     lost = row["plastic_energy"] + row["wave_energy"] + row["other_energy"]
     assert abs(row["wall_work"]) > 0.1 * before
-    assert energy(now) - before == pytest.approx(row["wall_work"] - lost, abs=2e-3 * before)
+    assert energy(now) - before == pytest.approx(row["wall_work"] - lost, abs=1e-7 * before)
 
 
 def test_a_wall_that_stands_still_does_no_work(model):

@@ -81,15 +81,17 @@ class Contact(NamedTuple):
     touch: Touch
     point: Point  # [m]
     v: Point  # of the bead relative to the wall, half a step before [m/s]
+    w: Point  # of the wall [m/s]
 
 
 @kernel
 def _contact(walls: Walls, bead: Bead, facet: int, touch: Touch) -> Contact:
     row, point = walls.facets[facet], nearest(touch, bead)
     frame = walls.frames[row.frame]
-    w, v = velocity(frame, frame.half_rate, point), bead.v
-    u = (v[0] - w[0], v[1] - w[1], v[2] - w[2])
-    return Contact(facet, row.wall, row.triangle, touch, point, u)
+    before, v = velocity(frame, frame.half_rate, point), bead.v
+    u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
+    w = velocity(frame, frame.rate, point)
+    return Contact(facet, row.wall, row.triangle, touch, point, u, w)
 
 
 @kernel
@@ -167,7 +169,9 @@ def _end(
     share = 1.0 - other / lost if lost > 0.0 else 0.0
     record.plastic_energy, record.wave_energy = share * (lost - told), row[at + WAVE]
     record.other_energy = (1.0 - share) * (lost - told)
-    record.wall_work = row[at + WALL_WORK]
+    w = contact.w
+    along = w[0] * touch.nx + w[1] * touch.ny + w[2] * touch.nz
+    record.wall_work = row[at + WALL_WORK] + clock.dt * kick * along
     record.flags = _flags(
         bead, sheet, spring, record.approach_speed, record.contact_time,
         last.largest_compression, record.peak_force,
@@ -323,12 +327,11 @@ def _press(
         bead.torque[1] += arm * (n[2] * pull[0] - n[0] * pull[2])
         bead.torque[2] += arm * (n[0] * pull[1] - n[1] * pull[0])
     scale = shared.time**2 / (shared.mass * shared.length)
-    frame, work = walls.frames[facet.frame], 0.0
-    w = velocity(frame, frame.rate, contact.point)
+    work = 0.0
     for k in range(3):
         both = push * n[k] + pull[k]
         bead.force[k] += scale * both
-        work += both * w[k]
+        work += both * contact.w[k]
     if clock.advancing:
         row[at + WALL_WORK] += clock.dt * work
 
@@ -402,16 +405,17 @@ def _begin_all(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int, 
             return
         at = slot_of(row, shared, -1)
         if at == 0:
-            least = -1
+            least = math.inf
             for k in range(shared.slots):
                 slot = FIRST + k * shared.width
                 n = _place_of(found, count, int(abs(row[slot + FACET])) - 1)
-                if least < 0 or found[n].x < found[least].x:
-                    least, at = n, slot
-            if not found[new].x > found[least].x:
+                x = found[n].x if n >= 0 else 0.0  # it has ended in this step
+                if x < least:
+                    least, at = x, slot
+            if not found[new].x > least:
                 shared.unserved += 1
                 return
-            _part(shared, clock, walls, bead, found[least].facet, at)
+            _part(shared, clock, walls, bead, int(abs(row[at + FACET])) - 1, at)
             row[at : at + shared.width] = 0.0
         contact = _contact(walls, bead, found[new].facet, touch_of(found[new]))
         _press(shared, clock, walls, bead, contact, at, held)

@@ -245,8 +245,10 @@ def check_motion(motion: Any) -> None:
 POSE: list[tuple[Any, ...]] = [
     ("turn", "f8", 9),  # row by row
     ("shift", "f8", 3),
-    ("rate", "f8", 3),  # of the shift [m/s]
-    ("half_rate", "f8", 3),  # half a step before: engines of Verlet's kind have velocities there
+    # mean velocity of the shift over the step before, and over that and the next [m/s]: with
+    # Verlet's velocities, which are those in mid-step, overlaps and energies so add up
+    ("half_rate", "f8", 3),
+    ("rate", "f8", 3),
 ]
 
 
@@ -264,34 +266,35 @@ def _interval(times: Any, time: float) -> int:
 
 
 @kernel
-def _shift(row: Any, time: float, shift: Any, rate: Any) -> None:
-    """Displacement of all but the rotation, and its rate."""
-    swing = row.frequency * time + row.phase
-    out, speed = math.sin(swing), row.frequency * math.cos(swing)
-    for k in range(3):
-        shift[k] = row.velocity[k] * time + row.amplitude[k] * out
-        rate[k] = row.velocity[k] + row.amplitude[k] * speed
+def _swing(row: Any, time: float) -> tuple[float, float, float]:
+    """Displacement of a vibration and a table."""
+    out, a = math.sin(row.frequency * time + row.phase), row.amplitude
+    x, y, z = a[0] * out, a[1] * out, a[2] * out
     if row.count == 0:
-        return
+        return x, y, z
     times = array_at(row.times, row.count, np.float64)
     places = array_at(row.displacements, (row.count, 3), np.float64)
     n = _interval(times, time)
-    if 0 <= n < row.count - 1:
-        span, age = times[n + 1] - times[n], time - times[n]
-        for k in range(3):
-            rate[k] = (places[n + 1, k] - places[n, k]) / span
-            shift[k] = places[n, k] + rate[k] * age
-    else:
-        for k in range(3):
-            rate[k] = 0.0
-            shift[k] = places[max(n, 0), k]
+    m, share = min(n + 1, row.count - 1), 0.0
+    n = max(n, 0)
+    if m > n:
+        share = (time - times[n]) / (times[m] - times[n])
+    p, q = places[n], places[m]
+    return (
+        x + p[0] + share * (q[0] - p[0]),
+        y + p[1] + share * (q[1] - p[1]),
+        z + p[2] + share * (q[2] - p[2]),
+    )
 
 
 @kernel
 def place(row: Any, time: float, dt: float) -> None:
     """Put a wall to where it is at a time, the end of a step of length dt [s]."""
-    _shift(row, time - 0.5 * dt, row.shift, row.half_rate)
-    _shift(row, time, row.shift, row.rate)
+    last, here, then = _swing(row, time - dt), _swing(row, time), _swing(row, time + dt)
+    for k in range(3):
+        row.shift[k] = row.velocity[k] * time + here[k]
+        row.half_rate[k] = row.velocity[k] + (here[k] - last[k]) / dt
+        row.rate[k] = row.velocity[k] + (then[k] - last[k]) / (2.0 * dt)
     angle = row.spin * time
     c, s = math.cos(angle), math.sin(angle)
     a, b, d, k = row.axis[0], row.axis[1], row.axis[2], 1.0 - c
