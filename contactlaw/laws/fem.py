@@ -152,6 +152,16 @@ class Given(NamedTuple):
 PARAMETERS = Given._fields
 
 
+class _Works(NamedTuple):
+    """What the law says of contacts at some largest compressions, one array for each."""
+
+    force: Array
+    loading: Array  # work
+    recovery: Array  # of it, as a share
+    plastic: Array
+    residual: Array  # 0 where nothing yields
+
+
 class Curves:
     """What the law says for a pair, as functions of the root compression q.
 
@@ -226,13 +236,23 @@ class Curves:
         above = np.maximum(q, 1.0)
         return np.asarray(((above - 1.0) / (above + SHIFT)) ** 2 * self._sum("impact", above))
 
-    def plastic(self, q: Array) -> Array:
-        """Plastic work over the loading work."""
+    def plastic(self, q: Array, recovery: Array) -> Array:
+        """Plastic work over the loading work, where that share of it is given back."""
         if not self.ratio:
             return np.zeros_like(q)
-        above = np.maximum(q, 1.0)
-        lost = 1.0 - self.recovery(above) / (1.0 - self.friction)
-        return np.asarray(lost * -np.expm1(-self._sum("plastic", above)))
+        lost = 1.0 - recovery / (1.0 - self.friction)
+        return np.asarray(lost * -np.expm1(-self._sum("plastic", np.maximum(q, 1.0))))
+
+    def works(self, q: Array) -> _Works:
+        """All of it at once, each function computed but once."""
+        recovery = self.recovery(q)
+        return _Works(
+            force=self.force(q),
+            loading=self.work(q),
+            recovery=recovery,
+            plastic=self.plastic(q, recovery),
+            residual=self.residual(q) if self.ratio else np.zeros_like(q),
+        )
 
 
 @functools.cache
@@ -248,19 +268,25 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         # so strong that it would yield where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 
+    known: list[tuple[Array, _Works]] = []  # of one array, which four formulas are asked about
+
+    def works(dm: Array) -> _Works:
+        if not (known and known[0][0] is dm):
+            known[:] = [(dm, curves.works(np.sqrt(dm)))]
+        return known[0][1]
+
     def exponent(dm: Array) -> Array:
-        q = np.sqrt(dm)
-        left = (dm - 1.0) ** 2 * curves.residual(q) if curves.ratio else np.zeros_like(dm)
-        left = np.where(dm > 1.0, left, 0.0) if curves.ratio else left
-        return curves.force(q) * (dm - left) / (curves.recovery(q) * curves.work(q)) - 1.0
+        at = works(dm)
+        left = np.where(dm > 1.0, (dm - 1.0) ** 2 * at.residual, 0.0)
+        return at.force * (dm - left) / (at.recovery * at.loading) - 1.0
 
     def loss(dm: Array) -> Array:
-        q = np.sqrt(dm)
-        return (1.0 - curves.recovery(q)) * curves.work(q)
+        at = works(dm)
+        return (1.0 - at.recovery) * at.loading
 
     def other(dm: Array) -> Array:
-        q = np.sqrt(dm)
-        return (1.0 - curves.recovery(q) - curves.plastic(q)) * curves.work(q)
+        at = works(dm)
+        return (1.0 - at.recovery - at.plastic) * at.loading
 
     first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
     start = _SMALLEST / curves.scale
@@ -271,9 +297,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
     if curves.ratio:
         loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))
         unloading.append(
-            Unloading(
-                1.0, lambda dm: curves.residual(np.sqrt(dm)), exponent, loss, other, order=2.0
-            )
+            Unloading(1.0, lambda dm: works(dm).residual, exponent, loss, other, order=2.0)
         )
     return Law.of(
         name=f"fem({','.join(f'{number:.6g}' for number in given)})",
