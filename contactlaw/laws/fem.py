@@ -255,7 +255,7 @@ class Curves:
         )
 
 
-@functools.cache
+@functools.lru_cache(maxsize=64)  # a fit makes one for every trial
 def law(*given: float) -> Law:
     """Law of a pair, from the numbers of `PARAMETERS`."""
     return law_of(Given(*given), numbers())
