@@ -180,7 +180,7 @@ class Curves:
         constant, slope = found["stiffening"]
         self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
         self.friction = friction_loss(given, found["friction"])
-        self._terms: dict[str, tuple[Array, Array]] = {}
+        self._terms: dict[str, Array] = {}
         if not self.ratio:
             return
         weights = given.weights(float(found["blend"]))
@@ -190,14 +190,14 @@ class Curves:
                 powers = cases.get(case, {}).get(part)
                 if powers is not None:
                     terms[int(part == "share")] += weight * _sized(powers)
-            self._terms[name] = terms[0], terms[1]
+            usual, moved = terms  # which counts by 1 - t
+            self._terms[name] = np.pad(usual + moved, [(0, 1), (0, 0)])
+            self._terms[name][1:] -= moved
 
     def _sum(self, name: str, q: Array) -> Array:
         """Sum of the powers of t and w of one of the functions."""
         t, w = (q - 1.0) / (q + SHIFT), math.sqrt(self.scale) * q
-        usual, moved = self._terms[name]
-        sums = np.polynomial.polynomial.polyval2d(t, w, np.stack([usual, moved], axis=-1))
-        return np.asarray(sums[0] + (1.0 - t) * sums[1])
+        return np.asarray(np.polynomial.polynomial.polyval2d(t, w, self._terms[name]))
 
     def _over(self, name: str, q: Array) -> Array:
         """Compute 1 + (q - 1) t (sum of powers), the denominators of the law; 1 below yield."""
