@@ -43,8 +43,12 @@ class Errors(NamedTuple):
         """Covariance of both."""
         return np.asarray(self.statistical + self.model)
 
+    def widened(self, factor: float) -> Errors:
+        """Those of the data times a factor, to the errors themselves."""
+        return Errors(self.statistical * factor**2, self.model)
 
-def covariances(predictor: Predictor, slopes: Array, error: Array, model: Array) -> Errors:
+
+def covariances(predictor: Predictor, slopes: Array, error: Array, model: Array | None) -> Errors:
     """Propagate errors of the values, the priors and the model.
 
     Parameters
@@ -55,15 +59,16 @@ def covariances(predictor: Predictor, slopes: Array, error: Array, model: Array)
         Derivatives of the values with respect to the logarithms of the parameters.
     error : ndarray (m,)
         Standard errors of the values.
-    model : ndarray (m, m)
-        Covariance of the model's errors.
+    model : ndarray (m, m) or None
+        Covariance of the model's errors; None where they are not known.
     """
     scaled = slopes / error[:, None]
     priors = [one.prior for one in predictor.moved]
     held = np.diag([0.0 if prior is None else prior**-2 for prior in priors])
     statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + held + _RIDGE * np.eye(len(priors))))
     gain = statistical @ (scaled / error[:, None]).T
-    return Errors(statistical, np.asarray(gain @ model @ gain.T))
+    own = np.zeros_like(statistical) if model is None else gain @ model @ gain.T
+    return Errors(statistical, np.asarray(own))
 
 
 def model_covariance(predictor: Predictor, values: Array) -> Array | None:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, Measurements
+from contactlaw.fitting.notes import notes
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, parameters, setting
 from contactlaw.laws import DEFAULT, Law
+from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import law_of
 
 Array = NDArray[np.float64]
@@ -22,8 +25,8 @@ Array = NDArray[np.float64]
 _ROUNDS = 2  # of finding errors that are not known; the third changes them by less than 1 %
 _LEAST = 1e-6  # of them, relatively: data without any scatter
 _POOLED = 4  # values of a kind, below which its scatter is that of all kinds
-_FAR = 4.0  # standard errors: a value that is so far off is named
-_MISFIT = 1.5  # scatter over what was to be expected, from which on that is said
+_TRIALS = 60  # strengths, down to the first that the data exclude
+_EXCLUDED = 4.0  # above the least sum of squares: two standard errors
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +82,41 @@ class Fit:
     thickness: Array
     data: Measurements
     law: str
+    _state: _State = field(repr=False)
+
+    def curve(
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike
+    ) -> tuple[Rebound, dict[str, Array]]:
+        """Rebounds at other speeds with the values found, and their standard errors.
+
+        Parameters
+        ----------
+        speed : array_like
+            Normal approach speeds [m/s].
+        radius, thickness : array_like
+            Of beads and plates [m]; those that were found are moved with their errors.
+
+        Returns
+        -------
+        Rebound
+            Everything about these impacts, integrated.
+        dict of str to ndarray
+            Standard errors of the kinds that were measured, from the errors of all that was moved.
+        """
+        state = self._state
+        v, r, h, _ = broadcast(speed=speed, radius=radius, thickness=thickness)
+        check(speed=v, radius=r, thickness=h)
+        one = np.full(v.size, 0.5)
+        kinds = {name: one for name in self.residuals}
+        data = Measurements(speed=v, radius=r, thickness=h, **kinds)
+        moved = [replace(p, centre=x) for p, x in zip(state.predictor.moved, state.at, strict=True)]
+        along = Predictor(self.pair, state.predictor.law, data, moved, Values.of(data))
+        here = along.at(state.at)
+        slopes = along.derivatives(state.at, here)
+        spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance.total, slopes))
+        parts = np.split(spread, len(kinds))
+        in_order = [name for name in KINDS if name in kinds]
+        return along.impacts(state.at), dict(zip(in_order, parts, strict=True))
 
 
 def fit(
@@ -196,53 +234,81 @@ def _scatter(values: Values, fitted: Array, unknown: NDArray[np.bool_], freedom:
     return found
 
 
+@dataclass(frozen=True, eq=False)
+class _State:
+    """Where a fit has ended."""
+
+    predictor: Predictor
+    at: Array
+    error: Array  # of the values
+    covariance: errors.Errors  # of the logarithms of all that was moved
+
+
 def _result(
     predictor: Predictor, descent: search.Descent, at: Array, error: Array, freedom: float
 ) -> Fit:
-    moved, values = predictor.moved, predictor.values
-    fitted, slopes = descent.predicted(np.log(at)), descent.slopes(np.log(at))
+    values, names = predictor.values, tuple(one.name for one in predictor.moved if one.wanted)
+    x = np.log(at)
+    fitted = descent.predicted(x)
     model = errors.model_covariance(predictor, at)
-    none = np.zeros((fitted.size, fitted.size))
-    found = errors.covariances(predictor, slopes, error, none if model is None else model)
-    wanted = [n for n, one in enumerate(moved) if one.wanted]
-    names = tuple(moved[n].name for n in wanted)
-    block = np.ix_(wanted, wanted)
+    found = errors.covariances(predictor, descent.slopes(x), error, model)
     hit = predictor.impacts(at)
+    asked = slice(len(names))  # they come first
     if freedom > 0.0:
-        identify.check(names, at[wanted], found.statistical[block], _reason(predictor, at, error))
-    widened = found.statistical * (errors.student(freedom) if freedom > 0.0 else 0.0) ** 2
-    total = (widened + found.model)[block]
+        identify.check(
+            names, at[asked], found.statistical[asked, asked], lambda: _why(predictor, at, error)
+        )
+    found = found.widened(errors.student(freedom) if freedom > 0.0 else 0.0)
+    total = found.total[asked, asked]
     spread = np.sqrt(np.diag(total))
-
-    def sizes(covariance: Array) -> dict[str, float]:
-        roots = np.sqrt(np.diag(covariance[block]))
-        return {
-            name: float(at[n] * root) for name, n, root in zip(names, wanted, roots, strict=True)
-        }
-
-    bodies = predictor.setting(at)
-    of = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
+    own = None if model is None else np.sqrt(np.diag(model)) / fitted
     off = values.value / fitted - 1.0
-    flags = np.asarray(hit.flags)
+    kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
+    bodies = predictor.setting(at)
+
+    def named(sizes: Array) -> dict[str, float]:
+        return dict(zip(names, sizes[asked].tolist(), strict=True))
+
     return Fit(
         unknown=names,
-        values={name: float(at[n]) for name, n in zip(names, wanted, strict=True)},
-        errors={name: float(at[n] * s) for name, n, s in zip(names, wanted, spread, strict=True)},
-        statistical_errors=sizes(widened),
-        model_errors=sizes(found.model),
+        values=named(at),
+        errors=named(at * np.sqrt(np.diag(found.total))),
+        statistical_errors=named(at * np.sqrt(np.diag(found.statistical))),
+        model_errors=named(at * np.sqrt(np.diag(found.model))),
         correlation=total / np.outer(spread, spread),
-        residuals={name: off[rows] for name, rows in of.items()},
-        rows={name: values.row[rows] for name, rows in of.items()},
-        scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in of.items()},
-        flags=flags,
-        notes=(),
+        residuals={name: off[rows] for name, rows in kinds.items()},
+        rows={name: values.row[rows] for name, rows in kinds.items()},
+        scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in kinds.items()},
+        flags=np.asarray(hit.flags),
+        notes=tuple(notes(predictor, at, hit, error / fitted, freedom, own)),
         pair=bodies.pair,
         radius=bodies.radius,
         thickness=bodies.thickness,
         data=predictor.data,
         law=predictor.law.family,
+        _state=_State(predictor, at, error, found),
     )
 
 
-def _reason(predictor: Predictor, at: Array, error: Array) -> str:
-    return "their errors are too large for it"
+def _why(predictor: Predictor, at: Array, error: Array) -> str:
+    """Say why one unknown alone is left open."""
+    (one,) = (one for one in predictor.moved if one.wanted)
+    if not one.is_strength:
+        return "they hardly depend on it, beside their errors"
+    low, high = search.limits(predictor)
+    least = float("nan")
+    best = math.inf
+    for factor in np.geomspace(1.0, low[0] / high[0], _TRIALS):
+        trial = at.copy()
+        trial[0] = high[0] * factor
+        off = (predictor.at(trial) - predictor.values.value) / error
+        best = min(best, float(off @ off))
+        if float(off @ off) > best + _EXCLUDED:
+            break
+        least = float(trial[0])
+    else:
+        return f"law {predictor.law.family!r} does not depend on it with these bodies"
+    return (
+        f"any of {least:.2g} Pa or more fits as well, since the body hardly yields then. "
+        "Measure faster impacts"
+    )

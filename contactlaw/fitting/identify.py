@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,7 +38,9 @@ class UnidentifiedError(ValueError):
         return self.message
 
 
-def check(names: tuple[str, ...], values: Array, covariance: Array, reason: str) -> None:
+def check(
+    names: tuple[str, ...], values: Array, covariance: Array, reason: Callable[[], str]
+) -> None:
     """Refuse values that the data leave open, and say what they do not.
 
     Parameters
@@ -45,8 +49,8 @@ def check(names: tuple[str, ...], values: Array, covariance: Array, reason: str)
         What was asked for, and found.
     covariance : ndarray (k, k)
         Of the logarithms, from the data alone.
-    reason : str
-        Why one alone is left open, if that is known.
+    reason : callable
+        Says why one alone is left open.
 
     Raises
     ------
@@ -57,7 +61,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array, reason: str)
     if not squares[-1] > _VAGUE**2:
         return
     if len(names) == 1:
-        raise UnidentifiedError(f"unknown: the data do not tell {names[0]}: {reason}", names)
+        raise UnidentifiedError(f"unknown: the data do not tell {names[0]}: {reason()}", names)
     known = []
     for square, direction in zip(squares, directions.T, strict=True):
         if square <= _VAGUE**2:
