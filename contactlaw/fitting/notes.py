@@ -68,10 +68,10 @@ def notes(
     low, high = search.limits(predictor)
     for one, value, least, largest in zip(predictor.moved, at, low, high, strict=True):
         if not least * (1.0 + _AT_BOUND) < value < largest * (1.0 - _AT_BOUND):
-            yield f"{one.name} is at the end of the range that is looked at, {least:.3g} to {largest:.3g}"
+            yield f"{one.name} is at an end of the range that is searched, {least:.3g} to {largest:.3g}"
     if any(one.is_strength for one in predictor.moved):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
-        yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield: they tell the strength"
+        yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and tell the strength"
     flags = np.asarray(hit.flags)
     for flag, _ in count_flags(flags).items():
         (words,) = explain(flag)
@@ -115,7 +115,7 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
         if ratio > _MISFIT:
             yield (
                 f"the values are off by {ratio:.2g} times what their errors and the model's allow: "
-                "another number may be wrong, the errors too small, or the rebounds beyond the model"
+                "another number may be wrong, or the errors too small"
             )
     if freedom < 3.0:
         return

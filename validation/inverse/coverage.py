@@ -1,10 +1,10 @@
-"""How often the true value lies within the stated standard error: 68 of 100 times, if that is right.
+"""How often the true value lies within the stated standard error: 68 times of 100, if it is right.
 
 Configurations are drawn by a seed: beads and plates of the catalogue, half of them with other
 strengths, R 0.3 to 3 mm, R/H 0.15 to 1.8, 8 to 30 speeds below, across or above yield, one to three
-kinds of values with errors of 0.3 to 3 %, which the fit knows or has to find. The data are the model's
-own, with scatter; in half of the sets the model errs, too, as its stated covariance has it, and then
-the whole error is judged, else the part from the data.
+kinds of values with errors of 0.3 to 3 %, which the fit knows or has to find. The data are those of
+the model, with scatter; in half of the sets the model errs, too, as its stated covariance has it,
+and then the whole error is judged, else the part from the data.
 """
 
 from __future__ import annotations
@@ -101,7 +101,7 @@ def _of_other_strength(random: np.random.Generator, body: cl.Material) -> cl.Mat
 
 
 def truth(one: Configuration, law: str) -> Rebound:
-    """What the model says of it."""
+    """Predict its rebounds."""
     size = np.ones_like(one.speed)
     at = Setting(one.pair, one.radius * size, one.thickness * size)
     return impacts(at, law_of(one.pair, law), one.speed)
@@ -130,7 +130,7 @@ def _model_error(
 ) -> dict[str, Array]:
     data = cl.Measurements(
         speed=one.speed, radius=one.radius, thickness=one.thickness,
-        **{kind: np.clip(v, None, 1.2) if kind == "restitution" else v for kind, v in exact.items()},
+        **exact,
     )  # fmt: skip
     moved = parameters(one.pair, data, "density", {})
     values = Values.of(data)
