@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 _ROUNDS = 2  # of finding errors that are not known; the third changes them by less than 1 %
 _LEAST = 1e-6  # of them, relatively: data without any scatter
 _POOLED = 4  # values of a kind, below which its scatter is that of all kinds
-_TRIALS = 60  # strengths, down to the first that the data exclude
+_TRIALS = 40  # strengths, down to the first that the data exclude
 _EXCLUDED = 4.0  # above the least sum of squares: two standard errors
 
 
@@ -255,9 +255,8 @@ def _result(
     hit = predictor.impacts(at)
     asked = slice(len(names))  # they come first
     if freedom > 0.0:
-        identify.check(
-            names, at[asked], found.statistical[asked, asked], lambda: _why(predictor, at, error)
-        )
+        _check_strengths(predictor, at, fitted, error)
+        identify.check(names, at[asked], found.statistical[asked, asked])
     found = found.widened(errors.student(freedom) if freedom > 0.0 else 0.0)
     total = found.total[asked, asked]
     spread = np.sqrt(np.diag(total))
@@ -290,25 +289,40 @@ def _result(
     )
 
 
-def _why(predictor: Predictor, at: Array, error: Array) -> str:
-    """Say why one unknown alone is left open."""
-    (one,) = (one for one in predictor.moved if one.wanted)
-    if not one.is_strength:
-        return "they hardly depend on it, beside their errors"
-    low, high = search.limits(predictor)
-    least = float("nan")
-    best = math.inf
-    for factor in np.geomspace(1.0, low[0] / high[0], _TRIALS):
-        trial = at.copy()
-        trial[0] = high[0] * factor
-        off = (predictor.at(trial) - predictor.values.value) / error
-        best = min(best, float(off @ off))
-        if float(off @ off) > best + _EXCLUDED:
-            break
-        least = float(trial[0])
-    else:
-        return f"law {predictor.law.family!r} does not depend on it with these bodies"
-    return (
-        f"any of {least:.2g} Pa or more fits as well, since the body hardly yields then. "
-        "Measure faster impacts"
-    )
+def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Array) -> None:
+    """Refuse a strength that might as well be any larger one.
+
+    Raises
+    ------
+    UnidentifiedError
+    """
+
+    def squares(values: Array) -> float:
+        off = (values - predictor.values.value) / error
+        return float(off @ off)
+
+    for n, one in enumerate(predictor.moved):
+        if one.is_strength and one.wanted and one.prior is None:
+            strong = at.copy()
+            strong[n] = search.limits(predictor)[1][n]
+            if squares(predictor.at(strong)) < squares(fitted) + _EXCLUDED:
+                why = _least_strength(predictor, strong, n, squares)
+                raise identify.UnidentifiedError(
+                    f"unknown: the data do not tell {one.name}: {why}", (one.name,)
+                )
+
+
+def _least_strength(
+    predictor: Predictor, strong: Array, n: int, squares: Callable[[Array], float]
+) -> str:
+    """Say from which strength on the data exclude none."""
+    trial, high = strong.copy(), squares(predictor.at(strong)) + _EXCLUDED
+    low = search.limits(predictor)[0][n]
+    for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
+        trial[n] = strong[n] * factor
+        if squares(predictor.at(trial)) > high:
+            return (
+                f"any above {trial[n] / 1e6:.2g} MPa or so fits as well, since the body does not "
+                "yield enough. Measure faster impacts"
+            )
+    return f"law {predictor.law.family!r} does not depend on it with these bodies"

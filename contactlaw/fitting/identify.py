@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -38,9 +36,7 @@ class UnidentifiedError(ValueError):
         return self.message
 
 
-def check(
-    names: tuple[str, ...], values: Array, covariance: Array, reason: Callable[[], str]
-) -> None:
+def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
     """Refuse values that the data leave open, and say what they do not.
 
     Parameters
@@ -49,8 +45,6 @@ def check(
         What was asked for, and found.
     covariance : ndarray (k, k)
         Of the logarithms, from the data alone.
-    reason : callable
-        Says why one alone is left open.
 
     Raises
     ------
@@ -61,7 +55,10 @@ def check(
     if not squares[-1] > _VAGUE**2:
         return
     if len(names) == 1:
-        raise UnidentifiedError(f"unknown: the data do not tell {names[0]}: {reason()}", names)
+        raise UnidentifiedError(
+            f"unknown: the data do not tell {names[0]}: they hardly depend on it",
+            names,
+        )
     known = []
     for square, direction in zip(squares, directions.T, strict=True):
         if square <= _VAGUE**2:

@@ -68,7 +68,7 @@ def notes(
     low, high = search.limits(predictor)
     for one, value, least, largest in zip(predictor.moved, at, low, high, strict=True):
         if not least * (1.0 + _AT_BOUND) < value < largest * (1.0 - _AT_BOUND):
-            yield f"{one.name} is at an end of the range that is searched, {least:.3g} to {largest:.3g}"
+            yield f"{one.name} is at an end of what is searched, {least:.3g} to {largest:.3g}"
     if any(one.is_strength for one in predictor.moved):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
         yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and tell the strength"

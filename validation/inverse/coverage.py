@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 QUESTIONS = (*((name,) for name in UNKNOWNS), ("yield_strength", "thickness"),
              ("radius", "thickness", "plate_yield_strength"))  # fmt: skip
 REGIMES = {"below": (0.02, 0.7), "across": (0.2, 8.0), "above": (3.0, 60.0)}  # V0/V_Y0
+_LEAST = 0.05  # COR that is still measured
 _SWIFTEST = 40.0  # [m/s]
 
 
@@ -88,9 +89,11 @@ def draw(random: np.random.Generator, question: tuple[str, ...], law: str) -> Co
         least = 2 if len(question) > 1 else 1
         kinds = tuple(random.permutation(list(KINDS))[: random.integers(least, 4)].tolist())
         noise = tuple(np.exp(random.uniform(math.log(0.003), math.log(0.03), len(kinds))).tolist())
-        return Configuration(
+        one = Configuration(
             pair, radius, thickness, speed, kinds, noise, bool(random.integers(2)), regime
         )
+        if np.min(truth(one, law).restitution) > _LEAST:
+            return one
 
 
 def _of_other_strength(random: np.random.Generator, body: cl.Material) -> cl.Material:
