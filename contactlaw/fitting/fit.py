@@ -26,6 +26,7 @@ _ROUNDS = 2  # of finding errors that are not known; the third changes them by l
 _LEAST = 1e-6  # of them, relatively: data without any scatter
 _POOLED = 4  # values of a kind, below which its scatter is that of all kinds
 _TRIALS = 40  # strengths, down to the first that the data exclude
+_APART = 3.0  # standard errors, from which on two values are different ones
 _EXCLUDED = 4.0  # above the least sum of squares: two standard errors
 
 
@@ -185,8 +186,8 @@ def fit(
     moved = parameters(pair, data, unknown, priors or {})
     predictor = Predictor(pair, _law(pair, law, moved), data, moved, Values.of(data))
     descent = search.Descent(predictor)
-    at, error, freedom = _found(predictor, descent)
-    return _result(predictor, descent, at, error, freedom)
+    ends, error, freedom = _found(predictor, descent)
+    return _result(predictor, descent, ends, error, freedom)
 
 
 def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
@@ -201,24 +202,27 @@ def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
     return law_of(pair, law)
 
 
-def _found(predictor: Predictor, descent: search.Descent) -> tuple[Array, Array, float]:
-    """Values, errors of the data, and degrees of freedom; those are inf where errors are known."""
+def _found(predictor: Predictor, descent: search.Descent) -> tuple[list[Array], Array, float]:
+    """Where the descents ended, the nearest to the data first, the errors of these, and freedom.
+
+    That is infinite where the errors were given.
+    """
     values = predictor.values
     unknown = np.isnan(values.error)
     error = np.where(unknown, search.GUESSED * values.value, values.error)
     tried = [descent(start, error) for start in search.scan(predictor)]
-    at, _ = min(tried, key=lambda one: one[1])
+    at, *others = (at for at, _ in sorted(tried, key=lambda one: one[1]))
     free = sum(one.prior is None for one in predictor.moved)
     freedom = float(values.value.size - free)
     if not unknown.any():
-        return at, error, math.inf
+        return [at, *others], error, math.inf
     if freedom < 1.0:
-        return at, error, 0.0
+        return [at, *others], error, 0.0
     for _ in range(_ROUNDS):
         fitted = predictor.at(at)
         error = np.where(unknown, _scatter(values, fitted, unknown, freedom) * fitted, error)
         at, _ = descent(at, error)
-    return at, error, freedom
+    return [at, *others], error, freedom
 
 
 def _scatter(values: Values, fitted: Array, unknown: NDArray[np.bool_], freedom: float) -> Array:
@@ -245,8 +249,9 @@ class _State:
 
 
 def _result(
-    predictor: Predictor, descent: search.Descent, at: Array, error: Array, freedom: float
+    predictor: Predictor, descent: search.Descent, ends: list[Array], error: Array, freedom: float
 ) -> Fit:
+    at = ends[0]
     values, names = predictor.values, tuple(one.name for one in predictor.moved if one.wanted)
     x = np.log(at)
     fitted = descent.predicted(x)
@@ -254,13 +259,14 @@ def _result(
     found = errors.covariances(predictor, descent.slopes(x), error, model)
     hit = predictor.impacts(at)
     asked = slice(len(names))  # they come first
-    if freedom > 0.0:
-        _check_strengths(predictor, at, fitted, error)
-        identify.check(names, at[asked], found.statistical[asked, asked])
+    own = None if model is None else np.sqrt(np.diag(model))
+    expected = error if own is None else np.hypot(error, own)
+    _check_strengths(predictor, at, fitted, expected)
     found = found.widened(errors.student(freedom) if freedom > 0.0 else 0.0)
     total = found.total[asked, asked]
+    identify.check(names, at[asked], total)
     spread = np.sqrt(np.diag(total))
-    own = None if model is None else np.sqrt(np.diag(model)) / fitted
+    _check_rivals(predictor, ends, spread, expected)
     off = values.value / fitted - 1.0
     kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
     bodies = predictor.setting(at)
@@ -279,7 +285,11 @@ def _result(
         rows={name: values.row[rows] for name, rows in kinds.items()},
         scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in kinds.items()},
         flags=np.asarray(hit.flags),
-        notes=tuple(notes(predictor, at, hit, error / fitted, freedom, own)),
+        notes=tuple(
+            notes(
+                predictor, at, hit, error / fitted, freedom, None if own is None else own / fitted
+            )
+        ),
         pair=bodies.pair,
         radius=bodies.radius,
         thickness=bodies.thickness,
@@ -287,6 +297,34 @@ def _result(
         law=predictor.law.family,
         _state=_State(predictor, at, error, found),
     )
+
+
+def _squares(predictor: Predictor, values: Array, error: Array) -> float:
+    off = (values - predictor.values.value) / error
+    return float(off @ off)
+
+
+def _check_rivals(predictor: Predictor, ends: list[Array], spread: Array, error: Array) -> None:
+    """Refuse a value beside which another one, far from it, fits as well.
+
+    Raises
+    ------
+    UnidentifiedError
+    """
+    best, *others = ends
+    if sum(one.wanted for one in predictor.moved) > 1:
+        return
+    least = _squares(predictor, predictor.at(best), error)
+    for other in others:
+        apart = abs(math.log(other[0] / best[0]))
+        fits = _squares(predictor, predictor.at(other), error) < least + _EXCLUDED
+        if fits and apart > _APART * spread[0]:
+            name = predictor.moved[0].name
+            raise identify.UnidentifiedError(
+                f"unknown: two values of {name} fit as well, {best[0]:.4g} and {other[0]:.4g} "
+                "(in SI units): measure another quantity, or other speeds",
+                (name,),
+            )
 
 
 def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Array) -> None:
@@ -298,8 +336,7 @@ def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Arra
     """
 
     def squares(values: Array) -> float:
-        off = (values - predictor.values.value) / error
-        return float(off @ off)
+        return _squares(predictor, values, error)
 
     for n, one in enumerate(predictor.moved):
         if one.is_strength and one.wanted and one.prior is None:
@@ -322,7 +359,7 @@ def _least_strength(
         trial[n] = strong[n] * factor
         if squares(predictor.at(trial)) > high:
             return (
-                f"any above {trial[n] / 1e6:.2g} MPa or so fits as well, since the body does not "
+                f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
                 "yield enough. Measure faster impacts"
             )
     return f"law {predictor.law.family!r} does not depend on it with these bodies"

@@ -44,7 +44,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
     names, values : tuple of str, ndarray (k,)
         What was asked for, and found.
     covariance : ndarray (k, k)
-        Of the logarithms, from the data alone.
+        Of the logarithms.
 
     Raises
     ------
@@ -68,7 +68,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
     told = f"they tell {what} (in SI units). " if known else ""
     raise UnidentifiedError(
         f"unknown: the data do not tell {' and '.join(names)} apart: {told}"
-        "Fix one of them, say in priors how well it is known, or measure another quantity",
+        "Fix one of them, give one with its prior standard error, or measure another quantity",
         names,
         tuple(known),
     )
