@@ -120,8 +120,8 @@ def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> 
         )
     if values is not None and unknown and not prior:
         raise ValueError(
-            f"{name}: is unknown and given: leave it out of the data, or give its standard error as a "
-            "prior"
+            f"{name}: is unknown and given: leave it out of the data, or give its standard error "
+            "as a prior"
         )
     if values is not None and prior and not np.isfinite(values).all():
         raise ValueError(f"{name}: a half-space has no error: leave {name} out of priors")

@@ -1,4 +1,4 @@
-"""Judge `contactlaw.fit`: ``python -m validation.inverse [model|elements|contact_time|coverage]``."""
+"""Judge `contactlaw.fit`: ``python -m validation.inverse [NAME ...]``."""
 
 from __future__ import annotations
 

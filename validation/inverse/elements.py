@@ -133,8 +133,8 @@ def _lines(title: str, answers: list[Found], refused: int) -> list[str]:
 
 
 _HEAD = (
-    f"  {'':28s} {'':4s} {'median':>8s} {'< 2 %':>6s} {'< 5 %':>6s} {'largest':>8s} {'in 1 se':>8s} "
-    f"{'in 2':>6s}   [%]; by R/H those without a flag"
+    f"  {'':28s} {'':4s} {'median':>8s} {'< 2 %':>6s} {'< 5 %':>6s} {'largest':>8s} "
+    f"{'in 1 se':>8s} {'in 2':>6s}   [%]; by R/H those without a flag"
 )
 
 

@@ -53,8 +53,10 @@ def unseen() -> list[Impact]:
             row: dict[str, Any] = {key: values[n] for key, values in data.items()}
             found.append(
                 Impact(
-                    fit.pair_of(row),
-                    *(float(row[name]) for name in ("speed", "radius", "thickness")),
+                    pair=fit.pair_of(row),
+                    speed=float(row["speed"]),
+                    radius=float(row["radius"]),
+                    thickness=float(row["thickness"]),
                     yields=bool(row["plastic_strain"] > 0.0),
                     values={kind: float(row[kind]) for kind in KINDS},
                 )
