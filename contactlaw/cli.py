@@ -10,7 +10,7 @@ import secrets
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict
 from pathlib import Path
 from typing import Literal
@@ -191,17 +191,15 @@ def _fit(arguments: argparse.Namespace) -> None:
         read, arguments.data, radius=arguments.radius, thickness=arguments.thickness
     )
     priors = dict(arguments.prior)
-    if arguments.plot is not None:
-        with _picture(arguments):
-            found = fit(pair, data, arguments.unknown, arguments.law, priors)
+    with nullcontext() if arguments.plot is None else _picture(arguments):
+        found = fit(pair, data, arguments.unknown, arguments.law, priors)
+        if arguments.plot is not None:
             title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
             fitplot.save_fit(found, title, arguments.plot)
-    else:
-        found = fit(pair, data, arguments.unknown, arguments.law, priors)
-    if arguments.json:
-        print(json.dumps(fits.record(found), indent=2))
-        return
-    print(*fits.text(found), "", *fits.rows(found), sep="\n")
+        if arguments.json:
+            print(json.dumps(fits.record(found), indent=2))
+        else:
+            print(*fits.text(found), "", *fits.rows(found), sep="\n")
 
 
 def _history(arguments: argparse.Namespace) -> None:

@@ -153,7 +153,7 @@ def fit(
     Raises
     ------
     ValueError
-        Data out of range or incomplete, names that are not known.
+        Data out of range or incomplete, fewer values than unknowns, names that are not known.
     UnidentifiedError
         The data do not answer the question: the message says what they do tell.
     ImportError
@@ -213,6 +213,11 @@ def _found(predictor: Predictor, descent: search.Descent) -> tuple[list[Array], 
     tried = [descent(start, error) for start in search.scan(predictor)]
     at, *others = (at for at, _ in sorted(tried, key=lambda one: one[1]))
     free = sum(one.prior is None for one in predictor.moved)
+    if values.value.size < free:
+        raise ValueError(
+            f"unknown: {values.value.size} measured values cannot tell {free} unknowns: leave one "
+            "out, give priors, or measure more"
+        )
     freedom = float(values.value.size - free)
     if not unknown.any():
         return [at, *others], error, math.inf
@@ -260,13 +265,14 @@ def _result(
     hit = predictor.impacts(at)
     asked = slice(len(names))  # they come first
     own = None if model is None else np.sqrt(np.diag(model))
-    expected = error if own is None else np.hypot(error, own)
-    _check_strengths(predictor, at, fitted, expected)
+    # a value that only the model leaves open is given with the error that this makes
+    doubt = error if freedom > 0.0 or own is None else own
+    _check_strengths(predictor, at, fitted, doubt)
     found = found.widened(errors.student(freedom) if freedom > 0.0 else 0.0)
     total = found.total[asked, asked]
-    identify.check(names, at[asked], total)
+    identify.check(names, at[asked], (found.statistical if freedom > 0.0 else total)[asked, asked])
     spread = np.sqrt(np.diag(total))
-    _check_rivals(predictor, ends, spread, expected)
+    _check_rivals(predictor, ends, spread, doubt)
     off = values.value / fitted - 1.0
     kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
     bodies = predictor.setting(at)

@@ -82,26 +82,38 @@ def found(unknown: str, kinds: tuple[str, ...], law: str = "fem") -> tuple[list[
     """
     answers, refused = [], 0
     for one in unseen():
-        name, true = _asked(unknown, one)
+        name, true = asked(unknown, one)
         if not name:
             continue
-        data = {"speed": one.speed, "radius": one.radius}
-        if name != "thickness":
-            data["thickness"] = one.thickness
-        data |= {kind: one.values[kind] for kind in kinds}
-        data |= {f"{kind}_error": _ERROR * one.values[kind] for kind in kinds}
         try:
-            fit = cl.fit(one.pair, data, name, law)
+            answers.append(one_found(one, name, true, kinds, law))
         except cl.UnidentifiedError:
             refused += 1
-            continue
-        flagged = bool(fit.flags[0] & Validity.ACCURACY)
-        off, error = fit.values[name] / true - 1.0, fit.errors[name] / true
-        answers.append(Found(one.slenderness, off, error, flagged))
     return answers, refused
 
 
-def _asked(unknown: str, one: Impact) -> tuple[str, float]:
+def one_found(
+    one: Impact, name: str, true: float, kinds: tuple[str, ...], law: str = "fem"
+) -> Found:
+    """Find a number from one impact.
+
+    Raises
+    ------
+    UnidentifiedError
+        If its values do not tell it.
+    """
+    data = {"speed": one.speed, "radius": one.radius}
+    if name != "thickness":
+        data["thickness"] = one.thickness
+    data |= {kind: one.values[kind] for kind in kinds}
+    data |= {f"{kind}_error": _ERROR * one.values[kind] for kind in kinds}
+    fit = cl.fit(one.pair, data, name, law)
+    flagged = bool(fit.flags[0] & Validity.ACCURACY)
+    off, error = fit.values[name] / true - 1.0, fit.errors[name] / true
+    return Found(one.slenderness, off, error, flagged)
+
+
+def asked(unknown: str, one: Impact) -> tuple[str, float]:
     """Name and true value of what is asked for; no name where it cannot be asked."""
     if unknown == "thickness":
         return unknown, one.thickness
