@@ -48,7 +48,7 @@ _KINDS = {
 }
 
 
-class _Group(NamedTuple):
+class Group(NamedTuple):
     """Rebounds of one bead on one plate."""
 
     radius: float
@@ -56,7 +56,7 @@ class _Group(NamedTuple):
     rows: NDArray[np.intp]
 
 
-class _Curve(NamedTuple):
+class Curve(NamedTuple):
     """Fit over speed."""
 
     speed: Array
@@ -86,8 +86,8 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
         If the suffix names no format.
     """
     check_suffix(path)
-    groups = list(_groups(found))
-    curves = [_curve(found, group) for group in groups] if len(groups) <= _MOST_CURVES else []
+    groups = list(groups_of(found))
+    curves = [curve_of(found, group) for group in groups] if len(groups) <= _MOST_CURVES else []
     kinds = list(found.residuals)
     with style():
         width = 9.0 if len(kinds) == 1 else 1.5 + 5.6 * len(kinds)
@@ -108,18 +108,20 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
         figure.savefig(path)
 
 
-def _groups(found: Fit) -> Iterator[_Group]:
+def groups_of(found: Fit) -> Iterator[Group]:
+    """Part the rebounds by bead and plate."""
     sizes = np.column_stack([found.radius, found.thickness])
     for radius, thickness in np.unique(sizes, axis=0).tolist():
         rows = np.flatnonzero((sizes == (radius, thickness)).all(axis=1))
-        yield _Group(radius, thickness, rows)
+        yield Group(radius, thickness, rows)
 
 
 def _speeds(found: Fit) -> Array:
     return np.asarray(found.data.speed)
 
 
-def _curve(found: Fit, group: _Group) -> _Curve:
+def curve_of(found: Fit, group: Group) -> Curve:
+    """Predict rebounds over a little more than the measured speeds, with standard errors."""
     speed = _speeds(found)
     v = np.geomspace(speed.min() / _WIDER, speed.max() * _WIDER, _SAMPLES)
     hit, errors = found.curve(v, group.radius, group.thickness)
@@ -131,10 +133,10 @@ def _curve(found: Fit, group: _Group) -> _Curve:
         ends = np.log(overload[n - 1 : n + 1])
         begins = float(np.exp(np.interp(0.0, ends, np.log(v[n - 1 : n + 1]))))
     values = {kind: np.asarray(getattr(hit, kind)) for kind in errors}
-    return _Curve(v, values, errors, begins, bool(beyond.size))
+    return Curve(v, values, errors, begins, bool(beyond.size))
 
 
-def _draw_curve(above: Axes, below: Axes, curve: _Curve, kind: str, colour: Any) -> None:
+def _draw_curve(above: Axes, below: Axes, curve: Curve, kind: str, colour: Any) -> None:
     scale = _KINDS[kind].scale
     values, errors = curve.values[kind], curve.errors[kind]
     low, high = (values + sign * errors for sign in (-1.0, 1.0))
@@ -157,7 +159,7 @@ def _draw_curve(above: Axes, below: Axes, curve: _Curve, kind: str, colour: Any)
 
 
 def _draw_values(
-    above: Axes, below: Axes, found: Fit, group: _Group, kind: str, colour: Any, on_curve: bool
+    above: Axes, below: Axes, found: Fit, group: Group, kind: str, colour: Any, on_curve: bool
 ) -> None:
     rows, off = found.rows[kind], found.residuals[kind]
     chosen = np.isin(rows, group.rows)
@@ -208,7 +210,7 @@ def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:
     below.minorticks_off()
 
 
-def _caption(found: Fit, groups: list[_Group], curves: list[_Curve]) -> str:
+def _caption(found: Fit, groups: list[Group], curves: list[Curve]) -> str:
     parts = [", ".join(values_in_words(found)).replace("+-", "±")]
     parts.append("band: one standard error of the fit")
     if not curves:
