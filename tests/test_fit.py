@@ -140,7 +140,8 @@ def test_errors_that_are_not_given_are_found_from_the_scatter():
     widened = stats.t.ppf(stats.norm.cdf(1.0), 5) * of_mean
     share = found.statistical_errors["thickness"] / found.values["thickness"]
     assert share == pytest.approx(widened / slope, rel=0.02)
-    assert "one of 1.8 % was found from the scatter of 6 values" in " ".join(found.notes)
+    of_each = 100.0 * scatter.std(ddof=1) / scatter.mean()
+    assert f"one of {of_each:.2g} % was found from the scatter of 6 values" in " ".join(found.notes)
 
 
 def test_a_prior_enters_the_error():
@@ -185,7 +186,7 @@ def test_a_product_is_told_where_its_factors_are_not():
     assert powers == {"thickness": 1.0, "plate_density": pytest.approx(0.25, abs=0.02)}
     exact = THICKNESS * pair.plate.density ** powers["plate_density"]
     assert value == pytest.approx(exact, rel=3.0 * error)
-    assert error < 0.02
+    assert error < 0.05
 
 
 @pytest.mark.parametrize(
@@ -197,16 +198,21 @@ def test_what_a_law_does_not_depend_on_is_refused(law, asked):
         cl.fit(pair, rebounds(pair, law, noise=0.01), asked, law)
 
 
-def test_two_thicknesses_with_one_contact_time_are_told():
-    """Over a thin plate the contact is longer, near one of its own width shorter: two answers."""
-    table = cl.ImpactModel(STEEL, outside="solve")
-    h = np.geomspace(0.6e-3, 8e-3, 200)
-    times = np.asarray(table.solve(0.5, RADIUS, h).contact_time)
-    turn = int(np.argmin(times))
-    assert 0 < turn < 199  # or else there is one answer, and nothing to test
-    time = float(times[turn] + 0.5 * (times[-1] - times[turn]))
-    with pytest.raises(cl.UnidentifiedError, match="two values of thickness fit as well"):
-        cl.fit(STEEL, {"speed": 0.5, "radius": RADIUS, "contact_time": time}, "thickness")
+def test_a_thickness_that_may_be_any_larger_is_refused():
+    """A thick plate's contact time ends at that of a half-space."""
+    pair = cl.Pair("glass", "glass")
+    speed = np.array([0.5, 1.0, 2.0])
+    size = np.ones(3)
+    thick = impacts(Setting(pair, RADIUS * size, 5e-3 * size), law_of(pair, "fem"), speed)
+    time = np.asarray(thick.contact_time)
+    data = {
+        "speed": speed,
+        "radius": RADIUS,
+        "contact_time": time,
+        "contact_time_error": 4e-3 * time,
+    }
+    with pytest.raises(cl.UnidentifiedError, match="on one side only: above|standard error is"):
+        cl.fit(pair, data, "thickness")
 
 
 def test_rebounds_beyond_the_models_limits_are_flagged_one_by_one():
@@ -232,7 +238,8 @@ def test_the_curve_of_a_fit_is_the_models_with_its_values():
     hit, errors_of = found.curve([0.5, 5.0], RADIUS, found.values["thickness"])
     table = cl.ImpactModel(found.pair)
     own = table.solve([0.5, 5.0], RADIUS, found.values["thickness"])
-    assert hit.restitution == pytest.approx(own.restitution, rel=1e-7)
+    assert hit.restitution == pytest.approx(own.restitution, rel=3e-6)  # the rtol of a fit
+    assert hit.flags.tolist() == own.flags.tolist()
     slope = table.sensitivity([0.5, 5.0], RADIUS, found.values["thickness"]).thickness
     share = found.errors["thickness"] / found.values["thickness"]
     assert errors_of["restitution"] == pytest.approx(slope * share * own.restitution, rel=3e-3)
@@ -353,13 +360,15 @@ def test_finite_elements_that_no_fit_has_seen():
     assert elements.score(sizes).covered[1] >= 0.85
 
 
-SETS = 24
+SETS = 30
 
 
-@pytest.mark.parametrize("asked", [("thickness",), ("density",), ("yield_strength",)], ids="+".join)
-def test_the_true_value_is_within_the_stated_error_as_often_as_it_should(asked):
-    """A fortieth of `python -m validation.inverse coverage`: within 3 standard errors of 68 %."""
-    rows = coverage.tally(asked, SETS, seed=2)
+@pytest.mark.parametrize(
+    ("name", "law"), [("thickness", "fem"), ("density", "fem"), ("yield_strength", "myc")]
+)
+def test_the_true_value_is_within_the_stated_error_as_often_as_it_should(name, law):
+    """A part of `python -m validation.inverse coverage`: within 3 standard errors of 68 %."""
+    rows = coverage.tally((name,), SETS, 2, law)
     spread = (0.683 * 0.317 / SETS) ** 0.5
     for row in rows:
         assert row.answered == SETS

@@ -13,7 +13,7 @@ from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.notes import notes
 from contactlaw.fitting.predictions import Predictor, Values
-from contactlaw.fitting.unknowns import Parameter, parameters, setting
+from contactlaw.fitting.unknowns import UNKNOWNS, Parameter, parameters, setting
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.pair import Pair
@@ -26,8 +26,8 @@ _ROUNDS = 2  # of finding errors that are not known; the third changes them by l
 _LEAST = 1e-6  # of them, relatively: data without any scatter
 _POOLED = 4  # values of a kind, below which its scatter is that of all kinds
 _TRIALS = 40  # strengths, down to the first that the data exclude
-_APART = 3.0  # standard errors, from which on two values are different ones
 _EXCLUDED = 4.0  # above the least sum of squares: two standard errors
+_HELD = 2.0  # likewise, where two standard errors off it should be 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,8 +186,8 @@ def fit(
     moved = parameters(pair, data, unknown, priors or {})
     predictor = Predictor(pair, _law(pair, law, moved), data, moved, Values.of(data))
     descent = search.Descent(predictor)
-    ends, error, freedom = _found(predictor, descent)
-    return _result(predictor, descent, ends, error, freedom)
+    at, error, freedom = _found(predictor, descent)
+    return _result(predictor, descent, at, error, freedom)
 
 
 def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
@@ -202,16 +202,13 @@ def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
     return law_of(pair, law)
 
 
-def _found(predictor: Predictor, descent: search.Descent) -> tuple[list[Array], Array, float]:
-    """Where the descents ended, the nearest to the data first, the errors of these, and freedom.
-
-    That is infinite where the errors were given.
-    """
+def _found(predictor: Predictor, descent: search.Descent) -> tuple[Array, Array, float]:
+    """Values, errors of the data, and degrees of freedom; those are inf where errors are known."""
     values = predictor.values
     unknown = np.isnan(values.error)
     error = np.where(unknown, search.GUESSED * values.value, values.error)
     tried = [descent(start, error) for start in search.scan(predictor)]
-    at, *others = (at for at, _ in sorted(tried, key=lambda one: one[1]))
+    at, _ = min(tried, key=lambda one: one[1])
     free = sum(one.prior is None for one in predictor.moved)
     if values.value.size < free:
         raise ValueError(
@@ -220,14 +217,14 @@ def _found(predictor: Predictor, descent: search.Descent) -> tuple[list[Array], 
         )
     freedom = float(values.value.size - free)
     if not unknown.any():
-        return [at, *others], error, math.inf
+        return at, error, math.inf
     if freedom < 1.0:
-        return [at, *others], error, 0.0
+        return at, error, 0.0
     for _ in range(_ROUNDS):
         fitted = predictor.at(at)
         error = np.where(unknown, _scatter(values, fitted, unknown, freedom) * fitted, error)
         at, _ = descent(at, error)
-    return [at, *others], error, freedom
+    return at, error, freedom
 
 
 def _scatter(values: Values, fitted: Array, unknown: NDArray[np.bool_], freedom: float) -> Array:
@@ -254,9 +251,8 @@ class _State:
 
 
 def _result(
-    predictor: Predictor, descent: search.Descent, ends: list[Array], error: Array, freedom: float
+    predictor: Predictor, descent: search.Descent, at: Array, error: Array, freedom: float
 ) -> Fit:
-    at = ends[0]
     values, names = predictor.values, tuple(one.name for one in predictor.moved if one.wanted)
     x = np.log(at)
     fitted = descent.predicted(x)
@@ -272,7 +268,9 @@ def _result(
     total = found.total[asked, asked]
     identify.check(names, at[asked], (found.statistical if freedom > 0.0 else total)[asked, asked])
     spread = np.sqrt(np.diag(total))
-    _check_rivals(predictor, ends, spread, doubt)
+    if len(at) == 1:
+        scatter = np.diag(error**2) if freedom > 0.0 or model is None else np.zeros_like(model)
+        _check_reach(predictor, at, spread[0], scatter + (0.0 if model is None else model))
     off = values.value / fitted - 1.0
     kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
     bodies = predictor.setting(at)
@@ -310,25 +308,29 @@ def _squares(predictor: Predictor, values: Array, error: Array) -> float:
     return float(off @ off)
 
 
-def _check_rivals(predictor: Predictor, ends: list[Array], spread: Array, error: Array) -> None:
-    """Refuse a value beside which another one, far from it, fits as well.
+def _check_reach(predictor: Predictor, at: Array, spread: float, covariance: Array) -> None:
+    """Refuse a value that the data hold on one side only, as a thickness that may be any larger.
+
+    Two standard errors off, the sum of squares has to be higher by 4, if it is a parabola.
 
     Raises
     ------
     UnidentifiedError
     """
-    best, *others = ends
-    if sum(one.wanted for one in predictor.moved) > 1:
-        return
-    least = _squares(predictor, predictor.at(best), error)
-    for other in others:
-        apart = abs(math.log(other[0] / best[0]))
-        fits = _squares(predictor, predictor.at(other), error) < least + _EXCLUDED
-        if fits and apart > _APART * spread[0]:
-            name = predictor.moved[0].name
+    low, high = search.limits(predictor)
+
+    def squares(values: Array) -> float:
+        off = values - predictor.values.value
+        return float(off @ np.linalg.solve(covariance, off))
+
+    least = squares(predictor.at(at))
+    for sign, words in ((1.0, "above"), (-1.0, "below")):
+        there = np.clip(at * math.exp(2.0 * sign * spread), low, high)
+        if squares(predictor.at(there)) < least + _HELD:
+            name, end = predictor.moved[0].name, float(at[0]) * math.exp(-2.0 * sign * spread)
             raise identify.UnidentifiedError(
-                f"unknown: two values of {name} fit as well, {best[0]:.4g} and {other[0]:.4g} "
-                "(in SI units): measure another quantity, or other speeds",
+                f"unknown: the data tell {name} on one side only: {words} {end:.3g} "
+                f"{UNKNOWNS[name].unit}. Measure another quantity, or other speeds",
                 (name,),
             )
 

@@ -54,10 +54,10 @@ def limits(predictor: Predictor) -> tuple[Array, Array]:
 
 
 def scan(predictor: Predictor) -> list[Array]:
-    """Find values from which to go on: where a grid is nearest to the data, the nearest first.
+    """Find values from which to go on: the nearest to the data of a grid.
 
-    Of one unknown all such places, since two may fit as well; of more the nearest. Where nothing
-    yields, strengths do not matter: if that is the nearest, the nearest with yield is given, too.
+    Where nothing yields, strengths do not matter: if that is the nearest, the nearest with yield is
+    given, too.
     """
     rows = _some(predictor.values, np.asarray(predictor.data.speed))
     few = replace(predictor, data=_part(predictor.data, rows), values=predictor.values.part(rows))
@@ -71,16 +71,12 @@ def scan(predictor: Predictor) -> list[Array]:
         if few.slenderness(at) <= _THINNEST:
             off = (few.at(at) - few.values.value) / error
             trials.append((float(off @ off), at))
-    costs = np.array([cost for cost, _ in trials])
-    nearest = int(np.argmin(costs))
-    chosen = {nearest}
-    if sum(one.wanted for one in few.moved) == 1:
-        ends = np.pad(costs, 1, constant_values=np.inf)
-        chosen.update(np.flatnonzero((costs < ends[:-2]) & (costs <= ends[2:])).tolist())
-    yields = np.array([_yields(few.moved, at, onset) for _, at in trials])
-    if not yields[nearest] and yields.any():
-        chosen.add(int(np.argmin(np.where(yields, costs, np.inf))))
-    return [trials[n][1] for n in sorted(chosen, key=lambda n: costs[n])]
+    trials.sort(key=lambda trial: trial[0])
+    yields = [_yields(few.moved, at, onset) for _, at in trials]
+    best = [trials[0][1]]
+    if not yields[0] and any(yields):
+        best.append(trials[yields.index(True)][1])
+    return best
 
 
 def _yields(moved: list[Parameter], at: Array, onset: dict[str, float]) -> bool:
