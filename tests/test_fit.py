@@ -247,9 +247,10 @@ def test_the_curve_of_a_fit_is_the_models_with_its_values():
 
 def test_missing_values_are_left_out():
     data = rebounds(STEEL, kinds=KINDS[:2], without=("thickness",))
+    first = data["restitution"][0]
     data["restitution"][[0, 3]] = np.nan
     data["contact_time"] = [None, *data["contact_time"][1:3], *data["contact_time"][3:]]
-    data["restitution"][0] = 0.9  # or the first would have nothing
+    data["restitution"][0] = first  # or the first would have nothing
     found = cl.fit(STEEL, data, "thickness")
     assert found.rows["restitution"].tolist() == [0, 1, 2, *range(4, 12)]
     assert found.rows["contact_time"].tolist() == list(range(1, 12))

@@ -27,7 +27,7 @@ _LEAST = 1e-6  # of them, relatively: data without any scatter
 _POOLED = 4  # values of a kind, below which its scatter is that of all kinds
 _TRIALS = 40  # strengths, down to the first that the data exclude
 _EXCLUDED = 4.0  # above the least sum of squares: two standard errors
-_HELD = 2.0  # likewise, where two standard errors off it should be 4
+_HELD = 2.0  # square by which values are off at two standard errors, where 4 is usual
 
 
 @dataclass(frozen=True, eq=False)
@@ -268,7 +268,7 @@ def _result(
     total = found.total[asked, asked]
     identify.check(names, at[asked], (found.statistical if freedom > 0.0 else total)[asked, asked])
     spread = np.sqrt(np.diag(total))
-    if len(at) == 1:
+    if len(at) == 1 and predictor.moved[0].prior is None:
         scatter = np.diag(error**2) if freedom > 0.0 or model is None else np.zeros_like(model)
         _check_reach(predictor, at, spread[0], scatter + (0.0 if model is None else model))
     off = values.value / fitted - 1.0
@@ -311,22 +311,18 @@ def _squares(predictor: Predictor, values: Array, error: Array) -> float:
 def _check_reach(predictor: Predictor, at: Array, spread: float, covariance: Array) -> None:
     """Refuse a value that the data hold on one side only, as a thickness that may be any larger.
 
-    Two standard errors off, the sum of squares has to be higher by 4, if it is a parabola.
+    Two standard errors off, fitted values have to be off by a square of 4, if they go on as they
+    begin.
 
     Raises
     ------
     UnidentifiedError
     """
     low, high = search.limits(predictor)
-
-    def squares(values: Array) -> float:
-        off = values - predictor.values.value
-        return float(off @ np.linalg.solve(covariance, off))
-
-    least = squares(predictor.at(at))
     for sign, words in ((1.0, "above"), (-1.0, "below")):
         there = np.clip(at * math.exp(2.0 * sign * spread), low, high)
-        if squares(predictor.at(there)) < least + _HELD:
+        off = predictor.at(there) - predictor.at(at)
+        if float(off @ np.linalg.solve(covariance, off)) < _HELD:
             name, end = predictor.moved[0].name, float(at[0]) * math.exp(-2.0 * sign * spread)
             raise identify.UnidentifiedError(
                 f"unknown: the data tell {name} on one side only: {words} {end:.3g} "
