@@ -269,8 +269,9 @@ def _result(
     identify.check(names, at[asked], (found.statistical if freedom > 0.0 else total)[asked, asked])
     spread = np.sqrt(np.diag(total))
     if len(at) == 1 and predictor.moved[0].prior is None:
-        scatter = np.diag(error**2) if freedom > 0.0 or model is None else np.zeros_like(model)
-        _check_reach(predictor, at, spread[0], scatter + (0.0 if model is None else model))
+        own_spread = math.sqrt(found.statistical[0, 0]) if freedom > 0.0 else float(spread[0])
+        scatter = np.diag(error**2) if freedom > 0.0 or model is None else model
+        _check_reach(predictor, at, own_spread, scatter)
     off = values.value / fitted - 1.0
     kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
     bodies = predictor.setting(at)

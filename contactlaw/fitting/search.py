@@ -132,7 +132,6 @@ def _onset(predictor: Predictor) -> dict[str, float]:
 def _axes(predictor: Predictor, onset: dict[str, float]) -> list[list[float]]:
     """Trial values of each parameter."""
     scanned = [one for one in predictor.moved if one.wanted and one.prior is None]
-    costly = sum(one.changes(predictor.law) for one in scanned)
     few = len(scanned) > 1
     axes = []
     for one in predictor.moved:
@@ -143,7 +142,7 @@ def _axes(predictor: Predictor, onset: dict[str, float]) -> list[list[float]]:
             middle = min(onset[one.name], 1e3 * middle)
             factors = np.array(_FEW_STRENGTHS if few else _STRENGTHS)
         elif one.unknown.field == "youngs_modulus":
-            factors = np.array((1.0,) if costly > 2 else _FEW_MODULI if few else _MODULI)
+            factors = np.array((1.0,) if len(scanned) > 2 else _FEW_MODULI if few else _MODULI)
         elif one.unknown.field == "density":
             factors = np.array(_DENSITIES)
         elif one.name == "thickness":
