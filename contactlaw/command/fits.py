@@ -37,7 +37,7 @@ def text(found: Fit) -> Iterator[str]:
             yield f"correlation of {found.unknown[m]} and {name}: {found.correlation[n, m]:.2f}"
     for kind, off in found.residuals.items():
         what = kind.replace("_", " ")
-        yield f"{what}: {off.size} values, {100.0 * found.scatter[kind]:.2g} % off the fit (rms)"
+        yield f"{what}: {off.size} value{'s' * (off.size > 1)}, {100.0 * found.scatter[kind]:.2g} % off the fit (rms)"
     if found.notes:
         yield ""
     yield from found.notes
@@ -66,7 +66,7 @@ def rows(found: Fit) -> Iterator[str]:
     cells: dict[str, list[str]] = {kind: ["-"] * len(found.data) for kind in kinds}
     for kind in kinds:
         for row, off in zip(found.rows[kind].tolist(), found.residuals[kind].tolist(), strict=True):
-            cells[kind][row] = f"{100.0 * off:+.2f}"
+            cells[kind][row] = f"{100.0 * off:+z.2f}"
     yield from aligned(
         [
             ["rebound", "", *(str(n) for n in range(len(found.data)))],

@@ -55,7 +55,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
     if not squares[-1] > _VAGUE**2:
         return
     if len(names) == 1:
-        error = 100.0 * float(np.sqrt(squares[-1]))
+        error = min(100.0 * float(np.sqrt(squares[-1])), 999.0)
         raise UnidentifiedError(
             f"unknown: the data do not tell {names[0]}: its standard error is {error:.0f} %",
             names,
