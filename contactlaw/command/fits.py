@@ -36,8 +36,9 @@ def text(found: Fit) -> Iterator[str]:
         for m in range(n):
             yield f"correlation of {found.unknown[m]} and {name}: {found.correlation[n, m]:.2f}"
     for kind, off in found.residuals.items():
-        what = kind.replace("_", " ")
-        yield f"{what}: {off.size} value{'s' * (off.size > 1)}, {100.0 * found.scatter[kind]:.2g} % off the fit (rms)"
+        what, many = kind.replace("_", " "), "s" * (off.size > 1)
+        share = 100.0 * found.scatter[kind]
+        yield f"{what}: {off.size} value{many}, {share:.2g} % off the fit (rms)"
     if found.notes:
         yield ""
     yield from found.notes

@@ -158,13 +158,7 @@ def _true(one: Configuration, name: str) -> float:
 def outcomes(
     question: tuple[str, ...], sets: int, seed: int, law: str = "fem"
 ) -> Iterator[list[Outcome]]:
-    """Fit synthetic data sets: a list for each, which is empty where the fit refused.
-
-    Examples
-    --------
-    >>> [one.within for (one,) in outcomes(("thickness",), 3, seed=1, law="myc")]
-    [True, True, True]
-    """
+    """Fit synthetic data sets: a list for each, which is empty where the fit refused."""
     random = np.random.default_rng([seed, QUESTIONS.index(question)])
     for n in range(sets):
         one = draw(random, question, law)
