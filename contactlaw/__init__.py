@@ -13,6 +13,7 @@ array([0.666, 0.896, 0.984])
 
 from contactlaw import export
 from contactlaw._version import VERSION as __version__
+from contactlaw.fitting import Fit, Measurements, UnidentifiedError, fit
 from contactlaw.loads import LoadSignal, load_signal
 from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory
@@ -25,18 +26,22 @@ from contactlaw.sensitivity import Sensitivity
 from contactlaw.spheres import restitution_sphere_sphere
 
 __all__ = [
+    "Fit",
     "ForceHistory",
     "ImpactModel",
     "LoadSignal",
     "Material",
+    "Measurements",
     "Pair",
     "Rebound",
     "Sensitivity",
+    "UnidentifiedError",
     "Validity",
     "__version__",
     "edge_distance",
     "explain",
     "export",
+    "fit",
     "load_signal",
     "material",
     "materials",

@@ -1,4 +1,4 @@
-"""Command line: ``contactlaw cor | sweep | constant | speed-table | history | export | ...``."""
+"""Command line: ``contactlaw cor | sweep | constant | fit | history | export | ...``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import secrets
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import asdict
 from pathlib import Path
 from typing import Literal
@@ -18,8 +18,22 @@ from typing import Literal
 import numpy as np
 
 from contactlaw import export, laws, table
-from contactlaw.command import curves, lines, options, plots, records, sheet, sweep, walls, wording
+from contactlaw.command import (
+    curves,
+    fitplot,
+    fits,
+    lines,
+    measured,
+    options,
+    plots,
+    records,
+    sheet,
+    sweep,
+    walls,
+    wording,
+)
 from contactlaw.command.quantities import LENGTH, written
+from contactlaw.fitting import fit
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.history import ForceHistory
@@ -167,6 +181,27 @@ def _speed_table(arguments: argparse.Namespace) -> None:
         print(*sheet.speed_table(found), sep="\n")
 
 
+def _fit(arguments: argparse.Namespace) -> None:
+    _check_quantities(arguments)
+    pair = _pair(arguments)
+    read = measured.read(arguments.data)
+    if read.unused:
+        _say_warning(f"{arguments.data}: columns that are not used: {', '.join(read.unused)}")
+    data = measured.completed(
+        read, arguments.data, radius=arguments.radius, thickness=arguments.thickness
+    )
+    priors = dict(arguments.prior)
+    with nullcontext() if arguments.plot is None else _picture(arguments):
+        found = fit(pair, data, arguments.unknown, arguments.law, priors)
+        if arguments.plot is not None:
+            title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
+            fitplot.save_fit(found, title, arguments.plot)
+        if arguments.json:
+            print(json.dumps(fits.record(found), indent=2))
+        else:
+            print(*fits.text(found), "", *fits.rows(found), sep="\n")
+
+
 def _history(arguments: argparse.Namespace) -> None:
     _check_quantities(arguments)
     if arguments.plot is not None:
@@ -295,6 +330,7 @@ _RUN = {
     "sweep": _sweep,
     "constant": _constant,
     "speed-table": _speed_table,
+    "fit": _fit,
     "history": _history,
     "materials": _materials,
     "table info": _table_info,

@@ -36,7 +36,7 @@ from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.scaling import pair_numbers, scales, sphere_on_plate
+from contactlaw.physical.scaling import following, scales, sphere_on_plate
 from contactlaw.table import lookup
 from contactlaw.table.nodes import Table
 
@@ -215,8 +215,7 @@ def _changed(pair: Pair, number: str, factor: float, roles: tuple[str, ...]) -> 
 
 def _moved(pair: Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Outcome:
     """Impacts of other bodies, with a law that follows them; by integration."""
-    if law.from_pair:
-        law = laws.exact(law.family, **pair_numbers(pair, law.family))
+    law = following(pair, law)
     units = scales(sphere_on_plate(pair, law, radius, thickness), speed)
     return _solved(law, *np.broadcast_arrays(units.inelasticity, units.yield_ratio))
 

@@ -24,6 +24,7 @@ LAYERS = [
     {"physical"},  # SI units
     {"evaluation", "compiled"},
     {"sensitivity", "constant", "speedtable"},
+    {"fitting"},
     {"model"},  # where the towers meet
     {"closed_form", "dashpot", "loads", "softsphere", "spheres"},
     {"export", "turning_point"},
@@ -36,8 +37,8 @@ FILES = {
     "equation": ["force", "outcome", "waves", "integrator", "zener"],
     "table": ["lookup", "grid", "splines", "shapes", "sweep", "certificate", "nodes", "guarded",
               "file", "cache"],
-    "command": ["quantities", "wording", "records", "sheet", "options", "curves", "sweep", "walls",
-                "lines", "plots"],
+    "command": ["quantities", "wording", "columns", "records", "measured", "sheet", "options",
+                "curves", "sweep", "walls", "lines", "plots", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
                  "rebound"],
 }  # fmt: skip

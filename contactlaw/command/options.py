@@ -10,6 +10,7 @@ from contactlaw import laws
 from contactlaw._version import VERSION
 from contactlaw.command import quantities
 from contactlaw.command.quantities import LENGTH, SPEED, Quantity
+from contactlaw.fitting.unknowns import UNKNOWNS
 
 Reader = Callable[[str, Quantity], Any]
 
@@ -53,6 +54,9 @@ def parser() -> argparse.ArgumentParser:
     _add_constant(_command(commands, "constant", "one COR for each wall, and what it gets wrong"))
     about = "COR over speed in the fewest rows that straight lines may join"
     _add_speed_table(_command(commands, "speed-table", about))
+
+    about = "strengths, sizes and more from measured rebounds, with their errors"
+    _add_fit(_command(commands, "fit", about))
 
     history = _command(commands, "history", "force over time of one impact, as CSV or a plot")
     _add_impact(history, quantities.value)
@@ -185,6 +189,62 @@ def _add_speed_table(command: argparse.ArgumentParser) -> None:
     _add_law(command)
     add("--csv", action="store_true", help="print the two columns alone, every digit")
     command.epilog = _UNITS
+
+
+def _add_fit(command: argparse.ArgumentParser) -> None:
+    add = command.add_argument
+    add(
+        "data",
+        metavar="FILE",
+        help="CSV with a row per rebound: speed_m/s, one at least of COR, contact_time_us and "
+        "peak_force_N, each perhaps with its standard error (COR_error), and perhaps radius_mm "
+        "and thickness_mm",
+    )
+    _add_pair(command)
+    length = reader_of(quantities.value, LENGTH)
+    add("--radius", metavar="R", type=length,
+        help="radius of all beads [m], or with a unit")  # fmt: skip
+    add("--thickness", metavar="H", type=length,
+        help="thickness of all plates [m], or with a unit; inf: a half-space")  # fmt: skip
+    add("--unknown", required=True, metavar="NAME", type=_names,
+        help=f"what to find, up to three: {', '.join(UNKNOWNS)}")  # fmt: skip
+    add(
+        "--prior",
+        action="append",
+        default=[],
+        metavar="NAME=ERROR",
+        type=_prior,
+        help="standard error of one of these that is given, as density=20kg/m3; may be repeated",
+    )
+    _add_name_of_law(command)
+    add = command.add_mutually_exclusive_group().add_argument
+    add("--json", action="store_true", help="print all of it in SI units")
+    add("--plot", metavar="FILE",
+        help="draw data, fit, its band and residuals into FILE (PNG, SVG, PDF)")  # fmt: skip
+    command.epilog = _UNITS
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(name.strip().replace("-", "_") for name in text.split(","))
+
+
+def _prior(text: str) -> tuple[str, float]:
+    """Read a name and a standard error, in the unit of what it is of.
+
+    Examples
+    --------
+    >>> _prior("density=20kg/m3")
+    ('density', 20.0)
+    """
+    name, _, size = text.partition("=")
+    name = name.strip().replace("-", "_")
+    if name not in UNKNOWNS or not size:
+        raise argparse.ArgumentTypeError(
+            f"got {text!r}, expected NAME=ERROR with a NAME of {', '.join(UNKNOWNS)}"
+        )
+    kinds = {"Pa": quantities.STRESS, "kg/m3": quantities.DENSITY, "m": LENGTH}
+    error: float = reader_of(quantities.value, kinds[UNKNOWNS[name].unit])(size)
+    return name, error
 
 
 def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:

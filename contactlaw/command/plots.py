@@ -24,20 +24,20 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_BLUE, _VERMILION = "#0072B2", "#D55E00"  # Okabe and Ito 2008
-_INK, _MUTED = "#222222", "#6E6E6E"
+BLUE, _VERMILION = "#0072B2", "#D55E00"  # Okabe and Ito 2008
+INK, MUTED = "#222222", "#6E6E6E"
 _SETTINGS: dict[Any, Any] = {
     "font.size": 12,
     "axes.labelsize": 13,
-    "axes.labelcolor": _INK,
-    "axes.edgecolor": _MUTED,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": MUTED,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.grid": True,
     "axes.axisbelow": True,
     "grid.color": "#EBEBEB",
-    "xtick.color": _INK,
-    "ytick.color": _INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
     "legend.frameon": False,
     "savefig.dpi": 150,
 }
@@ -62,7 +62,7 @@ def check_suffix(path: str | os.PathLike[str]) -> None:
 
 
 @contextlib.contextmanager
-def _style() -> Iterator[None]:
+def style() -> Iterator[None]:
     """Load matplotlib, and have the common style within this block."""
     try:
         import matplotlib as mpl
@@ -92,14 +92,14 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
         If the suffix names no format.
     """
     check_suffix(path)
-    with _style():
+    with style():
         from matplotlib.figure import Figure
 
         figure = Figure(figsize=(10.0, 4.6), layout="constrained")
         figure.suptitle(title, x=0.012, ha="left", fontsize=13, fontweight="bold")
         left, right = figure.subplots(1, 2, sharey=True)
         top = int(np.argmax(contact.force))
-        parts = ((slice(top + 1), _BLUE, "loading"), (slice(top, None), _VERMILION, "unloading"))
+        parts = ((slice(top + 1), BLUE, "loading"), (slice(top, None), _VERMILION, "unloading"))
         for part, colour, name in parts:
             left.plot(contact.time[part] * 1e6, contact.force[part], color=colour, linewidth=2.2)
             right.plot(
@@ -110,9 +110,9 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
         left.set_xlim(0.0, 1.02 * contact.time[-1] * 1e6)
         plate = left.twinx()
         plate.plot(
-            contact.time * 1e6, contact.plate_displacement * 1e6, color=_MUTED, linestyle="--"
+            contact.time * 1e6, contact.plate_displacement * 1e6, color=MUTED, linestyle="--"
         )
-        plate.set_ylabel("displacement of the plate [µm] (dashed)", color=_MUTED)
+        plate.set_ylabel("displacement of the plate [µm] (dashed)", color=MUTED)
         plate.set_ylim(0.0, None)
         plate.grid(visible=False)
         plate.spines["right"].set_visible(True)
@@ -145,7 +145,7 @@ def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLik
     radii = dict.fromkeys(curve.radius for curve in curves)
     by_radius = len(radii) == len(curves) > 1
     panels = [list(curves)] if by_radius else [[c for c in curves if c.radius == r] for r in radii]
-    with _style():
+    with style():
         figure = _restitution_figure(panels, title, by_radius)
         figure.savefig(path)
 
@@ -154,13 +154,15 @@ def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) 
     columns = len(panels) if len(panels) < 4 else -(-len(panels) // 2)
     rows = -(-len(panels) // columns)
     width = 9.0 if columns == 1 else 2.0 + 4.4 * columns
-    figure = _figure(width, 1.2 + 4.4 * rows, title, _caption(panels, by_radius))
+    figure = figure_of(width, 1.2 + 4.4 * rows, title, _caption(panels, by_radius))
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, curves in zip(grid.flat, panels, strict=False):
         for n, curve in enumerate(curves):
-            _draw(axes, curve, _colour(n, len(curves)))
+            _draw(axes, curve, colour_of(n, len(curves)))
         if len(panels) > 1:
-            axes.set_title(f"bead radius {_text(curves[0].radius)}", fontweight="bold", fontsize=12)
+            axes.set_title(
+                f"bead radius {length_of(curves[0].radius)}", fontweight="bold", fontsize=12
+            )
     for axes in grid.flat[len(panels) :]:
         axes.set_visible(False)
     _axes(grid, panels)
@@ -171,7 +173,7 @@ def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) 
     return figure
 
 
-def _figure(width: float, height: float, title: str, caption: str) -> Figure:
+def figure_of(width: float, height: float, title: str, caption: str) -> Figure:
     """Make an empty figure of a size in inches, with a title and what the marks are."""
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -180,18 +182,18 @@ def _figure(width: float, height: float, title: str, caption: str) -> Figure:
     room = 0.5 + 0.2 * len(lines)
     layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.985, 1.0 - room / height))
     figure = Figure(figsize=(width, height), layout=layout)
-    figure.text(0.012, 1.0 - 0.14 / height, title, fontsize=16, fontweight="bold", color=_INK,
+    figure.text(0.012, 1.0 - 0.14 / height, title, fontsize=16, fontweight="bold", color=INK,
                 va="top")  # fmt: skip
-    figure.text(0.012, 1.0 - 0.5 / height, "\n".join(lines), fontsize=11.5, color=_MUTED, va="top")
+    figure.text(0.012, 1.0 - 0.5 / height, "\n".join(lines), fontsize=11.5, color=MUTED, va="top")
     return figure
 
 
 def _caption(panels: list[list[Curve]], by_radius: bool) -> str:
     curves = [curve for panel in panels for curve in panel]
     least, largest = curves[0].speed[[0, -1]]
-    parts = [f"bead radius {_text(curves[0].radius)}"]
+    parts = [f"bead radius {length_of(curves[0].radius)}"]
     if by_radius:
-        parts = [_plate(curves[0].thickness)]
+        parts = [plate_of(curves[0].thickness)]
     elif len(panels) > 1:
         parts = ["a curve per thickness of the plate"]
     yields = [curve.yield_speed for curve in curves]
@@ -208,15 +210,23 @@ def _caption(panels: list[list[Curve]], by_radius: bool) -> str:
 
 def _names(curves: list[Curve], by_radius: bool, short: bool) -> list[str]:
     if by_radius:
-        return [f"radius {_text(curve.radius)}" for curve in curves]
-    return [(_text if short else _plate)(curve.thickness) for curve in curves]
+        return [f"radius {length_of(curve.radius)}" for curve in curves]
+    return [(length_of if short else plate_of)(curve.thickness) for curve in curves]
 
 
-def _plate(thickness: float) -> str:
-    return _HALF_SPACE if thickness == math.inf else f"plate {_text(thickness)}"
+def plate_of(thickness: float) -> str:
+    """Name a plate by its thickness [m].
+
+    Examples
+    --------
+    >>> plate_of(1e-3), plate_of(math.inf)
+    ('plate 1 mm', 'half-space')
+    """
+    return _HALF_SPACE if thickness == math.inf else f"plate {length_of(thickness)}"
 
 
-def _text(length: float) -> str:
+def length_of(length: float) -> str:
+    """Write a length [m] in the unit that suits it; inf is that of a half-space."""
     return _HALF_SPACE if length == math.inf else written(length, LENGTH).replace("um", "µm")
 
 
@@ -270,14 +280,14 @@ def _label(axes: Axes, curves: list[Curve], names: list[str]) -> None:
     heights = axes.transAxes.inverted().transform(ends)[:, 1]
     line = 1.3 * 12.0 / 72.0 / (axes.bbox.height / axes.figure.dpi)
     for n, (at, to) in enumerate(zip(heights, _spread(heights, line), strict=True)):
-        colour = _colour(n, len(curves))
+        colour = colour_of(n, len(curves))
         axes.plot([1.0, 1.02], [at, to], transform=axes.transAxes, color=colour, linewidth=2.0,
                   clip_on=False)  # fmt: skip
-        axes.text(1.03, to, names[n], transform=axes.transAxes, color=_INK, va="center",
+        axes.text(1.03, to, names[n], transform=axes.transAxes, color=INK, va="center",
                   fontweight="bold")  # fmt: skip
 
 
-def _colour(n: int, count: int) -> Any:
+def colour_of(n: int, count: int) -> Any:
     """Dark to bright, none too pale for a line."""
     from matplotlib import colormaps
 

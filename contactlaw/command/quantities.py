@@ -1,7 +1,8 @@
 """Quantities as people write them: ``0.9mm``, ``0.5mm,1mm,inf``, ``0.1:10:50log``.
 
-Ten units of two kinds are one table. A library of units such as pint knows a thousand, would be one
-more dependency of everybody's, and would leave lists and ranges to be read here all the same.
+Two dozen units of seven kinds are one table. A library of units such as pint knows a thousand,
+would be one more dependency of everybody's, and would leave lists and ranges to be read here all
+the same.
 """
 
 from __future__ import annotations
@@ -40,6 +41,21 @@ SPEED = Quantity(
     {"m/s": Decimal(1), "cm/s": Decimal("0.01"), "mm/s": Decimal("1e-3"),
      "km/h": Decimal(1000) / Decimal(3600)},
 )  # fmt: skip
+TIME = Quantity(
+    "time",
+    {"s": Decimal(1), "ms": Decimal("1e-3"), "us": Decimal("1e-6"), "ns": Decimal("1e-9")},
+)
+FORCE = Quantity(
+    "force", {"N": Decimal(1), "kN": Decimal(1000), "mN": Decimal("1e-3"), "uN": Decimal("1e-6")}
+)
+SHARE = Quantity("share", {"-": Decimal(1), "1": Decimal(1), "%": Decimal("0.01")})
+STRESS = Quantity(
+    "stress",
+    {"Pa": Decimal(1), "kPa": Decimal(1000), "MPa": Decimal("1e6"), "GPa": Decimal("1e9")},
+)
+DENSITY = Quantity(
+    "density", {"kg/m3": Decimal(1), "g/m3": Decimal("1e-3"), "g/cm3": Decimal(1000)}
+)
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 
 
@@ -57,7 +73,7 @@ def values(text: str, quantity: Quantity) -> tuple[float, ...]:
         Items with commas between them: a number, or a range start:stop:count of evenly spaced
         values, its ends among them; ``log`` after the count spaces them logarithmically.
     quantity : Quantity
-        `LENGTH` or `SPEED`.
+        `LENGTH`, `SPEED` or another of this module.
 
     Returns
     -------

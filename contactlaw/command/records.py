@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import os
-import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +12,9 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.command.quantities import LENGTH, SPEED, Quantity
+from contactlaw.command import columns
+from contactlaw.command.columns import Column
+from contactlaw.command.quantities import LENGTH, SPEED
 from contactlaw.physical.arguments import check
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
@@ -45,11 +46,6 @@ class Recorded(NamedTuple):
     law: str | None = None
 
 
-class _Column(NamedTuple):
-    names: tuple[str, ...]
-    quantity: Quantity | None  # None for bare numbers
-
-
 class Impacts(NamedTuple):
     """Impacts on plates in SI units, and which materials and law a run had; None where unknown."""
 
@@ -62,15 +58,12 @@ class Impacts(NamedTuple):
 
 
 _COLUMNS = {
-    "speed": _Column(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
-    "radius": _Column(("radius",), LENGTH),
-    "thickness": _Column(("thickness",), LENGTH),
-    "weights": _Column(("weight", "weights"), None),
-    "plate": _Column(("plate",), None),
+    "speed": Column(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
+    "radius": Column(("radius",), LENGTH),
+    "thickness": Column(("thickness",), LENGTH),
+    "weights": Column(("weight", "weights"), None),
+    "plate": Column(("plate",), None),
 }
-_HEAD = re.compile(
-    r"(?P<name>.*?)(?:[_ ]*[\[(](?P<bracket>[^])]*)[\])]|[_ ](?P<unit>\w+/\w+|\w?m))?"
-)
 _DEMO = "contactlaw-rain"
 
 
@@ -242,55 +235,26 @@ def _npy(content: bytes) -> Recorded:
 
 def _text(content: bytes) -> Recorded:
     try:
-        first, *lines = content.decode("utf-8-sig").splitlines() or [""]
-    except UnicodeDecodeError:
-        raise ValueError("neither text, nor HDF5 (.h5), nor of np.save (.npy)") from None
-    delimiter = next((mark for mark in "\t;" if mark in first), ",")
-    heads = [head.strip().strip('"') for head in first.lstrip("#").split(delimiter)]
-    rows = [line for line in lines if line.strip() and not line.startswith("#")]
-
-    def numbers(wanted: list[int]) -> Array:
-        if not rows:  # of which loadtxt would warn
-            return np.empty((0, len(wanted)))
-        return np.loadtxt(rows, delimiter=delimiter, usecols=wanted, ndmin=2, quotechar='"')
-
-    return _columns(heads, numbers)
+        names, rows, delimiter = columns.heads(content)
+    except ValueError as error:
+        raise ValueError(f"{error}, nor HDF5 (.h5), nor of np.save (.npy)") from None
+    return _columns(names, lambda wanted: columns.numbers(rows, delimiter, wanted))
 
 
 def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Recorded:
     """Pick the columns that are known by their names, and give them SI units."""
-    found: dict[str, tuple[int, float]] = {}
-    for n, head in enumerate(heads):
-        match = _HEAD.fullmatch(head.strip().lower())
-        name = re.sub(r"\s+", "_", match["name"].strip()) if match else ""
-        field = next((f for f, column in _COLUMNS.items() if name in column.names), None)
-        if match and field:
-            if field in found:
-                raise ValueError(f"two columns of {field}, {heads[found[field][0]]!r} and {head!r}")
-            unit = (match["bracket"] or match["unit"] or "").strip()
-            found[field] = n, _per_unit(head, unit, _COLUMNS[field].quantity)
+    found = columns.locate(heads, _COLUMNS)
     if "speed" not in found:
         raise ValueError(
             f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s"
         )
-    rows = numbers([n for n, _ in found.values()])
-    columns: dict[str, Any] = {
-        field: column / per for (field, (_, per)), column in zip(found.items(), rows.T, strict=True)
+    rows = numbers([one.place for one in found.values()])
+    picked: dict[str, Any] = {
+        field: column / one.per_unit
+        for (field, one), column in zip(found.items(), rows.T, strict=True)
     }
-    if "plate" in columns:
-        on_plates = columns["plate"] >= 0
-        columns = {field: values[on_plates] for field, values in columns.items()}
-        columns["plate"] = columns["plate"].astype(np.int64)
-    return Recorded(**columns)
-
-
-def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
-    """How many of a column's units are one of the SI: to divide by, which rounds but once."""
-    if quantity is None or not unit:
-        return 1.0
-    if unit not in quantity.units:
-        raise ValueError(
-            f"column {head!r}: {unit!r} is no unit of {quantity.name}; take "
-            f"{', '.join(quantity.units)}"
-        )
-    return float(1 / quantity.units[unit])
+    if "plate" in picked:
+        on_plates = picked["plate"] >= 0
+        picked = {field: values[on_plates] for field, values in picked.items()}
+        picked["plate"] = picked["plate"].astype(np.int64)
+    return Recorded(**picked)

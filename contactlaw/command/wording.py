@@ -21,7 +21,7 @@ from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialE
 
 _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
 
-_OTHER_NAMES = {"path": "plot"}  # options that are not called what the argument is
+_OTHER_NAMES = {"path": "plot", "priors": "prior"}  # options of other names
 
 
 class Refused(ValueError):

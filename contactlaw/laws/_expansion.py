@@ -66,10 +66,10 @@ def _expand(name: str, parts: Sequence[_Part | float], low: float, high: float) 
         at = middle[:, None] + half[:, None] * _NODES
         found = [_powers(name, part, at) for part in parts]
         smooth = np.all([converged for _, converged in found], axis=0)
+        lengths = [_lengths(rows) for rows, _ in found]
         for n in np.flatnonzero(smooth):
-            powers = [np.trim_zeros(rows[n], "b") for rows, _ in found]
-            coefficients = [row if row.size else np.zeros(1) for row in powers]
-            done.append(_Piece(left[n], 1.0 / half[n], middle[n] / half[n], coefficients))
+            powers = [rows[n, : size[n]] for (rows, _), size in zip(found, lengths, strict=True)]
+            done.append(_Piece(left[n], 1.0 / half[n], middle[n] / half[n], powers))
         todo = [
             ends for n in np.flatnonzero(~smooth)
             for ends in ((left[n], middle[n]), (middle[n], right[n]))
@@ -80,6 +80,13 @@ def _expand(name: str, parts: Sequence[_Part | float], low: float, high: float) 
                 "that begins there"
             )
     return sorted(done, key=lambda piece: piece.start)
+
+
+def _lengths(rows: Array) -> list[int]:
+    """Terms of each row up to the last that is not zero, at least one."""
+    beyond = np.argmax(rows[:, ::-1] != 0.0, axis=1)  # 0 where all are zero, too
+    sizes = np.where(rows.any(axis=1), rows.shape[1] - beyond, 1)
+    return [int(size) for size in sizes]
 
 
 def _powers(name: str, part: _Part | float, at: Array) -> tuple[Array, NDArray[np.bool_]]:
@@ -414,22 +421,25 @@ def _packed(curve: LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
     header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at, capped]
     coefficients: list[Array] = []
 
-    def put(part: Array) -> list[float]:
+    def put(part: Array, length: int) -> list[float]:
         nonlocal at
-        coefficients.append(np.pad(part, (0, -part.size % 4)))
-        at += coefficients[-1].size
-        return [part.size - 1, at - coefficients[-1].size]
+        room = np.zeros(length + -length % 4)  # np.pad takes ten times as long
+        room[: part.size] = part
+        coefficients.append(room)
+        at += room.size
+        return [length - 1, at - room.size]
 
     curve_rows: list[float] = []
     for piece, first in zip(pieces, curve.first, strict=True):
         following = next((k for k in curve.first if k > first), len(pieces))
-        curve_rows += [piece.scale, piece.offset, *put(piece.parts[0]), first, following]
+        entries = put(piece.parts[0], piece.parts[0].size)
+        curve_rows += [piece.scale, piece.offset, *entries, first, following]
     # one length for all pieces of a function: a loop of constant length is predicted
     terms = [max((row.piece.parts[n].size for row in rows), default=0) for n in range(_FUNCTIONS)]
     family_rows: list[float] = []
     for row in rows:
         family_rows += [row.piece.scale, row.piece.offset]
         for power, part, length in zip(row.powers, row.piece.parts, terms, strict=True):
-            family_rows += [power, *put(np.pad(part, (0, length - part.size)))]
+            family_rows += [power, *put(part, length)]
     numbers = [*header, *starts, *curve_rows, *family_starts, *family_rows]
     return np.concatenate([np.array(numbers, dtype=np.float64), *coefficients])

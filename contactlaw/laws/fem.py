@@ -152,6 +152,16 @@ class Given(NamedTuple):
 PARAMETERS = Given._fields
 
 
+class _Works(NamedTuple):
+    """What the law says of contacts at some largest compressions, one array for each."""
+
+    force: Array
+    loading: Array  # work
+    recovery: Array  # of it, as a share
+    plastic: Array
+    residual: Array  # 0 where nothing yields
+
+
 class Curves:
     """What the law says for a pair, as functions of the root compression q.
 
@@ -170,7 +180,7 @@ class Curves:
         constant, slope = found["stiffening"]
         self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
         self.friction = friction_loss(given, found["friction"])
-        self._terms: dict[str, tuple[Array, Array]] = {}
+        self._terms: dict[str, Array] = {}
         if not self.ratio:
             return
         weights = given.weights(float(found["blend"]))
@@ -180,14 +190,14 @@ class Curves:
                 powers = cases.get(case, {}).get(part)
                 if powers is not None:
                     terms[int(part == "share")] += weight * _sized(powers)
-            self._terms[name] = terms[0], terms[1]
+            usual, moved = terms  # which counts by 1 - t
+            self._terms[name] = np.pad(usual + moved, [(0, 1), (0, 0)])
+            self._terms[name][1:] -= moved
 
     def _sum(self, name: str, q: Array) -> Array:
         """Sum of the powers of t and w of one of the functions."""
         t, w = (q - 1.0) / (q + SHIFT), math.sqrt(self.scale) * q
-        usual, moved = self._terms[name]
-        sums = np.polynomial.polynomial.polyval2d(t, w, np.stack([usual, moved], axis=-1))
-        return np.asarray(sums[0] + (1.0 - t) * sums[1])
+        return np.asarray(np.polynomial.polynomial.polyval2d(t, w, self._terms[name]))
 
     def _over(self, name: str, q: Array) -> Array:
         """Compute 1 + (q - 1) t (sum of powers), the denominators of the law; 1 below yield."""
@@ -226,16 +236,26 @@ class Curves:
         above = np.maximum(q, 1.0)
         return np.asarray(((above - 1.0) / (above + SHIFT)) ** 2 * self._sum("impact", above))
 
-    def plastic(self, q: Array) -> Array:
-        """Plastic work over the loading work."""
+    def plastic(self, q: Array, recovery: Array) -> Array:
+        """Plastic work over the loading work, where that share of it is given back."""
         if not self.ratio:
             return np.zeros_like(q)
-        above = np.maximum(q, 1.0)
-        lost = 1.0 - self.recovery(above) / (1.0 - self.friction)
-        return np.asarray(lost * -np.expm1(-self._sum("plastic", above)))
+        lost = 1.0 - recovery / (1.0 - self.friction)
+        return np.asarray(lost * -np.expm1(-self._sum("plastic", np.maximum(q, 1.0))))
+
+    def works(self, q: Array) -> _Works:
+        """All of it at once, each function computed but once."""
+        recovery = self.recovery(q)
+        return _Works(
+            force=self.force(q),
+            loading=self.work(q),
+            recovery=recovery,
+            plastic=self.plastic(q, recovery),
+            residual=self.residual(q) if self.ratio else np.zeros_like(q),
+        )
 
 
-@functools.cache
+@functools.lru_cache(maxsize=64)  # a fit makes one for every trial
 def law(*given: float) -> Law:
     """Law of a pair, from the numbers of `PARAMETERS`."""
     return law_of(Given(*given), numbers())
@@ -248,19 +268,25 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         # so strong that it would yield where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 
+    known: list[tuple[Array, _Works]] = []  # of one array, which four formulas are asked about
+
+    def works(dm: Array) -> _Works:
+        if not (known and known[0][0] is dm):
+            known[:] = [(dm, curves.works(np.sqrt(dm)))]
+        return known[0][1]
+
     def exponent(dm: Array) -> Array:
-        q = np.sqrt(dm)
-        left = (dm - 1.0) ** 2 * curves.residual(q) if curves.ratio else np.zeros_like(dm)
-        left = np.where(dm > 1.0, left, 0.0) if curves.ratio else left
-        return curves.force(q) * (dm - left) / (curves.recovery(q) * curves.work(q)) - 1.0
+        at = works(dm)
+        left = np.where(dm > 1.0, (dm - 1.0) ** 2 * at.residual, 0.0)
+        return at.force * (dm - left) / (at.recovery * at.loading) - 1.0
 
     def loss(dm: Array) -> Array:
-        q = np.sqrt(dm)
-        return (1.0 - curves.recovery(q)) * curves.work(q)
+        at = works(dm)
+        return (1.0 - at.recovery) * at.loading
 
     def other(dm: Array) -> Array:
-        q = np.sqrt(dm)
-        return (1.0 - curves.recovery(q) - curves.plastic(q)) * curves.work(q)
+        at = works(dm)
+        return (1.0 - at.recovery - at.plastic) * at.loading
 
     first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
     start = _SMALLEST / curves.scale
@@ -271,9 +297,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
     if curves.ratio:
         loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))
         unloading.append(
-            Unloading(
-                1.0, lambda dm: curves.residual(np.sqrt(dm)), exponent, loss, other, order=2.0
-            )
+            Unloading(1.0, lambda dm: works(dm).residual, exponent, loss, other, order=2.0)
         )
     return Law.of(
         name=f"fem({','.join(f'{number:.6g}' for number in given)})",

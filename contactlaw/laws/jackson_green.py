@@ -34,7 +34,7 @@ _SOFTEST = 10.0  # E*/sigma_Y; our choice: contact radii above R at a few d_Y
 _LARGEST = 200.0  # [d_Y]; the force has to rise up to here
 
 
-@functools.cache
+@functools.lru_cache(maxsize=64)  # a fit makes one for every trial
 def law(modulus_ratio: float, poissons_ratio: float) -> Law:
     """Law of a pair with these E*/sigma_Y and Poisson's ratio of the sphere."""
     c = 1.295 * math.exp(0.736 * poissons_ratio)

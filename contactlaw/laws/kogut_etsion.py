@@ -29,7 +29,7 @@ _FIRST: float = 1.03 ** (1 / 0.075)
 _SECOND: float = (1.40 / 1.03) ** (1 / 0.162)
 
 
-@functools.cache
+@functools.lru_cache(maxsize=64)  # a fit makes one for every trial
 def law(poissons_ratio: float) -> Law:
     """Law of a sphere with this Poisson's ratio."""
     return Law.of(

@@ -86,6 +86,11 @@ def law_of(pair: Pair, law: str | Law) -> Law:
     return found
 
 
+def following(pair: Pair, law: Law) -> Law:
+    """Law of other bodies: one that takes numbers from a pair has theirs, with all digits."""
+    return laws.exact(law.family, **pair_numbers(pair, law.family)) if law.from_pair else law
+
+
 def pair_numbers(pair: Pair, law: str) -> dict[str, float]:
     """Numbers that laws take from a pair."""
     numbers = {

@@ -12,6 +12,7 @@ SUBJECTS = (
     "lookups",
     "histories",
     "solver",
+    "fits",
     "startup",
     "processes",
     "rain",

@@ -1,0 +1,96 @@
+"""A fit for people and for programs: lines of text, and JSON."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from contactlaw.command.sheet import aligned, flag_names
+from contactlaw.fitting import Fit
+from contactlaw.fitting.unknowns import UNKNOWNS
+
+_SHOWN = {"Pa": ("MPa", 1e6), "kg/m3": ("kg/m3", 1.0), "m": ("mm", 1e-3)}
+
+
+def text(found: Fit) -> Iterator[str]:
+    """Lines for a terminal: each value with its error and what it consists of, then what to know.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> data = {"speed": [1.0, 2.0, 3.0], "radius": 0.9e-3, "restitution": [0.885, 0.869, 0.862]}
+    >>> found = cl.fit(cl.Pair("gamma-alumina", "glass"), data, "thickness")
+    >>> print(next(iter(text(found))))
+    thickness of the plate  0.796 +- 0.015 mm
+    """
+    width = max(len(UNKNOWNS[name].title) for name in found.unknown)
+    for name in found.unknown:
+        unit, size = _SHOWN[UNKNOWNS[name].unit]
+        parts = (found.statistical_errors[name] / size, found.model_errors[name] / size)
+        yield f"{UNKNOWNS[name].title:{width}s}  {_number(found, name)}"
+        yield f"{'':{width}s}  of it {parts[0]:.2g} from the data, {parts[1]:.2g} from the model"
+    for n, name in enumerate(found.unknown):
+        for m in range(n):
+            yield f"correlation of {found.unknown[m]} and {name}: {found.correlation[n, m]:.2f}"
+    for kind, off in found.residuals.items():
+        what, many = kind.replace("_", " "), "s" * (off.size > 1)
+        share = 100.0 * found.scatter[kind]
+        yield f"{what}: {off.size} value{many}, {share:.2g} % off the fit (rms)"
+    if found.notes:
+        yield ""
+    yield from found.notes
+
+
+def values_in_words(found: Fit) -> list[str]:
+    """Say what each unknown is, with its error."""
+    return [f"{UNKNOWNS[name].title} {_number(found, name)}" for name in found.unknown]
+
+
+def _number(found: Fit, name: str) -> str:
+    unit, size = _SHOWN[UNKNOWNS[name].unit]
+    value, error = found.values[name] / size, found.errors[name] / size
+    digits = _digits(error)
+    return f"{value:.{digits}f} +- {error:.{digits}f} {unit}"
+
+
+def _digits(error: float) -> int:
+    """Decimals that show two digits of an error."""
+    return max(0, 1 - math.floor(math.log10(error))) if error > 0.0 else 6
+
+
+def rows(found: Fit) -> Iterator[str]:
+    """Lines for a terminal: a row per rebound, with residuals and flags."""
+    kinds = list(found.residuals)
+    cells: dict[str, list[str]] = {kind: ["-"] * len(found.data) for kind in kinds}
+    for kind in kinds:
+        for row, off in zip(found.rows[kind].tolist(), found.residuals[kind].tolist(), strict=True):
+            cells[kind][row] = f"{100.0 * off:+z.2f}"
+    yield from aligned(
+        [
+            ["rebound", "", *(str(n) for n in range(len(found.data)))],
+            ["speed", "[m/s]", *(f"{v:.4g}" for v in np.asarray(found.data.speed).tolist())],
+            *([kind.replace("_", " "), "[% off]", *cells[kind]] for kind in kinds),
+            ["flags", "", *(", ".join(flag_names(flags)) for flags in found.flags.tolist())],
+        ]
+    )
+
+
+def record(found: Fit) -> dict[str, Any]:
+    """All of a fit for JSON, in SI units."""
+    return {
+        "values": found.values,
+        "errors": found.errors,
+        "statistical_errors": found.statistical_errors,
+        "model_errors": found.model_errors,
+        "units": {name: UNKNOWNS[name].unit for name in found.unknown},
+        "correlation": found.correlation.tolist(),
+        "residuals": {kind: off.tolist() for kind, off in found.residuals.items()},
+        "rows": {kind: row.tolist() for kind, row in found.rows.items()},
+        "scatter": found.scatter,
+        "flags": [flag_names(flags) for flags in found.flags.tolist()],
+        "notes": list(found.notes),
+        "law": found.law,
+    }

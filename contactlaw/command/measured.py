@@ -1,0 +1,154 @@
+"""Measured rebounds from a table of named columns with units."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactlaw.command import columns
+from contactlaw.command.columns import Column
+from contactlaw.command.quantities import FORCE, LENGTH, SHARE, SPEED, TIME
+from contactlaw.fitting import Measurements
+
+_KINDS = {
+    "restitution": (("restitution", "cor", "coefficient_of_restitution", "e"), SHARE),
+    "contact_time": (("contact_time", "time", "duration"), TIME),
+    "peak_force": (("peak_force", "force"), FORCE),
+}
+_ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
+_COLUMNS = {
+    "speed": Column(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
+    "radius": Column(("radius", "bead_radius"), LENGTH),
+    "thickness": Column(("thickness", "plate_thickness"), LENGTH),
+    **{field: Column(names, quantity) for field, (names, quantity) in _KINDS.items()},
+    **{
+        f"{field}_error": Column(tuple(f"{n}_{word}" for n in names for word in _ERRORS), quantity)
+        for field, (names, quantity) in _KINDS.items()
+    },
+}
+
+
+class Read(NamedTuple):
+    """Columns of a file in SI units, by the names of `Measurements`, and those it has beside."""
+
+    columns: dict[str, Any]
+    unused: tuple[str, ...]
+
+
+def read(path: str | os.PathLike[str]) -> Read:
+    r"""Read a table of rebounds, a row for each.
+
+    Parameters
+    ----------
+    path : path-like
+        Text: columns between commas, semicolons or tabs, with names and units in the first line,
+        as in ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``; a column without a
+        unit is in that of the SI. Speeds, and one at least of COR (restitution), contact time and
+        peak force, each perhaps with its standard error, ``..._error``; perhaps radius and
+        thickness. An empty cell was not measured.
+
+    Returns
+    -------
+    Read
+
+    Raises
+    ------
+    ValueError
+        What is no table, lacks a column, or has a cell that is no number.
+    OSError
+        A file that cannot be opened.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+    ...     _ = file.write("Speed [cm/s];COR [%];No\n50;91;1\n120;;2\n")
+    ...     file.flush()
+    ...     found = read(file.name)
+    >>> found.columns["restitution"], found.unused
+    (array([0.91,  nan]), ('No',))
+    """
+    path = Path(path)
+    content = path.read_bytes()
+    try:
+        return _read(content)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _read(content: bytes) -> Read:
+    try:
+        names, rows, delimiter = columns.heads(content)
+    except ValueError:
+        raise ValueError("no text; take columns with names in the first line") from None
+    found = columns.locate(names, _COLUMNS)
+    listed = ", ".join(names)[:200]
+    if "speed" not in found:
+        raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s")
+    if not found.keys() & _KINDS.keys():
+        raise ValueError(
+            f"nothing measured in its first line, {listed!r}: call a column COR, contact_time_us "
+            "or peak_force_N"
+        )
+    if not rows:
+        raise ValueError("it has no row beside the first line")
+    table = columns.numbers(
+        rows, delimiter, [one.place for one in found.values()], columns.number_or_nan
+    )
+    picked = {
+        name: values / one.per_unit
+        for (name, one), values in zip(found.items(), table.T, strict=True)
+    }
+    places = {one.place for one in found.values()}
+    return Read(picked, tuple(name for n, name in enumerate(names) if n not in places))
+
+
+def measurements(path: str | os.PathLike[str], **sizes: float | None) -> Measurements:
+    r"""Read a table of rebounds, whose radius and thickness may be given for all.
+
+    Parameters
+    ----------
+    path : path-like
+        As in `read`.
+    **sizes : float or None
+        ``radius`` and ``thickness`` [m]; None where the table has its own, or they are unknown.
+
+    Returns
+    -------
+    Measurements
+
+    Raises
+    ------
+    ValueError
+        As in `read`; a size that the table has, too; values out of range.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
+    ...     _ = file.write("speed_m/s,COR\n1,0.93\n2,0.91\n")
+    ...     file.flush()
+    ...     data = measurements(file.name, radius=0.9e-3)
+    >>> len(data), data.restitution
+    (2, array([0.93, 0.91]))
+    """
+    return completed(read(path), path, **sizes)
+
+
+def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) -> Measurements:
+    """Add the sizes that a table does not have."""
+    given = {name: size for name, size in sizes.items() if size is not None}
+    twice = given.keys() & found.columns.keys()
+    if twice:
+        raise ValueError(f"{min(twice)}: the table has its own: leave this one out")
+    for name, values in found.columns.items():
+        if name in ("speed", "radius", "thickness") and np.isnan(values).any():
+            row = int(np.argmax(np.isnan(values)))
+            raise ValueError(f"{path}: row {row + 1} has no {name}")
+    try:
+        return Measurements(**found.columns, **given)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None

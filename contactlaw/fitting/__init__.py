@@ -1,0 +1,7 @@
+"""The other way round: strengths, moduli, densities and sizes from measured rebounds."""
+
+from contactlaw.fitting.fit import Fit, fit
+from contactlaw.fitting.identify import UnidentifiedError
+from contactlaw.fitting.measurements import Measurements
+
+__all__ = ["Fit", "Measurements", "UnidentifiedError", "fit"]

@@ -1,0 +1,370 @@
+"""From measured rebounds to what was not known of bead and plate."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contactlaw.fitting import errors, identify, search
+from contactlaw.fitting.measurements import KINDS, Measurements
+from contactlaw.fitting.notes import notes
+from contactlaw.fitting.predictions import Predictor, Values
+from contactlaw.fitting.unknowns import UNKNOWNS, Parameter, parameters, setting
+from contactlaw.laws import DEFAULT, Law
+from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.scaling import law_of
+
+Array = NDArray[np.float64]
+
+_ROUNDS = 2  # of finding errors that are not known; the third changes them by less than 1 %
+_LEAST = 1e-6  # of them, relatively: data without any scatter
+_POOLED = 4  # values of a kind, below which its scatter is that of all kinds
+_TRIALS = 40  # strengths, down to the first that the data exclude
+_EXCLUDED = 4.0  # above the least sum of squares: two standard errors
+_HELD = 2.0  # square by which values are off at two standard errors, where 4 is usual
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """What was found, and how well it is known.
+
+    Attributes
+    ----------
+    unknown : tuple of str
+        What was asked for.
+    values : dict of str to float
+        What was found, in SI units.
+    errors : dict of str to float
+        Standard errors, of data and model together.
+    statistical_errors, model_errors : dict of str to float
+        The two parts: from the errors of the data and of the priors, and from the model's own
+        beside finite elements.
+    correlation : ndarray (k, k)
+        Of the unknowns, in their order.
+    residuals : dict of str to ndarray
+        Of each kind that was measured, measured over fitted values, minus 1 [-].
+    rows : dict of str to ndarray of int
+        Rebounds that the residuals of a kind are of.
+    scatter : dict of str to float
+        Relative root mean square of the residuals [-].
+    flags : ndarray of int (n,)
+        `Validity` limits of the model that each rebound exceeds.
+    notes : tuple of str
+        What should be known beside, in words.
+    pair : Pair
+        Materials with the values found in place.
+    radius, thickness : ndarray (n,)
+        Likewise, of each rebound.
+    data : Measurements
+        As given.
+    law : str
+        Name of the law.
+    """
+
+    unknown: tuple[str, ...]
+    values: dict[str, float]
+    errors: dict[str, float]
+    statistical_errors: dict[str, float]
+    model_errors: dict[str, float]
+    correlation: Array
+    residuals: dict[str, Array]
+    rows: dict[str, NDArray[np.intp]]
+    scatter: dict[str, float]
+    flags: NDArray[np.int64]
+    notes: tuple[str, ...]
+    pair: Pair
+    radius: Array
+    thickness: Array
+    data: Measurements
+    law: str
+    _state: _State = field(repr=False)
+
+    def curve(
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike
+    ) -> tuple[Rebound, dict[str, Array]]:
+        """Rebounds at other speeds with the values found, and their standard errors.
+
+        Parameters
+        ----------
+        speed : array_like
+            Normal approach speeds [m/s].
+        radius, thickness : array_like
+            Of beads and plates [m]; those that were found are moved with their errors.
+
+        Returns
+        -------
+        Rebound
+            Everything about these impacts, integrated.
+        dict of str to ndarray
+            Standard errors of the kinds that were measured, from the errors of all that was moved.
+        """
+        state = self._state
+        v, r, h, _ = broadcast(speed=speed, radius=radius, thickness=thickness)
+        check(speed=v, radius=r, thickness=h)
+        one = np.full(v.size, 0.5)
+        kinds = {name: one for name in self.residuals}
+        data = Measurements(speed=v, radius=r, thickness=h, **kinds)
+        moved = [replace(p, centre=x) for p, x in zip(state.predictor.moved, state.at, strict=True)]
+        along = Predictor(self.pair, state.predictor.law, data, moved, Values.of(data))
+        here = along.at(state.at)
+        slopes = along.derivatives(state.at, here)
+        spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance.total, slopes))
+        parts = np.split(spread, len(kinds))
+        in_order = [name for name in KINDS if name in kinds]
+        return along.impacts(state.at), dict(zip(in_order, parts, strict=True))
+
+
+def fit(
+    pair: Pair,
+    data: Measurements | Mapping[str, ArrayLike],
+    unknown: str | Iterable[str],
+    law: str | Law = DEFAULT,
+    priors: Mapping[str, float] | None = None,
+) -> Fit:
+    """Find what is not known of bead and plate from measured rebounds.
+
+    Parameters
+    ----------
+    pair : Pair
+        Materials of bead and plate; of what is unknown their values do not count, but for moduli
+        and densities, which are sought within a factor of 5 of them.
+    data : Measurements or mapping
+        What was measured, as `Measurements` or as a mapping with its arguments for names.
+    unknown : str or sequence of str
+        Up to three of ``"yield_strength"``, ``"youngs_modulus"``, ``"density"`` of the bead,
+        ``"plate_yield_strength"``, ``"plate_youngs_modulus"``, ``"plate_density"``,
+        ``"thickness"`` of the plate and ``"radius"`` of the bead.
+    law : str or Law, optional
+        Normal force law, as in `ImpactModel`.
+    priors : mapping of str to float, optional
+        Standard errors [SI units] of numbers that are given but not exactly known; they enter the
+        errors of what is found. Of an unknown it says that the given value counts.
+
+    Returns
+    -------
+    Fit
+
+    Raises
+    ------
+    ValueError
+        Data out of range or incomplete, fewer values than unknowns, names that are not known.
+    UnidentifiedError
+        The data do not answer the question: the message says what they do tell.
+    ImportError
+        Without scipy.
+
+    Notes
+    -----
+    Least squares of the values over their errors, from the best point of a scan. Standard errors
+    that the data lack are taken for one relative size of each kind of values, found from the
+    scatter; the errors of the result are then widened as Student's distribution has it, so that
+    68 % of the true values lie within them.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> pair = cl.Pair("gamma-alumina", "glass")
+    >>> data = {
+    ...     "speed": [1.0, 2.0, 3.0, 4.0, 5.0, 6.0],
+    ...     "radius": 0.9e-3,
+    ...     "restitution": [0.885, 0.868, 0.862, 0.851, 0.848, 0.841],
+    ... }
+    >>> found = cl.fit(pair, data, unknown="thickness")
+    >>> f"{1e3 * found.values['thickness']:.2f} mm"
+    '0.80 mm'
+    """
+    if not isinstance(pair, Pair):
+        raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
+    search.optimizer()
+    data = Measurements.of(data)
+    moved = parameters(pair, data, unknown, priors or {})
+    predictor = Predictor(pair, _law(pair, law, moved), data, moved, Values.of(data))
+    descent = search.Descent(predictor)
+    at, error, freedom = _found(predictor, descent)
+    return _result(predictor, descent, at, error, freedom)
+
+
+def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
+    """Resolve the law, for a body whose strength is asked for even if it has none."""
+    strengths = [one for one in moved if one.is_strength]
+    if strengths:
+        some = np.array(
+            [1e-2 * getattr(pair, one.unknown.body).youngs_modulus for one in strengths]
+        )
+        one_row = Measurements(speed=1.0, radius=1.0, thickness=1.0, restitution=0.5)
+        pair = setting(pair, one_row, strengths, some).pair
+    return law_of(pair, law)
+
+
+def _found(predictor: Predictor, descent: search.Descent) -> tuple[Array, Array, float]:
+    """Values, errors of the data, and degrees of freedom; those are inf where errors are known."""
+    values = predictor.values
+    unknown = np.isnan(values.error)
+    error = np.where(unknown, search.GUESSED * values.value, values.error)
+    tried = [descent(start, error) for start in search.scan(predictor)]
+    at, _ = min(tried, key=lambda one: one[1])
+    free = sum(one.prior is None for one in predictor.moved)
+    if values.value.size < free:
+        raise ValueError(
+            f"unknown: {values.value.size} measured values cannot tell {free} unknowns: leave one "
+            "out, give priors, or measure more"
+        )
+    freedom = float(values.value.size - free)
+    if not unknown.any():
+        return at, error, math.inf
+    if freedom < 1.0:
+        return at, error, 0.0
+    for _ in range(_ROUNDS):
+        fitted = predictor.at(at)
+        error = np.where(unknown, _scatter(values, fitted, unknown, freedom) * fitted, error)
+        at, _ = descent(at, error)
+    return at, error, freedom
+
+
+def _scatter(values: Values, fitted: Array, unknown: NDArray[np.bool_], freedom: float) -> Array:
+    """Relative error of each value whose own is not known, from the scatter of its kind."""
+    off = values.value / fitted - 1.0
+    share = freedom / values.value.size
+    pooled = float(np.sqrt(np.mean(off[unknown] ** 2) / share))
+    found = np.full(off.size, max(pooled, _LEAST))
+    for kind in np.unique(values.kind[unknown]):
+        of_kind = (values.kind == kind) & unknown
+        if np.count_nonzero(of_kind) >= _POOLED:
+            found[of_kind] = max(float(np.sqrt(np.mean(off[of_kind] ** 2) / share)), _LEAST)
+    return found
+
+
+@dataclass(frozen=True, eq=False)
+class _State:
+    """Where a fit has ended."""
+
+    predictor: Predictor
+    at: Array
+    error: Array  # of the values
+    covariance: errors.Errors  # of the logarithms of all that was moved
+
+
+def _result(
+    predictor: Predictor, descent: search.Descent, at: Array, error: Array, freedom: float
+) -> Fit:
+    values, names = predictor.values, tuple(one.name for one in predictor.moved if one.wanted)
+    x = np.log(at)
+    fitted = descent.predicted(x)
+    model = errors.model_covariance(predictor, at)
+    found = errors.covariances(predictor, descent.slopes(x), error, model)
+    hit = predictor.impacts(at)
+    asked = slice(len(names))  # they come first
+    own = None if model is None else np.sqrt(np.diag(model))
+    # a value that only the model leaves open is given with the error that this makes
+    doubt = error if freedom > 0.0 or own is None else own
+    _check_strengths(predictor, at, fitted, doubt)
+    found = found.widened(errors.student(freedom) if freedom > 0.0 else 0.0)
+    total = found.total[asked, asked]
+    identify.check(names, at[asked], (found.statistical if freedom > 0.0 else total)[asked, asked])
+    spread = np.sqrt(np.diag(total))
+    if len(at) == 1 and predictor.moved[0].prior is None:
+        own_spread = math.sqrt(found.statistical[0, 0]) if freedom > 0.0 else float(spread[0])
+        scatter = np.diag(error**2) if freedom > 0.0 or model is None else model
+        _check_reach(predictor, at, own_spread, scatter)
+    off = values.value / fitted - 1.0
+    kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
+    bodies = predictor.setting(at)
+
+    def named(sizes: Array) -> dict[str, float]:
+        return dict(zip(names, sizes[asked].tolist(), strict=True))
+
+    return Fit(
+        unknown=names,
+        values=named(at),
+        errors=named(at * np.sqrt(np.diag(found.total))),
+        statistical_errors=named(at * np.sqrt(np.diag(found.statistical))),
+        model_errors=named(at * np.sqrt(np.diag(found.model))),
+        correlation=total / np.outer(spread, spread),
+        residuals={name: off[rows] for name, rows in kinds.items()},
+        rows={name: values.row[rows] for name, rows in kinds.items()},
+        scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in kinds.items()},
+        flags=np.asarray(hit.flags),
+        notes=tuple(
+            notes(
+                predictor, at, hit, error / fitted, freedom, None if own is None else own / fitted
+            )
+        ),
+        pair=bodies.pair,
+        radius=bodies.radius,
+        thickness=bodies.thickness,
+        data=predictor.data,
+        law=predictor.law.family,
+        _state=_State(predictor, at, error, found),
+    )
+
+
+def _squares(predictor: Predictor, values: Array, error: Array) -> float:
+    off = (values - predictor.values.value) / error
+    return float(off @ off)
+
+
+def _check_reach(predictor: Predictor, at: Array, spread: float, covariance: Array) -> None:
+    """Refuse a value that the data hold on one side only, as a thickness that may be any larger.
+
+    Two standard errors off, fitted values have to be off by a square of 4, if they go on as they
+    begin.
+
+    Raises
+    ------
+    UnidentifiedError
+    """
+    low, high = search.limits(predictor)
+    for sign, words in ((1.0, "above"), (-1.0, "below")):
+        there = np.clip(at * math.exp(2.0 * sign * spread), low, high)
+        off = predictor.at(there) - predictor.at(at)
+        if float(off @ np.linalg.solve(covariance, off)) < _HELD:
+            name, end = predictor.moved[0].name, float(at[0]) * math.exp(-2.0 * sign * spread)
+            raise identify.UnidentifiedError(
+                f"unknown: the data tell {name} on one side only: {words} {end:.3g} "
+                f"{UNKNOWNS[name].unit}. Measure another quantity, or other speeds",
+                (name,),
+            )
+
+
+def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Array) -> None:
+    """Refuse a strength that might as well be any larger one.
+
+    Raises
+    ------
+    UnidentifiedError
+    """
+
+    def squares(values: Array) -> float:
+        return _squares(predictor, values, error)
+
+    for n, one in enumerate(predictor.moved):
+        if one.is_strength and one.wanted and one.prior is None:
+            strong = at.copy()
+            strong[n] = search.limits(predictor)[1][n]
+            if squares(predictor.at(strong)) < squares(fitted) + _EXCLUDED:
+                why = _least_strength(predictor, strong, n, squares)
+                raise identify.UnidentifiedError(
+                    f"unknown: the data do not tell {one.name}: {why}", (one.name,)
+                )
+
+
+def _least_strength(
+    predictor: Predictor, strong: Array, n: int, squares: Callable[[Array], float]
+) -> str:
+    """Say from which strength on the data exclude none."""
+    trial, high = strong.copy(), squares(predictor.at(strong)) + _EXCLUDED
+    low = search.limits(predictor)[0][n]
+    for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
+        trial[n] = strong[n] * factor
+        if squares(predictor.at(trial)) > high:
+            return (
+                f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
+                "yield enough. Measure faster impacts"
+            )
+    return f"law {predictor.law.family!r} does not depend on it with these bodies"

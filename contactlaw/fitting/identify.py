@@ -1,0 +1,100 @@
+"""Which questions the data answer, and what is known where they do not."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+_VAGUE = 0.5  # standard error of a logarithm from which on a value is not known; our choice
+_SMALL = 0.05  # exponent that is left out
+
+
+class UnidentifiedError(ValueError):
+    """A question that the data do not answer.
+
+    Attributes
+    ----------
+    unknown : tuple of str
+        What was asked for.
+    known : tuple of tuple
+        Products that are known nevertheless: exponents by name, value in SI units, and relative
+        standard error.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        unknown: tuple[str, ...],
+        known: tuple[tuple[dict[str, float], float, float], ...] = (),
+    ) -> None:
+        super().__init__(message, unknown, known)  # as given, or it could not be pickled
+        self.message, self.unknown, self.known = message, unknown, known
+
+    def __str__(self) -> str:
+        return self.message
+
+
+def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
+    """Refuse values that the data leave open, and say what they do not.
+
+    Parameters
+    ----------
+    names, values : tuple of str, ndarray (k,)
+        What was asked for, and found.
+    covariance : ndarray (k, k)
+        Of the logarithms.
+
+    Raises
+    ------
+    UnidentifiedError
+        If the standard error of a logarithm is above 0.5.
+    """
+    squares, directions = np.linalg.eigh(covariance)
+    if not squares[-1] > _VAGUE**2:
+        return
+    if len(names) == 1:
+        error = min(100.0 * float(np.sqrt(squares[-1])), 999.0)
+        raise UnidentifiedError(
+            f"unknown: the data do not tell {names[0]}: its standard error is {error:.0f} %",
+            names,
+        )
+    known = []
+    for square, direction in zip(squares, directions.T, strict=True):
+        if square <= _VAGUE**2:
+            known.append(_product(names, values, direction, float(np.sqrt(square))))
+    what = "; ".join(f"{_words(powers)} = {value:.4g} within {100.0 * error:.2g} %"
+                     for powers, value, error in known)  # fmt: skip
+    told = f"they tell {what} (in SI units). " if known else ""
+    raise UnidentifiedError(
+        f"unknown: the data do not tell {' and '.join(names)} apart: {told}"
+        "Fix one of them, give one with its prior standard error, or measure another quantity",
+        names,
+        tuple(known),
+    )
+
+
+def _product(
+    names: tuple[str, ...], values: Array, direction: Array, error: float
+) -> tuple[dict[str, float], float, float]:
+    """Product of powers whose largest exponent is 1, its value and relative error."""
+    largest = direction[int(np.argmax(np.abs(direction)))]
+    powers = direction / largest
+    kept = {name: float(power) for name, power in zip(names, powers, strict=True)
+            if abs(power) > _SMALL}  # fmt: skip
+    value = float(np.exp(sum(kept.get(name, 0.0) * np.log(value)
+                             for name, value in zip(names, values, strict=True))))  # fmt: skip
+    return kept, value, error / abs(float(largest))
+
+
+def _words(powers: dict[str, float]) -> str:
+    """Write a product of powers.
+
+    Examples
+    --------
+    >>> _words({"thickness": 1.0, "plate_density": 0.252})
+    'thickness x plate_density^0.25'
+    """
+    return " x ".join(name if power == 1.0 else f"{name}^{power:.2g}"
+                      for name, power in powers.items())  # fmt: skip

@@ -1,0 +1,163 @@
+"""Measured rebounds in SI units, checked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contactlaw.physical.arguments import broadcast, check
+
+Array = NDArray[np.float64]
+
+
+class Kind(NamedTuple):
+    """A quantity that is measured: what it may be, in SI units."""
+
+    title: str
+    unit: str
+    least: float
+    largest: float
+    hint: str  # what a value beyond is, as a rule
+
+
+KINDS = {
+    # a little above 1, where an error may lift it
+    "restitution": Kind("COR", "-", 1e-3, 1.2, "in per cent?"),
+    "contact_time": Kind("contact time", "s", 1e-9, 10.0, "in microseconds?"),
+    "peak_force": Kind("peak force", "N", 1e-12, 1e9, "in another unit?"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Measurements:
+    """Rebounds as they were measured: any mix of COR, contact time and peak force.
+
+    Arguments broadcast; afterwards each is a flat array of one length, or None.
+
+    Parameters
+    ----------
+    speed : array_like
+        Normal approach speeds [m/s].
+    radius, thickness : array_like, optional
+        Of beads and plates [m], of each or one for all; ``inf`` is the half-space. One that is
+        left out is what a fit has to find.
+    restitution, contact_time, peak_force : array_like, optional
+        What was measured [-, s, N], one at least; NaN where a rebound lacks it.
+    restitution_error, contact_time_error, peak_force_error : array_like, optional
+        Their standard errors, in the same units, for all rebounds that have the quantity. Without
+        them a fit takes errors of one relative size and finds it from the scatter.
+
+    Raises
+    ------
+    ValueError
+        A value out of its range, a rebound without any quantity, or errors without their quantity.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> data = cl.Measurements(speed=[1.0, 2.0], radius=0.9e-3, restitution=[0.93, 0.91])
+    >>> data.radius, data.thickness
+    (array([0.0009, 0.0009]), None)
+    """
+
+    speed: ArrayLike
+    radius: ArrayLike | None = None
+    thickness: ArrayLike | None = None
+    restitution: ArrayLike | None = None
+    contact_time: ArrayLike | None = None
+    peak_force: ArrayLike | None = None
+    restitution_error: ArrayLike | None = None
+    contact_time_error: ArrayLike | None = None
+    peak_force_error: ArrayLike | None = None
+
+    def __post_init__(self) -> None:
+        """Check every value and store flat arrays."""
+        given = {field.name: getattr(self, field.name) for field in fields(self)}
+        given = {name: values for name, values in given.items() if values is not None}
+        if not given.keys() & KINDS.keys():
+            raise ValueError(f"data: have to hold one at least of {', '.join(KINDS)}, got none")
+        *arrays, _ = broadcast(**{name: _missing(values) for name, values in given.items()})
+        flat: dict[str, Array] = dict(zip(given, arrays, strict=True))
+        sizes = {name: flat[name] for name in ("speed", "radius", "thickness") if name in flat}
+        if flat["speed"].size == 0:
+            raise ValueError("data: got no rebound, one at least is needed")
+        check(**sizes)
+        for name, kind in KINDS.items():
+            _check_kind(name, kind, flat)
+        measured = [np.isfinite(flat[name]) for name in KINDS if name in flat]
+        none = ~np.any(measured, axis=0)
+        if none.any():
+            raise ValueError(
+                f"data: rebound {int(np.argmax(none))} has none of {', '.join(KINDS)}: leave it out"
+            )
+        for name, values in flat.items():
+            values.flags.writeable = False
+            object.__setattr__(self, name, values)
+
+    def __len__(self) -> int:
+        """Count the rebounds."""
+        return int(np.size(self.speed))
+
+    @classmethod
+    def of(cls, data: Measurements | Mapping[str, ArrayLike]) -> Measurements:
+        """Take measurements as they are, or a mapping of names to arrays, a DataFrame as well.
+
+        Raises
+        ------
+        ValueError
+            A name that is none of the arguments of this class.
+        TypeError
+            Neither of the two.
+        """
+        if isinstance(data, Measurements):
+            return data
+        if not (hasattr(data, "keys") and hasattr(data, "__getitem__")):
+            raise TypeError(
+                f"data: expected contactlaw.Measurements or a mapping of names, got {data!r}"
+            )
+        known = [field.name for field in fields(cls)]
+        columns: dict[str, Any] = {str(name): data[name] for name in data.keys()}  # noqa: SIM118
+        wrong = [name for name in columns if name not in known]
+        if wrong or "speed" not in columns:
+            what = f"does not know {', '.join(map(repr, wrong))}" if wrong else "lacks 'speed'"
+            raise ValueError(f"data: {what}; names are {', '.join(known)}")
+        return cls(**columns)
+
+
+def _missing(values: ArrayLike) -> ArrayLike:
+    """None in a list, too, is what was not measured."""
+    if isinstance(values, list | tuple) and any(value is None for value in values):
+        return [np.nan if value is None else value for value in values]
+    return values
+
+
+def _check_kind(name: str, kind: Kind, flat: dict[str, Array]) -> None:
+    """Refuse values out of range, and errors that are not those of all values."""
+    values, errors = flat.get(name), flat.get(f"{name}_error")
+    if values is None:
+        if errors is not None:
+            raise ValueError(f"{name}_error: there is no {name} that it is of")
+        return
+    wrong = ~(np.isnan(values) | ((values >= kind.least) & (values <= kind.largest)))
+    if wrong.any():
+        n = int(np.argmax(wrong))
+        raise ValueError(
+            f"{name}: got {float(values[n])!r} (element {n}); must lie between {kind.least:g} and "
+            f"{kind.largest:g} [{kind.unit}] ({kind.hint})"
+        )
+    if np.isnan(values).all():
+        raise ValueError(f"{name}: no rebound has one: leave it out")
+    if errors is None:
+        return
+    measured = np.isfinite(values)
+    bad = measured & ~((errors > 0.0) & (errors < np.inf))
+    if bad.any():
+        n = int(np.argmax(bad))
+        raise ValueError(
+            f"{name}_error: got {float(errors[n])!r} (element {n}); must be positive [{kind.unit}] "
+            f"wherever there is a {name}; leave all of them out if they are not known"
+        )

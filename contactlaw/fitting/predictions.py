@@ -1,0 +1,133 @@
+"""What the model says of rebounds with trial values, and how that moves with each of them.
+
+Every trial is integrated, with the law that follows its bodies: a table for each would take 0.7 s.
+Derivatives are differences, as in `contactlaw.sensitivity`, of contact times and forces too.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.evaluation import UnsolvedError, solved
+from contactlaw.fitting.measurements import KINDS, Measurements
+from contactlaw.fitting.unknowns import Parameter, Setting, setting
+from contactlaw.laws import Law
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.rebound import Impacts, Rebound, rebound
+from contactlaw.physical.scaling import following, scales, sphere_on_plate
+from contactlaw.physical.validity import limits
+
+Array = NDArray[np.float64]
+
+_RTOL = 1e-9  # of an integration: 1e-8 of a contact time
+_STEP = 1e-4  # of a logarithm; differences err by half of it times the second derivative
+
+
+@dataclass(frozen=True, eq=False)
+class Values:
+    """Measured values of all kinds, one after the other.
+
+    Attributes
+    ----------
+    kind, row
+        Number of the kind in `KINDS`, and of the rebound.
+    value
+        As measured, in SI units.
+    error
+        Standard errors; NaN where they have to be found.
+    """
+
+    kind: NDArray[np.intp]
+    row: NDArray[np.intp]
+    value: Array
+    error: Array
+
+    @staticmethod
+    def of(data: Measurements) -> Values:
+        """Gather what was measured."""
+        parts = []
+        for n, name in enumerate(KINDS):
+            values: Any = getattr(data, name)
+            if values is None:
+                continue
+            rows = np.flatnonzero(np.isfinite(values))
+            errors: Any = getattr(data, f"{name}_error")
+            known = np.full(rows.size, np.nan) if errors is None else errors[rows]
+            parts.append((np.full(rows.size, n), rows, values[rows], known))
+        return Values(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+    def part(self, rows: NDArray[np.intp]) -> Values:
+        """Those of some rebounds, whose numbers are new."""
+        place = np.full(int(self.row.max()) + 1, -1)
+        place[rows] = np.arange(rows.size)
+        kept = place[self.row] >= 0
+        return Values(self.kind[kept], place[self.row[kept]], self.value[kept], self.error[kept])
+
+
+@dataclass(frozen=True, eq=False)
+class Predictor:
+    """The model as a function of the values of some parameters."""
+
+    pair: Pair
+    law: Law
+    data: Measurements
+    moved: list[Parameter]
+    values: Values
+
+    def setting(self, values: Array) -> Setting:
+        """Bodies and sizes with these values."""
+        return setting(self.pair, self.data, self.moved, values)
+
+    def slenderness(self, values: Array) -> float:
+        """Largest R/H."""
+        at = self.setting(values)
+        return float(np.max(at.radius / at.thickness))
+
+    def impacts(self, values: Array) -> Rebound:
+        """Everything about the rebounds."""
+        return impacts(self.setting(values), self.law, np.array(self.data.speed))
+
+    def at(self, values: Array) -> Array:
+        """Predict the measured values."""
+        found = self.impacts(values)
+        columns = np.array([getattr(found, name) for name in KINDS])
+        return np.asarray(columns[self.values.kind, self.values.row])
+
+    def derivatives(self, values: Array, here: Array, known: Array | None = None) -> Array:
+        """Differentiate with respect to the logarithms of the values; a column for each.
+
+        Where derivatives are known from nearby, those that take another law are not computed anew.
+        """
+        columns = np.empty((here.size, values.size)) if known is None else known.copy()
+        for n, parameter in enumerate(self.moved):
+            if known is None or not parameter.changes(self.law):
+                moved = values.copy()
+                moved[n] *= math.exp(_STEP)
+                columns[:, n] = (self.at(moved) - here) / _STEP
+        return columns
+
+
+def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
+    """Integrate rebounds of any bodies, without a table."""
+    law = following(at.pair, law)
+    contact = sphere_on_plate(at.pair, law, at.radius, at.thickness)
+    units = scales(contact, speed)
+    try:
+        found = solved(law, units, _RTOL)
+    except UnsolvedError:  # one impact of some 1e5 stumbles at one tolerance, and not at another
+        found = solved(law, units, 0.1 * _RTOL)
+    return rebound(
+        law.data,
+        limits(at.pair, law),
+        Impacts(speed, at.radius, at.thickness, speed.shape),
+        units.time,
+        contact.mass,
+        (found.inelasticity.copy(), found.yield_ratio.copy()),
+        found,
+        np.zeros(speed.size, dtype=np.int64),
+    )

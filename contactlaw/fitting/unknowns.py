@@ -1,0 +1,176 @@
+"""What can be unknown: numbers of the two materials, and the sizes of bead and plate."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.fitting.measurements import Measurements
+from contactlaw.laws import Law
+from contactlaw.physical.arguments import number
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
+
+Array = NDArray[np.float64]
+
+_MOST = 3  # unknowns at once
+
+
+class Unknown(NamedTuple):
+    """A number that a fit may find."""
+
+    title: str
+    unit: str
+    body: str  # "sphere", "plate", or "" for a size
+    field: str  # of that body's material, or of the measurements
+    least: float  # in SI units
+    largest: float
+
+
+# Bounds: rubber and diamond, aerogels and osmium; strengths go by the modulus.
+_MATERIAL = {
+    "yield_strength": ("yield strength", "Pa", 0.0, math.inf),
+    "youngs_modulus": ("Young's modulus", "Pa", 1e5, 2e12),
+    "density": ("density", "kg/m3", 1.0, 3e4),
+}
+UNKNOWNS = {
+    prefix + field: Unknown(f"{title} of the {name}", unit, body, field, least, largest)
+    for body, prefix, name in (("sphere", "", "bead"), ("plate", "plate_", "plate"))
+    for field, (title, unit, least, largest) in _MATERIAL.items()
+}
+UNKNOWNS["thickness"] = Unknown("thickness of the plate", "m", "", "thickness", 1e-7, 10.0)
+UNKNOWNS["radius"] = Unknown("radius of the bead", "m", "", "radius", 1e-7, 1.0)
+_RATIOS = (
+    12.0,
+    1e4,
+)  # E*/sigma_Y: glassy metals, and the softest lead; law fem is made for 11 to 2000
+_GUESS = 5.0  # factor by which moduli and densities may be off what is given
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A number that is moved, by its logarithm."""
+
+    name: str
+    centre: float  # as given; NaN: it is not
+    prior: float | None  # standard error of the logarithm
+    wanted: bool  # not only known with an error
+
+    @property
+    def unknown(self) -> Unknown:
+        """What it is."""
+        return UNKNOWNS[self.name]
+
+    @property
+    def is_strength(self) -> bool:
+        """Whether it is a yield strength."""
+        return self.unknown.field == "yield_strength"
+
+    def changes(self, law: Law) -> bool:
+        """Whether another law has to be made where it moves."""
+        return bool(law.from_pair) and self.unknown.field in ("yield_strength", "youngs_modulus")
+
+
+class Setting(NamedTuple):
+    """Bodies and sizes of all rebounds, with all numbers in place."""
+
+    pair: Pair
+    radius: Array
+    thickness: Array
+
+
+def parameters(
+    pair: Pair, data: Measurements, unknown: str | Iterable[str], priors: Mapping[str, float]
+) -> list[Parameter]:
+    """List what is moved: the unknowns first, then what is known with an error.
+
+    Raises
+    ------
+    ValueError
+        A name that is none of `UNKNOWNS`, none or more than three unknowns, a size that is neither
+        given nor unknown, or both; a prior of what has no value, or no positive one.
+    """
+    names = [unknown] if isinstance(unknown, str) else list(unknown)
+    for argument, given in (("unknown", names), ("priors", list(priors))):
+        for name in given:
+            if name not in UNKNOWNS:
+                raise ValueError(f"{argument}: got {name!r}, must be of {', '.join(UNKNOWNS)}")
+    if not 1 <= len(names) <= _MOST or len(set(names)) < len(names):
+        raise ValueError(f"unknown: must be one to {_MOST} different names, got {names!r}")
+    for size in ("radius", "thickness"):
+        _check_size(size, getattr(data, size), size in names, size in priors)
+    found = []
+    for name in [*names, *(name for name in priors if name not in names)]:
+        centre = _centre(pair, data, UNKNOWNS[name])
+        prior = None if name not in priors else _prior(name, centre, priors[name])
+        found.append(Parameter(name, centre, prior, name in names))
+    return found
+
+
+def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> None:
+    if values is None and not unknown:
+        raise ValueError(
+            f"{name}: has to be given [m], for each rebound or one for all, or to be unknown"
+        )
+    if values is not None and unknown and not prior:
+        raise ValueError(
+            f"{name}: is unknown and given: leave it out of the data, or give its standard error "
+            "as a prior"
+        )
+    if values is not None and prior and not np.isfinite(values).all():
+        raise ValueError(f"{name}: a half-space has no error: leave {name} out of priors")
+
+
+def _centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
+    if unknown.body:
+        value = getattr(getattr(pair, unknown.body), unknown.field)
+        return math.nan if value is None else float(value)
+    sizes = getattr(data, unknown.field)
+    return math.nan if sizes is None else float(np.median(sizes))
+
+
+def _prior(name: str, centre: float, error: float) -> float:
+    size = number(name, error)
+    if not 0.0 < size < math.inf:
+        raise ValueError(f"priors: the standard error of {name} must be positive, got {error!r}")
+    if math.isnan(centre):
+        raise ValueError(f"priors: {name} has no value that {error!r} could be the error of")
+    if size >= centre:
+        raise ValueError(
+            f"priors: the standard error of {name} must be below its value {centre:.6g}, got "
+            f"{error!r}: leave it out, and {name} is unknown"
+        )
+    return size / centre
+
+
+def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
+    """Least and largest value that physics allows."""
+    unknown = parameter.unknown
+    low, high = unknown.least, unknown.largest
+    if parameter.is_strength:
+        low, high = (pair.effective_modulus / ratio for ratio in reversed(_RATIOS))
+    elif unknown.body:
+        low, high = max(low, parameter.centre / _GUESS), min(high, parameter.centre * _GUESS)
+    return low, high
+
+
+def setting(pair: Pair, data: Measurements, moved: list[Parameter], values: Array) -> Setting:
+    """Put values in their places."""
+    bodies: dict[str, Material] = {"sphere": pair.sphere, "plate": pair.plate}
+    sizes = {"radius": data.radius, "thickness": data.thickness}
+    for parameter, value in zip(moved, values.tolist(), strict=True):
+        body, field = parameter.unknown.body, parameter.unknown.field
+        if body:
+            bodies[body] = dataclasses.replace(bodies[body], **{field: value})
+        elif sizes[field] is None:
+            sizes[field] = np.full(len(data), value)
+        else:
+            sizes[field] = np.asarray(sizes[field]) * (value / parameter.centre)
+    # copies: kernels are compiled once more for arrays that may not be written to
+    return Setting(Pair(**bodies), np.array(sizes["radius"]), np.array(sizes["thickness"]))

@@ -1,0 +1,170 @@
+"""`contactlaw fit`: what it prints and draws, and what it says of tables as people have them."""
+
+import json
+import re
+
+import numpy as np
+import pytest
+from test_fit import RADIUS, STEEL, THICKNESS, rebounds
+
+import contactlaw as cl
+from contactlaw import cli
+from contactlaw.cli import main
+from contactlaw.command import measured
+
+BODIES = ["--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name]
+FIT = [*BODIES, "--radius", "1mm", "--unknown", "thickness"]
+FOUND = cl.fit(STEEL, rebounds(STEEL, noise=0.01, without=("thickness",)), "thickness")
+
+
+@pytest.fixture
+def table(tmp_path):
+    """Write rows of text into a file and give its name."""
+
+    def write(*lines):
+        path = tmp_path / "rebounds.csv"
+        path.write_text("\n".join(lines), encoding="utf-8")
+        return str(path)
+
+    return write
+
+
+@pytest.fixture
+def usual(table):
+    data = rebounds(STEEL, noise=0.01)
+    columns = np.column_stack([data["speed"], data["restitution"], data["restitution_error"]])
+    return table("speed_m/s,COR,COR_error", *(",".join(map(repr, row)) for row in columns.tolist()))
+
+
+def test_json_holds_all_of_the_fit(usual, capsys):
+    assert main(["fit", usual, *FIT, "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["values"]["thickness"] == pytest.approx(FOUND.values["thickness"], rel=1e-9)
+    assert printed["errors"]["thickness"] == pytest.approx(FOUND.errors["thickness"], rel=1e-9)
+    assert printed["residuals"]["restitution"] == pytest.approx(
+        FOUND.residuals["restitution"].tolist(), abs=1e-9
+    )
+    assert len(printed["flags"]) == 12 and printed["units"] == {"thickness": "m"}
+
+
+def test_text_has_the_value_its_error_and_each_rebound(usual, capsys):
+    assert main(["fit", usual, *FIT]) == 0
+    out = capsys.readouterr().out
+    value, error = re.search(r"thickness of the plate  (\S+) \+- (\S+) mm", out).groups()
+    assert float(value) == pytest.approx(1e3 * FOUND.values["thickness"], abs=1e-3)
+    assert float(error) == pytest.approx(1e3 * FOUND.errors["thickness"], rel=0.05)
+    assert len(re.findall(r"^ +\d+ ", out, re.MULTILINE)) == 12
+
+
+@pytest.mark.parametrize(
+    ("head", "rows"),
+    [
+        ("speed_m/s,COR,contact_time_us", ["1,0.5,", "2,,7.5"]),
+        ("Speed [cm/s];COR [%];Contact time [µs]", ["100;50;", "200;;7.5"]),
+        ("impact speed (mm/s)\te\tduration ns", ["1000\t0.5\t", "2000\t\t7500"]),
+        ("speed,restitution,contact_time", ["1,0.5,", "2,,7.5e-6"]),
+    ],
+)
+def test_tables_as_people_write_them(head, rows, table):
+    data = measured.measurements(table(head, *rows), radius=RADIUS, thickness=THICKNESS)
+    assert data.speed == pytest.approx([1.0, 2.0])
+    assert data.restitution == pytest.approx([0.5, np.nan], nan_ok=True)
+    assert data.contact_time == pytest.approx([np.nan, 7.5e-6], nan_ok=True)
+
+
+@pytest.mark.parametrize(
+    ("lines", "words"),
+    [
+        (["velocity,COR", "1,0.5"], "no column of speeds in its first line, 'velocity, COR'"),
+        (["speed_m/s,rebound", "1,0.5"], "nothing measured in its first line"),
+        (["speed_m/s,COR"], "it has no row beside the first line"),
+        (["speed_m/s,COR", "1,half"], "half"),
+        (["speed [mph],COR", "1,0.5"], "'mph' is no unit of speed"),
+        (["speed,COR,COR", "1,0.5,0.5"], "two columns of restitution"),
+        (["speed,COR", "1,85", "2,80"], "restitution: got 85.0"),
+        (["speed,COR", ",0.5", "2,0.4"], "row 1 has no speed"),
+        (["speed,COR", "1,", "2,0.4"], "rebound 0 has none of"),
+        (["speed,COR", "-1,0.5"], "speed: got -1.0"),
+        (["speed,COR,COR_error", "1,0.5,0.01", "2,0.4,"], "restitution_error: got nan"),
+        (["speed,COR,radius_mm", "1,0.5,1"], "--radius: the table has its own"),
+    ],
+)
+def test_tables_that_are_refused(lines, words, table, capsys):
+    assert main(["fit", table(*lines), *FIT]) == 1
+    assert words in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ([*BODIES, "--unknown", "thickness"], "--radius: has to be given"),
+        ([*FIT, "--thickness", "1mm"], "--thickness: is unknown and given"),
+        ([*BODIES, "--radius", "1mm", "--unknown", "thickness,colour"], "--unknown: got 'colour'"),
+        ([*FIT, "--prior", "plate_yield_strength=5GPa"], "--prior: the standard error of plate"),
+        ([*FIT[:-1], "yield_strength", "--thickness", "1.2mm"], "--unknown: the data do not tell"),
+        (["--sphere", "stel", *FIT[2:]], "--sphere: unknown material 'stel'"),
+        ([*FIT, "--law", "fme"], "--law: unknown law 'fme'; did you mean 'fem'"),
+        ([*FIT, "--plot", "fit.txt"], "--plot: got 'fit.txt', must end in .png"),
+    ],
+)
+def test_errors_speak_of_options(options, words, usual, capsys):
+    assert main(["fit", usual, *options]) == 1
+    assert words in capsys.readouterr().err
+
+
+def test_a_prior_with_its_unit(usual, capsys):
+    assert main(["fit", usual, *FIT, "--prior", "density=0.5g/cm3", "--json"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    data = rebounds(STEEL, noise=0.01, without=("thickness",))
+    own = cl.fit(STEEL, data, "thickness", priors={"density": 500.0})
+    assert printed["errors"]["thickness"] == pytest.approx(own.errors["thickness"], rel=1e-6)
+    assert own.errors["thickness"] > 1.2 * FOUND.errors["thickness"]
+
+
+def test_columns_that_are_not_used_are_named(table, capsys):
+    assert main(["fit", table("speed,COR,eror", "1,0.4497,3", "2,0.3716,3"), *FIT]) == 0
+    assert "columns that are not used: eror" in capsys.readouterr().err
+
+
+def test_a_picture(usual, tmp_path, capsys, monkeypatch):
+    from matplotlib.figure import Figure
+
+    drawn = []
+    save = Figure.savefig
+    monkeypatch.setattr(
+        Figure, "savefig", lambda self, *args: (drawn.append(self), save(self, *args))
+    )
+    path = tmp_path / "fit.png"
+    unknown = ["--thickness", "1.2mm", "--unknown", "plate_yield_strength"]
+    assert main(["fit", usual, *BODIES, "--radius", "1mm", *unknown, "--plot", str(path)]) == 0
+    assert path.read_bytes().startswith(b"\x89PNG")
+    ((above, below),) = [figure.axes for figure in drawn]
+    curve = max((line for line in above.lines), key=lambda line: len(line.get_xdata()))
+    table = cl.ImpactModel(STEEL, outside="solve")
+    middle = curve.get_xdata()[80]
+    assert curve.get_ydata()[80] == pytest.approx(
+        table.solve(middle, RADIUS, THICKNESS).restitution, rel=0.01
+    )
+    assert above.collections and below.collections  # bands
+    assert str(path) in capsys.readouterr().out
+
+
+def test_where_yield_begins_is_drawn(tmp_path):
+    from contactlaw.command.fitplot import curve_of, groups_of
+
+    pair = cl.Pair("gamma-alumina", "glass")
+    data = rebounds(pair, speed=np.geomspace(1.0, 30.0, 12), without=("thickness",))
+    found = cl.fit(pair, data, "thickness")
+    (group,) = groups_of(found)
+    expected = cl.ImpactModel(pair).yield_speed(RADIUS, THICKNESS)
+    assert curve_of(found, group).yield_speed == pytest.approx(expected, rel=1e-3)
+
+
+def test_an_interrupt_leaves_nothing(usual, tmp_path, monkeypatch, capsys):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(cli, "fit", interrupted)
+    path = tmp_path / "fit.png"
+    assert main(["fit", usual, *FIT, "--plot", str(path)]) == 130
+    assert "interrupted" in capsys.readouterr().err and not path.exists()

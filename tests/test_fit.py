@@ -1,0 +1,370 @@
+"""From rebounds to what was not known: against what is true, and against scipy alone."""
+
+import dataclasses
+import pickle
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy import stats
+from scipy.optimize import least_squares
+
+import contactlaw as cl
+from contactlaw.fitting import errors, notes
+from contactlaw.fitting.predictions import Predictor, Values, impacts
+from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
+from contactlaw.physical.scaling import law_of
+from validation.inverse import coverage, elements, model
+
+STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
+RADIUS, THICKNESS = 1e-3, 1.2e-3
+KINDS = ("restitution", "contact_time", "peak_force")
+
+
+def rebounds(pair, law="fem", kinds=KINDS[:1], noise=0.0, seed=0, speed=None, without=()):
+    """What would be measured of a bead of 1 mm on a plate of 1.2 mm."""
+    v = np.geomspace(0.2, 8.0, 12) if speed is None else np.asarray(speed, dtype=float)
+    size = np.ones_like(v)
+    hit = impacts(Setting(pair, RADIUS * size, THICKNESS * size), law_of(pair, law), v)
+    random = np.random.default_rng(seed)
+    sizes = {"radius": RADIUS, "thickness": THICKNESS}
+    data = {"speed": v} | {name: size for name, size in sizes.items() if name not in without}
+    for kind in kinds:
+        exact = np.asarray(getattr(hit, kind))
+        data[kind] = exact * (1.0 + noise * random.standard_normal(v.size))
+        data[f"{kind}_error"] = max(noise, 0.01) * exact
+    return data
+
+
+def true(pair, name):
+    unknown = UNKNOWNS[name]
+    sizes = {"radius": RADIUS, "thickness": THICKNESS}
+    return sizes.get(name) or getattr(getattr(pair, unknown.body), unknown.field)
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [("thickness",), ("radius",), ("density",), ("plate_density",), ("youngs_modulus",),
+     ("plate_youngs_modulus",), ("plate_yield_strength",), ("plate_yield_strength", "thickness"),
+     ("radius", "thickness", "plate_yield_strength")],
+    ids="+".join,
+)  # fmt: skip
+def test_exact_data_give_back_what_made_them(asked):
+    data = rebounds(STEEL, kinds=KINDS, without=asked)
+    found = cl.fit(STEEL, data, asked)
+    for name in asked:
+        assert found.values[name] == pytest.approx(true(STEEL, name), rel=2e-5)
+    assert all(abs(off).max() < 2e-5 for off in found.residuals.values())
+    assert set(found.values) == set(found.errors) == set(asked) == set(found.unknown)
+
+
+def test_the_strength_of_a_bead_that_yields():
+    pair = cl.Pair("stainless-steel-304", "tungsten-carbide")
+    found = cl.fit(pair, rebounds(pair), "yield_strength")
+    assert found.values["yield_strength"] == pytest.approx(pair.sphere.yield_strength, rel=2e-5)
+    assert found.pair.sphere.yield_strength == found.values["yield_strength"]
+
+
+@pytest.mark.parametrize("law", ["myc", "jackson_green", "thornton"])
+def test_other_laws(law):
+    pair = cl.Pair("gamma-alumina", "glass")
+    data = rebounds(pair, law, speed=np.geomspace(2.0, 40.0, 9), without=("thickness",))
+    found = cl.fit(pair, data, ("thickness", "yield_strength"), law)
+    assert found.values["thickness"] == pytest.approx(THICKNESS, rel=1e-4)
+    assert found.values["yield_strength"] == pytest.approx(472.5e6, rel=1e-4)
+    assert found.law == law
+
+
+@pytest.fixture(scope="module")
+def by_scipy():
+    """Thickness, its error and chi^2 by scipy on the answers of `ImpactModel` alone."""
+    data = rebounds(STEEL, noise=0.01, seed=3, without=("thickness",))
+    table = cl.ImpactModel(STEEL)
+
+    def off(x):
+        cor = table.solve(data["speed"], RADIUS, float(x[0]) * 1e-3).restitution
+        return (cor - data["restitution"]) / data["restitution_error"]
+
+    done = least_squares(off, [2.0], diff_step=1e-5, xtol=1e-12, ftol=1e-12)
+    slope = done.jac[:, 0]
+    return data, done.x[0] * 1e-3, 1e-3 / np.sqrt(slope @ slope), slope / 1e-3
+
+
+def test_value_and_error_are_those_of_least_squares_by_scipy(by_scipy):
+    data, thickness, error, _ = by_scipy
+    found = cl.fit(STEEL, data, "thickness")
+    assert found.values["thickness"] == pytest.approx(thickness, rel=1e-5)
+    assert found.statistical_errors["thickness"] == pytest.approx(error, rel=1e-3)
+    parts = found.statistical_errors["thickness"], found.model_errors["thickness"]
+    assert found.errors["thickness"] == pytest.approx(np.hypot(*parts), rel=1e-12)
+
+
+def test_the_model_part_of_the_error_is_its_rms_where_all_errors_are_alike(by_scipy):
+    """One rebound: 0.43 % of COR, over the derivative of ln e by ln H, which `sensitivity` has."""
+    v = 1.0
+    cor = float(cl.ImpactModel(STEEL).solve(v, RADIUS, THICKNESS).restitution)
+    found = cl.fit(STEEL, {"speed": v, "radius": RADIUS, "restitution": cor}, "thickness")
+    slope = cl.ImpactModel(STEEL).sensitivity(v, RADIUS, THICKNESS).thickness
+    share = found.model_errors["thickness"] / found.values["thickness"]
+    assert found.flags[0] == 0
+    assert share == pytest.approx(errors.MODEL_ERRORS["fem"][0][0] / slope, rel=1e-3)
+    assert found.statistical_errors["thickness"] == 0.0
+    assert any("model alone" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("name", ["thickness", "density", "plate_density", "youngs_modulus"])
+def test_derivatives_are_those_of_the_models_own_sensitivity(name):
+    data = cl.Measurements.of(rebounds(STEEL))
+    moved = parameters(STEEL, data, "plate_yield_strength", {name: 1e-3 * true(STEEL, name)})
+    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
+    at = np.array([true(STEEL, "plate_yield_strength"), true(STEEL, name)])
+    slopes = predictor.derivatives(at, predictor.at(at)) / predictor.at(at)[:, None]
+    theirs = cl.ImpactModel(STEEL).sensitivity(data.speed, RADIUS, THICKNESS)
+    field = {"density": "sphere_density", "youngs_modulus": "sphere_modulus"}.get(name, name)
+    assert slopes[:, 1] == pytest.approx(getattr(theirs, field), abs=3e-4)
+
+
+def test_errors_that_are_not_given_are_found_from_the_scatter():
+    """Mean and 1/sqrt(n) of a parameter that all values are proportional to: exact by hand."""
+    v = np.full(6, 1.0)
+    hit = impacts(Setting(STEEL, v * RADIUS, v * THICKNESS), law_of(STEEL, "fem"), v)
+    scatter = np.array([1.01, 0.98, 1.03, 0.995, 1.002, 0.99])
+    data = {"speed": v, "radius": RADIUS, "restitution": hit.restitution * scatter}
+    found = cl.fit(STEEL, data, "thickness")
+    fitted = cl.ImpactModel(STEEL).solve(1.0, RADIUS, found.values["thickness"]).restitution
+    assert fitted == pytest.approx(np.mean(data["restitution"]), rel=1e-6)
+    slope = cl.ImpactModel(STEEL).sensitivity(1.0, RADIUS, THICKNESS).thickness
+    of_mean = scatter.std(ddof=1) / scatter.mean() / np.sqrt(6.0)
+    widened = stats.t.ppf(stats.norm.cdf(1.0), 5) * of_mean
+    share = found.statistical_errors["thickness"] / found.values["thickness"]
+    assert share == pytest.approx(widened / slope, rel=0.02)
+    of_each = 100.0 * scatter.std(ddof=1) / scatter.mean()
+    assert f"one of {of_each:.2g} % was found from the scatter of 6 values" in " ".join(found.notes)
+
+
+def test_a_prior_enters_the_error():
+    """A density that is known to 10 % leaves H uncertain by what the two derivatives say."""
+    data = rebounds(STEEL, speed=[1.0], without=("thickness",))
+    alone = cl.fit(STEEL, data, "thickness")
+    with_it = cl.fit(STEEL, data, "thickness", priors={"density": 0.1 * STEEL.sphere.density})
+    moved = cl.ImpactModel(STEEL).sensitivity(1.0, RADIUS, THICKNESS)
+    extra = 0.1 * moved.sphere_density / moved.thickness * THICKNESS
+    errors_of = [one.statistical_errors["thickness"] for one in (alone, with_it)]
+    assert np.sqrt(errors_of[1] ** 2 - errors_of[0] ** 2) == pytest.approx(abs(extra), rel=0.02)
+    assert with_it.values["thickness"] == pytest.approx(THICKNESS, rel=1e-4)
+
+
+def test_a_prior_of_the_unknown_itself_pulls_it():
+    data = rebounds(STEEL, speed=[1.0])
+    pulled = cl.fit(STEEL, data | {"thickness": 1.5e-3}, "thickness", priors={"thickness": 1e-6})
+    assert pulled.values["thickness"] == pytest.approx(1.5e-3, rel=2e-3)
+
+
+def test_a_strength_from_below_yield_is_refused_with_what_is_known():
+    pair = cl.Pair("gamma-alumina", "glass")
+    data = rebounds(pair, speed=np.geomspace(0.3, 4.0, 10), noise=0.005)
+    with pytest.raises(cl.UnidentifiedError, match="yield_strength: any above") as caught:
+        cl.fit(pair, data, "yield_strength")
+    (least,) = re.findall(r"above (\S+) MPa", str(caught.value))
+    # at that strength the fastest just yields, with what the errors leave
+    yields_at = cl.Pair(
+        dataclasses.replace(pair.sphere, yield_strength=float(least) * 1e6), pair.plate
+    ).yield_speed
+    assert 1.0 < yields_at < 4.5
+    assert pickle.loads(pickle.dumps(caught.value)).unknown == ("yield_strength",)
+
+
+def test_a_product_is_told_where_its_factors_are_not():
+    """Below yield a thin plate is its mobility, H^2 sqrt(rho2): 1/4 in the exponent of rho2."""
+    pair = cl.Pair("gamma-alumina", "glass")
+    data = rebounds(pair, speed=np.geomspace(0.3, 4.0, 10), noise=0.01, without=("thickness",))
+    with pytest.raises(cl.UnidentifiedError, match="apart: they tell") as caught:
+        cl.fit(pair, data, ("thickness", "plate_density"))
+    ((powers, value, error),) = caught.value.known
+    assert powers == {"thickness": 1.0, "plate_density": pytest.approx(0.25, abs=0.02)}
+    exact = THICKNESS * pair.plate.density ** powers["plate_density"]
+    assert value == pytest.approx(exact, rel=3.0 * error)
+    assert error < 0.05
+
+
+@pytest.mark.parametrize(
+    ("law", "asked"), [("myc", "plate_yield_strength"), ("hertz", "yield_strength")]
+)
+def test_what_a_law_does_not_depend_on_is_refused(law, asked):
+    pair = cl.Pair("gamma-alumina", "glass")
+    with pytest.raises(cl.UnidentifiedError, match=f"law '{law}' does not depend on it"):
+        cl.fit(pair, rebounds(pair, law, noise=0.01), asked, law)
+
+
+def test_a_thickness_that_may_be_any_larger_is_refused():
+    """A thick plate's contact time ends at that of a half-space."""
+    pair, speed, size = cl.Pair("glass", "glass"), np.array([0.5, 1.0, 2.0]), np.ones(3)
+    thick = impacts(Setting(pair, RADIUS * size, 3e-3 * size), law_of(pair, "fem"), speed)
+    time = np.asarray(thick.contact_time)
+    data = {"speed": speed, "radius": RADIUS, "contact_time": time}
+    data["contact_time_error"] = 2e-3 * time
+    with pytest.raises(cl.UnidentifiedError, match="thickness on one side only: above 0.0018"):
+        cl.fit(pair, data, "thickness")
+
+
+def test_rebounds_beyond_the_models_limits_are_flagged_one_by_one():
+    data = rebounds(STEEL, speed=[1.0, 2.0, 70.0], without=("plate_yield_strength",))
+    found = cl.fit(STEEL, data, "plate_yield_strength")
+    expected = cl.ImpactModel(STEEL, outside="solve").solve(data["speed"], RADIUS, THICKNESS).flags
+    assert found.flags.tolist() == expected.tolist()
+    assert found.flags[2] and not found.flags[0]
+    assert any("FAST_IMPACT, rebounds 2:" in note for note in found.notes)
+
+
+def test_a_mistake_in_the_data_is_named():
+    data = rebounds(STEEL, noise=0.01, without=("thickness",))
+    data["restitution"][4] *= 1.2
+    found = cl.fit(STEEL, data, "thickness")
+    assert any("restitution of rebound 4" in note and "mistake" in note for note in found.notes)
+    assert any("errors and the model's allow" in note for note in found.notes)
+
+
+def test_the_curve_of_a_fit_is_the_models_with_its_values():
+    data = rebounds(STEEL, noise=0.01, without=("thickness",))
+    found = cl.fit(STEEL, data, "thickness")
+    hit, errors_of = found.curve([0.5, 5.0], RADIUS, found.values["thickness"])
+    table = cl.ImpactModel(found.pair)
+    own = table.solve([0.5, 5.0], RADIUS, found.values["thickness"])
+    assert hit.restitution == pytest.approx(own.restitution, rel=3e-6)  # the rtol of a fit
+    assert hit.flags.tolist() == own.flags.tolist()
+    slope = table.sensitivity([0.5, 5.0], RADIUS, found.values["thickness"]).thickness
+    share = found.errors["thickness"] / found.values["thickness"]
+    assert errors_of["restitution"] == pytest.approx(slope * share * own.restitution, rel=3e-3)
+
+
+def test_missing_values_are_left_out():
+    data = rebounds(STEEL, kinds=KINDS[:2], without=("thickness",))
+    first = data["restitution"][0]
+    data["restitution"][[0, 3]] = np.nan
+    data["contact_time"] = [None, *data["contact_time"][1:3], *data["contact_time"][3:]]
+    data["restitution"][0] = first  # or the first would have nothing
+    found = cl.fit(STEEL, data, "thickness")
+    assert found.rows["restitution"].tolist() == [0, 1, 2, *range(4, 12)]
+    assert found.rows["contact_time"].tolist() == list(range(1, 12))
+
+
+def test_a_size_of_each_rebound_with_a_prior():
+    """A radius of each, of which all are off by one factor."""
+    data = rebounds(STEEL, kinds=KINDS, without=("thickness",))
+    data["radius"] = np.full(12, 1.05 * RADIUS)
+    found = cl.fit(STEEL, data, ("thickness", "radius"), priors={"radius": 1e-4})
+    assert found.values["radius"] == pytest.approx(RADIUS, rel=2e-3)
+    assert found.radius == pytest.approx(found.values["radius"])
+
+
+@pytest.mark.parametrize(
+    ("change", "asked", "message"),
+    [
+        ({"speed": [1.0, np.nan]}, "thickness", "speed: got nan"),
+        ({"restitution": [0.5, 85.0]}, "thickness", r"restitution: got 85.0 .*per cent\?"),
+        ({"restitution": None}, "thickness", "one at least of restitution"),
+        ({"restitution": [np.nan, 0.5]}, "thickness", "rebound 0 has none of"),
+        ({"restitution_error": [0.0, 0.1]}, "thickness", "restitution_error: got 0.0"),
+        ({"restitution_error": [np.nan, 0.1]}, "thickness", "restitution_error: got nan"),
+        ({"contact_time": 5.0e-6, "contact_time_error": -1.0}, "thickness", "contact_time_error"),
+        ({"peak_force_error": 1.0}, "thickness", "there is no peak_force"),
+        ({"radius": None}, "thickness", "radius: has to be given"),
+        ({"thickness": 1e-3}, "thickness", "thickness: is unknown and given"),
+        ({}, "yield_strenght", "unknown: got 'yield_strenght', must be of"),
+        ({}, (), "unknown: must be one to 3"),
+        ({}, ("thickness", "thickness"), "unknown: must be one to 3"),
+        ({"speed": 1.0, "restitution": 0.5}, ("thickness", "plate_density"), "1 measured values"),
+        ({"cor": 0.9}, "thickness", "data: does not know 'cor'"),
+        ({"speed": []}, "thickness", "no rebound|do not broadcast"),
+        ({"restitution": ["a", "b"]}, "thickness", "restitution: expected"),
+    ],
+)
+def test_what_is_refused(change, asked, message):
+    data = {"speed": [1.0, 2.0], "radius": 1e-3, "restitution": [0.5, 0.45]} | change
+    data = {name: values for name, values in data.items() if values is not None}
+    with pytest.raises(ValueError, match=message):
+        cl.fit(STEEL, data, asked)
+
+
+@pytest.mark.parametrize(
+    ("priors", "message"),
+    [
+        ({"colour": 1.0}, "priors: got 'colour'"),
+        ({"density": 0.0}, "density must be positive"),
+        ({"density": 9000.0}, "density must be below its value"),
+        ({"density": "1"}, "density: expected one number"),
+        ({"yield_strength": 1e6}, "has no value that"),
+    ],
+)
+def test_priors_that_are_refused(priors, message):
+    pair = cl.Pair(dataclasses.replace(STEEL.sphere, yield_strength=None), STEEL.plate)
+    data = {"speed": [1.0, 2.0], "radius": 1e-3, "restitution": [0.5, 0.45]}
+    with pytest.raises(ValueError, match=message):
+        cl.fit(pair, data, "thickness", priors=priors)
+
+
+def test_things_that_are_no_data():
+    with pytest.raises(TypeError, match="data: expected"):
+        cl.fit(STEEL, [1.0, 2.0], "thickness")
+    with pytest.raises(TypeError, match="pair: expected"):
+        cl.fit(("steel", "glass"), {}, "thickness")
+
+
+def test_without_scipy_it_says_what_to_install():
+    code = (
+        "import sys; sys.modules['scipy'] = None; sys.modules['scipy.optimize'] = None\n"
+        "import contactlaw as cl\n"
+        "cl.fit(cl.Pair('glass', 'glass'), {'speed': 1.0, 'radius': 1e-3, 'restitution': 0.9}, "
+        "'thickness')"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert "ImportError: a fit needs scipy: pip install 'contactlaw[fit]'" in done.stderr
+
+
+def test_numbers_of_rebounds_are_listed():
+    assert notes.listed(np.array([3])) == "3"
+    assert notes.listed(np.arange(0, 40, 2)).endswith("and 12 more")
+
+
+@pytest.mark.parametrize("law", ["fem", "myc"])
+def test_the_stated_errors_of_the_model_are_those_beside_finite_elements(law):
+    for stated, measured in zip(errors.MODEL_ERRORS[law], model.rms(law), strict=True):
+        assert stated == pytest.approx(measured, rel=0.01)
+
+
+def test_finite_elements_that_no_fit_has_seen():
+    """A tenth of `python -m validation.inverse elements`: every tenth impact."""
+    some = model.unseen()[::10]
+    strengths, sizes = [], []
+    for one in some:
+        for unknown, found in (("yield_strength", strengths), ("thickness", sizes)):
+            name, value = elements.asked(unknown, one)
+            if not name:
+                continue
+            try:
+                found.append(elements.one_found(one, name, value, ("restitution",)))
+            except cl.UnidentifiedError:
+                continue
+    assert len(strengths) > 8 and len(sizes) > 10
+    inside = [one for one in strengths if not one.flagged]
+    assert elements.score(inside).within[1] >= 0.9  # within 5 %
+    thin = [one for one in sizes if one.slenderness > 0.9 and not one.flagged]
+    assert elements.score(thin).within[1] == 1.0
+    assert elements.score(sizes).covered[1] >= 0.85
+
+
+SETS = 30
+
+
+@pytest.mark.parametrize(
+    ("name", "law"), [("thickness", "fem"), ("density", "fem"), ("yield_strength", "myc")]
+)
+def test_the_true_value_is_within_the_stated_error_as_often_as_it_should(name, law):
+    """A part of `python -m validation.inverse coverage`: within 3 standard errors of 68 %."""
+    rows = coverage.tally((name,), SETS, 2, law)
+    spread = (0.683 * 0.317 / SETS) ** 0.5
+    for row in rows:
+        assert row.answered == SETS
+        assert abs(row.within["all"] - 0.683) < 3.0 * spread

@@ -1,0 +1,240 @@
+"""How often the true value lies within the stated standard error: 68 times of 100, if it is right.
+
+Configurations are drawn by a seed: beads and plates of the catalogue, half of them with other
+strengths, R 0.3 to 3 mm, R/H 0.15 to 1.8, 8 to 30 speeds below, across or above yield, one to three
+kinds of values with errors of 0.3 to 3 %, which the fit knows or has to find. The data are those of
+the model, with scatter; in half of the sets the model errs, too, as its stated covariance has it,
+and then the whole error is judged, else the part from the data.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+import contactlaw as cl
+from contactlaw.fitting import errors
+from contactlaw.fitting.measurements import KINDS
+from contactlaw.fitting.predictions import Predictor, Values, impacts
+from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
+from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.scaling import law_of
+
+Array = NDArray[np.float64]
+
+QUESTIONS = (*((name,) for name in UNKNOWNS), ("yield_strength", "thickness"),
+             ("radius", "thickness", "plate_yield_strength"))  # fmt: skip
+REGIMES = {"below": (0.02, 0.7), "across": (0.2, 8.0), "above": (3.0, 60.0)}  # V0/V_Y0
+_LEAST = 0.05  # COR that is still measured
+_SWIFTEST = 40.0  # [m/s]
+
+
+class Configuration(NamedTuple):
+    """A measurement: what is true, and what was measured."""
+
+    pair: cl.Pair
+    radius: float
+    thickness: float
+    speed: Array
+    kinds: tuple[str, ...]
+    noise: tuple[float, ...]  # relative errors of the kinds
+    told: bool  # the fit knows these
+    regime: str
+
+
+class Outcome(NamedTuple):
+    """What became of one unknown of a set; off and error are relative."""
+
+    name: str
+    regime: str
+    model_errs: bool
+    off: float
+    error: float
+
+    @property
+    def within(self) -> bool:
+        """Whether the true value lies within the standard error."""
+        return abs(self.off) <= self.error
+
+
+def draw(random: np.random.Generator, question: tuple[str, ...], law: str) -> Configuration:
+    """Draw a configuration of which a question can be asked."""
+    names = [name for name in cl.materials() if cl.material(name).kind not in (None, "polymer")]
+    while True:
+        sphere, plate = (cl.material(str(random.choice(names))) for _ in range(2))
+        pair = cl.Pair(*(_of_other_strength(random, body) for body in (sphere, plate)))
+        strengths = [body.yield_strength or math.inf for body in (pair.sphere, pair.plate)]
+        regime = str(random.choice(list(REGIMES)))
+        if "yield_strength" in question and not strengths[0] < 0.8 * strengths[1]:
+            continue
+        if "plate_yield_strength" in question and not strengths[1] < 0.8 * strengths[0]:
+            continue
+        if regime == "below" and any(name.endswith("yield_strength") for name in question):
+            continue
+        if law != "fem" and pair.sphere.yield_strength is None:
+            continue
+        at_yield = pair.yield_speed if min(strengths) < math.inf else 10.0
+        slowest, fastest = (min(ratio * at_yield, _SWIFTEST) for ratio in REGIMES[regime])
+        if fastest < 2.0 * slowest:
+            continue
+        radius = 1e-3 * math.exp(random.uniform(math.log(0.3), math.log(3.0)))
+        thickness = radius / math.exp(random.uniform(math.log(0.15), math.log(1.8)))
+        count = int(random.integers(8, 31))
+        speed = np.exp(np.sort(random.uniform(math.log(slowest), math.log(fastest), count)))
+        least = 2 if len(question) > 1 else 1
+        kinds = tuple(random.permutation(list(KINDS))[: random.integers(least, 4)].tolist())
+        noise = tuple(np.exp(random.uniform(math.log(0.003), math.log(0.03), len(kinds))).tolist())
+        one = Configuration(
+            pair, radius, thickness, speed, kinds, noise, bool(random.integers(2)), regime
+        )
+        if np.min(truth(one, law).restitution) > _LEAST:
+            return one
+
+
+def _of_other_strength(random: np.random.Generator, body: cl.Material) -> cl.Material:
+    if body.yield_strength is None or random.integers(2):
+        return body
+    factor = math.exp(random.uniform(math.log(0.4), math.log(2.5)))
+    return dataclasses.replace(body, yield_strength=factor * body.yield_strength)
+
+
+def truth(one: Configuration, law: str) -> Rebound:
+    """Predict its rebounds."""
+    size = np.ones_like(one.speed)
+    at = Setting(one.pair, one.radius * size, one.thickness * size)
+    return impacts(at, law_of(one.pair, law), one.speed)
+
+
+def measured(
+    random: np.random.Generator, one: Configuration, question: tuple[str, ...], law: str, errs: bool
+) -> dict[str, Array | float]:
+    """Draw the data of a configuration, without what is asked for."""
+    true = truth(one, law)
+    data: dict[str, Array | float] = {"speed": one.speed}
+    data |= {name: getattr(one, name) for name in ("radius", "thickness") if name not in question}
+    exact = {kind: np.asarray(getattr(true, kind)) for kind in one.kinds}
+    shift = _model_error(random, one, exact, law) if errs else {}
+    for kind, noise in zip(one.kinds, one.noise, strict=True):
+        scatter = noise * exact[kind] * random.standard_normal(one.speed.size)
+        values = exact[kind] + scatter + shift.get(kind, 0.0)
+        data[kind] = np.clip(values, 1e-3, 1.19) if kind == "restitution" else values
+        if one.told:
+            data[f"{kind}_error"] = noise * exact[kind]
+    return data
+
+
+def _model_error(
+    random: np.random.Generator, one: Configuration, exact: dict[str, Array], law: str
+) -> dict[str, Array]:
+    data = cl.Measurements(
+        speed=one.speed, radius=one.radius, thickness=one.thickness,
+        **exact,
+    )  # fmt: skip
+    moved = parameters(one.pair, data, "density", {})
+    values = Values.of(data)
+    predictor = Predictor(one.pair, law_of(one.pair, law), data, moved, values)
+    covariance = errors.model_covariance(predictor, np.array([one.pair.sphere.density]))
+    if covariance is None:
+        return {}
+    drawn = random.multivariate_normal(np.zeros(len(covariance)), covariance, method="cholesky")
+    names = list(KINDS)
+    return {name: drawn[values.kind == names.index(name)] for name in exact}
+
+
+def _true(one: Configuration, name: str) -> float:
+    unknown = UNKNOWNS[name]
+    if unknown.body:
+        return float(getattr(getattr(one.pair, unknown.body), unknown.field))
+    return float(getattr(one, name))
+
+
+def outcomes(
+    question: tuple[str, ...], sets: int, seed: int, law: str = "fem"
+) -> Iterator[list[Outcome]]:
+    """Fit synthetic data sets: a list for each, which is empty where the fit refused."""
+    random = np.random.default_rng([seed, QUESTIONS.index(question)])
+    for n in range(sets):
+        one = draw(random, question, law)
+        errs = bool(n % 2) and law == "fem"  # others are too far off where they are flagged
+        data = measured(random, one, question, law, errs)
+        try:
+            found = cl.fit(one.pair, data, question, law)
+        except cl.UnidentifiedError:
+            yield []
+            continue
+        stated = found.errors if errs else found.statistical_errors
+        yield [
+            Outcome(name, one.regime, errs, found.values[name] / _true(one, name) - 1.0,
+                    stated[name] / _true(one, name))
+            for name in question
+        ]  # fmt: skip
+
+
+class Tally(NamedTuple):
+    """How one unknown of a question fared."""
+
+    question: tuple[str, ...]
+    name: str
+    answered: int
+    refused: int
+    within: dict[str, float]  # share, by regime, by what was judged, and in all
+    median_error: float
+
+
+def tally(question: tuple[str, ...], sets: int, seed: int, law: str = "fem") -> list[Tally]:
+    """Count over as many answered sets as asked for."""
+    found: list[list[Outcome]] = []
+    refused = 0
+    for one in outcomes(question, 20 * sets, seed, law):
+        refused += not one
+        if one:
+            found.append(one)
+        if len(found) == sets:
+            break
+    rows = []
+    for n, name in enumerate(question):
+        of = [one[n] for one in found]
+        parts = {
+            "all": of,
+            "data": [one for one in of if not one.model_errs],
+            "data and model": [one for one in of if one.model_errs],
+            **{regime: [one for one in of if one.regime == regime] for regime in REGIMES},
+        }
+        within = {part: float(np.mean([one.within for one in ones])) for part, ones in parts.items()
+                  if ones}  # fmt: skip
+        error = float(np.median([one.error for one in of]))
+        rows.append(Tally(question, name, len(of), refused, within, error))
+    return rows
+
+
+def _tally(task: tuple[tuple[str, ...], int, int, str]) -> list[Tally]:
+    return tally(*task)
+
+
+def report(sets: int = 1000, seed: int = 1) -> str:
+    """Count for every question, as text; takes half an hour on two cores.
+
+    All is judged by the law fem, in as many processes as there are cores.
+    """
+    lines = [f"share of {sets} true values within the stated standard error, seed {seed} [%]"]
+    parts = ("all", "data", "data and model", *REGIMES)
+    lines.append(f"{'':56s} {' '.join(f'{part:>8s}' for part in parts)}  refused, median error [%]")
+    tasks = [(question, sets, seed, "fem") for question in QUESTIONS]
+    with ProcessPoolExecutor() as pool:
+        for rows in tqdm(
+            pool.map(_tally, tasks), "coverage", len(tasks), disable=None, leave=False
+        ):
+            for row in rows:
+                shares = (f"{100.0 * row.within.get(part, math.nan):8.1f}" for part in parts)
+                title = row.name if len(row.question) == 1 else f"{row.name} ({len(row.question)})"
+                lines.append(
+                    f"{title:56s} {' '.join(shares)}  {row.refused}, {100.0 * row.median_error:.2g}"
+                )
+    return "\n".join(lines)

@@ -1,0 +1,105 @@
+"""How far each law is from finite elements that no fit has seen: `fitting.errors.MODEL_ERRORS`."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import contactlaw as cl
+from contactlaw import Validity, laws
+from contactlaw.fitting.measurements import KINDS
+from contactlaw.fitting.predictions import impacts
+from contactlaw.fitting.unknowns import Setting
+from contactlaw.physical.materials import NoYieldStrengthError
+from contactlaw.physical.scaling import law_of
+from validation.fem import fit, store
+
+Array = NDArray[np.float64]
+
+STUDIES = "everyday_5", "kept_out"  # all that no fit has seen
+_LEAST = {"restitution": 0.3}  # the error of a lower one is over this
+
+
+class Impact(NamedTuple):
+    """One impact by finite elements."""
+
+    pair: cl.Pair  # bodies that did not yield have no strength
+    speed: float
+    radius: float
+    thickness: float
+    yields: bool
+    values: dict[str, float]  # of the kinds that can be measured
+
+    @property
+    def slenderness(self) -> float:
+        """R/H."""
+        return self.radius / self.thickness
+
+
+def unseen() -> list[Impact]:
+    """List the impacts that no fit has seen.
+
+    Examples
+    --------
+    >>> len(unseen())
+    160
+    """
+    found = []
+    for study in STUDIES:
+        data = store.read(study).data
+        for n in range(data["speed"].size):
+            row: dict[str, Any] = {key: values[n] for key, values in data.items()}
+            found.append(
+                Impact(
+                    pair=fit.pair_of(row),
+                    speed=float(row["speed"]),
+                    radius=float(row["radius"]),
+                    thickness=float(row["thickness"]),
+                    yields=bool(row["plastic_strain"] > 0.0),
+                    values={kind: float(row[kind]) for kind in KINDS},
+                )
+            )
+    return found
+
+
+def rms(law: str) -> tuple[Array, Array]:
+    """Errors of a law in each kind of value, relative: of impacts without a flag, and with one.
+
+    Impacts that it refuses are left out, for want of a yield strength.
+
+    Examples
+    --------
+    >>> [errors.round(4).tolist() for errors in rms("fem")]
+    [[0.0043, 0.0059, 0.0065], [0.0194, 0.021, 0.0164]]
+    """
+    off, flagged = [], []
+    for one in unseen():
+        try:
+            made = law_of(one.pair, law)
+        except NoYieldStrengthError:
+            continue
+        size = np.ones(1)
+        hit = impacts(Setting(one.pair, one.radius * size, one.thickness * size), made,
+                      one.speed * size)  # fmt: skip
+        off.append(
+            [
+                (float(np.asarray(getattr(hit, kind))[0]) - value)
+                / max(value, _LEAST.get(kind, 0.0))
+                for kind, value in one.values.items()
+            ]
+        )
+        flagged.append(bool(np.asarray(hit.flags)[0] & Validity.ACCURACY))
+    squares, beyond = np.array(off) ** 2, np.array(flagged)
+    inside, outside = (np.sqrt(squares[part].mean(axis=0)) for part in (~beyond, beyond))
+    return np.asarray(inside), np.asarray(outside)
+
+
+def report() -> str:
+    """All laws as text."""
+    lines = ["rms errors of COR, contact time, peak force [%], without and with a flag of accuracy"]
+    for law in laws.names():
+        parts = ("  ".join(f"{100.0 * error:6.2f}" for error in errors) for errors in rms(law))
+        lines.append(f"{law:14s} {' | '.join(parts)}")
+    return "\n".join(lines)
