@@ -297,8 +297,8 @@ def place(row: Any, time: float, dt: float) -> None:
         row.rate[k] = row.velocity[k] + (then[k] - last[k]) / (2.0 * dt)
     angle = row.spin * time
     c, s = math.cos(angle), math.sin(angle)
-    a, b, d, k = row.axis[0], row.axis[1], row.axis[2], 1.0 - c
+    x, y, z, w = row.axis[0], row.axis[1], row.axis[2], 1.0 - c
     turn = row.turn
-    turn[0], turn[1], turn[2] = c + a * a * k, a * b * k - d * s, a * d * k + b * s
-    turn[3], turn[4], turn[5] = a * b * k + d * s, c + b * b * k, b * d * k - a * s
-    turn[6], turn[7], turn[8] = a * d * k - b * s, b * d * k + a * s, c + d * d * k
+    turn[0], turn[1], turn[2] = c + x * x * w, x * y * w - z * s, x * z * w + y * s
+    turn[3], turn[4], turn[5] = x * y * w + z * s, c + y * y * w, y * z * w - x * s
+    turn[6], turn[7], turn[8] = x * z * w - y * s, y * z * w + x * s, c + z * z * w
