@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from dem_demo import defaults, engines, options
 from dem_demo.options import Refused
+from dem_demo.sieve import command as sieve
 from dem_demo.signals import Interrupted, interruptible
 
 if TYPE_CHECKING:
@@ -123,6 +124,7 @@ def _parser() -> argparse.ArgumentParser:
         + "; ".join(f"{name}: {engine.ABOUT}" for name, engine in known.items()))  # fmt: skip
     add("--out", type=Path, metavar="DIR", default=Path("rain"), help="folder for the results")
     rain.set_defaults(start=_rain)
+    sieve.add(commands)
     return parser
 
 
