@@ -14,7 +14,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from dem_demo import defaults, engines
+from dem_demo import defaults, engines, options
+from dem_demo.options import Refused
+from dem_demo.sieve import command as sieve
 from dem_demo.signals import Interrupted, interruptible
 
 if TYPE_CHECKING:
@@ -25,13 +27,6 @@ if TYPE_CHECKING:
 
 
 _PATIENCE = 300.0  # [s]; more than figures and page of a rain take
-
-
-_FORESEEN = (Interrupted, OSError, ValueError, RuntimeError)  # they say all that is to be said
-
-
-class _Refused(Exception):
-    """The physics does not allow what was asked for."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -52,11 +47,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         with interruptible():
             arguments = _parser().parse_args(argv)
-            return _rain(arguments, shlex.join(["dem-demo", *argv]))
+            status = int(arguments.start(arguments, shlex.join(["dem-demo", *argv])))
+        return _stopped(status) if status else 0
     except Interrupted as stop:
-        print(f"\ndem-demo: {stop} before it rained; nothing was written", file=sys.stderr)
+        if not _rank():  # of several, the first one tells what becomes of the results
+            print(f"\ndem-demo: {stop} before it began; nothing was written", file=sys.stderr)
         return _stopped(stop.exit_status)
-    except (_Refused, OSError, RuntimeError) as error:  # an engine's adapter raises the last one
+    except (Refused, OSError, RuntimeError) as error:  # an engine's adapter raises the last one
         print(f"dem-demo: {error}", file=sys.stderr)
         return _stopped(1)
     except Exception:
@@ -64,11 +61,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _stopped(1)
 
 
+def _rank() -> int:
+    mpi = sys.modules.get("mpi4py.MPI")
+    return 0 if mpi is None else int(mpi.COMM_WORLD.rank)
+
+
 def _stopped(status: int) -> int:
     """Stop the other ranks too, which would wait for this one for ever."""
     mpi = sys.modules.get("mpi4py.MPI")
     if mpi is not None and mpi.COMM_WORLD.size > 1:
-        if mpi.COMM_WORLD.rank > 0:
+        if _rank() > 0:
             time.sleep(_PATIENCE)  # rank 0 keeps what there is before it ends everything
         mpi.COMM_WORLD.Abort(status)
     return status
@@ -92,14 +94,15 @@ def _parser() -> argparse.ArgumentParser:
     )
     add = rain.add_argument
     add("--beads", type=int, metavar="N", default=defaults.BEADS, help="number of beads")
-    add("--plates", type=_lengths, metavar="H,...", default=_text(defaults.THICKNESSES),
+    add("--plates", type=options.lengths, metavar="H,...",
+        default=options.text(defaults.THICKNESSES),
         help="thickness of each plate [m], or with units; inf: a half-space")  # fmt: skip
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
     add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the plates")
-    add("--radius", type=_radii, metavar="MIN,MAX",
-        default=_text(defaults.RADIUS), help="bead radii [m], or with units")  # fmt: skip
-    add("--speed", type=_speeds, metavar="MIN,MAX",
-        default=_text(defaults.SPEED),
+    add("--radius", type=options.radii, metavar="MIN,MAX",
+        default=options.text(defaults.RADIUS), help="bead radii [m], or with units")  # fmt: skip
+    add("--speed", type=options.speeds, metavar="MIN,MAX",
+        default=options.text(defaults.SPEED),
         help="speeds at which beads are thrown down [m/s], or with units")  # fmt: skip
     add("--duration", type=float, metavar="T", default=argparse.SUPPRESS,
         help=f"simulated time [s] (default: {durations})")  # fmt: skip
@@ -120,42 +123,16 @@ def _parser() -> argparse.ArgumentParser:
         help="engine that moves the beads; "
         + "; ".join(f"{name}: {engine.ABOUT}" for name, engine in known.items()))  # fmt: skip
     add("--out", type=Path, metavar="DIR", default=Path("rain"), help="folder for the results")
+    rain.set_defaults(start=_rain)
+    sieve.add(commands)
     return parser
-
-
-def _text(numbers: Sequence[float]) -> str:
-    return ",".join(f"{number:g}" for number in numbers)
-
-
-def _lengths(text: str) -> tuple[float, ...]:
-    from contactlaw.command import options, quantities
-
-    found: tuple[float, ...] = options.reader_of(quantities.values, quantities.LENGTH)(text)
-    return found
-
-
-def _radii(text: str) -> tuple[float, float]:
-    return _range(text, _lengths(text))
-
-
-def _speeds(text: str) -> tuple[float, float]:
-    from contactlaw.command import options, quantities
-
-    return _range(text, options.reader_of(quantities.values, quantities.SPEED)(text))
-
-
-def _range(text: str, found: tuple[float, ...]) -> tuple[float, float]:
-    if len(found) != 2:
-        raise argparse.ArgumentTypeError(f"expected two numbers MIN,MAX, got {text!r}")
-    return found[0], found[1]
 
 
 def _rain(arguments: argparse.Namespace, command: str) -> int:
     engine = engines.load(arguments.engine)
     try:
-        from dem_demo import place, products
+        from dem_demo import products, session
         from dem_demo.complaint import sentence
-        from dem_demo.folder import files, workplace
         from dem_demo.reader import read
         from dem_demo.recorder import RECORD
         from dem_demo.report import progress, summary
@@ -163,30 +140,22 @@ def _rain(arguments: argparse.Namespace, command: str) -> int:
         named, rank = (arguments.engine, engine.version()), engine.rank()
     except ModuleNotFoundError as error:
         hint = f"pip install contactlaw[{engine.EXTRAS}]"
-        raise _Refused(f"{error.name} is missing: {hint}") from error
+        raise Refused(f"{error.name} is missing: {hint}") from error
     scene, ruling, model = _plan(arguments, engine)
     if rank > 0:
         engine.run(scene, ruling, None)
         return 0
-    target = place.Place(arguments.out)
-    facts = {"engine": named, "command": command, "files": place.names()}
-    with workplace(arguments.out) as folder:
-        stop = _simulate(engine, scene, (ruling, model), folder / RECORD, facts)
-        if not (folder / RECORD).exists():
-            assert stop is not None
-            raise _Refused(f"{sentence(stop, scene, model)}; nothing could be kept")
-        run = read(folder / RECORD)
-        print(summary(run), flush=True)
-        failed = products.make(run, folder)
-        written = ", ".join(file.name for file in files(folder))
-        reached = target.fill(folder, complete=not run.reason)
-    earlier = ", in the place of an earlier rain" * (target.earlier and reached == target.path)
-    print(f"\nWritten to {reached}{earlier}: {written}", flush=True)
-    for name, why in failed.items():
-        print(f"dem-demo: {name} is missing: {sentence(why, scene, model)}", file=sys.stderr)
-    if run.reason:
-        print(f"dem-demo: partial, {progress(run)}: {run.reason}", file=sys.stderr)
-    return max((getattr(e, "exit_status", 1) for e in (stop, *failed.values()) if e), default=0)
+    kind = products.kind()
+    facts = {"engine": named, "command": command, "files": kind.files}
+    steps = session.Steps(
+        simulate=lambda folder: _simulate(engine, scene, (ruling, model), folder / RECORD, facts),
+        read=lambda folder: read(folder / RECORD),
+        summary=summary,
+        progress=progress,
+        make=products.make,
+        sentence=lambda error: sentence(error, scene, model),
+    )
+    return session.deliver(arguments.out, kind, steps)
 
 
 def _plan(
@@ -219,7 +188,7 @@ def _plan(
         if "constant_cor" in arguments:
             return scene, ConstantRestitution(pair, arguments.constant_cor), model
     except ValueError as error:
-        raise _Refused(wording.sentence(error, vars(arguments))) from error
+        raise Refused(wording.sentence(error, vars(arguments))) from error
     return scene, _checked(scene, model), model
 
 
@@ -237,7 +206,7 @@ def _checked(scene: Scene, model: ImpactModel) -> ImpactModel:
                 f"a bead of {scene.sphere_material.name} of radius {radius * 1e3:.3g} mm on the "
                 f"plate of {label(plate.thickness)} at {speed:.3g} m/s"
             )
-            raise _Refused(sentence(error, scene, model)) from error
+            raise Refused(sentence(error, scene, model)) from error
     return model
 
 
@@ -251,10 +220,11 @@ def _simulate(
     """Let it rain into a file; returns what stopped it, if anything did."""
     from dem_demo.baseline import ConstantRestitution
     from dem_demo.complaint import sentence
-    from dem_demo.recorder import Recorder
+    from dem_demo.recorder import rain_recorder
+    from dem_demo.session import FORESEEN
 
     ruling, model = models
-    recorder = Recorder(
+    recorder = rain_recorder(
         path,
         scene,
         model,
@@ -268,7 +238,7 @@ def _simulate(
         try:
             engine.run(scene, ruling, recorder)
         except (Exception, Interrupted) as error:
-            if not isinstance(error, _FORESEEN):
+            if not isinstance(error, FORESEEN):
                 traceback.print_exc()
             recorder.reason = sentence(error, scene, model)
             return error

@@ -56,7 +56,7 @@ def gif(run: Run) -> bytes:
             for collection in picture.moving:
                 axes.draw_artist(collection)
             frames.append(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB"))
-    return _encoded(frames)
+    return encoded(frames, _RATE)
 
 
 def _times(run: Run, made: NDArray[np.void]) -> list[float]:
@@ -71,11 +71,12 @@ def _times(run: Run, made: NDArray[np.void]) -> list[float]:
     return [float(time) for time in shown]
 
 
-def _encoded(frames: list[Image.Image]) -> bytes:
+def encoded(frames: list[Image.Image], rate: float) -> bytes:
+    """Make a GIF that repeats itself of frames, so many per second [1/s]."""
     palette = frames[len(frames) // 2].quantize(_COLOURS)  # one for all, or the picture flickers
     reduced = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     file = io.BytesIO()
     reduced[0].save(
-        file, "GIF", save_all=True, append_images=reduced[1:], duration=round(1e3 / _RATE), loop=0,
+        file, "GIF", save_all=True, append_images=reduced[1:], duration=round(1e3 / rate), loop=0,
     )  # fmt: skip
     return file.getvalue()

@@ -135,11 +135,15 @@ class Limit(NamedTuple):
 
 def limits(run: Run) -> list[Limit]:
     """List the limits of the model that impacts on plates exceed."""
+    return exceeded(run.modelled["flags"], near_edge(run))
+
+
+def exceeded(flags: NDArray[np.int64], near: NDArray[np.bool_]) -> list[Limit]:
+    """List the limits that impacts exceed, from their flags, and whether they are near an edge."""
     found = [
-        Limit(_words(flag), explain(flag)[0], int(((run.modelled["flags"] & flag) != 0).sum()))
-        for flag in Validity
+        Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity
     ]
-    found.append(Limit("near an edge", _EDGE, int(near_edge(run).sum())))
+    found.append(Limit("near an edge", _EDGE, int(near.sum())))
     return [limit for limit in found if limit.impacts]
 
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import h5py
 import numpy as np
@@ -129,13 +130,7 @@ def read(path: Path) -> Run:
         If the file is something else, of another schema, or was never closed.
     """
     with h5py.File(path, "r") as file:
-        attributes = dict(file.attrs)
-        found = [attributes.get(name) for name in ("format", "schema", "state")]
-        if found[:2] != [FORMAT, SCHEMA] or found[2] not in (COMPLETE, PARTIAL):
-            raise ValueError(
-                f"{path}: not a closed file of format {FORMAT!r}, schema {SCHEMA}, but "
-                f"format {found[0]!r}, schema {found[1]}, state {found[2]}: run the rain again"
-            )
+        attributes = closed(file, path, FORMAT, SCHEMA)
         frames = {name: dataset[()] for name, dataset in file["trajectories"].items()}
         return Run(
             scene=_scene(file),
@@ -146,13 +141,9 @@ def read(path: Path) -> Run:
             bead_on_bead=attributes.get("bead_on_bead"),
             command=attributes["command"],
             created=attributes["created"],
-            versions={
-                name.removeprefix("version_"): text
-                for name, text in attributes.items()
-                if name.startswith("version_")
-            },
+            versions=versions(attributes),
             reason=attributes["reason"],
-            collisions=_table(file["collisions"]),
+            collisions=impacts(file["collisions"]),
             **frames,
         )
 
@@ -171,9 +162,32 @@ def _scene(file: h5py.File) -> Scene:
     )
 
 
-def _table(group: h5py.Group) -> NDArray[np.void]:
+def closed(file: h5py.File, path: Path, form: str, schema: int) -> dict[str, Any]:
+    """Attributes of a file of this format; a `ValueError` if it is something else or is open."""
+    attributes = dict(file.attrs)
+    found = [attributes.get(name) for name in ("format", "schema", "state")]
+    if found[:2] != [form, schema] or found[2] not in (COMPLETE, PARTIAL):
+        raise ValueError(
+            f"{path}: not a closed file of format {form!r}, schema {schema}, but "
+            f"format {found[0]!r}, schema {found[1]}, state {found[2]}: run the "
+            f"{form.removeprefix('contactlaw-')} again"
+        )
+    return attributes
+
+
+def versions(attributes: Mapping[str, Any]) -> dict[str, str]:
+    """Versions of the programs that made a file, by name."""
+    return {
+        name.removeprefix("version_"): text
+        for name, text in attributes.items()
+        if name.startswith("version_")
+    }
+
+
+def impacts(group: h5py.Group) -> NDArray[np.void]:
+    """Read a table of impacts by time, with the columns of the one record that it has."""
     columns = {name: group[name][()] for name in IMPACT.names or () if name in group}
     table = np.empty(columns["time"].size, [(name, IMPACT[name]) for name in columns])
     for name, column in columns.items():
         table[name] = column
-    return table
+    return table[np.argsort(table["time"], kind="stable")]

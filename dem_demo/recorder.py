@@ -1,15 +1,15 @@
-"""rain.h5: written frame by frame while it rains, read back by the figures and the report."""
+"""A run's file: written frame by frame while it goes on, read back by figures and report."""
 
 from __future__ import annotations
 
 import datetime
 import io
 import platform
-from collections.abc import Mapping, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from importlib.metadata import version
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import NamedTuple, Self
 
 import h5py
 import numpy as np
@@ -20,7 +20,6 @@ from contactlaw.engines.record import COLUMNS, IMPACT, OBSERVED
 from contactlaw.laws import Law
 from dem_demo.disk import Disk, complaint
 from dem_demo.folder import files as _files
-from dem_demo.frame import Frame
 from dem_demo.scene import Scene
 from dem_demo.signals import undisturbed, unstoppable
 
@@ -36,74 +35,72 @@ _AXES = (
 )
 
 
+class Dataset(NamedTuple):
+    """What a file holds of each frame under one name."""
+
+    name: str
+    kind: str
+    shape: tuple[int, ...]
+    unit: str
+    description: str
+
+
 class Recorder:
-    """Writes one rain to an HDF5 file; a context manager.
+    """Writes one run to an HDF5 file; a context manager.
 
     Parameters
     ----------
     path : Path
         File to create.
-    scene : Scene
-        What is recorded.
-    model : ImpactModel
-        What rules the impacts; in the baseline what to compare them with.
-    engine : tuple of str
-        Name and version of the engine.
-    command : str
-        Command line that made the file.
+    attributes : mapping
+        What the file says of itself, beside when and by which versions it was made.
+    write_scene : callable
+        Writes what is known before the run into the open file.
+    trajectories : sequence of Dataset
+        What there is of each frame; its time comes by itself.
+    frame_rate : float
+        Frames per second [1/s].
+    axes : str
+        What the columns of impacts mean in this file.
     files : set of str
         Names of the files that will be made of it; those of the engine's own join them.
-    time_step : float
-        The engine's step [s].
-    dimensions : int
-        Of the engine, 2 or 3.
-    constant_cor : float, optional
-        The COR of every contact, in the baseline.
-    bead_on_bead : str, optional
-        What is to be said of beads that hit beads, where the engine does not record them.
 
     Attributes
     ----------
     folder : Path
         Where the file is; an engine may put one of its own there.
     reason : str or None
-        Why the rain is partial, a sentence; None if nothing has gone wrong.
+        Why the run is partial, a sentence; None if nothing has gone wrong.
     """
 
     def __init__(
         self,
         path: Path,
-        scene: Scene,
-        model: ImpactModel,
         *,
-        engine: tuple[str, str],
-        command: str,
+        attributes: Mapping[str, object],
+        write_scene: Callable[[h5py.File], None],
+        trajectories: Sequence[Dataset],
+        frame_rate: float,
+        axes: str,
         files: Set[str],
-        time_step: float,
-        dimensions: int,
-        constant_cor: float | None = None,
-        bead_on_bead: str | None = None,
     ) -> None:
         self.folder = path.parent
         self.reason: str | None = None
         self._path, self._disk = path, Disk(path)
-        self._files, self._frame_rate = files, scene.frame_rate
-        self._frames = self._rows = 0
+        self._files, self._frame_rate = files, frame_rate
+        self._frames = 0
         with undisturbed():
             self._file = h5py.File(self._disk, "w")
-            self._file.attrs.update(_provenance(engine, command))
-            self._file.attrs.update({"law": _name(model.force_law), "outside": model.outside})
-            self._file.attrs["seed"] = scene.seed
-            self._file.attrs.update({"duration": scene.duration, "frame_rate": scene.frame_rate})
-            self._file.attrs["time_step"] = time_step
-            if constant_cor is not None:
-                self._file.attrs["constant_cor"] = constant_cor
-            if bead_on_bead is not None:
-                self._file.attrs["bead_on_bead"] = bead_on_bead
-            _write_scene(self._file, scene)
-            self._trajectories = _create_trajectories(self._file, scene, dimensions)
+            self._file.attrs.update(_made())
+            self._file.attrs.update(attributes)
+            write_scene(self._file)
+            self._trajectories = self._file.create_group("trajectories")
+            _create(self._trajectories, "time", (_ROWS,), "f8", "s", "time of the frame")
+            for name, kind, shape, unit, description in trajectories:
+                chunk = (1 if shape else _ROWS, *shape)
+                _create(self._trajectories, name, chunk, kind, unit, description)
             self._collisions = self._file.create_group("collisions")
-            self._collisions.attrs["description"] = _AXES
+            self._collisions.attrs["description"] = axes
 
     @property
     def disk_error(self) -> OSError | None:
@@ -134,8 +131,8 @@ class Recorder:
                 _write_shorter(self._path, self._disk.content(), self._frames)
             self._disk.close()
 
-    def frame(self, frame: Frame) -> None:
-        """Append one frame.
+    def frame(self, frame: NamedTuple) -> None:
+        """Append one frame, whose fields have the names of the datasets.
 
         Raises
         ------
@@ -154,21 +151,83 @@ class Recorder:
             raise self._disk.error
 
     def collisions(self, table: NDArray[np.void]) -> None:
-        """Append what is new in the table of all collisions so far, in the columns that it has."""
+        """Append collisions, in the columns that their table has."""
         with undisturbed():
             self._append(table)
 
     def _append(self, table: NDArray[np.void]) -> None:
-        if self._collisions.keys() and table.size == self._rows:
+        if self._collisions.keys() and not table.size:
             return
         for name, kind, unit, description in COLUMNS:
             if name in (table.dtype.names or ()):
                 if name not in self._collisions:
                     _create(self._collisions, name, (_ROWS,), kind, unit, description)
                 column = self._collisions[name]
-                column.resize(table.size, axis=0)
-                column[self._rows :] = table[name][self._rows :]
-        self._rows = table.size
+                before = column.size
+                column.resize(before + table.size, axis=0)
+                column[before:] = table[name]
+
+
+def rain_recorder(
+    path: Path,
+    scene: Scene,
+    model: ImpactModel,
+    *,
+    engine: tuple[str, str],
+    command: str,
+    files: Set[str],
+    time_step: float,
+    dimensions: int,
+    constant_cor: float | None = None,
+    bead_on_bead: str | None = None,
+) -> Recorder:
+    """Begin the record of a rain.
+
+    Parameters
+    ----------
+    path : Path
+        File to create.
+    scene : Scene
+        What is recorded.
+    model : ImpactModel
+        What rules the impacts; in the baseline what to compare them with.
+    engine : tuple of str
+        Name and version of the engine.
+    command : str
+        Command line that made the file.
+    files : set of str
+        Names of the files that will be made of it.
+    time_step : float
+        The engine's step [s].
+    dimensions : int
+        Of the engine, 2 or 3.
+    constant_cor : float, optional
+        The COR of every contact, in the baseline.
+    bead_on_bead : str, optional
+        What is to be said of beads that hit beads, where the engine does not record them.
+    """
+    attributes: dict[str, object] = {
+        "format": FORMAT,
+        "schema": SCHEMA,
+        **made_by(engine, command, model),
+        "seed": scene.seed,
+        "duration": scene.duration,
+        "frame_rate": scene.frame_rate,
+        "time_step": time_step,
+    }
+    if constant_cor is not None:
+        attributes["constant_cor"] = constant_cor
+    if bead_on_bead is not None:
+        attributes["bead_on_bead"] = bead_on_bead
+    return Recorder(
+        path,
+        attributes=attributes,
+        write_scene=lambda file: _write_scene(file, scene),
+        trajectories=_trajectories(scene, dimensions),
+        frame_rate=scene.frame_rate,
+        axes=_AXES,
+        files=files,
+    )
 
 
 def _name(law: Law) -> str:
@@ -176,14 +235,20 @@ def _name(law: Law) -> str:
     return law.family if law.from_pair else law.name
 
 
-def _provenance(engine: tuple[str, str], command: str) -> dict[str, object]:
+def made_by(engine: tuple[str, str], command: str, model: ImpactModel) -> dict[str, object]:
+    """Attributes that tell what made a run: engine and its version, command line, law."""
     return {
-        "format": FORMAT,
-        "schema": SCHEMA,
-        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "command": command,
         "engine": engine[0],
         f"version_{engine[0]}": engine[1],
+        "law": _name(model.force_law),
+        "outside": model.outside,
+    }
+
+
+def _made() -> dict[str, object]:
+    return {
+        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "version_contactlaw": version("contactlaw"),
         "version_numba": version("numba"),
         "version_numpy": np.__version__,
@@ -192,15 +257,21 @@ def _provenance(engine: tuple[str, str], command: str) -> dict[str, object]:
     }
 
 
-def _write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
+def write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
+    """Write an array that says what it is."""
     data = np.asarray(values)
     dataset = group.create_dataset(name, data=data, compression="gzip" if data.size else None)
     dataset.attrs.update({"units": units, "description": description})
 
 
-def _write_scene(file: h5py.File, scene: Scene) -> None:
-    for part, material in (("sphere", scene.sphere_material), ("plate", scene.plate_material)):
+def write_materials(file: h5py.File, sphere: Material, plate: Material) -> None:
+    """Write all that is known of the two materials."""
+    for part, material in (("sphere", sphere), ("plate", plate)):
         file.create_group(f"materials/{part}").attrs.update(_attributes(material))
+
+
+def _write_scene(file: h5py.File, scene: Scene) -> None:
+    write_materials(file, scene.sphere_material, scene.plate_material)
     plates = file.create_group("plates")
     for name, description in (
         ("thickness", "thickness, inf: half-space"),
@@ -208,7 +279,7 @@ def _write_scene(file: h5py.File, scene: Scene) -> None:
         ("x1", "right end"),
         ("y", "height of the upper face"),
     ):
-        _write(plates, name, [getattr(plate, name) for plate in scene.plates], "m", description)
+        write(plates, name, [getattr(plate, name) for plate in scene.plates], "m", description)
     beads = file.create_group("beads")
     for name, units, description in (
         ("radius", "m", "radius"),
@@ -216,9 +287,9 @@ def _write_scene(file: h5py.File, scene: Scene) -> None:
         ("position", "m", "centre (x, y) at emission"),
         ("velocity", "m/s", "velocity (x, y) at emission"),
     ):
-        _write(beads, name, getattr(scene.beads, name), units, description)
+        write(beads, name, getattr(scene.beads, name), units, description)
     mass = scene.beads.mass(scene.sphere_material.density)
-    _write(beads, "mass", mass, "kg", "mass of the sphere")
+    write(beads, "mass", mass, "kg", "mass of the sphere")
 
 
 def _attributes(material: Material) -> Mapping[str, object]:
@@ -247,17 +318,16 @@ def _create(
     dataset.attrs.update({"units": units, "description": description})
 
 
-def _create_trajectories(file: h5py.File, scene: Scene, dimensions: int) -> h5py.Group:
-    group, beads = file.create_group("trajectories"), scene.beads.radius.size
-    _create(group, "time", (_ROWS,), "f8", "s", "time of the frame")
-    for name, kind, size, units, description in (
-        ("position", "f4", (2,), "m", "centre (x, y); of a bead that is gone: where it left"),
-        ("velocity", "f4", (2,), "m/s", "velocity (x, y); of a bead that is gone: 0"),
-        ("status", "u1", (), "1", "0 waiting for its emission, 1 flying, 2 gone"),
-        *[("depth", "f4", (), "m", "third coordinate of the centre")][: dimensions - 2],
-    ):
-        _create(group, name, (1, beads, *size), kind, units, description)
-    return group
+def _trajectories(scene: Scene, dimensions: int) -> list[Dataset]:
+    beads = scene.beads.radius.size
+    return [
+        Dataset("position", "f4", (beads, 2), "m", "centre (x, y); of a bead that is gone: where "
+                "it left"),
+        Dataset("velocity", "f4", (beads, 2), "m/s", "velocity (x, y); of a bead that is gone: 0"),
+        Dataset("status", "u1", (beads,), "1", "0 waiting for its emission, 1 flying, 2 gone"),
+        *[Dataset("depth", "f4", (beads,), "m", "third coordinate of the centre")]
+        [: dimensions - 2],
+    ]  # fmt: skip
 
 
 def _write_shorter(path: Path, content: bytes, frames: int) -> None:

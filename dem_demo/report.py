@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from dem_demo.measure import PlateRow, bead_on_bead, limits, plate_rows
+from dem_demo.measure import Limit, PlateRow, bead_on_bead, limits, plate_rows
 from dem_demo.reader import Run
 
 _HEAD = (
@@ -31,7 +32,7 @@ def summary(run: Run) -> str:
     """
     lines = [*title(run), "", _HEAD]
     lines += [_plate_line(row) for row in plate_rows(run)]
-    lines += ["", _bead_line(run), *_limits_lines(run)]
+    lines += ["", _bead_line(run), *limits_lines(limits(run))]
     if run.reason:
         lines += ["", f"Partial, {progress(run)}: {run.reason}"]
     return "\n".join(lines)
@@ -89,8 +90,8 @@ def _bead_line(run: Run) -> str:
     )
 
 
-def _limits_lines(run: Run) -> list[str]:
-    found = limits(run)
+def limits_lines(found: Sequence[Limit]) -> list[str]:
+    """Say which limits of the model impacts exceed, and what that means."""
     if not found:
         return ["Limits of the model: all impacts on plates are inside"]
     width = max(len(f"{limit.impacts} {limit.name}") for limit in found)

@@ -60,13 +60,20 @@ def interruptible() -> Iterator[None]:
 
 
 @contextmanager
+def noted() -> Iterator[list[int]]:
+    """Within this block signals interrupt nothing; the list that it gives has their numbers."""
+    came: list[int] = []
+    with _on_signals(lambda number, frame: came.append(number)):
+        yield came
+
+
+@contextmanager
 def undisturbed() -> Iterator[None]:
     """Within this block nothing is interrupted; what came meanwhile is raised at its end.
 
     For steps that would leave a mess halfway: HDF5 in the middle of a file, files on the move.
     """
-    came: list[int] = []
-    with _on_signals(lambda number, frame: came.append(number)):
+    with noted() as came:
         yield
     if came:
         raise Interrupted(came[0])

@@ -9,6 +9,9 @@ from contextvars import ContextVar
 from typing import Any, TypeVar
 
 import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -85,6 +88,19 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
         fontsize=16, fontweight="bold", color=INK, va="top",
     )  # fmt: skip
     made.text(left, 1.0 - below / height, "\n".join(lines), fontsize=11.5, color=MUTED, va="top")
+    return made
+
+
+def circles(axes: Axes, missing: str, **options: Any) -> EllipseCollection:
+    """Add circles that have yet to get their sizes and places, in the axes' units, and values.
+
+    Those without a value have the colour `missing`; `options` are those of the collection.
+    """
+    made = EllipseCollection(
+        [], [], [], units="xy", offsets=np.empty((0, 2)), offset_transform=axes.transData,
+        cmap=mpl.colormaps["viridis"].with_extremes(bad=missing), zorder=3, **options,
+    )  # fmt: skip
+    axes.add_collection(made)
     return made
 
 

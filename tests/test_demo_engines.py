@@ -1,6 +1,7 @@
 """An engine of the demo is one file: nothing else names it, and a new one is found by itself."""
 
 import inspect
+import re
 import shutil
 import subprocess
 import sys
@@ -9,8 +10,9 @@ from pathlib import Path
 import pytest
 
 import dem_demo
-from dem_demo import cli, defaults, engines, figures
+from dem_demo import cli, engines, figures
 from dem_demo.reader import read
+from dem_demo.sieve import defaults as sieve
 
 ROOT = Path(dem_demo.__file__).parent
 RAIN = ["rain", "--engine", "falling", "--beads", "5", "--plates", "1e-3,inf"]
@@ -71,9 +73,11 @@ def falling(tmp_path, monkeypatch):
 @pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda p: str(p.relative_to(ROOT)))
 def test_only_its_own_file_names_an_engine(path):
     own = path.stem if path.parent.name == "engines" else None
+    if path.relative_to(ROOT) == Path("sieve/engine.py"):  # one engine knows meshes
+        own = sieve.ENGINE
     text = path.read_text()
     if path.name == "defaults.py":
-        text = text.replace(f'ENGINE = "{defaults.ENGINE}"', "")
+        text = re.sub('ENGINE = ".*"', "", text)
     for name in engines.names():
         assert name == own or name not in text.lower()
 

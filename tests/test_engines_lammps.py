@@ -153,9 +153,10 @@ def test_the_dump_is_one_that_ovito_opens(two_ranks):
     for head in heads:
         assert lines[head + 2] == "ITEM: NUMBER OF ATOMS"
         beads = int(lines[head + 3])
-        assert lines[head + 8].startswith("ITEM: ATOMS id type x y z vx vy vz radius d2_contactlaw")
+        columns = "id type x y z vx vy vz radius d_contactlaw_restitution"
+        assert lines[head + 8].rstrip() == f"ITEM: ATOMS {columns}"
         rows = [line.split() for line in lines[head + 9 : head + 9 + beads]]
-        assert all(len(row) == 13 for row in rows)
+        assert all(len(row) == 10 for row in rows)
 
 
 def test_an_error_on_one_rank_reaches_both(two_ranks):

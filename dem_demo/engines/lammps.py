@@ -6,6 +6,7 @@ are as deep as a plate is wide. Bead on bead is not recorded.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from importlib import metadata
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 from dem_demo.frame import FLYING, GONE, WAITING, Frame
+from dem_demo.gathering import Gathering
 from dem_demo.scene import GRAVITY, Floats, Scene
 
 if TYPE_CHECKING:
@@ -32,7 +34,8 @@ _AROUND = 0.1  # [m] beside and above the scene, in which beads still fly
 # Bins of LAMMPS's own choice would be millions, nearly all of them empty: 30 ms per neighbour list.
 _BIN = 6.0  # [largest radius]
 _RESERVE = 3.0  # light beads get so much faster by hits from heavy ones, as in `scene`
-_COLUMNS = "id type x y z vx vy vz radius " + " ".join(f"d2_contactlaw[{n}]" for n in range(3, 7))
+# of a dump; the last one is the COR of a bead's last impact, 0: none yet
+COLUMNS = "id type x y z vx vy vz radius d_contactlaw_restitution"
 
 
 def version() -> str:
@@ -57,6 +60,52 @@ def time_step(scene: Scene, model: ImpactModel) -> float:
     return float(frame / np.ceil(frame / least))
 
 
+def box(
+    low: Sequence[float],
+    high: Sequence[float],
+    *,
+    size: float,
+    bins: float,
+    step: float,
+    bead_on_bead: str,
+    types: int = 1,
+) -> str:
+    """Commands that make a box of spheres under gravity, from corner to corner [m].
+
+    Parameters
+    ----------
+    low, high : sequence of 3 floats
+        Corners of the box [m].
+    size, bins : float
+        Radius of the largest bead, and size of the bins in which neighbours are looked for [m].
+    step : float
+        Time step [s].
+    bead_on_bead : str
+        A ``pair_coeff`` command of ``pair_style granular``.
+    types : int, optional
+        Atom types.
+    """
+    sides = " ".join(f"{a} {b}" for a, b in zip(low, high, strict=True))
+    return f"""
+        units si
+        atom_style sphere
+        boundary f f f
+        comm_modify vel yes
+        processors * * 1
+        region box block {sides} units box
+        create_box {types} box
+        neighbor {0.5 * size} bin
+        neigh_modify delay 0 every 10 check yes binsize {bins}
+        pair_style granular
+        {bead_on_bead}
+        fix move all nve/sphere
+        fix weight all gravity {GRAVITY} vector 0 0 -1
+        thermo 1000000
+        thermo_modify lost ignore
+        timestep {step!r}
+        """
+
+
 class _Rain:
     """A scene in a LAMMPS box; every rank has one."""
 
@@ -79,10 +128,11 @@ class _Rain:
             for p in scene.plates
         ]
         self.plates = attach(self.lmp, model, plates)
-        self.lmp.command(f"dump rain all custom {self.steps} {dump} {_COLUMNS}")
+        self.lmp.command(f"dump rain all custom {self.steps} {dump} {COLUMNS}")
         self.lmp.command("dump_modify rain sort id first yes")
         n = scene.beads.radius.size
         self.depth = depths(scene)
+        self.impacts = Gathering(self.comm, self.plates)
         self.emitted = 0
         self.late = np.empty(0, dtype=np.int64)  # beads that found no room when they were due
         self.frames = 0
@@ -104,23 +154,10 @@ class _Rain:
         bead_on_bead = pair_coeff(
             model.pair.sphere, radius=float(radius.mean()), speed=0.5 * scene.top_speed
         )
-        return f"""
-            units si
-            atom_style sphere
-            boundary f f f
-            comm_modify vel yes
-            region box block {left} {right} {-_AROUND} {_AROUND} {scene.floor} {top} units box
-            create_box 1 box
-            neighbor {0.5 * size} bin
-            neigh_modify delay 0 every 10 check yes binsize {_BIN * size}
-            pair_style granular
-            {bead_on_bead}
-            fix move all nve/sphere
-            fix weight all gravity {GRAVITY} vector 0 0 -1
-            thermo 1000000
-            thermo_modify lost ignore
-            timestep {self.step!r}
-            """
+        low, high = (left, -_AROUND, scene.floor), (right, _AROUND, top)
+        return box(
+            low, high, size=size, bins=_BIN * size, step=self.step, bead_on_bead=bead_on_bead
+        )
 
     def advance(self) -> None:
         """Go on by one frame; the beads emitted in it appear at its end, where they are then.
@@ -198,10 +235,9 @@ class _Rain:
         return now
 
     def collisions(self) -> NDArray[np.void] | None:
-        """Impacts on plates, with the scene's axes and the beads' rows, on rank 0."""
-        rows = self.plates.gather()
+        """Gather new impacts on plates, with the scene's axes and the beads' rows, on rank 0."""
+        rows = self.impacts.take()
         if rows is not None:
-            rows["bead"] -= 1
             rows["y"], rows["z"] = rows["z"].copy(), rows["y"].copy()
         return rows
 
@@ -216,7 +252,7 @@ def run(scene: Scene, model: ImpactModel, recorder: Recorder | None) -> None:
     model : ImpactModel
         The law of the plates, and the COR of bead on bead.
     recorder : Recorder or None
-        Gets every frame and the collisions until then; None on all ranks but 0. The file for
+        Gets every frame, and the collisions on the way to it; None on all ranks but 0. The file for
         OVITO goes beside it.
     """
     from mpi4py import MPI

@@ -129,13 +129,16 @@ def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Record
     model : ImpactModel or ConstantRestitution
         Where each collision's COR comes from.
     recorder : Recorder
-        Gets every frame and the collisions until then.
+        Gets every frame, and the collisions on the way to it.
     """
     assert recorder is not None  # of rank 0
     rain = Rain(scene, model)
     recorder.frame(rain.look())
+    told = 0
     # disable=None: no bar where there is no terminal
     for _ in tqdm(range(scene.frames), desc="rain", unit="frame", disable=None):
         rain.advance(scene.steps_per_frame)
         recorder.frame(rain.look())
-        recorder.collisions(rain.impacts.collisions())
+        collisions = rain.impacts.collisions()
+        recorder.collisions(collisions[told:])
+        told = collisions.size

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import Rectangle
@@ -67,13 +66,9 @@ class Picture:
         self.axes, self.run, self.made = axes, run, made
         _draw_plates(axes, run.scene)
         self.streaks = LineCollection([], linewidths=1.2, alpha=0.45, zorder=2)
-        self.circles = EllipseCollection(
-            [], [], [], units="xy", offsets=np.empty((0, 2)), offset_transform=axes.transData,
-            cmap=colormaps["viridis"].with_extremes(bad=style.MUTED), zorder=3,
-        )  # fmt: skip
+        axes.add_collection(self.streaks)
+        self.circles = style.circles(axes, style.MUTED)
         self.circles.set_clim(*restitution_range(run))
-        for collection in self.moving:
-            axes.add_collection(collection)
 
     @property
     def moving(self) -> tuple[LineCollection, EllipseCollection]:

@@ -9,9 +9,10 @@ import base64
 import html
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from importlib import resources
 from string import Template
+from types import ModuleType
 
 import numpy as np
 from matplotlib import colormaps
@@ -20,7 +21,15 @@ from numpy.typing import NDArray
 
 from dem_demo import figures, paths
 from dem_demo.figures import _rain
-from dem_demo.measure import PlateRow, constant_beside_model, limits, plate_rows, restitution_range
+from dem_demo.gallery import Picture
+from dem_demo.measure import (
+    Limit,
+    PlateRow,
+    constant_beside_model,
+    limits,
+    plate_rows,
+    restitution_range,
+)
 from dem_demo.reader import Run
 from dem_demo.report import label, progress, title
 
@@ -28,7 +37,7 @@ _SAMPLES = 96  # of a contact's force
 _FIELDS = ("start", "end", "x", "y", "u", "v", "fall", "restitution", "other_v", "outside")
 
 
-def page(run: Run, pictures: Mapping[str, figures.Picture]) -> str:
+def page(run: Run, pictures: Mapping[str, Picture]) -> str:
     """Write the page of a run.
 
     Parameters
@@ -44,26 +53,27 @@ def page(run: Run, pictures: Mapping[str, figures.Picture]) -> str:
         HTML.
     """
     first, second = title(run)
-    return _text("page.html").substitute(
-        style=_text("page.css").template,
-        script=_text("player.js").template,
+    return template("page.html").substitute(
+        style=template("page.css").template,
+        script=template("player.js").template,
         data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
         what=html.escape(first),
         how=html.escape(second),
-        partial=_partial(run),
+        partial=partial(progress(run), run.reason),
         sample=_sample(run),
         other=_other(run),
         rows="".join(_row(row) for row in plate_rows(run)),
-        limits=_limits(run),
-        figures="".join(_figure(*item) for item in pictures.items()),
+        limits=exceeded(limits(run), ", and ringed in the animation and in the figures"),
+        figures=shown(figures.module, pictures),
         command=html.escape(run.command),
         law=html.escape(run.law),
         source=html.escape(run.model.force_law.source),
-        made=_made(run),
+        made=made(run.created, run.versions),
     )
 
 
-def _text(name: str) -> Template:
+def template(name: str) -> Template:
+    """Read a file of this folder."""
     return Template((resources.files(__name__) / name).read_text(encoding="utf-8"))
 
 
@@ -143,13 +153,11 @@ def _other(run: Run) -> str:
     return f"where one constant COR, {constant[0]:.2f}, would send them" if constant.size else ""
 
 
-def _partial(run: Run) -> str:
-    if not run.reason:
+def partial(progress: str, reason: str) -> str:
+    """Say how far a partial run has come; nothing without a reason."""
+    if not reason:
         return ""
-    return (
-        f"<p class='partial'><b>Partial: {html.escape(progress(run))}.</b> "
-        f"{html.escape(run.reason)}</p>"
-    )
+    return f"<p class='partial'><b>Partial: {html.escape(progress)}.</b> {html.escape(reason)}</p>"
 
 
 def _row(row: PlateRow) -> str:
@@ -170,8 +178,8 @@ def _row(row: PlateRow) -> str:
     return "<tr>" + "".join(f"<td data-name='{name}'>{text}</td>" for name, text in cells) + "</tr>"
 
 
-def _limits(run: Run) -> str:
-    found = limits(run)
+def exceeded(found: Sequence[Limit], marked: str) -> str:
+    """List the limits that impacts exceed, and say how those are marked."""
     if not found:
         return "<p>All impacts on plates are inside every limit of the model.</p>"
     rows = "".join(
@@ -179,16 +187,19 @@ def _limits(run: Run) -> str:
         for limit in found
     )
     return (
-        "<p>Impacts outside a limit of the model are counted here, and ringed in the animation and "
-        f"in the figures. Their numbers deserve less trust.</p><dl>{rows}</dl>"
+        f"<p>Impacts outside a limit of the model are counted here{marked}. Their numbers deserve "
+        f"less trust.</p><dl>{rows}</dl>"
     )
 
 
-def _figure(name: str, picture: figures.Picture) -> str:
-    caption, _, rest = str(figures.module(name).__doc__).strip().partition("\n\n")
-    wide, narrow = (
-        f"data:image/png;base64,{base64.b64encode(png).decode('ascii')}" for png in picture
-    )
+def shown(module: Callable[[str], ModuleType], pictures: Mapping[str, Picture]) -> str:
+    """Show figures, with the docstrings of their modules for captions."""
+    return "".join(_figure(module(name), name, picture) for name, picture in pictures.items())
+
+
+def _figure(module: ModuleType, name: str, picture: Picture) -> str:
+    caption, _, rest = str(module.__doc__).strip().partition("\n\n")
+    wide, narrow = (f"data:image/png;base64,{_base64(png)}" for png in picture)
     text, more = (html.escape(" ".join(part.split())) for part in (caption, rest))
     return (
         f"<figure id='{name}'><picture><source media='(max-width: 640px)' srcset='{narrow}'>"
@@ -196,6 +207,11 @@ def _figure(name: str, picture: figures.Picture) -> str:
     )
 
 
-def _made(run: Run) -> str:
-    versions = ", ".join(f"{name} {text}" for name, text in sorted(run.versions.items()))
-    return html.escape(f"{run.created}; {versions}")
+def _base64(content: bytes) -> str:
+    return base64.b64encode(content).decode("ascii")
+
+
+def made(created: str, versions: Mapping[str, str]) -> str:
+    """Say when a run was made, and by which versions."""
+    programs = ", ".join(f"{name} {text}" for name, text in sorted(versions.items()))
+    return html.escape(f"{created}; {programs}")

