@@ -18,7 +18,7 @@ from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
 from contactlaw.engines.lammps.memory import ERROR, OWNER, SHARED, history_shape
 from contactlaw.engines.lammps.plate import Models
-from contactlaw.engines.lammps.surface import MOST, OVERLAP
+from contactlaw.engines.lammps.surface import OVERLAP, ROOM
 from contactlaw.engines.lammps.walls import Wall, checked, compiled
 from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
@@ -207,7 +207,7 @@ class LammpsPlates:
         self._records = records
         types = lmp.extract_setting("ntypes")
         self._walls = compiled(walls, models, types, self._largest_radius())
-        self._overlaps = np.zeros(MOST, OVERLAP)
+        self._overlaps = np.zeros(ROOM, OVERLAP)
         self._fixes: list[str] = []
         self._warned: set[str] = set()
         self._warn_of_walls()
