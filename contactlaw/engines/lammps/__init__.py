@@ -60,7 +60,8 @@ Other commands
     ``set``, ``read_dump``) ends the contact there, at the speed that it happens to have. Of a ``fix
     wall/gran`` rank 0 warns: a bead on both walls at once has a restitution that is of neither.
 What it leaves out
-    Walls are not seen across a periodic boundary. The virial has no part of them. A wall's own
+    Walls are not seen across a periodic boundary; a contact goes on across it with the wall there
+    that the bead overlaps as deeply. The virial has no part of them. A wall's own
     curvature is none of the law's, and at an edge the law is that of the face. Sliding friction has
     a spring without damping, as LAMMPS's ``mindlin``; there is no rolling friction.
 """

@@ -343,33 +343,46 @@ def _place_of(found: Any, count: int, facet: int) -> int:
 
 
 @kernel
-def _home(walls: Walls, bead: Bead, facet: int, count: int) -> int:
-    """Place in the list of what a contact with a facet goes on with, else -1."""
+def _home(walls: Walls, bead: Bead, facet: int, count: int, overlap: float, way: float) -> int:
+    """Place in the list of what a contact with a facet goes on with, else -1.
+
+    It is -2 for a facet that was taken away. Across a periodic boundary that it goes on with what the bead
+    overlaps as deeply, within its way of a step.
+    """
     found = walls.found
     at = _place_of(found, count, facet)
     if at >= 0:
         return int(found[at].surface)
     row = walls.facets[facet]
     touch = seen(walls.frames[row.frame], row, bead)
-    if touch.x > -bead.r:  # else it was taken away
+    if touch.x > -bead.r:
         point = nearest(touch, bead)
         for n in range(count):
             if on_it(walls.frames, walls.facets, found[n], point, bead.r):
                 return int(found[n].surface)
-    return -1
+        return -1
+    best = -2
+    for n in range(count):
+        apart = abs(found[n].x - overlap)
+        if found[n].surface == n and apart <= way:
+            best, way = n, apart
+    return best
 
 
 @kernel
-def _hand_over(shared: Any, walls: Walls, bead: Bead, count: int) -> None:
+def _hand_over(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int) -> None:
     """Let contacts go along with a bead that crosses from facet to facet."""
-    row, found = bead.history, walls.found
+    row, found, v = bead.history, walls.found, bead.v
+    way = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + _AT_REST * bead.r
     for k in range(shared.slots):
         at = FIRST + k * shared.width
         if row[at + FACET] == 0.0:
             continue
         facet = int(abs(row[at + FACET])) - 1
-        home = _home(walls, bead, facet, count)
-        if home >= 0 and slot_of(row, shared, found[home].facet) == 0:
+        home = _home(walls, bead, facet, count, row[at + OVERLAP], way)
+        if home == -2:
+            row[at : at + shared.width] = 0.0
+        elif home >= 0 and slot_of(row, shared, found[home].facet) == 0:
             row[at + FACET] = math.copysign(found[home].facet + 1.0, found[home].s)
 
 
@@ -427,10 +440,10 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
     if row[OWNER] != bead.tag:
         row[:] = 0.0
         row[OWNER], bead.last[0] = bead.tag, 0.0
-    held = touches(row, shared)
     join(walls.frames, walls.facets, bead, found, count)
     if clock.advancing:
-        _hand_over(shared, walls, bead, count)
+        _hand_over(shared, clock, walls, bead, count)
+    held = touches(row, shared)
     for k in range(shared.slots):
         at = FIRST + k * shared.width
         if row[at + FACET] == 0.0:
