@@ -13,7 +13,14 @@ pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[
 import box  # noqa: E402
 from box import R, make, state  # noqa: E402
 
-from contactlaw.engines.lammps import Mesh, Plate, attach  # noqa: E402
+from contactlaw.engines.lammps import (  # noqa: E402
+    Mesh,
+    Plate,
+    Tabulated,
+    Translation,
+    Vibration,
+    attach,
+)
 
 HERTZ = cl.ImpactModel(box.PAIR, law="hertz")
 
@@ -61,3 +68,31 @@ def test_a_contact_goes_on_across_a_periodic_boundary(model, monkeypatch, fricti
         ends.append(np.column_stack((np.sort(rows["restitution"]), own["v"], own["omega"])))
         lmp.close()
     assert ends[1] == pytest.approx(ends[0], rel=1e-9, abs=1e-8)
+
+
+KINKED = Tabulated([0.0, 4e-6, 7e-6], [[0, 0, 0], [0, 0, 4e-6], [0, 0, 13e-6]])
+MOTIONS = [
+    (Translation((1.0, 0.5, 2.0)), 1e-11),
+    (Vibration((1e-5, 0, 2e-5), 2e4), 1e-6),
+    (KINKED, 1e-3),  # it hits the bead in mid-contact; what is missing then is not given back
+]
+
+
+@pytest.mark.parametrize("thickness", [1e-3, math.inf])  # parted at the last push, or not
+@pytest.mark.parametrize(("motion", "bound"), MOTIONS)
+def test_a_wall_does_the_work_that_the_record_says(model, motion, bound, thickness):
+    """Kinetic energy changes by it, less the losses; the last push of a contact counts, too."""
+    n = 30
+    places = [(0.003 * k - 0.045, 0, R + 1e-5 + 3.7e-7 * k) for k in range(n)]
+    lmp = make(places, (2.0, 0, -5.0), dt=5e-8)
+    walls = attach(lmp, model, [box.flat(thickness, motion=motion)])
+    mass = 4 / 3 * math.pi * box.DENSITY * R**3
+    before = 0.5 * mass * (state(lmp)["v"] ** 2).sum(axis=1)
+    lmp.command("run 1000")
+    rows, own = walls.collisions(), state(lmp)
+    assert len(rows) >= n and not own["d2_contactlaw"][:, box.PLATE].any()
+    gain = 0.5 * mass * (own["v"] ** 2).sum(axis=1) - before
+    said = rows["wall_work"] - rows["plastic_energy"] - rows["wave_energy"] - rows["other_energy"]
+    said = np.bincount(rows["bead"] - 1, said, n)
+    assert gain / before == pytest.approx(said / before, abs=bound)
+    lmp.close()

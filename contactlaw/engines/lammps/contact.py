@@ -309,6 +309,7 @@ def _press(
         complain(shared, clock.step, bead.tag, row, memory.NO_MODEL, contact.wall,
                  bead.kind + 1.0, 0.0)  # fmt: skip
         return
+    recorded = shared.record_count
     if clock.advancing:
         law = array_at(sheet.law, sheet.law_size, np.float64)
         _normal(law, shared, clock, bead, sheet, contact, at, held)
@@ -331,6 +332,9 @@ def _press(
         work += both * w[k]
     if clock.advancing:
         row[at + WALL_WORK] += clock.dt * work
+        if shared.record_count > recorded:  # with the last push
+            records = array_at(shared.records, shared.record_capacity, IMPACT)
+            records[recorded].wall_work += clock.dt * work
 
 
 @kernel
@@ -346,8 +350,8 @@ def _place_of(found: Any, count: int, facet: int) -> int:
 def _home(walls: Walls, bead: Bead, facet: int, count: int, overlap: float, way: float) -> int:
     """Place in the list of what a contact with a facet goes on with, else -1.
 
-    It is -2 for a facet that was taken away. Across a periodic boundary that it goes on with what the bead
-    overlaps as deeply, within its way of a step.
+    From a facet that is suddenly far, behind a periodic boundary, it goes on with what the bead
+    overlaps as deeply, within its way of a step; else it is -2.
     """
     found = walls.found
     at = _place_of(found, count, facet)

@@ -246,7 +246,7 @@ POSE: list[tuple[Any, ...]] = [
     ("turn", "f8", 9),  # row by row
     ("shift", "f8", 3),
     ("rate", "f8", 3),  # of the shift [m/s]
-    ("half_rate", "f8", 3),  # half a step before: engines of Verlet's kind have velocities there
+    ("half_rate", "f8", 3),  # mean of the step: engines of Verlet's kind have velocities there
 ]
 
 
@@ -264,34 +264,52 @@ def _interval(times: Any, time: float) -> int:
 
 
 @kernel
-def _shift(row: Any, time: float, shift: Any, rate: Any) -> None:
-    """Displacement of all but the rotation, and its rate."""
-    swing = row.frequency * time + row.phase
-    out, speed = math.sin(swing), row.frequency * math.cos(swing)
+def _shift(row: Any, time: float, shift: Any) -> None:
+    """Displacement of all but the rotation."""
+    out = math.sin(row.frequency * time + row.phase)
     for k in range(3):
         shift[k] = row.velocity[k] * time + row.amplitude[k] * out
-        rate[k] = row.velocity[k] + row.amplitude[k] * speed
     if row.count == 0:
         return
     times = array_at(row.times, row.count, np.float64)
     places = array_at(row.displacements, (row.count, 3), np.float64)
     n = _interval(times, time)
     if 0 <= n < row.count - 1:
-        span, age = times[n + 1] - times[n], time - times[n]
+        part = (time - times[n]) / (times[n + 1] - times[n])
         for k in range(3):
-            rate[k] = (places[n + 1, k] - places[n, k]) / span
-            shift[k] = places[n, k] + rate[k] * age
+            shift[k] = places[n, k] + part * (places[n + 1, k] - places[n, k])
     else:
         for k in range(3):
-            rate[k] = 0.0
             shift[k] = places[max(n, 0), k]
+
+
+@kernel
+def _mean_rate(row: Any, time: float, dt: float, rate: Any, here: Any) -> None:
+    """Rate of the displacement, the mean over a step that ends at a time, where it is `here`.
+
+    The way of the wall is then that of Verlet's scheme, also around a corner of a table.
+    """
+    half = 0.5 * row.frequency * dt
+    speed = row.frequency * math.cos(row.frequency * time + row.phase - half)
+    if half > 0.0:
+        speed *= math.sin(half) / half
+    for k in range(3):
+        rate[k] = row.velocity[k] + row.amplitude[k] * speed
+    if row.count > 0:
+        _shift(row, time - dt, rate)
+        for k in range(3):
+            rate[k] = (here[k] - rate[k]) / dt
 
 
 @kernel
 def place(row: Any, time: float, dt: float) -> None:
     """Put a wall to where it is at a time, the end of a step of length dt [s]."""
-    _shift(row, time - 0.5 * dt, row.shift, row.half_rate)
-    _shift(row, time, row.shift, row.rate)
+    _shift(row, time + dt, row.shift)
+    _mean_rate(row, time + dt, dt, row.rate, row.shift)
+    _shift(row, time, row.shift)
+    _mean_rate(row, time, dt, row.half_rate, row.shift)
+    for k in range(3):  # that of this step's end: of the step before it and of the one behind it
+        row.rate[k] = 0.5 * (row.rate[k] + row.half_rate[k])
     angle = row.spin * time
     c, s = math.cos(angle), math.sin(angle)
     a, b, d, k = row.axis[0], row.axis[1], row.axis[2], 1.0 - c
