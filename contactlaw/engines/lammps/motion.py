@@ -207,8 +207,9 @@ class Tabulated:
             raise ValueError(f"times: must be finite and ascend [s], got {self.times!r}")
         if not (abs(places) <= FARTHEST).all():
             raise ValueError(f"displacements: must be finite [m], none beyond {FARTHEST:g}")
-        object.__setattr__(self, "times", times)
-        object.__setattr__(self, "displacements", places)
+        for name, value in (("times", times), ("displacements", places)):
+            value.setflags(write=False)  # a simulation reads them in every step
+            object.__setattr__(self, name, value)
 
     def fill(self, row: Any) -> None:
         """Write it into a row of the kernel's memory."""
@@ -308,8 +309,8 @@ def place(row: Any, time: float, dt: float) -> None:
     _mean_rate(row, time + dt, dt, row.rate, row.shift)
     _shift(row, time, row.shift)
     _mean_rate(row, time, dt, row.half_rate, row.shift)
-    for k in range(3):  # that of this step's end: of the step before it and of the one behind it
-        row.rate[k] = 0.5 * (row.rate[k] + row.half_rate[k])
+    for n in range(3):  # that of this step's end: of the step before it and of the one behind it
+        row.rate[n] = 0.5 * (row.rate[n] + row.half_rate[n])
     angle = row.spin * time
     c, s = math.cos(angle), math.sin(angle)
     a, b, d, k = row.axis[0], row.axis[1], row.axis[2], 1.0 - c
