@@ -18,7 +18,6 @@ from contactlaw.engines.lammps import (  # noqa: E402
     Plate,
     Tabulated,
     Translation,
-    Vibration,
     attach,
 )
 
@@ -73,7 +72,6 @@ def test_a_contact_goes_on_across_a_periodic_boundary(model, monkeypatch, fricti
 KINKED = Tabulated([0.0, 4e-6, 7e-6], [[0, 0, 0], [0, 0, 4e-6], [0, 0, 13e-6]])
 MOTIONS = [
     (Translation((1.0, 0.5, 2.0)), 1e-11),
-    (Vibration((1e-5, 0, 2e-5), 2e4), 1e-6),
     (KINKED, 1e-3),  # it hits the bead in mid-contact; what is missing then is not given back
 ]
 

@@ -285,32 +285,28 @@ def _shift(row: Any, time: float, shift: Any) -> None:
 
 
 @kernel
-def _mean_rate(row: Any, time: float, dt: float, rate: Any, here: Any) -> None:
-    """Rate of the displacement, the mean over a step that ends at a time, where it is `here`.
+def _rate(row: Any, time: float, before: float, after: float, rate: Any) -> None:
+    """Rate of the displacement at a time; of a table its mean from a time before to one after.
 
-    The way of the wall is then that of Verlet's scheme, also around a corner of a table.
+    The way of the wall is then that of Verlet's scheme around a corner of the table, too.
     """
-    half = 0.5 * row.frequency * dt
-    speed = row.frequency * math.cos(row.frequency * time + row.phase - half)
-    if half > 0.0:
-        speed *= math.sin(half) / half
-    for k in range(3):
-        rate[k] = row.velocity[k] + row.amplitude[k] * speed
-    if row.count > 0:
-        _shift(row, time - dt, rate)
+    speed = row.frequency * math.cos(row.frequency * time + row.phase)
+    if row.count == 0:
         for k in range(3):
-            rate[k] = (here[k] - rate[k]) / dt
+            rate[k] = row.velocity[k] + row.amplitude[k] * speed
+        return
+    _shift(row, before, row.shift)
+    _shift(row, after, rate)
+    for k in range(3):
+        rate[k] = (rate[k] - row.shift[k]) / (after - before)
 
 
 @kernel
 def place(row: Any, time: float, dt: float) -> None:
     """Put a wall to where it is at a time, the end of a step of length dt [s]."""
-    _shift(row, time + dt, row.shift)
-    _mean_rate(row, time + dt, dt, row.rate, row.shift)
+    _rate(row, time - 0.5 * dt, time - dt, time, row.half_rate)
+    _rate(row, time, time - dt, time + dt, row.rate)
     _shift(row, time, row.shift)
-    _mean_rate(row, time, dt, row.half_rate, row.shift)
-    for n in range(3):  # that of this step's end: of the step before it and of the one behind it
-        row.rate[n] = 0.5 * (row.rate[n] + row.half_rate[n])
     angle = row.spin * time
     c, s = math.cos(angle), math.sin(angle)
     a, b, d, k = row.axis[0], row.axis[1], row.axis[2], 1.0 - c
