@@ -42,9 +42,9 @@ Several ranks
     that feel plates alone move on the same path, to the last bit, on 1 and 2 ranks and in one run
     or many.
 Restart
-    ``read_restart``, then the fixes of your own, then `attach` with the same plates: the contacts
-    go on where they were. The record of impacts begins anew. ``reset_timestep`` and ``timestep``
-    change no contact that is under way, and walls go on moving from where they were;
+    ``read_restart``, then the fixes of your own, then `attach` with the same plates and friction:
+    the contacts go on where they were. The record of impacts begins anew. ``reset_timestep`` and
+    ``timestep`` change no contact that is under way, and walls go on moving from where they were;
     `LammpsPlates.detach` ends it without a record.
 Errors
     What goes wrong in a time step stops the run within 100 steps, on all ranks, and is raised by
@@ -60,7 +60,8 @@ Other commands
     ``set``, ``read_dump``) ends the contact there, at the speed that it happens to have. Of a ``fix
     wall/gran`` rank 0 warns: a bead on both walls at once has a restitution that is of neither.
 What it leaves out
-    Walls are not seen across a periodic boundary. The virial has no part of them. A wall's own
+    Walls are not seen across a periodic boundary; a contact goes on across it with the wall there
+    that the bead overlaps as deeply. The virial has no part of them. A wall's own
     curvature is none of the law's, and at an edge the law is that of the face. Sliding friction has
     a spring without damping, as LAMMPS's ``mindlin``; there is no rolling friction.
 """

@@ -16,9 +16,9 @@ from contactlaw.engines.lammps import commands
 from contactlaw.engines.lammps.beads import check_friction
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import ERROR, OWNER, SHARED, history_shape
+from contactlaw.engines.lammps.memory import ERROR, FIRST, OWNER, SHARED, history_shape
 from contactlaw.engines.lammps.plate import Models
-from contactlaw.engines.lammps.surface import MOST, OVERLAP
+from contactlaw.engines.lammps.surface import OVERLAP, ROOM
 from contactlaw.engines.lammps.walls import Wall, checked, compiled
 from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
@@ -207,7 +207,7 @@ class LammpsPlates:
         self._records = records
         types = lmp.extract_setting("ntypes")
         self._walls = compiled(walls, models, types, self._largest_radius())
-        self._overlaps = np.zeros(MOST, OVERLAP)
+        self._overlaps = np.zeros(ROOM, OVERLAP)
         self._fixes: list[str] = []
         self._warned: set[str] = set()
         self._warn_of_walls()
@@ -243,6 +243,7 @@ class LammpsPlates:
         ):
             self._lmp.command(command)
         self._clear_marks()
+        self._check_memory(width)
         self._shared = self._share(slots, width, columns, friction)
         self._register()
 
@@ -421,6 +422,20 @@ class LammpsPlates:
         history[marked, ERROR] = 0.0
         beads: list[int] = ids[marked].tolist()
         return beads
+
+    def _check_memory(self, width: int) -> None:
+        """Refuse contacts of a restart file that are not with these plates; on all ranks."""
+        wrong = False
+        if found := self._history():
+            history, ids = found
+            own = history[: len(ids)][history[: len(ids), OWNER] == ids]
+            facets = own[:, FIRST::width]
+            wrong = bool(((abs(facets) > len(self._walls.facets)) | (facets % 1.0 != 0.0)).any())
+        if any(self._comm.allgather(wrong)):
+            raise ValueError(
+                "plates, friction: beads are in contact with other plates, as a restart file has "
+                "it; attach the same plates in the same order, and friction or none as before"
+            )
 
     def _drop_strangers(self) -> None:
         """Empty the rows that are not of the beads that are in them, and those to spare."""

@@ -35,7 +35,7 @@ from contactlaw.engines.lammps.memory import (
     thermo,
 )
 from contactlaw.engines.lammps.motion import place
-from contactlaw.engines.lammps.surface import MOST, OVERLAP, near
+from contactlaw.engines.lammps.surface import OVERLAP, ROOM, near
 from contactlaw.engines.lammps.walls import FACET, FRAME, SHEET
 
 _EVERY = 100  # steps between looks for beads that fly further than their radius in a step
@@ -111,7 +111,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         array_at(shared.sheets, shared.types * shared.sheet_count, SHEET),
         array_at(shared.frames, shared.frame_count, FRAME),
         array_at(shared.facets, shared.facet_count, FACET),
-        array_at(shared.overlaps, MOST, OVERLAP),
+        array_at(shared.overlaps, ROOM, OVERLAP),
     )
     _tick(shared, clock, walls.frames)
     history_address = extract(shared, shared.history)

@@ -169,9 +169,7 @@ def _end(
     share = 1.0 - other / lost if lost > 0.0 else 0.0
     record.plastic_energy, record.wave_energy = share * (lost - told), row[at + WAVE]
     record.other_energy = (1.0 - share) * (lost - told)
-    w = contact.w
-    along = w[0] * touch.nx + w[1] * touch.ny + w[2] * touch.nz
-    record.wall_work = row[at + WALL_WORK] + clock.dt * kick * along
+    record.wall_work = row[at + WALL_WORK]  # and what this step does, see `_press`
     record.flags = _flags(
         bead, sheet, spring, record.approach_speed, record.contact_time,
         last.largest_compression, record.peak_force,
@@ -313,6 +311,7 @@ def _press(
         complain(shared, clock.step, bead.tag, row, memory.NO_MODEL, contact.wall,
                  bead.kind + 1.0, 0.0)  # fmt: skip
         return
+    recorded = shared.record_count
     if clock.advancing:
         law = array_at(sheet.law, sheet.law_size, np.float64)
         _normal(law, shared, clock, bead, sheet, contact, at, held)
@@ -334,6 +333,9 @@ def _press(
         work += both * contact.w[k]
     if clock.advancing:
         row[at + WALL_WORK] += clock.dt * work
+        if shared.record_count > recorded:  # with the last push
+            records = array_at(shared.records, shared.record_capacity, IMPACT)
+            records[recorded].wall_work += clock.dt * work
 
 
 @kernel
@@ -346,33 +348,46 @@ def _place_of(found: Any, count: int, facet: int) -> int:
 
 
 @kernel
-def _home(walls: Walls, bead: Bead, facet: int, count: int) -> int:
-    """Place in the list of what a contact with a facet goes on with, else -1."""
+def _home(walls: Walls, bead: Bead, facet: int, count: int, overlap: float, way: float) -> int:
+    """Place in the list of what a contact with a facet goes on with, else -1.
+
+    From a facet that is suddenly far, behind a periodic boundary, it goes on with what the bead
+    overlaps as deeply, within its way of a step; else it is -2.
+    """
     found = walls.found
     at = _place_of(found, count, facet)
     if at >= 0:
         return int(found[at].surface)
     row = walls.facets[facet]
     touch = seen(walls.frames[row.frame], row, bead)
-    if touch.x > -bead.r:  # else it was taken away
+    if touch.x > -bead.r:
         point = nearest(touch, bead)
         for n in range(count):
             if on_it(walls.frames, walls.facets, found[n], point, bead.r):
                 return int(found[n].surface)
-    return -1
+        return -1
+    best = -2
+    for n in range(count):
+        apart = abs(found[n].x - overlap)
+        if found[n].surface == n and apart <= way:
+            best, way = n, apart
+    return best
 
 
 @kernel
-def _hand_over(shared: Any, walls: Walls, bead: Bead, count: int) -> None:
+def _hand_over(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int) -> None:
     """Let contacts go along with a bead that crosses from facet to facet."""
-    row, found = bead.history, walls.found
+    row, found, v = bead.history, walls.found, bead.v
+    way = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + _AT_REST * bead.r
     for k in range(shared.slots):
         at = FIRST + k * shared.width
         if row[at + FACET] == 0.0:
             continue
         facet = int(abs(row[at + FACET])) - 1
-        home = _home(walls, bead, facet, count)
-        if home >= 0 and slot_of(row, shared, found[home].facet) == 0:
+        home = _home(walls, bead, facet, count, row[at + OVERLAP], way)
+        if home == -2:
+            row[at : at + shared.width] = 0.0
+        elif home >= 0 and slot_of(row, shared, found[home].facet) == 0:
             row[at + FACET] = math.copysign(found[home].facet + 1.0, found[home].s)
 
 
@@ -431,10 +446,10 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
     if row[OWNER] != bead.tag:
         row[:] = 0.0
         row[OWNER], bead.last[0] = bead.tag, 0.0
-    held = touches(row, shared)
     join(walls.frames, walls.facets, bead, found, count)
     if clock.advancing:
-        _hand_over(shared, walls, bead, count)
+        _hand_over(shared, clock, walls, bead, count)
+    held = touches(row, shared)
     for k in range(shared.slots):
         at = FIRST + k * shared.width
         if row[at + FACET] == 0.0:

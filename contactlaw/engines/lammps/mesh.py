@@ -99,6 +99,8 @@ class Mesh:
             ("dropped", lost),
             ("kept", good),
         ):
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)  # it has been checked
             object.__setattr__(self, name, value)
 
     @property

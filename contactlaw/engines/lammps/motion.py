@@ -207,8 +207,9 @@ class Tabulated:
             raise ValueError(f"times: must be finite and ascend [s], got {self.times!r}")
         if not (abs(places) <= FARTHEST).all():
             raise ValueError(f"displacements: must be finite [m], none beyond {FARTHEST:g}")
-        object.__setattr__(self, "times", times)
-        object.__setattr__(self, "displacements", places)
+        for name, value in (("times", times), ("displacements", places)):
+            value.setflags(write=False)  # a simulation reads them in every step
+            object.__setattr__(self, name, value)
 
     def fill(self, row: Any) -> None:
         """Write it into a row of the kernel's memory."""

@@ -33,8 +33,10 @@ from contactlaw.engines.lammps.memory import array_at
 _SEAM = 1e-4  # [r] between facets that are one surface to a bead
 _TIE = 1e-9  # [r] of overlap: rounding
 _SMOOTH = math.cos(math.radians(20.0))  # faces of one surface
-MOST = 64  # facets that a bead may overlap before the shallowest are left out; none of these is in
-# contact: where facets are that small, deeper ones are beside them
+# Facets that a bead may overlap before shallow ones are left out, and room for one more. Where
+# facets are that small, a deeper one is beside each of these, and in contact in its place.
+_MOST = 64
+ROOM = _MOST + 1
 
 # A facet that a bead overlaps. `surface` is the place in the list of what it is the surface of
 # together with: its own, if it is in contact.
@@ -52,6 +54,32 @@ def touch_of(row: Any) -> Touch:
 
 
 @kernel
+def _has_deeper(found: Any, count: int, one: Any) -> bool:
+    """Whether a deeper facet of the list lies in nearly the same direction."""
+    for n in range(count):
+        row = found[n]
+        along = row.nx * one.nx + row.ny * one.ny + row.nz * one.nz
+        if row.x > one.x and along > _SMOOTH:
+            return True
+    return False
+
+
+@kernel
+def _spare(found: Any, count: int) -> int:
+    """Shallowest facet that a deeper one beside it stands for; without any, the shallowest.
+
+    So the many facets of a floor leave room for the wall that the bead just begins to touch.
+    """
+    spare = least = -1
+    for n in range(count):
+        if least < 0 or found[n].x < found[least].x:
+            least = n
+        if (spare < 0 or found[n].x < found[spare].x) and _has_deeper(found, count, found[n]):
+            spare = n
+    return least if spare < 0 else spare
+
+
+@kernel
 def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
     """Put a facet into the list, once; the list is in the order of the facets' numbers."""
     at = count
@@ -59,23 +87,16 @@ def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
         at -= 1
     if at < count and found[at].facet == facet:
         return count
-    if count == MOST:
-        least = 0
-        for n in range(1, count):
-            if found[n].x < found[least].x:
-                least = n
-        if not touch.x > found[least].x:
-            return count
-        for n in range(least, count - 1):
-            found[n] = found[n + 1]
-        count -= 1
-        at -= int(least < at)
     for n in range(count, at, -1):
         found[n] = found[n - 1]
     row = found[at]
     row.facet, row.face = facet, int(touch.face)
     row.x, row.s, row.nx, row.ny, row.nz = touch.x, touch.s, touch.nx, touch.ny, touch.nz
-    return count + 1
+    if count < _MOST:
+        return count + 1
+    for n in range(_spare(found, count + 1), count):
+        found[n] = found[n + 1]
+    return count
 
 
 @kernel

@@ -85,7 +85,8 @@ def checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, 
             beads = own.get(kind)
             if beads is None:
                 raise ValueError(
-                    f"plates: have a model for atom type {kind}, for which attach() got none"
+                    f"plates: have a model for atom type {kind}, for which attach() got none; give "
+                    f"them a dict of models for the atom types {sorted(own)}"
                 )
             if (model.force_law.family, model.pair.sphere) != (
                 beads.force_law.family,
