@@ -78,7 +78,7 @@ def figure(found: dict[str, Any]) -> None:
     triangles = [2 * cells * cells for cells in CELLS]
     with style.applied():
         drawing = style.figure(
-            10.0, 5.0, "A step costs the same, whatever the number of triangles",
+            10.0, 5.0, "A step hardly depends on the number of triangles",
             "LAMMPS, beads above a square wall, a tenth of them on it; one rank; beads do not meet",
         )  # fmt: skip
         left, right = drawing.subplots(1, 2)

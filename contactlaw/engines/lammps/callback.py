@@ -18,6 +18,7 @@ from numba import types
 from contactlaw._jit import c_function, kernel
 from contactlaw.engines.lammps.contact import Clock, Walls, interact
 from contactlaw.engines.lammps.geometry import Bead
+from contactlaw.engines.lammps.grid import MARGIN
 from contactlaw.engines.lammps.memory import (
     MINIMIZING,
     NO_STEPS,
@@ -87,6 +88,25 @@ def _tick(shared: Any, clock: Clock, frames: Any) -> None:
             place(frame, time, clock.dt)
 
 
+@kernel
+def _box(frames: Any) -> tuple[float, float, float, float, float, float]:
+    """Box around all walls, where they are now: three lowest coordinates, three highest."""
+    low, high = np.full(3, math.inf), np.full(3, -math.inf)
+    for frame in frames:
+        small, large, turn = frame.low, frame.high, frame.turn
+        for k in range(3):
+            if frame.moves == 0:
+                a, b = small[k], large[k]
+            else:
+                a = b = frame.hub[k] + frame.shift[k]
+                for m in range(3):
+                    one = turn[3 * k + m] * (small[m] - frame.hub[m])
+                    other = turn[3 * k + m] * (large[m] - frame.hub[m])
+                    a, b = a + min(one, other), b + max(one, other)
+            low[k], high[k] = min(low[k], a), max(high[k], b)
+    return low[0], low[1], low[2], high[0], high[1], high[2]
+
+
 def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces: Any) -> None:
     """Add the force of the walls to all beads of this rank."""
     shared = carray(memory, 1, SHARED)[0]
@@ -131,8 +151,21 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         _look_for_jumps(shared, clock, walls, tags, v, radius, history, last)
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
     per = length / seconds
+    x0, y0, z0, x1, y1, z1 = _box(walls.frames)
     for i in range(n):
-        centre = (x[i, 0] * length, x[i, 1] * length, x[i, 2] * length)
+        centre, reach = (
+            (x[i, 0] * length, x[i, 1] * length, x[i, 2] * length),
+            MARGIN * radius[i] * length,
+        )
+        if (
+            centre[2] > z1 + reach
+            or centre[2] < z0 - reach
+            or centre[0] > x1 + reach
+            or centre[0] < x0 - reach
+            or centre[1] > y1 + reach
+            or centre[1] < y0 - reach
+        ):
+            continue
         if not near(walls.frames, centre, radius[i] * length):
             continue
         bead = Bead(

@@ -20,11 +20,11 @@ GRID: list[tuple[Any, ...]] = [
     ("origin", "f8", 3), ("per_length", "f8"), ("cells", "i8", 3),
     ("starts", "i8"), ("entries", "i8"), ("entry_count", "i8"),  # addresses of the lists
     ("busy", "i8"), ("cell_count", "i8"),  # a bit per cell, set if its list is not empty
-    ("reach", "f8"),
+    ("reach", "f8"), ("low", "f8", 3), ("high", "f8", 3),  # of the facets themselves
 ]  # fmt: skip
 
 _MOST = 1 << 20  # cells; their starts are then 4 MB
-_MARGIN = 1.1  # a bead that parts is still in the cell's list in the next step
+MARGIN = 1.1  # a bead that parts is still in the cell's list in the next step
 
 
 class Grid:
@@ -42,9 +42,10 @@ class Grid:
 
     def __init__(self, corners: Floats, first: int, largest: float) -> None:
         extent = float(np.median(np.linalg.norm(np.ptp(corners, axis=1), axis=1)))
-        self.reach = _MARGIN * (largest if largest > 0.0 else 0.5 * extent)
-        low = corners.min(axis=(0, 1)) - self.reach
-        size = corners.max(axis=(0, 1)) + self.reach - low
+        self.low, self.high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+        self.reach = MARGIN * (largest if largest > 0.0 else 0.5 * extent)
+        low = self.low - self.reach
+        size = self.high + self.reach - low
         cell = max(self.reach, float((np.prod(size) / _MOST) ** (1.0 / 3.0)))
         cells = np.maximum(np.ceil(size / cell), 1.0).astype(np.int64)
         while np.prod(cells.astype(float)) > 2 * _MOST:  # a slab: one cell in some direction
@@ -68,6 +69,7 @@ class Grid:
         row["origin"], row["per_length"], row["cells"] = self.origin, self.per_length, self.cells
         row["starts"], row["entries"] = self.starts.ctypes.data, self.entries.ctypes.data
         row["entry_count"], row["reach"] = self.entries.size, self.reach
+        row["low"], row["high"] = self.low, self.high
         row["busy"], row["cell_count"] = self.busy.ctypes.data, self.starts.size - 1
 
 
