@@ -214,7 +214,8 @@ def _add_fit(command: argparse.ArgumentParser) -> None:
         default=[],
         metavar="NAME=ERROR",
         type=_prior,
-        help="standard error of one of these that is given, as density=20kg/m3; may be repeated",
+        help="standard error of one of these that is given, as density=20kg/m3; may be repeated "
+        "(default: all that is given is exact)",
     )
     _add_name_of_law(command)
     add = command.add_mutually_exclusive_group().add_argument

@@ -154,8 +154,8 @@ class Mesh:
         ...     file = Path(folder) / "part.stl"
         ...     _ = file.write_text(ascii_stl)
         ...     mesh = Mesh.read(file, thickness=1e-3, scale=1e-3)
-        >>> mesh.area.tolist()
-        [0.005]
+        >>> f"{mesh.area[0]:.4f} m2"
+        '0.0050 m2'
         """
         try:
             import trimesh
