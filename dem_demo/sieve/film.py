@@ -43,7 +43,7 @@ def gif(runs: Runs) -> bytes:
         beds = [Bed(axes, run, range_) for axes, run in shown]
         bar = figure.colorbar(beds[0].beads, ax=[axes for axes, _ in shown], fraction=0.03)
         bar.set_label("COR of the last impact")
-        clock = figure.text(0.995, 0.99, "", ha="right", va="top", color=style.MUTED)
+        clock = figure.text(0.01, 0.01, "", ha="left", va="bottom", color=style.MUTED)
         images = []
         for frame in range(frames):
             clock.set_text(f"{runs.law.time[frame] * 1e3:.0f} ms")
