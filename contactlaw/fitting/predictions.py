@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.evaluation import solved
+from contactlaw.evaluation import UnsolvedError, solved
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting
 from contactlaw.laws import Law
@@ -117,7 +117,10 @@ def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
     law = following(at.pair, law)
     contact = sphere_on_plate(at.pair, law, at.radius, at.thickness)
     units = scales(contact, speed)
-    found = solved(law, units, _RTOL)
+    try:
+        found = solved(law, units, _RTOL)
+    except UnsolvedError:  # one impact of some 1e5 stumbles at one tolerance, and not at another
+        found = solved(law, units, 0.1 * _RTOL)
     return rebound(
         law.data,
         limits(at.pair, law),
