@@ -456,7 +456,7 @@ def test_several_source_files_may_include_it(tmp_path):
 def test_a_spring_is_that_of_softsphere(compiled):
     model, library, _ = compiled
     values = ctypes.c_double * 8
-    for radius, thickness in ((0.9e-3, 1e-3), (1e-9, math.inf), (1e3, 1e-9)):
+    for radius, thickness in ((0.9e-3, 1e-3), (1e-9, math.inf), (1e3, 10.0), (1e-7, 1e-9)):
         library.spring_of.argtypes = (ctypes.c_double, ctypes.c_double)
         library.spring_of.restype = type(
             "Spring", (ctypes.Structure,), {"_fields_": [("v", values)]}
@@ -615,3 +615,45 @@ def test_the_soft_sphere_example_is_pythons(tmp_path):
     assert np.array(found) == pytest.approx(np.column_stack([v, peak, -u]), abs=1e-6)
     # and its COR is the integrated one's, gravity aside
     assert -u / v == pytest.approx(model.solve(v, 0.9e-3, 1e-3).restitution, abs=2e-4)
+
+
+# The table of steel on carbide has the most columns: ln chi runs from -7 to 8.6.
+@pytest.mark.parametrize(
+    "pair", [("stainless-steel-316", "tungsten-carbide"), ("hdpe", "polycarbonate")]
+)
+def test_headers_of_the_largest_tables_are_as_small_as_the_docs_say(pair, tmp_path):
+    cl.export.header(tmp_path / "contactlaw.h", cl.ImpactModel(cl.Pair(*pair)))
+    text = (tmp_path / "contactlaw.h").read_bytes()
+    assert len(text) < 350_000
+    promised = float(re.search(rb"within\s+\**\s*([\d.e-]+)\s+\**\s*of the", text)[1])
+    assert promised <= 1e-5
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_headers_of_two_pairs_in_one_source_file_stop_the_compiler(compiler, tmp_path):
+    for name, (pair, law) in {"one": MODELS["myc"], "other": (STEEL, "myc")}.items():
+        cl.export.header(tmp_path / f"{name}.h", cl.ImpactModel(pair, law=law), table="none")
+    source = tmp_path / "source.c"
+    source.write_text('#include "one.h"\n#include "one.h"\n#include "other.h"\nint main(void);\n')
+    done = subprocess.run(
+        [compiler, *COMPILERS[compiler], "-c", source, "-o", tmp_path / "out.o"],
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert done.returncode != 0
+    assert done.stderr.count("error") == 2, done.stderr  # the word, and the directive itself
+    assert "other.h" in done.stderr
+    assert "include each in a source file of its own" in done.stderr
+    source.write_text('#include "one.h"\n#include "one.h"\nint main(void) { return 0; }\n')
+    command = [compiler, *COMPILERS[compiler], source, "-o", tmp_path / "out", "-lm"]
+    subprocess.run(command, check=True)
+
+
+@pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only", "-Ofast"])
+def test_a_compiler_that_drops_nan_is_refused(flag, tmp_path):
+    cl.export.header(tmp_path / "contactlaw.h", model_of("myc"), table="none")
+    source = tmp_path / "source.c"
+    source.write_text('#include "contactlaw.h"\n')
+    command = ["gcc", flag, "-c", source, "-o", tmp_path / "out.o"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode != 0
+    assert "no -ffast-math" in done.stderr

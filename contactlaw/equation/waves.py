@@ -46,6 +46,9 @@ Array = NDArray[np.float64]
 CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
 SATURATION = 3.0  # V0 T_H over d_Y, by its root, from which on eta stays
 WIDEST = 0.3  # x up to which its fourth power was fitted; it stays from there on
+# Contact radius over thickness, (R/H) x, from which on the first term of eta stays. Finite elements
+# reach 1. Without a bound exp(eta) leaves the range of floating point for soft beads at high speeds.
+BROADEST = 10.0
 LONGER, LONGER_3 = 0.175, 0.18  # with lambda and its third power; the second by finite elements
 USUAL = 0.02  # h_0
 _RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
@@ -113,7 +116,8 @@ def stiffening(waves: Waves, ratio: float, x: float, thin: float, h: float) -> f
     usual = USUAL * (longer * longer)  # by finite elements; the end of a long contact counts
     g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, WIDEST * WIDEST)
-    return ratio * ((waves.eta + waves.eta_h * g) * x + waves.eta4 * (square * square))
+    broad = min(ratio * x, BROADEST)
+    return (waves.eta + waves.eta_h * g) * broad + ratio * waves.eta4 * (square * square)
 
 
 @kernel(inline=True)

@@ -7,6 +7,7 @@ arrays that these read.
 
 from __future__ import annotations
 
+import hashlib
 import math
 import os
 import re
@@ -36,8 +37,8 @@ Array = NDArray[np.float64]
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
 ERROR = 4e-6  # of COR beside the model's table: 1e-5 is promised, beside the equation
 _WIDTH = 96
-_OF_WAVES = "LONGER", "LONGER_3", "USUAL", "WIDEST", "SATURATION", "CONTACT_TIME"
-_LIMITS = "R_MIN", "R_MAX", "V_MIN", "V_MAX"
+_OF_WAVES = "LONGER", "LONGER_3", "USUAL", "WIDEST", "BROADEST", "SATURATION", "CONTACT_TIME"
+_LIMITS = "R_MIN", "R_MAX", "THINNEST", "V_MIN", "V_MAX"
 _SECTION = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 
 
@@ -129,6 +130,7 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         "root_series": _array(lookup.ROOT),
         "fifths": _array(2.0 ** (n / 5) for n in range(1, 6)),
     }
+    values["guard"] = hashlib.sha256(repr(values).encode()).hexdigest()[:16]
     return string.Template(template).substitute(values)
 
 

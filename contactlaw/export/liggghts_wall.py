@@ -80,6 +80,7 @@ def _texts(model: ImpactModel) -> dict[str, str]:
         "contact_time": repr(CONTACT_TIME),
         "steps": str(FEWEST_STEPS),
         "R_MIN": repr(lookup.R_MIN),
+        "THINNEST": repr(lookup.THINNEST),
     }
     found = {}
     for name in _FILES:

@@ -31,6 +31,10 @@ KINDS = {
     "peak_force": Kind("peak force", "N", 1e-12, 1e9, "in another unit?"),
 }
 
+# Smallest standard error over its value. A trial is integrated to 1e-9: no comparison is finer, and
+# the weight 1/error^2 of a far smaller one overflows.
+_LEAST_ERROR = 1e-9
+
 
 @dataclass(frozen=True, eq=False)
 class Measurements:
@@ -154,10 +158,12 @@ def _check_kind(name: str, kind: Kind, flat: dict[str, Array]) -> None:
     if errors is None:
         return
     measured = np.isfinite(values)
-    bad = measured & ~((errors > 0.0) & (errors < np.inf))
+    least = _LEAST_ERROR * np.abs(values)
+    bad = measured & ~((errors > 0.0) & (errors >= least) & (errors < np.inf))
     if bad.any():
         n = int(np.argmax(bad))
         raise ValueError(
             f"{name}_error: got {float(errors[n])!r} (element {n}); must be positive [{kind.unit}] "
-            f"wherever there is a {name}; leave all of them out if they are not known"
+            f"wherever there is a {name}, and at least {_LEAST_ERROR:g} of it; leave all of them "
+            "out if they are not known"
         )

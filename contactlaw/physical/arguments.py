@@ -103,6 +103,22 @@ def check(**arrays: Array) -> None:
     """Refuse values outside the range of the argument of that name."""
     for name, values in arrays.items():
         within(name, values, *_LIMITS[name])
+    if "radius" in arrays and "thickness" in arrays:
+        _check_ratio(arrays["radius"], arrays["thickness"])
+
+
+def _check_ratio(radius: Array, thickness: Array) -> None:
+    """Refuse plates so thin beside the bead that no law is known to hold."""
+    known = lookup.THINNEST * radius <= thickness
+    if known.all():
+        return
+    n = int(np.argmin(known))
+    where = f" (element {n})" if known.size > 1 else ""
+    r, h = (float(np.broadcast_to(values, known.shape)[n]) for values in (radius, thickness))
+    raise ValueError(
+        f"thickness: got {h!r}{where} beside a radius of {r!r}, R/H = {r / h:.4g}; must be at "
+        f"least {lookup.THINNEST:g} of the radius, of impacts on thinner foils nothing is known"
+    )
 
 
 def within(name: str, values: Array, low: float, high: float, remark: str) -> None:

@@ -127,14 +127,21 @@ class Grid:
             parts.append(start + (end - start) * segment.shares)
         return np.concatenate(parts, axis=1)
 
+    def segment_of(self, lam: Array, log_chi: Array) -> NDArray[np.intp]:
+        """Find the segments that places lie in, by number."""
+        at = _place(lam, self.stretch, self.largest_inelasticity)
+        starts = [_from_series(segment.start, at) for segment in self.segments[1:]]
+        return np.sum([log_chi > start for start in starts], axis=0, dtype=np.intp)
+
     def series_inelasticity(self) -> Array:
         """Lambda at the nodes of the series along lambda."""
         return series_inelasticity(self.stretch, self.largest_inelasticity)
 
 
-def coarser(grid: Grid, rows: int, step: float) -> Grid:
-    """Other nodes between the same kinks."""
-    segments = [_with_nodes(segment, step) for segment in grid.segments]
+def coarser(grid: Grid, rows: int, steps: float | Array) -> Grid:
+    """Other nodes between the same kinks; one step for all segments, or one for each."""
+    each = np.broadcast_to(steps, len(grid.segments))
+    segments = [_with_nodes(*one) for one in zip(grid.segments, each, strict=True)]
     nodes = row_inelasticity(rows, grid.stretch, grid.largest_inelasticity)
     return dataclasses.replace(grid, inelasticity=nodes, segments=tuple(segments))
 
