@@ -171,3 +171,56 @@ def test_materials_whose_products_overflow_are_refused(numbers, name):
     """As 'math domain error', OverflowError or a force of NaN later on, otherwise."""
     with pytest.raises(ValueError, match=f"^{name} .* of 'own' must "):
         cl.Material("own", *numbers)
+
+
+FOIL = (0.35549572329291923, 0.1, 1.1637769686423725e-07)  # lookups read out of bounds here
+
+
+@pytest.mark.parametrize("outside", ["raise", "solve", "clamp"])
+@pytest.mark.parametrize("law", ["fem", "myc", "hertz"])
+def test_a_foil_is_refused_in_the_same_words_everywhere(law, outside):
+    pair = cl.Pair("polycarbonate", "polystyrene")
+    model = cl.ImpactModel(pair, law=law, outside=outside)
+    speed, radius, thickness = FOIL
+    words = r"thickness: got 1.16.*e-07.*R/H = 8.593e\+05; must be at least 0.01 of the radius"
+    calls = [
+        lambda: model.restitution(*FOIL),
+        lambda: model.restitution([speed], radius, thickness),
+        lambda: model.lookup(*FOIL),
+        lambda: model.solve(*FOIL),
+        lambda: model.force_history(*FOIL),
+        lambda: model.sensitivity(*FOIL),
+        lambda: model.constant(*FOIL),
+        lambda: model.curve(radius, thickness),
+        lambda: model.speed_table(radius, thickness),
+        lambda: Contacts(model, radius, thickness),
+        lambda: time_step(model, *FOIL),
+    ]
+    if law == "myc":
+        calls.append(lambda: model.yield_speed(radius, thickness))
+    for call in calls:
+        with pytest.raises(ValueError, match=words):
+            call()
+    assert math.isnan(model.kernel(*FOIL))
+
+
+def test_of_many_plates_the_foil_is_named():
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    with pytest.raises(ValueError, match=r"got 1e-06 \(element 1\) beside a radius of 0.001, R/H"):
+        model.lookup(1.0, 1e-3, [1e-3, 1e-6])
+
+
+def test_a_soft_bead_at_high_speed_keeps_its_stiffening_finite():
+    """A contact is at most 10 times as wide as the plate is thick, for the stiffening: eta < 8."""
+    soft = cl.Material("gel", 1e4, 0.45, 1000.0)
+    model = cl.ImpactModel(cl.Pair(soft, soft), outside="clamp")
+    hit = model.lookup([1e2, 1e4, 1e5], 1e-3, [[1e-5], [1e-3]])
+    for name in ("restitution", "contact_time", "peak_force", "inelasticity"):
+        assert np.isfinite(getattr(hit, name)).all(), name
+    assert (np.diff(np.asarray(hit.inelasticity), axis=0) < 0.0).all()  # thinner plates take more
+
+
+@pytest.mark.parametrize("error", [1e-300, 1e-12])
+def test_an_error_smaller_than_any_comparison_is_refused(error):
+    with pytest.raises(ValueError, match=r"restitution_error: got 1e-.*at least 1e-09 of it"):
+        cl.Measurements(speed=[1.0, 2.0], radius=R, restitution=[0.9, 0.8], restitution_error=error)

@@ -1,0 +1,236 @@
+"""Impacts of any size and speed, on plates of any thickness: every way of asking says the same.
+
+A case is one impact of a random pair, with speed, radius and thickness drawn over 15 decades each.
+It is asked for as a user of each interface would. Accepted are a number in its range, on which all
+agree, and a refusal in words, of all alike.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import shutil
+import subprocess
+import tempfile
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import contactlaw as cl
+from contactlaw.evaluation import UnsolvedError
+from contactlaw.export import header
+from contactlaw.softsphere import Contacts
+
+FULL = 1_600_000
+_EACH = 12_000  # impacts of a pair
+_LAWS = ("fem", "fem", "fem", "myc", "hertz", "stronge")
+_SOLVED = 40  # of the impacts of a pair are integrated: they take the longest
+_CLOSE = 1e-5  # of COR, table beside equation: what a table made for a pair promises
+_ROUNDING = 1e-12  # of COR, one way of reading the table beside another
+_LEAST = (
+    1e-7  # compression over the radius; "fem" has no losses below 1e-9, and its table ends there
+)
+_HEADERS = 20  # pairs from one header to the next, which takes seconds to make and to compile
+
+
+def faults(count: int, seed: int) -> Iterator[str]:
+    """Ask for that many impacts."""
+    rng = np.random.default_rng(seed)
+    number, left = 0, count
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        while left > 0:
+            asked = min(_EACH, left)
+            left -= asked
+            pair = _pair(rng)
+            law = str(rng.choice(_LAWS))
+            try:
+                models = {how: cl.ImpactModel(pair, law, outside=how) for how in _OUTSIDE}
+            except ValueError as error:
+                if not _in_words(error):
+                    yield f"{pair!r}, law {law}: {error}"
+                continue
+            where = f"{_told(pair)}, law {law}"
+            impacts = _impacts(rng, asked)
+            for fault in _of_pair(rng, models, impacts, headers=number % _HEADERS == 0):
+                yield f"{where}: {fault}"
+            number += 1
+
+
+_OUTSIDE = "raise", "clamp", "solve"
+
+
+def _told(pair: cl.Pair) -> str:
+    bodies = pair.sphere, pair.plate
+    return " on ".join(one.name if one.name in cl.materials() else repr(one) for one in bodies)
+
+
+def _pair(rng: np.random.Generator) -> cl.Pair:
+    """Materials of the catalogue, or any that are accepted."""
+    return cl.Pair(*(_own(rng) if rng.random() < 0.4 else _known(rng) for _ in range(2)))
+
+
+def _known(rng: np.random.Generator) -> str:
+    return str(rng.choice(cl.materials()))
+
+
+def _own(rng: np.random.Generator) -> cl.Material:
+    """Draw any solid from a foam to tungsten."""
+    density = 10.0 ** rng.uniform(1.5, 4.3)
+    modulus = max(density * 10.0 ** rng.uniform(2.5, 8.3), 1e4)
+    strength = modulus * 10.0 ** rng.uniform(-3.3, -1.0) if rng.random() < 0.7 else None
+    return cl.Material("own", modulus, rng.uniform(0.0, 0.49), density, strength)
+
+
+def _impacts(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Speeds, radii and thicknesses: one half over all decades, one where users are."""
+    wide = rng.random(count) < 0.5
+    speed = 10.0 ** np.where(wide, rng.uniform(-10, 5, count), rng.uniform(-3, 2.5, count))
+    radius = 10.0 ** np.where(wide, rng.uniform(-9, 3, count), rng.uniform(-5, -1, count))
+    ratio = 10.0 ** np.where(wide, rng.uniform(-3, 12, count), rng.uniform(-1.5, 2.1, count))
+    thickness = np.maximum(radius / ratio, 1e-9)
+    thickness[rng.random(count) < 0.01] = math.inf
+    return speed, radius, thickness
+
+
+def _where(speed: float, radius: float, thickness: float) -> str:
+    sizes = {"speed": speed, "radius": radius, "thickness": thickness}
+    return "at " + ", ".join(f"{name} = {float(value)!r}" for name, value in sizes.items())
+
+
+def _in_words(error: Exception) -> bool:
+    """Whether an error says which argument, and is our own."""
+    names = "speed", "radius", "thickness", "youngs_modulus", "yield_strength", "density", "lambda"
+    return any(name in str(error) for name in names)
+
+
+def _of_pair(
+    rng: np.random.Generator, models: dict[str, cl.ImpactModel], impacts: Any, headers: bool
+) -> Iterator[str]:
+    model = models["raise"]
+    v, r, h = impacts
+    foil = cl.table.lookup.THINNEST * r > h
+    cor, at = model.kernel, ctypes.CFUNCTYPE(*[ctypes.c_double] * 4)(model.address)
+    one = np.array([cor(*x) for x in zip(v, r, h, strict=True)])
+    inside = ~np.isnan(one)
+    named = dict(zip(("speed", "radius", "thickness"), impacts, strict=True))
+
+    def first(wrong: np.ndarray, what: str, *also: np.ndarray) -> Iterator[str]:
+        if wrong.any():
+            n = int(np.argmax(wrong))
+            values = ", ".join(f"{name} = {float(x[n])!r}" for name, x in named.items())
+            told = ", ".join(repr(float(x[n])) for x in also)
+            yield f"{what} for {int(wrong.sum())}, as {values}: {told}"
+
+    yield from first(inside & foil, "an answer for a foil", one)
+    yield from first(inside & ~((one >= 0.0) & (one <= 1.0)), "COR out of range", one)
+    some = rng.integers(0, v.size, 200)
+    by_address = np.array([at(v[n], r[n], h[n]) for n in some])
+    if not np.array_equal(by_address, one[some], equal_nan=True):
+        yield "kernel and address differ"
+
+    # what the kernel answers, batches do, and nothing else
+    part = tuple(x[inside] for x in impacts)
+    batch, hit = np.asarray(model.restitution(*part)), model.lookup(*part)
+    named = dict(zip(named, part, strict=True))
+    for what, values in ("batch", batch), ("lookup", hit.restitution):
+        off = np.abs(values - one[inside]) > _ROUNDING
+        yield from first(off, f"kernel and {what} differ", one[inside], values)
+    yield from _fields(hit, first)
+
+    for n in rng.choice(np.flatnonzero(inside), min(_SOLVED, int(inside.sum())), replace=False):
+        exact = model.solve(v[n], r[n], h[n])
+        if not abs(exact.restitution - one[n]) <= _CLOSE and exact.peak_compression > _LEAST * r[n]:
+            yield f"table {one[n]!r}, equation {exact.restitution!r}, {_where(v[n], r[n], h[n])}"
+
+    # beyond the table: words, the border, or the equation; beyond all knowledge words alone
+    for n in rng.choice(np.flatnonzero(~inside), min(_SOLVED, int((~inside).sum())), replace=False):
+        yield from _refused(models, float(v[n]), float(r[n]), float(h[n]), bool(foil[n]))
+    known = tuple(x[~foil] for x in impacts)
+    named = dict(zip(named, known, strict=True))
+    hit = models["clamp"].lookup(*known)
+    yield from _fields(hit, first)
+    clamped = (hit.flags & int(cl.Validity.CLAMPED)) != 0
+    yield from first(clamped != ~inside[~foil], "clamped, though inside, or not though beyond")
+    yield from _soft(model, known, first)
+    if headers and shutil.which("gcc"):
+        yield from _header(model, impacts, one)
+
+
+def _fields(hit: cl.Rebound, first: Any) -> Iterator[str]:
+    """Check every field of many rebounds."""
+    for name in ("restitution", "plastic_fraction", "wave_fraction", "other_fraction"):
+        values = getattr(hit, name)
+        wrong = ~((values >= -1e-6) & (values <= 1.0 + 1e-4))
+        yield from first(wrong, f"{name} out of 0 to 1", values)
+    for name in ("contact_time", "peak_force", "peak_compression", "inelasticity"):
+        values = getattr(hit, name)
+        yield from first(~((values >= 0.0) & (values < math.inf)), f"{name} is no number", values)
+
+
+def _refused(
+    models: dict[str, cl.ImpactModel], v: float, r: float, h: float, foil: bool
+) -> Iterator[str]:
+    where = _where(v, r, h)
+    for how, model in models.items():
+        for name, call in {
+            "restitution": lambda m=model: m.restitution(v, r, h),
+            "lookup": lambda m=model: m.lookup(v, r, h).restitution,
+            "curve": lambda m=model: m.curve(r, h)(v),
+            "solve": lambda m=model: m.solve(v, r, h).restitution,
+        }.items():
+            try:
+                value = call()
+            except ValueError as error:
+                if not (_in_words(error) and (foil or (how == "raise" and name != "solve"))):
+                    yield f"{name}, outside {how!r}, {where}: {error}"
+            except UnsolvedError as error:
+                if foil or not (how == "solve" or name == "solve"):
+                    yield f"{name}, outside {how!r}, {where}: {error}"
+            else:
+                if foil or (how == "raise" and name != "solve") or not 0.0 <= value <= 1.0:
+                    yield f"{name}, outside {how!r}, {where}: answers {value!r}"
+
+
+def _soft(model: cl.ImpactModel, known: Any, first: Any) -> Iterator[str]:
+    """First steps of contacts: a force that is a number."""
+    v, r, h = known
+    contacts = Contacts(model, r, h)
+    step = 1e-2 * float(np.min(r / np.maximum(v, 1.0)))
+    for n in (1, 2, 3):
+        force = contacts.advance(n * v * step, step)
+        yield from first(~((force >= 0.0) & (force < math.inf)), f"force of step {n}", force)
+
+
+_SOURCE = """#include "contactlaw.h"
+double restitution(double v, double r, double h) { return contactlaw_restitution(v, r, h); }
+double rebound(double v, double r, double h) { return contactlaw_rebound(v, r, h).restitution; }
+"""
+
+
+def _header(model: cl.ImpactModel, impacts: Any, one: np.ndarray) -> Iterator[str]:
+    """Compile the pair's header, and ask it."""
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder)
+        header(made / "contactlaw.h", model)
+        (made / "source.c").write_text(_SOURCE)
+        sanitized = ["-fsanitize=undefined", "-fno-sanitize-recover"]
+        command = ["gcc", "-std=c99", "-O1", *sanitized, "-shared", "-fPIC", "source.c"]
+        subprocess.run([*command, "-o", "out.so", "-lm"], cwd=made, check=True)
+        library = ctypes.CDLL(str(made / "out.so"))
+        for name in ("restitution", "rebound"):
+            call = getattr(library, name)
+            call.argtypes, call.restype = [ctypes.c_double] * 3, ctypes.c_double
+        for (v, r, h), ours in zip(zip(*impacts, strict=True), one, strict=True):
+            value = library.restitution(v, r, h)
+            same = math.isnan(value) if math.isnan(ours) else abs(value - ours) <= _CLOSE
+            if not same:
+                yield f"header {value!r}, kernel {ours!r}, {_where(v, r, h)}"
+                return
+        for v, r, h in list(zip(*impacts, strict=True))[:_SOLVED]:
+            value = library.rebound(v, r, h)
+            if not (math.isnan(value) or 0.0 <= value <= 1.0):
+                yield f"header's rebound {value!r}, {_where(v, r, h)}"
