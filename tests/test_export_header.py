@@ -640,7 +640,7 @@ def test_headers_of_two_pairs_in_one_source_file_stop_the_compiler(compiler, tmp
         capture_output=True, text=True,
     )  # fmt: skip
     assert done.returncode != 0
-    assert done.stderr.count("error") == 2, done.stderr  # the word, and the directive itself
+    assert done.stderr.count("error:") == 1, done.stderr  # no list of redefinitions after it
     assert "other.h" in done.stderr
     assert "include each in a source file of its own" in done.stderr
     source.write_text('#include "one.h"\n#include "one.h"\nint main(void) { return 0; }\n')

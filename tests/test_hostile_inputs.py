@@ -1,4 +1,4 @@
-"""A coarse part of the campaign of random impacts; `python -m validation.hostile inputs` has all."""
+"""Part of the campaign of random impacts; the whole: `python -m validation.hostile inputs`."""
 
 from validation.hostile import inputs
 

@@ -261,12 +261,12 @@ def test_a_plate_may_recede_further_than_the_bead_is_large(model):
 @settings(deadline=None, max_examples=300)
 @given(
     radius=st.sampled_from([1e-9, 1e-3, 1e3]),
-    thickness=st.sampled_from([1e-9, 1e-3, 1e3, 1e300, math.inf]),
+    thickness=st.sampled_from([0.01, 1.0, 1e6, 1e300, math.inf]),  # in radii
     share=st.sampled_from([1e-20, 1e-6, 1.0]),
     path=st.lists(st.floats(-1.0, 1.0) | st.sampled_from([-1e300, 1e-300]), max_size=12),
 )
 def test_no_step_that_is_taken_gives_what_is_not_finite(model, radius, thickness, share, path):
-    contacts = Contacts(model, radius, thickness)
+    contacts = Contacts(model, radius, max(thickness * radius, 1e-9))
     for depth in path:
         overlap = depth * 2.0 * radius + max(depth, 0.0) * contacts.plate_displacement
         contacts.advance(overlap, share * contacts._longest)

@@ -47,7 +47,7 @@ CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
 SATURATION = 3.0  # V0 T_H over d_Y, by its root, from which on eta stays
 WIDEST = 0.3  # x up to which its fourth power was fitted; it stays from there on
 # Contact radius over thickness, (R/H) x, from which on the first term of eta stays. Finite elements
-# reach 1. Without a bound exp(eta) leaves the range of floating point for soft beads at high speeds.
+# reach 1. Without a bound exp(eta) overflows for soft beads at high speeds.
 BROADEST = 10.0
 LONGER, LONGER_3 = 0.175, 0.18  # with lambda and its third power; the second by finite elements
 USUAL = 0.02  # h_0

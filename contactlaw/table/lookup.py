@@ -48,8 +48,8 @@ Integers = NDArray[np.int32]
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = 1e-30
 # Smallest H/R, whatever the law and the speed. A plate thinner than that is a foil, and nothing is
-# known of impacts on it: finite elements reach R/H = 4.5, the flags begin at 1.4, and for impacts at
-# 1 to 100 m/s of materials of the catalogue lambda is above 6 from R/H = 1.4 to 40 on.
+# known of impacts on it: finite elements reach R/H = 4.5, the flags begin at 1.4. From 0.01 to 100
+# m/s lambda of materials of the catalogue passes 6 before, at R/H = 1.4 to 60.
 THINNEST = 0.01
 
 STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X, COLUMNS = range(5)

@@ -29,8 +29,8 @@ Array = NDArray[np.float64]
 POINTS = 1000  # of the certificate of a table that is built on the way to a first answer
 _COMPARED = 20_000  # points at which a coarser table is compared
 _FEWER = 4, 2, 1  # rows of a coarser table are fewer by these
-# Steps along ln chi are wider by these, in each segment by its own: the COR of elastic impacts bends
-# far less than that beyond yield, which once kept the whole table fine.
+# Steps along ln chi are wider by these, in each segment by its own: the COR of elastic impacts
+# bends far less than that beyond yield, which kept the whole table fine as long as one step ruled.
 _WIDER = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
 
 
