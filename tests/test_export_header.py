@@ -26,6 +26,7 @@ from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.softsphere import Contacts, resized, unit_spring
 from contactlaw.table import Settings, lookup
 from contactlaw.table.nodes import POINTS, coarser
+from validation.hostile import headers
 
 ROOT = Path(__file__).parent.parent
 COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
@@ -617,16 +618,13 @@ def test_the_soft_sphere_example_is_pythons(tmp_path):
     assert -u / v == pytest.approx(model.solve(v, 0.9e-3, 1e-3).restitution, abs=2e-4)
 
 
-# The table of steel on carbide has the most columns: ln chi runs from -7 to 8.6.
+# The table of steel on carbide has the most columns: ln chi runs from -7 to 8.6. All 484 pairs are
+# tried by `python -m validation.hostile headers`.
 @pytest.mark.parametrize(
     "pair", [("stainless-steel-316", "tungsten-carbide"), ("hdpe", "polycarbonate")]
 )
-def test_headers_of_the_largest_tables_are_as_small_as_the_docs_say(pair, tmp_path):
-    cl.export.header(tmp_path / "contactlaw.h", cl.ImpactModel(cl.Pair(*pair)))
-    text = (tmp_path / "contactlaw.h").read_bytes()
-    assert len(text) < 350_000
-    promised = float(re.search(rb"within\s+\**\s*([\d.e-]+)\s+\**\s*of the", text)[1])
-    assert promised <= 1e-5
+def test_headers_of_the_largest_tables_are_as_small_as_the_docs_say(pair):
+    assert list(headers.of_pair(*pair)) == []
 
 
 @pytest.mark.parametrize("compiler", COMPILERS)

@@ -131,7 +131,7 @@ class Grid:
         """Find the segments that places lie in, by number."""
         at = _place(lam, self.stretch, self.largest_inelasticity)
         starts = [_from_series(segment.start, at) for segment in self.segments[1:]]
-        return np.sum([log_chi > start for start in starts], axis=0, dtype=np.intp)
+        return np.asarray(np.sum([log_chi > start for start in starts], axis=0, dtype=np.intp))
 
     def series_inelasticity(self) -> Array:
         """Lambda at the nodes of the series along lambda."""

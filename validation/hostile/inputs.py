@@ -13,19 +13,20 @@ import shutil
 import subprocess
 import tempfile
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import contactlaw as cl
-from contactlaw.evaluation import UnsolvedError
+from contactlaw.evaluation import Outside, UnsolvedError
 from contactlaw.export import header
 from contactlaw.softsphere import Contacts
 
 FULL = 1_600_000
 _EACH = 12_000  # impacts of a pair
+_OUTSIDE: tuple[Outside, ...] = ("raise", "clamp", "solve")
 _LAWS = ("fem", "fem", "fem", "myc", "hertz", "stronge")
 _SOLVED = 40  # of the impacts of a pair are integrated: they take the longest
 _CLOSE = 1e-5  # of COR, table beside equation: what a table made for a pair promises
@@ -58,9 +59,6 @@ def faults(count: int, seed: int) -> Iterator[str]:
             for fault in _of_pair(rng, models, impacts, headers=number % _HEADERS == 0):
                 yield f"{where}: {fault}"
             number += 1
-
-
-_OUTSIDE = "raise", "clamp", "solve"
 
 
 def _told(pair: cl.Pair) -> str:
@@ -136,7 +134,7 @@ def _of_pair(
     part = tuple(x[inside] for x in impacts)
     batch, hit = np.asarray(model.restitution(*part)), model.lookup(*part)
     named = dict(zip(named, part, strict=True))
-    for what, values in ("batch", batch), ("lookup", hit.restitution):
+    for what, values in ("batch", batch), ("lookup", np.asarray(hit.restitution)):
         off = np.abs(values - one[inside]) > _ROUNDING
         yield from first(off, f"kernel and {what} differ", one[inside], values)
     yield from _fields(hit, first)
@@ -171,17 +169,21 @@ def _fields(hit: cl.Rebound, first: Any) -> Iterator[str]:
         yield from first(~((values >= 0.0) & (values < math.inf)), f"{name} is no number", values)
 
 
+def _calls(model: cl.ImpactModel, v: float, r: float, h: float) -> dict[str, Callable[[], Any]]:
+    return {
+        "restitution": lambda: model.restitution(v, r, h),
+        "lookup": lambda: model.lookup(v, r, h).restitution,
+        "curve": lambda: model.curve(r, h)(v),
+        "solve": lambda: model.solve(v, r, h).restitution,
+    }
+
+
 def _refused(
     models: dict[str, cl.ImpactModel], v: float, r: float, h: float, foil: bool
 ) -> Iterator[str]:
     where = _where(v, r, h)
     for how, model in models.items():
-        for name, call in {
-            "restitution": lambda m=model: m.restitution(v, r, h),
-            "lookup": lambda m=model: m.lookup(v, r, h).restitution,
-            "curve": lambda m=model: m.curve(r, h)(v),
-            "solve": lambda m=model: m.solve(v, r, h).restitution,
-        }.items():
+        for name, call in _calls(model, v, r, h).items():
             try:
                 value = call()
             except ValueError as error:

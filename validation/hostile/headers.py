@@ -1,0 +1,42 @@
+"""The C header of every pair of the catalogue: it is written, is small, and keeps its promise."""
+
+from __future__ import annotations
+
+import itertools
+import re
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+import contactlaw as cl
+
+FULL = len(cl.materials()) ** 2
+_LARGEST = 350_000  # bytes, as docs/engines.md says
+_CLOSE = 1e-5  # of COR, table beside equation, as it says, too
+
+
+def faults(count: int, seed: int) -> Iterator[str]:
+    """Write the headers of that many pairs."""
+    pairs = list(itertools.product(cl.materials(), repeat=2))
+    chosen = np.random.default_rng(seed).permutation(len(pairs))[:count]
+    for n in chosen:
+        yield from of_pair(*pairs[n])
+
+
+def of_pair(sphere: str, plate: str) -> Iterator[str]:
+    """Write the header of one pair."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "contactlaw.h"
+        try:
+            cl.export.header(path, cl.ImpactModel(cl.Pair(sphere, plate)))
+        except ValueError as error:
+            yield f"{sphere} on {plate}: {error}"
+            return
+        size, text = path.stat().st_size, re.sub(r"[\s*]+", " ", path.read_text())
+    promised = re.search(r"within ([\d.e-]+) of the", text)
+    if size > _LARGEST:
+        yield f"{sphere} on {plate}: {size} bytes"
+    if not (promised and float(promised[1]) <= _CLOSE):
+        yield f"{sphere} on {plate}: its certificate is {promised and promised[0]}"
