@@ -106,7 +106,7 @@ def _in_words(error: Exception) -> bool:
 
 
 def _of_pair(
-    rng: np.random.Generator, models: dict[str, cl.ImpactModel], impacts: Any, headers: bool
+    rng: np.random.Generator, models: dict[Outside, cl.ImpactModel], impacts: Any, headers: bool
 ) -> Iterator[str]:
     model = models["raise"]
     v, r, h = impacts
@@ -179,7 +179,7 @@ def _calls(model: cl.ImpactModel, v: float, r: float, h: float) -> dict[str, Cal
 
 
 def _refused(
-    models: dict[str, cl.ImpactModel], v: float, r: float, h: float, foil: bool
+    models: dict[Outside, cl.ImpactModel], v: float, r: float, h: float, foil: bool
 ) -> Iterator[str]:
     where = _where(v, r, h)
     for how, model in models.items():
