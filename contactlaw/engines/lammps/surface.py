@@ -56,9 +56,9 @@ ROOM = _MOST + 1
 
 # A facet that a bead overlaps. `surface` is the place in the list of what it is the surface of
 # together with: its own, if it is in contact. Then `shared` is the overlap of the pass, 0 without any,
-# and the pass lies between the places `one` and `other`. `level` and `done` belong to the search.
+# and the pass lies between the places `one` and `other`. The last of either kind are the search's.
 OVERLAP = np.dtype(
-    [(name, "i8") for name in ("facet", "face", "surface", "one", "other", "done")]
+    [(name, "i8") for name in ("facet", "face", "surface", "one", "other", "done", "near", "far")]
     + [(name, "f8") for name in ("x", "s", "nx", "ny", "nz", "shared", "level")],
     align=True,
 )
@@ -191,7 +191,7 @@ def _pass(a: Touch, b: Touch, r: float) -> float:
 
 @kernel
 def slope(frames: Any, facets: Any, bead: Bead, one: Any, other: Any) -> Point:
-    """Change of the overlap of a pass between two facets with the bead's place, per metre."""
+    """Way on which the overlap of a pass between two facets falls: of a facet's it is the normal."""
     a, b, r = touch_of(one), touch_of(other), bead.r
     low = a if a.x < b.x else b
     if _pass(a, b, r) == low.x:
@@ -210,7 +210,7 @@ def slope(frames: Any, facets: Any, bead: Bead, one: Any, other: Any) -> Point:
             )
             a = turned(here, on_facet(first, to_frame(here, p), r))
             b = turned(there, on_facet(second, to_frame(there, p), r))
-            change -= sign * _farthest(a, b, r)
+            change += sign * _farthest(a, b, r)
         change *= 0.5 * _LOWER / step
         if k == 0:
             dx = change
@@ -234,14 +234,14 @@ def _search(found: Any, count: int, start: int, r: float) -> None:
     for n in range(count):
         found[n].level, found[n].done = 0.0, 0
     mine, row, at = _rank(found[start], r), found[start], start
-    row.level, row.surface, row.shared, row.one, row.other = row.x, start, 0.0, start, start
+    row.level, row.surface, row.shared, row.near, row.far = row.x, start, 0.0, start, start
     while True:
         here, touch = found[at], touch_of(found[at])
         if _rank(here, r) < mine:
             if here.level >= row.x - _TIE * r:
                 row.surface = at
             else:
-                row.shared, row.one, row.other = here.level, here.one, here.other
+                row.shared, row.one, row.other = here.level, here.near, here.far
             return
         here.done, best = 1, -1
         for n in range(count):
@@ -251,9 +251,9 @@ def _search(found: Any, count: int, start: int, r: float) -> None:
             between = _pass(touch, touch_of(that), r)
             if min(between, here.level) > that.level:
                 that.level = min(between, here.level)
-                that.one, that.other = here.one, here.other
+                that.near, that.far = here.near, here.far
                 if between < here.level:
-                    that.one, that.other = at, n
+                    that.near, that.far = at, n
             if that.level > 0.0 and (best < 0 or that.level > found[best].level):
                 best = n
         if best < 0:
