@@ -18,14 +18,13 @@ from contactlaw.engines.lammps.geometry import (
     Bead,
     Point,
     Touch,
-    into,
     nearest,
-    out_of,
     seen,
     velocity,
 )
 from contactlaw.engines.lammps.ledger import dot
 from contactlaw.engines.lammps.memory import (
+    ALONE,
     DISPLACEMENT,
     DURATION,
     FACET,
@@ -36,12 +35,15 @@ from contactlaw.engines.lammps.memory import (
     MOBILITY,
     OVERLAP,
     OWNER,
+    POWER,
     PUSH,
+    SHARING,
     SPEED,
     SPRING,
     STIFFENING,
     TIED,
     TOLD,
+    UNEVEN,
     WALL_WORK,
     WAVE,
     WORK,
@@ -153,11 +155,11 @@ def _begin(
 @kernel
 def _partner(row: Array, shared: Any, at: int) -> int:
     """Slot of another contact that a tied one has shared its force with, else 0."""
-    if row[at + TIED] == 0.0:
+    if row[at + TIED] != SHARING:
         return 0
     for k in range(shared.slots):
         slot = FIRST + k * shared.width
-        if slot != at and row[slot + FORCE] > 0.0 and row[slot + TIED] != 0.0:
+        if slot != at and row[slot + FORCE] > 0.0 and row[slot + TIED] == SHARING:
             return int(slot)
     return 0
 
@@ -209,7 +211,7 @@ def _end(
     kick, leaves = (0.0, 0.0, 0.0), -u
     if partner > 0:  # what one has too much the other has too little
         row[partner + WORK] -= missing
-    elif row[at + TIED] != 0.0:
+    elif row[at + TIED] != ALONE:
         more = ledger.scaled(missing, bead.mass, v, steps)
         pull = more * bead.mass / clock.dt
         kick, leaves = (pull * v[0], pull * v[1], pull * v[2]), -u * (1.0 + more)
@@ -223,7 +225,7 @@ def _end(
         complain(shared, clock.step, bead.tag, row, memory.TOO_MANY_RECORDS, contact.wall, 0.0, n)
         return kick
     touch = contact.touch
-    if not touch.face and u < 0.0 and row[at + TIED] == 0.0:
+    if not touch.face and u < 0.0 and row[at + TIED] == ALONE:
         around = ledger.turning(bead.r, row[at + OVERLAP], touch.x, u, clock.dt)
         leaves = ledger.free_speed(leaves, around, bead.r, touch.x)
     since = 0.0
@@ -282,7 +284,6 @@ def _normal(
     at: int,
     touching: bool,
     heir: int,
-    frame: Any,
 ) -> None:
     """Advance a contact by a step; its slot is empty afterwards if the bodies have parted."""
     row, v, touch = bead.history, contact.v, contact.touch
@@ -312,16 +313,16 @@ def _normal(
         row[at + STIFFENING],
     )  # fmt: skip
     state, kick = ledger.step(law, spring, last, touch.x, u, clock.dt, clock.before)
-    held = (0.0, 0.0, 0.0)
+    held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
-        held = out_of(frame, (row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2]))
+        held, power_0 = (row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2]), row[at + POWER]
         if row[at + KICK] == 0.0 and _kinked(held, n, v, clock.dt, bead.r - touch.x):
-            row[at + TIED] = 1.0
+            row[at + TIED] = max(row[at + TIED], UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
         _begin(shared, clock, bead, contact.wall, at, spring, touch.x, u)
     else:
         first = 0.0 < row[at + DURATION] < clock.before
-        if not touch.face and last.force > 0.0 and first and row[at + TIED] == 0.0:
+        if not touch.face and last.force > 0.0 and first and row[at + TIED] == ALONE:
             # the second step: the first one does not know how fast the normal turns
             around = ledger.turning(bead.r, row[at + OVERLAP], touch.x, u, clock.dt)
             row[at + SPEED] = ledger.free_speed(row[at + SPEED], around, bead.r, row[at + OVERLAP])
@@ -334,7 +335,10 @@ def _normal(
     row[at + WAVE] += ledger.wave_energy(spring, last, state, clock.dt)
     push = state.force + kick
     pushes = push * along[0], push * along[1], push * along[2]
-    row[at + WORK] += ledger.work(spring.mass, held, pushes, v, clock.dt, clock.before)
+    power = dot(pushes, contact.w)
+    row[at + WORK] += ledger.work(
+        spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before
+    )
     if state.force == 0.0 and last.force > 0.0:
         pushes = _end(law, shared, clock, bead, sheet, contact, at, spring, last, u, heir)
         kick = dot(pushes, n)
@@ -348,7 +352,8 @@ def _normal(
     if kick != 0.0:
         row[at + FACET] = side  # also of a bead that has parted: a set-up asks for the force again
     row[at + KICK] = kick
-    row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2] = into(frame, pushes)
+    row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2] = pushes
+    row[at + POWER] = power
 
 
 @kernel
@@ -404,12 +409,11 @@ def _press(
     recorded = shared.record_count
     if clock.advancing:
         law = array_at(sheet.law, sheet.law_size, np.float64)
-        frame = walls.frames[facet.frame]
-        _normal(law, shared, clock, bead, sheet, contact, at, held, heir, frame)
+        _normal(law, shared, clock, bead, sheet, contact, at, held, heir)
     if row[at + FORCE] == 0.0 and row[at + KICK] == 0.0:
         return
     n = (touch.nx, touch.ny, touch.nz)
-    push = out_of(walls.frames[facet.frame], (row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2]))
+    push = row[at + PUSH : at + PUSH + 3]
     pull = (0.0, 0.0, 0.0)
     if shared.friction > 0.0:
         pull = _slide(clock, bead, shared.friction, contact, at, sheet.tangential)
@@ -480,10 +484,6 @@ def _hand_over(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int) 
         if home == -2:
             row[at : at + shared.width] = 0.0
         elif home >= 0 and slot_of(row, shared, found[home].facet) == 0:
-            old = walls.frames[walls.facets[facet].frame]
-            new = walls.frames[walls.facets[found[home].facet].frame]
-            push = out_of(old, (row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2]))
-            row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2] = into(new, push)
             row[at + FACET] = math.copysign(found[home].facet + 1.0, found[home].s)
 
 
@@ -498,7 +498,7 @@ def _part(
         heir = slot_of(row, shared, walls.found[walls.found[n].surface].facet)
         heir = 0 if heir == at else heir
     if heir > 0:
-        row[heir + TIED] = 1.0
+        row[heir + TIED] = SHARING
     t = seen(walls.frames[one.frame], one, bead)
     if t.x > -bead.r:  # else it was taken away
         t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
@@ -539,7 +539,16 @@ def _begin_all(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int, 
             row[at : at + shared.width] = 0.0
         _press(shared, clock, walls, bead, _place_in(walls, bead, new), at, held)
         if found[new].shared > 0.0:
-            row[at + TIED] = 1.0
+            row[at + TIED] = SHARING
+
+
+@kernel
+def _company(row: Array, shared: Any) -> float:
+    """Whether several contacts press a bead: the scheme of each takes its own force for all."""
+    pressing = 0
+    for k in range(shared.slots):
+        pressing += row[FIRST + k * shared.width + FORCE] > 0.0
+    return UNEVEN if pressing > 1 else ALONE
 
 
 @kernel
@@ -555,7 +564,7 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
     sharing = join(bead.r, found, count)
     if clock.advancing:
         _hand_over(shared, clock, walls, bead, count)
-    held = touches(row, shared)
+    held, tie = touches(row, shared), SHARING if sharing else _company(row, shared)
     for k in range(shared.slots):
         at = FIRST + k * shared.width
         if row[at + FACET] == 0.0:
@@ -563,8 +572,7 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
         facet = int(abs(row[at + FACET])) - 1
         n = _place_of(found, count, facet)
         if n >= 0 and found[n].surface == n:
-            if sharing:
-                row[at + TIED] = 1.0
+            row[at + TIED] = max(row[at + TIED], tie)
             _press(shared, clock, walls, bead, _place_in(walls, bead, n), at, held)
         elif clock.advancing or row[at + KICK] != 0.0:
             _part(shared, clock, walls, bead, facet, at, count)

@@ -46,46 +46,33 @@ class Touch(NamedTuple):
 
 
 @kernel
-def into(frame: Any, v: Point) -> Point:
-    """Vector of space in a frame's own coordinates."""
-    if frame.moves == 0:
-        return v
-    turn = frame.turn
-    return (
-        turn[0] * v[0] + turn[3] * v[1] + turn[6] * v[2],
-        turn[1] * v[0] + turn[4] * v[1] + turn[7] * v[2],
-        turn[2] * v[0] + turn[5] * v[1] + turn[8] * v[2],
-    )
-
-
-@kernel
-def out_of(frame: Any, v: Point) -> Point:
-    """Vector of a frame's own coordinates in space."""
-    if frame.moves == 0:
-        return v
-    turn = frame.turn
-    return (
-        turn[0] * v[0] + turn[1] * v[1] + turn[2] * v[2],
-        turn[3] * v[0] + turn[4] * v[1] + turn[5] * v[2],
-        turn[6] * v[0] + turn[7] * v[1] + turn[8] * v[2],
-    )
-
-
-@kernel
 def to_frame(frame: Any, x: Point) -> Point:
     """Point of space in a frame's own coordinates."""
     if frame.moves == 0:
         return x
-    hub, shift = frame.hub, frame.shift
-    p = into(frame, (x[0] - hub[0] - shift[0], x[1] - hub[1] - shift[1], x[2] - hub[2] - shift[2]))
-    return hub[0] + p[0], hub[1] + p[1], hub[2] + p[2]
+    hub, shift, turn = frame.hub, frame.shift, frame.turn
+    px, py, pz = x[0] - hub[0] - shift[0], x[1] - hub[1] - shift[1], x[2] - hub[2] - shift[2]
+    return (
+        hub[0] + turn[0] * px + turn[3] * py + turn[6] * pz,
+        hub[1] + turn[1] * px + turn[4] * py + turn[7] * pz,
+        hub[2] + turn[2] * px + turn[5] * py + turn[8] * pz,
+    )
 
 
 @kernel
 def turned(frame: Any, t: Touch) -> Touch:
     """Touch whose normal is that in space."""
-    n = out_of(frame, (t.nx, t.ny, t.nz))
-    return Touch(t.x, t.s, n[0], n[1], n[2], t.face)
+    if frame.moves == 0:
+        return t
+    turn = frame.turn
+    return Touch(
+        t.x,
+        t.s,
+        turn[0] * t.nx + turn[1] * t.ny + turn[2] * t.nz,
+        turn[3] * t.nx + turn[4] * t.ny + turn[5] * t.nz,
+        turn[6] * t.nx + turn[7] * t.ny + turn[8] * t.nz,
+        t.face,
+    )
 
 
 @kernel

@@ -90,15 +90,18 @@ def dot(a: Point, b: Point) -> float:
 
 
 @kernel
-def work(mass: float, f0: Point, f1: Point, v: Point, h: float, before: float) -> Any:
-    """Work of the forces on the bead in a step, half of that of either end [J].
+def work(
+    mass: float, f0: Point, f1: Point, v: Point, power_0: float, power_1: float, h: float,
+    before: float,
+) -> Any:  # fmt: skip
+    """Work of the forces on the bead in a step, less the wall's; half of that of either end [J].
 
     They are vectors, for the normal turns where the nearest point is on an edge, and jumps where
     the bead goes on from a facet to one that leans towards it.
     """
     # where the step changes, Verlet's force acts for half of either
     uneven = (h - before) * (h + before) * dot(f0, f0) / (8.0 * mass)
-    return 0.5 * h * (dot(f0, v) + dot(f1, v)) - uneven
+    return 0.5 * h * (dot(f0, v) + dot(f1, v) - power_0 - power_1) - uneven
 
 
 @kernel
@@ -115,7 +118,7 @@ def settle(missing: float, m: float, u: float, h: float, steps: float) -> float:
 
 @kernel
 def scaled(missing: float, m: float, v: Point, steps: float) -> float:
-    """Share of its velocity to add to a bead whose contact has gone across kinks.
+    """Share of its velocity to add to a bead whose contact went across kinks, or had company.
 
     A force that jumps within a step errs by up to half of its push of a step, in the direction of
     the jump: which may be that along which the bead does not leave. So all of the velocity changes.
