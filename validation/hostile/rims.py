@@ -30,7 +30,7 @@ RADIUS = 0.9e-3  # [m]; beads have 0.6 to 1.2 of it
 SPEEDS = (1.0, 8.0)  # [m/s]
 _FLIGHT = 3e-5  # [m] a bead is off the walls when it starts
 _LONGEST = 4000  # steps that a bead may take to leave
-_MODEL = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="hertz")
+MODEL = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="hertz")
 _BOX = """
     units si
     atom_style sphere
@@ -47,10 +47,10 @@ _BOX = """
 def faults(count: int, seed: int) -> Iterator[str]:
     """Shoot so many beads, a part of them at each mesh."""
     rng = np.random.default_rng(seed)
-    scenes = _scenes(rng)
-    share = -(-count // len(scenes))
-    for name, mesh in scenes.items():
-        places, velocities, radii = _shots(rng, mesh, share)
+    every = scenes(rng)
+    share = -(-count // len(every))
+    for name, mesh in every.items():
+        places, velocities, radii = shots(rng, mesh, share)
         try:
             change, touching = kept(mesh, places, velocities, radii)
         except RuntimeError as error:
@@ -73,11 +73,9 @@ def kept(
     try:
         lmp.commands_string(_BOX.format(step=step))
         lmp.create_atoms(n, np.arange(1, n + 1), [1] * n, places.ravel(), velocities.ravel())
-        lmp.command("set group all density 879")
-        lmp.numpy.extract_atom("radius")[:n] = 1.0
         for number, radius in enumerate(radii, start=1):
             lmp.command(f"set atom {number} diameter {2 * float(radius)!r} density 879")
-        attach(lmp, _MODEL, [mesh])
+        attach(lmp, MODEL, [mesh])
         for _ in range(4):
             lmp.command(f"run {round(_LONGEST * STEP / step / 4)}")
             order = np.argsort(lmp.numpy.extract_atom("id")[:n])
@@ -92,7 +90,7 @@ def kept(
         lmp.close()
 
 
-def _scenes(rng: np.random.Generator) -> dict[str, Mesh]:
+def scenes(rng: np.random.Generator) -> dict[str, Mesh]:
     ends = (0, 0, -0.02), (0, 0, 0)
     found = {
         f"cylinder of {facets}": Mesh.cylinder(*ends, 0.01, math.inf, facets=facets)
@@ -132,7 +130,7 @@ def _hull(points: Floats, out: Floats) -> Mesh:
     return Mesh(points * (1.0 + out)[:, None], triangles.astype(np.int64), math.inf)
 
 
-def _shots(rng: np.random.Generator, mesh: Mesh, count: int) -> tuple[Floats, Floats, Floats]:
+def shots(rng: np.random.Generator, mesh: Mesh, count: int) -> tuple[Floats, Floats, Floats]:
     """Beads just off a mesh that fly to a place next to one of its edges or corners."""
     corners = mesh.vertices[mesh.triangles]
     parts: list[tuple[Any, ...]] = []

@@ -216,7 +216,7 @@ def _end(
         pull = more * bead.mass / clock.dt
         kick, leaves = (pull * v[0], pull * v[1], pull * v[2]), -u * (1.0 + more)
     else:
-        pull = ledger.settle(missing, bead.mass, u, clock.dt, steps)
+        pull = ledger.settle(missing, bead.mass, u, row[at + SPEED], clock.dt, steps)
         touch = contact.touch
         kick = pull * touch.nx, pull * touch.ny, pull * touch.nz
         leaves = pull * clock.dt / bead.mass - u

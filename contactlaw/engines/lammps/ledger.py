@@ -29,9 +29,10 @@ Point = tuple[float, float, float]
 
 # zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6: a least-squares fit
 _ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 0.0013675)
-# Largest relative change of the speed with which a bead leaves, times (steps per contact)^2.5:
-# twice what the scheme errs without it (`contactlaw.softsphere.time_step`). A bead that more is
-# missing of has been hit in between, or hardly leaves.
+# Largest change of the speed with which a bead leaves, over that speed or the one of its approach,
+# times (steps per contact)^2.5: twice what the scheme errs without it
+# (`contactlaw.softsphere.time_step`). A bead that more is missing of has been hit in between. One that
+# rolls over a corner may leave slowly after a hard approach.
 _MOST = 1.8
 # Largest relative change of the speed of a bead that went across kinks, times steps per contact: the
 # push of a step at the force's peak is 2.9/steps of the momentum that an elastic bead comes with.
@@ -105,13 +106,15 @@ def work(
 
 
 @kernel
-def settle(missing: float, m: float, u: float, h: float, steps: float) -> float:
+def settle(
+    missing: float, m: float, u: float, approach: float, h: float, steps: float
+) -> float:
     """Force to add in the last step, for a bead that leaves with so much energy too little [N]."""
     square = u * u + 2.0 * missing / m
     if not (u < 0.0 and square > 0.0):
         return 0.0
     change, steps = math.sqrt(square) + u, max(steps, FEWEST_STEPS)
-    if not abs(change) <= -u * _MOST / (steps * steps * math.sqrt(steps)):
+    if not abs(change) <= max(-u, approach) * _MOST / (steps * steps * math.sqrt(steps)):
         return 0.0
     return m * change / h
 
