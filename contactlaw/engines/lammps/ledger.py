@@ -106,9 +106,7 @@ def work(
 
 
 @kernel
-def settle(
-    missing: float, m: float, u: float, approach: float, h: float, steps: float
-) -> float:
+def settle(missing: float, m: float, u: float, approach: float, h: float, steps: float) -> float:
     """Force to add in the last step, for a bead that leaves with so much energy too little [N]."""
     square = u * u + 2.0 * missing / m
     if not (u < 0.0 and square > 0.0):
