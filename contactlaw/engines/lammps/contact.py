@@ -165,6 +165,17 @@ def _partner(row: Array, shared: Any, at: int) -> int:
 
 
 @kernel
+def _power(row: Array, shared: Any, at: int, v: Point) -> float:
+    """Power of the other contacts on a bead of this velocity [W]."""
+    power = 0.0
+    for k in range(shared.slots):
+        slot = FIRST + k * shared.width
+        if slot != at and row[slot + FORCE] > 0.0:
+            power += dot((row[slot + PUSH], row[slot + PUSH + 1], row[slot + PUSH + 2]), v)
+    return power
+
+
+@kernel
 def _kinked(held: Point, n: Point, v: Point, dt: float, distance: float) -> bool:
     """Whether the normal has turned by more than the bead's way explains."""
     size = math.sqrt(dot(held, held))
@@ -212,7 +223,8 @@ def _end(
     if partner > 0:  # what one has too much the other has too little
         row[partner + WORK] -= missing
     elif row[at + TIED] != ALONE:
-        more = ledger.scaled(missing, bead.mass, v, steps)
+        others = _power(row, shared, at, v)
+        more = ledger.scaled(missing, bead.mass, v, others, clock.dt, steps)
         pull = more * bead.mass / clock.dt
         kick, leaves = (pull * v[0], pull * v[1], pull * v[2]), -u * (1.0 + more)
     else:

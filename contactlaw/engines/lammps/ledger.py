@@ -31,11 +31,11 @@ Point = tuple[float, float, float]
 _ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 0.0013675)
 # Largest change of the speed with which a bead leaves, over that speed or the one of its approach,
 # times (steps per contact)^2.5: twice what the scheme errs without it
-# (`contactlaw.softsphere.time_step`). A bead that more is missing of has been hit in between. One that
-# rolls over a corner may leave slowly after a hard approach.
+# (`contactlaw.softsphere.time_step`). A bead that more is missing of has been hit in between.
+# One that rolls over a corner may leave slowly after a hard approach.
 _MOST = 1.8
-# Largest relative change of the speed of a bead that went across kinks, times steps per contact: the
-# push of a step at the force's peak is 2.9/steps of the momentum that an elastic bead comes with.
+# Largest relative change of the speed of a bead that went across kinks, times steps per contact: at
+# the force's peak the push of a step is 2.9/steps of the momentum that an elastic bead comes with.
 _KINKS = 3.0
 _ONE = 1.01  # step's way at most between first touch and the end of that step; an edge is round
 
@@ -118,16 +118,19 @@ def settle(missing: float, m: float, u: float, approach: float, h: float, steps:
 
 
 @kernel
-def scaled(missing: float, m: float, v: Point, steps: float) -> float:
+def scaled(missing: float, m: float, v: Point, power: float, h: float, steps: float) -> float:
     """Share of its velocity to add to a bead whose contact went across kinks, or had company.
 
     A force that jumps within a step errs by up to half of its push of a step, in the direction of
     the jump: which may be that along which the bead does not leave. So all of the velocity changes.
+    `power` is that of the contacts which still press: they, too, push the bead in this step.
     """
-    square = dot(v, v)
-    if not square + 2.0 * missing / m > 0.0:
+    twice = m * dot(v, v)
+    one = 1.0 + 0.5 * power * h / twice
+    square = one * one + 2.0 * missing / twice
+    if not (one > 0.0 and square > 0.0):
         return 0.0
-    share = math.sqrt(1.0 + 2.0 * missing / (m * square)) - 1.0
+    share = math.sqrt(square) - one
     return share if abs(share) <= _KINKS / max(steps, FEWEST_STEPS) else 0.0
 
 

@@ -45,8 +45,8 @@ from contactlaw.engines.lammps.memory import array_at
 _SEAM = 1e-4  # [r] between facets that are one surface to a bead
 _TIE = 1e-10  # [r] of overlap: rounding
 _SMOOTH = math.cos(math.radians(20.0))  # facets of one surface
-# Share of the way from the centre to a pass that counts: so that faces which lean towards each other
-# by 20 degrees have none between them.
+# Share of the way from the centre to a pass that counts: so that faces which lean towards each
+# other by 20 degrees have none between them.
 _LOWER = math.cos(math.radians(10.0))
 _NUDGE = 1e-6  # [r] by which a slope is taken
 # Facets that a bead may overlap before shallow ones are left out, and room for one more. Where
@@ -55,8 +55,8 @@ _MOST = 64
 ROOM = _MOST + 1
 
 # A facet that a bead overlaps. `surface` is the place in the list of what it is the surface of
-# together with: its own, if it is in contact. Then `shared` is the overlap of the pass, 0 without any,
-# and the pass lies between the places `one` and `other`. The last of either kind are the search's.
+# together with: its own, if it is in contact. Then `shared` is the overlap of the pass, 0 without
+# any, and the pass lies between the places `one` and `other`. The search needs the others.
 OVERLAP = np.dtype(
     [(name, "i8") for name in ("facet", "face", "surface", "one", "other", "done", "near", "far")]
     + [(name, "f8") for name in ("x", "s", "nx", "ny", "nz", "shared", "level")],
@@ -170,8 +170,8 @@ def _rank(row: Any, r: float) -> tuple[int, int, int]:
 def _farthest(a: Touch, b: Touch, r: float) -> float:
     """How far from the centre the way leads from one nearest point to the other.
 
-    It goes along the planes that touch the ball up to there, over the line where they meet; straight
-    if it comes nearer all the time. Two right angles stand over the chord: Thales.
+    It goes along the planes that touch the ball up to there, over the line where they meet; but
+    straight if it comes nearer all the time. Two right angles stand over the chord: Thales.
     """
     far, near = r - min(a.x, b.x), r - max(a.x, b.x)
     square = (a.nx - b.nx) ** 2 + (a.ny - b.ny) ** 2 + (a.nz - b.nz) ** 2
@@ -191,7 +191,7 @@ def _pass(a: Touch, b: Touch, r: float) -> float:
 
 @kernel
 def slope(frames: Any, facets: Any, bead: Bead, one: Any, other: Any) -> Point:
-    """Way on which the overlap of a pass between two facets falls: of a facet's it is the normal."""
+    """Way on which the overlap of a pass between two facets falls, as a facet's on its normal."""
     a, b, r = touch_of(one), touch_of(other), bead.r
     low = a if a.x < b.x else b
     if _pass(a, b, r) == low.x:
