@@ -169,21 +169,26 @@ def test_rolling_over_seams_loses_nothing(model):
     lmp.close()
 
 
-def test_more_contacts_than_slots_end_no_run(model):
-    """A bead that falls into a round hole with 24 edges stays there."""
-    angle = np.arange(24) * 2 * math.pi / 24
+@pytest.mark.parametrize("edges", [10, 24])
+def test_more_contacts_than_slots_end_no_run(model, edges):
+    """A bead that falls into a hole stays there: of 24 edges, which are one surface, and of ten.
+
+    Next to each other these lean by 29 degrees, so that each has a contact.
+    """
+    angle = np.arange(edges) * 2 * math.pi / edges
     rim = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
-    here = np.arange(24)
+    here = np.arange(edges)
     there = np.roll(here, -1)
-    ring = np.concatenate((np.stack((here, there, here + 24), 1),
-                           np.stack((there, there + 24, here + 24), 1)))  # fmt: skip
+    ring = np.concatenate((np.stack((here, there, here + edges), 1),
+                           np.stack((there, there + edges, here + edges), 1)))  # fmt: skip
     hole = Mesh(np.vstack((0.8 * R * rim, 0.01 * rim)), ring, 1e-3)
-    lmp = make((1e-6, 2e-6, 0.612 * R), (0, 0, 0), gravity=1000.0)
+    rest = math.sqrt(1 - (0.8 * math.cos(math.pi / edges)) ** 2)  # [R] of its height
+    lmp = make((1e-6, 2e-6, (rest + 0.003) * R), (0, 0, 0), gravity=1000.0)
     walls = attach(lmp, model, [hole])
     lmp.command("run 60000")
     now = state(lmp)
-    assert walls.left_out > 0
-    assert np.hypot(*now["x"][0, :2]) < 0.05 * R and abs(now["x"][0, 2] - 0.6 * R) < 0.05 * R
+    assert (walls.left_out > 0) == (edges == 10)
+    assert np.hypot(*now["x"][0, :2]) < 0.05 * R and abs(now["x"][0, 2] - rest * R) < 0.05 * R
     lmp.close()
 
 

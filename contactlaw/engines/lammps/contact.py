@@ -14,8 +14,17 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.engines.lammps import ledger, memory
-from contactlaw.engines.lammps.geometry import Bead, Point, Touch, nearest, seen, velocity
+from contactlaw.engines.lammps.geometry import (
+    Bead,
+    Point,
+    Touch,
+    nearest,
+    seen,
+    velocity,
+)
+from contactlaw.engines.lammps.ledger import dot
 from contactlaw.engines.lammps.memory import (
+    ALONE,
     DISPLACEMENT,
     DURATION,
     FACET,
@@ -26,10 +35,15 @@ from contactlaw.engines.lammps.memory import (
     MOBILITY,
     OVERLAP,
     OWNER,
+    POWER,
+    PUSH,
+    SHARING,
     SPEED,
     SPRING,
     STIFFENING,
+    TIED,
     TOLD,
+    UNEVEN,
     WALL_WORK,
     WAVE,
     WORK,
@@ -38,7 +52,7 @@ from contactlaw.engines.lammps.memory import (
     slot_of,
     touches,
 )
-from contactlaw.engines.lammps.surface import join, on_it, overlaps, touch_of
+from contactlaw.engines.lammps.surface import join, on_it, overlaps, slope, touch_of
 from contactlaw.engines.record import IMPACT
 from contactlaw.equation import force
 from contactlaw.equation.waves import Waves
@@ -82,16 +96,36 @@ class Contact(NamedTuple):
     point: Point  # [m]
     v: Point  # of the bead relative to the wall, half a step before [m/s]
     w: Point  # of the wall [m/s]
+    along: Point  # force on the bead over that of the law: the normal, if nothing is shared
 
 
 @kernel
-def _contact(walls: Walls, bead: Bead, facet: int, touch: Touch) -> Contact:
+def _contact(walls: Walls, bead: Bead, facet: int, touch: Touch, along: Point) -> Contact:
     row, point = walls.facets[facet], nearest(touch, bead)
     frame = walls.frames[row.frame]
     before, v = velocity(frame, frame.half_rate, point), bead.v
     u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
     w = velocity(frame, frame.rate, point)
-    return Contact(facet, row.wall, row.triangle, touch, point, u, w)
+    return Contact(facet, row.wall, row.triangle, touch, point, u, w, along)
+
+
+@kernel
+def _place_in(walls: Walls, bead: Bead, n: int) -> Contact:
+    """Contact with a facet of the list, less what it shares with another.
+
+    By Hertz's law, the energy at the pass is as (x_pass/x)^2.5 to that of the contact, and the
+    force as the power 1.5; under other laws the shares are the same.
+    """
+    row = walls.found[n]
+    along = (row.nx, row.ny, row.nz)
+    if row.shared > 0.0:
+        share = row.shared / row.x
+        share *= math.sqrt(share)
+        less = slope(walls.frames, walls.facets, bead, walls.found[row.one], walls.found[row.other])
+        along = (
+            along[0] - share * less[0], along[1] - share * less[1], along[2] - share * less[2]
+        )  # fmt: skip
+    return _contact(walls, bead, row.facet, touch_of(row), along)
 
 
 @kernel
@@ -119,6 +153,39 @@ def _begin(
 
 
 @kernel
+def _partner(row: Array, shared: Any, at: int) -> int:
+    """Slot of another contact that a tied one has shared its force with, else 0."""
+    if row[at + TIED] != SHARING:
+        return 0
+    for k in range(shared.slots):
+        slot = FIRST + k * shared.width
+        if slot != at and row[slot + FORCE] > 0.0 and row[slot + TIED] == SHARING:
+            return int(slot)
+    return 0
+
+
+@kernel
+def _power(row: Array, shared: Any, at: int, v: Point) -> float:
+    """Power of the other contacts on a bead of this velocity [W]."""
+    power = 0.0
+    for k in range(shared.slots):
+        slot = FIRST + k * shared.width
+        if slot != at and row[slot + FORCE] > 0.0:
+            power += dot((row[slot + PUSH], row[slot + PUSH + 1], row[slot + PUSH + 2]), v)
+    return power
+
+
+@kernel
+def _kinked(held: Point, n: Point, v: Point, dt: float, distance: float) -> bool:
+    """Whether the normal has turned by more than the bead's way explains."""
+    size = math.sqrt(dot(held, held))
+    turn = 0.0
+    for k in range(3):
+        turn += (held[k] / size - n[k]) ** 2
+    return turn * distance * distance > 4.0 * dot(v, v) * dt * dt
+
+
+@kernel
 def _end(
     law: Array,
     shared: Any,
@@ -130,26 +197,47 @@ def _end(
     spring: Spring,
     last: State,
     u: float,
-) -> float:
-    """Put a contact whose force has ended in this step into the record; the force that it lacks."""
-    row, scale = bead.history, spring.scale
+    heir: int,
+) -> Point:
+    """Put a contact whose force has ended in this step into the record; the force that it lacks.
+
+    One that has grown together with another leaves its account to that, and no record.
+    """
+    row, scale, v = bead.history, spring.scale, contact.v
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     if last.stiffening > 0.0:
         unit *= last.stiffening
     dm = last.largest_compression / scale
     lost, other = force.loss(law, dm) * unit * scale, force.other_loss(law, dm) * unit * scale
+    if heir > 0:
+        row[heir + TOLD] += row[at + TOLD] - lost
+        for column in (WAVE, WORK, WALL_WORK):
+            row[heir + column] += row[at + column]
+        return 0.0, 0.0, 0.0
     told, row[at + TOLD] = row[at + TOLD], lost
     if not row[at + SPEED] > 0.0:  # it was put there and then left
-        return 0.0
+        return 0.0, 0.0, 0.0
     missing = told - lost - row[at + WAVE] - row[at + WORK]
-    kick = ledger.settle(missing, bead.mass, u, clock.dt, row[at + DURATION] / clock.dt)
+    steps, partner = row[at + DURATION] / clock.dt, _partner(row, shared, at)
+    kick, leaves = (0.0, 0.0, 0.0), -u
+    if partner > 0:  # what one has too much the other has too little
+        row[partner + WORK] -= missing
+    elif row[at + TIED] != ALONE:
+        others = _power(row, shared, at, v)
+        more = ledger.scaled(missing, bead.mass, v, others, clock.dt, steps)
+        pull = more * bead.mass / clock.dt
+        kick, leaves = (pull * v[0], pull * v[1], pull * v[2]), -u * (1.0 + more)
+    else:
+        pull = ledger.settle(missing, bead.mass, u, row[at + SPEED], clock.dt, steps)
+        touch = contact.touch
+        kick = pull * touch.nx, pull * touch.ny, pull * touch.nz
+        leaves = pull * clock.dt / bead.mass - u
     n = shared.record_count
     if n == shared.record_capacity:
         complain(shared, clock.step, bead.tag, row, memory.TOO_MANY_RECORDS, contact.wall, 0.0, n)
         return kick
     touch = contact.touch
-    leaves = kick * clock.dt / bead.mass - u
-    if not touch.face and u < 0.0:
+    if not touch.face and u < 0.0 and row[at + TIED] == ALONE:
         around = ledger.turning(bead.r, row[at + OVERLAP], touch.x, u, clock.dt)
         leaves = ledger.free_speed(leaves, around, bead.r, touch.x)
     since = 0.0
@@ -207,10 +295,12 @@ def _normal(
     contact: Contact,
     at: int,
     touching: bool,
+    heir: int,
 ) -> None:
     """Advance a contact by a step; its slot is empty afterwards if the bodies have parted."""
     row, v, touch = bead.history, contact.v, contact.touch
-    u = -(v[0] * touch.nx + v[1] * touch.ny + v[2] * touch.nz)
+    n, along = (touch.nx, touch.ny, touch.nz), contact.along
+    u = -dot(v, n)
     side = math.copysign(contact.facet + 1.0, touch.s)
     if row[at + FACET] == 0.0:
         # no deeper than a step's way; on an edge the way is not along the normal
@@ -235,10 +325,16 @@ def _normal(
         row[at + STIFFENING],
     )  # fmt: skip
     state, kick = ledger.step(law, spring, last, touch.x, u, clock.dt, clock.before)
+    held, power_0 = (0.0, 0.0, 0.0), 0.0
+    if last.force > 0.0:
+        held, power_0 = (row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2]), row[at + POWER]
+        if row[at + KICK] == 0.0 and _kinked(held, n, v, clock.dt, bead.r - touch.x):
+            row[at + TIED] = max(row[at + TIED], UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
         _begin(shared, clock, bead, contact.wall, at, spring, touch.x, u)
     else:
-        if not touch.face and last.force > 0.0 and 0.0 < row[at + DURATION] < clock.before:
+        first = 0.0 < row[at + DURATION] < clock.before
+        if not touch.face and last.force > 0.0 and first and row[at + TIED] == ALONE:
             # the second step: the first one does not know how fast the normal turns
             around = ledger.turning(bead.r, row[at + OVERLAP], touch.x, u, clock.dt)
             row[at + SPEED] = ledger.free_speed(row[at + SPEED], around, bead.r, row[at + OVERLAP])
@@ -249,13 +345,15 @@ def _normal(
         elif clock.dt > clock.before and row[at + SPEED] > 0.0:
             _check_step(shared, clock, bead, contact.wall, spring, row[at + SPEED])
     row[at + WAVE] += ledger.wave_energy(spring, last, state, clock.dt)
-    held = last.force + row[at + KICK] if last.force > 0.0 else 0.0
+    push = state.force + kick
+    pushes = push * along[0], push * along[1], push * along[2]
+    power = dot(pushes, contact.w)
     row[at + WORK] += ledger.work(
-        spring, bead.r, held, state.force + kick, row[at + OVERLAP],
-        touch.x, u, clock.dt, clock.before,
-    )  # fmt: skip
+        spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before
+    )
     if state.force == 0.0 and last.force > 0.0:
-        kick = _end(law, shared, clock, bead, sheet, contact, at, spring, last, u)
+        pushes = _end(law, shared, clock, bead, sheet, contact, at, spring, last, u, heir)
+        kick = dot(pushes, n)
     row[at + DISPLACEMENT] = state.plate_displacement
     row[at + LARGEST] = state.largest_compression
     row[at + FORCE] = state.force
@@ -266,6 +364,8 @@ def _normal(
     if kick != 0.0:
         row[at + FACET] = side  # also of a bead that has parted: a set-up asks for the force again
     row[at + KICK] = kick
+    row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2] = pushes
+    row[at + POWER] = power
 
 
 @kernel
@@ -302,7 +402,14 @@ def _slide(
 
 @kernel
 def _press(
-    shared: Any, clock: Clock, walls: Walls, bead: Bead, contact: Contact, at: int, held: bool
+    shared: Any,
+    clock: Clock,
+    walls: Walls,
+    bead: Bead,
+    contact: Contact,
+    at: int,
+    held: bool,
+    heir: int = 0,
 ) -> None:
     """Add the force of one contact to a bead, and keep the bead's history."""
     facet, row, touch = walls.facets[contact.facet], bead.history, contact.touch
@@ -314,10 +421,11 @@ def _press(
     recorded = shared.record_count
     if clock.advancing:
         law = array_at(sheet.law, sheet.law_size, np.float64)
-        _normal(law, shared, clock, bead, sheet, contact, at, held)
-    push, n = row[at + FORCE] + row[at + KICK], (touch.nx, touch.ny, touch.nz)
-    if push == 0.0 and row[at + FORCE] == 0.0:
+        _normal(law, shared, clock, bead, sheet, contact, at, held, heir)
+    if row[at + FORCE] == 0.0 and row[at + KICK] == 0.0:
         return
+    n = (touch.nx, touch.ny, touch.nz)
+    push = row[at + PUSH : at + PUSH + 3]
     pull = (0.0, 0.0, 0.0)
     if shared.friction > 0.0:
         pull = _slide(clock, bead, shared.friction, contact, at, sheet.tangential)
@@ -328,7 +436,7 @@ def _press(
     scale = shared.time**2 / (shared.mass * shared.length)
     work = 0.0
     for k in range(3):
-        both = push * n[k] + pull[k]
+        both = push[k] + pull[k]
         bead.force[k] += scale * both
         work += both * contact.w[k]
     if clock.advancing:
@@ -392,13 +500,22 @@ def _hand_over(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int) 
 
 
 @kernel
-def _part(shared: Any, clock: Clock, walls: Walls, bead: Bead, facet: int, at: int) -> None:
+def _part(
+    shared: Any, clock: Clock, walls: Walls, bead: Bead, facet: int, at: int, count: int
+) -> None:
     """End a contact: the bead is off the facet, or it is one with another now."""
     one, row = walls.facets[facet], bead.history
+    n, heir = _place_of(walls.found, count, facet), 0
+    if n >= 0:
+        heir = slot_of(row, shared, walls.found[walls.found[n].surface].facet)
+        heir = 0 if heir == at else heir
+    if heir > 0:
+        row[heir + TIED] = SHARING
     t = seen(walls.frames[one.frame], one, bead)
     if t.x > -bead.r:  # else it was taken away
         t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
-        _press(shared, clock, walls, bead, _contact(walls, bead, facet, t), at, True)
+        contact = _contact(walls, bead, facet, t, (t.nx, t.ny, t.nz))
+        _press(shared, clock, walls, bead, contact, at, True, heir)
     else:
         row[at : at + shared.width] = 0.0
 
@@ -430,10 +547,20 @@ def _begin_all(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int, 
             if not found[new].x > least:
                 shared.unserved += 1
                 return
-            _part(shared, clock, walls, bead, int(abs(row[at + FACET])) - 1, at)
+            _part(shared, clock, walls, bead, int(abs(row[at + FACET])) - 1, at, count)
             row[at : at + shared.width] = 0.0
-        contact = _contact(walls, bead, found[new].facet, touch_of(found[new]))
-        _press(shared, clock, walls, bead, contact, at, held)
+        _press(shared, clock, walls, bead, _place_in(walls, bead, new), at, held)
+        if found[new].shared > 0.0:
+            row[at + TIED] = SHARING
+
+
+@kernel
+def _company(row: Array, shared: Any) -> float:
+    """Whether several contacts press a bead: the scheme of each takes its own force for all."""
+    pressing = 0
+    for k in range(shared.slots):
+        pressing += row[FIRST + k * shared.width + FORCE] > 0.0
+    return UNEVEN if pressing > 1 else ALONE
 
 
 @kernel
@@ -446,10 +573,10 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
     if row[OWNER] != bead.tag:
         row[:] = 0.0
         row[OWNER], bead.last[0] = bead.tag, 0.0
-    join(walls.frames, walls.facets, bead, found, count)
+    sharing = join(bead.r, found, count)
     if clock.advancing:
         _hand_over(shared, clock, walls, bead, count)
-    held = touches(row, shared)
+    held, tie = touches(row, shared), SHARING if sharing else _company(row, shared)
     for k in range(shared.slots):
         at = FIRST + k * shared.width
         if row[at + FACET] == 0.0:
@@ -457,9 +584,9 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
         facet = int(abs(row[at + FACET])) - 1
         n = _place_of(found, count, facet)
         if n >= 0 and found[n].surface == n:
-            contact = _contact(walls, bead, facet, touch_of(found[n]))
-            _press(shared, clock, walls, bead, contact, at, held)
+            row[at + TIED] = max(row[at + TIED], tie)
+            _press(shared, clock, walls, bead, _place_in(walls, bead, n), at, held)
         elif clock.advancing or row[at + KICK] != 0.0:
-            _part(shared, clock, walls, bead, facet, at)
+            _part(shared, clock, walls, bead, facet, at, count)
     if clock.advancing:
         _begin_all(shared, clock, walls, bead, count, held)

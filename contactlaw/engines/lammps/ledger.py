@@ -25,13 +25,18 @@ from contactlaw.equation import force
 from contactlaw.softsphere import FEWEST_STEPS, Spring, State, advance
 
 Array = NDArray[np.float64]
+Point = tuple[float, float, float]
 
 # zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6: a least-squares fit
 _ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 0.0013675)
-# Largest relative change of the speed with which a bead leaves, times (steps per contact)^2.5:
-# twice what the scheme errs without it (`contactlaw.softsphere.time_step`). A bead that more is
-# missing of has been hit in between, or hardly leaves.
+# Largest change of the speed with which a bead leaves, over that speed or the one of its approach,
+# times (steps per contact)^2.5: twice what the scheme errs without it
+# (`contactlaw.softsphere.time_step`). A bead that more is missing of has been hit in between.
+# One that rolls over a corner may leave slowly after a hard approach.
 _MOST = 1.8
+# Largest relative change of the speed of a bead that went across kinks, times steps per contact: at
+# the force's peak the push of a step is 2.9/steps of the momentum that an elastic bead comes with.
+_KINKS = 3.0
 _ONE = 1.01  # step's way at most between first touch and the end of that step; an edge is round
 
 
@@ -80,32 +85,53 @@ def wave_energy(spring: Spring, last: State, state: State, h: float) -> Any:
 
 
 @kernel
-def work(
-    spring: Spring, r: float, f0: float, f1: float, x0: float, x1: float, u: float,
-    h: float, before: float,
-) -> Any:  # fmt: skip
-    """Work of the forces on the bead in a step, half of that of either end [J].
-
-    The normal turns where the nearest point is on an edge: the way along the first one follows from
-    the two distances.
-    """
-    s0, s1 = r - x0, r - x1
-    way_0 = ((x0 - x1) * (s0 + s1) + s1 * u * h) / s0
-    # where the step changes, Verlet's force acts for half of either
-    uneven = (h - before) * (h + before) * f0 * f0 / (8.0 * spring.mass)
-    return 0.5 * (f0 * way_0 - f1 * u * h) - uneven
+def dot(a: Point, b: Point) -> float:
+    """Scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 @kernel
-def settle(missing: float, m: float, u: float, h: float, steps: float) -> float:
+def work(
+    mass: float, f0: Point, f1: Point, v: Point, power_0: float, power_1: float, h: float,
+    before: float,
+) -> Any:  # fmt: skip
+    """Work of the forces on the bead in a step, less the wall's; half of that of either end [J].
+
+    They are vectors, for the normal turns where the nearest point is on an edge, and jumps where
+    the bead goes on from a facet to one that leans towards it.
+    """
+    # where the step changes, Verlet's force acts for half of either
+    uneven = (h - before) * (h + before) * dot(f0, f0) / (8.0 * mass)
+    return 0.5 * h * (dot(f0, v) + dot(f1, v) - power_0 - power_1) - uneven
+
+
+@kernel
+def settle(missing: float, m: float, u: float, approach: float, h: float, steps: float) -> float:
     """Force to add in the last step, for a bead that leaves with so much energy too little [N]."""
     square = u * u + 2.0 * missing / m
     if not (u < 0.0 and square > 0.0):
         return 0.0
     change, steps = math.sqrt(square) + u, max(steps, FEWEST_STEPS)
-    if not abs(change) <= -u * _MOST / (steps * steps * math.sqrt(steps)):
+    if not abs(change) <= max(-u, approach) * _MOST / (steps * steps * math.sqrt(steps)):
         return 0.0
     return m * change / h
+
+
+@kernel
+def scaled(missing: float, m: float, v: Point, power: float, h: float, steps: float) -> float:
+    """Share of its velocity to add to a bead whose contact went across kinks, or had company.
+
+    A force that jumps within a step errs by up to half of its push of a step, in the direction of
+    the jump: which may be that along which the bead does not leave. So all of the velocity changes.
+    `power` is that of the contacts which still press: they, too, push the bead in this step.
+    """
+    twice = m * dot(v, v)
+    one = 1.0 + 0.5 * power * h / twice
+    square = one * one + 2.0 * missing / twice
+    if not (one > 0.0 and square > 0.0):
+        return 0.0
+    share = math.sqrt(square) - one
+    return share if abs(share) <= _KINKS / max(steps, FEWEST_STEPS) else 0.0
 
 
 @kernel

@@ -22,15 +22,20 @@ carray: Any = numba.carray  # type: ignore[attr-defined]
 # up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset); approach
 # speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already [J];
 # the overlap [m]; work of the contact's force on the bead, in the wall's frame, and of the wall
-# that moves [J]; a force of this step alone, beside that of the state [N]; with friction, the
-# three components of the tangential spring [m].
+# that moves [J]; a force of this step alone, beside that of the state [N]; whether it was alone on
+# one smooth surface, went across a kink or had company, or has shared its force with another
+# contact; power of the wall's motion by the normal force [W]; the force on the bead without
+# friction [N]; with friction, the three components of the tangential spring [m].
 ERROR, OWNER, FIRST = range(3)
 (FACET, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD, OVERLAP,
- WORK, WALL_WORK, KICK, SPRING) = range(15)  # fmt: skip
+ WORK, WALL_WORK, KICK, TIED, POWER, PUSH) = range(17)  # fmt: skip
+SPRING = PUSH + 3
 _SLOTS = 8  # contacts that a bead may have at once: a corner has three, a hole as many as edges
 
 (STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE,
  NO_MODEL, NO_STEPS) = range(1, 10)  # fmt: skip
+
+ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0  # of TIED
 
 MINIMIZING = 2  # of LAMMPS's states; 1 is time steps
 

@@ -1,10 +1,23 @@
 """Which of the facets that a bead overlaps it is in contact with: one, where they are one surface.
 
-A bead feels one surface where facets meet. Of facets whose nearest points are one, or of which one
-has the other's nearest point, the contact is with that which has it on its face, else with the
-nearest, else with the first. Of faces that meet at a small angle, as those of a tessellated
-cylinder, it is with the deepest: the overlap, and with it the force, so has no jump where the bead
-goes on from one to the next.
+The force on an elastic bead must have a potential, whatever facets come into its reach, meet and
+leave it again. Let a ball around the bead's centre grow up to the bead: it touches the walls in
+patches, which become more, and which grow together. Each patch counts as far as it is one of its
+own: its contact, from the place where the ball first touches it, less the contact of an overlap as
+at the *pass* where it grows together with one that was there before. The potential is the sum over
+the patches,
+
+    E = sum E(x_i) - E(x_pass,i),
+
+continuous in the bead's place, for patches begin, end and take over from each other where x_i is
+0 or that of the pass (in topology: persistent homology of order 0, and its stability). On a plane,
+an edge, a corner, on all that bends away from the bead, one patch is left, however it is
+tessellated. In a groove there are two, which share nothing if its bottom is out of reach.
+
+Where the pass lies follows from the two nearest points: where the planes through them that touch
+the ball meet. It is drawn nearer by as much as to leave no pass between facets that lean towards
+each other by less than 20 degrees: a tessellated cylinder is one surface from its inside, too,
+and the contact is with its deepest facet.
 """
 
 from __future__ import annotations
@@ -23,7 +36,6 @@ from contactlaw.engines.lammps.geometry import (
     entries_of,
     has,
     height,
-    nearest,
     on_facet,
     to_frame,
     turned,
@@ -31,18 +43,23 @@ from contactlaw.engines.lammps.geometry import (
 from contactlaw.engines.lammps.memory import array_at
 
 _SEAM = 1e-4  # [r] between facets that are one surface to a bead
-_TIE = 1e-9  # [r] of overlap: rounding
-_SMOOTH = math.cos(math.radians(20.0))  # faces of one surface
+_TIE = 1e-10  # [r] of overlap: rounding
+_SMOOTH = math.cos(math.radians(20.0))  # facets of one surface
+# Share of the way from the centre to a pass that counts: so that faces which lean towards each
+# other by 20 degrees have none between them.
+_LOWER = math.cos(math.radians(10.0))
+_NUDGE = 1e-6  # [r] by which a slope is taken
 # Facets that a bead may overlap before shallow ones are left out, and room for one more. Where
 # facets are that small, a deeper one is beside each of these, and in contact in its place.
 _MOST = 64
 ROOM = _MOST + 1
 
 # A facet that a bead overlaps. `surface` is the place in the list of what it is the surface of
-# together with: its own, if it is in contact.
+# together with: its own, if it is in contact. Then `shared` is the overlap of the pass, 0 without
+# any, and the pass lies between the places `one` and `other`. The search needs the others.
 OVERLAP = np.dtype(
-    [(name, "i8") for name in ("facet", "face", "surface")]
-    + [(name, "f8") for name in ("x", "s", "nx", "ny", "nz")],
+    [(name, "i8") for name in ("facet", "face", "surface", "one", "other", "done", "near", "far")]
+    + [(name, "f8") for name in ("x", "s", "nx", "ny", "nz", "shared", "level")],
     align=True,
 )
 
@@ -144,17 +161,64 @@ def overlaps(frames: Any, facets: Any, bead: Bead, found: Any) -> int:
 
 
 @kernel
-def _rank(row: Any, r: float) -> tuple[int, int]:
-    """Sort facets that share a point: face before edge, then the nearest."""
-    return 1 - row.face, math.floor(-row.x / (_TIE * r))
+def _rank(row: Any, r: float) -> tuple[int, int, int]:
+    """Sort facets: the deepest first, of those at one point a face before an edge."""
+    return math.floor(-row.x / (_TIE * r)), 1 - row.face, row.facet
 
 
 @kernel
-def _one_face(a: Any, b: Any, r: float) -> bool:
-    """Whether a face belongs to a deeper one, which it meets at a small angle."""
-    if a.face == 0 or b.face == 0:
-        return False
-    return bool(a.nx * b.nx + a.ny * b.ny + a.nz * b.nz > _SMOOTH)
+def _farthest(a: Touch, b: Touch, r: float) -> float:
+    """How far from the centre the way leads from one nearest point to the other.
+
+    It goes along the planes that touch the ball up to there, over the line where they meet; but
+    straight if it comes nearer all the time. Two right angles stand over the chord: Thales.
+    """
+    far, near = r - min(a.x, b.x), r - max(a.x, b.x)
+    square = (a.nx - b.nx) ** 2 + (a.ny - b.ny) ** 2 + (a.nz - b.nz) ** 2
+    if near <= far * (1.0 - 0.5 * square):
+        return far
+    sine = square * (1.0 - 0.25 * square)  # its square
+    if not sine > 0.0:  # opposite each other
+        return math.inf
+    return math.sqrt(((far - near) ** 2 + near * far * square) / sine)
+
+
+@kernel
+def _pass(a: Touch, b: Touch, r: float) -> float:
+    """Overlap of the pass between two facets' nearest points; that of the shallower at most."""
+    return min(a.x, b.x, r - _LOWER * _farthest(a, b, r))
+
+
+@kernel
+def slope(frames: Any, facets: Any, bead: Bead, one: Any, other: Any) -> Point:
+    """Way on which the overlap of a pass between two facets falls, as a facet's on its normal."""
+    a, b, r = touch_of(one), touch_of(other), bead.r
+    low = a if a.x < b.x else b
+    if _pass(a, b, r) == low.x:
+        return low.nx, low.ny, low.nz
+    first, second = facets[one.facet], facets[other.facet]
+    here, there = frames[first.frame], frames[second.frame]
+    step, x = _NUDGE * r, bead.x
+    dx, dy, dz = 0.0, 0.0, 0.0
+    for k in range(3):
+        change = 0.0
+        for sign in (-1.0, 1.0):
+            p = (
+                x[0] + (sign * step if k == 0 else 0.0),
+                x[1] + (sign * step if k == 1 else 0.0),
+                x[2] + (sign * step if k == 2 else 0.0),
+            )
+            a = turned(here, on_facet(first, to_frame(here, p), r))
+            b = turned(there, on_facet(second, to_frame(there, p), r))
+            change += sign * _farthest(a, b, r)
+        change *= 0.5 * _LOWER / step
+        if k == 0:
+            dx = change
+        elif k == 1:
+            dy = change
+        else:
+            dz = change
+    return dx, dy, dz
 
 
 @kernel
@@ -165,26 +229,63 @@ def on_it(frames: Any, facets: Any, row: Any, point: Point, r: float) -> bool:
 
 
 @kernel
-def join(frames: Any, facets: Any, bead: Bead, found: Any, count: int) -> None:
-    """Tell for each facet of the list which one it is the surface of together with."""
-    r = bead.r
+def _search(found: Any, count: int, start: int, r: float) -> None:
+    """Find the highest pass from a facet to a deeper one: the widest path, by Dijkstra's search."""
     for n in range(count):
-        found[n].surface = n
-    if count < 2:
-        return
+        found[n].level, found[n].done = 0.0, 0
+    mine, row, at = _rank(found[start], r), found[start], start
+    row.level, row.surface, row.shared, row.near, row.far = row.x, start, 0.0, start, start
+    while True:
+        here, touch = found[at], touch_of(found[at])
+        if _rank(here, r) < mine:
+            if here.level >= row.x - _TIE * r:
+                row.surface = at
+            else:
+                row.shared, row.one, row.other = here.level, here.near, here.far
+            return
+        here.done, best = 1, -1
+        for n in range(count):
+            that = found[n]
+            if that.done != 0:
+                continue
+            between = _pass(touch, touch_of(that), r)
+            if min(between, here.level) > that.level:
+                that.level = min(between, here.level)
+                that.near, that.far = here.near, here.far
+                if between < here.level:
+                    that.near, that.far = at, n
+            if that.level > 0.0 and (best < 0 or that.level > found[best].level):
+                best = n
+        if best < 0:
+            return
+        at = best
+
+
+@kernel
+def join(r: float, found: Any, count: int) -> bool:
+    """Tell for each facet of the list what it is the surface of together with, and what it shares.
+
+    Whether two contacts share anything.
+    """
+    first, single, sharing = 0, True, False
+    for n in range(1, count):
+        if _rank(found[n], r) < _rank(found[first], r):
+            first = n
+    deepest = touch_of(found[first])
     for n in range(count):
-        point, best = nearest(touch_of(found[n]), bead), n
-        for m in range(count):
-            # the list is in the order of the facets: of two of one rank the first is before
-            mine, its = _rank(found[best], r), _rank(found[m], r)
-            if its < mine or (its == mine and m < best):
-                if _one_face(found[n], found[m], r) or on_it(frames, facets, found[m], point, r):
-                    best = m
-        found[n].surface = best
+        row = found[n]
+        row.surface, row.shared = first, 0.0
+        if n != first and _pass(deepest, touch_of(row), r) < row.x - _TIE * r:
+            row.surface, single = -1, False
+    if single:
+        return False
+    for n in range(count):
+        if found[n].surface < 0:
+            _search(found, count, n, r)
     for n in range(count):
         home = found[n].surface
-        for _ in range(count):
-            if found[home].surface == home:
-                break
+        while found[home].surface != home:
             home = found[home].surface
         found[n].surface = home
+        sharing = sharing or (home == n and found[n].shared > 0.0)
+    return sharing
