@@ -266,7 +266,7 @@ DAMAGES = [
     (attribute("youngs_modulus", "soft"), "materials/plate",
      "attribute youngs_modulus of group materials/plate is 'soft', expected a number"),
     (attribute("yield_strength", [1.0, 2.0]), "materials/sphere",
-     "attribute yield_strength of group materials/sphere is an array of shape (2,) and type float64, expected"),
+     "yield_strength of group materials/sphere is an array of shape (2,) and type float64"),
     (attribute("kind", 4), "materials/sphere", "attribute kind of group materials/sphere is 4"),
     (attribute("name", 4.0), "materials/sphere", "attribute name of group materials/sphere"),
     (attribute("density", -1.0), "materials/plate", "density of 'glass' must be positive"),

@@ -30,7 +30,7 @@ def opened(content: bytes) -> Iterator[h5py.File]:
     """Open a file that is in memory; what h5py cannot read of it is a ValueError."""
     try:
         file = h5py.File(io.BytesIO(content), "r")
-    except (OSError, RuntimeError):
+    except _DAMAGED:
         raise ValueError("no HDF5 file, or a damaged one") from None
     with file:
         try:
