@@ -76,7 +76,7 @@ def _texts(model: ImpactModel) -> dict[str, str]:
         "version": VERSION,
         "sphere": pair.sphere.name,
         "plate": pair.plate.name,
-        "law": model.force_law.name,
+        "law": model.force_law.family,
         "tangential": repr(8.0 * pair.effective_shear_modulus),
         "contact_time": repr(CONTACT_TIME),
         "steps": str(FEWEST_STEPS),
