@@ -19,7 +19,7 @@ _PLAIN = (1e-4, 1e7)  # sizes between which a number needs no exponent
 
 
 def scale_of(size: float, unit: str) -> tuple[str, float]:
-    """Unit that suits a size in SI units, and how many of these it is.
+    """Find the unit that suits a size in SI units, and how many of these it is.
 
     Examples
     --------

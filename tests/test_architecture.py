@@ -37,8 +37,8 @@ FILES = {
     "equation": ["force", "outcome", "waves", "integrator", "zener"],
     "table": ["lookup", "grid", "splines", "shapes", "sweep", "certificate", "nodes", "guarded",
               "file", "cache"],
-    "command": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet", "options",
-                "curves", "sweep", "walls", "lines", "plots", "fits", "fitplot"],
+    "command": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",
+                "options", "curves", "sweep", "walls", "lines", "plots", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
                  "rebound"],
 }  # fmt: skip

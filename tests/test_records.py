@@ -6,12 +6,12 @@ import random
 import h5py
 import numpy as np
 import pytest
+from rains import write_rain
 
 from contactlaw import cli as cli_of_contactlaw
 from contactlaw.command.records import Recorded, combined, completed, read
 from contactlaw.engines.record import IMPACT
 from dem_demo import cli, reader
-from dem_demo.recorder import write, write_materials
 
 SPEED, RADIUS = [0.5, 1.2, 3.0], [0.9e-3, 1.1e-3, 1.0e-3]
 
@@ -155,20 +155,8 @@ def test_what_a_record_does_not_say_has_to_be_given(radii, thicknesses, message)
 
 @pytest.fixture(scope="module")
 def rain(tmp_path_factory, pair):
-    """A record as `dem-demo rain` writes it, of what is read here."""
     path = tmp_path_factory.mktemp("rain") / "rain.h5"
-    with h5py.File(path, "w") as file:
-        file.attrs.update(format="contactlaw-rain", law="hertz")
-        write_materials(file, pair.sphere, pair.plate)
-        columns = {
-            "beads/radius": [0.9e-3, 1e-3, 1.1e-3],
-            "plates/thickness": [0.5e-3, math.inf],
-            "collisions/approach_speed": [1.0, 2.0, 0.5, 3.0],
-            "collisions/bead": [0, 2, 1, 1],
-            "collisions/plate": [0, 1, -1, 0],
-        }
-        for name, values in columns.items():
-            write(file, name, values, "", "")
+    write_rain(path, pair)
     return path.read_bytes()
 
 
