@@ -67,8 +67,8 @@ class Validity(enum.IntFlag):
     BENT_PLATE = 128
     """The force bends the plate plastically: the law's plate stays elastic but at the contact."""
     RATE_DEPENDENT = 256
-    """A polymer, or of unknown kind and as soft and light as one: its modulus and strength depend on
-    the rate, and it loses energy by viscosity."""
+    """A polymer, or of unknown kind and as soft and light as one: its modulus and strength depend
+    on the rate, and it loses energy by viscosity."""
     DAMAGE = 512
     """May break or flow: the pressure is above 0.59 of the hardness of a brittle body."""
 
