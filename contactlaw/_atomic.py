@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import tempfile
 from pathlib import Path
 
@@ -11,12 +12,26 @@ from pathlib import Path
 def write(path: str | os.PathLike[str], content: bytes) -> None:
     """Write a file under a temporary name and rename it; an existing one is replaced.
 
+    A link stays, and the file that it leads to is written. What is no regular file, as a device,
+    a terminal or a named pipe, cannot be replaced by one: the content goes into it.
+
     Raises
     ------
     OSError
-        If the folder does not exist, is not writable or full; nothing is left behind then.
+        If the folder does not exist, is not writable or full; no part of a file is left behind.
     """
-    path = Path(path)
+    try:
+        replaceable = stat.S_ISREG(os.stat(path).st_mode)
+    except FileNotFoundError:  # a link that leads to nothing, too
+        replaceable = True
+    if replaceable:
+        _replace(Path(os.path.realpath(path)), content)
+    else:
+        with open(path, "wb") as file:
+            file.write(content)
+
+
+def _replace(path: Path, content: bytes) -> None:
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as file:

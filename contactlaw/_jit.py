@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import functools
 import hashlib
+import io
 import os
 import shutil
 import sys
@@ -18,10 +19,12 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar, overload
+from typing import IO, Any, TypeVar, overload
 
 import numba
 import numba.core.config
+from numba.core.caching import IndexDataCacheFile
+from numba.core.ccallback import CFunc
 from numba.extending import intrinsic
 
 from contactlaw import _folder
@@ -108,10 +111,11 @@ def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = Fa
         raise RuntimeError(
             "numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler"
         )
-    with _into_folder() as folder:
-        made: Any = numba.cfunc(signature, error_model="numpy", cache=cache and folder is not None)(
-            function
-        )
+    types = numba.core.sigutils.normalize_signature(signature)
+    made: Any = CFunc(function, types, {}, {"error_model": "numpy"})
+    if cache:
+        _keep(made)
+    made.compile()
     return made
 
 
@@ -126,21 +130,63 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
     enable_caching()
     dispatcher: Any = function
     dispatcher.compile(signature)
-    types, _ = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
+    types, _ = numba.core.sigutils.normalize_signature(signature)
     entry: Callable[..., Any] = dispatcher.overloads[types].entry_point
     return entry
 
 
 def _keep(dispatcher: Any) -> None:
-    """Give a kernel the disk cache."""
+    """Give a kernel the disk cache, in files that tell when they are damaged."""
     if switched_off():
         return
     with _into_folder() as folder:
         if folder is None:
             return
         dispatcher.enable_caching()
-        store = dispatcher._cache
-        store.save_overload = functools.partial(_save, store.save_overload)
+    store = dispatcher._cache
+    store.save_overload = functools.partial(_save, store.save_overload)
+    plain = store._cache_file
+    store._cache_file = _SealedFiles(
+        plain._cache_path, plain._index_name.removesuffix(".nbi"), plain._source_stamp
+    )
+
+
+class _SealedFiles(IndexDataCacheFile):
+    """Numba's index and data files, each with the checksum of its content at its end.
+
+    Numba executes whatever bytes it reads. A damaged file counts as missing here: the kernel is
+    compiled again, and the file written anew. Unpickling ends where the content does, so that
+    numba reads a sealed file as if the checksum were not there.
+    """
+
+    @contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[IO[bytes]]:
+        content = io.BytesIO()
+        yield content
+        with super()._open_for_write(filepath) as file:
+            file.write(content.getvalue() + _seal(content.getbuffer()))
+
+    def _load_index(self) -> Any:
+        return super()._load_index() if _is_whole(self._index_path) else {}
+
+    def _load_data(self, name: str) -> Any:
+        path = self._data_path(name)
+        if not _is_whole(path):
+            raise OSError(f"{path} is damaged")  # to numba a file that is not there
+        return super()._load_data(name)
+
+
+def _seal(content: bytes | memoryview) -> bytes:
+    return hashlib.sha256(content).digest()
+
+
+def _is_whole(path: str) -> bool:
+    try:
+        content = memoryview(Path(path).read_bytes())
+    except OSError:
+        return False
+    size = hashlib.sha256().digest_size
+    return _seal(content[:-size]) == content[-size:]
 
 
 def _save(save: Callable[[Any, Any], None], signature: Any, data: Any) -> None:

@@ -214,10 +214,17 @@ def _history(arguments: argparse.Namespace) -> None:
 
 
 def _contact(arguments: argparse.Namespace) -> ForceHistory:
+    """Force over time; what the flags say goes beside the output, which is CSV alone."""
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
+    model = _model(arguments)
     with wording.impacts(*impact):
-        return _model(arguments).force_history(*impact, arguments.samples, method)
+        found = model.force_history(*impact, arguments.samples, method)
+        rebound = model.solve(*impact) if arguments.solve else model.lookup(*impact)
+    flags = int(rebound.flags)
+    for name, words in zip(sheet.flag_names(flags), explain(flags), strict=True):
+        _say_warning(f"{name}: {words}")
+    return found
 
 
 def _plot_history(arguments: argparse.Namespace) -> None:
@@ -279,7 +286,7 @@ def _stored(arguments: argparse.Namespace) -> table.Table:
 
 def _table_info(arguments: argparse.Namespace) -> None:
     found = _stored(arguments)
-    print(f"law {found.law.name}: {found.law.source}")
+    print(f"law {found.law.family}: {found.law.source}")
     lam, chi = found.settings.largest_inelasticity, found.settings.largest_overload
     print(f"inelasticity 0 to {lam:g}, overload to {chi:g}, {found.fields['restitution'].shape}")
     for name, value in asdict(found.settings).items():
@@ -357,7 +364,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     {
       "restitution": 0.7...
     """
-    arguments = options.parser().parse_args(argv)
+    arguments = options.parser().parse_args(options.joined(sys.argv[1:] if argv is None else argv))
     if sys.stdout is None:  # so Python has it where the shell says >&-
         _say("the standard output is closed")
         return _REFUSED

@@ -142,7 +142,7 @@ class ImpactModel:
         return ImpactModel, (self.pair, self._law, self._given_table, self.outside)
 
     def __repr__(self) -> str:
-        return f"ImpactModel({self.pair!r}, law={self.law!r}, outside={self.outside!r})"
+        return f"ImpactModel({self.pair!r}, law={self._law.family!r}, outside={self.outside!r})"
 
     @property
     def pair(self) -> Pair:

@@ -16,7 +16,7 @@ ROOT = Path(contactlaw.__file__).parent
 # From the bottom to the top; what stands in one layer imports from layers below and from its own.
 LAYERS = [
     {"_version"},
-    {"_folder", "_atomic"},
+    {"_folder", "_atomic", "_readable"},
     {"_jit"},
     {"equation"},  # no units
     {"laws"},
@@ -37,8 +37,8 @@ FILES = {
     "equation": ["force", "outcome", "waves", "integrator", "zener"],
     "table": ["lookup", "grid", "splines", "shapes", "sweep", "certificate", "nodes", "guarded",
               "file", "cache"],
-    "command": ["quantities", "wording", "columns", "records", "measured", "sheet", "options",
-                "curves", "sweep", "walls", "lines", "plots", "fits", "fitplot"],
+    "command": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",
+                "options", "curves", "sweep", "walls", "lines", "plots", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
                  "rebound"],
 }  # fmt: skip

@@ -403,6 +403,27 @@ def test_history_prints_csv(capsys, model):
     assert printed == pytest.approx(np.column_stack(contact), rel=1e-8)
 
 
+@pytest.mark.parametrize("more", [[], ["--solve"], ["--plot", "contact.png"]])
+def test_history_says_its_flags_beside_its_output(more, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    fast = ["history", *COR[1:], "--radius", "0.9mm", "--thickness", "0.3mm", "--speed", "60"]
+    assert main([*fast, *more]) == 0
+    captured = capsys.readouterr()
+    assert "IMPACT" not in captured.out
+    thin, swift = captured.err.splitlines()
+    assert thin.startswith("contactlaw: warning: THIN_PLATE: plate thinner than R/1.8")
+    assert swift.startswith("contactlaw: warning: FAST_IMPACT: faster than the impacts")
+    assert main(["history", *IMPACT[1:], *more]) == 0
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.parametrize("size", ["-1mm", "-.5mm", "-1", "-inf"])
+def test_a_negative_quantity_is_refused_for_what_it_is(size, capsys):
+    sizes = ["--radius", "1mm", "--speed", "1", "--thickness", size]
+    assert main([*COR, *sizes]) == 1
+    assert capsys.readouterr().err.startswith("contactlaw: --thickness: got -")
+
+
 def test_history_draws(tmp_path, capsys):
     picture = tmp_path / "contact.png"
     assert main(["history", *IMPACT[1:], "--solve", "--plot", str(picture)]) == 0

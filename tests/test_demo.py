@@ -11,7 +11,7 @@ from matplotlib.image import imread
 
 import contactlaw as cl
 from contactlaw.engines.record import COLUMNS, IMPACT
-from dem_demo import cli, figures, nozzles
+from dem_demo import cli, figures, nozzles, style
 from dem_demo.measure import limits, model_shares, plate_rows
 from dem_demo.reader import read
 from dem_demo.scene import GRAVITY
@@ -223,6 +223,21 @@ def test_a_rain_that_never_lands(more, tmp_path):
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     assert read(tmp_path / "rain.h5").collisions.size == 0
     assert "all impacts on plates are inside" in (tmp_path / "summary.txt").read_text()
+
+
+@pytest.mark.parametrize("narrow", [False, True])
+@pytest.mark.parametrize("which", ["folder", "baseline"])
+@pytest.mark.parametrize("name", figures.names())
+def test_no_label_runs_into_the_title(request, name, which, narrow):
+    run = read(request.getfixturevalue(which) / "rain.h5")
+    with style.applied(narrow=narrow):
+        drawn = figures.module(name).draw(run)
+        drawn.draw_without_rendering()
+        heads = [text.get_window_extent() for text in drawn.texts]
+        for axes in drawn.axes:
+            for label in (axes.xaxis.label, axes.yaxis.label):
+                place = label.get_window_extent()
+                assert not (label.get_text() and any(map(place.overlaps, heads))), label
 
 
 @pytest.mark.parametrize("which", ["folder", "baseline"])

@@ -81,6 +81,27 @@ def test_polymers_depend_on_the_rate():
         )
 
 
+@pytest.mark.parametrize(
+    ("modulus", "density", "kind", "depends"),
+    [
+        (2.9e9, 1410.0, None, True),  # POM, whose kind nobody gave
+        (2.9e9, 1410.0, "polymer", True),
+        (12e9, 1410.0, "polymer", True),
+        (2.9e9, 1410.0, "ceramic", False),  # a porous granule, say
+        (2.9e9, 7850.0, None, False),  # steel, softened for DEM
+        (12.23e9, 879.0, None, False),  # gamma-alumina
+    ],
+)
+@pytest.mark.parametrize("body", ["sphere", "plate"])
+def test_what_is_as_soft_and_light_as_a_polymer_is_taken_for_one(
+    modulus, density, kind, depends, body
+):
+    own = cl.Material("POM", modulus, 0.37, density, yield_strength=65e6, kind=kind)
+    pair = cl.Pair(**({"sphere": "glass", "plate": "glass"} | {body: own}))
+    flags = cl.ImpactModel(pair, law="hertz").lookup(0.1, R, 5e-3).flags
+    assert bool(flags & Validity.RATE_DEPENDENT) == depends
+
+
 @pytest.mark.parametrize("law", ["fem", "hertz"])
 def test_glass_may_break_under_alumina(law):
     model = model_of("alumina", "soda-lime-glass", law)

@@ -1,8 +1,11 @@
 """Without numba's compiler, and without a folder to keep its code in."""
 
+import importlib.util
+import itertools
 import json
 import math
 import os
+import random
 import subprocess
 import sys
 from pathlib import Path
@@ -11,6 +14,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
+from contactlaw import _jit
 from contactlaw.softsphere import Contacts
 
 IMPACT = (12.0, 0.9e-3, 1e-3)
@@ -168,7 +172,81 @@ def test_switched_off_nothing_is_written(tmp_path):
     assert files() == before
 
 
+def emptied(content, _):
+    return b""
+
+
+def truncated(content, choose):
+    return content[: choose.randrange(1, len(content))]
+
+
+def flipped(content, choose):
+    """One bit is another, as of a worn-out disk."""
+    damaged = bytearray(content)
+    damaged[choose.randrange(len(content))] ^= 1 << choose.randrange(8)
+    return bytes(damaged)
+
+
+def lengthened(content, _):
+    return content + b"\0"
+
+
+DAMAGES = (emptied, truncated, flipped, lengthened)
+
+
+@pytest.fixture
+def kept_kernel(tmp_path):
+    """Give a function that makes a kernel as the next process would, and its folder."""
+    (tmp_path / "little.py").write_text("def twice(x):\n    return 2.0 * x\n")
+    spec = importlib.util.spec_from_file_location("little", tmp_path / "little.py")
+    little = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(little)
+    _jit.enable_caching()  # from here on a kernel has the disk when it is made
+    made = _jit.kernel(cache=True)(little.twice)
+    made(1.0)
+    yield lambda: _jit.kernel(cache=True)(little.twice), Path(made.stats.cache_path)
+    del _jit._cached[-1:]
+
+
+@pytest.mark.parametrize("suffix", ["nbi", "nbc"])
+@pytest.mark.parametrize("damage", DAMAGES)
+def test_a_damaged_file_of_machine_code_is_made_anew(damage, suffix, kept_kernel):
+    kernel, folder = kept_kernel
+    choose, hits = random.Random(1), []
+    (path,) = folder.glob(f"little.twice*.{suffix}")
+    whole = {path: path.read_bytes() for path in folder.glob("little.*")}
+    for _ in range(8):
+        path.write_bytes(damage(path.read_bytes(), choose))
+        for _ in range(2):
+            again = kernel()
+            assert again(21.0) == 42.0
+            hits.append(sum(again.stats.cache_hits.values()))
+    assert hits == [0, 1] * 8  # compiled, and then read
+    assert {path: path.read_bytes() for path in folder.glob("little.*")}.keys() == whole.keys()
+
+
+def test_a_damaged_c_function_is_made_anew(kept_kernel):
+    import ctypes
+
+    kernel, folder = kept_kernel
+    double = kernel().py_func
+
+    def answer():
+        made = _jit.c_function("float64(float64)", double, cache=True)
+        return ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(made.address)(21.0), made
+
+    for path in folder.glob("little.*"):  # the kernel's
+        path.unlink()
+    assert answer()[0] == 42.0
+    for path, damage in itertools.product(sorted(folder.glob("little.*")), DAMAGES):
+        path.write_bytes(damage(path.read_bytes(), random.Random(2)))
+        for hits in (0, 1):
+            value, made = answer()
+            assert (value, made.cache_hits) == (42.0, hits)
+
+
 def test_two_processes_that_start_at_once_both_answer(tmp_path):
+    """And processes after them, whatever has become of the files meanwhile."""
     folder = tmp_path / "kept"
     both = [start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder)) for _ in range(2)]
     results = [output(process) for process in both]
@@ -181,6 +259,13 @@ def test_two_processes_that_start_at_once_both_answer(tmp_path):
     assert before
     assert output(start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder))) == results[0]
     assert {path: path.stat().st_mtime_ns for path in kept.rglob("*.nbc")} == before  # all read
+    files, choose = sorted(kept.rglob("*.nb?")), random.Random(3)
+    for path, damage in zip(files, itertools.cycle(DAMAGES)):  # each another of index and data
+        path.write_bytes(damage(path.read_bytes(), choose))
+    assert output(start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder))) == results[0]
+    rebuilt = {path: path.stat().st_mtime_ns for path in files}
+    assert output(start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder))) == results[0]
+    assert {path: path.stat().st_mtime_ns for path in kept.rglob("*.nb?")} == rebuilt
 
 
 TWINS = """

@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -11,9 +12,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracle import ALL_LAWS
+from rains import write_rain
 
 import contactlaw as cl
-from contactlaw import laws, table
+from contactlaw import cli, laws, table
 from contactlaw.table import file
 from contactlaw.table.grid import on_demand
 
@@ -71,6 +73,43 @@ def test_the_pymunk_section():
     assert rows["approach_speed"][0] == pytest.approx((2 * 9.81 * (0.1 - 0.9e-3)) ** 0.5, rel=1e-3)
     expected = model.restitution(rows["approach_speed"], 0.9e-3, 1e-3)
     assert rows["restitution"] == pytest.approx(expected, abs=1e-9)
+
+
+# A block of commands, and what they print if the page shows it: the first block after it, with one
+# line of text between them at most.
+CONSOLE = re.compile(r"```sh\n(.*?)```\n+(?:[^\n`]+\n+)?(?:```text\n(.*?)```)?", re.DOTALL)
+SHOWN = {"engines": 1}  # blocks of output of a page, which are compared
+
+
+def commands(block):
+    """Calls of contactlaw in a block; ... and | stand for what a reader has to fill in."""
+    for line in block.replace("\\\n", " ").splitlines():
+        words = shlex.split(line, comments=True)
+        if words[:1] == ["contactlaw"] and not {"...", "|"} & set(words):
+            yield words[1 : words.index(">") if ">" in words else None]
+
+
+@pytest.mark.parametrize("page", sorted(PAGES.keys() - {"fit"}))  # whose outputs test_fit.py has
+def test_commands_print_what_the_page_shows(page, tmp_path, monkeypatch, capsys, pair):
+    monkeypatch.chdir(tmp_path)
+    Path("impacts.csv").write_text("speed_m/s\n0.5\n1.2\n")
+    Path("rain").mkdir()
+    write_rain(Path("rain/rain.h5"), pair)
+    compared = 0
+    for block, shown in CONSOLE.findall(PAGES[page]):
+        for words in commands(block):
+            assert cli.main(words) == 0, capsys.readouterr().err
+        printed = capsys.readouterr().out
+        if shown:
+            assert printed == shown
+            compared += 1
+    assert compared == SHOWN.get(page, 0)
+
+
+def test_the_stated_rows_of_a_speed_table():
+    model = cl.ImpactModel(cl.Pair("glass", "carbon-steel-1020"))
+    assert "by no more than the error: 14 for 1e-3 here" in PAGES["engines"]
+    assert len(model.speed_table(1e-3, 1e-3, 1e-3, 0.1, 10).speed) == 14
 
 
 def test_the_readme_is_a_screen_or_two():

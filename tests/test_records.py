@@ -1,11 +1,14 @@
 """Impacts that have happened, as files have them; each column against what was written."""
 
 import math
+import random
 
 import h5py
 import numpy as np
 import pytest
+from rains import write_rain
 
+from contactlaw import cli as cli_of_contactlaw
 from contactlaw.command.records import Recorded, combined, completed, read
 from contactlaw.engines.record import IMPACT
 from dem_demo import cli, reader
@@ -148,3 +151,188 @@ def test_what_a_record_does_not_say_has_to_be_given(radii, thicknesses, message)
     whole = Recorded(np.ones(1), np.full(1, 1e-3), np.full(1, 2e-3))
     with pytest.raises(ValueError, match="radius: the record has its own: leave this one out"):
         completed(whole, [1e-3], None)
+
+
+@pytest.fixture(scope="module")
+def rain(tmp_path_factory, pair):
+    path = tmp_path_factory.mktemp("rain") / "rain.h5"
+    write_rain(path, pair)
+    return path.read_bytes()
+
+
+def test_what_the_damaged_rains_are_made_of_is_read(rain, pair, tmp_path):
+    (tmp_path / "rain.h5").write_bytes(rain)
+    found = read(tmp_path / "rain.h5")
+    assert found.speed.tolist() == [1.0, 2.0, 3.0]
+    assert found.radius.tolist() == [0.9e-3, 1.1e-3, 1e-3]
+    assert found.thickness.tolist() == [0.5e-3, math.inf, 0.5e-3]
+    assert (found.pair, found.law) == (pair, "hertz")
+
+
+def absent(file, name):
+    del file[name]
+
+
+def put(values, **options):
+    """Give a function that puts another dataset into a place."""
+
+    def replace(file, name):
+        del file[name]
+        file.create_dataset(name, data=values, **options)
+
+    return replace
+
+
+def another(change):
+    """Give a function that changes the first value of a column."""
+
+    def replace(file, name):
+        values = file[name][()]
+        values = values.astype(type(change)) if isinstance(change, float) else values
+        values[0] = change
+        put(values)(file, name)
+
+    return replace
+
+
+def as_group(file, name):
+    del file[name]
+    file.create_group(name)
+
+
+def vast(file, name):
+    """Column that asks for 745 GiB and stores nothing."""
+    del file[name]
+    file.create_dataset(name, (100_000_000_000,), "f8", chunks=(1000,), compression="gzip")
+
+
+def objects(file, name):
+    del file[name]
+    file.create_dataset(name, data=["a", "b"], dtype=h5py.string_dtype())
+
+
+def attribute(name, value):
+    def replace(file, place):
+        if value is None:
+            del file[place].attrs[name]
+        else:
+            file[place].attrs[name] = value
+
+    return replace
+
+
+COLUMNS = [
+    *("collisions/approach_speed", "collisions/bead", "collisions/plate"),
+    *("beads/radius", "plates/thickness"),
+]
+DAMAGES = [
+    *((absent, place, f"it has no {place}, expected a dataset") for place in COLUMNS),
+    *((as_group, place, f"{place} is a group, expected a dataset") for place in COLUMNS),
+    *((objects, place, f"{place} holds text or objects, expected numbers") for place in COLUMNS),
+    *((put(7.0), place, f"{place} has the shape ()") for place in COLUMNS),
+    *((put(h5py.Empty("f8")), place, f"{place} has the shape None") for place in COLUMNS),
+    *((put(np.zeros((5, 2))), place, f"{place} has the shape (5, 2)") for place in COLUMNS),
+    *((vast, place, f"{place} has 100000000000 rows, expected") for place in COLUMNS),
+    *((put([1, 1]), place, f"{place} has 2 rows, expected") for place in COLUMNS[1:3]),
+    *((another(9), place, f"{place} has 9 in row 0") for place in COLUMNS[1:3]),
+    *((another(-2), place, f"{place} has -2 in row 0") for place in COLUMNS[1:3]),
+    *((another(0.5), place, f"{place} has 0.5 in row 0") for place in COLUMNS[1:3]),
+    *((another(math.nan), place, f"{place} has nan in row 0") for place in COLUMNS[1:3]),
+    (another(-1), "collisions/bead", "collisions/bead has -1, no bead"),
+    (another(math.nan), "collisions/approach_speed", "speed: got nan"),
+    (another(-1.0), "beads/radius", "radius: got -1.0"),
+    *((absent, place, f"it has no {place}, expected a group")
+      for place in ("collisions", "beads", "plates", "materials", "materials/sphere")),
+    *((put([1.0]), place, f"{place} is a dataset, expected a group")
+      for place in ("collisions", "beads", "plates", "materials", "materials/plate")),
+    (attribute("law", None), "/", "the file has no attribute law, expected text"),
+    (attribute("law", 3.0), "/", "attribute law of the file is 3.0, expected text"),
+    (attribute("law", "hertzian"), "/", "law"),
+    (attribute("format", [1, 2]), "/", "no record of dem-demo"),
+    (attribute("density", None), "materials/plate",
+     "group materials/plate has no attribute density, expected a number"),
+    (attribute("youngs_modulus", "soft"), "materials/plate",
+     "attribute youngs_modulus of group materials/plate is 'soft', expected a number"),
+    (attribute("yield_strength", [1.0, 2.0]), "materials/sphere",
+     "yield_strength of group materials/sphere is an array of shape (2,) and type float64"),
+    (attribute("kind", 4), "materials/sphere", "attribute kind of group materials/sphere is 4"),
+    (attribute("name", 4.0), "materials/sphere", "attribute name of group materials/sphere"),
+    (attribute("density", -1.0), "materials/plate", "density of 'glass' must be positive"),
+]  # fmt: skip
+
+
+def constant(path, capsys):
+    """Exit status of the command, and what it says."""
+    status = cli_of_contactlaw.main(["constant", "--record", str(path), "--csv"])
+    return status, capsys.readouterr()
+
+
+@pytest.mark.parametrize(("damage", "place", "message"), DAMAGES)
+def test_a_damaged_rain_is_refused_in_words(damage, place, message, rain, tmp_path, capsys):
+    path = tmp_path / "rain.h5"
+    path.write_bytes(rain)
+    with h5py.File(path, "r+") as file:
+        damage(file, place)
+    status, captured = constant(path, capsys)
+    assert (status, captured.out) == (1, "")
+    assert message in captured.err
+    assert len(captured.err) < 400 and captured.err.count("\n") == 1
+    assert str(path) in captured.err or message == "law"  # which the option may name as well
+
+
+def test_a_rain_that_ends_early(rain, tmp_path):
+    path = tmp_path / "rain.h5"
+    for end in range(0, len(rain) - 1, 97):
+        path.write_bytes(rain[:end])
+        with pytest.raises(ValueError, match="no HDF5 file, or a damaged one"):
+            read(path)
+
+
+@pytest.mark.parametrize("place", COLUMNS)
+def test_flipped_bits_of_a_column(place, rain, tmp_path):
+    """Of what is stored; in HDF5's own structures such a bit may keep its library busy for ever."""
+    path, choose = tmp_path / "rain.h5", random.Random(4)
+    path.write_bytes(rain)
+    with h5py.File(path) as file:
+        chunk = file[place].id.get_chunk_info(0)
+    refused = 0
+    for _ in range(40):
+        damaged = bytearray(rain)
+        damaged[chunk.byte_offset + choose.randrange(chunk.size)] ^= 1 << choose.randrange(8)
+        path.write_bytes(damaged)
+        try:
+            assert read(path).speed.tolist() == [1.0, 2.0, 3.0]  # some bits mean nothing
+        except ValueError as error:
+            assert f"rain.h5: dataset {place} is damaged: " in str(error)
+            refused += 1
+    assert refused > 30
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        (np.array([object()]), "a damaged file of np.save, or one of objects"),
+        (np.zeros(3), r"an array of shape \(3,\) and type float64, expected rows with named"),
+        (np.zeros((2, 2), IMPACT), "expected rows with named columns"),
+        (np.zeros(2, [("speed", "U4")]), "column speed holds values of type <U4"),
+        (np.zeros(2, [("speed", "f8", 3)]), r"column speed holds values of type \('<f8', \(3,\)\)"),
+        (np.array([(1.0, 0.5)], [("speed", "f8"), ("plate", "f8")]), "plate: got 0.5, expected"),
+        (np.array([(1.0, np.nan)], [("speed", "f8"), ("plate", "f8")]), "plate: got nan, expected"),
+    ],
+)
+def test_arrays_that_are_no_record(rows, message, tmp_path):
+    np.save(tmp_path / "a.npy", rows, allow_pickle=True)
+    with pytest.raises(ValueError, match=message) as refused:
+        read(tmp_path / "a.npy")
+    assert str(refused.value).startswith(str(tmp_path))
+
+
+def test_a_short_array_that_asks_for_much_memory(tmp_path):
+    np.save(tmp_path / "a.npy", np.ones(10, [("speed", "f8")]))
+    content = (tmp_path / "a.npy").read_bytes()
+    vast = content.replace(b"(10,), }" + 10 * b" ", b"(100000000000,), }")
+    assert len(vast) == len(content) != content.count(b"(10")
+    for damaged in (vast, content[:-8], content[:40]):
+        (tmp_path / "b.npy").write_bytes(damaged)
+        with pytest.raises(ValueError, match="a damaged file of np.save"):
+            read(tmp_path / "b.npy")

@@ -35,6 +35,13 @@ TOO_WIDE = """[...document.querySelectorAll("*")]
               || e.getBoundingClientRect().left < -0.5
               || (e.scrollWidth > innerWidth && getComputedStyle(e).overflowX !== "auto"))
   .map((e) => e.outerHTML.slice(0, 80))"""
+# Cells of five lines or more that have hardly more than a word a line: each line of text is a box.
+SQUEEZED = """[...document.querySelectorAll("td")].filter((cell) => {
+  const range = document.createRange();
+  range.selectNodeContents(cell);
+  const lines = new Set([...range.getClientRects()].map((box) => Math.round(box.bottom / 8))).size;
+  return lines >= 5 && cell.innerText.trim().split(/\\s+/).length < 1.75 * lines;
+}).map((cell) => cell.innerText)"""
 # verdict and our number, to the digits given
 CLAIMS = {
     "wave in a half-space": (OPEN, 0.01972),
@@ -244,6 +251,7 @@ def test_the_report_fits_the_screen(drawn, page, width):
     page.value("document.querySelectorAll('details').forEach((one) => { one.open = true; })")
     assert page.value("document.querySelector('details').open")
     assert (page.value("innerWidth"), page.value(TOO_WIDE)) == (width, [])
+    assert page.value(SQUEEZED) == []
     # the last figure is loaded when it is scrolled to, not before
     last = "[...document.images].at(-1)"
     assert page.value(f"{last}.naturalWidth") == 0

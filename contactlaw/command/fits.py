@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
+from contactlaw._readable import percent, rounded, scale_of, with_error
 from contactlaw.command.sheet import aligned, flag_names
 from contactlaw.fitting import Fit
 from contactlaw.fitting.unknowns import UNKNOWNS
-
-_SHOWN = {"Pa": ("MPa", 1e6), "kg/m3": ("kg/m3", 1.0), "m": ("mm", 1e-3)}
 
 
 def text(found: Fit) -> Iterator[str]:
@@ -28,17 +26,17 @@ def text(found: Fit) -> Iterator[str]:
     """
     width = max(len(UNKNOWNS[name].title) for name in found.unknown)
     for name in found.unknown:
-        unit, size = _SHOWN[UNKNOWNS[name].unit]
-        parts = (found.statistical_errors[name] / size, found.model_errors[name] / size)
+        _, size = scale_of(max(abs(found.values[name]), found.errors[name]), UNKNOWNS[name].unit)
+        data, model = found.statistical_errors[name] / size, found.model_errors[name] / size
         yield f"{UNKNOWNS[name].title:{width}s}  {_number(found, name)}"
-        yield f"{'':{width}s}  of it {parts[0]:.2g} from the data, {parts[1]:.2g} from the model"
+        yield f"{'':{width}s}  of it {rounded(data)} from the data, {rounded(model)} from the model"
     for n, name in enumerate(found.unknown):
         for m in range(n):
             yield f"correlation of {found.unknown[m]} and {name}: {found.correlation[n, m]:.2f}"
     for kind, off in found.residuals.items():
         what, many = kind.replace("_", " "), "s" * (off.size > 1)
-        share = 100.0 * found.scatter[kind]
-        yield f"{what}: {off.size} value{many}, {share:.2g} % off the fit (rms)"
+        share = percent(found.scatter[kind])
+        yield f"{what}: {off.size} value{many}, {share} off the fit (rms)"
     if found.notes:
         yield ""
     yield from found.notes
@@ -50,15 +48,7 @@ def values_in_words(found: Fit) -> list[str]:
 
 
 def _number(found: Fit, name: str) -> str:
-    unit, size = _SHOWN[UNKNOWNS[name].unit]
-    value, error = found.values[name] / size, found.errors[name] / size
-    digits = _digits(error)
-    return f"{value:.{digits}f} +- {error:.{digits}f} {unit}"
-
-
-def _digits(error: float) -> int:
-    """Decimals that show two digits of an error."""
-    return max(0, 1 - math.floor(math.log10(error))) if error > 0.0 else 6
+    return with_error(found.values[name], found.errors[name], UNKNOWNS[name].unit)
 
 
 def rows(found: Fit) -> Iterator[str]:

@@ -126,7 +126,7 @@ def _name(wall: Wall) -> str:
 def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     """Say where the numbers come from, and what each of them gets wrong."""
     pair = f"{model.pair.sphere.name} on {model.pair.plate.name}"
-    yield f"{mark} contactlaw {VERSION}: {pair}, law {model.law}; SI units"
+    yield f"{mark} contactlaw {VERSION}: {pair}, law {model.force_law.family}; SI units"
     yield from (f"{mark} {sentence}." for sentence in meaning(keep).rstrip(".").split(". "))
     for n, wall in enumerate(found, start=1):
         best = wall.best

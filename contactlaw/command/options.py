@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
+import re
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from contactlaw import laws
@@ -77,6 +78,29 @@ def parser() -> argparse.ArgumentParser:
     exports = commands.add_parser("export", help=about, description=_sentence(about))
     _add_exports(exports.add_subparsers(required=True, metavar="KIND", help="what to write"))
     return made
+
+
+_NEGATIVE = re.compile(r"-(?:\.?\d|inf)")
+
+
+def joined(words: Iterable[str]) -> list[str]:
+    """Join an option with a negative quantity that follows it.
+
+    argparse takes -1 for a number and -1mm for an option, whose name is then missing. Whether a
+    quantity may be negative is for its reader to say.
+
+    Examples
+    --------
+    >>> joined(["cor", "--thickness", "-1mm", "--csv"])
+    ['cor', '--thickness=-1mm', '--csv']
+    """
+    found: list[str] = []
+    for word in words:
+        if found and _NEGATIVE.match(word) and re.fullmatch("--[a-z-]+", found[-1]):
+            found[-1] += f"={word}"
+        else:
+            found.append(word)
+    return found
 
 
 def _command(commands: Any, name: str, about: str) -> argparse.ArgumentParser:

@@ -8,15 +8,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.command import columns
+from contactlaw.command import columns, hdf5
 from contactlaw.command.columns import Column
 from contactlaw.command.quantities import LENGTH, SPEED
 from contactlaw.physical.arguments import check
-from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
@@ -189,48 +187,56 @@ def _sized(
     return recorded
 
 
-def material_of(group: h5py.Group) -> Material:
-    """Material as the record of a run has it, in the attributes of a group."""
-    values = group.attrs
-    optional = {name: values.get(name) for name in ("yield_strength", "kind", "hardness")}
-    return Material(
-        name=values["name"],
-        youngs_modulus=float(values["youngs_modulus"]),
-        poissons_ratio=float(values["poissons_ratio"]),
-        density=float(values["density"]),
-        source=values["source"],
-        **optional,
-    )
-
-
 def _hdf5(content: bytes) -> Recorded:
-    try:
-        file = h5py.File(io.BytesIO(content), "r")
-    except OSError:
-        raise ValueError("no HDF5 file, or a damaged one") from None
-    with file:
-        if file.attrs.get("format") != _DEMO:
+    with hdf5.opened(content) as file:
+        if hdf5.format_of(file) != _DEMO:
             raise ValueError(f"no record of dem-demo, whose format is {_DEMO!r}")
-        hits = file["collisions"]
-        on_plates = hits["plate"][()] >= 0
-        names = ("approach_speed", "bead", "plate")
-        speed, bead, plate = (hits[name][()][on_plates] for name in names)
-        pair = Pair(*(material_of(file[f"materials/{body}"]) for body in ("sphere", "plate")))
+        radius = hdf5.numbers(hdf5.group(file, "beads"), "radius")
+        thickness = hdf5.numbers(hdf5.group(file, "plates"), "thickness")
+        hits = hdf5.group(file, "collisions")
+        speed = hdf5.numbers(hits, "approach_speed")
+        plate = hdf5.indices(hits, "plate", thickness.size, speed.size)
+        bead = hdf5.indices(hits, "bead", radius.size, speed.size)
+        on_plates = plate >= 0
+        if (bead[on_plates] < 0).any():  # numpy would take it for the last one
+            raise ValueError(
+                "dataset collisions/bead has -1, no bead, in a row that hits a plate; expected a "
+                f"number from 0 to {radius.size - 1}"
+            )
+        materials = hdf5.group(file, "materials")
+        bodies = (hdf5.group(materials, body) for body in ("sphere", "plate"))
         return Recorded(
-            speed=speed,
-            radius=file["beads/radius"][()][bead],
-            thickness=file["plates/thickness"][()][plate],
-            pair=pair,
-            law=file.attrs["law"],
+            speed=speed[on_plates],
+            radius=radius[bead[on_plates]],
+            thickness=thickness[plate[on_plates]],
+            pair=Pair(*(hdf5.material_of(body) for body in bodies)),
+            law=hdf5.attribute(file, "law", str),
         )
 
 
 def _npy(content: bytes) -> Recorded:
     if not content.startswith(b"\x93NUMPY"):
         raise ValueError("no file of np.save")
-    rows = np.load(io.BytesIO(content), allow_pickle=False)
-    names = rows.dtype.names or ()
-    return _columns(names, lambda wanted: np.column_stack([rows[names[n]] for n in wanted]))
+    try:
+        rows = np.load(io.BytesIO(content), allow_pickle=False)
+    except (ValueError, TypeError, OverflowError, EOFError, MemoryError) as error:
+        raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
+    names = rows.dtype.names
+    if names is None or rows.ndim != 1:
+        raise ValueError(
+            f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
+            "columns, as the record of an engine has"
+        )
+
+    def numbers(wanted: list[int]) -> Array:
+        for n in wanted:
+            if rows[names[n]].ndim != 1 or rows[names[n]].dtype.kind not in "iuf":
+                raise ValueError(
+                    f"column {names[n]} holds values of type {rows.dtype[n]}, expected numbers"
+                )
+        return np.column_stack([rows[names[n]] for n in wanted])
+
+    return _columns(names, numbers)
 
 
 def _text(content: bytes) -> Recorded:
@@ -254,7 +260,11 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
         for (field, one), column in zip(found.items(), rows.T, strict=True)
     }
     if "plate" in picked:
-        on_plates = picked["plate"] >= 0
+        plate = picked["plate"]
+        whole = (plate == np.floor(plate)) & (abs(plate) < hdf5.LARGEST)
+        if not whole.all():  # NaN, too
+            raise ValueError(f"plate: got {plate[~whole][0]:g}, expected whole numbers")
+        on_plates = plate >= 0
         picked = {field: values[on_plates] for field, values in picked.items()}
         picked["plate"] = picked["plate"].astype(np.int64)
     return Recorded(**picked)

@@ -137,7 +137,7 @@ def _text(model: ImpactModel, table: Table | None) -> str:
 def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
     """Lines of the first comment: law, pair, certificate."""
     law, pair = model.force_law, model.pair
-    yield from _comment(f"law {law.name}: {law.source}")
+    yield from _comment(f"law {law.family}: {law.source}")
     yield from _comment(f"sphere {_body(pair.sphere)}")
     yield from _comment(f"plate {_body(pair.plate)}")
     if table is None:

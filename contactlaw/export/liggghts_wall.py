@@ -7,6 +7,7 @@ walls, their motion, friction and the ranks.
 from __future__ import annotations
 
 import os
+import shutil
 import string
 import tempfile
 from importlib import resources
@@ -58,14 +59,14 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     >>> sorted(path.name for path in folder.iterdir())  # doctest: +NORMALIZE_WHITESPACE
     ['README.txt', 'build.sh', 'contactlaw.h', 'normal_model_contactlaw.h', 'wall_contactlaw.cpp']
     """
-    folder = Path(folder)
+    folder = Path(os.path.realpath(folder))  # beside what a link leads to: one file system
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as made:
         c_header.header(Path(made) / "contactlaw.h", model, table="none")
         for name, content in _texts(model).items():
             _atomic.write(Path(made) / name, content.encode())
         folder.mkdir(exist_ok=True)
         for path in Path(made).iterdir():
-            path.replace(folder / path.name)
+            shutil.move(path, os.path.realpath(folder / path.name))
 
 
 def _texts(model: ImpactModel) -> dict[str, str]:
@@ -75,7 +76,7 @@ def _texts(model: ImpactModel) -> dict[str, str]:
         "version": VERSION,
         "sphere": pair.sphere.name,
         "plate": pair.plate.name,
-        "law": model.force_law.name,
+        "law": model.force_law.family,
         "tangential": repr(8.0 * pair.effective_shear_modulus),
         "contact_time": repr(CONTACT_TIME),
         "steps": str(FEWEST_STEPS),

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._readable import percent
+
 Array = NDArray[np.float64]
 
 _VAGUE = 0.5  # standard error of a logarithm from which on a value is not known; our choice
@@ -64,7 +66,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
     for square, direction in zip(squares, directions.T, strict=True):
         if square <= _VAGUE**2:
             known.append(_product(names, values, direction, float(np.sqrt(square))))
-    what = "; ".join(f"{_words(powers)} = {value:.4g} within {100.0 * error:.2g} %"
+    what = "; ".join(f"{_words(powers)} = {value:.4g} within {percent(error)}"
                      for powers, value, error in known)  # fmt: skip
     told = f"they tell {what} (in SI units). " if known else ""
     raise UnidentifiedError(

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._readable import percent, rounded
 from contactlaw.fitting import search
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.predictions import Predictor
@@ -62,8 +63,8 @@ def notes(
     )
     if model is None:
         yield (
-            f"how far law {predictor.law.name!r} is from finite elements is not known: the errors "
-            "stated are those of the data alone"
+            f"how far law {predictor.law.family!r} is from finite elements is not known: the "
+            "errors stated are those of the data alone"
         )
     low, high = search.limits(predictor)
     for one, value, least, largest in zip(predictor.moved, at, low, high, strict=True):
@@ -101,7 +102,7 @@ def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
         if of_kind.any():
             share = float(standard[of_kind][0])
             yield (
-                f"{name}: no errors were given; one of {100.0 * share:.2g} % was found from the "
+                f"{name}: no errors were given; one of {percent(share)} was found from the "
                 f"scatter of {np.count_nonzero(of_kind)} values"
             )
 
@@ -114,14 +115,14 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
         ratio = float(np.sqrt(((off / expected)[given] ** 2).sum() / (given.sum() - free)))
         if ratio > _MISFIT:
             yield (
-                f"the values are off by {ratio:.2g} times what their errors and the model's allow: "
-                "another number may be wrong, or the errors too small"
+                f"the values are off by {rounded(ratio)} times what their errors and the model's "
+                "allow: another number may be wrong, or the errors too small"
             )
     if freedom < 3.0:
         return
     for n in np.flatnonzero(np.abs(off) > _FAR * expected):
         name = list(KINDS)[values.kind[n]]
         yield (
-            f"{name} of rebound {values.row[n]} is {100.0 * off[n]:+.2g} % off the fit, "
-            f"{abs(off[n]) / expected[n]:.2g} standard errors: a mistake?"
+            f"{name} of rebound {values.row[n]} is {'+' * (off[n] > 0.0)}{percent(off[n])} off the "
+            f"fit, {rounded(abs(off[n]) / expected[n])} standard errors: a mistake?"
         )

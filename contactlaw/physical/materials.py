@@ -18,6 +18,9 @@ _FASTEST = 25e3  # [m/s]: bar wave speed sqrt(E / rho); diamond has 17e3, steel 
 # And two far from any matter, beyond which products of these numbers leave the range of floats.
 _DENSITIES = (1e-6, 1e20)  # [kg/m3]: air has 1.2, a neutron star 1e18
 _WEAKEST = 1e-12  # yield strain sigma_Y/E
+# Plastics without fibres have up to 5 GPa, with 30 % of glass 10; PTFE is the densest, with 2200
+# kg/m3. Of metals only the alkalis are as soft and light; porous ceramics say their kind.
+_STIFFEST_POLYMER, _DENSEST_POLYMER = 10e9, 2300.0  # [Pa, kg/m3]
 
 KINDS = ("metal", "ceramic", "glass", "polymer")
 _LABELS = {
@@ -102,7 +105,8 @@ class Material:
     source : str, optional
         Where the numbers come from.
     kind : str, optional
-        ``"metal"``, ``"ceramic"``, ``"glass"`` or ``"polymer"``; None if that is not known.
+        ``"metal"``, ``"ceramic"``, ``"glass"`` or ``"polymer"``; None if that is not known: it is
+        taken for a polymer then if it is as soft and light as one, up to 10 GPa and 2300 kg/m3.
     hardness : float, optional
         Indentation hardness [Pa], Vickers or Knoop, positive: what limits the contact pressure on
         a brittle material, which has no yield strength. None if it is unknown.
@@ -167,6 +171,20 @@ class Material:
     def plane_modulus(self) -> float:
         """Plane-strain modulus E / (1 - nu^2) [Pa], what one body adds to a Hertz contact."""
         return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
+
+    @property
+    def is_polymer(self) -> bool:
+        """Whether it is a polymer, or of unknown kind and as soft and light as one.
+
+        Examples
+        --------
+        >>> from contactlaw import Material
+        >>> Material("POM", 2.9e9, 0.37, 1410, yield_strength=65e6).is_polymer
+        True
+        """
+        if self.kind is not None:
+            return self.kind == "polymer"
+        return self.youngs_modulus <= _STIFFEST_POLYMER and self.density <= _DENSEST_POLYMER
 
     def require_yield_strength(self, law: str) -> float:
         """Return the yield strength, or say what is missing.

@@ -67,7 +67,8 @@ class Validity(enum.IntFlag):
     BENT_PLATE = 128
     """The force bends the plate plastically: the law's plate stays elastic but at the contact."""
     RATE_DEPENDENT = 256
-    """A polymer: its modulus and strength depend on the rate, and it loses energy by viscosity."""
+    """A polymer, or of unknown kind and as soft and light as one: its modulus and strength depend
+    on the rate, and it loses energy by viscosity."""
     DAMAGE = 512
     """May break or flow: the pressure is above 0.59 of the hardness of a brittle body."""
 
@@ -99,8 +100,8 @@ _WORDS = {
         "take a thicker plate, or the COR for an upper bound",
     ),
     Validity.RATE_DEPENDENT: (
-        "a polymer, modulus and strength depend on the rate",
-        "take those at the rate of the impact",
+        "a polymer, or as soft and light as one, whose modulus and strength depend on the rate",
+        "take those at the rate of the impact, and give the kind of what is no polymer",
     ),
     Validity.DAMAGE: (
         "a brittle body may break or flow",
@@ -163,8 +164,7 @@ class Limits(NamedTuple):
 def limits(pair: Pair, law: Law) -> Limits:
     """Limits of the model for a pair."""
     sphere, plate = (body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
-    polymer = "polymer" in (pair.sphere.kind, pair.plate.kind)
-    rate = polymer * Validity.RATE_DEPENDENT
+    rate = (pair.sphere.is_polymer or pair.plate.is_polymer) * Validity.RATE_DEPENDENT
     common = {
         # laws that differ in when they yield are held to one measure
         "share": yield_share(pair, law) if law.waves else pair.yield_share(),

@@ -109,7 +109,7 @@ def _kept(
             file.write(made, path)
         if fault:
             warnings.warn(
-                f"the table of law {law.name!r} in the cache was damaged and has been built anew "
+                f"the table of law {law.family!r} in the cache was damaged and has been built anew "
                 f"({path}: {fault}); if this comes again, something alters its files: set "
                 "CONTACTLAW_CACHE_DIR to another folder",
                 stacklevel=2,
@@ -121,7 +121,7 @@ def _kept(
 
 def _warn_not_kept(law: Law, place: Path | str, reason: Exception) -> None:
     warnings.warn(
-        f"the table of law {law.name!r} cannot be kept in {place} ({reason}), so each process "
+        f"the table of law {law.family!r} cannot be kept in {place} ({reason}), so each process "
         "builds it anew; set CONTACTLAW_CACHE_DIR to a writable folder, or CONTACTLAW_NO_CACHE=1",
         stacklevel=3,
     )

@@ -75,7 +75,7 @@ def facts(run: Run) -> list[tuple[str, str]]:
         *found,
         ("dissipated at the deck", _millijoules(deck)),
         ("  bending wave in the sheet", _millijoules(energy.wave[-1])),
-        ("  plastic flow", _millijoules(energy.plastic[-1])),
+        ("  lost at the contact", _millijoules(energy.plastic[-1])),
         ("work of the deck on the beads", _millijoules(energy.deck[-1])),
         ("beads on beads, sliding friction", _millijoules(energy.others[-1])),
         ("kinetic energy at the start", _millijoules(energy.start[-1])),

@@ -1,0 +1,107 @@
+"""Numbers as people read them: a value with its error, and a share.
+
+All that is printed for people takes these; files for programs have every digit.
+"""
+
+from __future__ import annotations
+
+import math
+
+# Smallest size in SI units from which on a prefix is taken, and what it stands for. Strengths of
+# thousands of MPa and plates of tenths of a mm stay in the units that data sheets have.
+_PREFIXES = {
+    "Pa": ((1e10, "GPa", 1e9), (1e5, "MPa", 1e6), (1e2, "kPa", 1e3), (0.0, "Pa", 1.0)),
+    "m": ((1.0, "m", 1.0), (1e-4, "mm", 1e-3), (1e-7, "um", 1e-6), (0.0, "nm", 1e-9)),
+    "s": ((1.0, "s", 1.0), (1e-3, "ms", 1e-3), (1e-7, "us", 1e-6), (0.0, "ns", 1e-9)),
+}
+_FINEST = 1e-6  # relative error below which digits mean nothing: a material is not so well known
+_PLAIN = (1e-4, 1e7)  # sizes between which a number needs no exponent
+
+
+def scale_of(size: float, unit: str) -> tuple[str, float]:
+    """Find the unit that suits a size in SI units, and how many of these it is.
+
+    Examples
+    --------
+    >>> scale_of(3.13e9, "Pa"), scale_of(0.5e-3, "m"), scale_of(2500.0, "kg/m3")
+    (('MPa', 1000000.0), ('mm', 0.001), ('kg/m3', 1.0))
+    """
+    for least, name, scale in _PREFIXES.get(unit, ()):
+        if abs(size) >= least:
+            return name, scale
+    return unit, 1.0
+
+
+def rounded(number: float, digits: int = 2) -> str:
+    """Write a number with so many significant digits, and an exponent where it needs one.
+
+    Examples
+    --------
+    >>> rounded(190.3), rounded(0.01249), rounded(99.6), rounded(2.2e-14)
+    ('190', '0.012', '100', '2.2e-14')
+    """
+    short = f"{number:.{digits - 1}e}"
+    size = abs(float(short))
+    if not (_PLAIN[0] <= size < _PLAIN[1]):  # NaN, too
+        return f"{number:.{digits}g}"
+    return f"{float(short):.{max(0, digits - 1 - _exponent(size))}f}"
+
+
+def with_error(value: float, error: float, unit: str) -> str:
+    """Write a value with its standard error, both to the error's second digit.
+
+    Parameters
+    ----------
+    value, error : float
+        In SI units; the error is not negative. One below a millionth of the value is written as
+        that much.
+    unit : str
+        Of the SI; Pa, m and s get a prefix.
+
+    Returns
+    -------
+    str
+        Without an exponent between 1e-4 and 1e7 of the unit.
+
+    Examples
+    --------
+    >>> with_error(852.3e6, 190.4e6, "Pa"), with_error(0.509e-3, 0.0041e-3, "m")
+    ('850 +- 190 MPa', '0.5090 +- 0.0041 mm')
+    """
+    name, scale = scale_of(max(abs(value), error if error < math.inf else 0.0), unit)
+    if not (math.isfinite(value) and math.isfinite(error)):
+        return f"{value / scale:g} +- {error / scale:g} {name}"
+    value, error = value / scale, max(error / scale, abs(value / scale) * _FINEST)
+    if not error:
+        return f"0 +- 0 {name}"
+    last = _exponent(float(f"{error:.1e}")) - 1  # place of the second digit, after rounding
+    size = max(abs(value), error)
+    if not (_PLAIN[0] <= size < _PLAIN[1]):
+        power = _exponent(size)
+        value, error, last = value / 10.0**power, error / 10.0**power, last - power
+        return f"({_at(value, last)} +- {_at(error, last)})e{power} {name}"
+    return f"{_at(value, last)} +- {_at(error, last)} {name}"
+
+
+def percent(share: float, digits: int = 2) -> str:
+    """Write a share in percent; ten and more as a multiple.
+
+    Examples
+    --------
+    >>> percent(0.0123), percent(2.2e-14), percent(1810.0), percent(-0.5)
+    ('1.2 %', 'below 0.01 %', '1800 times', '-50 %')
+    """
+    if share and abs(share) < 1e-4:
+        return "below 0.01 %"
+    if abs(share) >= 10.0:
+        return f"{rounded(share, digits)} times"
+    return f"{rounded(100.0 * share, digits) if share else 0} %"
+
+
+def _exponent(size: float) -> int:
+    return int(f"{size:e}".partition("e")[2])
+
+
+def _at(number: float, last: int) -> str:
+    """Write a number to a decimal place, a negative one after the point."""
+    return f"{round(number, -last):z.{max(0, -last)}f}"
