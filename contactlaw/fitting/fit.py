@@ -207,7 +207,7 @@ def _found(predictor: Predictor, descent: search.Descent) -> tuple[Array, Array,
     values = predictor.values
     unknown = np.isnan(values.error)
     error = np.where(unknown, search.GUESSED * values.value, values.error)
-    tried = [descent(start, error) for start in search.scan(predictor)]
+    tried = [descent(start.at, error) for start in search.basins(predictor)]
     at, _ = min(tried, key=lambda one: one[1])
     free = sum(one.prior is None for one in predictor.moved)
     if values.value.size < free:
