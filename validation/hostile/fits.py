@@ -109,7 +109,7 @@ def fault_of(case: Case) -> str:
     off = {
         name: (found.values[name] - case.true(name)) / found.errors[name] for name in case.unknown
     }
-    if getattr(found,"alternatives",()) or max(map(abs, off.values())) <= _LARGEST:
+    if found.alternatives or max(map(abs, off.values())) <= _LARGEST:
         return ""
     answers = "; ".join(
         f"{name} {found.values[name]:.6g} +- {found.errors[name]:.3g}, true {case.true(name):.6g}"
