@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 import re
 from collections.abc import Callable, Sequence
@@ -35,6 +36,8 @@ class Found(NamedTuple):
 def heads(content: bytes) -> tuple[list[str], list[str], str]:
     r"""Split a table into the names in its first line, its rows, and what stands between columns.
 
+    Rows are the lines after the first; those that hold no data are empty.
+
     Raises
     ------
     ValueError
@@ -51,7 +54,9 @@ def heads(content: bytes) -> tuple[list[str], list[str], str]:
         raise ValueError("neither text") from None
     delimiter = next((mark for mark in "\t;" if mark in first), ",")
     names = [head.strip().strip('"') for head in first.lstrip("#").split(delimiter)]
-    rows = [line for line in lines if line.strip() and not line.startswith("#")]
+    rows = ["" if line.isspace() or line.startswith("#") else line for line in lines]
+    while rows and not rows[-1]:
+        rows.pop()
     return names, rows, delimiter
 
 
@@ -111,26 +116,65 @@ def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
 
 
 def numbers(
-    rows: Sequence[str], delimiter: str, wanted: list[int], read: Callable[[str], float] = float
+    rows: Sequence[str], delimiter: str, count: int, wanted: list[int], read: Callable[[str], float] = float
 ) -> Array:
     """Read some columns of a table's rows.
+
+    Parameters
+    ----------
+    rows : sequence of str
+        As `heads` gives them.
+    delimiter : str
+        What stands between columns.
+    count : int
+        How many columns the first line names.
+    wanted : list of int
+        Which to read.
+    read : callable, optional
+        From the text of a cell to its number.
 
     Raises
     ------
     ValueError
-        What is no number, with its row.
+        What is no number, with its row; a row with more or fewer fields than the first line.
 
     Examples
     --------
-    >>> numbers(["1;2", "3;4"], ";", [1])
+    >>> numbers(["1;2", "3;4"], ";", 2, [1])
     array([[2.],
            [4.]])
     """
+    _check_fields(rows, delimiter, count)
+    rows = [row for row in rows if row]
     if not rows:  # of which loadtxt would warn
         return np.empty((0, len(wanted)))
     return np.loadtxt(
         rows, delimiter=delimiter, usecols=wanted, ndmin=2, quotechar='"', converters=read
     )
+
+
+def _check_fields(rows: Sequence[str], delimiter: str, count: int) -> None:
+    """Refuse rows whose fields are not those of the first line: numbers would shift in silence."""
+    for line, row in enumerate(rows, start=2):
+        fields = next(csv.reader([row], delimiter=delimiter)) if row else []
+        if row and len(fields) != count:
+            named = f"{count} column{'s' * (count > 1)}"
+            raise ValueError(
+                f"line {line} has {len(fields)} field{'s' * (len(fields) != 1)}, {row[:80]!r}, where the first line names "
+                f"{named}: {_why(row, delimiter, len(fields) > count)}"
+            )
+
+
+def _why(row: str, delimiter: str, more: bool) -> str:
+    """Say what has most likely happened to a row with too many or too few fields."""
+    if more and delimiter == "," and re.search(r"\d,\d", row):
+        return (
+            "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns "
+            "and points in the numbers"
+        )
+    if more:
+        return "delete what is beyond the columns, or name it in the first line"
+    return "leave the cell of what was not measured empty, but keep what separates the cells"
 
 
 def number_or_nan(text: str) -> float:

@@ -77,6 +77,7 @@ def record(found: Fit) -> dict[str, Any]:
         "model_errors": found.model_errors,
         "units": {name: UNKNOWNS[name].unit for name in found.unknown},
         "correlation": found.correlation.tolist(),
+        "alternatives": list(found.alternatives),
         "residuals": {kind: off.tolist() for kind, off in found.residuals.items()},
         "rows": {kind: row.tolist() for kind, row in found.rows.items()},
         "scatter": found.scatter,

@@ -95,9 +95,8 @@ def _read(content: bytes) -> Read:
         )
     if not rows:
         raise ValueError("it has no row beside the first line")
-    table = columns.numbers(
-        rows, delimiter, [one.place for one in found.values()], columns.number_or_nan
-    )
+    wanted = [one.place for one in found.values()]
+    table = columns.numbers(rows, delimiter, len(names), wanted, columns.number_or_nan)
     picked = {
         name: values / one.per_unit
         for (name, one), values in zip(found.items(), table.T, strict=True)

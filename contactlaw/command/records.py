@@ -244,7 +244,7 @@ def _text(content: bytes) -> Recorded:
         names, rows, delimiter = columns.heads(content)
     except ValueError as error:
         raise ValueError(f"{error}, nor HDF5 (.h5), nor of np.save (.npy)") from None
-    return _columns(names, lambda wanted: columns.numbers(rows, delimiter, wanted))
+    return _columns(names, lambda wanted: columns.numbers(rows, delimiter, len(names), wanted))
 
 
 def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Recorded:

@@ -35,6 +35,8 @@ MODEL_ERRORS = {
 }
 _LEAST_COR = 0.3
 _LENGTH = 1.0  # of ln(speed) and ln(R/H), over which the model's errors are alike
+_CELLS = 600  # of them, between which correlations are known one by one
+_NEAREST = 1e-3  # width of a cell in ln(speed) and ln(R/H), doubled until there are few enough
 _RIDGE = 1e-8  # of the information: what is not known at all has an error of 1e4
 
 
@@ -54,7 +56,43 @@ class Errors(NamedTuple):
         return Errors(self.statistical * factor**2, self.model)
 
 
-def covariances(predictor: Predictor, slopes: Array, error: Array, model: Array | None) -> Errors:
+class Shared(NamedTuple):
+    """Covariance of the model's errors of all values, which rebounds of one cell share.
+
+    A cell holds values of one kind at one place, by ln(speed) and ln(R/H). With n values in c
+    cells all that is asked of the covariance takes memory and time of n + c^2, where the matrix
+    itself would take n^2: 10,000 rebounds 800 MB.
+    """
+
+    size: Array  # rms of the model's error of each value, in its units
+    cell: NDArray[np.intp]  # of each value
+    alike: Array  # (c, c) correlation of cells
+
+    def propagated(self, gain: Array) -> Array:
+        """Covariance of what follows from the values by a gain (p, n)."""
+        gathered = self._gathered((gain * self.size).T)
+        return np.asarray(gathered.T @ self.alike @ gathered)
+
+    def squares(self, off: Array, error: Array) -> float:
+        """Sum of squares of values that are off, over the covariance of data and model.
+
+        By Woodbury's identity: C = diag(error^2) + U alike U^T, with the sizes in U.
+        """
+        scaled = self.size / error
+        own = float(((off / error) ** 2).sum())
+        weight = self._gathered((scaled**2)[:, None])[:, 0]
+        pull = self._gathered((scaled * off / error)[:, None])[:, 0]
+        inner = np.eye(weight.size) + self.alike * weight
+        return own - float(pull @ np.linalg.solve(inner, self.alike @ pull))
+
+    def _gathered(self, columns: Array) -> Array:
+        """Sum over the values of each cell."""
+        found = np.zeros((len(self.alike), columns.shape[1]))
+        np.add.at(found, self.cell, columns)
+        return found
+
+
+def covariances(predictor: Predictor, slopes: Array, error: Array, model: Shared | None) -> Errors:
     """Propagate errors of the values, the priors and the model.
 
     Parameters
@@ -65,19 +103,31 @@ def covariances(predictor: Predictor, slopes: Array, error: Array, model: Array 
         Derivatives of the values with respect to the logarithms of the parameters.
     error : ndarray (m,)
         Standard errors of the values.
-    model : ndarray (m, m) or None
+    model : Shared or None
         Covariance of the model's errors; None where they are not known.
     """
     scaled = slopes / error[:, None]
+    statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + _held(predictor)))
+    gain = statistical @ (scaled / error[:, None]).T
+    own = np.zeros_like(statistical) if model is None else model.propagated(gain)
+    return Errors(statistical, own)
+
+
+def told(predictor: Predictor, slopes: Array, error: Array) -> float:
+    """How many numbers the values tell: each that is free, and of one with a prior a share."""
+    scaled = slopes / error[:, None]
+    own = scaled.T @ scaled
+    return float(np.trace(np.linalg.solve(own + _held(predictor), own)))
+
+
+def _held(predictor: Predictor) -> Array:
+    """Information of the priors."""
     priors = [one.prior for one in predictor.moved]
     held = np.diag([0.0 if prior is None else prior**-2 for prior in priors])
-    statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + held + _RIDGE * np.eye(len(priors))))
-    gain = statistical @ (scaled / error[:, None]).T
-    own = np.zeros_like(statistical) if model is None else gain @ model @ gain.T
-    return Errors(statistical, np.asarray(own))
+    return np.asarray(held + _RIDGE * np.eye(len(priors)))
 
 
-def model_covariance(predictor: Predictor, values: Array) -> Array | None:
+def model_covariance(predictor: Predictor, values: Array) -> Shared | None:
     """Covariance of the model's errors of all values; None where they are not known."""
     known = MODEL_ERRORS.get(predictor.law.family)
     if known is None:
@@ -90,12 +140,31 @@ def model_covariance(predictor: Predictor, values: Array) -> Array | None:
     inside, beyond = (np.array(rms)[:, None] for rms in known)
     rms = np.where(flagged, beyond, inside)
     kind, row = predictor.values.kind, predictor.values.row
-    size = (rms * fitted)[kind, row]
     speed = np.log(np.asarray(predictor.data.speed))[row]
     slenderness = np.log(np.maximum(at.radius / at.thickness, 1e-3))[row]  # 0: a half-space
-    apart = np.hypot(speed[:, None] - speed, slenderness[:, None] - slenderness)
-    alike = np.exp(-apart / _LENGTH) * (kind[:, None] == kind)
-    return np.asarray(size[:, None] * alike * size)
+    cell, (kinds, *places) = _cells(kind, speed, slenderness)
+    apart = np.hypot(*(place[:, None] - place for place in places))
+    alike = np.exp(-apart / _LENGTH) * (kinds[:, None] == kinds)
+    return Shared((rms * fitted)[kind, row], cell, alike)
+
+
+def _cells(kind: NDArray[np.intp], *places: Array) -> tuple[NDArray[np.intp], Array]:
+    """Number of each value's cell, and kind and mean place of each cell.
+
+    Values share a cell if they are at one place; where there are more places than cells at most,
+    if they are so near to each other that the model errs alike.
+    """
+    exact = np.array([kind, *places])
+    rounded, width = exact, _NEAREST
+    while True:
+        _, cell = np.unique(rounded, axis=1, return_inverse=True)
+        cell = cell.reshape(-1)
+        count = int(cell.max()) + 1
+        if count <= _CELLS:
+            many = np.bincount(cell)
+            return cell, np.array([np.bincount(cell, of) / many for of in exact])
+        rounded = np.vstack([kind, np.floor(exact[1:] / width)])
+        width *= 2.0
 
 
 def student(freedom: float) -> float:

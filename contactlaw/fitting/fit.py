@@ -5,13 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, Measurements
-from contactlaw.fitting.notes import notes
+from contactlaw.fitting.notes import also, notes
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import UNKNOWNS, Parameter, parameters, setting
 from contactlaw.laws import DEFAULT, Law
@@ -23,6 +24,7 @@ from contactlaw.physical.scaling import law_of
 Array = NDArray[np.float64]
 
 _ROUNDS = 2  # of finding errors that are not known; the third changes them by less than 1 %
+_SETTLED = 6  # rounds in which errors of the data and what they tell of priors agree
 _LEAST = 1e-6  # of them, relatively: data without any scatter
 _POOLED = 4  # values of a kind, below which its scatter is that of all kinds
 _TRIALS = 40  # strengths, down to the first that the data exclude
@@ -47,6 +49,10 @@ class Fit:
         beside finite elements.
     correlation : ndarray (k, k)
         Of the unknowns, in their order.
+    alternatives : tuple of dict of str to float
+        Values apart from these, beyond two standard errors, that fit the data as well, within the
+        errors of data and model, the best first; a note says each. The errors stated are those
+        around `values`.
     residuals : dict of str to ndarray
         Of each kind that was measured, measured over fitted values, minus 1 [-].
     rows : dict of str to ndarray of int
@@ -73,6 +79,7 @@ class Fit:
     statistical_errors: dict[str, float]
     model_errors: dict[str, float]
     correlation: Array
+    alternatives: tuple[dict[str, float], ...]
     residuals: dict[str, Array]
     rows: dict[str, NDArray[np.intp]]
     scatter: dict[str, float]
@@ -186,8 +193,7 @@ def fit(
     moved = parameters(pair, data, unknown, priors or {})
     predictor = Predictor(pair, _law(pair, law, moved), data, moved, Values.of(data))
     descent = search.Descent(predictor)
-    at, error, freedom = _found(predictor, descent)
-    return _result(predictor, descent, at, error, freedom)
+    return _result(predictor, descent, _found(predictor, descent))
 
 
 def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
@@ -202,29 +208,54 @@ def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
     return law_of(pair, law)
 
 
-def _found(predictor: Predictor, descent: search.Descent) -> tuple[Array, Array, float]:
-    """Values, errors of the data, and degrees of freedom; those are inf where errors are known."""
+class _Found(NamedTuple):
+    """Where least squares have ended."""
+
+    basins: list[search.Basin]  # the best first
+    error: Array  # of the values
+    freedom: float  # degrees of freedom; inf where all errors were given
+
+
+def _found(predictor: Predictor, descent: search.Descent) -> _Found:
+    """Go down into each basin, and find the errors of the data that are not known."""
     values = predictor.values
-    unknown = np.isnan(values.error)
-    error = np.where(unknown, search.GUESSED * values.value, values.error)
-    tried = [descent(start, error) for start in search.scan(predictor)]
-    at, _ = min(tried, key=lambda one: one[1])
     free = sum(one.prior is None for one in predictor.moved)
     if values.value.size < free:
         raise ValueError(
             f"unknown: {values.value.size} measured values cannot tell {free} unknowns: leave one "
             "out, give priors, or measure more"
         )
-    freedom = float(values.value.size - free)
+    unknown = np.isnan(values.error)
+    error = np.where(unknown, search.GUESSED * values.value, values.error)
+    basins = [descent(one.at, error) for one in search.basins(predictor)]
     if not unknown.any():
-        return at, error, math.inf
-    if freedom < 1.0:
-        return at, error, 0.0
+        return _Found(search.distinct(basins), error, math.inf)
+    if values.value.size == free:
+        return _Found(search.distinct(basins), error, 0.0)
+    freedom = math.nan
     for _ in range(_ROUNDS):
-        fitted = predictor.at(at)
+        at = search.distinct(basins)[0].at
+        error, freedom = _found_errors(predictor, descent, at, error)
+        basins = [descent(one.at, error) for one in search.distinct(basins)]
+    return _Found(search.distinct(basins), error, freedom)
+
+
+def _found_errors(
+    predictor: Predictor, descent: search.Descent, at: Array, error: Array
+) -> tuple[Array, float]:
+    """Errors of the values, from their scatter where they were not given; degrees of freedom.
+
+    Each number that the data tell costs a degree. One with a prior costs the share that they tell
+    of it, which depends on the errors.
+    """
+    values = predictor.values
+    unknown = np.isnan(values.error)
+    fitted, slopes = descent.predicted(np.log(at)), descent.slopes(np.log(at))
+    freedom = math.nan
+    for _ in range(_SETTLED):
+        freedom = values.value.size - errors.told(predictor, slopes, error)
         error = np.where(unknown, _scatter(values, fitted, unknown, freedom) * fitted, error)
-        at, _ = descent(at, error)
-    return at, error, freedom
+    return error, freedom
 
 
 def _scatter(values: Values, fitted: Array, unknown: NDArray[np.bool_], freedom: float) -> Array:
@@ -250,9 +281,8 @@ class _State:
     covariance: errors.Errors  # of the logarithms of all that was moved
 
 
-def _result(
-    predictor: Predictor, descent: search.Descent, at: Array, error: Array, freedom: float
-) -> Fit:
+def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit:
+    at, error, freedom = ended.basins[0].at, ended.error, ended.freedom
     values, names = predictor.values, tuple(one.name for one in predictor.moved if one.wanted)
     x = np.log(at)
     fitted = descent.predicted(x)
@@ -260,7 +290,7 @@ def _result(
     found = errors.covariances(predictor, descent.slopes(x), error, model)
     hit = predictor.impacts(at)
     asked = slice(len(names))  # they come first
-    own = None if model is None else np.sqrt(np.diag(model))
+    own = None if model is None else model.size
     # a value that only the model leaves open is given with the error that this makes
     doubt = error if freedom > 0.0 or own is None else own
     _check_strengths(predictor, at, fitted, doubt)
@@ -270,8 +300,8 @@ def _result(
     spread = np.sqrt(np.diag(total))
     if len(at) == 1 and predictor.moved[0].prior is None:
         own_spread = math.sqrt(found.statistical[0, 0]) if freedom > 0.0 else float(spread[0])
-        scatter = np.diag(error**2) if freedom > 0.0 or model is None else model
-        _check_reach(predictor, at, own_spread, scatter)
+        _check_reach(predictor, at, own_spread, doubt)
+    others = _alternatives(predictor, ended, np.sqrt(np.diag(found.total)), model)
     off = values.value / fitted - 1.0
     kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
     bodies = predictor.setting(at)
@@ -290,10 +320,15 @@ def _result(
         rows={name: values.row[rows] for name, rows in kinds.items()},
         scatter={name: float(np.sqrt(np.mean(off[rows] ** 2))) for name, rows in kinds.items()},
         flags=np.asarray(hit.flags),
+        alternatives=tuple(named(other) for other in others),
         notes=tuple(
-            notes(
-                predictor, at, hit, error / fitted, freedom, None if own is None else own / fitted
-            )
+            [
+                *notes(
+                    predictor, at, hit, error / fitted, freedom,
+                    None if own is None else own / fitted,
+                ),
+                *(also(names, other) for other in others),
+            ]
         ),
         pair=bodies.pair,
         radius=bodies.radius,
@@ -304,12 +339,36 @@ def _result(
     )
 
 
+def _alternatives(
+    predictor: Predictor, ended: _Found, spread: Array, model: errors.Shared | None
+) -> list[Array]:
+    """Values in other basins that fit as well, within the errors of data and model."""
+    best, *others = ended.basins
+    error = ended.error
+    if not ended.freedom > 0.0:  # of a fit through all values only the model's errors are known
+        error, model = (error if model is None else model.size), None
+
+    def squares(one: search.Basin) -> float:
+        own = _squares(predictor, predictor.at(one.at), ended.error)
+        off = predictor.at(one.at) - predictor.values.value
+        whole = float(((off / error) ** 2).sum()) if model is None else model.squares(off, error)
+        return one.squares - own + whole
+
+    least = squares(best)
+    return [
+        one.at
+        for one in others
+        if squares(one) < least + _EXCLUDED
+        and (np.abs(np.log(one.at / best.at)) > 2.0 * spread).any()
+    ]
+
+
 def _squares(predictor: Predictor, values: Array, error: Array) -> float:
     off = (values - predictor.values.value) / error
     return float(off @ off)
 
 
-def _check_reach(predictor: Predictor, at: Array, spread: float, covariance: Array) -> None:
+def _check_reach(predictor: Predictor, at: Array, spread: float, error: Array) -> None:
     """Refuse a value that the data hold on one side only, as a thickness that may be any larger.
 
     Two standard errors off, fitted values have to be off by a square of 4, if they go on as they
@@ -322,8 +381,8 @@ def _check_reach(predictor: Predictor, at: Array, spread: float, covariance: Arr
     low, high = search.limits(predictor)
     for sign, words in ((1.0, "above"), (-1.0, "below")):
         there = np.clip(at * math.exp(2.0 * sign * spread), low, high)
-        off = predictor.at(there) - predictor.at(at)
-        if float(off @ np.linalg.solve(covariance, off)) < _HELD:
+        off = (predictor.at(there) - predictor.at(at)) / error
+        if float(off @ off) < _HELD:
             name, end = predictor.moved[0].name, float(at[0]) * math.exp(-2.0 * sign * spread)
             raise identify.UnidentifiedError(
                 f"unknown: the data tell {name} on one side only: {words} {end:.3g} "

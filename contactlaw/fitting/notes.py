@@ -11,6 +11,7 @@ from contactlaw._readable import percent, rounded
 from contactlaw.fitting import search
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.predictions import Predictor
+from contactlaw.fitting.unknowns import UNKNOWNS
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import count_flags, explain
 
@@ -77,6 +78,18 @@ def notes(
     for flag, _ in count_flags(flags).items():
         (words,) = explain(flag)
         yield f"{flag.name}, rebounds {listed(np.flatnonzero(flags & flag))}: {words}"
+
+
+def also(names: tuple[str, ...], values: Array) -> str:
+    """Say that other values fit as well."""
+    what = ", ".join(
+        f"{name} {value:.4g} {UNKNOWNS[name].unit}"
+        for name, value in zip(names, values.tolist(), strict=False)
+    )
+    return (
+        f"the data are fitted as well by {what}: the stated errors do not reach there. Measure "
+        "another quantity or other speeds, or give a prior"
+    )
 
 
 def listed(rows: NDArray[np.intp]) -> str:

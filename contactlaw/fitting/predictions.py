@@ -98,6 +98,29 @@ class Predictor:
         columns = np.array([getattr(found, name) for name in KINDS])
         return np.asarray(columns[self.values.kind, self.values.row])
 
+    def at_each(self, trials: Array) -> Array:
+        """Predict the measured values at trials (k, p) of one pair of bodies, sizes differ.
+
+        Where the model has no answer, as for bodies that cannot be or plates far too thin, values
+        are 0: like none that was measured.
+        """
+        speed = np.array(self.data.speed)
+        try:
+            settings = [self.setting(values) for values in trials]
+            together = Setting(
+                settings[0].pair,
+                np.concatenate([one.radius for one in settings]),
+                np.concatenate([one.thickness for one in settings]),
+            )
+            found = impacts(together, self.law, np.tile(speed, len(settings)))
+        except (UnsolvedError, ValueError):
+            if len(trials) == 1:
+                return np.zeros((1, self.values.value.size))
+            return np.concatenate([self.at_each(one[None]) for one in trials])
+        columns = np.array([getattr(found, name) for name in KINDS])
+        columns = columns.reshape(len(KINDS), len(settings), speed.size)
+        return np.asarray(columns[self.values.kind, :, self.values.row].T)
+
     def derivatives(self, values: Array, here: Array, known: Array | None = None) -> Array:
         """Differentiate with respect to the logarithms of the values; a column for each.
 
@@ -106,10 +129,19 @@ class Predictor:
         columns = np.empty((here.size, values.size)) if known is None else known.copy()
         for n, parameter in enumerate(self.moved):
             if known is None or not parameter.changes(self.law):
-                moved = values.copy()
-                moved[n] *= math.exp(_STEP)
-                columns[:, n] = (self.at(moved) - here) / _STEP
+                columns[:, n] = self._derivative(values, here, n)
         return columns
+
+    def _derivative(self, values: Array, here: Array, n: int) -> Array:
+        try:
+            return self._difference(values, here, n, _STEP)
+        except ValueError:  # values at the edge of what a solid may be have answers on one side
+            return self._difference(values, here, n, -_STEP)
+
+    def _difference(self, values: Array, here: Array, n: int, step: float) -> Array:
+        moved = values.copy()
+        moved[n] *= math.exp(step)
+        return (self.at(moved) - here) / step
 
 
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:

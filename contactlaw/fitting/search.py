@@ -1,11 +1,17 @@
-"""The values that come nearest to the data: a scan, then least squares by scipy."""
+"""The values that come nearest to the data: a scan of all that is searched, then least squares.
+
+Data of two unknowns are fitted about as well in several regimes: thin and strong, thick and soft.
+Least squares go down into the basin where they start, so they have to start in each. The scan
+predicts a few rebounds on a coarse grid; predictions are smooth, so that splines tell them between
+its points, and the sum of squares on a fine grid shows every basin.
+"""
 
 from __future__ import annotations
 
 import itertools
 import math
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,19 +23,24 @@ from contactlaw.fitting.unknowns import Parameter, bounds
 
 Array = NDArray[np.float64]
 
-_ROWS = 6  # rebounds of a kind that a scan looks at, from the slowest to the fastest
+_ROWS = 8  # rebounds of a kind that a scan looks at, from the slowest to the fastest
 GUESSED = 0.02  # relative error of values whose own is not known, until it is found
 _CONVERGED = 1e-7  # of the sum of squares: 3e-4 of a standard error, and less
 _NEAR = 0.02  # of a logarithm: as near as that, derivatives that need another law are kept
-# Trial values, in units of: the strength from which on nothing yields, what is given, R or H.
-_STRENGTHS = (1.2, 0.95, 0.8, 0.63, 0.48, 0.35, 0.24, 0.15, 0.09, 0.04)
-_FEW_STRENGTHS = (1.2, 0.7, 0.3, 0.1)  # where there are other unknowns
-_MODULI, _FEW_MODULI = (0.4, 0.63, 1.0, 1.6, 2.5), (0.6, 1.0, 1.6)
-_DENSITIES = (0.6, 1.0, 1.6)
-_SLENDERNESS, _FEW_SLENDERNESS = np.geomspace(0.03, 4.0, 16), np.geomspace(0.05, 3.0, 9)  # R/H
-_RADII = np.geomspace(1e-5, 0.05, 12)  # [m]
-_THINNEST = 6.0  # R/H; beyond, the model answers slowly and wrongly
-_RADII = np.geomspace(1e-5, 0.05, 16)
+# Points of an axis that takes a law for each, by how many such axes there are: a law takes 10 ms.
+_STRENGTHS, _MODULI = (0, 14, 9, 6), (0, 7, 5, 4)
+_DENSITIES = 5
+_SLENDERNESS = 22
+_SLENDEREST, _THICKEST = 6.0, 0.03  # R/H; a plate thinner than R/6 gives no rebound to measure
+_RADII = np.geomspace(1e-5, 0.05, 16)  # [m]
+_FINER = (0, 16, 8, 3)  # points of the fine grid in a step of the coarse, by the unknowns
+_BETWEEN = 0.01  # relative error of what the splines tell between the points
+_MOST = 6  # basins of the scan from which least squares start
+_STEPS = 6  # by which these show whether a basin may be the best: splines lead to 1 % of it
+# Basins with sums of squares above this and 3 times the least cannot become the best one with all
+# rebounds, nor be as good.
+_HOPELESS = 25.0
+_SAME = 1e-2  # of a logarithm: two descents that end as near as that have found one basin
 
 
 def optimizer() -> Any:
@@ -53,47 +64,117 @@ def limits(predictor: Predictor) -> tuple[Array, Array]:
     return low, high
 
 
-def scan(predictor: Predictor) -> list[Array]:
-    """Find values from which to go on: the nearest to the data of a grid.
+class Basin(NamedTuple):
+    """A minimum of the sum of squares."""
 
-    Where nothing yields, strengths do not matter: if that is the nearest, the nearest with yield is
-    given, too.
+    at: Array
+    squares: float  # with those of the priors
+
+
+def basins(predictor: Predictor) -> list[Basin]:
+    """Find all minima of the sum of squares that may be the least, the best first.
+
+    They are those of a few rebounds, if there are many.
     """
-    rows = _some(predictor.values, np.asarray(predictor.data.speed))
-    few = replace(predictor, data=_part(predictor.data, rows), values=predictor.values.part(rows))
+    few = _few(predictor)
     error = few.values.error
     error = np.where(np.isnan(error), GUESSED * few.values.value, error)
-    low, high = limits(few)
-    onset = _onset(few)
-    trials = []
-    for point in itertools.product(*_axes(few, onset)):
-        at = np.clip(np.array(point), low, high)
-        if few.slenderness(at) <= _THINNEST:
-            off = (few.at(at) - few.values.value) / error
-            trials.append((float(off @ off), at))
-    trials.sort(key=lambda trial: trial[0])
-    yields = [_yields(few.moved, at, onset) for _, at in trials]
-    best = [trials[0][1]]
-    if not yields[0] and any(yields):
-        best.append(trials[yields.index(True)][1])
-    return best
+    descent = Descent(few)
+    return distinct([descent(start, error, _STEPS) for start in scan(few, error)])
 
 
-def _yields(moved: list[Parameter], at: Array, onset: dict[str, float]) -> bool:
-    """Whether a point lies below the strengths from which on nothing yields."""
-    strengths = [(value, onset[one.name]) for one, value in zip(moved, at, strict=True)
-                 if one.name in onset]  # fmt: skip
-    return not strengths or any(value < least for value, least in strengths)
+def distinct(found: list[Basin]) -> list[Basin]:
+    """Each basin once, the best first, without those that are hopeless."""
+    kept: list[Basin] = []
+    for one in sorted(found, key=lambda one: one.squares):
+        apart = all(np.abs(np.log(one.at / other.at)).max() > _SAME for other in kept)
+        if apart and one.squares <= 3.0 * (kept or [one])[0].squares + _HOPELESS:
+            kept.append(one)
+    return kept
 
 
-def _some(values: Values, speed: Array) -> NDArray[np.intp]:
-    """Rebounds of each kind, evenly over the speeds."""
+def scan(predictor: Predictor, error: Array) -> list[Array]:
+    """Values in each basin that a grid shows, the best first."""
+    from scipy import ndimage
+
+    axes = _axes(predictor)
+    sizes = [axis.size for axis in axes.points]
+    fine, predicted = _finer(axes, _predicted(predictor, axes).reshape(*sizes, -1))
+    soft = np.hypot(error, _BETWEEN * predictor.values.value)
+    squares = (((predicted - predictor.values.value) / soft) ** 2).sum(axis=-1)
+    lowest = squares <= ndimage.minimum_filter(squares, 3, mode="nearest")
+    # where nothing yields, all strengths give one sum: a plateau is one basin
+    regions, count = ndimage.label(lowest, np.ones([3] * squares.ndim))
+    places = ndimage.minimum_position(squares, regions, range(1, count + 1))
+    places = sorted(places, key=lambda place: float(squares[place]))[:_MOST]
+    low, high = limits(predictor)
+    coordinates = (np.array([axis[n] for axis, n in zip(fine, p, strict=True)]) for p in places)
+    return [np.clip(axes.values(one), low, high) for one in coordinates]
+
+
+class _Axes(NamedTuple):
+    """A grid of the parameters, by logarithms; a thickness may be there by its R/H."""
+
+    points: list[Array]
+    by_radius: tuple[int, int] | None  # numbers of thickness and radius, if both are sought
+
+    def values(self, coordinates: Array) -> Array:
+        """Parameters at a point."""
+        found = np.exp(coordinates)
+        if self.by_radius is not None:
+            thickness, radius = self.by_radius
+            found[thickness] = found[radius] / found[thickness]
+        return found
+
+
+def _predicted(predictor: Predictor, axes: _Axes) -> Array:
+    """Predict the measured values at all points of the grid, one after the other."""
+    count = predictor.values.value.size
+    points = np.array(list(itertools.product(*axes.points)))
+    # those of one law come together
+    laws = [n for n, one in enumerate(predictor.moved) if one.changes(predictor.law)]
+    order = np.lexsort(points[:, laws].T) if laws else np.arange(len(points))
+    found = np.empty((len(points), count))
+    bodies = [n for n, one in enumerate(predictor.moved) if one.unknown.body]
+    ends = np.flatnonzero(np.any(np.diff(points[order][:, bodies], axis=0), axis=1)) + 1
+    for part in np.split(order, ends) if bodies else [order]:
+        found[part] = predictor.at_each(np.array([axes.values(points[n]) for n in part]))
+    return found
+
+
+def _finer(axes: _Axes, predicted: Array) -> tuple[list[Array], Array]:
+    """Points between those of the grid, and predictions there by splines."""
+    from scipy.interpolate import CubicSpline
+
+    finer = _FINER[min(3, sum(axis.size > 1 for axis in axes.points))]
+    fine = []
+    for n, axis in enumerate(axes.points):
+        if axis.size > 1:
+            dense = np.linspace(axis[0], axis[-1], (axis.size - 1) * finer + 1)
+            predicted = CubicSpline(axis, predicted, axis=n)(dense)
+            axis = dense
+        fine.append(axis)
+    return fine, predicted
+
+
+def _few(predictor: Predictor) -> Predictor:
+    """The same for a few of the rebounds."""
+    rows = _some(predictor.values, predictor.data)
+    return replace(predictor, data=_part(predictor.data, rows), values=predictor.values.part(rows))
+
+
+def _some(values: Values, data: Measurements) -> NDArray[np.intp]:
+    """Rebounds of each kind, evenly over the speeds, and over the sizes if these differ."""
     chosen: set[int] = set()
-    for kind in np.unique(values.kind):
-        rows = values.row[values.kind == kind]
-        rows = rows[np.argsort(speed[rows], kind="stable")]
-        at = np.unique(np.linspace(0, rows.size - 1, min(_ROWS, rows.size)).round().astype(int))
-        chosen.update(rows[at].tolist())
+    for given in (data.speed, data.radius, data.thickness):
+        along = np.asarray(given, dtype=np.float64)
+        if given is not data.speed and (given is None or np.ptp(along[np.isfinite(along)]) == 0.0):
+            continue
+        for kind in np.unique(values.kind):
+            rows = values.row[values.kind == kind]
+            rows = rows[np.argsort(along[rows], kind="stable")]
+            at = np.linspace(0, rows.size - 1, min(_ROWS, rows.size)).round().astype(int)
+            chosen.update(rows[at].tolist())
     return np.array(sorted(chosen))
 
 
@@ -115,44 +196,50 @@ def _middle(one: Parameter, predictor: Predictor) -> float:
     return float(np.median(np.asarray(other)[np.isfinite(other)]))
 
 
-def _onset(predictor: Predictor) -> dict[str, float]:
-    """Strength of each body whose own is unknown, from which on it does not yield, nearly."""
-    middle = np.array([_middle(one, predictor) for one in predictor.moved])
-    found = {}
-    for n, one in enumerate(predictor.moved):
-        if one.is_strength and one.wanted and one.prior is None:
-            trial = middle.copy()
-            trial[n] = 1e-2 * getattr(predictor.pair, one.unknown.body).youngs_modulus
-            chi = np.max(predictor.impacts(trial).overload)
-            # d_Y goes with the square of the strength
-            found[one.name] = float(trial[n] * math.sqrt(chi)) if chi > 0.0 else math.inf
-    return found
+def _scanned(one: Parameter) -> bool:
+    return one.wanted and one.prior is None
 
 
-def _axes(predictor: Predictor, onset: dict[str, float]) -> list[list[float]]:
-    """Trial values of each parameter."""
-    scanned = [one for one in predictor.moved if one.wanted and one.prior is None]
-    few = len(scanned) > 1
-    axes = []
-    for one in predictor.moved:
-        middle, factors = _middle(one, predictor), np.ones(1)
-        if one not in scanned:
-            pass
+def _axes(predictor: Predictor) -> _Axes:
+    """Trial values of each parameter; one value where it is not scanned."""
+    moved, data = predictor.moved, predictor.data
+    scanned = {one.name for one in moved if _scanned(one)}
+    laws = min(3, sum(_scanned(one) and one.changes(predictor.law) for one in moved))
+    low, high = limits(predictor)
+    points = []
+    for n, one in enumerate(moved):
+        if one.name not in scanned:
+            axis = np.array([_middle(one, predictor)])
         elif one.is_strength:
-            middle = min(onset[one.name], 1e3 * middle)
-            factors = np.array(_FEW_STRENGTHS if few else _STRENGTHS)
+            top = min(high[n], 2.0 * _onset(predictor, n))
+            axis = np.geomspace(low[n], max(top, 2.0 * low[n]), _STRENGTHS[laws or 1])
         elif one.unknown.field == "youngs_modulus":
-            factors = np.array((1.0,) if len(scanned) > 2 else _FEW_MODULI if few else _MODULI)
+            axis = np.geomspace(low[n], high[n], _MODULI[laws or 1])
         elif one.unknown.field == "density":
-            factors = np.array(_DENSITIES)
+            axis = np.geomspace(low[n], high[n], _DENSITIES)
         elif one.name == "thickness":
-            factors = 1.0 / (_FEW_SLENDERNESS if few else _SLENDERNESS)
-        elif predictor.data.thickness is not None and np.isfinite(predictor.data.thickness).any():
-            factors = _FEW_SLENDERNESS if few else _SLENDERNESS
+            radius = np.ones(1) if data.radius is None else np.asarray(data.radius)
+            ends = radius.max() / _SLENDEREST, radius.min() / _THICKEST
+            axis = np.geomspace(*ends, _SLENDERNESS)
+            axis = 1.0 / axis if "radius" in scanned else axis
         else:
-            middle, factors = 1.0, _RADII
-        axes.append((middle * factors).tolist())
-    return axes
+            axis = _RADII
+            if data.thickness is not None and np.isfinite(data.thickness).any():
+                thickness = np.asarray(data.thickness)[np.isfinite(data.thickness)]
+                ends = _THICKEST * thickness.max(), _SLENDEREST * thickness.min()
+                axis = np.geomspace(*ends, _SLENDERNESS)
+        points.append(np.log(np.sort(axis)))
+    names = [one.name for one in moved]
+    both = {"thickness", "radius"} <= scanned
+    return _Axes(points, (names.index("thickness"), names.index("radius")) if both else None)
+
+
+def _onset(predictor: Predictor, n: int) -> float:
+    """Strength from which on a body does not yield, nearly; others have their middle values."""
+    trial = np.array([_middle(one, predictor) for one in predictor.moved])
+    chi = float(np.max(predictor.impacts(trial).overload))
+    # d_Y goes with the square of the strength
+    return float(trial[n] * math.sqrt(chi)) if chi > 0.0 else math.inf
 
 
 class Descent:
@@ -182,8 +269,8 @@ class Descent:
         self._steepest = x.copy(), self.predictor.derivatives(np.exp(x), here)
         return self._steepest[1]
 
-    def __call__(self, start: Array, error: Array) -> tuple[Array, float]:
-        """Go down from a start: values, and the sum of squares with that of the priors."""
+    def __call__(self, start: Array, error: Array, steps: int = 60) -> Basin:
+        """Go down from a start."""
         pull = np.zeros((len(self._held), start.size))
         pull[np.arange(len(self._held)), self._held] = 1.0 / self._widths
 
@@ -207,6 +294,6 @@ class Descent:
             ftol=_CONVERGED,
             xtol=1e-9,
             gtol=1e-10,
-            max_nfev=60,
+            max_nfev=steps,
         )
-        return np.exp(found.x), float(2.0 * found.cost)
+        return Basin(np.exp(found.x), float(2.0 * found.cost))

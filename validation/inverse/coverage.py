@@ -143,7 +143,10 @@ def _model_error(
     covariance = errors.model_covariance(predictor, np.array([one.pair.sphere.density]))
     if covariance is None:
         return {}
-    drawn = random.multivariate_normal(np.zeros(len(covariance)), covariance, method="cholesky")
+    alike = covariance.alike[np.ix_(covariance.cell, covariance.cell)]
+    drawn = covariance.size * random.multivariate_normal(
+        np.zeros(len(alike)), alike, method="cholesky"
+    )
     names = list(KINDS)
     return {name: drawn[values.kind == names.index(name)] for name in exact}
 

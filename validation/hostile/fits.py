@@ -1,0 +1,118 @@
+"""Fits of two unknowns to exact data: what is found is true within two stated errors, or a note says more.
+
+Beads and plates of the catalogue, R 0.1 to 5 mm, R/H 0.1 to 1.8, 6 to 16 speeds, one to three kinds
+of values that are exact and said to be so within 1 %, any two of the eight unknowns.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+import contactlaw as cl
+from contactlaw.fitting.measurements import KINDS
+from contactlaw.fitting.predictions import impacts
+from contactlaw.fitting.unknowns import UNKNOWNS, Setting
+from contactlaw.physical.scaling import law_of
+
+Array = NDArray[np.float64]
+
+FULL = 500
+
+_ERROR = 0.01  # of the values
+_LEAST_COR = 0.05  # that is still measured
+_LARGEST = 2.0  # standard errors that an answer may be off
+
+
+class Case(NamedTuple):
+    """A measurement, and what is asked."""
+
+    pair: cl.Pair
+    radius: float
+    thickness: float
+    speed: Array
+    kinds: tuple[str, ...]
+    unknown: tuple[str, ...]
+
+    def data(self) -> dict[str, Array | float]:
+        """Compute the rebounds, and leave out what is asked for."""
+        size = np.ones_like(self.speed)
+        at = Setting(self.pair, self.radius * size, self.thickness * size)
+        hit = impacts(at, law_of(self.pair, "fem"), self.speed)
+        found: dict[str, Array | float] = {"speed": self.speed}
+        sizes = {"radius": self.radius, "thickness": self.thickness}
+        found |= {name: size for name, size in sizes.items() if name not in self.unknown}
+        for kind in self.kinds:
+            found[kind] = np.asarray(getattr(hit, kind))
+            found[f"{kind}_error"] = _ERROR * found[kind]
+        return found
+
+    def true(self, name: str) -> float:
+        """Value of an unknown."""
+        unknown = UNKNOWNS[name]
+        of = getattr(self.pair, unknown.body) if unknown.body else self
+        return float(getattr(of, unknown.field))
+
+    def words(self) -> str:
+        """Say all of it."""
+        speeds = ", ".join(f"{v:.4g}" for v in self.speed.tolist())
+        return (
+            f"{self.pair.sphere.name} on {self.pair.plate.name}, R {self.radius:.9g} m, "
+            f"H {self.thickness:.9g} m, {' and '.join(self.kinds)} at {speeds} m/s, unknown "
+            f"{' and '.join(self.unknown)}"
+        )
+
+
+def draw(random: np.random.Generator) -> Case:
+    """Draw a measurement of which the question can be asked, with speeds that a rig reaches."""
+    questions = list(itertools.combinations(UNKNOWNS, 2))
+    names = list(cl.materials())
+    while True:
+        pair = cl.Pair(*(str(random.choice(names)) for _ in range(2)))
+        unknown = questions[int(random.integers(len(questions)))]
+        bodies = {"yield_strength": pair.sphere, "plate_yield_strength": pair.plate}
+        if any(bodies[name].yield_strength is None for name in unknown if name in bodies):
+            continue
+        radius = 1e-3 * math.exp(random.uniform(math.log(0.1), math.log(5.0)))
+        thickness = radius / math.exp(random.uniform(math.log(0.1), math.log(1.8)))
+        slowest = math.exp(random.uniform(math.log(0.05), math.log(5.0)))
+        fastest = slowest * random.uniform(3.0, 30.0)
+        speed = np.geomspace(slowest, min(fastest, 30.0), int(random.integers(6, 17)))
+        kinds = tuple(random.permutation(list(KINDS))[: random.integers(1, 4)].tolist())
+        case = Case(pair, radius, thickness, speed, kinds, unknown)
+        size = np.ones_like(speed)
+        hit = impacts(Setting(pair, radius * size, thickness * size), law_of(pair, "fem"), speed)
+        if np.min(hit.restitution) > _LEAST_COR:
+            return case
+
+
+def faults(count: int, seed: int = 0) -> Iterator[str]:
+    """Fit so many, and say which answers are wrong without a word."""
+    random = np.random.default_rng(seed)
+    for _ in range(count):
+        fault = fault_of(draw(random))
+        if fault:
+            yield fault
+
+
+def fault_of(case: Case) -> str:
+    """Say what is wrong with the fit of a case; empty where nothing is."""
+    try:
+        found = cl.fit(case.pair, case.data(), case.unknown)
+    except cl.UnidentifiedError:
+        return ""
+    off = {
+        name: (found.values[name] - case.true(name)) / found.errors[name] for name in case.unknown
+    }
+    if found.alternatives or max(map(abs, off.values())) <= _LARGEST:
+        return ""
+    answers = "; ".join(
+        f"{name} {found.values[name]:.6g} +- {found.errors[name]:.3g}, true {case.true(name):.6g}"
+        for name in case.unknown
+    )
+    return f"{case.words()}: {answers}"
