@@ -16,18 +16,36 @@ from contactlaw.engines.lammps import Mesh, Rotation, Translation, attach  # noq
 
 SPHERES = ("gamma-alumina", "glass", "bearing-steel-52100")
 STEEL, ALUMINIUM = "stainless-steel-304", "aluminium-6061-t6"
-# units: length, time and mass in SI
-UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-18)}
+
+
+def empty(units):
+    """LAMMPS without a box, in some units."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.command(f"units {units}")
+    return lmp
+
+
+def constants(units):
+    """Angstrom, femtosecond and Boltzmann's constant, as LAMMPS has them in some units."""
+    lmp = empty(units)
+    found = [lmp.extract_global(name) for name in ("angstrom", "femtosecond", "boltz")]
+    lmp.close()
+    return np.array(found)
+
+
+def units_of(system):
+    """Units of length, time and mass in SI, by what LAMMPS itself computes with."""
+    length, time, energy = (constants("si") / constants(system)).tolist()
+    return length, time, energy * time**2 / length**2
 
 
 def scene(units="si", types=3, beads=()):
     """Beads of (type, place, velocity, density), told in SI, in a box of other units."""
-    length, time, mass = UNITS[units]
+    length, time, mass = units_of(units)
     side, low, high = 0.06 / length, -0.02 / length, 0.08 / length
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp = empty(units)
     lmp.commands_string(
         f"""
-        units {units}
         atom_style sphere
         boundary f f f
         region box block -{side} {side} -{side} {side} {low} {high} units box
@@ -136,7 +154,7 @@ def test_units_are_converted_at_the_border(units, model):
     ]
     outcomes = {}
     for system in ("si", units):
-        length, time, _ = UNITS[system]
+        length, time, _ = units_of(system)
         lmp = scene(system, 1, beads)
         walls = attach(lmp, cl.ImpactModel(PAIR, law="myc"), [drum, rising], friction=0.3)
         lmp.command("run 700")
@@ -156,11 +174,38 @@ def test_units_are_converted_at_the_border(units, model):
     assert math.isclose(outcomes[units][4], 7e-5, rel_tol=1e-9)
 
 
+@pytest.mark.parametrize("units", ["si", "cgs", "micro"])
+def test_energies_in_the_record_are_those_of_lammpss_temperature(units, model):
+    """A kelvin is one in all units: 3/2 k T of a bead, before and after it has fallen on a plate.
+
+    It falls with LAMMPS's own gravity, so that its clock and its lengths are in it too.
+    """
+    length, time, _ = units_of(units)
+    height, gravity = 2e-4, 1e4
+    lmp = scene(units, 1, [(1, (0, 0, R + height), (0, 0, 0), DENSITY)])
+    walls = attach(lmp, model, [flat(1e-3)])
+    lmp.commands_string(f"""
+        compute kelvin all temp
+        compute_modify kelvin extra/dof 0
+        fix fall all gravity {gravity * time**2 / length!r} vector 0 0 -1""")
+    fall = math.sqrt(2 * height / gravity)
+    lmp.command(f"run {round(0.99 * fall / 1e-7)}")
+    lmp.command("unfix fall")
+    before = lmp.extract_compute("kelvin", 0, 0)
+    lmp.command("run 400")
+    lost = 1.5 * constants("si")[2] * (before - lmp.extract_compute("kelvin", 0, 0))
+    (row,) = walls.collisions()
+    lmp.close()
+    assert row["approach_speed"] == pytest.approx(0.99 * gravity * fall, rel=1e-3)
+    assert row["time"] == pytest.approx(fall, rel=1e-3)
+    energies = [row[name] for name in ("plastic_energy", "wave_energy", "other_energy")]
+    assert sum(energies) == pytest.approx(lost, rel=1e-6)
+    assert lost == pytest.approx(before * 1.5 * constants("si")[2] * (1 - row["restitution"] ** 2))
+
+
 def test_units_without_a_meaning_are_refused(model):
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string(
-        "units lj\natom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box"
-    )
+    lmp = empty("lj")
+    lmp.commands_string("atom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box")
     with pytest.raises(ValueError, match="lmp: needs 'units si', 'cgs' or 'micro', has 'lj'"):
         attach(lmp, model, [flat(1e-3)])
     lmp.close()
