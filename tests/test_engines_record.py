@@ -1,12 +1,14 @@
 """The record of impacts, without any engine."""
 
 import math
+import re
 
 import numpy as np
 import pytest
 from scene import Full, R, Stub
 
 import contactlaw as cl
+from contactlaw.engines.pymunk import PymunkImpacts
 from contactlaw.engines.pymunk.models import Models
 from contactlaw.engines.pymunk.record import Record, Roll
 from contactlaw.engines.record import COLUMNS, IMPACT
@@ -40,6 +42,11 @@ def test_every_column_has_a_unit_and_a_description():
 def test_flags_are_explained_bit_by_bit():
     for flag in cl.Validity:
         assert f"{flag.value} {flag.name.lower().replace('_', ' ')}" in COLUMNS[-1].description
+
+
+def test_the_docstring_of_pymunks_record_names_every_column():
+    words = re.findall(r"\w+", PymunkImpacts.collisions.__doc__)
+    assert not [column.name for column in COLUMNS if column.name not in words]
 
 
 def test_record_without_lookup_has_no_derived_columns():

@@ -50,7 +50,13 @@ COLUMNS = (
     Column("peak_force", "f8", "N", "largest contact force"),
     Column("plastic_energy", "f8", "J", "energy lost to plastic flow at the contact"),
     Column("wave_energy", "f8", "J", "energy carried off by the bending wave in the plate"),
-    Column("other_energy", "f8", "J", "energy lost to friction and vibration of the bodies"),
+    Column(
+        "other_energy",
+        "f8",
+        "J",
+        "energy that the normal impact leaves in vibration and locked-in stress (law fem); the "
+        "work of sliding friction is in no column",
+    ),
     Column("wall_work", "f8", "J", "work of a moving wall on the bead during the contact"),
     Column("triangle", "i8", "1", "number of the mesh's triangle, -1: the plate is no mesh"),
     Column("flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_LIMITS}"),

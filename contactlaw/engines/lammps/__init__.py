@@ -25,6 +25,10 @@ Time step
     `contactlaw.softsphere.time_step` tells how long one may be. An impact that is too fast for the
     step ends the run. It is judged by 20 steps of an elastic contact with a half-space; a plastic
     one is shorter, 18 such steps at 60 m/s, which `time_step` knows.
+Thin plates
+    An impact so inelastic that the model's table does not reach it (lambda above 5 or 6: R/H of
+    some 9 at 5 m/s) ends the run, as it is refused by the model; ``ImpactModel(...,
+    outside="solve")`` has it integrated.
 Walls that meet
     Where facets meet within 1e-4 of a bead's radius they are one surface: the bead has one contact,
     with that which has the nearest point on its face, else on an edge, else at a corner (the first
@@ -36,7 +40,8 @@ Motion
     so has the same bits in one run or many. `attach` starts it where LAMMPS's own clock is;
     ``reset_timestep`` does not touch it. (After one, a restart starts from the clock that was set.)
     Speeds in the record are those relative to the wall, and ``wall_work`` is what the wall's motion
-    has done on the bead: kinetic energy after an impact is that before, and this, less the losses.
+    has done on the bead: kinetic energy after an impact is that before, and this, less the losses
+    and, with friction, less what sliding takes, which the record does not have.
 Several ranks
     Every rank makes its LAMMPS object, attaches the same plates and gives the same commands. Beads
     that feel plates alone move on the same path, to the last bit, on 1 and 2 ranks and in one run
@@ -57,7 +62,9 @@ Other commands
     respa``, under which LAMMPS asks no plate; where a file hides them, the error comes after them.
     ``delete_atoms`` and ``reset_atoms`` leave the contacts of the other beads as they are, if given
     as a ``command`` by themselves. A bead that is set elsewhere in mid-contact (``displace_atoms``,
-    ``set``, ``read_dump``) ends the contact there, at the speed that it happens to have. Of a ``fix
+    ``set``, ``read_dump``) ends the contact there, at the speed that it happens to have. One whose
+    diameter, mass or atom type becomes another in mid-contact (``set``, ``fix adapt``, also of a
+    bead at rest) is an error, and makes no record: an impact is one of one sphere. Of a ``fix
     wall/gran`` rank 0 warns: a bead on both walls at once has a restitution that is of neither.
 What it leaves out
     Walls are not seen across a periodic boundary; a contact goes on across it with the wall there

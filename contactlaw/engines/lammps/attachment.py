@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 HISTORY = "contactlaw"  # the column of fix property/atom is d2_contactlaw
 _LAST = f"{HISTORY}_restitution"  # d_contactlaw_restitution
 # LAMMPS's units of length, time and mass, in SI
-_UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-18)}
+_UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-15)}
 _ROUNDED = 1e-6  # [time steps] that LAMMPS's clock may differ from a whole number of them
 _HALT_EVERY = 100  # steps; the search for errors adds one reduction over all ranks
 _WRAPPED = ("command", "commands_list", "commands_string", "file")

@@ -20,11 +20,19 @@ from contactlaw.engines.lammps.contact import Clock, Walls, interact
 from contactlaw.engines.lammps.geometry import Bead
 from contactlaw.engines.lammps.grid import MARGIN
 from contactlaw.engines.lammps.memory import (
+    ERROR,
+    KIND,
+    MASS,
     MINIMIZING,
     NO_STEPS,
     NOT_FINITE,
     OWNER,
+    RADIUS,
+    RESIZED,
+    RETYPED,
+    REWEIGHED,
     SHARED,
+    STARTS_INSIDE,
     TOO_FAST,
     array_at,
     carray,
@@ -34,11 +42,13 @@ from contactlaw.engines.lammps.memory import (
     matrix_at,
     running,
     thermo,
+    touches,
 )
 from contactlaw.engines.lammps.motion import place
 from contactlaw.engines.lammps.surface import OVERLAP, ROOM, near
 from contactlaw.engines.lammps.walls import FACET, FRAME, SHEET
 
+_SAME = 1e-6  # relative change of a radius or a mass that is rounding
 _EVERY = 100  # steps between looks for beads that fly further than their radius in a step
 
 _pointer: Any = types.CPointer
@@ -72,6 +82,61 @@ def _look_for_jumps(
             complain(shared, clock.step, tags[i], history[i], code, -1, speed, size)
         if history[i, OWNER] != tags[i]:
             last[i] = 0.0
+        elif history[i, RADIUS] != 0.0 and not _same(size, history[i, RADIUS]):
+            # a bead that has become so small that no wall is near it
+            complain(shared, clock.step, tags[i], history[i], RESIZED, -1, size, history[i, RADIUS])
+            _forget(history[i])
+
+
+@kernel
+def _same(value: float, before: float) -> bool:
+    """Whether a number is what it was; false for no number."""
+    return abs(value - before) <= _SAME * before
+
+
+@kernel
+def _forget(row: Any) -> None:
+    """End all contacts of a bead, without a record."""
+    row[RADIUS:] = 0.0
+
+
+@kernel
+def _check_sphere(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
+    """Complain of a bead that touches walls and is no more the sphere that began to touch them."""
+    row = bead.history
+    kind = int(row[KIND])
+    if not _same(bead.r, row[RADIUS]):
+        code, value, before = RESIZED, bead.r, row[RADIUS]
+    elif not _same(bead.mass, row[MASS]):
+        code, value, before = REWEIGHED, bead.mass, row[MASS]
+    elif (
+        kind != bead.kind
+        and walls.sheets[kind * shared.sheet_count].alike
+        != walls.sheets[bead.kind * shared.sheet_count].alike
+    ):
+        code, value, before = RETYPED, bead.kind + 1.0, kind + 1.0
+    else:
+        return
+    complain(shared, clock.step, bead.tag, row, code, -1, value, before)
+
+
+@kernel
+def _feel(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
+    """Add the force of the walls to a bead, unless its contacts mean nothing any more."""
+    row = bead.history
+    touched = row[OWNER] == bead.tag and row[RADIUS] != 0.0
+    if touched:
+        _check_sphere(shared, clock, walls, bead)
+    if not row[ERROR] >= STARTS_INSIDE:
+        interact(shared, clock, walls, bead)
+    if row[OWNER] != bead.tag:
+        return
+    if row[ERROR] >= STARTS_INSIDE:
+        _forget(row)
+    elif not touches(row, shared):
+        row[RADIUS] = 0.0
+    elif not touched:
+        row[RADIUS], row[MASS], row[KIND] = bead.r, bead.mass, bead.kind
 
 
 @kernel
@@ -181,7 +246,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             history[i],
             last[i : i + 1],
         )
-        interact(shared, clock, walls, bead)
+        _feel(shared, clock, walls, bead)
 
 
 @functools.cache

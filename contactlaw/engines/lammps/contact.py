@@ -57,7 +57,7 @@ from contactlaw.engines.record import IMPACT
 from contactlaw.equation import force
 from contactlaw.equation.waves import Waves
 from contactlaw.physical.validity import Limits, flags_of
-from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, resized
+from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, inelasticity, resized
 
 Array = NDArray[np.float64]
 
@@ -139,7 +139,15 @@ def _check_step(shared: Any, clock: Clock, bead: Bead, wall: int, spring: Spring
 
 @kernel
 def _begin(
-    shared: Any, clock: Clock, bead: Bead, wall: int, at: int, spring: Spring, x: float, u: float
+    shared: Any,
+    clock: Clock,
+    bead: Bead,
+    wall: int,
+    at: int,
+    spring: Spring,
+    x: float,
+    u: float,
+    largest: float,
 ) -> None:
     """Start a contact, or the next one of a bead that comes back before it has parted."""
     row = bead.history
@@ -150,6 +158,9 @@ def _begin(
         complain(shared, clock.step, bead.tag, row, memory.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
         _check_step(shared, clock, bead, wall, spring, u)
+        lam, _, _ = inelasticity(spring, u)
+        if lam > largest:
+            complain(shared, clock.step, bead.tag, row, memory.TOO_THIN, wall, lam, largest)
 
 
 @kernel
@@ -331,7 +342,7 @@ def _normal(
         if row[at + KICK] == 0.0 and _kinked(held, n, v, clock.dt, bead.r - touch.x):
             row[at + TIED] = max(row[at + TIED], UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
-        _begin(shared, clock, bead, contact.wall, at, spring, touch.x, u)
+        _begin(shared, clock, bead, contact.wall, at, spring, touch.x, u, sheet.largest)
     else:
         first = 0.0 < row[at + DURATION] < clock.before
         if not touch.face and last.force > 0.0 and first and row[at + TIED] == ALONE:

@@ -5,6 +5,10 @@ from __future__ import annotations
 from contactlaw.engines.lammps import memory
 from contactlaw.softsphere import FEWEST_STEPS
 
+_CHANGED = (
+    "; an impact is one of one sphere, so change beads that touch nothing, or detach() the plates "
+    "before and attach them when the bead has left"
+)
 _MESSAGES = {
     memory.STEP_TOO_LARGE: (
         "timestep: too large for an impact at {value:.4g} m/s, which needs {steps} steps; take "
@@ -14,6 +18,23 @@ _MESSAGES = {
         "the first touch finds it {value:.4g} m deep in the plate, more than its speed explains; "
         "place it outside, or at most {limit:.2g} m deep (and give by itself, not among other "
         "commands, a delete_atoms or reset_atoms that changes IDs in mid-contact)"
+    ),
+    memory.RESIZED: (
+        "diameter: its radius is {value:.6g} m and was {limit:.6g} m when it began to touch"
+        + _CHANGED
+    ),
+    memory.REWEIGHED: (
+        "density: its mass is {value:.6g} kg and was {limit:.6g} kg when it began to touch"
+        + _CHANGED
+    ),
+    memory.RETYPED: (
+        "type: it is of atom type {value:.0f} and was of {limit:.0f}, of another model, when it "
+        "began to touch" + _CHANGED
+    ),
+    memory.TOO_THIN: (
+        "thickness: the plate is too thin for the bead, the inelasticity lambda = {value:.4g} is "
+        "above {limit:.4g}, beyond which the model has no answer; take a thicker plate or smaller "
+        "beads (ImpactModel(..., outside='solve') integrates what is not known)"
     ),
     memory.CROSSED: (
         "its centre went through the plate at {value:.4g} m/s, pushed by what is stronger than the "

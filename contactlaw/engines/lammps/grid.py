@@ -24,6 +24,8 @@ GRID: list[tuple[Any, ...]] = [
 ]  # fmt: skip
 
 _MOST = 1 << 20  # cells; their starts are then 4 MB
+_FEW = 27  # cells of a block that is not halved: as many are around a facet smaller than a cell
+_DEEPEST = 64  # blocks at once; halving the largest grid, of 2^21 cells, takes some 20
 MARGIN = 1.1  # a bead that parts is still in the cell's list in the next step
 
 
@@ -111,35 +113,67 @@ def _near(p: Any, corners: Any, most: float) -> bool:
     return True
 
 
+@kernel
+def _parted(block: Any, other: Any) -> None:
+    """Halve a block of cells along its longest side; the other half is written into `other`."""
+    axis = 0
+    for k in range(3):
+        other[k, 0], other[k, 1] = block[k, 0], block[k, 1]
+        if block[k, 1] - block[k, 0] > block[axis, 1] - block[axis, 0]:
+            axis = k
+    cut = (block[axis, 0] + block[axis, 1]) // 2
+    block[axis, 1], other[axis, 0] = cut, cut + 1
+
+
 @kernel(cache=True)
 def _list(
     corners: Floats, low: Floats, cell: float, cells: Any, reach: float, ends: Any, entries: Any
 ) -> None:
-    """Count the facets of each cell (one place on), or, if there is room for them, write them."""
+    """Count the facets of each cell (one place on), or, if there is room for them, write them.
+
+    The box around a long thin facet that lies across the axes holds nearly all cells, and the facet
+    is near few of them. So a block of many cells is halved, and left out if the facet is not near.
+    """
     writing = entries.size > 0
     half = 0.5 * math.sqrt(3.0) * cell
     middle = np.empty(3)
-    first, last = np.empty(3, np.int64), np.empty(3, np.int64)
+    blocks = np.empty((_DEEPEST, 3, 2), np.int64)  # yet to be looked at: their first and last cell
     for n in range(len(corners)):
         for k in range(3):
             small, large = math.inf, -math.inf
             for c in range(4):
                 small, large = min(small, corners[n, c, k]), max(large, corners[n, c, k])
-            first[k] = max(int(math.floor((small - reach - low[k]) / cell)), 0)
-            last[k] = min(int(math.floor((large + reach - low[k]) / cell)), cells[k] - 1)
-        for i in range(first[0], last[0] + 1):
-            for j in range(first[1], last[1] + 1):
-                for k in range(first[2], last[2] + 1):
-                    middle[0], middle[1], middle[2] = (
-                        low[0] + (i + 0.5) * cell,
-                        low[1] + (j + 0.5) * cell,
-                        low[2] + (k + 0.5) * cell,
-                    )
-                    if not _near(middle, corners[n], reach + half):
-                        continue
-                    at = (i * cells[1] + j) * cells[2] + k
-                    if writing:
-                        entries[ends[at]] = n
-                        ends[at] += 1
-                    else:
-                        ends[at + 1] += 1
+            blocks[0, k, 0] = max(int(math.floor((small - reach - low[k]) / cell)), 0)
+            blocks[0, k, 1] = min(int(math.floor((large + reach - low[k]) / cell)), cells[k] - 1)
+        left = 1
+        while left > 0:
+            block = blocks[left - 1]
+            count, square = 1, 0
+            for k in range(3):
+                middle[k] = low[k] + 0.5 * (block[k, 0] + block[k, 1] + 1) * cell
+                count *= block[k, 1] - block[k, 0] + 1
+                square += (block[k, 1] - block[k, 0] + 1) ** 2
+            if count > _FEW:
+                if _near(middle, corners[n], reach + 0.5 * math.sqrt(square) * cell):
+                    _parted(block, blocks[left])
+                    left += 1
+                else:
+                    left -= 1
+                continue
+            left -= 1
+            for i in range(block[0, 0], block[0, 1] + 1):
+                for j in range(block[1, 0], block[1, 1] + 1):
+                    for k in range(block[2, 0], block[2, 1] + 1):
+                        middle[0], middle[1], middle[2] = (
+                            low[0] + (i + 0.5) * cell,
+                            low[1] + (j + 0.5) * cell,
+                            low[2] + (k + 0.5) * cell,
+                        )
+                        if not _near(middle, corners[n], reach + half):
+                            continue
+                        at = (i * cells[1] + j) * cells[2] + k
+                        if writing:
+                            entries[ends[at]] = n
+                            ends[at] += 1
+                        else:
+                            ends[at + 1] += 1

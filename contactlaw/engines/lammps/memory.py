@@ -15,25 +15,28 @@ from contactlaw._jit import kernel
 
 carray: Any = numba.carray  # type: ignore[attr-defined]
 
-# A bead's history is the code of an error, the bead's ID, and slots for its contacts. (LAMMPS
-# gives a new bead the row that another one has left behind: by the ID it is known.) A slot: the
-# facet's number, counted from 1, negative if the bead is on the side from which the normal points
-# away, 0 if the slot is empty; the state of the contact; the time since first touch [s], summed
-# up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset); approach
-# speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already [J];
-# the overlap [m]; work of the contact's force on the bead, in the wall's frame, and of the wall
-# that moves [J]; a force of this step alone, beside that of the state [N]; whether it was alone on
-# one smooth surface, went across a kink or had company, or has shared its force with another
-# contact; power of the wall's motion by the normal force [W]; the force on the bead without
+# A bead's history is the code of an error, the bead's ID, radius [m], mass [kg] and atom type (from
+# 0) when it began to touch walls, and slots for its contacts. The radius is 0 if it touches none.
+# (LAMMPS gives a new bead the row that another one has left behind: by the ID it is known.) A slot:
+# the facet's number, counted from 1, negative if the bead is on the side from which the normal
+# points away, 0 if the slot is empty; the state of the contact; the time since first touch [s],
+# summed up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset);
+# approach speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already
+# [J]; the overlap [m]; work of the contact's force on the bead, in the wall's frame, and of the
+# wall that moves [J]; a force of this step alone, beside that of the state [N]; whether it was
+# alone on one smooth surface, went across a kink or had company, or has shared its force with
+# another contact; power of the wall's motion by the normal force [W]; the force on the bead without
 # friction [N]; with friction, the three components of the tangential spring [m].
-ERROR, OWNER, FIRST = range(3)
+ERROR, OWNER, RADIUS, MASS, KIND, FIRST = range(6)
 (FACET, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD, OVERLAP,
  WORK, WALL_WORK, KICK, TIED, POWER, PUSH) = range(17)  # fmt: skip
 SPRING = PUSH + 3
 _SLOTS = 8  # contacts that a bead may have at once: a corner has three, a hole as many as edges
 
-(STEP_TOO_LARGE, STARTS_INSIDE, CROSSED, WRONG_MASS, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE,
- NO_MODEL, NO_STEPS) = range(1, 10)  # fmt: skip
+# From STARTS_INSIDE on the bead's contacts mean nothing any more: they are forgotten, and it feels
+# no wall until the run has ended, so that none of them gets into the record.
+(STEP_TOO_LARGE, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE, NO_MODEL, NO_STEPS, STARTS_INSIDE, CROSSED,
+ WRONG_MASS, RESIZED, REWEIGHED, RETYPED, TOO_THIN) = range(1, 14)  # fmt: skip
 
 ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0  # of TIED
 

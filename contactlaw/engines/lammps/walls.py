@@ -7,6 +7,7 @@ do not change, and a grid by which those near a bead are found.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -21,6 +22,7 @@ from contactlaw.equation.waves import Waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Limits
 from contactlaw.softsphere import Spring, unit_spring
+from contactlaw.table.lookup import lam_max
 
 Rows = NDArray[np.void]
 Wall = Plate | Mesh
@@ -33,6 +35,8 @@ SHEET = np.dtype(
         (name, "i8" if "int" in str(kind) else "f8")
         for name, kind in Limits.__annotations__.items()
     ]
+    # largest inelasticity that the model answers; first atom type with the same row on all sheets
+    + [("largest", "f8"), ("alike", "i8")]
     # address and size of the law; 0: there is no model for beads of this type
     + [("law", "i8"), ("law_size", "i8")],
     align=True,
@@ -127,6 +131,11 @@ def compiled(
     for (kinds, thickness), number in sheets.items():
         for kind, model in kinds:
             _fill_sheet(table[kind - 1, number], by_id[model], thickness)
+    _, first_alike, alike = np.unique(
+        table.view((np.uint8, SHEET.itemsize)).reshape(types, -1),
+        axis=0, return_index=True, return_inverse=True,
+    )  # fmt: skip
+    table["alike"] = first_alike[alike.ravel()][:, None]
     facets = np.concatenate([rows for parts in groups.values() for rows in parts])
     frames, held, first = np.zeros(len(groups), FRAME), [], 0
     for number, (motion, parts) in enumerate(groups.items()):
@@ -159,6 +168,9 @@ def _fill_sheet(row: Any, model: ImpactModel, thickness: float) -> None:
     law = model.force_law.data
     row["law"], row["law_size"] = law.ctypes.data, law.size
     row["thickness"] = thickness
+    row["largest"] = math.inf
+    if model.outside == "raise":  # other models are asked for what is beyond their table
+        row["largest"] = lam_max(model.table.packed)
 
 
 def _rectangle(plate: Plate) -> Rows:

@@ -9,7 +9,8 @@ Impacts
     Every approach faster than ``2 |g| dt`` is an impact, also a second one within one overlap. A
     hop from a slower one is over within about a step, and a pile would turn into an endless row of
     them; such a contact rests: restitution 0, never passed to the model, not recorded but counted
-    in ``resting``. A shaken plate adds its acceleration to ``|g|``. Separation is no impact.
+    in ``resting``. A shaken plate adds its acceleration to ``|g|``. Separation is no impact, nor
+    does a bead or a plate hit anything while it is a ``sensor``.
 Beads and plates
     A bead is a circle, a plate a segment or a polygon, whose sides are faces of one plate. Where
     plates share an end or a corner, a bead hits the nearest of them, or of equally near ones the

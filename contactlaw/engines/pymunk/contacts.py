@@ -69,7 +69,7 @@ class Contacts:
                     self._take_up(arbiter, bead, plate)
                 if hooks:
                     _call(hooks, arbiter, space)
-                if not arbiter.process_collision:
+                if not arbiter.process_collision or circle.sensor or shape.sensor:
                     return
                 body: Any = circle.body
                 x, y = body.position
@@ -105,7 +105,7 @@ class Contacts:
                     raise unregistered(circle if bead is None else shape)
                 if hooks:
                     _call(hooks, arbiter, space)
-                if not arbiter.process_collision:
+                if not arbiter.process_collision or circle.sensor or shape.sensor:
                     return
                 body: Any = circle.body
                 other_body: Any = shape.body

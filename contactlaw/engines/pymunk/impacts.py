@@ -285,9 +285,10 @@ class PymunkImpacts:
         structured array
             A copy with the columns of `contactlaw.engines.record.COLUMNS`, which have their units
             there: time, bead, plate, other, x, y, z (0), approach_speed, restitution; if every
-            model is a `ReboundModel` also contact_time, peak_force, plastic_energy, wave_energy and
-            flags. Energies are those of solid spheres (bead on bead: of the relative motion, with
-            the reduced mass).
+            model is a `ReboundModel` also contact_time, peak_force, plastic_energy, wave_energy,
+            other_energy, wall_work (0: the engine does not tell), triangle (-1) and flags. Energies
+            are those of solid spheres (bead on bead: of the relative motion, with the reduced
+            mass); what friction takes is in none of them.
         """
         return self._contacts.record.read(self._roll)
 

@@ -169,11 +169,13 @@ def ends(shape: Face) -> list[pymunk.Vec2d]:
 
 
 def may_meet(circle: pymunk.Circle, shape: pymunk.Shape) -> bool:
-    """Whether both are in one space, and their filters let them meet."""
+    """Whether both are in one space, no sensors, and their filters let them meet."""
     a, b = circle.filter, shape.filter
     grouped = a.group != 0 and a.group == b.group
     masked = not (a.categories & b.mask and b.categories & a.mask)
-    return circle.space is not None and circle.space is shape.space and not (grouped or masked)
+    if circle.space is None or circle.space is not shape.space or circle.sensor or shape.sensor:
+        return False
+    return not (grouped or masked)
 
 
 def body_of(
