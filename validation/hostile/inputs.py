@@ -54,6 +54,8 @@ def faults(count: int, seed: int) -> Iterator[str]:
                 if not _in_words(error):
                     yield f"{pair!r}, law {law}: {error}"
                 continue
+            except UserWarning:  # says how inaccurate the table of this pair is
+                continue
             where = f"{_told(pair)}, law {law}"
             impacts = _impacts(rng, asked)
             for fault in _of_pair(rng, models, impacts, headers=number % _HEADERS == 0):
