@@ -111,7 +111,7 @@ def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = Fa
         raise RuntimeError(
             "numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler"
         )
-    types = numba.core.sigutils.normalize_signature(signature)
+    types = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
     made: Any = CFunc(function, types, {}, {"error_model": "numpy"})
     if cache:
         _keep(made)
@@ -130,7 +130,7 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
     enable_caching()
     dispatcher: Any = function
     dispatcher.compile(signature)
-    types, _ = numba.core.sigutils.normalize_signature(signature)
+    types, _ = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
     entry: Callable[..., Any] = dispatcher.overloads[types].entry_point
     return entry
 
@@ -146,7 +146,7 @@ def _keep(dispatcher: Any) -> None:
     store = dispatcher._cache
     store.save_overload = functools.partial(_save, store.save_overload)
     plain = store._cache_file
-    store._cache_file = _SealedFiles(
+    store._cache_file = _SealedFiles(  # type: ignore[no-untyped-call]
         plain._cache_path, plain._index_name.removesuffix(".nbi"), plain._source_stamp
     )
 
@@ -167,13 +167,15 @@ class _SealedFiles(IndexDataCacheFile):
             file.write(content.getvalue() + _seal(content.getbuffer()))
 
     def _load_index(self) -> Any:
-        return super()._load_index() if _is_whole(self._index_path) else {}
+        if not _is_whole(self._index_path):
+            return {}
+        return super()._load_index()  # type: ignore[no-untyped-call]
 
     def _load_data(self, name: str) -> Any:
-        path = self._data_path(name)
+        path = self._data_path(name)  # type: ignore[no-untyped-call]
         if not _is_whole(path):
             raise OSError(f"{path} is damaged")  # to numba a file that is not there
-        return super()._load_data(name)
+        return super()._load_data(name)  # type: ignore[no-untyped-call]
 
 
 def _seal(content: bytes | memoryview) -> bytes:
