@@ -86,7 +86,10 @@ def test_tables_as_people_write_them(head, rows, table):
         (["speed,COR", "1,", "2,0.4"], "rebound 0 has none of"),
         (["speed,COR", "-1,0.5"], "speed: got -1.0"),
         (["speed,COR,COR_error", "1,0.5,0.01", "2,0.4,"], "restitution_error: got nan"),
-        (["speed,COR", "1.0,0.5", "", "1,5,0.5"], "line 4 has 3 fields, '1,5,0.5', where the first"),
+        (
+            ["speed,COR", "1.0,0.5", "", "1,5,0.5"],
+            "line 4 has 3 fields, '1,5,0.5', where the first",
+        ),
         (["speed,COR", "1,5,0,5"], "a decimal comma? Write numbers with a point"),
         (["speed;COR", "1;0.5;late"], "delete what is beyond the columns"),
         (["speed,COR", "# ours", "1"], "line 3 has 1 field, '1', where the first line names 2"),

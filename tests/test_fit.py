@@ -3,8 +3,12 @@
 import dataclasses
 import pickle
 import re
+import shlex
+import shutil
 import subprocess
 import sys
+import tracemalloc
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +16,7 @@ from scipy import stats
 from scipy.optimize import least_squares
 
 import contactlaw as cl
+from contactlaw.cli import main
 from contactlaw.fitting import errors, notes
 from contactlaw.fitting.predictions import Predictor, Values, impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
@@ -142,6 +147,82 @@ def test_errors_that_are_not_given_are_found_from_the_scatter():
     assert share == pytest.approx(widened / slope, rel=0.02)
     of_each = 100.0 * scatter.std(ddof=1) / scatter.mean()
     assert f"one of {of_each:.2g} % was found from the scatter of 6 values" in " ".join(found.notes)
+
+
+def dense(speed, slenderness, kind, size):
+    """Covariance of the model's errors as a matrix, by its definition."""
+    apart = np.hypot(*(np.log(x)[:, None] - np.log(x) for x in (speed, slenderness)))
+    return size[:, None] * np.exp(-apart) * (kind[:, None] == kind) * size
+
+
+@pytest.mark.parametrize(
+    ("count", "plates", "close"), [(40, "many", 1e-9), (1500, "one", 5e-3), (1500, "many", 6e-2)]
+)
+def test_the_shared_errors_of_the_model_are_those_of_their_matrix(count, plates, close):
+    """Exactly, up to 600 different places; beyond, those in one cell err alike."""
+    random = np.random.default_rng(4)
+    v, h = np.exp(random.uniform(-1.0, 2.0, (2, count))) * [[1.0], [1e-3]]
+    h = h if plates == "many" else np.full(count, THICKNESS)
+    v[1], h[1] = v[0], h[0]  # equal impacts
+    data = cl.Measurements(
+        speed=v, radius=RADIUS, thickness=h, restitution=np.full(count, 0.5),
+        peak_force=np.where(np.arange(count) % 3 == 0, 10.0, np.nan),
+    )  # fmt: skip
+    moved = parameters(STEEL, data, "density", {})
+    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
+    at = np.array([STEEL.sphere.density])
+    shared = errors.model_covariance(predictor, at, predictor.impacts(at))
+    row, kind = predictor.values.row, predictor.values.kind
+    matrix = dense(v[row], RADIUS / h[row], kind, shared.size)
+    error = random.uniform(0.5, 2.0, row.size) * shared.size
+    gain, off = random.standard_normal((2, row.size)) / error, random.standard_normal(row.size)
+    off *= error
+    exact = off @ np.linalg.solve(np.diag(error**2) + matrix, off)
+    assert shared.squares(off, error) == pytest.approx(exact, rel=close)
+    propagated = gain @ matrix @ gain.T
+    assert shared.propagated(gain) == pytest.approx(
+        propagated, rel=close, abs=close * propagated.max()
+    )
+
+
+def test_many_rebounds_take_little_memory():
+    """10,000 took 3.3 GB and 45 s; 2000 would take 250 MB as matrices."""
+    v = np.exp(np.random.default_rng(1).uniform(np.log(0.1), np.log(8.0), 2000))
+    data = rebounds(STEEL, speed=v, noise=0.01, without=("thickness",))
+    tracemalloc.start()
+    found = cl.fit(STEEL, data, "thickness")
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 40e6
+    assert found.values["thickness"] == pytest.approx(
+        THICKNESS, abs=4.0 * found.errors["thickness"]
+    )
+
+
+def test_a_prior_costs_the_share_of_a_value_that_the_data_tell_of_it():
+    """One that is as good as exact costs nothing, one that says nothing is an unknown."""
+    data = cl.Measurements.of(rebounds(STEEL, kinds=KINDS, without=("thickness",)))
+    for prior, told in ((1e-9, 1.0), (0.99, 2.0)):
+        priors = {"density": prior * STEEL.sphere.density}
+        moved = parameters(STEEL, data, "thickness", priors)
+        predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
+        at = np.array([THICKNESS, STEEL.sphere.density])
+        values = predictor.at(at)
+        slopes = predictor.derivatives(at, values)
+        assert errors.told(predictor, slopes, 1e-4 * values) == pytest.approx(told, abs=1e-3)
+
+
+def test_degrees_of_freedom_are_those_of_the_values_that_tell():
+    """Of two equal parts with 4 and 4 they are 8; of one alone its own."""
+    data = cl.Measurements.of(rebounds(STEEL, kinds=KINDS[:2], without=("thickness",)))
+    moved = parameters(STEEL, data, "thickness", {})
+    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
+    first = predictor.values.kind == 0
+    parts = [(first, 4.0), (~first, 4.0)]
+    even, one_sided = np.ones((24, 1)), first[:, None].astype(float)
+    for slopes, freedom in ((even, 8.0), (one_sided, 4.0)):
+        found = errors.freedoms(predictor, slopes, np.full(24, 0.01), parts)
+        assert found == pytest.approx(freedom, rel=1e-6)
 
 
 def test_a_prior_enters_the_error():
@@ -353,6 +434,20 @@ def test_finite_elements_that_no_fit_has_seen():
     thin = [one for one in sizes if one.slenderness > 0.9 and not one.flagged]
     assert elements.score(thin).within[1] == 1.0
     assert elements.score(sizes).covered[1] >= 0.85
+
+
+def test_the_page_prints_what_the_command_prints(capsys, monkeypatch, tmp_path):
+    """Command and output, as they stand in docs/fit.md."""
+    docs = Path(__file__).parent.parent / "docs"
+    command, shown = re.search(
+        r"(contactlaw fit rebounds.csv .*?)```\n\n```text\n(.*?)```",
+        (docs / "fit.md").read_text("utf-8"), re.DOTALL,
+    ).groups()  # fmt: skip
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(docs / "examples/rebounds.csv", tmp_path)
+    assert main(shlex.split(command.replace("\\\n", " "))[1:]) == 0
+    printed = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
+    assert printed[: len(shown.splitlines())] == shown.splitlines()
 
 
 SETS = 30

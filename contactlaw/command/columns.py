@@ -116,7 +116,11 @@ def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
 
 
 def numbers(
-    rows: Sequence[str], delimiter: str, count: int, wanted: list[int], read: Callable[[str], float] = float
+    rows: Sequence[str],
+    delimiter: str,
+    count: int,
+    wanted: list[int],
+    read: Callable[[str], float] = float,
 ) -> Array:
     """Read some columns of a table's rows.
 
@@ -158,11 +162,15 @@ def _check_fields(rows: Sequence[str], delimiter: str, count: int) -> None:
     for line, row in enumerate(rows, start=2):
         fields = next(csv.reader([row], delimiter=delimiter)) if row else []
         if row and len(fields) != count:
-            named = f"{count} column{'s' * (count > 1)}"
+            why = _why(row, delimiter, len(fields) > count)
             raise ValueError(
-                f"line {line} has {len(fields)} field{'s' * (len(fields) != 1)}, {row[:80]!r}, where the first line names "
-                f"{named}: {_why(row, delimiter, len(fields) > count)}"
+                f"line {line} has {_counted(len(fields), 'field')}, {row[:80]!r}, where the first "
+                f"line names {_counted(count, 'column')}: {why}"
             )
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"
 
 
 def _why(row: str, delimiter: str, more: bool) -> str:

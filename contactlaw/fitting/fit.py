@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -226,7 +226,7 @@ def _found(predictor: Predictor, descent: search.Descent) -> _Found:
             "out, give priors, or measure more"
         )
     unknown = np.isnan(values.error)
-    error = np.where(unknown, search.GUESSED * values.value, values.error)
+    error = search.guessed(values)
     basins = [descent(one.at, error) for one in search.basins(predictor)]
     if not unknown.any():
         return _Found(search.distinct(basins), error, math.inf)
@@ -254,21 +254,35 @@ def _found_errors(
     freedom = math.nan
     for _ in range(_SETTLED):
         freedom = values.value.size - errors.told(predictor, slopes, error)
-        error = np.where(unknown, _scatter(values, fitted, unknown, freedom) * fitted, error)
+        error = np.where(unknown, _scatter(values, fitted, freedom) * fitted, error)
     return error, freedom
 
 
-def _scatter(values: Values, fitted: Array, unknown: NDArray[np.bool_], freedom: float) -> Array:
+def _scatter(values: Values, fitted: Array, freedom: float) -> Array:
     """Relative error of each value whose own is not known, from the scatter of its kind."""
     off = values.value / fitted - 1.0
     share = freedom / values.value.size
-    pooled = float(np.sqrt(np.mean(off[unknown] ** 2) / share))
-    found = np.full(off.size, max(pooled, _LEAST))
-    for kind in np.unique(values.kind[unknown]):
-        of_kind = (values.kind == kind) & unknown
-        if np.count_nonzero(of_kind) >= _POOLED:
-            found[of_kind] = max(float(np.sqrt(np.mean(off[of_kind] ** 2) / share)), _LEAST)
+    found = np.full(off.size, _LEAST)
+    for part, of in _pools(values):
+        found[part] = max(float(np.sqrt(np.mean(off[of] ** 2) / share)), _LEAST)
     return found
+
+
+def _pools(values: Values) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
+    """Values that are given one error, and those from whose scatter it is found.
+
+    They are the values of a kind, but of all kinds where it has few.
+    """
+    unknown = np.isnan(values.error)
+    kinds = [(values.kind == kind) & unknown for kind in np.unique(values.kind[unknown])]
+    few = np.zeros_like(unknown)
+    for of_kind in kinds:
+        if np.count_nonzero(of_kind) >= _POOLED:
+            yield of_kind, of_kind
+        else:
+            few |= of_kind
+    if few.any():
+        yield few, unknown
 
 
 @dataclass(frozen=True, eq=False)
@@ -284,23 +298,29 @@ class _State:
 def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit:
     at, error, freedom = ended.basins[0].at, ended.error, ended.freedom
     values, names = predictor.values, tuple(one.name for one in predictor.moved if one.wanted)
-    x = np.log(at)
-    fitted = descent.predicted(x)
-    model = errors.model_covariance(predictor, at)
-    found = errors.covariances(predictor, descent.slopes(x), error, model)
+    fitted = descent.predicted(np.log(at))
     hit = predictor.impacts(at)
+    model = errors.model_covariance(predictor, at, hit)
+    slopes = predictor.derivatives(at, fitted)  # those on the way may be from nearby
+    found = errors.covariances(predictor, slopes, error, model)
     asked = slice(len(names))  # they come first
     own = None if model is None else model.size
     # a value that only the model leaves open is given with the error that this makes
     doubt = error if freedom > 0.0 or own is None else own
     _check_strengths(predictor, at, fitted, doubt)
-    found = found.widened(errors.student(freedom) if freedom > 0.0 else 0.0)
+    widths = np.zeros(at.size)
+    if freedom > 0.0:
+        share = freedom / values.value.size
+        pools = [(part, np.count_nonzero(of) * share) for part, of in _pools(values)]
+        each = errors.freedoms(predictor, slopes, error, pools)
+        widths = np.array([errors.student(one) for one in each.tolist()])
+    found = found.widened(widths)
     total = found.total[asked, asked]
     identify.check(names, at[asked], (found.statistical if freedom > 0.0 else total)[asked, asked])
     spread = np.sqrt(np.diag(total))
     if len(at) == 1 and predictor.moved[0].prior is None:
         own_spread = math.sqrt(found.statistical[0, 0]) if freedom > 0.0 else float(spread[0])
-        _check_reach(predictor, at, own_spread, doubt)
+        _check_reach(predictor, at, fitted, own_spread, doubt)
     others = _alternatives(predictor, ended, np.sqrt(np.diag(found.total)), model)
     off = values.value / fitted - 1.0
     kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
@@ -324,7 +344,11 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit
         notes=tuple(
             [
                 *notes(
-                    predictor, at, hit, error / fitted, freedom,
+                    predictor,
+                    at,
+                    hit,
+                    error / fitted,
+                    freedom,
                     None if own is None else own / fitted,
                 ),
                 *(also(names, other) for other in others),
@@ -368,7 +392,9 @@ def _squares(predictor: Predictor, values: Array, error: Array) -> float:
     return float(off @ off)
 
 
-def _check_reach(predictor: Predictor, at: Array, spread: float, error: Array) -> None:
+def _check_reach(
+    predictor: Predictor, at: Array, fitted: Array, spread: float, error: Array
+) -> None:
     """Refuse a value that the data hold on one side only, as a thickness that may be any larger.
 
     Two standard errors off, fitted values have to be off by a square of 4, if they go on as they
@@ -381,7 +407,7 @@ def _check_reach(predictor: Predictor, at: Array, spread: float, error: Array) -
     low, high = search.limits(predictor)
     for sign, words in ((1.0, "above"), (-1.0, "below")):
         there = np.clip(at * math.exp(2.0 * sign * spread), low, high)
-        off = (predictor.at(there) - predictor.at(at)) / error
+        off = (predictor.at_each(there[None])[0] - fitted) / error
         if float(off @ off) < _HELD:
             name, end = predictor.moved[0].name, float(at[0]) * math.exp(-2.0 * sign * spread)
             raise identify.UnidentifiedError(
@@ -406,7 +432,7 @@ def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Arra
         if one.is_strength and one.wanted and one.prior is None:
             strong = at.copy()
             strong[n] = search.limits(predictor)[1][n]
-            if squares(predictor.at(strong)) < squares(fitted) + _EXCLUDED:
+            if squares(predictor.at_each(strong[None])[0]) < squares(fitted) + _EXCLUDED:
                 why = _least_strength(predictor, strong, n, squares)
                 raise identify.UnidentifiedError(
                     f"unknown: the data do not tell {one.name}: {why}", (one.name,)
@@ -417,11 +443,11 @@ def _least_strength(
     predictor: Predictor, strong: Array, n: int, squares: Callable[[Array], float]
 ) -> str:
     """Say from which strength on the data exclude none."""
-    trial, high = strong.copy(), squares(predictor.at(strong)) + _EXCLUDED
+    trial, high = strong.copy(), squares(predictor.at_each(strong[None])[0]) + _EXCLUDED
     low = search.limits(predictor)[0][n]
     for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
         trial[n] = strong[n] * factor
-        if squares(predictor.at(trial)) > high:
+        if squares(predictor.at_each(trial[None])[0]) > high:
             return (
                 f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
                 "yield enough. Measure faster impacts"

@@ -135,7 +135,7 @@ class Predictor:
     def _derivative(self, values: Array, here: Array, n: int) -> Array:
         try:
             return self._difference(values, here, n, _STEP)
-        except ValueError:  # values at the edge of what a solid may be have answers on one side
+        except (UnsolvedError, ValueError):  # at the edge of what the model answers: on one side
             return self._difference(values, here, n, -_STEP)
 
     def _difference(self, values: Array, here: Array, n: int, step: float) -> Array:

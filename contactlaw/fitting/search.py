@@ -24,7 +24,8 @@ from contactlaw.fitting.unknowns import Parameter, bounds
 Array = NDArray[np.float64]
 
 _ROWS = 8  # rebounds of a kind that a scan looks at, from the slowest to the fastest
-GUESSED = 0.02  # relative error of values whose own is not known, until it is found
+_MANY = 200  # of a kind, with which least squares come near to the end
+_GUESSED = 0.02  # relative error of values whose own is not known, until it is found
 _CONVERGED = 1e-7  # of the sum of squares: 3e-4 of a standard error, and less
 _NEAR = 0.02  # of a logarithm: as near as that, derivatives that need another law are kept
 # Points of an axis that takes a law for each, by how many such axes there are: a law takes 10 ms.
@@ -35,6 +36,9 @@ _SLENDEREST, _THICKEST = 6.0, 0.03  # R/H; a plate thinner than R/6 gives no reb
 _RADII = np.geomspace(1e-5, 0.05, 16)  # [m]
 _FINER = (0, 16, 8, 3)  # points of the fine grid in a step of the coarse, by the unknowns
 _BETWEEN = 0.01  # relative error of what the splines tell between the points
+_CHAIN = 40  # lowest points of the fine grid from which least squares between its points start
+_CLOSE = 0.05  # of a logarithm: two of these that end as near as that are one minimum
+_INSIDE = np.array([[1e-9], [-1e-9]])  # of the grid, where least squares may start
 _MOST = 6  # basins of the scan from which least squares start
 _STEPS = 6  # by which these show whether a basin may be the best: splines lead to 1 % of it
 # Basins with sums of squares above this and 3 times the least cannot become the best one with all
@@ -76,11 +80,21 @@ def basins(predictor: Predictor) -> list[Basin]:
 
     They are those of a few rebounds, if there are many.
     """
-    few = _few(predictor)
-    error = few.values.error
-    error = np.where(np.isnan(error), GUESSED * few.values.value, error)
-    descent = Descent(few)
-    return distinct([descent(start, error, _STEPS) for start in scan(few, error)])
+    few = _few(predictor, _ROWS)
+    found = _descents(few, scan(few), _STEPS)
+    if len(predictor.data) > _MANY:  # nearer, before all of them are predicted at each step
+        found = _descents(_few(predictor, _MANY), [one.at for one in found])
+    return found
+
+
+def _descents(predictor: Predictor, starts: list[Array], *steps: int) -> list[Basin]:
+    descent, error = Descent(predictor), guessed(predictor.values)
+    return distinct([descent(start, error, *steps) for start in starts])
+
+
+def guessed(values: Values) -> Array:
+    """Errors of the values, a guess where they are not known."""
+    return np.where(np.isnan(values.error), _GUESSED * values.value, values.error)
 
 
 def distinct(found: list[Basin]) -> list[Basin]:
@@ -93,23 +107,50 @@ def distinct(found: list[Basin]) -> list[Basin]:
     return kept
 
 
-def scan(predictor: Predictor, error: Array) -> list[Array]:
+def scan(predictor: Predictor) -> list[Array]:
     """Values in each basin that a grid shows, the best first."""
-    from scipy import ndimage
-
     axes = _axes(predictor)
     sizes = [axis.size for axis in axes.points]
     fine, predicted = _finer(axes, _predicted(predictor, axes).reshape(*sizes, -1))
-    soft = np.hypot(error, _BETWEEN * predictor.values.value)
-    squares = (((predicted - predictor.values.value) / soft) ** 2).sum(axis=-1)
+    soft = np.hypot(guessed(predictor.values), _BETWEEN * predictor.values.value)
+    off = (predicted - predictor.values.value) / soft
+    low, high = limits(predictor)
+    return [np.clip(axes.values(one), low, high) for one in _bottoms(fine, off)[:_MOST]]
+
+
+def _bottoms(axes: list[Array], off: Array) -> list[Array]:
+    """Minima of the sum of squares of a grid of residuals, the best first; a row for each.
+
+    A narrow valley across the grid has a chain of lowest points. Least squares between the points
+    go down from each, and what comes out is one minimum, so that no chain hides another valley.
+    """
+    from scipy import interpolate, ndimage
+
+    squares = (off**2).sum(axis=-1)
     lowest = squares <= ndimage.minimum_filter(squares, 3, mode="nearest")
-    # where nothing yields, all strengths give one sum: a plateau is one basin
+    # where nothing yields, all strengths give one sum: a plateau is one place
     regions, count = ndimage.label(lowest, np.ones([3] * squares.ndim))
     places = ndimage.minimum_position(squares, regions, range(1, count + 1))
-    places = sorted(places, key=lambda place: float(squares[place]))[:_MOST]
-    low, high = limits(predictor)
-    coordinates = (np.array([axis[n] for axis, n in zip(fine, p, strict=True)]) for p in places)
-    return [np.clip(axes.values(one), low, high) for one in coordinates]
+    places = sorted(places, key=lambda place: float(squares[place]))[:_CHAIN]
+    free = [n for n, axis in enumerate(axes) if axis.size > 1]
+    between = interpolate.RegularGridInterpolator(
+        [axes[n] for n in free], off.reshape(*(axes[n].size for n in free), -1)
+    )
+    ends = [(axes[n][0], axes[n][-1]) for n in free]
+    bottoms: list[tuple[float, Array]] = []
+    for place in places:
+        start = np.clip([axes[n][place[n]] for n in free], *(np.array(ends).T + _INSIDE))
+        done = optimizer().least_squares(
+            lambda x: between(x)[0], start, bounds=np.array(ends).T, ftol=1e-3, max_nfev=20
+        )
+        bottoms.append((float(done.cost), done.x))
+    kept: list[Array] = []
+    for _, x in sorted(bottoms, key=lambda one: one[0]):
+        if all(np.abs(x - other).max() > _CLOSE for other in kept):
+            kept.append(x)
+    found = np.array([[axis[0] for axis in axes]] * len(kept))
+    found[:, free] = kept
+    return list(found)
 
 
 class _Axes(NamedTuple):
@@ -157,13 +198,13 @@ def _finer(axes: _Axes, predicted: Array) -> tuple[list[Array], Array]:
     return fine, predicted
 
 
-def _few(predictor: Predictor) -> Predictor:
-    """The same for a few of the rebounds."""
-    rows = _some(predictor.values, predictor.data)
+def _few(predictor: Predictor, count: int) -> Predictor:
+    """Take only a few of the rebounds, so many of each kind."""
+    rows = _some(predictor.values, predictor.data, count)
     return replace(predictor, data=_part(predictor.data, rows), values=predictor.values.part(rows))
 
 
-def _some(values: Values, data: Measurements) -> NDArray[np.intp]:
+def _some(values: Values, data: Measurements, count: int) -> NDArray[np.intp]:
     """Rebounds of each kind, evenly over the speeds, and over the sizes if these differ."""
     chosen: set[int] = set()
     for given in (data.speed, data.radius, data.thickness):
@@ -173,7 +214,7 @@ def _some(values: Values, data: Measurements) -> NDArray[np.intp]:
         for kind in np.unique(values.kind):
             rows = values.row[values.kind == kind]
             rows = rows[np.argsort(along[rows], kind="stable")]
-            at = np.linspace(0, rows.size - 1, min(_ROWS, rows.size)).round().astype(int)
+            at = np.linspace(0, rows.size - 1, min(count, rows.size)).round().astype(int)
             chosen.update(rows[at].tolist())
     return np.array(sorted(chosen))
 
@@ -285,9 +326,12 @@ class Descent:
             return np.vstack([self.slopes(x) / error[:, None], pull])
 
         margin = 1e-6 * (self._high - self._low)
+        first = np.clip(np.log(start), self._low + margin, self._high - margin)
+        if not np.isfinite(residuals(first)).all():  # the model has no answer there
+            return Basin(start, math.inf)
         found = optimizer().least_squares(
             residuals,
-            np.clip(np.log(start), self._low + margin, self._high - margin),
+            first,
             slopes,
             bounds=(self._low, self._high),
             x_scale="jac",

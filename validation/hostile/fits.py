@@ -1,4 +1,4 @@
-"""Fits of two unknowns to exact data: what is found is true within two stated errors, or a note says more.
+"""Fits of two unknowns to exact data: right within two stated errors, or a note says more.
 
 Beads and plates of the catalogue, R 0.1 to 5 mm, R/H 0.1 to 1.8, 6 to 16 speeds, one to three kinds
 of values that are exact and said to be so within 1 %, any two of the eight unknowns.

@@ -140,7 +140,8 @@ def _model_error(
     moved = parameters(one.pair, data, "density", {})
     values = Values.of(data)
     predictor = Predictor(one.pair, law_of(one.pair, law), data, moved, values)
-    covariance = errors.model_covariance(predictor, np.array([one.pair.sphere.density]))
+    at = np.array([one.pair.sphere.density])
+    covariance = errors.model_covariance(predictor, at, predictor.impacts(at))
     if covariance is None:
         return {}
     alike = covariance.alike[np.ix_(covariance.cell, covariance.cell)]
