@@ -101,42 +101,32 @@ def _forget(row: Any) -> None:
 
 
 @kernel
-def _check_sphere(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
+def _check_sphere(
+    shared: Any, sheets: Any, step: int, tag: int, row: Any, r: float, mass: float, kind: int
+) -> None:
     """Complain of a bead that touches walls and is no more the sphere that began to touch them."""
-    row = bead.history
-    kind = int(row[KIND])
-    if not _same(bead.r, row[RADIUS]):
-        code, value, before = RESIZED, bead.r, row[RADIUS]
-    elif not _same(bead.mass, row[MASS]):
-        code, value, before = REWEIGHED, bead.mass, row[MASS]
-    elif (
-        kind != bead.kind
-        and walls.sheets[kind * shared.sheet_count].alike
-        != walls.sheets[bead.kind * shared.sheet_count].alike
-    ):
-        code, value, before = RETYPED, bead.kind + 1.0, kind + 1.0
-    else:
-        return
-    complain(shared, clock.step, bead.tag, row, code, -1, value, before)
+    before = int(row[KIND])
+    if not _same(r, row[RADIUS]):
+        complain(shared, step, tag, row, RESIZED, -1, r, row[RADIUS])
+    elif not _same(mass, row[MASS]):
+        complain(shared, step, tag, row, REWEIGHED, -1, mass, row[MASS])
+    elif kind != before:
+        count = shared.sheet_count
+        if sheets[kind * count].alike != sheets[before * count].alike:
+            complain(shared, step, tag, row, RETYPED, -1, kind + 1.0, before + 1.0)
 
 
 @kernel
-def _feel(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
-    """Add the force of the walls to a bead, unless its contacts mean nothing any more."""
-    row = bead.history
-    touched = row[OWNER] == bead.tag and row[RADIUS] != 0.0
-    if touched:
-        _check_sphere(shared, clock, walls, bead)
-    if not row[ERROR] >= STARTS_INSIDE:
-        interact(shared, clock, walls, bead)
-    if row[OWNER] != bead.tag:
+def _keep_sphere(shared: Any, tag: int, row: Any, r: float, mass: float, kind: int) -> None:
+    """Remember a bead that has begun to touch walls; forget contacts that mean nothing any more."""
+    if row[OWNER] != tag:
         return
     if row[ERROR] >= STARTS_INSIDE:
         _forget(row)
     elif not touches(row, shared):
         row[RADIUS] = 0.0
-    elif not touched:
-        row[RADIUS], row[MASS], row[KIND] = bead.r, bead.mass, bead.kind
+    elif row[RADIUS] == 0.0:
+        row[RADIUS], row[MASS], row[KIND] = r, mass, kind
 
 
 @kernel
@@ -233,20 +223,25 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             continue
         if not near(walls.frames, centre, radius[i] * length):
             continue
+        row, r, heavy = history[i], radius[i] * length, mass[i] * shared.mass
+        if row[OWNER] == tags[i] and row[RADIUS] != 0.0:
+            _check_sphere(shared, walls.sheets, step, tags[i], row, r, heavy, kind[i] - 1)
         bead = Bead(
             tags[i],
             kind[i] - 1,
             centre,
             (v[i, 0] * per, v[i, 1] * per, v[i, 2] * per),
             (omega[i, 0] / seconds, omega[i, 1] / seconds, omega[i, 2] / seconds),
-            radius[i] * length,
-            mass[i] * shared.mass,
+            r,
+            heavy,
             force[i],
             torque[i],
-            history[i],
+            row,
             last[i : i + 1],
         )
-        _feel(shared, clock, walls, bead)
+        if not row[ERROR] >= STARTS_INSIDE:
+            interact(shared, clock, walls, bead)
+        _keep_sphere(shared, tags[i], row, r, heavy, kind[i] - 1)
 
 
 @functools.cache
