@@ -82,8 +82,10 @@ def test_the_force_on_meshes_has_a_continuous_potential(name):
                 energies[n] = energy(made.frames, made.facets, bead, found, force)
                 forces[n] = force
             work = 2.5 * (0.5 * (forces[1:] + forces[:-1]) * np.diff(way, axis=0)).sum()
-            errors.append(abs(work + energies[-1] - energies[0]) / energies.max())
+            errors.append(
+                abs(work + energies[-1] - energies[0]) / max(energies.max(), (0.02 * r) ** 2.5)
+            )
         worst.append(errors)
-    coarse, fine = np.max(worst, axis=0)
-    assert fine < 5e-4
-    assert fine < 0.5 * coarse or coarse < 1e-5
+    assert np.max(worst, axis=0)[1] < 5e-4
+    coarse, fine = np.mean(worst, axis=0)  # a kink's error depends on where in a piece it lies
+    assert fine < 0.4 * coarse

@@ -587,7 +587,9 @@ def interact(shared: Any, clock: Clock, walls: Walls, bead: Bead) -> None:
     sharing = join(bead.r, found, count)
     if clock.advancing:
         _hand_over(shared, clock, walls, bead, count)
-    held, tie = touches(row, shared), SHARING if sharing else _company(row, shared)
+    held, tie = touches(row, shared), ALONE
+    if count > 1:  # most beads have one contact, and their slots are far from each other in memory
+        tie = SHARING if sharing else _company(row, shared)
     for k in range(shared.slots):
         at = FIRST + k * shared.width
         if row[at + FACET] == 0.0:

@@ -268,6 +268,9 @@ def join(r: float, found: Any, count: int) -> bool:
     Whether two contacts share anything.
     """
     first, single, sharing = 0, True, False
+    if count == 1:
+        found[0].surface, found[0].shared = 0, 0.0
+        return False
     for n in range(1, count):
         if _rank(found[n], r) < _rank(found[first], r):
             first = n
