@@ -25,7 +25,7 @@ from contactlaw.export import header
 from contactlaw.softsphere import Contacts
 
 FULL = 1_600_000
-_EACH = 12_000  # impacts of a pair
+_EACH = 8_000  # impacts of a pair
 _OUTSIDE: tuple[Outside, ...] = ("raise", "clamp", "solve")
 _LAWS = ("fem", "fem", "fem", "myc", "hertz", "stronge")
 _SOLVED = 40  # of the impacts of a pair are integrated: they take the longest
