@@ -115,7 +115,8 @@ def scan(predictor: Predictor) -> list[Array]:
     soft = np.hypot(guessed(predictor.values), _BETWEEN * predictor.values.value)
     off = (predicted - predictor.values.value) / soft
     low, high = limits(predictor)
-    return [np.clip(axes.values(one), low, high) for one in _bottoms(fine, off)[:_MOST]]
+    bottoms = _bottoms(fine, off) if off[..., 0].size > 1 else [np.concatenate(fine)]
+    return [np.clip(axes.values(one), low, high) for one in bottoms[:_MOST]]
 
 
 def _bottoms(axes: list[Array], off: Array) -> list[Array]:
