@@ -117,6 +117,19 @@ def test_a_plate_that_is_too_thin(law, ratio):
     lmp.close()
 
 
+def test_a_foil_is_refused_whatever_the_model_would_integrate():
+    """The lookup's own limit, R/H = 100."""
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside="solve")
+    with pytest.raises(ValueError, match="thickness: .* R/H = 120"):
+        model.restitution(5.0, R, R / 120)
+    lmp = make((0, 0, R + 1e-5), (0, 0, -5))
+    walls = attach(lmp, model, [flat(R / 120)])
+    with pytest.raises(RuntimeError, match=r"thickness: .*R/H = 120 is above 100.*thicker"):
+        lmp.command("run 2000")
+    assert len(walls.collisions()) == 0
+    lmp.close()
+
+
 def test_a_plate_that_is_thin_and_integrated_all_the_same():
     """As the model does it with ``outside="solve"``: hardly any rebound, and a flag."""
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside="solve")

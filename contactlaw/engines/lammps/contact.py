@@ -58,6 +58,7 @@ from contactlaw.equation import force
 from contactlaw.equation.waves import Waves
 from contactlaw.physical.validity import Limits, flags_of
 from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, inelasticity, resized
+from contactlaw.table.lookup import THINNEST
 
 Array = NDArray[np.float64]
 
@@ -147,7 +148,7 @@ def _begin(
     spring: Spring,
     x: float,
     u: float,
-    largest: float,
+    sheet: Any,
 ) -> None:
     """Start a contact, or the next one of a bead that comes back before it has parted."""
     row = bead.history
@@ -159,8 +160,11 @@ def _begin(
     if u > 0.0:
         _check_step(shared, clock, bead, wall, spring, u)
         lam, _, _ = inelasticity(spring, u)
-        if lam > largest:
-            complain(shared, clock.step, bead.tag, row, memory.TOO_THIN, wall, lam, largest)
+        if not THINNEST * bead.r <= sheet.thickness:
+            ratio = bead.r / sheet.thickness
+            complain(shared, clock.step, bead.tag, row, memory.FOIL, wall, ratio, 1.0 / THINNEST)
+        elif lam > sheet.largest:
+            complain(shared, clock.step, bead.tag, row, memory.TOO_THIN, wall, lam, sheet.largest)
 
 
 @kernel
@@ -342,7 +346,7 @@ def _normal(
         if row[at + KICK] == 0.0 and _kinked(held, n, v, clock.dt, bead.r - touch.x):
             row[at + TIED] = max(row[at + TIED], UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
-        _begin(shared, clock, bead, contact.wall, at, spring, touch.x, u, sheet.largest)
+        _begin(shared, clock, bead, contact.wall, at, spring, touch.x, u, sheet)
     else:
         first = 0.0 < row[at + DURATION] < clock.before
         if not touch.face and last.force > 0.0 and first and row[at + TIED] == ALONE:

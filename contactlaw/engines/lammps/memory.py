@@ -36,7 +36,7 @@ _SLOTS = 8  # contacts that a bead may have at once: a corner has three, a hole 
 # From STARTS_INSIDE on the bead's contacts mean nothing any more: they are forgotten, and it feels
 # no wall until the run has ended, so that none of them gets into the record.
 (STEP_TOO_LARGE, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE, NO_MODEL, NO_STEPS, STARTS_INSIDE, CROSSED,
- WRONG_MASS, RESIZED, REWEIGHED, RETYPED, TOO_THIN) = range(1, 14)  # fmt: skip
+ WRONG_MASS, RESIZED, REWEIGHED, RETYPED, TOO_THIN, FOIL) = range(1, 15)  # fmt: skip
 
 ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0  # of TIED
 
