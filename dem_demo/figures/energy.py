@@ -19,7 +19,7 @@ _PARTS = _KEPT, *_ = (
     ("kept by the bead", style.PALE),
     ("bending wave in the plate", style.BLUE),
     ("plastic flow at the contact", style.ORANGE),
-    ("friction and vibration", style.GREEN),
+    ("micro-slip and vibration", style.GREEN),
 )
 _LOST = ("lost, nobody knows where", style.MUTED)
 _ROOM = 4.5  # [%]: the height of a number

@@ -37,8 +37,8 @@ _MESSAGES = {
         "beads (ImpactModel(..., outside='solve') integrates what is not known)"
     ),
     memory.FOIL: (
-        "thickness: the plate is a foil beside the bead, R/H = {value:.4g} is above {limit:.4g}, and "
-        "nothing is known of such impacts; take a thicker plate or smaller beads"
+        "thickness: the plate is a foil beside the bead, R/H = {value:.4g} is above {limit:.4g}, "
+        "and nothing is known of such impacts; take a thicker plate or smaller beads"
     ),
     memory.CROSSED: (
         "its centre went through the plate at {value:.4g} m/s, pushed by what is stronger than the "

@@ -18,7 +18,7 @@ _PARTS = (
     ("moving", "kinetic energy of the beads", style.PALE),
     ("wave", "bending wave in the sheet", style.BLUE),
     ("plastic", "lost at the contact", style.ORANGE),
-    ("vibration", "friction and vibration at the contact", style.VERMILION),
+    ("vibration", "micro-slip and vibration at the contact", style.VERMILION),
     ("others", "bead on bead, sliding friction", style.GREEN),
 )
 
