@@ -54,7 +54,7 @@ class Errors(NamedTuple):
         return np.asarray(self.statistical + self.model)
 
     def widened(self, factors: Array) -> Errors:
-        """Those of the data times factors, to the errors of each parameter."""
+        """Take those of the data times factors, to the errors of each parameter."""
         return Errors(self.statistical * np.outer(factors, factors), self.model)
 
 
@@ -145,11 +145,14 @@ def freedoms(
         return np.asarray(np.diag(statistical) ** 2 / doubt)
 
 
-def told(predictor: Predictor, slopes: Array, error: Array) -> float:
-    """How many numbers the values tell: each that is free, and of one with a prior a share."""
+def told(predictor: Predictor, slopes: Array, error: Array) -> Array:
+    """How many numbers each value tells: its leverage.
+
+    The sum over all values is one for each number that is free, and a share for one with a prior.
+    """
     scaled = slopes / error[:, None]
-    own = scaled.T @ scaled
-    return float(np.trace(np.linalg.solve(own + _held(predictor), own)))
+    solved = np.linalg.solve(scaled.T @ scaled + _held(predictor), scaled.T)
+    return np.asarray(np.einsum("ij,ji->i", scaled, solved))
 
 
 def _held(predictor: Predictor) -> Array:

@@ -24,11 +24,13 @@ from contactlaw.physical.scaling import law_of
 Array = NDArray[np.float64]
 
 _ROUNDS = 2  # of finding errors that are not known; the third changes them by less than 1 %
+_LEAST_FREEDOM = 0.5  # of a kind: one whose values are all spent has an error nevertheless
 _SETTLED = 6  # rounds in which errors of the data and what they tell of priors agree
 _LEAST = 1e-6  # of them, relatively: data without any scatter
 _POOLED = 4  # values of a kind, below which its scatter is that of all kinds
 _TRIALS = 40  # strengths, down to the first that the data exclude
 _EXCLUDED = 4.0  # above the least sum of squares: two standard errors
+_CURVED = 0.02  # of a logarithm: smaller errors are too short to be bent
 _HELD = 2.0  # square by which values are off at two standard errors, where 4 is usual
 
 
@@ -245,27 +247,20 @@ def _found_errors(
 ) -> tuple[Array, float]:
     """Errors of the values, from their scatter where they were not given; degrees of freedom.
 
-    Each number that the data tell costs a degree. One with a prior costs the share that they tell
-    of it, which depends on the errors.
+    Each number that the data tell costs the kind of values that tell it a degree. One with a prior
+    costs the share that they tell of it. Both depend on the errors, which follow from them.
     """
     values = predictor.values
-    unknown = np.isnan(values.error)
     fitted, slopes = descent.predicted(np.log(at)), descent.slopes(np.log(at))
-    freedom = math.nan
-    for _ in range(_SETTLED):
-        freedom = values.value.size - errors.told(predictor, slopes, error)
-        error = np.where(unknown, _scatter(values, fitted, freedom) * fitted, error)
-    return error, freedom
-
-
-def _scatter(values: Values, fitted: Array, freedom: float) -> Array:
-    """Relative error of each value whose own is not known, from the scatter of its kind."""
     off = values.value / fitted - 1.0
-    share = freedom / values.value.size
-    found = np.full(off.size, _LEAST)
-    for part, of in _pools(values):
-        found[part] = max(float(np.sqrt(np.mean(off[of] ** 2) / share)), _LEAST)
-    return found
+    left = np.ones_like(off)
+    for _ in range(_SETTLED):
+        left = 1.0 - errors.told(predictor, slopes, error)
+        error = error.copy()
+        for part, of in _pools(values):
+            square = float(np.sum(off[of] ** 2)) / max(float(left[of].sum()), _LEAST_FREEDOM)
+            error[part] = max(math.sqrt(square), _LEAST) * fitted[part]
+    return error, float(left.sum())
 
 
 def _pools(values: Values) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
@@ -310,17 +305,17 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit
     _check_strengths(predictor, at, fitted, doubt)
     widths = np.zeros(at.size)
     if freedom > 0.0:
-        share = freedom / values.value.size
-        pools = [(part, np.count_nonzero(of) * share) for part, of in _pools(values)]
+        left = 1.0 - errors.told(predictor, slopes, error)
+        pools = [(part, max(float(left[of].sum()), _LEAST_FREEDOM)) for part, of in _pools(values)]
         each = errors.freedoms(predictor, slopes, error, pools)
         widths = np.array([errors.student(one) for one in each.tolist()])
     found = found.widened(widths)
     total = found.total[asked, asked]
     identify.check(names, at[asked], (found.statistical if freedom > 0.0 else total)[asked, asked])
+    both = found.statistical if freedom > 0.0 else found.total
+    found = found.widened(_reach(predictor, at, fitted, both, doubt))
+    total = found.total[asked, asked]
     spread = np.sqrt(np.diag(total))
-    if len(at) == 1 and predictor.moved[0].prior is None:
-        own_spread = math.sqrt(found.statistical[0, 0]) if freedom > 0.0 else float(spread[0])
-        _check_reach(predictor, at, fitted, own_spread, doubt)
     others = _alternatives(predictor, ended, np.sqrt(np.diag(found.total)), model)
     off = values.value / fitted - 1.0
     kinds = {name: values.kind == n for n, name in enumerate(KINDS) if (values.kind == n).any()}
@@ -392,29 +387,42 @@ def _squares(predictor: Predictor, values: Array, error: Array) -> float:
     return float(off @ off)
 
 
-def _check_reach(
-    predictor: Predictor, at: Array, fitted: Array, spread: float, error: Array
-) -> None:
-    """Refuse a value that the data hold on one side only, as a thickness that may be any larger.
+def _reach(
+    predictor: Predictor, at: Array, fitted: Array, covariance: Array, error: Array
+) -> Array:
+    """Factors of the standard errors by which a value is held on either side.
 
-    Two standard errors off, fitted values have to be off by a square of 4, if they go on as they
-    begin.
+    Two standard errors off, with all others where they follow, fitted values and those with priors
+    are off by a square of 4, if they go on as they begin. They do not for thick plates, whose COR
+    tells ever less of a larger thickness: one that was found too small has too small an error. A
+    value that is held on one side only, as a thickness that may be any larger, is refused.
 
     Raises
     ------
     UnidentifiedError
     """
     low, high = search.limits(predictor)
-    for sign, words in ((1.0, "above"), (-1.0, "below")):
-        there = np.clip(at * math.exp(2.0 * sign * spread), low, high)
-        off = (predictor.at_each(there[None])[0] - fitted) / error
-        if float(off @ off) < _HELD:
-            name, end = predictor.moved[0].name, float(at[0]) * math.exp(-2.0 * sign * spread)
-            raise identify.UnidentifiedError(
-                f"unknown: the data tell {name} on one side only: {words} {end:.3g} "
-                f"{UNKNOWNS[name].unit}. Measure another quantity, or other speeds",
-                (name,),
-            )
+    factors = np.ones(at.size)
+    priors = np.array([one.prior or math.inf for one in predictor.moved])
+    for n, one in enumerate(predictor.moved):
+        if not one.wanted or one.prior is not None:
+            continue
+        way = 2.0 * covariance[n] / math.sqrt(covariance[n, n])
+        for sign, words in ((1.0, "above"), (-1.0, "below")):
+            there = np.clip(at * np.exp(sign * way), low, high)
+            off = (predictor.at_each(there[None])[0] - fitted) / error
+            pulled = np.log(there / at) / priors
+            square = float(off @ off + pulled @ pulled)
+            if way[n] > 2.0 * _CURVED:
+                factors[n] = max(factors[n], math.sqrt(4.0 / max(square, _HELD)))
+            if square < _HELD:
+                end = float(at[n] * math.exp(-sign * way[n]))
+                raise identify.UnidentifiedError(
+                    f"unknown: the data tell {one.name} on one side only: {words} {end:.3g} "
+                    f"{UNKNOWNS[one.name].unit}. Measure another quantity, or other speeds",
+                    (one.name,),
+                )
+    return factors
 
 
 def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Array) -> None:
