@@ -167,7 +167,7 @@ def test_a_table_with_a_plate_too_thin_for_a_yield_speed(capsys):
         (["--plot", "cor.xyz"], "--plot: got 'cor.xyz', must end in .png, .svg or .pdf"),
         (["--plot", "cor"], "--plot: got 'cor', must end in"),
         (["--plot", "nowhere/cor.png"], "--plot: there is no folder nowhere"),
-        (["--solve", "--radius", "1mm", "--thickness", "1um"], "the equation did not solve"),
+        (["--solve", "--speed", "1e4", "--radius", "1m", "--thickness", "1cm"], "did not solve"),
     ],
 )  # fmt: skip
 def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):
@@ -311,8 +311,7 @@ def test_table_info_and_check(capsys):
 def test_a_table_of_a_law_that_takes_numbers_from_a_pair(capsys):
     steel = ["--law", "fem", "--sphere", "stainless-steel-304", "--plate", "glass"]
     assert main(["table", "info", *steel]) == 0
-    law = cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"), law="fem").law
-    assert f"law {law}:" in capsys.readouterr().out
+    assert "law fem:" in capsys.readouterr().out
     assert main(["table", "info", *steel[:4]]) == 1
     assert capsys.readouterr().err == (
         "contactlaw: --law: 'fem' takes numbers from a pair: give --sphere and --plate too\n"

@@ -372,7 +372,7 @@ def test_the_first_lines_say_what_it_is(tmp_path):
     text = exported(tmp_path, model)
     first = " ".join(line.strip(" *") for line in text.splitlines()[:14])
     assert f"contactlaw {VERSION}" in first
-    assert f"law {model.law}: {model.force_law.source}" in first
+    assert f"law fem: {model.force_law.source}" in first
     assert "sphere bearing-steel-52100: E 2.034e+11 Pa, nu 0.296, rho 7833 kg/m3" in first
     assert "plate aluminium-6061-t6: E 6.89e+10 Pa" in first
     error = coarser(model.table, c_header.ERROR).certificate.largest["restitution"]
