@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import stat
 import tempfile
@@ -32,13 +33,16 @@ def write(path: str | os.PathLike[str], content: bytes) -> None:
 
 
 def _replace(path: Path, content: bytes) -> None:
+    if not path.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path.parent))
+    mode = stat.S_IMODE(path.stat().st_mode) if path.exists() else 0o644
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())  # or a power cut could leave the name without the content
-        os.chmod(name, 0o644)  # mkstemp makes it private; a result is for everyone
+        os.chmod(name, mode)  # mkstemp makes it private; a new result is for everyone
         os.replace(name, path)
     except BaseException:
         with contextlib.suppress(FileNotFoundError):

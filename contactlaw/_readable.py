@@ -53,8 +53,8 @@ def with_error(value: float, error: float, unit: str) -> str:
     Parameters
     ----------
     value, error : float
-        In SI units; the error is not negative. One below a millionth of the value is written as
-        that much.
+        In SI units; the error is not negative. One below a millionth of the value, but for zero,
+        is written as that much.
     unit : str
         Of the SI; Pa, m and s get a prefix.
 
@@ -71,9 +71,9 @@ def with_error(value: float, error: float, unit: str) -> str:
     name, scale = scale_of(max(abs(value), error if error < math.inf else 0.0), unit)
     if not (math.isfinite(value) and math.isfinite(error)):
         return f"{value / scale:g} +- {error / scale:g} {name}"
-    value, error = value / scale, max(error / scale, abs(value / scale) * _FINEST)
     if not error:
-        return f"0 +- 0 {name}"
+        return f"{value / scale:.6g} +- 0 {name}"
+    value, error = value / scale, max(error / scale, abs(value / scale) * _FINEST)
     last = _exponent(float(f"{error:.1e}")) - 1  # place of the second digit, after rounding
     size = max(abs(value), error)
     if not (_PLAIN[0] <= size < _PLAIN[1]):

@@ -175,3 +175,25 @@ def test_an_interrupt_leaves_nothing(usual, tmp_path, monkeypatch, capsys):
     path = tmp_path / "fit.png"
     assert main(["fit", usual, *FIT, "--plot", str(path)]) == 130
     assert "interrupted" in capsys.readouterr().err and not path.exists()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "speed,COR,remark\n1,0.8\n2,0.7,ok\n",
+        "speed,COR\n1,0.8,\n2,0.7,\n",
+        "speed,COR,\n1,0.8\n2,0.7\n",
+        'speed,COR,"remark, mine"\n1,0.8,"a, b"\n2,0.7,""\n',
+        "speed,COR\n1,0.8 # first, of two\n2,0.7\n",
+    ],
+    ids=["no remark", "commas at the ends", "comma after the heads", "quoted", "comment"],
+)
+def test_rows_as_spreadsheets_and_people_end_them(text):
+    found = measured._read(text.encode()).columns
+    assert found["speed"].tolist() == [1.0, 2.0]
+    assert found["restitution"].tolist() == [0.8, 0.7]
+
+
+def test_what_is_too_long_for_a_cell_is_refused_in_words():
+    with pytest.raises(ValueError, match="field larger than"):
+        measured._read(b"speed,COR,remark\n1,0.8," + b"x" * 140_000 + b"\n")

@@ -9,7 +9,7 @@ import pytest
 from rains import write_rain
 
 from contactlaw import cli as cli_of_contactlaw
-from contactlaw.command.records import Recorded, combined, completed, read
+from contactlaw.command.records import Recorded, _npy, combined, completed, read
 from contactlaw.engines.record import IMPACT
 from dem_demo import cli, reader
 
@@ -336,3 +336,10 @@ def test_a_short_array_that_asks_for_much_memory(tmp_path):
         (tmp_path / "b.npy").write_bytes(damaged)
         with pytest.raises(ValueError, match="a damaged file of np.save"):
             read(tmp_path / "b.npy")
+
+
+@pytest.mark.parametrize("head", [b"((((((", b"{'descr': '<f8', "])
+def test_a_damaged_head_of_an_array_is_refused_in_words(head):
+    content = b"\x93NUMPY\x01\x00\x40\x00" + head.ljust(64)
+    with pytest.raises(ValueError, match="damaged file of np.save"):
+        _npy(content)

@@ -53,7 +53,7 @@ def heads(content: bytes) -> tuple[list[str], list[str], str]:
     except UnicodeDecodeError:
         raise ValueError("neither text") from None
     delimiter = next((mark for mark in "\t;" if mark in first), ",")
-    names = [head.strip().strip('"') for head in first.lstrip("#").split(delimiter)]
+    names = [head.strip() for head in _fields(first.lstrip("#"), delimiter)]
     rows = ["" if line.isspace() or line.startswith("#") else line for line in lines]
     while rows and not rows[-1]:
         rows.pop()
@@ -140,7 +140,8 @@ def numbers(
     Raises
     ------
     ValueError
-        What is no number, with its row; a row with more or fewer fields than the first line.
+        What is no number, with its row; a row with more fields than the first line, or with too
+        few for the columns that are wanted.
 
     Examples
     --------
@@ -148,7 +149,7 @@ def numbers(
     array([[2.],
            [4.]])
     """
-    _check_fields(rows, delimiter, count)
+    _check_fields(rows, delimiter, count, max(wanted, default=-1) + 1)
     rows = [row for row in rows if row]
     if not rows:  # of which loadtxt would warn
         return np.empty((0, len(wanted)))
@@ -157,12 +158,28 @@ def numbers(
     )
 
 
-def _check_fields(rows: Sequence[str], delimiter: str, count: int) -> None:
-    """Refuse rows whose fields are not those of the first line: numbers would shift in silence."""
+def _fields(row: str, delimiter: str) -> list[str]:
+    """Split a row, less a comment at its end and the separators that spreadsheets leave there."""
+    try:
+        found = next(csv.reader([row.partition("#")[0]], delimiter=delimiter), [])
+    except csv.Error as error:
+        raise ValueError(f"{error}, in {row[:80]!r}") from None
+    while found and not found[-1].strip():
+        found.pop()
+    return found
+
+
+def _check_fields(rows: Sequence[str], delimiter: str, count: int, least: int) -> None:
+    """Refuse rows with more fields than the first line: numbers would shift in silence.
+
+    Those that end before the last wanted column, which is the `least` number of fields, are refused
+    too, unless they have the separators up to there.
+    """
     for line, row in enumerate(rows, start=2):
-        fields = next(csv.reader([row], delimiter=delimiter)) if row else []
-        if row and len(fields) != count:
-            why = _why(row, delimiter, len(fields) > count)
+        fields = _fields(row, delimiter)
+        more, fewer = len(fields) > count, len(fields) < least > row.count(delimiter) + 1
+        if fields and (more or fewer):
+            why = _why(row, delimiter, more)
             raise ValueError(
                 f"line {line} has {_counted(len(fields), 'field')}, {row[:80]!r}, where the first "
                 f"line names {_counted(count, 'column')}: {why}"
@@ -175,7 +192,7 @@ def _counted(count: int, what: str) -> str:
 
 def _why(row: str, delimiter: str, more: bool) -> str:
     """Say what has most likely happened to a row with too many or too few fields."""
-    if more and delimiter == "," and re.search(r"\d,\d", row):
+    if more and delimiter == "," and "." not in row and re.search(r"\d,\d", row):
         return (
             "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns "
             "and points in the numbers"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import tokenize
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -219,7 +220,8 @@ def _npy(content: bytes) -> Recorded:
         raise ValueError("no file of np.save")
     try:
         rows = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, TypeError, OverflowError, EOFError, MemoryError) as error:
+    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError,
+            tokenize.TokenError) as error:  # fmt: skip
         raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
     names = rows.dtype.names
     if names is None or rows.ndim != 1:

@@ -7,7 +7,6 @@ walls, their motion, friction and the ranks.
 from __future__ import annotations
 
 import os
-import shutil
 import string
 import tempfile
 from importlib import resources
@@ -66,7 +65,7 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
             _atomic.write(Path(made) / name, content.encode())
         folder.mkdir(exist_ok=True)
         for path in Path(made).iterdir():
-            shutil.move(path, os.path.realpath(folder / path.name))
+            _atomic.write(folder / path.name, path.read_bytes())
 
 
 def _texts(model: ImpactModel) -> dict[str, str]:

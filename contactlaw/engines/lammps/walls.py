@@ -128,14 +128,12 @@ def compiled(
         groups.setdefault(wall.motion, []).append(rows)
     by_id = {id(model): model for model in _all_models(walls, models, types)}
     table = np.zeros((types, len(sheets)), SHEET)
+    laws = [[""] * len(sheets) for _ in range(types)]
     for (kinds, thickness), number in sheets.items():
         for kind, model in kinds:
             _fill_sheet(table[kind - 1, number], by_id[model], thickness)
-    _, first_alike, alike = np.unique(
-        table.view((np.uint8, SHEET.itemsize)).reshape(types, -1),
-        axis=0, return_index=True, return_inverse=True,
-    )  # fmt: skip
-    table["alike"] = first_alike[alike.ravel()][:, None]
+            laws[kind - 1][number] = by_id[model].force_law.key
+    table["alike"] = _first_alike(table, laws)[:, None]
     facets = np.concatenate([rows for parts in groups.values() for rows in parts])
     frames, held, first = np.zeros(len(groups), FRAME), [], 0
     for number, (motion, parts) in enumerate(groups.items()):
@@ -156,6 +154,16 @@ def _all_models(
     walls: Sequence[Wall], models: Mapping[int, ImpactModel], types: int
 ) -> list[ImpactModel]:
     return [*models.values(), *(m for wall in walls for m in _by_type(wall.model, types).values())]
+
+
+def _first_alike(table: Any, laws: list[list[str]]) -> NDArray[np.intp]:
+    """First atom type, from 0, with the same numbers and laws on all sheets, for each type.
+
+    Laws are compared by their keys: equal models have the data at addresses of their own.
+    """
+    numbers = [name for name in SHEET.names or () if name != "law"]
+    said = [(row[numbers].tolist(), keys) for row, keys in zip(table, laws, strict=True)]
+    return np.array([said.index(one) for one in said])
 
 
 def _fill_sheet(row: Any, model: ImpactModel, thickness: float) -> None:
