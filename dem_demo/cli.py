@@ -46,9 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv = sys.argv[1:] if argv is None else list(argv)
     try:
         with interruptible():
-            from contactlaw.command.options import joined
-
-            arguments = _parser().parse_args(joined(argv))
+            arguments = _parser().parse_args(argv)
             status = int(arguments.start(arguments, shlex.join(["dem-demo", *argv])))
         return _stopped(status) if status else 0
     except Interrupted as stop:

@@ -9,7 +9,7 @@ from typing import NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._readable import percent
+from contactlaw._readable import rounded
 from contactlaw.command import wording
 from contactlaw.command.records import Impacts
 from contactlaw.command.sheet import aligned, explained
@@ -106,7 +106,7 @@ def text(found: list[Wall], keep: Keep) -> Iterator[str]:
             ["COR", "[-]", *(f"{one.restitution:.4f}" for one in best)],
             ["spread", "[-]", *(f"{one.spread:.4f}" for one in best)],
             ["energy", "[%]", *(f"{100 * one.energy_error:z.2f}" for one in best)],
-            ["rebound", "", *(percent(one.rebound_error, 3) for one in best)],
+            ["rebound", "[%]", *(rounded(100.0 * one.rebound_error, 3) for one in best)],
             ["mean", "[-]", *(f"{one.mean:.4f}" for one in best)],
             ["energy", "[%]", *(f"{100 * one.mean_energy_error:z.2f}" for one in best)],
             ["flags", "", *(", ".join(str(flag.name) for flag in one.flags) for one in best)],

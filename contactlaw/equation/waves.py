@@ -116,8 +116,8 @@ def stiffening(waves: Waves, ratio: float, x: float, thin: float, h: float) -> f
     usual = USUAL * (longer * longer)  # by finite elements; the end of a long contact counts
     g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, WIDEST * WIDEST)
-    broad = min(ratio * x, BROADEST)
-    return (waves.eta + waves.eta_h * g) * broad + ratio * waves.eta4 * (square * square)
+    w = min(x, BROADEST / ratio)
+    return ratio * ((waves.eta + waves.eta_h * g) * w + waves.eta4 * (square * square))
 
 
 @kernel(inline=True)

@@ -136,6 +136,6 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
     for n in np.flatnonzero(np.abs(off) > _FAR * expected):
         name = list(KINDS)[values.kind[n]]
         yield (
-            f"{name} of rebound {values.row[n]} is {'+' * (off[n] > 0.0)}{percent(off[n])} off the "
+            f"{name} of rebound {values.row[n]} is {'+' if off[n] > 0.0 else ''}{percent(off[n])} off the "
             f"fit, {rounded(abs(off[n]) / expected[n])} standard errors: a mistake?"
         )
