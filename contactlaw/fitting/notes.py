@@ -135,7 +135,8 @@ def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) 
         return
     for n in np.flatnonzero(np.abs(off) > _FAR * expected):
         name = list(KINDS)[values.kind[n]]
+        sign = "+" if off[n] > 0.0 else ""
         yield (
-            f"{name} of rebound {values.row[n]} is {'+' if off[n] > 0.0 else ''}{percent(off[n])} off the "
+            f"{name} of rebound {values.row[n]} is {sign}{percent(off[n])} off the "
             f"fit, {rounded(abs(off[n]) / expected[n])} standard errors: a mistake?"
         )
