@@ -105,7 +105,7 @@ def _kept(
             if found is not None and is_whole(found):
                 return found
             made = make(found)
-            _sweep(path)
+            _clear(path)
             file.write(made, path)
         if fault:
             warnings.warn(
@@ -157,7 +157,12 @@ def _locked(path: Path) -> Iterator[None]:
         yield
 
 
-def _sweep(path: Path) -> None:
-    """Remove what writers left that were killed; the lock says that none is at work."""
+def _clear(path: Path) -> None:
+    """Remove what killed writers left, and a device, pipe or link in the place of the file.
+
+    The lock says that no writer is at work. A folder stays: its removal fails, as it should.
+    """
     for left in path.parent.glob(f".{path.name}.*.part"):
         left.unlink(missing_ok=True)
+    if path.is_symlink() or not path.is_file():
+        path.unlink(missing_ok=True)
