@@ -6,6 +6,7 @@ All that is printed for people takes these; files for programs have every digit.
 from __future__ import annotations
 
 import math
+import sys
 
 # Smallest size in SI units from which on a prefix is taken, and what it stands for. Strengths of
 # thousands of MPa and plates of tenths of a mm stay in the units that data sheets have.
@@ -53,8 +54,8 @@ def with_error(value: float, error: float, unit: str) -> str:
     Parameters
     ----------
     value, error : float
-        In SI units; the error is not negative. One below a millionth of the value, but for zero,
-        is written as that much.
+        In SI units; the error is not negative. One below a millionth of the value is written as
+        that much; none, or one that a double hardly holds, as 0.
     unit : str
         Of the SI; Pa, m and s get a prefix.
 
@@ -71,7 +72,7 @@ def with_error(value: float, error: float, unit: str) -> str:
     name, scale = scale_of(max(abs(value), error if error < math.inf else 0.0), unit)
     if not (math.isfinite(value) and math.isfinite(error)):
         return f"{value / scale:g} +- {error / scale:g} {name}"
-    if not error:
+    if error < sys.float_info.min:
         return f"{value / scale:.6g} +- 0 {name}"
     value, error = value / scale, max(error / scale, abs(value / scale) * _FINEST)
     last = _exponent(float(f"{error:.1e}")) - 1  # place of the second digit, after rounding

@@ -65,8 +65,10 @@ def test_as_one_would_write_it(value, error, text):
 
 
 def test_without_an_error_or_with_an_infinite_one():
-    assert with_error(2700.0, 0.0, "kg/m3") == "2700.0000 +- 0.0027 kg/m3"
+    assert with_error(2700.0, 0.0, "kg/m3") == "2700 +- 0 kg/m3"
     assert with_error(0.0, 0.0, "m") == "0 +- 0 nm"
+    assert with_error(0.0, 5e-324, "kg/m3") == "0 +- 0 kg/m3"
+    assert with_error(2700.0, 1e-9, "kg/m3") == "2700.0000 +- 0.0027 kg/m3"
     assert with_error(1e9, math.inf, "Pa") == "1000 +- inf MPa"
 
 

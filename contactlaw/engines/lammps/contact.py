@@ -65,6 +65,7 @@ Array = NDArray[np.float64]
 _AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a wall
 # times its approach speed: a bead in contact that has been hit, not one that falls on
 _FASTER = 1.01
+_RIGHT = 1e-6  # cosine of an angle that counts as a right one
 _SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
 
 
@@ -571,11 +572,22 @@ def _begin_all(shared: Any, clock: Clock, walls: Walls, bead: Bead, count: int, 
 
 @kernel
 def _company(row: Array, shared: Any) -> float:
-    """Whether several contacts press a bead: the scheme of each takes its own force for all."""
-    pressing = 0
+    """Whether contacts press a bead that work on each other; those at right angles do not.
+
+    The scheme of a contact takes its own force for all that moves the bead along its normal.
+    """
     for k in range(shared.slots):
-        pressing += row[FIRST + k * shared.width + FORCE] > 0.0
-    return UNEVEN if pressing > 1 else ALONE
+        at = FIRST + k * shared.width
+        if not row[at + FORCE] > 0.0:
+            continue
+        one = row[at + PUSH], row[at + PUSH + 1], row[at + PUSH + 2]
+        for j in range(k):
+            to = FIRST + j * shared.width
+            if row[to + FORCE] > 0.0:
+                other = row[to + PUSH], row[to + PUSH + 1], row[to + PUSH + 2]
+                if abs(dot(one, other)) > _RIGHT * row[at + FORCE] * row[to + FORCE]:
+                    return UNEVEN
+    return ALONE
 
 
 @kernel
