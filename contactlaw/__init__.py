@@ -8,7 +8,7 @@ its solutions. All quantities are in SI units.
 >>> import contactlaw as cl
 >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
 >>> model.restitution(speed=5.0, radius=0.9e-3, thickness=[0.5e-3, 1e-3, 3e-3]).round(3)
-array([0.666, 0.896, 0.984])
+array([0.666, 0.897, 0.983])
 """
 
 from contactlaw import export

@@ -58,7 +58,7 @@ def restitution_sphere_sphere(
     >>> import contactlaw as cl
     >>> bead = "gamma-alumina"
     >>> cl.restitution_sphere_sphere(bead, bead, [20.0, 80.0], 1e-3, 1e-3).round(4)
-    array([0.963 , 0.6981])
+    array([0.9616, 0.6966])
     """
     pair = Pair(sphere, other)
     v, r, o, shape = broadcast(speed=speed, radius=radius, other_radius=other_radius)

@@ -17,8 +17,8 @@ from validation.fem.acceptance import TARGETS, Errors, Member, Row
 # What was measured, one line a row: how many impacts there are, how many carry a flag of accuracy,
 # how many are beyond a bound without one, the shares within each bound, and the rms error in COR.
 MEASURED = {
-    "paper": (112, 31, 0, (0.973, 0.973, 0.991, 0.982), 0.0119),
-    "kept out": (80, 3, 0, (1.0, 1.0, 1.0, 1.0), 0.00436),
+    "paper": (112, 31, 0, (0.973, 0.991, 0.991, 0.982), 0.00995),
+    "kept out": (80, 3, 0, (1.0, 1.0, 1.0, 1.0), 0.00442),
 }
 MOST_FLAGGED = 0.1  # of everyday impacts
 

@@ -3,6 +3,7 @@
 import dataclasses
 import functools
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -11,9 +12,10 @@ from scene import make_bead, make_plate, make_space
 import contactlaw as cl
 from contactlaw import Validity, explain, laws
 from contactlaw.engines.pymunk import attach
+from contactlaw.laws import fem
 from contactlaw.physical.scaling import law_of
 from contactlaw.softsphere import Contacts, time_step
-from validation.fem import census
+from validation.fem import acceptance, census
 
 R = 1e-3
 ENERGIES = ("plastic_fraction", "wave_fraction", "other_fraction")
@@ -165,6 +167,129 @@ def test_two_elastic_bodies():
     assert (hit.other_fraction > 0.0).all()  # friction of unlike bodies
     elastic = cl.ImpactModel(model.pair, law="hertz").lookup(v, R, 1e-3).restitution
     assert hit.restitution[0] == pytest.approx(elastic, abs=0.05)
+
+
+# Between bodies alike, and beyond the campaign.
+
+
+def answered(pair, speed, thickness=math.inf):
+    """Integrate impacts of beads of a millimetre, without a table."""
+    shape = np.broadcast_shapes(np.shape(speed), np.shape(thickness))
+    v, h = (np.array(np.broadcast_to(one, shape), dtype=float) for one in (speed, thickness))
+    return acceptance.solve(pair, law_of(pair, "fem"), v, np.full(shape, R), h)
+
+
+@pytest.mark.parametrize("ratios", [(0.28, 0.33), (0.33, 0.44), (0.4, 0.4), (0.0, 0.49)])
+def test_cor_does_not_jump_where_the_weaker_body_changes(ratios):
+    """Of steel and aluminium of equal strengths, one of which is a little weaker."""
+    shares = 1e-4 * np.array([-1.5, -0.5, 0.5, 1.5])
+    speed = np.array([0.1, 1.0, 5.0])
+    cor = []
+    for share in shares:
+        bodies = [
+            cl.Material("a", 200e9, ratios[0], 7800, yield_strength=300e6 * (1.0 + share)),
+            cl.Material("b", 70e9, ratios[1], 2700, yield_strength=300e6 * (1.0 - share)),
+        ]
+        cor.append(answered(cl.Pair(*bodies), speed).restitution)
+    before, across, after = np.abs(np.diff(cor, axis=0))
+    assert (across < 2.0 * np.maximum(before, after) + 1e-6).all()
+    assert across.max() < 1e-4
+
+
+def test_equal_bodies_are_those_of_before():
+    """Poisson's ratio of bodies alike is that of either; of bodies of which one yields, its own."""
+    both, alone = fem.Given(400.0, 400.0, 0.5, 0.33, 0.33), fem.Given(0.0, 400.0, 0.5, 0.2, 0.33)
+    blend = float(fem.numbers()["blend"])
+    assert both.yield_scale(blend) == alone.yield_scale(blend) == fem.yield_scale(400.0, 0.33)
+    assert fem.Given(400.0, 400.0, 0.5, 0.2, 0.4).flow(blend) == {"sphere": 0.5, "plate": 0.5}
+
+
+def soft(strength):
+    """Indium of some strength under bearing steel."""
+    return cl.Pair(
+        "bearing-steel-52100", cl.Material("indium", 12.7e9, 0.45, 7310, yield_strength=strength)
+    )
+
+
+def test_soft_bodies_follow_the_slope_of_the_law():
+    """Contacts of one depth cost the more of the COR the weaker the body is: e^2 goes as sigma_Y/E.
+
+    Complete flow is rigid-plastic: force and depth go by the strength alone, and what comes back
+    of a depth by the strength over the modulus.
+    """
+    cor = []
+    for strength in (7e6, 1e6, 1e5, 1e3, 1.0):
+        pair = soft(strength)
+        # the speed that leads a third of the way, in depth, to where the law ends
+        law = law_of(pair, "fem")
+        speed = np.geomspace(1e-3, 1.0, 3000) * 3.0 * math.sqrt(strength / 1e6)
+        hit = answered(pair, speed)
+        at = np.argmin(np.abs(np.asarray(hit.peak_compression) - 0.03 * R))
+        assert hit.peak_compression[at] == pytest.approx(0.03 * R, rel=0.01)
+        assert 0.03 < law.range[1] * law.scale
+        cor.append(hit.restitution[at] / math.sqrt(strength))
+        slope = np.diff(np.log(hit.restitution)) / np.diff(np.log(speed))
+        assert (slope[at - 300 : at] < -0.2).all()  # Johnson's -1/4, and more for a flattened body
+    assert cor == pytest.approx(np.full(5, cor[-1]), rel=0.05)
+
+
+def test_indium_under_steel():
+    """Its COR was flat at 0.10: beyond 1e5 d_Y the law went on by its tangent."""
+    pair = soft(1e6)
+    hit = answered(pair, np.array([0.1, 0.5, 2.5]))
+    assert (np.diff(hit.restitution) < -0.01).all()
+    assert hit.restitution[-1] < 0.06
+    assert all(flags & Validity.UNTRIED_STRENGTH for flags in hit.flags)
+
+
+@pytest.mark.parametrize(
+    ("strength", "speed", "yields", "flagged"),
+    [
+        (8e6, 0.1, True, False),
+        (5e6, 0.1, True, True),
+        (5e6, 1e-7, False, False),
+        (1.2e9, 1e3, True, False),
+        (2e9, 1e3, True, True),
+        (2e9, 10.0, False, False),
+    ],
+)
+def test_untried_strengths_are_flagged_once_a_body_yields(strength, speed, yields, flagged):
+    """E*/sigma_Y is 1858, 2973, 12 and 7 here; the campaign has 11 to 2000."""
+    hit = answered(soft(strength), np.array([speed]))
+    assert (hit.plastic_fraction[0] > 0.0) == yields
+    assert bool(hit.flags[0] & Validity.UNTRIED_STRENGTH) == flagged
+
+
+@pytest.mark.parametrize("strength", [1.0, 1e3, 1e6])
+def test_every_soft_body_makes_a_model(strength):
+    """Some had a table that no setting allows; its errors are those of any pair's."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        model = cl.ImpactModel(soft(strength))
+    speed = np.geomspace(1e-3, 1.0, 7) * math.sqrt(strength / 1e6)
+    looked, exact = (ask(speed, R, 5 * R).restitution for ask in (model.lookup, model.solve))
+    assert looked == pytest.approx(exact, abs=1e-5)
+
+
+def test_the_weakest_material_has_a_law():
+    body = cl.Material("weakest", 1e9, 0.0, 1000, yield_strength=1e-3)
+    law = law_of(cl.Pair(body, "alumina"), "fem")
+    assert law.range[1] * law.scale == pytest.approx(0.1)
+
+
+def test_nothing_jumps_where_a_body_is_so_strong_that_it_does_not_yield():
+    """A body that would yield near the end of the law is elastic; the other side hardly differs."""
+    steel = cl.Material("a", 200e9, 0.3, 7800)
+    modulus = cl.Pair(steel, steel).effective_modulus
+    speed, cor, yields = np.linspace(300.0, 700.0, 5), [], []
+    for ratio in np.linspace(5.5, 5.95, 46):
+        pair = cl.Pair(dataclasses.replace(steel, yield_strength=modulus / ratio), steel)
+        hit = answered(pair, speed)
+        yields.append(law_of(pair, "fem").yields)
+        cor.append(hit.restitution)
+    assert not yields[0] and yields[-1]
+    assert np.abs(np.diff(cor, axis=0)).max() < 1e-3
+    assert np.abs(np.diff(cor, n=2, axis=0)).max() < 2e-4
 
 
 # Numbers of everyday impacts.

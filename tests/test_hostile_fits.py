@@ -27,15 +27,16 @@ def test_a_second_regime_that_fits_as_well_is_told():
             for name, values in STEEL_ON_ALUMINA.data().items()}  # fmt: skip
     data["restitution_error"] = 0.05 * data["restitution"]
     found = cl.fit(STEEL_ON_ALUMINA.pair, data, STEEL_ON_ALUMINA.unknown)
-    (other,) = found.alternatives
-    assert other["thickness"] < 0.6e-3 and other["yield_strength"] > 1e9
-    pair = cl.Pair(
-        dataclasses.replace(found.pair.sphere, yield_strength=other["yield_strength"]),
-        found.pair.plate,
-    )
-    there = cl.ImpactModel(pair, outside="solve").solve(data["speed"], 1e-3, other["thickness"])
-    off = there.restitution / data["restitution"] - 1.0
-    assert np.sqrt(np.mean(off**2)) < 0.05
+    assert found.alternatives
+    for other in found.alternatives:
+        assert other["thickness"] < 0.6e-3 and other["yield_strength"] > 1e9
+        pair = cl.Pair(
+            dataclasses.replace(found.pair.sphere, yield_strength=other["yield_strength"]),
+            found.pair.plate,
+        )
+        there = cl.ImpactModel(pair, outside="solve").solve(data["speed"], 1e-3, other["thickness"])
+        off = there.restitution / data["restitution"] - 1.0
+        assert np.sqrt(np.mean(off**2)) < 0.05
     assert any("fitted as well by yield_strength" in note for note in found.notes)
 
 

@@ -1,4 +1,4 @@
-"""The mobility of an infinite plate, from elasticity alone: nothing here comes from contactlaw.
+"""The mobility of an infinite plate, from elasticity alone, and the fit of it that the model takes.
 
 Units: thickness, density and shear modulus of the plate are 1, so the frequency is omega H/c.
 """
@@ -10,30 +10,26 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.special import beta, betainc, jv
+from scipy.special import jv
+
+from contactlaw.equation import waves
+from validation.derivations.mobility import (
+    MEAN,
+    SQUARE,
+    elastic,
+    energy,
+    half_space,
+    kirchhoff,
+    panels,
+    ratio,
+    regular,
+)
 
 Complex = NDArray[np.complex128]
 Compliance = Callable[[Complex], Complex]
 
 BENDING, EXTENSION = 0, 1
 POISSON = [0.0, 0.2, 0.3, 0.35, 0.45]
-MEAN = 2.7134  # of omega T_d over the energy spectrum of a Hertz pulse
-SQUARE = 1.44 * beta(0.8, 1.5) / beta(1.6, 0.5) * beta(0.4, 0.5) ** 2  # of (omega T_d)^2
-
-
-def kirchhoff(poisson: float) -> float:
-    return math.sqrt(6.0 * (1.0 - poisson)) / 8.0
-
-
-def ratio(poisson: float) -> float:
-    """Square of the shear wave's speed over the compression wave's."""
-    return (1.0 - 2.0 * poisson) / (2.0 * (1.0 - poisson))
-
-
-def panels(edges: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    nodes, weights = np.polynomial.legendre.leggauss(16)
-    half = np.diff(edges)[:, None] / 2.0
-    return (edges[:-1, None] + half * (1.0 + nodes)).ravel(), (half * weights).ravel()
 
 
 def mindlin(omega: float, poisson: float, shear: float, radius: float = 0.0) -> Compliance:
@@ -46,25 +42,6 @@ def mindlin(omega: float, poisson: float, shear: float, radius: float = 0.0) -> 
         return disc**2 * bending / ((shear * x - omega**2) * bending - shear**2 * x)
 
     return compliance
-
-
-def elastic(k: Complex, omega: complex, poisson: float, thickness: float) -> tuple[Complex, ...]:
-    """Antisymmetric and symmetric displacement of the loaded face of an elastic plate.
-
-    The Rayleigh function is multiplied out and the difference of two tanh is one, so that static
-    response and large wave numbers lose no digits.
-    """
-    y, x, r = complex(omega) ** 2, k * k, ratio(poisson)
-    a, b = np.sqrt(x - r * y), np.sqrt(x - y)
-    square = (2.0 * x - y) ** 2
-    cubic = 16.0 * (1.0 - r) * x**3 - (24.0 - 16.0 * r) * x**2 * y + 8.0 * x * y**2 - y**3
-    rayleigh = y * cubic / (4.0 * x * a * b + square)
-    ta, tb = np.tanh(a * thickness / 2.0), np.tanh(b * thickness / 2.0)
-    gap = np.tanh((r - 1.0) * y / (a + b) * thickness / 2.0) * (1.0 - ta * tb)  # tb - ta
-    return (
-        0.5 * a * y / (rayleigh * tb + square * gap),
-        0.5 * a * y * ta * tb / (rayleigh * ta - square * gap),
-    )
 
 
 def mode(omega: float, poisson: float, which: int) -> Compliance:
@@ -82,36 +59,6 @@ def share(compliance: Compliance, omega: float, poisson: float) -> float:
     step = end / 2.0 * np.sin(angle) + 0.1j * end * np.cos(angle)
     integral = np.sum(weight * step * k * compliance(k))
     return float(abs(omega / (2.0 * math.pi) * integral.imag) / kirchhoff(poisson))
-
-
-def regular(omega: complex, poisson: float, thickness: float) -> complex:
-    """Mobility less that of the static half-space, i omega times a constant."""
-    scale = max(abs(omega), math.sqrt(abs(omega) / thickness))
-    u, weight = panels(np.linspace(0.0, 1.0, 41))
-    k = (scale * u / (1.0 - u)).astype(complex)
-    both = np.sum(elastic(k, omega, poisson, thickness), axis=0) - (1.0 - poisson) / k
-    return complex(
-        1j * omega / (2.0 * math.pi) * np.sum(weight * scale / (1.0 - u) ** 2 * k * both)
-    )
-
-
-def half_space(poisson: float) -> float:
-    """C in Re Y = C omega^2; on the imaginary axis of frequency nothing oscillates."""
-    return abs(regular(-1j, poisson, 1e3))
-
-
-def energy(h: float, poisson: float) -> float:
-    """Energy a Hertz pulse leaves in the plate over Kirchhoff's, below the poles of frequency."""
-    p, weight = panels(np.linspace(0.0, 1.0, 13))
-    angle = math.pi / 2.0 * p**1.25
-    weight *= 0.625 * math.pi * p**0.25 / np.sin(angle) ** 0.2 / beta(0.4, 0.5)
-    force, time = np.sin(angle) ** 1.2, 0.5 * betainc(0.4, 0.5, np.sin(angle) ** 2)
-    t, step = panels(150.0 * np.linspace(0.0, 1.0, 25) ** 1.5)
-    total = 0.0
-    for omega, part in zip(t - 1j, step, strict=True):
-        spectrum = 2.0 * np.sum(weight * force * np.cos(omega * (time - 0.5)))
-        total += part * (regular(omega, poisson, h) * spectrum**2).real
-    return float(total * h**2 / kirchhoff(poisson) / math.pi / (2.0 * np.sum(weight * force**2)))
 
 
 @pytest.mark.parametrize("poisson", POISSON)
@@ -197,3 +144,43 @@ def test_energy_of_an_impact(poisson: float) -> None:
         assert energy(h, poisson) == pytest.approx(fit(h), rel=8e-3)
     # an echo needs the time 2 H/c_L: beyond h = c_L/(2 c) the plate is a half-space, exactly
     assert energy(1.05 * echo, poisson) == pytest.approx(thick * (1.05 * echo) ** 2, rel=3e-4)
+
+
+RATIOS = np.linspace(0.0, 0.45, 10)
+
+
+def phi(one: waves.Waves, h: float) -> float:
+    """Factor on the mobility of a thin plate."""
+    return one.bulk_factor * h * h + waves.near_field(one, h)
+
+
+@pytest.mark.parametrize("poisson", [0.0, 0.1, 0.25, 0.3, 0.45])
+def test_the_model_has_the_energy_of_an_impact(poisson: float) -> None:
+    """Within 1.2 % of the integral, on plates of any thickness."""
+    one = waves.waves(poisson)
+    for x in (0.1, 0.3, 0.5, 0.65, 0.8, 1.0):
+        h = x * 0.5 / math.sqrt(ratio(poisson))
+        assert phi(one, h) == pytest.approx(energy(h, poisson), rel=1.2e-2)
+
+
+@pytest.mark.parametrize("poisson", RATIOS)
+def test_a_thicker_plate_never_takes_more(poisson: float) -> None:
+    """The factor over h^2 falls to that of the half-space, and never below it."""
+    one = waves.waves(poisson)
+    h = np.linspace(1e-3, 1.5, 1500)
+    over = np.array([phi(one, each) / each**2 for each in h])
+    assert (np.diff(over) <= 1e-12 * over[1:]).all()
+    assert over.min() >= one.bulk_factor * (1.0 - 1e-12)
+
+
+@pytest.mark.parametrize("poisson", RATIOS)
+@pytest.mark.parametrize("far", [0.01, 0.1, 0.5, 2.0])  # lambda of a half-space
+def test_lambda_falls_with_the_thickness(poisson: float, far: float) -> None:
+    """Of any sphere, though losses lengthen contacts with thin plates only."""
+    one = waves.waves(poisson)
+    h = np.geomspace(0.02, 30.0, 1000)
+    thin = far / one.bulk_factor / h**2
+    lam = [
+        waves.with_waves(one, t, each, t * each**2, 0.0) for t, each in zip(thin, h, strict=True)
+    ]
+    assert (np.diff(lam) <= 1e-12 * np.array(lam[1:])).all()

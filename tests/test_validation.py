@@ -328,10 +328,10 @@ def counted(score):
 def test_how_right_the_laws_are():
     """Recorded, as README and docs say it; what counts is in `test_acceptance`."""
     fem, myc = trust.overall()["everyday impacts, kept out of the fit"]
-    assert counted(fem) == (160, 157, 0.006, -0.044)
+    assert counted(fem) == (160, 157, 0.006, -0.047)
     assert counted(myc) == (108, 10, 0.323, 1.047)
     fem, myc = trust.overall()["the paper's pair, gamma-alumina on glass"]
-    assert counted(fem) == (64, 63, 0.003, -0.010)
+    assert counted(fem) == (64, 63, 0.004, -0.010)
     assert counted(myc) == (64, 4, 0.019, 0.046)
 
 

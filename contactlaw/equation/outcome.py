@@ -54,12 +54,13 @@ class Stored(NamedTuple):
 
 
 # Limits are ours, far beyond what the laws give for lambda to 10 and chi to 1e6 (2.5 to 443, 0.007
-# to 4.3, 0.7 to 854): a number outside was not computed.
+# to 4.3, 0.7 to 854; of the weakest body, chi to 2e18, a ratio to 3e4): a number outside was not
+# computed.
 STORED = {
     "restitution": Stored("rebound speed over impact speed [-]", 0.0, 1.0),
     "contact_time": Stored("time from touch to separation [T_H]", 0.1, 1e4),
     "wave_rate": Stored("share of the energy in the bending wave, over lambda [-]", 0.0, 100.0),
-    "compression_ratio": Stored("largest compression over the elastic one [-]", 0.01, 1e4),
+    "compression_ratio": Stored("largest compression over the elastic one [-]", 0.01, 1e6),
 }
 """What tables keep, in the order in which their splines are packed."""
 

@@ -9,7 +9,8 @@ wave in the contact time T:
     Phi = 1 + k1 h + ...     h << 1
     Phi = k2 h^2             h > h_c = c_L/(2 c): no echo comes back in time
 
-with k2 h^2 + (1 - x)^3 P(x), x = h/h_c < 1 and a polynomial P, from one limit to the other. And in
+with k2 h^2 + (1 - x)^3 P(x), x = h/h_c < 1 and a polynomial P, from one limit to the other, which
+lets Phi/h^2 never rise: a thicker plate takes no more. And in
 phase with the force a plate gives way less than the half-space of Hertz's law, by F/(E2' H) times a
 number that falls as -ln h: the contact is stiffer, K exp(2.5 eta), T = T_H exp(-eta), with
 
@@ -26,7 +27,7 @@ back either, it is in lambda, which grows by b_p (R/H) (x - x_s) E1'/(E1' + E2')
 
 The contact time is that of an elastic impact: 3.2181 T without losses, longer by a factor
 1 + 0.175 lambda + 0.18 lambda^3 as far as the frequencies count that it is made of, and by its
-square in g.
+square in g, where lambda is that of a thin plate.
 
 Legend: c, c_L speeds of shear and pressure waves, nu Poisson's ratio.
 """
@@ -52,6 +53,16 @@ BROADEST = 10.0
 LONGER, LONGER_3 = 0.175, 0.18  # with lambda and its third power; the second by finite elements
 USUAL = 0.02  # h_0
 _RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
+# p2 to p5, each by powers of 1/h_c - _CENTRE; from ``python -m validation.derivations.mobility``
+_CENTRE = 1.07
+_NEAR = np.array(
+    [
+        [1.334, 5.703, -1.657, -51.933, 35.187],
+        [39.05, -46.355, -99.302, 935.094, -1179.11],
+        [-113.977, 392.865, -58.891, -3119.348, 5001.479],
+        [77.375, -448.361, 404.135, 2605.629, -5256.22],
+    ]
+)
 
 
 class Waves(NamedTuple):
@@ -92,21 +103,16 @@ def waves(
     nu = min(max(poissons_ratio, _RANGE[0]), _RANGE[1])
     h_c = 0.5 * math.sqrt(2.0 * (1.0 - nu) / (1.0 - 2.0 * nu))
     k1 = 0.54268 * math.sqrt(6.0 * (1.0 - nu))
-    k2 = 6.1035 - 4.848 * (nu - 0.3) + 5.63 * (nu - 0.3) ** 2
-    x = np.linspace(0.0, 1.0, 65)[1:-1]
-    h, n = x * h_c, 6.0 / h_c**1.2
-    exact = ((1.0 + k1 * h + 0.95 * h**2) ** n + (k2 * h**2) ** n) ** (1.0 / n)
-    p1, fall = 3.0 + k1 * h_c, (1.0 - x) ** 3
-    rest = exact - k2 * h**2 - fall * (1.0 + p1 * x)
-    powers = (fall * x ** np.arange(2, 6)[:, None] / exact).T
-    others = np.linalg.lstsq(powers, rest / exact, rcond=None)[0]
-    return Waves(eta, eta_h, eta4, beyond, 1.0 / h_c, k2, p1, *map(float, others))
+    d = nu - 0.3
+    k2 = 6.0994 - 4.8895 * d + 6.5469 * d**2 + 7.4075 * d**3
+    others = (_NEAR @ (1.0 / h_c - _CENTRE) ** np.arange(5)).tolist()
+    return Waves(eta, eta_h, eta4, beyond, 1.0 / h_c, k2, 3.0 + k1 * h_c, *others)
 
 
 @kernel(inline=True)
-def _lengthening(thin: float) -> float:
+def _lengthening(lam: float) -> float:
     """Contact time over that without losses, as far as the frequencies count."""
-    return 1.0 + LONGER * thin + LONGER_3 * (thin * thin * thin)
+    return 1.0 + LONGER * lam + LONGER_3 * (lam * lam * lam)
 
 
 @kernel(inline=True)
@@ -135,8 +141,11 @@ def with_waves(waves: Waves, thin: float, h: float, bulk: float, plastic: float)
 
     From lambda of the thin plate, h for a loss-free contact, the product of the first with the
     square of the second, which stays finite on a half-space, and (R/H) (x - x_s) beyond yield.
+    Only what acts as a dashpot lengthens the contact, near_field's share of lambda. The whole
+    lambda of a thin plate does not: it would shorten the contact, and raise lambda, as a thick
+    plate becomes thicker.
     """
-    longer = 1.0 / _lengthening(thin)
+    longer = 1.0 / _lengthening(thin * near_field(waves, h))
     far = waves.bulk_factor * bulk * (longer * longer)
     return thin * near_field(waves, h * longer) + far + waves.beyond * plastic
 

@@ -36,8 +36,8 @@ DEFAULT = "fem"
 _RANGES = {
     "modulus_ratio": (2.0, 1e6),
     "poissons_ratio": (0.0, 0.5),
-    "sphere_ratio": (0.0, 1e6),
-    "plate_ratio": (0.0, 1e6),
+    "sphere_ratio": (0.0, 1e13),  # above that of any Material, whose sigma_Y is at least 1e-12 E
+    "plate_ratio": (0.0, 1e13),
     "modulus_share": (0.0, 1.0),
     "plate_poissons_ratio": (0.0, 0.5),
 }  # of laws' parameters

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Formula = Callable[[Array], Array]
 
-END = 1e5  # [d_Y]; beyond, a law goes on by its tangent, see `Law.of`
+END = 1e5  # [d_Y], of a law without a range; beyond, it goes on by its tangent, see `Law.of`
 HERTZ = Polynomial([0.0, 0.0, 0.0, 1.0])  # F = q^3
 
 

@@ -93,9 +93,9 @@ class Law:
         Returns
         -------
         Law
-            It follows the formulas to 1e-12, relatively, up to a compression of 1e5 d_Y. Beyond,
-            the force goes on along its tangent over the compression, the residual compression keeps
-            its share of the largest one, and the exponent its value.
+            It follows the formulas to 1e-12, relatively, up to the end of its range, or to 1e5 d_Y
+            where it has none. Beyond, the force goes on along its tangent over the compression, the
+            residual compression keeps its share of the largest one, and the exponent its value.
 
         Raises
         ------
@@ -121,11 +121,12 @@ class Law:
         (5.5, 1.3333)
         """
         check_yield(name, yield_coefficient, loading, unloading)
-        curve = LoadingCurve(name, loading, bool(unloading), min(range[1], END))
+        end = range[1] if range[1] < math.inf else END
+        curve = LoadingCurve(name, loading, bool(unloading), end)
         starts = {*curve.kinks, *(float(branch.start) for branch in unloading)}
         if curve.stiffer:  # friction takes its share below yield, too: no kink begins with it
             starts = {start for start in starts if start >= 1.0}
-        if range[1] < END:
+        if range[1] < math.inf:
             starts.add(range[1])
         return Law(
             name=name,

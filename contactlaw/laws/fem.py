@@ -24,7 +24,13 @@ three cases: the sphere yields, the plate, or both alike. v has one term more, o
 sphere's own waves are: what it goes on vibrating with. Where one body is stronger by a factor
 1/z, the answer lies between that of both alike and that of the weaker body alone, by a share that
 falls from 1 at z = 1 to 0 at z = 0.36: the weaker body presses on the other with no more than 3 of
-its strengths, and the other yields at a mean pressure of 1.07 of its own.
+its strengths, and the other yields at a mean pressure of 1.07 of its own. Poisson's ratios count by
+each body's share of the flow, a half at equal strengths, so that nothing jumps where another body
+becomes the weaker one.
+
+A body softer than the campaign's flows completely before its contact is as deep as any of these:
+up to there similarity makes g, h and k functions of q, beyond it functions of w, those of the
+softest body that was pressed (`Curves`).
 
 Legend: compressions in units of the yield compression d_Y of the weaker body, or of R where
 none yields; forces in K d_Y^1.5.
@@ -47,13 +53,17 @@ from contactlaw.laws._law import Law
 
 Array = NDArray[np.float64]
 
-RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign
+RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by similarity
+_FLOWN = (20.0, 10.0)  # q at which flow is complete, in indentations and in v
 _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # E*/sigma_Y, and its deepest contacts, d/R
 _SMALLEST = 1e-8  # d/R; below, the contact's radius is under 1e-4 R and no stiffening to be seen
+_EARLIEST = 0.01  # d_Y, where that is more: a table begins before yield
 SHIFT = 2.0  # of t
 _LEAST_FRICTION = 5e-4  # of bodies that hardly slip
 _SHARES, _RATIOS = 0.45, 0.1  # about 0.5 and 0.3; beyond, what holds there
-_LATE = 0.5  # of the deepest compression; a body that yields later is elastic
+# Of the deepest compression; a body that yields later is elastic: what is left to lose is less than
+# 1e-5 of the energy, and a law needs some room between its kinks.
+_LATE = 0.98
 _ALONE = 0.36  # z, below which the stronger body does not yield
 _POWERS = (5, 4)  # of t and w
 _GAUSS = np.polynomial.legendre.leggauss(40)
@@ -125,25 +135,46 @@ class Given(NamedTuple):
         """Body that yields first; "sphere" where both are alike, or neither yields."""
         return "plate" if self.plate_ratio > self.sphere_ratio else "sphere"
 
-    @property
-    def own_poissons_ratio(self) -> float:
-        """Poisson's ratio of the weaker body."""
-        return self.poissons_ratio if self.weaker == "sphere" else self.plate_poissons_ratio
+    def both(self, blend: float) -> float:
+        """Share of both alike in the answer, from 1 at equal strengths to 0 where one body yields.
+
+        In between it falls with the power `blend` of the ratio of the strengths.
+        """
+        z = min(self.sphere_ratio, self.plate_ratio) / self.ratio
+        return float((max(0.0, z - _ALONE) / (1.0 - _ALONE)) ** blend)
+
+    def flow(self, blend: float) -> dict[str, float]:
+        """Share of each body in the plastic flow: a half each at equal strengths.
+
+        What depends on which body yields goes by these shares. By the weaker body alone it would
+        jump where the other one becomes the weaker.
+        """
+        other = 0.5 * self.both(blend)
+        plate = 1.0 - other if self.weaker == "plate" else other
+        return {"sphere": 1.0 - plate, "plate": plate}
+
+    def yield_scale(self, blend: float) -> float:
+        """Yield compression over R, with the mean Poisson's ratio of the flow."""
+        flow = self.flow(blend)
+        mean = flow["sphere"] * self.poissons_ratio + flow["plate"] * self.plate_poissons_ratio
+        return yield_scale(self.ratio, mean)
 
     def weights(self, blend: float) -> dict[tuple[str, str], float]:
         """Weights of the tables of powers, by who yields and what of the sum they are.
 
-        Where one body is weaker, the share of both alike falls with the power `blend`; of bodies
-        alike, the moduli do not matter, since they share the flow.
+        Of bodies alike the moduli do not matter, since they share the flow.
         """
-        z = min(self.sphere_ratio, self.plate_ratio) / self.ratio
-        both = (max(0.0, z - _ALONE) / (1.0 - _ALONE)) ** blend
+        both, flow = self.both(blend), self.flow(blend)
         own = self.modulus_share if self.weaker == "sphere" else 1.0 - self.modulus_share
+        ratios = {"sphere": self.poissons_ratio, "plate": self.plate_poissons_ratio}
         return {
             ("both", "usual"): both,
             (self.weaker, "usual"): 1.0 - both,
             (self.weaker, "share"): (1.0 - both) * _within(own - 0.5, _SHARES),
-            (self.weaker, "poissons_ratio"): _within(self.own_poissons_ratio - 0.3, _RATIOS),
+            **{
+                (body, "poissons_ratio"): flow[body] * _within(nu - 0.3, _RATIOS)
+                for body, nu in ratios.items()
+            },
             # a wave's way through the sphere, over the contact time, goes as sqrt(E*/E1')
             ("any", "vibration"): math.sqrt(1.0 - self.modulus_share),
         }
@@ -159,7 +190,8 @@ class _Works(NamedTuple):
     loading: Array  # work
     recovery: Array  # of it, as a share
     plastic: Array
-    residual: Array  # 0 where nothing yields
+    residual: Array  # over (q^2 - 1)^2; 0 where nothing yields
+    span: Array  # what comes back of the compression
 
 
 class Curves:
@@ -176,14 +208,17 @@ class Curves:
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or numbers()
         self.ratio = given.ratio
-        self.scale = yield_scale(self.ratio, given.own_poissons_ratio) if self.ratio else 1.0
+        blend = float(found["blend"])
+        self.scale = given.yield_scale(blend) if self.ratio else 1.0
+        self._softer = max(1.0, self.ratio / RATIOS[1])
+        self._width = math.sqrt(self.scale) * min(1.0, self.ratio / RATIOS[0])
         constant, slope = found["stiffening"]
         self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
         self.friction = friction_loss(given, found["friction"])
         self._terms: dict[str, Array] = {}
         if not self.ratio:
             return
-        weights = given.weights(float(found["blend"]))
+        weights = given.weights(blend)
         for name, cases in found["curves"].items():
             terms = np.zeros((2, *_POWERS))
             for (case, part), weight in weights.items():
@@ -196,8 +231,18 @@ class Curves:
 
     def _sum(self, name: str, q: Array) -> Array:
         """Sum of the powers of t and w of one of the functions."""
-        t, w = (q - 1.0) / (q + SHIFT), math.sqrt(self.scale) * q
+        known, w = self._known(q, _FLOWN[name == "impact"]), self._width * q
+        t = (known - 1.0) / (known + SHIFT)
         return np.asarray(np.polynomial.polynomial.polyval2d(t, w, self._terms[name]))
+
+    def _known(self, q: Array, flown: float) -> Array:
+        """Where the sums are known for what a body softer than the campaign's does at q.
+
+        Up to q = `flown` small-strain similarity makes the sums functions of q alone. Beyond, flow
+        is complete: they are functions of w alone, those of the softest body of the campaign.
+        """
+        deep = (q / flown) ** 2
+        return np.asarray(q * np.sqrt((1.0 + deep / self._softer**2) / (1.0 + deep)))
 
     def _over(self, name: str, q: Array) -> Array:
         """Compute 1 + (q - 1) t (sum of powers), the denominators of the law; 1 below yield."""
@@ -252,6 +297,7 @@ class Curves:
             recovery=recovery,
             plastic=self.plastic(q, recovery),
             residual=self.residual(q) if self.ratio else np.zeros_like(q),
+            span=q**2 / self._over("residual", q),
         )
 
 
@@ -277,8 +323,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
 
     def exponent(dm: Array) -> Array:
         at = works(dm)
-        left = np.where(dm > 1.0, (dm - 1.0) ** 2 * at.residual, 0.0)
-        return at.force * (dm - left) / (at.recovery * at.loading) - 1.0
+        return at.force * at.span / (at.recovery * at.loading) - 1.0
 
     def loss(dm: Array) -> Array:
         at = works(dm)
@@ -289,7 +334,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         return (1.0 - at.recovery - at.plastic) * at.loading
 
     first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
-    start = _SMALLEST / curves.scale
+    start = min(_SMALLEST / curves.scale, _EARLIEST)
     end = deepest(curves.ratio) / curves.scale
     loading = [Loading(0.0, first)]
     # a table begins at `start`, where it must not meet contacts without any loss

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.laws import Law
+from contactlaw.laws.fem import RATIOS
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
@@ -71,8 +72,10 @@ class Validity(enum.IntFlag):
     on the rate, and it loses energy by viscosity."""
     DAMAGE = 512
     """May break or flow: the pressure is above 0.59 of the hardness of a brittle body."""
+    UNTRIED_STRENGTH = 1024
+    """A body yields whose E*/sigma_Y no finite elements of "fem" have: they span 11 to 2000."""
 
-    ACCURACY = 511
+    ACCURACY = 1535
     """All limits of accuracy."""
 
 
@@ -106,6 +109,11 @@ _WORDS = {
     Validity.DAMAGE: (
         "a brittle body may break or flow",
         "the values are for one that stays whole",
+    ),
+    Validity.UNTRIED_STRENGTH: (
+        "a body yields that is weaker or stronger for its stiffness than the finite elements that "
+        "the law is made of",
+        "take the values for estimates",
     ),
 }
 
@@ -159,6 +167,7 @@ class Limits(NamedTuple):
     deepest: float  # compression over R
     bending: float  # force over H^2 [Pa]
     damage: float  # force over R^2 [Pa]
+    untried: int  # flags of an impact in which a body yields
 
 
 def limits(pair: Pair, law: Law) -> Limits:
@@ -172,11 +181,14 @@ def limits(pair: Pair, law: Law) -> Limits:
         "damage": _damage(pair),
     }
     if law.waves:
+        ratio = max(pair.effective_modulus / strength for strength in (sphere, plate))
+        known = RATIOS[0] <= ratio <= RATIOS[1]
         return Limits(
             slender=_THINNEST_YIELDED, slowness=0.0, always=int(rate), yielded=0, trusted=0.0,
             fastest=0.0,
             swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H is that of V0/sqrt(E*/rho1), times R
-            deepest=law.range[1] * (law.scale or 0.0), **common,
+            deepest=law.range[1] * (law.scale or 0.0),
+            untried=0 if known else int(Validity.UNTRIED_STRENGTH), **common,
         )  # fmt: skip
     nu = pair.plate.poissons_ratio
     # E (1 - nu)/((1 + nu)(1 - 2 nu)) is infinite for an incompressible plate: no transit time then
@@ -195,6 +207,7 @@ def limits(pair: Pair, law: Law) -> Limits:
         fastest=_y_at(_FASTEST),
         swiftest=math.inf,
         deepest=math.inf,
+        untried=0,
         **common,
     )
 
@@ -231,7 +244,10 @@ def flags_of(
 ) -> int:
     """Flag an impact; scale is V0 T_H [m], compression and force the largest ones [m, N]."""
     flags = limits.always
-    thinnest = limits.slender if compression > limits.share * radius else _THINNEST
+    thinnest = _THINNEST
+    if compression > limits.share * radius:
+        thinnest = limits.slender
+        flags |= limits.untried
     if radius > thinnest * thickness:
         flags |= _THIN_PLATE
     if thickness < math.inf and contact_time < _TRANSITS * thickness * limits.slowness:

@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 
 from contactlaw.equation import zener
 from contactlaw.laws import Law
+from contactlaw.laws._branches import END
 
 Array = NDArray[np.float64]
 
@@ -35,6 +36,9 @@ _FEWEST_GRADED = 24  # our choice: between two kinks of a capped law that are 8 
 _COARSER = 4.0  # steps in ln chi below yield: only the sphere's stiffening is to be seen there
 _BEYOND = 1.5  # of the overload up to which a law was made, for a table of it
 _THINNEST = 6.0  # lambda of a table that is made for a pair: 1 mm of carbide on 0.6 mm at 10 m/s
+# In ln chi, of a table that is made for a pair, as fine as its rows; and of a long one, for a soft
+# body, most of which is complete flow: its largest errors are the same.
+_STEP, _LONG_STEP = 0.03, 0.05
 _ROOM = 0.02  # in ln chi, between the last kink and the end of the table
 
 
@@ -74,7 +78,7 @@ class Settings:
 
 RANGES = {
     "largest_inelasticity": (1e-3, 10.0),  # 10: COR is 7e-6 there
-    "largest_overload": (1e-3, 1e6),
+    "largest_overload": (1e-3, 1e20),  # above 2e18, of a body of sigma_Y = 1e-12 E, the weakest
     "inelasticity_nodes": (_FEWEST, 100_000),
     "log_overload_step": (1e-4, 1.0),
     "stretch": (1e-3, 1e3),
@@ -154,7 +158,8 @@ def on_demand(law: Law) -> Settings:
     deepest = zener.overload_at(law.data, 0.0, w_m, law.range[1], 1e-11)
     return Settings(
         largest_inelasticity=_THINNEST, largest_overload=float(f"{_BEYOND * deepest:.3g}"),
-        log_overload_step=0.03, inelasticity_nodes=41, rtol=1e-11,
+        log_overload_step=_STEP if law.range[1] <= END else _LONG_STEP,
+        inelasticity_nodes=41, rtol=1e-11,
     )  # fmt: skip
 
 

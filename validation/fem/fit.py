@@ -38,10 +38,10 @@ Tables = list[tuple[tuple[str, str], Size]]  # by who yields, and the part of th
 # Powers of t and w in each function, in what other moduli change of it, and Poisson's ratios
 STATIC = (5, 4), (4, 2), (3, 1)
 IMPACT = (5, 4), (4, 3), (2, 2)
-_IMPACT_RIDGE = 7e-5
+_IMPACT_RIDGE = 2e-4  # with less, v swings where contacts are deep and few
 # Weights in the fit of v: of the paper's kind, whose bound is narrower; of the campaign, most of
 # which is far from everyday impacts
-_WEIGHTS_OF = {"matrix": 3.0, "pairs": 3.0, "strengths": 3.0, "campaign_impact": 0.5}
+_WEIGHTS_OF = {"matrix": 8.0, "pairs": 8.0, "strengths": 8.0, "campaign_impact": 0.5}
 _RAISED = 0.01  # of v/t^2, to see how the COR moves
 _MOST_PLASTIC = 0.98  # of the loss; more is noise of losses that are hardly there
 _BEYOND_YIELD, _LEAST = 1.05, 0.1  # root compressions and CORs that v is fitted to
@@ -406,7 +406,7 @@ def _raised(found: dict[str, Any]) -> dict[str, Any]:
 def _powers(given: fem.Given, q: float, blend: float, tables: Tables) -> Array:
     """List what each power of each table adds to v/t^2."""
     weights = given.weights(blend)
-    w = q * math.sqrt(fem.yield_scale(given.ratio, given.own_poissons_ratio))
+    w = q * math.sqrt(given.yield_scale(blend))
     t = (q - 1.0) / (q + fem.SHIFT)
     return np.concatenate(
         [

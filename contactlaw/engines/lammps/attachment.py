@@ -107,7 +107,7 @@ def attach(
     >>> lmp.command("run 500")
     >>> hit = plates.collisions()[0]
     >>> f"{hit['restitution']:.3f} at {hit['approach_speed']} m/s, {hit['peak_force']:.1f} N"
-    '0.896 at 5.0 m/s, 10.0 N'
+    '0.897 at 5.0 m/s, 10.0 N'
     >>> lmp.close()
     """
     try:

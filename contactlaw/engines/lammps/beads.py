@@ -76,7 +76,7 @@ def pair_coeff(
     --------
     >>> from contactlaw.engines.lammps import pair_coeff
     >>> pair_coeff("gamma-alumina", radius=0.9e-3, speed=40.0).split(" tangential")[0]
-    'pair_coeff * * hertz/material 1.223e+10 0.871928 0.21'
+    'pair_coeff * * hertz/material 1.223e+10 0.86996 0.21'
     """
     one = material(sphere) if isinstance(sphere, str) else sphere
     scalars(radius=radius, speed=speed)

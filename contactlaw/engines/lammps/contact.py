@@ -296,7 +296,7 @@ def _flags(
     scale = speed * (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # V0 T_H
     limits = Limits(
         sheet.slender, sheet.slowness, sheet.always, sheet.yielded, sheet.trusted, sheet.fastest,
-        sheet.swiftest, sheet.share, sheet.deepest, sheet.bending, sheet.damage,
+        sheet.swiftest, sheet.share, sheet.deepest, sheet.bending, sheet.damage, sheet.untried,
     )  # fmt: skip
     return flags_of(limits, bead.r, sheet.thickness, scale, contact_time, compression, force)
 

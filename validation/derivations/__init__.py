@@ -1,0 +1,1 @@
+"""What the formulas of the pages beside it are computed with."""
