@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from contactlaw import laws
 from contactlaw._jit import enable_caching
 from contactlaw.equation import outcome, zener
+from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
-from contactlaw.physical.scaling import Factors, Scales
+from contactlaw.physical.scaling import Factors
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, lookup, shapes
 from contactlaw.table.certificate import bounds
@@ -25,7 +26,7 @@ from contactlaw.table.nodes import Table
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.int64]
-Numbers = NDArray[np.intp]  # of impacts in the flat arrays that the user gave
+Places = NDArray[np.intp]  # of impacts in the flat arrays that the user gave
 Outside = Literal["raise", "solve", "clamp"]
 
 # begin with nothing at yield, where an error relative to them matters least
@@ -114,16 +115,15 @@ def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None)
 
 def with_plates(table: Table, made: Factors) -> Array:
     """Put the plates of a pair into the array of a table that kernels look up in."""
-    plate = lookup.Plate(made.transit, made.reach, made.saturated, made.waves)
-    return lookup.with_plate(table.packed, plate)
+    return lookup.with_plate(table.packed, made.plate)
 
 
-def _coordinates(units: Scales) -> Outcome:
+def _coordinates(units: Numbers) -> Outcome:
     """Room for the outcomes of impacts, with their inelasticities and yield ratios."""
     return outcome.at(*np.broadcast_arrays(units.inelasticity, units.yield_ratio, units.time)[:2])
 
 
-def solved(law: Law, units: Scales, rtol: float, numbers: Numbers | None = None) -> Outcome:
+def solved(law: Law, units: Numbers, rtol: float, places: Places | None = None) -> Outcome:
     """Outcomes by integration.
 
     Errors name the impact by its number in the user's arrays where these are only some of those.
@@ -132,13 +132,11 @@ def solved(law: Law, units: Scales, rtol: float, numbers: Numbers | None = None)
     status, n = zener.solve_all(law.data, rtol, out)
     if status != zener.OK:
         where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
-        raise UnsolvedError(
-            int(n if numbers is None else numbers[n]), where, zener.MESSAGES[status]
-        )
+        raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])
     return out
 
 
-def tabulated(law: Law, table: Array, units: Scales, outside: Outside) -> tuple[Outcome, Flags]:
+def tabulated(law: Law, table: Array, units: Numbers, outside: Outside) -> tuple[Outcome, Flags]:
     """Outcomes by table, and beside them Validity.CLAMPED where its border was taken.
 
     There, inelasticity and yield ratio are those of the border.
@@ -152,7 +150,12 @@ def tabulated(law: Law, table: Array, units: Scales, outside: Outside) -> tuple[
 
 
 def complete(
-    law: Law, table: Array, units: Scales, outside: Outside, beyond: NDArray[np.bool_], out: Outcome
+    law: Law,
+    table: Array,
+    units: Numbers,
+    outside: Outside,
+    beyond: NDArray[np.bool_],
+    out: Outcome,
 ) -> int:
     """Fill in the outcomes that are beyond the table; return their flag."""
     if outside == "raise":
@@ -160,7 +163,7 @@ def complete(
         _refuse(table, float(out.inelasticity[n]), float(out.yield_ratio[n]), n)
     if outside == "solve":
         shape = out.inelasticity.shape
-        part = Scales(*(np.broadcast_to(value, shape)[beyond] for value in units))
+        part = Numbers(*(np.broadcast_to(value, shape)[beyond] for value in units))
         found = solved(law, part, RTOL, np.flatnonzero(beyond))
     else:
         found = outcome.part(out, beyond)

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw.compiled import c_function, entries, jitted
 from contactlaw.constant import Constant, Keep, constant
 from contactlaw.equation import outcome
+from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import Outcome
 from contactlaw.evaluation import (
     RTOL,
@@ -40,7 +41,6 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
 from contactlaw.physical.scaling import (
     Contact,
-    Scales,
     factors,
     law_of,
     log_overload,
@@ -134,7 +134,7 @@ class ImpactModel:
         self._given_table = table
         self._whole_table = table_for(self._law, table)
         self._factors = factors(pair, self._law)
-        self._c_lam, self._c_chi = self._factors.inelasticity, self._factors.log_overload
+        self._c_lam, self._c_chi = self._factors.plate.inelasticity, self._factors.log_overload
         self._table = with_plates(self._whole_table, self._factors)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -780,7 +780,7 @@ class ImpactModel:
             self._count(flags)
         return found, flags, asked, root
 
-    def _fields(self, units: Scales, law: Law, table: Array) -> tuple[Outcome, Flags]:
+    def _fields(self, units: Numbers, law: Law, table: Array) -> tuple[Outcome, Flags]:
         found, flags = tabulated(law, table, units, self.outside)
         self._count(flags)
         return found, flags
@@ -797,7 +797,7 @@ class ImpactModel:
         pair: Pair,
         law: Law,
         contact: Contact,
-        units: Scales,
+        units: Numbers,
         impacts: Impacts,
         found: Outcome,
         flags: Flags,

@@ -43,14 +43,14 @@ from contactlaw._jit import enable_caching, kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.force import Curve
 from contactlaw.equation.integrator import NO_CURVE
-from contactlaw.equation.waves import SATURATION, Waves, stiffening, with_waves
+from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
+from contactlaw.equation.waves import CONTACT_TIME
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate
 
 Array = NDArray[np.float64]
 
-CONTACT_TIME = 3.2  # [T_H], of an elastic impact on a half-space: 3.2181 (Johnson 1985, Eq. 11.24)
 RELAXATION = 1e5  # [contact times]; u2 then moves by 1e-5 of itself within an impact
 FEWEST_STEPS = 20  # per contact; with fewer the error no longer follows the order of the method
 # Largest error of COR times (steps per contact)^2.5, at any phase of the first touch: 0.86 measured
@@ -80,11 +80,8 @@ class Spring(NamedTuple):
     mobility: Any  # alpha of a thin plate [m/(s N)]
     scale: Any  # d_Y [m], or the radius for a law that never yields
     relaxation: Any  # time in which the plate's displacement relaxes [s]
-    transit: Any  # of a wave through the plate, see `contactlaw.physical.scaling.Contact` [s]
-    bulk: Any  # likewise [m s/N]
     ratio: Any  # R/H
-    radius: Any  # [m]
-    waves: Waves  # next orders of the plate
+    plate: PlateConstants
 
 
 PARTED = State(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -102,11 +99,8 @@ def unit_spring(model: ImpactModel, thickness: float) -> Spring:
         mobility=float(contact.mobility),
         scale=scale if scale < math.inf else 1.0,
         relaxation=_relaxation(mass, stiffness),
-        transit=float(contact.transit),
-        bulk=float(contact.bulk),
         ratio=float(contact.ratio),
-        radius=1.0,
-        waves=contact.waves,
+        plate=contact.plate,
     )
 
 
@@ -124,32 +118,17 @@ def resized(unit: Spring, radius: float) -> Spring:
         unit.mobility,
         unit.scale * radius,
         unit.relaxation * radius,
-        unit.transit,
-        unit.bulk,
         unit.ratio * radius,
-        radius,
-        unit.waves,
+        unit.plate,
     )
 
 
 @kernel
-def inelasticity(spring: Spring, speed: float) -> tuple[float, float, float]:
-    """Inelasticity lambda of an impact, that per mobility, and by how much the contact is stiffer.
-
-    The last is the power 2/5 of the factor, by which the contact time is shorter.
-    """
-    time = (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # T_H
-    x = math.sqrt(speed * time / spring.radius)
-    least = min(x, SATURATION * math.sqrt(spring.scale / spring.radius))
-    thin, h = spring.mobility * spring.mass / time, spring.transit / time
-    more = math.exp(stiffening(spring.waves, spring.ratio, least, thin, h))
-    time /= more
-    over = spring.mass / time
-    lam = with_waves(
-        spring.waves, spring.mobility * over, spring.transit / time,
-        spring.bulk * over / (time * time), spring.ratio * (x - least),
+def impact(spring: Spring, speed: float) -> Numbers:
+    """Dimensionless numbers of the impact with which a contact begins."""
+    return numbers(
+        spring.plate, spring.mass, spring.stiffness, spring.scale, speed, spring.ratio
     )  # fmt: skip
-    return lam, over, more
 
 
 @kernel
@@ -160,8 +139,9 @@ def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> t
     speed = (overlap - state.plate_displacement - state.largest_compression) / step
     if not speed > 0.0:
         return spring.mobility, 1.0
-    lam, over, more = inelasticity(spring, speed)
-    return lam / over, more * more * math.sqrt(more)
+    found = impact(spring, speed)
+    more = found.stiffer
+    return found.inelasticity * found.time / spring.mass, more * more * math.sqrt(more)
 
 
 @kernel
@@ -211,7 +191,7 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     leak = 0.5 * step / spring.relaxation
     before = unit * state.stiffening if state.stiffening > 0.0 else unit
     own, stiffening, mobility = 0.0, 0.0, spring.mobility
-    if spring.waves.bulk_factor > 0.0:
+    if spring.plate.waves.bulk_factor > 0.0:
         own, stiffening = _next_orders(spring, state, overlap, step)
         if stiffening > 0.0:
             mobility, unit = own, unit * stiffening
@@ -262,11 +242,8 @@ def _advance_all(
             springs.mobility[n],
             springs.scale[n],
             springs.relaxation[n],
-            springs.transit[n],
-            springs.bulk[n],
             springs.ratio[n],
-            springs.radius[n],
-            springs.waves,
+            springs.plate,
         )
         state = State(
             states.plate_displacement[n],
@@ -337,11 +314,8 @@ class Contacts:
             mobility=contact.mobility,
             scale=np.where(elastic, r, contact.yield_compression),
             relaxation=_relaxation(contact.mass, contact.stiffness),
-            transit=contact.transit,
-            bulk=np.broadcast_to(contact.bulk, r.shape).copy(),
             ratio=contact.ratio,
-            radius=r,
-            waves=contact.waves,
+            plate=contact.plate,
         )
         self._longest = float(self._springs.relaxation.min(initial=math.inf))
         self._states = State(*(np.zeros(r.size) for _ in State._fields))

@@ -34,7 +34,7 @@ LAYERS = [
 ]
 # Within a folder without units, the same: the order of its files.
 FILES = {
-    "equation": ["force", "outcome", "waves", "integrator", "zener"],
+    "equation": ["force", "outcome", "waves", "numbers", "integrator", "zener"],
     "table": ["lookup", "grid", "splines", "shapes", "sweep", "certificate", "nodes", "guarded",
               "file", "cache"],
     "command": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",

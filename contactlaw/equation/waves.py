@@ -148,35 +148,3 @@ def with_waves(waves: Waves, thin: float, h: float, bulk: float, plastic: float)
     longer = 1.0 / _lengthening(thin * near_field(waves, h))
     far = waves.bulk_factor * bulk * (longer * longer)
     return thin * near_field(waves, h * longer) + far + waves.beyond * plastic
-
-
-@kernel(cache=True)
-def _fill(
-    waves: Waves,
-    thin: Array,
-    h: Array,
-    bulk: Array,
-    ratio: Array,
-    x: Array,
-    most: Array,
-    lam: Array,
-    stiffer: Array,
-) -> None:
-    for n in range(lam.size):
-        least = min(x[n], most[n])
-        more = math.exp(stiffening(waves, ratio[n], least, thin[n], h[n]))
-        stiffer[n] = more
-        plastic, cube = ratio[n] * (x[n] - least), more * more * more
-        lam[n] = with_waves(waves, thin[n] * more, h[n] * more, bulk[n] * cube, plastic)
-
-
-def next_orders(
-    waves: Waves, thin: Array, h: Array, bulk: Array, ratio: Array, x: Array, most: Array
-) -> tuple[Array, Array]:
-    """Inelasticity with all orders in, and exp(eta), for arrays of one shape; most is x_s."""
-    if waves == THIN:
-        return thin, np.ones_like(thin)
-    lam, stiffer = np.empty(thin.size), np.empty(thin.size)
-    flat = [np.ravel(values) for values in np.broadcast_arrays(thin, h, bulk, ratio, x, most)]
-    _fill(waves, flat[0], flat[1], flat[2], flat[3], flat[4], flat[5], lam, stiffer)
-    return lam.reshape(thin.shape), stiffer.reshape(thin.shape)

@@ -108,6 +108,7 @@ def _text(model: ImpactModel, table: Table | None) -> str:
     template = _SECTION.sub("" if table is None else r"\1", template)
     spring = unit_spring(model, 1.0)
     made = factors(model.pair, model.force_law)
+    transit = made.plate.transit * made.time  # of a shear wave, at H = 1 m
     values = {
         "version": VERSION,
         "about": "\n".join(_about(model, table)),
@@ -116,11 +117,11 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         "mobility": _number(spring.mobility),
         "scale": _number(spring.scale),
         "relaxation": _number(spring.relaxation),
-        "transit": _number(spring.transit),
-        "bulk": _number(spring.bulk),
-        "waves": _array(spring.waves),
+        "transit": _number(transit),
+        "bulk": _number(spring.mobility * transit**2),
+        "waves": _array(made.plate.waves),
         "law": _array(model.force_law.data),
-        "c_lam": _number(made.inelasticity),
+        "c_lam": _number(made.plate.inelasticity),
         "c_chi": _number(made.log_overload),
         "table": "" if table is None else _array(packed(model, table)),
         **{name: _number(getattr(waves, name)) for name in _OF_WAVES},

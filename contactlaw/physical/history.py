@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History
-from contactlaw.physical.scaling import Scales
 
 Array = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class ForceHistory(NamedTuple):
 
 
 def with_units(
-    contacts: History, units: Scales, mobility: Array, shape: tuple[int, ...] | None
+    contacts: History, units: Numbers, mobility: Array, shape: tuple[int, ...] | None
 ) -> ForceHistory:
     """Give contacts (n, samples) their units and the shape of the answer."""
     scales = units.time, units.force, units.compression, units.force * units.time

@@ -15,7 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
-from contactlaw.equation.waves import CONTACT_TIME, SATURATION, THIN, Waves, next_orders, waves
+from contactlaw.equation.numbers import Numbers, PlateConstants, fill
+from contactlaw.equation.waves import CONTACT_TIME, SATURATION, THIN
+from contactlaw.equation.waves import waves as next_orders
 from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.materials import Material
@@ -25,37 +27,20 @@ Array = NDArray[np.float64]
 
 
 class Contact(NamedTuple):
-    """What the bodies bring into an impact, whatever its speed; floats or arrays."""
+    """What the bodies bring into impacts, whatever the speed; arrays, but for the plate's."""
 
     mass: Array  # [kg], effective
     stiffness: Array  # K in F = K d^1.5 [N/m^1.5]
     mobility: Array  # alpha, speed of a thin plate per force [m/(s N)]
-    yield_compression: Array  # d_Y [m]
-    transit: Array  # of a shear wave through the plate, over CONTACT_TIME [s]; inf: half-space
-    bulk: Array  # mobility transit^2, for a half-space too [m s/N]
+    yield_compression: Array  # d_Y [m]; inf for Hertz's law
     ratio: Array  # R/H
-    radius: Array  # R* [m]
-    waves: Waves  # next orders of the plate
-
-
-class Scales(NamedTuple):
-    """One impact on Hertz's scale, and the units of that scale; floats or arrays."""
-
-    inelasticity: Array  # lambda
-    yield_ratio: Array  # y = d_Y/(V0 T_H)
-    time: Array  # T_H [s]
-    compression: Array  # V0 T_H [m]
-    force: Array  # m V0/T_H [N]
+    plate: PlateConstants
 
 
 class Factors(NamedTuple):
     """A pair's constants, with which no power has to be taken for a sphere on a plate."""
 
-    inelasticity: float  # lambda of a thin plate at 1 m/s and R = H
-    transit: float  # shear waves through it, over CONTACT_TIME T_H, there
-    reach: float  # x of the stiffening by the plate, there
-    saturated: float  # V^(1/5) at which x stops to grow; inf: it never does
-    waves: Waves
+    plate: PlateConstants
     log_overload: float  # ln(chi/w_m) at 1 m/s; -inf for a law that never yields
     time: float  # T_H at 1 m/s, over R [s/m]
     mass: float  # over R^3 [kg/m3]
@@ -174,22 +159,13 @@ def _mass(material: Material, radius: Array) -> Array:
 
 def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Contact:
     """Contact of a sphere with a large plate: R* = R, m* = m."""
-    one = np.ones(())
-    plate = THIN
-    if law.waves:
-        share = pair.effective_modulus / pair.plate.plane_modulus
-        b, b_h, b4, b_p = law.waves
-        plate = waves(pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share)
     return Contact(
         mass=_mass(pair.sphere, radius),
         stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius),
         mobility=plate_mobility(pair.plate, thickness),
         yield_compression=_yield_compression(pair, radius, law),
-        transit=_transit(pair.plate, thickness),
-        bulk=plate_mobility(pair.plate, one) * _transit(pair.plate, one) ** 2,
         ratio=radius / thickness,
-        radius=radius,
-        waves=plate,
+        plate=plate_constants(pair, law),
     )
 
 
@@ -202,53 +178,53 @@ def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -
         stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(reduced),
         mobility=np.zeros_like(reduced),
         yield_compression=_yield_compression(pair, reduced, law),
-        transit=np.zeros_like(reduced),
-        bulk=np.zeros_like(reduced),
         ratio=np.zeros_like(reduced),
-        radius=reduced,
-        waves=THIN,
+        plate=PlateConstants(0.0, 0.0, 0.0, math.inf, THIN),
     )
 
 
-def scales(contact: Contact, speed: Array) -> Scales:
-    """Dimensionless numbers and units of impacts at the given speeds [m/s]."""
-    time = (contact.mass / (contact.stiffness * np.sqrt(speed))) ** 0.4
-    compression = speed * time
-    over = contact.mass / time
+def plate_constants(pair: Pair, law: Law) -> PlateConstants:
+    """Constants of a pair's plates, at 1 m/s and R = H; all sizes are alike there."""
+    one = np.ones(())
+    mass, time, waves = _mass(pair.sphere, one).item(), _unit_time(pair), THIN
+    if law.waves:
+        share = pair.effective_modulus / pair.plate.plane_modulus
+        b, b_h, b4, b_p = law.waves
+        waves = next_orders(pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share)
     # beyond yield the force grows no faster than the compression
-    most = SATURATION * SATURATION * contact.yield_compression
-    inelasticity, stiffer = next_orders(
-        contact.waves,
-        contact.mobility * over,
-        contact.transit / time,
-        contact.bulk * over / time**2,
-        contact.ratio,
-        np.sqrt(compression / contact.radius),
-        np.sqrt(most / contact.radius),
+    most = SATURATION * SATURATION * _yield_compression(pair, one, law).item() / time
+    return PlateConstants(
+        inelasticity=plate_mobility(pair.plate, one).item() * mass / time,
+        transit=_transit(pair.plate, one).item() / time,
+        reach=math.sqrt(time),
+        saturated=most**0.25,
+        waves=waves,
     )
-    time, compression = time / stiffer, compression / stiffer
-    return Scales(
-        inelasticity=inelasticity,
-        yield_ratio=contact.yield_compression / compression,
-        time=time,
-        compression=compression,
-        force=contact.mass * speed / time,
+
+
+def _unit_time(pair: Pair) -> float:
+    """T_H of a sphere of radius 1 m at 1 m/s [s]."""
+    return float((math.pi * pair.sphere.density / pair.effective_modulus) ** 0.4)
+
+
+def scales(contact: Contact, speed: Array) -> Numbers:
+    """Dimensionless numbers and units of impacts at the given speeds [m/s]."""
+    given = np.broadcast_arrays(
+        contact.mass, contact.stiffness, contact.yield_compression, speed, contact.ratio
     )
+    mass, stiffness, yielding, v, ratio = map(np.ravel, given)
+    out = Numbers(*np.empty((len(Numbers._fields), v.size)))
+    fill(contact.plate, mass, stiffness, yielding, v, ratio, out)
+    return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 
 def factors(pair: Pair, law: Law) -> Factors:
     """Constants of spheres on plates."""
     one = np.ones(())
-    contact = sphere_on_plate(pair, law, one, one)
-    time = (contact.mass / contact.stiffness) ** 0.4
-    most = SATURATION * SATURATION * contact.yield_compression / time  # of V0 T_H, over that
+    time = _unit_time(pair)
     return Factors(
-        inelasticity=(contact.mobility * contact.mass / time).item(),
-        transit=(contact.transit / time).item(),
-        reach=np.sqrt(time).item(),
-        saturated=(most**0.25).item(),
-        waves=contact.waves,
-        log_overload=-math.log((contact.yield_compression / time).item()),
-        time=time.item(),
-        mass=contact.mass.item(),
+        plate=plate_constants(pair, law),
+        log_overload=-math.log(_yield_compression(pair, one, law).item() / time),
+        time=time,
+        mass=_mass(pair.sphere, one).item(),
     )

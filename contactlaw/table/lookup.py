@@ -14,7 +14,7 @@ numbers is called from Python in a third of a microsecond. The array begins with
     X_MAX        x of the largest lambda  CURVED     1 if there are curved kinks
     LOG_CHI_MAX  largest ln chi           COR_AT     where the coefficients of COR begin
     NODES_PER_X  1/(distance of nodes)    OTHERS_AT  where those of the other fields begin
-    COLUMNS      of coefficients           TRANSIT to WAVES  of the plate, see `Plate`
+    COLUMNS      of coefficients       TRANSIT to WAVES  of the plate, see `PlateConstants`
 
 then, at HEADER, the polynomial's coefficients, n blocks and the polynomials of curved kinks:
 
@@ -36,8 +36,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from contactlaw.equation.numbers import PlateConstants, inelasticity_of, stiffening_of
 from contactlaw.equation.outcome import Outcome
-from contactlaw.equation.waves import THIN, Waves, stiffening, with_waves
+from contactlaw.equation.waves import THIN, Waves
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -61,53 +62,25 @@ _BLOCKS = HEADER + DEGREE + 1
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
-class Plate(NamedTuple):
-    """Constants of a pair of which the next orders of its plates are made, at 1 m/s and R = H."""
-
-    transit: float  # h of a loss-free contact, see `contactlaw.equation.waves`
-    reach: float  # x, of which the stiffening eta is made
-    saturated: float  # V^(1/5) at which x stops to grow
-    waves: Waves
-
-
-def with_plate(table: Array, plate: Plate) -> Array:
+def with_plate(table: Array, plate: PlateConstants) -> Array:
     """Copy a table for plates that have next orders; the table itself for others."""
     if plate.waves == THIN:
         return table
     table = table.copy()
-    table[TRANSIT], table[REACH], table[SATURATED], table[WAVES:HEADER] = plate
+    table[TRANSIT:WAVES] = plate.transit, plate.reach, plate.saturated
+    table[WAVES:HEADER] = plate.waves
     return table
 
 
 @kernel
-def _plate(table: Array) -> Plate:
+def _plate(table: Array, c_lam: float) -> PlateConstants:
     """Read the constants of the plate."""
     w, k = table, WAVES
     waves = Waves(
         w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5],
         w[k + 6], w[k + 7], w[k + 8], w[k + 9], w[k + 10],
     )  # fmt: skip
-    return Plate(w[TRANSIT], w[REACH], w[SATURATED], waves)
-
-
-@kernel(inline=True)
-def _eta(plate: Plate, c_lam: float, root: float, ratio: float) -> float:
-    """Stiffening of a contact by its plate, from V^(1/5) and R/H."""
-    slow = min(root, plate.saturated)
-    thin, h = c_lam * root * (ratio * ratio), plate.transit * root / ratio
-    return stiffening(plate.waves, ratio, plate.reach * (slow * slow), thin, h)
-
-
-@kernel(inline=True)
-def _inelasticity(plate: Plate, c_lam: float, root: float, ratio: float, more: float) -> float:
-    """Inelasticity lambda of an impact, from V^(1/5), R/H and exp(eta)."""
-    if plate.waves.bulk_factor == 0.0:
-        return c_lam * root * (ratio * ratio)
-    slow = min(root, plate.saturated)
-    plastic = ratio * plate.reach * (root * root - slow * slow)
-    root *= more
-    thin, h = c_lam * root * (ratio * ratio), plate.transit * root
-    return with_waves(plate.waves, thin, h / ratio, c_lam * root * (h * h), plastic)
+    return PlateConstants(c_lam, w[TRANSIT], w[REACH], w[SATURATED], waves)
 
 
 def lam_max(table: Array) -> float:
@@ -123,7 +96,7 @@ def chi_max(table: Array) -> float:
 def _root_series() -> tuple[float, ...]:
     """Taylor coefficients of f(z) = ((1 + z)/(1 - z))^(1/5), from (1 - z^2) f' = (2/5) f."""
     c = [1.0, 0.4]
-    for n in range(1, 12):
+    for n in range(1, 19):
         c.append((0.4 * c[n] + (n - 1) * c[n - 1]) / (n + 1))
     return tuple(c)
 
@@ -138,7 +111,7 @@ _ROOTS_OF_TWO = 2.0 ** (np.arange(-1024, 3072) / 5)  # 2^(k/5), for any 12 bits 
 
 @kernel
 def _log_and_root(v: float) -> tuple[float, float]:
-    """Logarithm and fifth root to 2e-11, for V_MIN <= v <= V_MAX; garbage, but no crash, elsewhere.
+    """Logarithm and fifth root of V_MIN <= v <= V_MAX, to rounding; of others garbage, no crash.
 
     v = 2^k m with m within [sqrt(1/2), sqrt(2)) and z = (m - 1)/(m + 1), |z| < 0.172: the series of
     2 artanh z = ln m and of m^(1/5) do not wait for each other, and contain no call, so that loops
@@ -154,12 +127,16 @@ def _log_and_root(v: float) -> tuple[float, float]:
     w = z * z
     w2 = w * w
     w4 = w2 * w2
-    odd = (2.0 + w * (2 / 3)) + (2 / 5 + w * (2 / 7)) * w2  # next term of ln m: 1e-13
+    w8 = w4 * w4
+    odd = (2.0 + w * (2 / 3)) + (2 / 5 + w * (2 / 7)) * w2  # next term of ln m: 1e-17
     odd += ((2 / 9 + w * (2 / 11)) + (2 / 13 + w * (2 / 15)) * w2) * w4
-    c = ROOT  # next term of the root: 5e-12
+    odd += (2 / 17 + w * (2 / 19)) * w8
+    c = ROOT  # next term of the root: 2e-17
     root = (c[0] + c[1] * z) + (c[2] + c[3] * z) * w
     root += ((c[4] + c[5] * z) + (c[6] + c[7] * z) * w) * w2
-    root += ((c[8] + c[9] * z) + (c[10] + c[11] * z) * w + c[12] * w2) * w4
+    root += ((c[8] + c[9] * z) + (c[10] + c[11] * z) * w) * w4
+    root += ((c[12] + c[13] * z) + (c[14] + c[15] * z) * w) * (w4 * w2)
+    root += ((c[16] + c[17] * z) + (c[18] + c[19] * z) * w) * w8
     return exponent * math.log(2.0) + z * odd, root * _ROOTS_OF_TWO[biased]
 
 
@@ -424,12 +401,12 @@ def _restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: 
     if not V_MIN <= speed <= V_MAX:
         return math.nan
     log_speed, root = _log_and_root(speed)
-    plate, more = _plate(table), 1.0
+    plate, more = _plate(table, c_lam), 1.0
     if plate.waves.bulk_factor > 0.0:
-        eta = _eta(plate, c_lam, root, ratio)
+        eta = stiffening_of(plate, root, ratio)
         more = _exp(eta)
         c_chi -= eta
-    lam = _inelasticity(plate, c_lam, root, ratio, more)
+    lam = inelasticity_of(plate, root, ratio, more)
     x = lam / (lam + table[STRETCH])
     if not 0.0 <= x <= table[X_MAX]:
         return math.nan
@@ -478,7 +455,7 @@ def _coordinates(
     power_series, log_chi_max = _power_series(table, HEADER), table[LOG_CHI_MAX]
     for i in range(x.size):
         log_chi[i], root[i] = _log_and_root(speed[i])
-    plate = _plate(table)
+    plate = _plate(table, c_lam)
     if plate.waves.bulk_factor == 0.0:
         for i in range(x.size):
             # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
@@ -487,9 +464,9 @@ def _coordinates(
     else:
         for i in range(x.size):
             ratio = radius[i] / thickness[i]
-            eta = _eta(plate, c_lam, root[i], ratio)
+            eta = stiffening_of(plate, root[i], ratio)
             more = _exp(eta)
-            lam = _inelasticity(plate, c_lam, root[i], ratio, more)
+            lam = inelasticity_of(plate, root[i], ratio, more)
             root[i] *= more
             x[i] = lam / (lam + stretch)
             log_chi[i] -= 1.25 * eta  # of the speed, whose power 4/5 it is
@@ -553,7 +530,7 @@ def outcomes(
     """
     scratch, first = np.empty((6, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
     cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
-    others_at, plate = int(table[OTHERS_AT]), _plate(table)
+    others_at, plate = int(table[OTHERS_AT]), _plate(table, c_lam)
     lowest = table[_BLOCKS + START]
     x_max, log_chi_max, y_1 = table[X_MAX], table[LOG_CHI_MAX], math.exp(-c_chi)
     outside = 0
@@ -569,9 +546,7 @@ def outcomes(
                 out.yield_ratio[start + i] = _exp(log_w[i] - log_chi[i])
         else:
             for i in range(n):
-                out.inelasticity[start + i] = _inelasticity(
-                    plate, c_lam, roots[i], r[i] / h[i], 1.0
-                )
+                out.inelasticity[start + i] = inelasticity_of(plate, roots[i], r[i] / h[i], 1.0)
                 square = roots[i] * roots[i]
                 out.yield_ratio[start + i] = y_1 / (square * square)
         if inside:
@@ -632,13 +607,13 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
 
     d(ln chi)/d(ln V) lies between 2/3 and 4/5, so a step with slope 3/4 contracts by 0.12 at least.
     """
-    plate = _plate(table)
+    plate = _plate(table, c_lam)
     for n in range(out.size):
         log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
             root = math.exp(0.2 * log_speed)
-            eta = _eta(plate, c_lam, root, ratio[n]) if plate.waves.bulk_factor > 0.0 else 0.0
-            lam = _inelasticity(plate, c_lam, root, ratio[n], math.exp(eta))
+            eta = stiffening_of(plate, root, ratio[n]) if plate.waves.bulk_factor > 0.0 else 0.0
+            lam = inelasticity_of(plate, root, ratio[n], math.exp(eta))
             x = lam / (lam + table[STRETCH])
             if not 0.0 <= x <= table[X_MAX]:
                 break

@@ -22,10 +22,11 @@ from scipy.optimize import minimize_scalar
 
 import contactlaw as cl
 from contactlaw.equation import zener
+from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.waves import SATURATION
 from contactlaw.equation.zener import Solution
 from contactlaw.laws import Law, fem
-from contactlaw.physical.scaling import Scales, pair_numbers, scales, sphere_on_plate
+from contactlaw.physical.scaling import pair_numbers, scales, sphere_on_plate
 from validation.fem import cases, store
 from validation.fem.campaign import SAMPLES, YIELDING
 
@@ -294,7 +295,7 @@ def numbers_of(pair: cl.Pair) -> fem.Given:
     return fem.Given(*(float(f"{found[name]:.6g}") for name in fem.PARAMETERS))
 
 
-def solved(blow: Blow, law: Law) -> tuple[Solution, Scales]:
+def solved(blow: Blow, law: Law) -> tuple[Solution, Numbers]:
     """Impact by a law, and its units."""
     contact = sphere_on_plate(blow.pair, law, np.array(blow.radius), np.array(blow.thickness))
     units = scales(contact, np.array(blow.speed))

@@ -55,9 +55,10 @@ from contactlaw.engines.lammps.memory import (
 from contactlaw.engines.lammps.surface import join, on_it, overlaps, slope, touch_of
 from contactlaw.engines.record import IMPACT
 from contactlaw.equation import force
-from contactlaw.equation.waves import Waves
+from contactlaw.equation.numbers import PlateConstants
+from contactlaw.equation.waves import CONTACT_TIME, Waves
 from contactlaw.physical.validity import Limits, flags_of
-from contactlaw.softsphere import CONTACT_TIME, FEWEST_STEPS, Spring, State, inelasticity, resized
+from contactlaw.softsphere import FEWEST_STEPS, Spring, State, impact, resized
 from contactlaw.table.lookup import THINNEST
 
 Array = NDArray[np.float64]
@@ -133,8 +134,7 @@ def _place_in(walls: Walls, bead: Bead, n: int) -> Contact:
 @kernel
 def _check_step(shared: Any, clock: Clock, bead: Bead, wall: int, spring: Spring, u: float) -> None:
     """Refuse a step that is too long for an impact at this speed."""
-    shortest = CONTACT_TIME * (spring.mass / (spring.stiffness * math.sqrt(u))) ** 0.4
-    limit = shortest / FEWEST_STEPS
+    limit = CONTACT_TIME * impact(spring, u).time / FEWEST_STEPS
     if clock.dt > limit:
         complain(shared, clock.step, bead.tag, bead.history, memory.STEP_TOO_LARGE, wall, u, limit)
 
@@ -160,7 +160,7 @@ def _begin(
         complain(shared, clock.step, bead.tag, row, memory.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
         _check_step(shared, clock, bead, wall, spring, u)
-        lam, _, _ = inelasticity(spring, u)
+        lam = impact(spring, u).inelasticity
         if not THINNEST * bead.r <= sheet.thickness:
             ratio = bead.r / sheet.thickness
             complain(shared, clock.step, bead.tag, row, memory.FOIL, wall, ratio, 1.0 / THINNEST)
@@ -293,12 +293,12 @@ def _flags(
     force: float,
 ) -> int:
     """Limits of the model that an impact exceeds."""
-    scale = speed * (spring.mass / (spring.stiffness * math.sqrt(speed))) ** 0.4  # V0 T_H
     limits = Limits(
         sheet.slender, sheet.slowness, sheet.always, sheet.yielded, sheet.trusted, sheet.fastest,
         sheet.swiftest, sheet.share, sheet.deepest, sheet.bending, sheet.damage, sheet.untried,
     )  # fmt: skip
-    return flags_of(limits, bead.r, sheet.thickness, scale, contact_time, compression, force)
+    way = impact(spring, speed).compression
+    return flags_of(limits, bead.r, sheet.thickness, way, contact_time, compression, force)
 
 
 @kernel
@@ -331,9 +331,12 @@ def _normal(
         sheet.eta, sheet.eta_h, sheet.eta4, sheet.beyond, sheet.steepest, sheet.bulk_factor,
         sheet.p1, sheet.p2, sheet.p3, sheet.p4, sheet.p5,
     )  # fmt: skip
+    plate = PlateConstants(
+        sheet.inelasticity, sheet.transit, sheet.reach, sheet.saturated, waves
+    )  # fmt: skip
     unit = Spring(
-        sheet.mass, sheet.stiffness, sheet.mobility, sheet.scale, sheet.relaxation,
-        sheet.transit, sheet.bulk, sheet.ratio, sheet.radius, waves,
+        sheet.mass, sheet.stiffness, sheet.mobility, sheet.scale, sheet.relaxation, sheet.ratio,
+        plate,
     )  # fmt: skip
     spring = resized(unit, bead.r)
     last = State(

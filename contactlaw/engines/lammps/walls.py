@@ -18,6 +18,7 @@ from contactlaw.engines.lammps.grid import GRID, Grid
 from contactlaw.engines.lammps.mesh import Mesh
 from contactlaw.engines.lammps.motion import MOTION, POSE
 from contactlaw.engines.lammps.plate import Models, Plate, check_models
+from contactlaw.equation.numbers import PlateConstants
 from contactlaw.equation.waves import Waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Limits
@@ -28,7 +29,15 @@ Rows = NDArray[np.void]
 Wall = Plate | Mesh
 
 SHEET = np.dtype(
-    [(name, "f8") for name in ("tangential", *Spring._fields[:-1], *Waves._fields)]
+    [
+        (name, "f8")
+        for name in (
+            "tangential",
+            *Spring._fields[:-1],
+            *PlateConstants._fields[:-1],
+            *Waves._fields,
+        )
+    ]
     # of the flags of an impact, beside what a Limits has
     + [("thickness", "f8")]
     + [
@@ -169,9 +178,10 @@ def _first_alike(table: Any, laws: list[list[str]]) -> NDArray[np.intp]:
 def _fill_sheet(row: Any, model: ImpactModel, thickness: float) -> None:
     row["tangential"] = 8.0 * model.pair.effective_shear_modulus
     spring = unit_spring(model, thickness)
-    springs, waves = spring._asdict(), spring.waves._asdict()
-    del springs["waves"]
-    for name, value in {**springs, **waves, **model.limits._asdict()}.items():
+    parts: dict[str, Any] = spring._asdict() | model.limits._asdict()
+    parts |= parts.pop("plate")._asdict()
+    parts |= parts.pop("waves")._asdict()
+    for name, value in parts.items():
         row[name] = value
     law = model.force_law.data
     row["law"], row["law_size"] = law.ctypes.data, law.size
