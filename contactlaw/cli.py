@@ -18,6 +18,7 @@ from typing import Literal
 import numpy as np
 
 from contactlaw import export, laws, table
+from contactlaw._jit import enable_caching
 from contactlaw.command import (
     curves,
     fitplot,
@@ -267,6 +268,7 @@ def _law(arguments: argparse.Namespace) -> laws.Law:
 
 
 def _table_build(arguments: argparse.Namespace) -> None:
+    enable_caching()
     out = Path(arguments.out or f"{arguments.law}.h5")
     with wording.file_of("out", out):
         law = _law(arguments)
@@ -278,6 +280,7 @@ def _table_build(arguments: argparse.Namespace) -> None:
 
 
 def _stored(arguments: argparse.Namespace) -> table.Table:
+    enable_caching()
     if arguments.file:
         return file.read(arguments.file)
     law = _law(arguments)

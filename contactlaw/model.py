@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._jit import enable_caching
 from contactlaw.compiled import c_function, entries, jitted
 from contactlaw.constant import Constant, Keep, constant
 from contactlaw.equation import outcome
@@ -61,6 +62,7 @@ from contactlaw.sensitivity import (
 )
 from contactlaw.speedtable import SpeedTable, speed_table
 from contactlaw.table import Settings, Table, lookup
+from contactlaw.table.grid import largest_inelasticity
 
 Array = NDArray[np.float64]
 
@@ -81,8 +83,8 @@ class ImpactModel:
         Normal force law: ``"fem"``, read off finite elements, for metals, ceramics and glasses,
         of which either, both or neither body may yield; ``"myc"``, the paper's; another of
         `contactlaw.laws.names`; or a `contactlaw.laws.Law` of your own.
-        A table for it is built when it is first needed, in less than a second, and kept in the
-        user's cache folder.
+        A table for it is built when it is first asked, in less than a second, and kept in the
+        user's cache folder; `solve`, soft spheres and LAMMPS need none.
     table : Table, path-like or Settings, optional
         A table to use in place of the law's own; `contactlaw.table.Settings` of a larger or
         finer one are built, in less than a second as a rule, and kept in the user's cache folder.
@@ -132,10 +134,11 @@ class ImpactModel:
         self._clamping = threading.Lock()
         self._clamped = 0
         self._given_table = table
-        self._whole_table = table_for(self._law, table)
         self._factors = factors(pair, self._law)
         self._c_lam, self._c_chi = self._factors.plate.inelasticity, self._factors.log_overload
-        self._table = with_plates(self._whole_table, self._factors)
+        enable_caching()
+        if table is not None:
+            self.table  # noqa: B018 - what is wrong with it is said here, not at the first impact
 
     def __reduce__(self) -> tuple[Any, ...]:
         # compiled functions do not travel; the receiving process has its own
@@ -164,10 +167,25 @@ class ImpactModel:
         """The normal force law itself, as data."""
         return self._law
 
-    @property
+    @functools.cached_property
     def table(self) -> Table:
-        """The table that answers; for Hertz's law that of MYC, whose edge it is."""
-        return self._whole_table
+        """The table that answers; for Hertz's law that of MYC, whose edge it is.
+
+        It is made when it is first asked for: `solve` and soft spheres need none.
+        """
+        return table_for(self._law, self._given_table)
+
+    @functools.cached_property
+    def _table(self) -> Array:
+        """What kernels look up in: the table, with the plates of the pair."""
+        return with_plates(self.table, self._factors)
+
+    @property
+    def largest_inelasticity(self) -> float:
+        """Largest lambda that the table answers, known before it is made."""
+        if self._given_table is None:
+            return largest_inelasticity(self._law)
+        return lookup.lam_max(self.table.packed)
 
     @property
     def limits(self) -> Limits:
@@ -416,7 +434,7 @@ class ImpactModel:
             contacts = histories_by_solver(self._law, solved(self._law, units, RTOL), samples)
         else:
             found, _ = self._fields(units, self._law, self._table)
-            contacts = histories_by_table(self._law, self._whole_table, found, samples)
+            contacts = histories_by_table(self._law, self.table, found, samples)
         return with_units(contacts, units, contact.mobility, shape)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | Array:
@@ -509,7 +527,7 @@ class ImpactModel:
         found, _ = tabulated(self._law, self._table, units, "raise")
         if self._law.waves:
             return by_inputs(self.pair, self._law, (v, r, h), found, shape)
-        if follows(self._whole_table):
+        if follows(self.table):
             by_lam, by_y = by_table(self._table, found)
         else:
             by_lam, by_y = by_solver(self._law, found)
@@ -738,8 +756,8 @@ class ImpactModel:
         gave in its name hold for them as they do for the plate.
         """
         law = law_of(pair, self._law.family) if self._law.from_pair else self._law
-        same = self._whole_table.law.follows(law) or law == self._law
-        return pair, law, self._whole_table if same else table_for(law, None)
+        same = self.table.law.follows(law) or law == self._law
+        return pair, law, self.table if same else table_for(law, None)
 
     def _curve(
         self,

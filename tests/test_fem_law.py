@@ -37,7 +37,7 @@ def model_of(sphere, plate, law="fem"):
 @functools.cache
 def solver_of(pair):
     """A model whose table is none of its own, and not asked."""
-    spans = model_of("gamma-alumina", "glass")._whole_table
+    spans = model_of("gamma-alumina", "glass").table
     table = dataclasses.replace(spans, law=law_of(pair, "fem"), certificate=None)
     return cl.ImpactModel(pair, law="fem", table=table)
 

@@ -338,3 +338,46 @@ def test_the_first_process_says_that_it_compiles(tmp_path):
         assert said.count("compiles") == expected and said.count("\n") == expected + 1
         os.close(ours)
         os.close(its)
+
+
+# Subcommands with what they need; in the folder of the examples.
+PAIR = "--sphere gamma-alumina --plate glass --radius 0.9mm"
+COMMANDS = [
+    f"cor {PAIR} --thickness 1mm --speed 5",
+    f"sweep {PAIR} --thickness 1mm,2mm --speed 1:5:3 --out OUT.csv",
+    f"speed-table {PAIR} --thickness 1mm --slowest 1 --fastest 10",
+    f"constant {PAIR} --thickness 1mm --speed 1,5",
+    f"history {PAIR} --thickness 1mm --speed 5",
+    f"fit rebounds.csv {PAIR} --thickness 1mm --unknown yield_strength",
+    "export header --sphere gamma-alumina --plate glass --table none --out OUT.h",
+    "export header --sphere gamma-alumina --plate glass --out OUT.h",
+    "table info",
+]
+COUNTED = """
+import sys
+from numba.core import event
+
+class Compiled(event.Listener):
+    names = []
+    def on_start(self, event):
+        self.names.append(event.data["dispatcher"].py_func.__name__)
+    def on_end(self, event):
+        pass
+
+event.register("numba:compile", Compiled())
+from contactlaw.cli import main
+assert main(sys.argv[1:]) == 0
+print(f"compiled: {Compiled.names}", file=sys.stderr)
+"""
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_second_process_compiles_nothing(command, tmp_path):
+    folder = Path(__file__).parent.parent / "docs/examples"
+    words = command.replace("OUT", str(tmp_path / "out")).split()
+    for _ in range(2):
+        done = subprocess.run(
+            [sys.executable, "-c", COUNTED, *words], cwd=folder, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+    assert "compiled: []" in done.stderr

@@ -452,9 +452,7 @@ def test_two_spheres_have_the_law_that_was_named(pair, model):
     """A law that takes E*/sigma_Y from the pair is another one for two of its spheres."""
     named, own = "jackson_green(23.2,0.21)", "jackson_green(23.1922,0.21)"
     # tables are one below yield
-    tables = {
-        name: dataclasses.replace(model._whole_table, law=laws.law(name)) for name in (named, own)
-    }
+    tables = {name: dataclasses.replace(model.table, law=laws.law(name)) for name in (named, own)}
     taking = cl.ImpactModel(pair, law="jackson_green", table=tables[own])
     assert taking.law == own
     twins = cl.Pair(pair.sphere, pair.sphere)

@@ -89,7 +89,7 @@ def any_law(request, pair, model):
     if request.param in ("hertz", "myc", "fem"):
         return cl.ImpactModel(pair, law=request.param)
     law = law_of(pair, request.param)
-    spans = dataclasses.replace(model._whole_table, law=law, certificate=None)
+    spans = dataclasses.replace(model.table, law=law, certificate=None)
     return cl.ImpactModel(pair, law=request.param, table=spans)
 
 
@@ -158,7 +158,7 @@ def test_below_yield_laws_are_one(any_law):
 
 
 def test_only_a_table_that_keeps_its_promise_is_differentiated(model):
-    table = model._whole_table
+    table = model.table
     assert sensitivity.follows(table)
     corners = {"stronge", "kogut_etsion(0.21)", "jackson_green(23.1922,0.21)"}
     for law in ALL_LAWS:
@@ -208,7 +208,7 @@ def test_fem_by_plain_differences_of_the_solver(names, monkeypatch):
 
     def solved(other, speed=1.0, radius=1.0, thickness=1.0):
         table = dataclasses.replace(
-            model._whole_table, law=law_of(other, "fem"), certificate=None
+            model.table, law=law_of(other, "fem"), certificate=None
         )  # not asked
         moved = (one * x for one, x in zip(impacts, (speed, radius, thickness), strict=True))
         found = cl.ImpactModel(other, law="fem", table=table).solve(*moved, rtol=1e-13)
@@ -241,7 +241,7 @@ def test_fem_by_plain_differences_of_the_solver(names, monkeypatch):
 def test_fem_with_numbers_in_its_name_holds_them_fixed(pair, monkeypatch):
     monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
     own = cl.ImpactModel(pair, law="fem")
-    named = cl.ImpactModel(pair, law=own.law, table=own._whole_table)
+    named = cl.ImpactModel(pair, law=own.law, table=own.table)
     ours, fixed = (one.sensitivity(12.0, RADIUS, 1e-3) for one in (own, named))
     assert fixed.yield_strength == 0.0 < ours.yield_strength
     assert fixed.speed == pytest.approx(ours.speed, abs=1e-5)  # six digits

@@ -204,6 +204,12 @@ def is_hertz(law: Array) -> bool:
     return bool(same and law[at] == law[at + 1] == law[at + 2] == 0.0 and law[at + 3] == 1.0)
 
 
+@kernel(cache=True)
+def begins_as_hertz(law: Array) -> bool:
+    """`is_hertz`, for Python."""
+    return is_hertz(law)
+
+
 @kernel(inline=True)
 def leaves_hertz(law: Array) -> float:
     """Compression up to which contacts are Hertz's, and come back without a loss."""

