@@ -11,7 +11,7 @@ from scipy.integrate import quad
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.equation import force, outcome, zener
+from contactlaw.equation import force, integrator, outcome, zener
 
 HERTZ = force.HERTZ.copy()
 
@@ -244,3 +244,12 @@ def test_bad_input_is_a_status(lam, y):
 
 def test_too_thin_is_a_status():
     assert zener.solve(HERTZ, 1e4, 1.0, 1e-10).status == zener.TOO_MANY_STEPS
+
+
+def test_a_level_next_to_a_turn_is_sought_within_the_step():
+    """A trajectory that turns 1e-12 above a kink: where an impact of some 3e6 never ended."""
+    before = integrator.State(0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0)
+    beyond = integrator.State(1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0)
+    step = 0.002250933219558533
+    guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0, math.inf)
+    assert 0.0 < guess < step

@@ -200,10 +200,10 @@ def _guess(event: int, state: State, trial: State, h: float, level: float, until
     c3 = h * (rate + last) - 2.0 * rise
     if event == TURN:  # root of c1 + 2 c2 x + 3 c3 x^2, without cancellation
         return h * c1 / (math.sqrt(max(0.0, c2 * c2 - 3.0 * c1 * c3)) - c2)
-    x = (level - value) / rise
+    secant = x = (level - value) / rise
     for _ in range(3):
         x -= (((c3 * x + c2) * x + c1) * x - (level - value)) / ((3 * c3 * x + 2 * c2) * x + c1)
-    return h * x
+    return h * (x if 0.0 < x < 1.0 else secant)  # next to a turn it may leave the step
 
 
 def _following(force_at: Force) -> Callable[..., tuple[State, int, float, int]]:
