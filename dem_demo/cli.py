@@ -46,7 +46,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv = sys.argv[1:] if argv is None else list(argv)
     try:
         with interruptible():
-            arguments = _parser().parse_args(argv)
+            arguments = _parser().parse_args(_joined(argv))
             status = int(arguments.start(arguments, shlex.join(["dem-demo", *argv])))
         return _stopped(status) if status else 0
     except Interrupted as stop:
@@ -59,6 +59,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception:
         traceback.print_exc()
         return _stopped(1)
+
+
+def _joined(words: Sequence[str]) -> Sequence[str]:
+    """Join options with negative quantities; a help page need not load contactlaw for that."""
+    if not any(word[:1] == "-" and word[1:2].isdigit() for word in words):
+        return words
+    from contactlaw.command.options import joined
+
+    return joined(words)
 
 
 def _rank() -> int:
