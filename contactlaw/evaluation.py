@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import math
 import os
 import warnings
@@ -19,7 +20,7 @@ from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.scaling import Factors
 from contactlaw.physical.validity import Validity
-from contactlaw.table import cache, file, lookup, shapes
+from contactlaw.table import cache, file, grid, lookup, shapes
 from contactlaw.table.certificate import bounds
 from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table
@@ -87,6 +88,11 @@ def _served(law: Law) -> Law:
     return law if law.yields or not law.is_hertz else laws.law("myc")
 
 
+def largest_inelasticity(law: Law) -> float:
+    """Largest lambda of the table that serves a law, which is known before that is built."""
+    return grid.largest_inelasticity(_served(law))
+
+
 def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None) -> Table:
     """Table that serves a law: the user's, or the packaged one."""
     enable_caching()
@@ -95,14 +101,16 @@ def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None)
         table = _default(served)
     elif isinstance(table, Settings):
         table = cache.cached(served, table)
-    elif not isinstance(table, Table):
+    elif isinstance(table, str | os.PathLike):
         table = file.read(table)
+    elif not isinstance(table, Table):
+        raise TypeError(f"table: expected a Table, Settings or the path of a file, got {table!r}")
     exceeded = table.exceeded
     if exceeded.keys() - _NEXT_TO_YIELD:
         warnings.warn(
             f"the table is less accurate than contactlaw promises; its largest errors {exceeded} "
             f"are above {bounds(table.law)}: take finer Settings",
-            stacklevel=3,
+            stacklevel=_stack_level(),
         )
     if not table.law.follows(served):
         raise ValueError(
@@ -111,6 +119,14 @@ def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None)
             "--plate if the law takes numbers from them"
         )
     return table
+
+
+def _stack_level() -> int:
+    """How far up the user's line is, whichever question has asked for the table."""
+    level, frame = 0, inspect.currentframe()
+    while frame and frame.f_globals["__name__"].partition(".")[0] in ("contactlaw", "functools"):
+        level, frame = level + 1, frame.f_back
+    return level
 
 
 def with_plates(table: Table, made: Factors) -> Array:
@@ -173,13 +189,18 @@ def complete(
     return int(Validity.CLAMPED) if outside == "clamp" else 0
 
 
+def too_thin(lam: float, limit: float) -> str:
+    """Say why an impact is outside a table whose largest lambda is exceeded."""
+    return (
+        f"its inelasticity lambda = {lam:.4g} is above {limit:.4g}: the plate is too thin for "
+        "the bead"
+    )
+
+
 def _refuse(table: Array, lam: float, y: float, n: int) -> NoReturn:
     limit = lookup.lam_max(table)
     if lam > limit:
-        what = (
-            f"its inelasticity lambda = {lam:.4g} is above {limit:.4g}: the plate is too thin for "
-            "the bead"
-        )
+        what = too_thin(lam, limit)
     else:
         chi = math.exp(lookup.log_elastic_compression(table, lam)) / y
         limit = lookup.chi_max(table)

@@ -427,7 +427,7 @@ def time_step(
     Raises
     ------
     ValueError
-        As `ImpactModel.lookup`; an error out of its range.
+        As `ImpactModel.lookup` on a plate too thin for the model; an error out of its range.
 
     Examples
     --------
@@ -442,6 +442,7 @@ def time_step(
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
     units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
+    model.refuse_thinner(float(units.inelasticity[0]))
     time = np.minimum(model.solve(v, r, h).contact_time, CONTACT_TIME * units.time)
     steps: float = (_ERROR / error) ** 0.4
     return float(time[0]) / max(FEWEST_STEPS, steps)

@@ -248,16 +248,29 @@ def test_indium_under_steel():
         (8e6, 0.1, True, False),
         (5e6, 0.1, True, True),
         (5e6, 1e-7, False, False),
-        (1.2e9, 1e3, True, False),
+        (7.2e8, 1e3, True, False),
         (2e9, 1e3, True, True),
         (2e9, 10.0, False, False),
     ],
 )
 def test_untried_strengths_are_flagged_once_a_body_yields(strength, speed, yields, flagged):
-    """E*/sigma_Y is 1858, 2973, 12 and 7 here; the campaign has 11 to 2000."""
+    """E*/sigma_Y is 1858, 2973, 21 and 7 here; the campaign has 11 to 2000."""
     hit = answered(soft(strength), np.array([speed]))
     assert (hit.plastic_fraction[0] > 0.0) == yields
     assert bool(hit.flags[0] & Validity.UNTRIED_STRENGTH) == flagged
+
+
+def test_an_untried_strength_of_the_stronger_body_counts_where_it_yields():
+    """Of steels with strengths of E*/12 and less than 1/0.36 of that."""
+    steel = cl.Material("a", 200e9, 0.3, 7850)
+    strength = cl.Pair(steel, steel).effective_modulus / 12.0
+    for share, flagged in ((1.05, False), (1.2, True), (2.7, True), (2.9, False)):
+        bodies = [
+            dataclasses.replace(steel, yield_strength=one) for one in (strength, strength * share)
+        ]
+        hit = answered(cl.Pair(*bodies), np.array([900.0]))
+        assert hit.plastic_fraction[0] > 0.0
+        assert bool(hit.flags[0] & Validity.UNTRIED_STRENGTH) == flagged
 
 
 @pytest.mark.parametrize("strength", [1.0, 1e3, 1e6])

@@ -3,10 +3,17 @@
 import os
 import subprocess
 import sys
+import warnings
 
+import numpy as np
 import pytest
 
+import contactlaw as cl
 from contactlaw import _folder
+from contactlaw.laws import Law
+from contactlaw.laws._branches import Loading
+from contactlaw.softsphere import time_step
+from contactlaw.table.lookup import lam_max
 
 MODEL = """
 import sys
@@ -72,3 +79,46 @@ def test_what_needs_no_table_leaves_none(name, tmp_path, monkeypatch):
 @pytest.mark.parametrize("name", TABLED)
 def test_what_looks_up_builds_the_table(name, tmp_path, monkeypatch):
     assert len(tables_after(TABLED[name], tmp_path, monkeypatch)) == 1
+
+
+STEEL_ON_GLASS = cl.Pair("stainless-steel-304", "glass")
+
+
+def test_the_largest_inelasticity_is_that_of_the_table():
+    elastic = Law.of(
+        name="elastic", source="s", yield_coefficient=None, unloading=[], scale=1.0,
+        loading=[Loading(0.0, np.polynomial.Polynomial([0.0, 0.0, 0.0, 1.0]))], range=(0.01, 0.2),
+    )  # fmt: skip
+    for law in ("fem", "myc", "hertz", "jackson_green", elastic):
+        model = cl.ImpactModel(STEEL_ON_GLASS, law=law)
+        assert model.largest_inelasticity == pytest.approx(lam_max(model.table.packed), rel=1e-12)
+
+
+def test_a_time_step_is_refused_where_a_lookup_is():
+    model = cl.ImpactModel(STEEL_ON_GLASS)
+    for ask in (model.lookup, lambda *impact: time_step(model, *impact)):
+        with pytest.raises(ValueError, match=r"lambda = 12\.\d+ is above 6: the plate is too thin"):
+            ask(5.0, 1e-3, 2e-4)
+    assert time_step(cl.ImpactModel(STEEL_ON_GLASS, outside="solve"), 5.0, 1e-3, 2e-4) > 0.0
+
+
+@pytest.mark.parametrize("wrong", [5, True, object(), cl.table.Settings])
+def test_a_table_of_a_wrong_type_is_refused_by_name(wrong):
+    with pytest.raises(TypeError, match="table: expected a Table, Settings or the path of a file"):
+        cl.ImpactModel(STEEL_ON_GLASS, table=wrong)
+
+
+def test_a_warning_about_the_table_shows_the_users_line():
+    coarse = cl.table.Settings(inelasticity_nodes=8, log_overload_step=0.9)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc", table=coarse)
+    assert [one.filename for one in caught if "less accurate" in str(one.message)] == [__file__]
+
+
+def test_a_law_that_is_not_made_for_auxetic_bodies_says_so():
+    foam = cl.Material("foam", 1e9, -0.3, 1000, yield_strength=1e7, kind="metal")
+    for pair in (cl.Pair(foam, "glass"), cl.Pair("glass", foam)):
+        with pytest.raises(ValueError, match=r"'fem' is made for .* 'foam' has -0\.3: take law="):
+            cl.ImpactModel(pair)
+    assert 0.0 < cl.ImpactModel(cl.Pair(foam, "glass"), law="myc").restitution(1.0, 1e-3, 1e-2) < 1

@@ -22,7 +22,7 @@ def text(found: Fit) -> Iterator[str]:
     >>> data = {"speed": [1.0, 2.0, 3.0], "radius": 0.9e-3, "restitution": [0.885, 0.869, 0.862]}
     >>> found = cl.fit(cl.Pair("gamma-alumina", "glass"), data, "thickness")
     >>> print(next(iter(text(found))))
-    thickness of the plate  0.793 +- 0.012 mm
+    thickness of the plate  0.793 +- 0.013 mm
     """
     width = max(len(UNKNOWNS[name].title) for name in found.unknown)
     for name in found.unknown:

@@ -64,7 +64,7 @@ _SHARES, _RATIOS = 0.45, 0.1  # about 0.5 and 0.3; beyond, what holds there
 # Of the deepest compression; a body that yields later is elastic: what is left to lose is less than
 # 1e-5 of the energy, and a law needs some room between its kinks.
 _LATE = 0.98
-_ALONE = 0.36  # z, below which the stronger body does not yield
+ALONE = 0.36  # z, below which the stronger body does not yield
 _POWERS = (5, 4)  # of t and w
 _GAUSS = np.polynomial.legendre.leggauss(40)
 
@@ -141,7 +141,7 @@ class Given(NamedTuple):
         In between it falls with the power `blend` of the ratio of the strengths.
         """
         z = min(self.sphere_ratio, self.plate_ratio) / self.ratio
-        return float((max(0.0, z - _ALONE) / (1.0 - _ALONE)) ** blend)
+        return float((max(0.0, z - ALONE) / (1.0 - ALONE)) ** blend)
 
     def flow(self, blend: float) -> dict[str, float]:
         """Share of each body in the plastic flow: a half each at equal strengths.

@@ -61,6 +61,7 @@ def law_of(pair: Pair, law: str | Law) -> Law:
     elif not isinstance(law, str):
         raise TypeError(f"law: expected the name of a law or a contactlaw.laws.Law, got {law!r}")
     elif laws.parameters(law):
+        _refuse_auxetic(pair, law)
         found = laws.law(law, **pair_numbers(pair, law))
     else:
         found = laws.law(law)
@@ -69,6 +70,17 @@ def law_of(pair: Pair, law: str | Law) -> Law:
     if found.yields and found.scale is None:
         pair.sphere.require_yield_strength(found.name)
     return found
+
+
+def _refuse_auxetic(pair: Pair, law: str) -> None:
+    """Refuse bodies that a law takes Poisson's ratios of, and knows nothing about."""
+    for body in (pair.sphere, pair.plate):
+        if body.poissons_ratio < 0.0 and "poissons_ratio" in laws.parameters(law):
+            raise ValueError(
+                f"law: {law!r} is made for Poisson's ratios from 0 to 0.5, and material "
+                f'{body.name!r} has {body.poissons_ratio:g}: take law="myc", or "hertz" for bodies '
+                "that do not yield"
+            )
 
 
 def following(pair: Pair, law: Law) -> Law:
@@ -212,7 +224,8 @@ def scales(contact: Contact, speed: Array) -> Numbers:
     given = np.broadcast_arrays(
         contact.mass, contact.stiffness, contact.yield_compression, speed, contact.ratio
     )
-    mass, stiffness, yielding, v, ratio = map(np.ravel, given)
+    # copies: numba asks whether it may write into its arguments, and those of numpy's are shared
+    mass, stiffness, yielding, v, ratio = (np.array(one, dtype=float).ravel() for one in given)
     out = Numbers(*np.empty((len(Numbers._fields), v.size)))
     fill(contact.plate, mass, stiffness, yielding, v, ratio, out)
     return Numbers(*(values.reshape(given[0].shape) for values in out))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.laws import Law
-from contactlaw.laws.fem import RATIOS
+from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
@@ -181,8 +181,8 @@ def limits(pair: Pair, law: Law) -> Limits:
         "damage": _damage(pair),
     }
     if law.waves:
-        ratio = max(pair.effective_modulus / strength for strength in (sphere, plate))
-        known = RATIOS[0] <= ratio <= RATIOS[1]
+        flowing = [one for one in (sphere, plate) if min(sphere, plate) > ALONE * one]
+        known = all(RATIOS[0] <= pair.effective_modulus / one <= RATIOS[1] for one in flowing)
         return Limits(
             slender=_THINNEST_YIELDED, slowness=0.0, always=int(rate), yielded=0, trusted=0.0,
             fastest=0.0,
