@@ -124,7 +124,10 @@ def table_for(law: Law, table: Table | Settings | str | os.PathLike[str] | None)
 def _stack_level() -> int:
     """How far up the user's line is, whichever question has asked for the table."""
     level, frame = 0, inspect.currentframe()
-    while frame and frame.f_globals["__name__"].partition(".")[0] in ("contactlaw", "functools"):
+    while frame:
+        package = frame.f_globals.get("__name__", "").partition(".")[0]
+        if package not in ("contactlaw", "functools"):
+            break
         level, frame = level + 1, frame.f_back
     return level
 

@@ -26,7 +26,6 @@ from contactlaw.evaluation import (
     RTOL,
     Flags,
     Outside,
-    OutsideTableError,
     complete,
     histories_by_solver,
     histories_by_table,
@@ -34,7 +33,6 @@ from contactlaw.evaluation import (
     solved,
     table_for,
     tabulated,
-    too_thin,
     with_plates,
 )
 from contactlaw.laws import DEFAULT, Law
@@ -188,17 +186,6 @@ class ImpactModel:
         if self._given_table is None:
             return largest_inelasticity(self._law)
         return lookup.lam_max(self.table.packed)
-
-    def refuse_thinner(self, inelasticity: float) -> None:
-        """Refuse an impact of this lambda where `lookup` would, without a table.
-
-        Raises
-        ------
-        OutsideTableError
-            If it is above `largest_inelasticity`, and the model refuses what is outside its table.
-        """
-        if self._outside == "raise" and inelasticity > self.largest_inelasticity:
-            raise OutsideTableError(0, too_thin(inelasticity, self.largest_inelasticity))
 
     @property
     def limits(self) -> Limits:

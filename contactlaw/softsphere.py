@@ -45,6 +45,7 @@ from contactlaw.equation.force import Curve
 from contactlaw.equation.integrator import NO_CURVE
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
 from contactlaw.equation.waves import CONTACT_TIME
+from contactlaw.evaluation import OutsideTableError, too_thin
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate
@@ -442,7 +443,9 @@ def time_step(
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
     units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
-    model.refuse_thinner(float(units.inelasticity[0]))
+    lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
+    if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
+        raise OutsideTableError(0, too_thin(lam, largest))
     time = np.minimum(model.solve(v, r, h).contact_time, CONTACT_TIME * units.time)
     steps: float = (_ERROR / error) ** 0.4
     return float(time[0]) / max(FEWEST_STEPS, steps)

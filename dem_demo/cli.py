@@ -63,7 +63,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _joined(words: Sequence[str]) -> Sequence[str]:
     """Join options with negative quantities; a help page need not load contactlaw for that."""
-    if not any(word[:1] == "-" and word[1:2].isdigit() for word in words):
+    if all(word[:1] != "-" or word[:2] in ("--", "-h") for word in words):
         return words
     from contactlaw.command.options import joined
 

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 
 import contactlaw as cl
+from contactlaw.equation.numbers import Numbers
 from contactlaw.evaluation import RTOL, UnsolvedError, solved
 from contactlaw.laws import Law
 from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
@@ -47,13 +48,13 @@ def _unsolved(generator: np.random.Generator, pair: cl.Pair, law: Law, count: in
     thickness = radius / np.exp(generator.uniform(math.log(1e-3), math.log(5.0), count))
     units = scales(sphere_on_plate(pair, law, radius, thickness), speed)
     known = units.inelasticity < _THINNEST
-    units = type(units)(*(values[known] for values in units))
+    units = Numbers(*(values[known] for values in units))
     while units.time.size:
         try:
             found = solved(law, units, RTOL)
         except UnsolvedError as error:
             yield f"{error}: {pair.sphere!r}, {pair.plate!r}, law {law.name}"
-            units = type(units)(*(np.delete(values, error.impact) for values in units))
+            units = Numbers(*(np.delete(values, error.impact) for values in units))
             continue
         wrong = ~((found.restitution >= 0.0) & (found.restitution <= 1.0))
         wrong |= ~(np.isfinite(found.contact_time) & np.isfinite(found.compression_ratio))
