@@ -238,6 +238,26 @@ def test_a_rebound_is_the_solvers(compiled):
     assert np.abs(energy - 1.0).max() < 1e-8
 
 
+def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
+    """COR 1e-2 to 0: once what is left of an impact can do no more, the contact is over."""
+    pair = cl.Pair(
+        cl.Material("stiff", 960e9, 0.164, 52e3, yield_strength=947.0),
+        cl.Material("soft", 227e6, 0.0395, 897.0, yield_strength=947.0),
+    )
+    model = cl.ImpactModel(pair)
+    cl.export.header(tmp_path / "contactlaw.h", model, table="none")
+    calls = '#include "contactlaw.h"\n' + CALLS[CALLS.index("void rebounds") :]
+    library = ctypes.CDLL(build(tmp_path, calls, "-O2", "-shared", "-fPIC", *WARNINGS))
+    v, h = np.array(np.meshgrid(np.geomspace(1e-6, 1e-3, 9), np.geomspace(4e-4, 4e-3, 9)))
+    v, h = v.ravel(), h.ravel()
+    r = np.full_like(v, 1e-3)
+    found = called(library.rebounds, v.size, v, r, h, fields=len(FIELDS))
+    expected = model.solve(v, r, h)
+    assert expected.restitution.min() < 2e-6 < 1e-2 < expected.restitution.max()
+    assert np.abs(found[:, 0] - expected.restitution).max() < 1e-10
+    assert found[:, 1] == pytest.approx(expected.contact_time, rel=1e-6)
+
+
 @pytest.mark.parametrize("table", ["cor", "none"])
 @pytest.mark.parametrize("name", MODELS)
 def test_compilers_have_nothing_to_say(name, table, tmp_path):

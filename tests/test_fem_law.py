@@ -177,6 +177,22 @@ def answered(pair, speed, thickness=math.inf):
     return cl.ImpactModel(pair).solve(speed, R, thickness)
 
 
+FASTER_THAN_ITS_WAVES = [  # elastic spheres at a tenth of sqrt(E*/rho1), plates of 20 to 700 m/s
+    (cl.Pair(cl.Material("a", 547e9, 0.341, 1374), cl.Material("b", 50.7e6, 0.143, 18135)), 19.4),
+    (cl.Pair(cl.Material("a", 29.6e9, 0.273, 879), cl.Material("b", 10.8e6, 0.375, 19641)), 11.9),
+    (cl.Pair(cl.Material("a", 132e9, 0.214, 573), cl.Material("b", 4.43e9, 0.0879, 8517)), 275.0),
+]
+
+
+@pytest.mark.parametrize(("pair", "speed"), FASTER_THAN_ITS_WAVES)
+def test_thicker_plates_take_no_more_however_fast_the_impact(pair, speed):
+    """Seven times the speed from which on FAST_IMPACT flags them, R/H to 5."""
+    hit = cl.ImpactModel(pair).solve(speed, R, R * np.geomspace(0.2, 100.0, 400))
+    assert (np.diff(hit.inelasticity) <= 1e-9 * hit.inelasticity[1:]).all()
+    assert (np.diff(hit.wave_fraction) <= 1e-7).all()
+    assert hit.flags.min() & Validity.FAST_IMPACT
+
+
 @pytest.mark.parametrize("ratios", [(0.28, 0.33), (0.33, 0.44), (0.4, 0.4), (0.0, 0.49)])
 def test_cor_does_not_jump_where_the_weaker_body_changes(ratios):
     """Of steel and aluminium of equal strengths, one of which is a little weaker."""

@@ -7,11 +7,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracle import ALL_LAWS, RATIO, impact, impact_of, yield_ratio
-from scipy.integrate import quad
+from scipy.integrate import quad, solve_ivp
 
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.equation import force, integrator, outcome, zener
+from contactlaw.physical.scaling import law_of
 
 HERTZ = force.HERTZ.copy()
 
@@ -101,8 +102,6 @@ def test_linear_branch_is_an_oscillator():
     k = 1.5 * math.sqrt(p)
     shift = p / 3  # F = k (w - p/3)
     # state at w = p from the solver of the elastic stretch alone: scipy, stopped at p
-    from scipy.integrate import solve_ivp
-
     def at_p(t, s):
         return s[0] - p
 
@@ -253,3 +252,77 @@ def test_a_level_next_to_a_turn_is_sought_within_the_step():
     step = 0.002250933219558533
     guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0, math.inf)
     assert 0.0 < guess < step
+
+
+STAYING = cl.Pair(  # a sphere of 1 kPa strength: its force falls as the 0.8th power at unloading
+    cl.Material("stiff", 960e9, 0.164, 52e3, yield_strength=947.0),
+    cl.Material("soft", 227e6, 0.0395, 897.0, yield_strength=947.0),
+)
+
+
+def test_a_sphere_that_never_leaves_is_done_when_its_energy_is():
+    """Radau's implicit method from the turning point: the same energy left, and never a rebound."""
+    law = law_of(STAYING, "fem").data
+    lam, y = 0.75, 1e-5
+    found = zener.solve(law, lam, y, 1e-10)
+    assert found.status == zener.OK and found.steps < 10_000
+    assert 0.0 < found.restitution <= 1.001 * integrator.SPENT
+    shares = found.plastic_fraction + found.wave_fraction + found.other_fraction
+    assert found.restitution**2 + shares == pytest.approx(1.0, abs=1e-8)
+
+    beta, first = lam * y**0.25, y**-1.25
+    dm = found.peak_compression / y
+    curve = force.unloading(law, dm)
+
+    half = curve.exponent / 2
+
+    def slowed(_, logarithms):  # of what is left of the compression, and of the speed
+        span, u = np.exp(logarithms)
+        f = curve.stiffness * span**half
+        return (u - beta * f) / span, -f / u
+
+    times = np.array([found.contact_time - found.loading_time, 25.0]) * y**0.25
+    run = solve_ivp(
+        slowed, (0.0, times[-1]), np.log([dm - curve.residual, beta * found.peak_force * y**-1.5]),
+        "Radau", times, rtol=1e-8, atol=1e-10,
+    )  # fmt: skip
+    assert run.success  # the sphere is pressed on, for ever
+    span, u = np.exp(run.y)
+    left = np.sqrt(u**2 + 2.0 / (half + 1.0) * curve.stiffness * span ** (half + 1.0)) / first
+    # the last of it, with the plate held, takes some of a unit of time
+    assert 0.3 < left[0] / integrator.SPENT <= 1.0
+    assert left[1] < 1e-2 * left[0]
+
+
+def test_contact_times_and_restitution_are_continuous_where_spheres_come_to_stay():
+    """Contact times rise steeply there, by 2 in a thousandth of lambda: steps vanish with it."""
+    law = law_of(STAYING, "fem").data
+    low, high, steps = 0.7, 0.75, []
+    for _ in range(5):
+        lam = np.linspace(low, high, 61)
+        found = [zener.solve(law, one, 1e-5, 1e-10) for one in lam]
+        time = np.diff([one.contact_time for one in found])
+        steps.append([np.abs(time).max(), np.abs(np.diff([one.restitution for one in found])).max()])
+        n = int(np.argmax(np.abs(time)))
+        low, high = lam[n], lam[n + 1]
+    assert found[0].restitution < 1e-5
+    assert steps[0][0] > 1.0
+    assert steps[-1][0] < 1e-3 and steps[-1][1] < 1e-9
+
+
+def test_times_of_a_sphere_that_stays_end_with_its_contact():
+    """`history`, which stops in the middle of steps, and `shape`, which stops at levels."""
+    law = law_of(STAYING, "fem").data
+    lam, y = 0.75, 1e-5
+    found = zener.solve(law, lam, y, 1e-10)
+    time = np.linspace(0.0, found.contact_time, 301)
+    f, w, u = np.zeros((3, time.size))
+    zener.history(law, lam, y, 1e-10, time, f, w, u)
+    assert f[-1] < 1e-6 * f.max()
+    assert (np.diff(w[time > found.loading_time]) <= 0.0).all()
+    assert -u[-1] == pytest.approx(found.restitution, rel=1e-3)
+    shares = np.linspace(0.0, 1.0, 33)[1:]
+    when, speed = np.zeros((2, 2 * shares.size))
+    assert zener.shape(law, lam, y, 1e-10, shares, when, speed) == zener.OK
+    assert (np.diff(when) > 0.0).all()
+    assert when[-1] == pytest.approx(found.contact_time, rel=1e-6)

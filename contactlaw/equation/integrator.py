@@ -21,6 +21,13 @@ approximated, and for Hertz, f = q^3, the equation becomes polynomial:
 The way of a contact is cut into legs, on each of which the force is one smooth function of q: up
 the loading curve from kink to kink, then down the unloading curve. A capped law's goes down in up
 to three parts: its unloading curve, the loading curve from kink to kink, its unloading curve.
+
+A sphere that has flattened far on a plate that gives way easily need not come back. Where the force
+falls more slowly than the compression that is left, with an exponent below 2, the contact becomes
+ever stiffer beside the plate, what is left goes into the plate, and the sphere never leaves. Once
+all that is left could throw it off with no more than `SPENT` of the speed that it came with, the
+sphere is turned back, the plate held, and it is. A restitution below that is rounded up to it.
+To know what is left, steps err less the less it is.
 """
 
 from __future__ import annotations
@@ -42,8 +49,12 @@ MAX_STEPS = 200_000
 _LANDED = (
     1e-9  # an event is met to this; compression and time are stationary there, so err by its square
 )
-# events: end of loading; a root compression is reached; a time is
-NONE, TURN, LEVEL, TIME = 0, 1, 2, 3
+SPENT = 1e-9  # restitution that is not told from less
+LATE = (
+    1e-2  # restitution that cannot be had any more, at which, and at whose powers, steps get finer
+)
+# events: end of loading; a root compression is reached; a time is; the energy left is spent
+NONE, TURN, LEVEL, TIME, _OVER = 0, 1, 2, 3, 4
 _CUBIC, _PIECES, _POWER = 0, 1, 2  # how a leg's force is given
 _UP, _ABOVE, _ALONG, _BELOW = 0, 1, 2, 3  # loading; parts of unloading
 
@@ -84,6 +95,7 @@ class Scale(NamedTuple):
     t: float
     per_q: float  # 1/(q tolerance)
     per_u: float  # 1/(u tolerance)
+    over: float  # square of the speed that may be left to leave with: below, event _OVER
 
 
 Force = Callable[[Array, Leg, float], float]
@@ -182,10 +194,21 @@ def _pieces(law: Array, leg: Leg, q: float) -> float:
 
 
 @kernel
-def _gap(event: int, state: State, level: float, until: float, scale: Scale) -> float:
+def _left(leg: Leg, state: State) -> float:
+    """Square of the speed that the sphere would leave with on an unloading curve, the plate held.
+
+    The work of a force that falls as q^b is 2 f q^2/(b + 2).
+    """
+    return state.u * state.u + 4.0 * state.f * state.q * state.q / (leg.exponent + 2.0)
+
+
+@kernel
+def _gap(event: int, leg: Leg, state: State, level: float, until: float, scale: Scale) -> float:
     """How far an event is off, in units of its scale; its sign changes there."""
     if event == TURN:
         return state.dq / scale.u
+    if event == _OVER:
+        return 1.0 - _left(leg, state) / scale.over
     return (level - state.q) / scale.q if event == LEVEL else (until - state.t) / scale.t
 
 
@@ -297,13 +320,20 @@ def _following(force_at: Force) -> Callable[..., tuple[State, int, float, int]]:
                     event = LEVEL
                 elif trial.t > until:
                     event = TIME
+                elif (
+                    leg.part == _BELOW
+                    and beta > 0.0
+                    and trial.u * trial.u < scale.over
+                    and _left(leg, trial) < scale.over
+                ):
+                    event = _OVER
                 else:
                     state = trial
                     h *= min(5.0, 0.9 / math.sqrt(math.sqrt(max(error, 1e-30))))
                     continue
                 following = h
             else:
-                gap = _gap(event, trial, level, until, scale)
+                gap = _gap(event, leg, trial, level, until, scale)
                 if abs(gap) > _LANDED:
                     if gap * gap_b < 0.0:
                         a, gap_a = b, gap_b
@@ -320,15 +350,37 @@ def _following(force_at: Force) -> Callable[..., tuple[State, int, float, int]]:
                     event = TIME
                 else:
                     return trial, event, following, steps
-            a, gap_a = 0.0, _gap(event, state, level, until, scale)
-            b, gap_b = h, _gap(event, trial, level, until, scale)
-            h = _guess(event, state, trial, h, level, until)
+            a, gap_a = 0.0, _gap(event, leg, state, level, until, scale)
+            b, gap_b = h, _gap(event, leg, trial, level, until, scale)
+            if event == _OVER:
+                h *= gap_a / (gap_a - gap_b)
+            else:
+                h = _guess(event, state, trial, h, level, until)
         return state, event, h, MAX_STEPS
 
     return follow
 
 
 _follow_cubic, _follow_power, _follow_pieces = map(_following, (_cubic, _power, _pieces))
+
+
+@kernel
+def _start(law: Array, beta: float, leg: Leg, q: float, u: float, t: float, j: float) -> State:
+    """State on a leg, with the rates there."""
+    if leg.kind == _CUBIC:
+        f = _cubic(law, leg, q)
+    elif leg.kind == _POWER:
+        f = _power(law, leg, q)
+    else:
+        f = _pieces(law, leg, q)
+    return State(q, u, t, j, u - beta * f, -2.0 * q * f, f)
+
+
+@kernel
+def _finer(scale: Scale, spent: float) -> Scale:
+    """Scale for what is left once that is below the event's: its steps err as much less."""
+    over = max(LATE * LATE * scale.over, spent)
+    return Scale(scale.q, scale.u, scale.t, scale.per_q / LATE, scale.per_u / LATE, over)
 
 
 @kernel
@@ -347,23 +399,25 @@ def follow(
     Returns the point reached, the event, a step to go on with and the number of steps. An event is
     met by shortening the step that passes it: regula falsi with Illinois' weights.
     """
-    if leg.kind == _CUBIC:
-        return _follow_cubic(law, beta, leg, state, h, scale, level, until)
-    if leg.kind == _POWER:
-        return _follow_power(law, beta, leg, state, h, scale, level, until)
-    return _follow_pieces(law, beta, leg, state, h, scale, level, until)
-
-
-@kernel
-def _start(law: Array, beta: float, leg: Leg, q: float, u: float, t: float, j: float) -> State:
-    """State on a leg, with the rates there."""
-    if leg.kind == _CUBIC:
-        f = _cubic(law, leg, q)
-    elif leg.kind == _POWER:
-        f = _power(law, leg, q)
-    else:
-        f = _pieces(law, leg, q)
-    return State(q, u, t, j, u - beta * f, -2.0 * q * f, f)
+    spent = (SPENT * scale.u) ** 2
+    steps = 0
+    while True:
+        if leg.part == _BELOW:
+            left = (1.0 - 1e-6) * _left(leg, state)  # an event is met to 1e-9
+            while left < scale.over and scale.over > spent:
+                scale = _finer(scale, spent)
+            if left < spent:
+                beta = 0.0
+                state = _start(law, beta, leg, state.q, -abs(state.u), state.t, state.j)
+        if leg.kind == _CUBIC:
+            state, event, h, more = _follow_cubic(law, beta, leg, state, h, scale, level, until)
+        elif leg.kind == _POWER:
+            state, event, h, more = _follow_power(law, beta, leg, state, h, scale, level, until)
+        else:
+            state, event, h, more = _follow_pieces(law, beta, leg, state, h, scale, level, until)
+        steps += more
+        if event != _OVER:
+            return state, event, h, steps
 
 
 @kernel
@@ -432,4 +486,5 @@ def scale_of(y: float, rtol: float) -> tuple[Scale, float]:
     """Scales of an impact in the law's units, and a first step that the error control accepts."""
     y4 = math.sqrt(math.sqrt(y))
     q, u = 1.0 / (y4 * y4), 1.0 / (y * y4)
-    return Scale(q, u, y4, 1.0 / (q * rtol), 1.0 / (u * rtol)), 0.7 * rtol**0.2 * y4**3
+    scale = Scale(q, u, y4, 1.0 / (q * rtol), 1.0 / (u * rtol), (LATE * u) ** 2)
+    return scale, 0.7 * rtol**0.2 * y4**3

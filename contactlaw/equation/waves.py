@@ -47,10 +47,14 @@ Array = NDArray[np.float64]
 CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
 SATURATION = 3.0  # V0 T_H over d_Y, by its root, from which on eta stays
 WIDEST = 0.3  # x up to which its fourth power was fitted; it stays from there on
+DEEPEST = 0.317  # x up to which finite elements reach, d = R/10; the first term stays likewise
 # Contact radius over thickness, (R/H) x, from which on the first term of eta stays. Finite elements
 # reach 1. Without a bound exp(eta) overflows for soft beads at high speeds.
 BROADEST = 10.0
 LONGER, LONGER_3 = 0.175, 0.18  # with lambda and its third power; the second by finite elements
+# lambda up to which g follows that. From 2 on the third power outgrows contact times, and would let
+# lambda rise with the thickness.
+LONGEST = 1.25
 USUAL = 0.02  # h_0
 _RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
 # p2 to p5, each by powers of 1/h_c - _CENTRE; from ``python -m validation.derivations.mobility``
@@ -118,11 +122,11 @@ def _lengthening(lam: float) -> float:
 @kernel(inline=True)
 def stiffening(waves: Waves, ratio: float, x: float, thin: float, h: float) -> float:
     """Stiffening eta of a contact by its plate, from R/H, x, and lambda and h before it."""
-    longer = _lengthening(thin)
+    longer = _lengthening(min(thin, LONGEST))
     usual = USUAL * (longer * longer)  # by finite elements; the end of a long contact counts
     g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, WIDEST * WIDEST)
-    w = min(x, BROADEST / ratio)
+    w = min(x, DEEPEST, BROADEST / ratio)
     return ratio * ((waves.eta + waves.eta_h * g) * w + waves.eta4 * (square * square))
 
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.equation import waves
-from contactlaw.equation.integrator import MAX_STEPS
+from contactlaw.equation.integrator import LATE, MAX_STEPS, SPENT
 from contactlaw.evaluation import RTOL, with_plates
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
@@ -37,7 +37,10 @@ Array = NDArray[np.float64]
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
 ERROR = 4e-6  # of COR beside the model's table: 1e-5 is promised, beside the equation
 _WIDTH = 96
-_OF_WAVES = "LONGER", "LONGER_3", "USUAL", "WIDEST", "BROADEST", "SATURATION", "CONTACT_TIME"
+_OF_WAVES = (
+    "LONGER", "LONGER_3", "LONGEST", "USUAL", "WIDEST", "DEEPEST", "BROADEST", "SATURATION",
+    "CONTACT_TIME",
+)  # fmt: skip
 _LIMITS = "R_MIN", "R_MAX", "THINNEST", "V_MIN", "V_MAX"
 _SECTION = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 
@@ -128,6 +131,8 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         **{name: _number(getattr(lookup, name)) for name in _LIMITS},
         "MAX_STEPS": str(MAX_STEPS),
         "RTOL": _number(RTOL),
+        "SPENT": _number(SPENT),
+        "LATE": _number(LATE),
         "root_series": _array(lookup.ROOT),
         "fifths": _array(2.0 ** (n / 5) for n in range(1, 6)),
     }

@@ -27,7 +27,8 @@ class Rebound:
     restitution
         Rebound speed over impact speed [-].
     contact_time
-        Time from first touch to separation [s].
+        Time from first touch to separation [s]; of a sphere that stays (restitution 1e-9), until
+        what is left of its energy could not throw it off any faster.
     peak_force
         Largest contact force [N].
     peak_compression, residual_compression
