@@ -16,7 +16,7 @@ from test_own_laws import measured, own
 from test_softsphere import drop
 
 import contactlaw as cl
-from contactlaw import cli, laws
+from contactlaw import Validity, cli, laws
 from contactlaw import table as tables
 from contactlaw._jit import kernel
 from contactlaw._version import VERSION
@@ -24,6 +24,7 @@ from contactlaw.equation import zener
 from contactlaw.equation.waves import CONTACT_TIME
 from contactlaw.export import c_header
 from contactlaw.physical.scaling import scales, sphere_on_plate
+from contactlaw.physical.validity import flags_of
 from contactlaw.softsphere import Contacts, resized, unit_spring
 from contactlaw.table import Settings, lookup
 from contactlaw.table.nodes import POINTS, coarser
@@ -63,6 +64,18 @@ void rebounds(int n, const double *v, const double *r, const double *h, contactl
     int k;
     for (k = 0; k < n; ++k)
         out[k] = contactlaw_rebound(v[k], r[k], h[k]);
+}
+
+#ifdef __cplusplus
+extern "C"
+#endif
+void flagged(int n, const double *v, const double *r, const double *h, double *out)
+{
+    int k;
+    for (k = 0; k < n; ++k) {
+        const contactlaw_impact impact = contactlaw_rebound(v[k], r[k], h[k]);
+        out[k] = contactlaw_flags(&impact, v[k], r[k], h[k]);
+    }
 }
 
 #ifdef __cplusplus
@@ -236,6 +249,31 @@ def test_a_rebound_is_the_solvers(compiled):
         assert np.abs((values - expected[name]) / scale).max() < 1e-10, name
     energy = found[:, 0] ** 2 + found[:, 6] + found[:, 7] + found[:, 8]
     assert np.abs(energy - 1.0).max() < 1e-8
+
+
+def test_flags_are_those_of_the_solver(compiled):
+    """1e5 impacts over all models; what differs is within an integration's error of a limit."""
+    model, library, _ = compiled
+    v, r, h = impacts(10_000, seed=11)
+    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
+    keep = units.inelasticity < 10.0
+    v, r, h, scale = v[keep], r[keep], h[keep], units.compression[keep]
+    found, hit = called(library.flagged, v.size, v, r, h), model.solve(v, r, h)
+    assert len(set(found)) > 1
+    for n in np.flatnonzero(found != hit.flags):
+        at = hit.contact_time[n], hit.peak_compression[n], hit.peak_force[n]
+        low, high = (
+            flags_of(model.limits, r[n], h[n], share * scale[n], *(share * x for x in at))
+            for share in (1.0 - 1e-9, 1.0 + 1e-9)
+        )
+        assert low != high
+    assert called(library.flagged, 1, *np.array([[math.nan], [1e-3], [1e-3]])) == -1.0
+
+
+def test_a_header_names_the_flags_of_validity(compiled):
+    text = (compiled[2] / "contactlaw.h").read_text()
+    names = dict(re.findall(r"^    CONTACTLAW_([A-Z_]+) = (\d+),?$", text, re.MULTILINE))
+    assert names == {one.name: str(one.value) for one in Validity}
 
 
 def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
@@ -620,7 +658,7 @@ def test_the_documented_c_compiles(tmp_path):
     include, _, calls = shown.partition("\n")
     exported(tmp_path, model_of("myc"))
     arguments = "double speed, double radius, double thickness, double overlap, double dt"
-    body = f"{calls} return e + force + impact.peak_force;"
+    body = f"{calls} return e + force + impact.peak_force + flags;"
     source = f"{include}\ndouble f({arguments});\ndouble f({arguments}) {{ {body} }}\n"
     build(tmp_path, source, "-c", *WARNINGS)
 

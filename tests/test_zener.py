@@ -101,6 +101,7 @@ def test_linear_branch_is_an_oscillator():
     p = RATIO * y
     k = 1.5 * math.sqrt(p)
     shift = p / 3  # F = k (w - p/3)
+
     # state at w = p from the solver of the elastic stretch alone: scipy, stopped at p
     def at_p(t, s):
         return s[0] - p
@@ -302,7 +303,8 @@ def test_contact_times_and_restitution_are_continuous_where_spheres_come_to_stay
         lam = np.linspace(low, high, 61)
         found = [zener.solve(law, one, 1e-5, 1e-10) for one in lam]
         time = np.diff([one.contact_time for one in found])
-        steps.append([np.abs(time).max(), np.abs(np.diff([one.restitution for one in found])).max()])
+        cor = np.diff([one.restitution for one in found])
+        steps.append([np.abs(time).max(), np.abs(cor).max()])
         n = int(np.argmax(np.abs(time)))
         low, high = lam[n], lam[n + 1]
     assert found[0].restitution < 1e-5

@@ -28,6 +28,7 @@ from contactlaw.evaluation import RTOL, with_plates
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
 from contactlaw.physical.scaling import factors
+from contactlaw.physical.validity import THINNEST, TRANSITS, Limits, Validity
 from contactlaw.softsphere import unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.nodes import coarser
@@ -129,6 +130,11 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         "table": "" if table is None else _array(packed(model, table)),
         **{name: _number(getattr(waves, name)) for name in _OF_WAVES},
         **{name: _number(getattr(lookup, name)) for name in _LIMITS},
+        "validity": ",\n".join(f"    CONTACTLAW_{one.name} = {one.value}" for one in Validity),
+        "limits": ", ".join(Limits._fields),
+        "limit_values": _array(model.limits),
+        "THINNEST_ELASTIC": _number(THINNEST),
+        "TRANSITS": _number(TRANSITS),
         "MAX_STEPS": str(MAX_STEPS),
         "RTOL": _number(RTOL),
         "SPENT": _number(SPENT),

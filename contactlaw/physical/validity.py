@@ -19,13 +19,13 @@ from contactlaw.physical.scaling import yield_share
 
 Array = NDArray[np.float64]
 
-_THINNEST = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
+THINNEST = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
 _THINNEST_YIELDED = 1.4  # R/H for "fem"; the errors of everyday impacts are twice as large beyond
 _YIELDED = 2.0  # V0/V_Y0; our choice, between 1.5 and 3.5 of our finite elements
 _FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
 _SWIFTEST = 0.0131  # V0/sqrt(E*/rho1), 50 m/s for steel: "fem" is made of impacts up to there
 _AHEAD = 1.5  # way of the fastest waves that matter over that of the contact's own; see below
-_TRANSITS = 6.0  # contact time over H/c_L; Koller & Kolsky 1987 and Boettcher et al. 2017: 6 to 8
+TRANSITS = 6.0  # contact time over H/c_L; Koller & Kolsky 1987 and Boettcher et al. 2017: 6 to 8
 _BENDING = 0.6  # F/(sigma_Y H^2): 0.35 is within 2 % of our finite elements, 0.85 is not
 # Largest pressure over the hardness at which a brittle body begins to flow: 1.65 H/2.8, since flow
 # begins at a mean pressure of 1.1 sigma_Y and is complete at 2.8 (Kharaz & Gorham 2000).
@@ -199,7 +199,7 @@ def limits(pair: Pair, law: Law) -> Limits:
     least, largest = law.yield_strains
     other = not (law.yields and least <= sphere / pair.sphere.youngs_modulus <= largest)
     return Limits(
-        slender=_THINNEST,
+        slender=THINNEST,
         slowness=slowness,
         always=int(rate | soft * Validity.SOFT_PLATE),
         yielded=int((other or soft) * Validity.OTHER_LAW),
@@ -244,13 +244,13 @@ def flags_of(
 ) -> int:
     """Flag an impact; scale is V0 T_H [m], compression and force the largest ones [m, N]."""
     flags = limits.always
-    thinnest = _THINNEST
+    thinnest = THINNEST
     if compression > limits.share * radius:
         thinnest = limits.slender
         flags |= limits.untried
     if radius > thinnest * thickness:
         flags |= _THIN_PLATE
-    if thickness < math.inf and contact_time < _TRANSITS * thickness * limits.slowness:
+    if thickness < math.inf and contact_time < TRANSITS * thickness * limits.slowness:
         flags |= _THICK_PLATE
     yield_ratio = limits.share * radius / scale
     if yield_ratio < limits.trusted:
