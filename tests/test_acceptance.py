@@ -1,6 +1,5 @@
 """The law fem held to what it has to reach: finite elements, everyday pairs, closed forms."""
 
-import dataclasses
 import math
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import Validity
-from contactlaw.physical.scaling import law_of
 from validation.bench import census as bench
 from validation.fem import acceptance, census
 from validation.fem.__main__ import main as command
@@ -90,16 +88,6 @@ def test_an_rms_can_fail_a_row():
     row = Row(TARGETS["kept out"], tuple([member(0.015)] * 30))
     assert min(row.shares) == 1.0
     assert not row.holds and not row.silent
-
-
-def test_it_integrates_what_a_model_does():
-    pair = cl.Pair("copper-c11000", "stainless-steel-304")
-    v, r, h = (np.array(values) for values in ([0.5, 5.0], [1e-3, 1e-3], [1e-3, math.inf]))
-    ours = acceptance.solve(pair, law_of(pair, "fem"), v, r, h)
-    theirs = cl.ImpactModel(pair, law="fem").solve(v, r, h)
-    for field in dataclasses.fields(cl.Rebound):
-        values = getattr(ours, field.name)
-        np.testing.assert_array_equal(values, getattr(theirs, field.name), field.name)
 
 
 def test_weak_impacts_count_over_the_least_cor():

@@ -19,11 +19,10 @@ from tqdm import tqdm
 import contactlaw as cl
 from contactlaw import Validity
 from contactlaw.laws import Law
-from contactlaw.physical.scaling import law_of
 from contactlaw.table import file
 from contactlaw.table.grid import Settings, on_demand
 from validation.bench.row import Row
-from validation.fem import acceptance, census
+from validation.fem import census
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.int64]
@@ -112,9 +111,9 @@ def _looked_up(pair: cl.Pair, law: str, speed: Array, thickness: Array) -> Flags
 
 
 def _integrated(pair: cl.Pair, law: str, speed: Array, thickness: Array) -> Flags:
-    found = law_of(pair, law)
-    hit = acceptance.solve(pair, found, speed, np.full_like(speed, census.RADIUS), thickness)
-    extent = settings(found)
+    model = cl.ImpactModel(pair, law=law)
+    hit = model.solve(speed, census.RADIUS, thickness)
+    extent = settings(model.force_law)
     outside = np.asarray(hit.inelasticity) > extent.largest_inelasticity
     outside |= np.asarray(hit.overload) > extent.largest_overload
     flags = np.array(hit.flags, dtype=np.int64)

@@ -22,11 +22,8 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from contactlaw import Validity, closed_form
-from contactlaw.evaluation import solved
-from contactlaw.laws import Law
-from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
-from contactlaw.physical.validity import limits
+from contactlaw.laws.fem import ALONE
+from contactlaw.physical.rebound import Rebound
 from validation.fem import fit, store
 
 Array = NDArray[np.float64]
@@ -34,7 +31,6 @@ Array = NDArray[np.float64]
 LAW = "fem"
 ENOUGH = 0.95  # of the impacts without a flag, in each number
 _RTOL = 1e-10
-_ALONE = 0.36  # weaker over stronger strength, below which the stronger body does not yield
 YIELDING = ("none", "sphere", "plate", "both")
 
 
@@ -163,31 +159,6 @@ def within(errors: Errors, bounds: Errors) -> bool:
     return all(abs(error) <= bound for error, bound in zip(errors, bounds, strict=True))
 
 
-def solve(pair: cl.Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Rebound:
-    """Integrate impacts as `ImpactModel.solve` does, without a table that would be built first.
-
-    Examples
-    --------
-    >>> pair = cl.Pair("gamma-alumina", "glass")
-    >>> v, r, h = np.array([12.0]), np.array([0.9e-3]), np.array([1e-3])
-    >>> ours = solve(pair, law_of(pair, "myc"), v, r, h)
-    >>> bool(ours.restitution == cl.ImpactModel(pair, "myc").solve(v, r, h).restitution)
-    True
-    """
-    contact = sphere_on_plate(pair, law, radius, thickness)
-    units = scales(contact, speed)
-    found = solved(law, units, _RTOL)
-    asked = tuple(
-        np.ascontiguousarray(np.broadcast_to(one, speed.shape))
-        for one in (units.inelasticity, units.yield_ratio)
-    )
-    impacts = Impacts(speed, radius, thickness, speed.shape)
-    return rebound(
-        law.data, limits(pair, law), impacts, units.time, contact.mass, (asked[0], asked[1]),
-        found, np.zeros(speed.size, dtype=np.int64),
-    )  # fmt: skip
-
-
 @functools.cache
 def members(target: Target, law: str = LAW) -> tuple[Member, ...]:
     """List the impacts of a row, and what a law says of them.
@@ -233,8 +204,8 @@ def _of_study(study: str, law: str, least: float) -> list[Member]:
         if law == "myc" and pair.sphere.yield_strength is None:
             continue
         rows = [n for n in range(count) if pairs[n] == pair]
-        given = (np.ascontiguousarray(data[key][rows]) for key in ("speed", "radius", "thickness"))
-        hit = solve(pair, law_of(pair, law), *given)
+        speed, radius, thickness = (data[key][rows] for key in ("speed", "radius", "thickness"))
+        hit = cl.ImpactModel(pair, law).solve(speed, radius, thickness)
         for k, n in enumerate(rows):
             found[n] = _member(study, pair, impacts[n], hit, k, least)
     return [found[n] for n in sorted(found)]
@@ -271,7 +242,7 @@ def _member(
 def _yielding(pair: cl.Pair) -> str:
     """Which body flows once one does: the weaker, and the other if it is not much stronger."""
     sphere, plate = (body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
-    if min(sphere, plate) > _ALONE * max(sphere, plate):
+    if min(sphere, plate) > ALONE * max(sphere, plate):
         return "both"
     return "sphere" if sphere < plate else "plate"
 
@@ -408,8 +379,7 @@ def _bodies(yielding: str, ratio: float) -> cl.Pair:
 
 
 def _fallen(pair: cl.Pair, speed: Array) -> Rebound:
-    same = np.ones_like(speed)
-    return solve(pair, law_of(pair, LAW), speed, 1e-3 * same, math.inf * same)
+    return cl.ImpactModel(pair, LAW).solve(speed, 1e-3, math.inf)
 
 
 def report() -> str:

@@ -69,7 +69,7 @@ def draw(generator: np.random.Generator) -> tuple[cl.Pair, Array, float]:
     # waves no faster than 20 km/s
     least = np.maximum(modulus / 4e8, 500.0)
     density = least * np.exp(generator.uniform(0.0, np.log(2e4 / 500.0), 2))
-    weakest = effective / math.exp(generator.uniform(*np.log(_RATIO)))
+    weakest = float(effective) / math.exp(generator.uniform(*np.log(_RATIO)))
     weakest = max(weakest, 1.1e-12 * float(modulus.max()))  # no solid is weaker, and refused
     other = weakest * math.exp(generator.uniform(0.0, 3.0))
     kinds: tuple[tuple[float | None, float | None], ...] = (
