@@ -131,7 +131,7 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         **{name: _number(getattr(waves, name)) for name in _OF_WAVES},
         **{name: _number(getattr(lookup, name)) for name in _LIMITS},
         "validity": ",\n".join(f"    CONTACTLAW_{one.name} = {one.value}" for one in Validity),
-        "limits": ", ".join(Limits._fields),
+        "limits": "\n        ".join(textwrap.wrap(", ".join(Limits._fields), _WIDTH - 8)),
         "limit_values": _array(model.limits),
         "THINNEST_ELASTIC": _number(THINNEST),
         "TRANSITS": _number(TRANSITS),

@@ -72,7 +72,7 @@ def rms(law: str) -> tuple[Array, Array]:
     Examples
     --------
     >>> [errors.round(4).tolist() for errors in rms("fem")]
-    [[0.0044, 0.006, 0.0065], [0.02, 0.0204, 0.0163]]
+    [[0.0044, 0.006, 0.0066], [0.02, 0.0204, 0.0163]]
     """
     off, flagged = [], []
     for one in unseen():
