@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from test_own_laws import measured, own
 from test_softsphere import drop
+from test_zener import STAYING
 
 import contactlaw as cl
 from contactlaw import Validity, cli, laws
@@ -278,11 +279,7 @@ def test_a_header_names_the_flags_of_validity(compiled):
 
 def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
     """COR 1e-2 to 0: once what is left of an impact can do no more, the contact is over."""
-    pair = cl.Pair(
-        cl.Material("stiff", 960e9, 0.164, 52e3, yield_strength=947.0),
-        cl.Material("soft", 227e6, 0.0395, 897.0, yield_strength=947.0),
-    )
-    model = cl.ImpactModel(pair)
+    model = cl.ImpactModel(STAYING)
     cl.export.header(tmp_path / "contactlaw.h", model, table="none")
     calls = '#include "contactlaw.h"\n' + CALLS[CALLS.index("void rebounds") :]
     library = ctypes.CDLL(build(tmp_path, calls, "-O2", "-shared", "-fPIC", *WARNINGS))

@@ -50,9 +50,7 @@ _LANDED = (
     1e-9  # an event is met to this; compression and time are stationary there, so err by its square
 )
 SPENT = 1e-9  # restitution that is not told from less
-LATE = (
-    1e-2  # restitution that cannot be had any more, at which, and at whose powers, steps get finer
-)
+LATE = 1e-2  # restitution out of reach, at which, and at each of its powers, steps get finer
 # events: end of loading; a root compression is reached; a time is; the energy left is spent
 NONE, TURN, LEVEL, TIME, _OVER = 0, 1, 2, 3, 4
 _CUBIC, _PIECES, _POWER = 0, 1, 2  # how a leg's force is given

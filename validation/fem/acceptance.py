@@ -30,7 +30,6 @@ Array = NDArray[np.float64]
 
 LAW = "fem"
 ENOUGH = 0.95  # of the impacts without a flag, in each number
-_RTOL = 1e-10
 YIELDING = ("none", "sphere", "plate", "both")
 
 
