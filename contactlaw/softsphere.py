@@ -58,9 +58,9 @@ FEWEST_STEPS = 20  # per contact; with fewer the error no longer follows the ord
 # with velocity Verlet and the law myc, for lambda to 2 and speeds to 7 V_Y0, at 20, 50, 100 steps.
 _ERROR = 0.9
 
-_TOP = 1.0 - 1e-12  # of the loading curve: a force above came from there, and not by reloading
-_MAX_ITERATIONS = 60
-_CONVERGED = 1e-8  # last change of q, relative; the secant method squares it, almost
+TOP = 1.0 - 1e-12  # of the loading curve: a force above came from there, and not by reloading
+MOST_ITERATIONS = 60
+CONVERGED = 1e-8  # last change of q, relative; the secant method squares it, almost
 
 
 class State(NamedTuple):
@@ -165,11 +165,11 @@ def _balance(law: Array, loading: bool, curve: Curve, b: float, r: float) -> tup
         return q, f
     gap = b * f
     slope = 2.0 * q + 3.0 * gap / q
-    for _ in range(_MAX_ITERATIONS):
+    for _ in range(MOST_ITERATIONS):
         change = gap / slope
         q = max(q - change, 0.0)
         f = _force(law, loading, q, curve)
-        if not abs(change) > _CONVERGED * q:
+        if not abs(change) > CONVERGED * q:
             break
         last, gap = gap, q * q + b * f - r
         if gap == last:
@@ -202,7 +202,7 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     b = (moved - ahead + step * step / (12.0 * spring.mass)) * unit / scale
     r = (overlap - known - ahead * state.force) / scale
     dm = state.largest_compression / scale
-    top = state.force >= _TOP * forces.loading(law, math.sqrt(dm)) * before  # compression was dm
+    top = state.force >= TOP * forces.loading(law, math.sqrt(dm)) * before  # compression was dm
     loading, q, f = True, 0.0, 0.0
     least = forces.lossless(law)
     if dm > least and not top:

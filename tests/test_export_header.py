@@ -21,12 +21,14 @@ from contactlaw import Validity, cli, laws
 from contactlaw import table as tables
 from contactlaw._jit import kernel
 from contactlaw._version import VERSION
-from contactlaw.equation import zener
+from contactlaw.equation import force, zener
 from contactlaw.equation.waves import CONTACT_TIME
 from contactlaw.export import c_header
+from contactlaw.physical import validity
+from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.physical.validity import flags_of
-from contactlaw.softsphere import Contacts, resized, unit_spring
+from contactlaw.softsphere import RELAXATION, Contacts, State, resized, unit_spring
 from contactlaw.table import Settings, lookup
 from contactlaw.table.nodes import POINTS, coarser
 from validation.hostile import headers
@@ -41,10 +43,8 @@ STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
 MODELS = {name: (PAIR, name) for name in laws.names()}
 MODELS |= {"fem, metals": (STEEL, "fem"), "fem, elastic": (cl.Pair("glass", "glass"), "fem")}
 MODELS |= {"own": (PAIR, own()), "measured": (PAIR, measured())}
-FIELDS = (
-    "restitution", "contact_time", "loading_time", "peak_force", "peak_compression",
-    "residual_compression", "plastic_fraction", "wave_fraction", "other_fraction", "inelasticity",
-)  # fmt: skip
+FIELDS = [one.name for one in dataclasses.fields(Rebound) if one.name not in ("overload", "flags")]
+FIELDS.insert(2, "loading_time")
 CALLS = """
 #include "contactlaw.h"
 #ifdef __cplusplus
@@ -82,9 +82,9 @@ void flagged(int n, const double *v, const double *r, const double *h, double *o
 #ifdef __cplusplus
 extern "C"
 #endif
-double step(const contactlaw_spring *spring, contactlaw_state *state, double x, double u, double dt)
+double step(const contactlaw_spring *spring, contactlaw_state *state, double x, double dt)
 {
-    return contactlaw_step(spring, state, x, u, dt);
+    return contactlaw_step(spring, state, x, dt);
 }
 
 #ifdef __cplusplus
@@ -110,7 +110,7 @@ void drops(int n, const double *v, const double *r, const double *h, const doubl
         for (i = 0; i < 10000000; ++i) {
             u -= 0.5 * dt[k] * state.force / spring.mass;
             x += u * dt[k];
-            contactlaw_step(&spring, &state, x, u, dt[k]);
+            contactlaw_step(&spring, &state, x, dt[k]);
             u -= 0.5 * dt[k] * state.force / spring.mass;
             if (i > 2 && state.force == 0.0 && u < 0.0) {
                 out[k] = -u / v[k];
@@ -247,8 +247,11 @@ def test_a_rebound_is_the_solvers(compiled):
         absolute = name.endswith("fraction") or name in ("restitution", "inelasticity")
         whole = name.replace("residual", "peak")
         scale = 1.0 if absolute else expected[whole]
-        assert np.abs((values - expected[name]) / scale).max() < 1e-10, name
-    energy = found[:, 0] ** 2 + found[:, 6] + found[:, 7] + found[:, 8]
+        # both integrate to 1e-10 a step, in other steps; neither controls the error of the time
+        bound = 1e-7 if name.endswith("time") else 1e-9
+        assert np.abs((values - expected[name]) / scale).max() < bound, name
+    lost = [name.endswith("_fraction") for name in FIELDS]
+    energy = found[:, 0] ** 2 + found[:, lost].sum(axis=1)
     assert np.abs(energy - 1.0).max() < 1e-8
 
 
@@ -277,6 +280,63 @@ def test_a_header_names_the_flags_of_validity(compiled):
     assert names == {one.name: str(one.value) for one in Validity}
 
 
+CONSTANTS = [
+    (module, name) for module, names in c_header._CONSTANTS.items() for name in names.split()
+]
+OFFSETS = [(force, name) for name in c_header._IN_LAW.split()]
+OFFSETS += [(lookup, name) for name in c_header._IN_TABLE.split()]
+
+
+def test_the_header_follows_the_definitions(monkeypatch):
+    """Each constant of Python is in the template, and in the header as Python has it."""
+    template = (Path(c_header.__file__).parent / "contactlaw.h.in").read_text()
+    for module, name in [*CONSTANTS, *OFFSETS]:
+        is_offset = (module, name) in OFFSETS
+        assert f"contactlaw_{name}" in template if is_offset else f"${name}" in template, name
+        with monkeypatch.context() as patch:
+            patch.setattr(module, name, 12345)
+            found = c_header._definitions()
+        if is_offset:
+            found = found["law_offsets" if module is force else "table_offsets"]
+            assert f"    contactlaw_{name} = 12345" in found.replace(",", "").split("\n")
+        else:
+            assert found[name] == "12345"
+
+
+def test_a_field_of_an_impact_adds_itself_to_the_header(monkeypatch):
+    @dataclasses.dataclass(frozen=True)
+    class Longer(Rebound):
+        __doc__ = Rebound.__doc__.replace(
+            "    inelasticity\n", "    slip_fraction\n        Lost to slip [-].\n    inelasticity\n"
+        )
+        slip_fraction: float = 0.0
+
+    monkeypatch.setattr(c_header, "Rebound", Longer)
+    text = c_header._text(model_of("myc"), None)
+    assert "    /* Lost to slip [-]. */\n    double slip_fraction;\n" in text
+    none = re.search(r"contactlaw_impact impact = { (.*) };", text)[1]
+    assert none.count("none") == len(FIELDS) + 1
+
+
+def test_a_state_in_c_is_softspheres():
+    text = c_header._text(model_of("myc"), None)
+    inside = re.search(r"struct contactlaw_state {(.*?)}", text, re.DOTALL)[1]
+    assert re.findall(r"double (\w+);", inside) == list(State._fields)
+
+
+def test_no_constant_of_python_is_repeated_in_the_template():
+    """Those with a value of their own; small whole numbers mean many things."""
+    folder = Path(c_header.__file__).parent
+    values = {float(getattr(module, name)): name for module, name in CONSTANTS}
+    values |= {RELAXATION: "RELAXATION", validity.THINNEST: "THINNEST"}
+    number = re.compile(r"(?<![\w.$])\d+(?:\.\d*)?(?:e-?\d+)?(?![\w.])")
+    for path in (folder / "contactlaw.h.in", folder / "liggghts/normal_model_contactlaw.h.in"):
+        code = path.read_text().partition("BSD 3-Clause License")[0]
+        found = {float(one) for one in number.findall(code)}
+        repeated = {values[one] for one in found & values.keys() if one % 1.0 or one > 10.0}
+        assert repeated == set()
+
+
 def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
     """COR 1e-2 to 0: once what is left of an impact can do no more, the contact is over."""
     model = cl.ImpactModel(STAYING)
@@ -290,7 +350,7 @@ def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
     expected = model.solve(v, r, h)
     assert expected.restitution.min() < 2e-6 < 1e-2 < expected.restitution.max()
     assert np.abs(found[:, 0] - expected.restitution).max() < 1e-10
-    assert found[:, 1] == pytest.approx(expected.contact_time, rel=1e-6)
+    assert found[:, 1] == pytest.approx(expected.contact_time, rel=1e-7)
 
 
 @pytest.mark.parametrize("table", ["cor", "none"])
@@ -380,7 +440,7 @@ int main(void)
                 state.stiffening = any(0.5, 2.0);
             }
             before = state;
-            f = contactlaw_step(&spring, &state, x, any(1e-3, 1e2), dt);
+            f = contactlaw_step(&spring, &state, x, dt);
             numbers += f == f;
             none += f != f;
             wrong += f < 0.0 || f == HUGE_VAL;
@@ -537,17 +597,17 @@ int main(void)
 {
     const contactlaw_spring spring = contactlaw_spring_of(1e-3, 1e-3);
     contactlaw_state state = CONTACTLAW_APART, before;
-    int good = contactlaw_step(&spring, &state, 1e-6, 1.0, 1e-7) > 0.0;
+    int good = contactlaw_step(&spring, &state, 1e-6, 1e-7) > 0.0;
     before = state;
-    good &= isnan(contactlaw_step(&spring, &state, 2.1e-3, 1.0, 1e-7));
-    good &= isnan(contactlaw_step(&spring, &state, NAN, 1.0, 1e-7));
-    good &= isnan(contactlaw_step(&spring, &state, -HUGE_VAL, 1.0, 1e-7));
-    good &= isnan(contactlaw_step(&spring, &state, 1e-6, NAN, 1e-7));
-    good &= isnan(contactlaw_step(&spring, &state, 1e-6, 2e5, 1e-7));
-    good &= isnan(contactlaw_step(&spring, &state, 1e-6, 1.0, 0.0));
-    good &= isnan(contactlaw_step(&spring, &state, 1e-6, 1.0, 1.0e2));
+    good &= isnan(contactlaw_step(&spring, &state, 2.1e-3, 1e-7));
+    good &= isnan(contactlaw_step(&spring, &state, NAN, 1e-7));
+    good &= isnan(contactlaw_step(&spring, &state, -HUGE_VAL, 1e-7));
+    good &= isnan(contactlaw_step(&spring, &state, 3.1e-6, 2e-11)); /* 2e-6 m more in it: 1e5 m/s */
+    good &= isnan(contactlaw_step(&spring, &state, 1e-6, NAN));
+    good &= isnan(contactlaw_step(&spring, &state, 1e-6, 0.0));
+    good &= isnan(contactlaw_step(&spring, &state, 1e-6, 1.0e2));
     good &= memcmp(&before, &state, sizeof state) == 0;
-    good &= contactlaw_step(&spring, &state, 0.0, -1.0, 1e-7) == 0.0 && state.force == 0.0;
+    good &= contactlaw_step(&spring, &state, 0.0, 1e-7) == 0.0 && state.force == 0.0;
     good &= state.plate_displacement == 0.0 && state.largest_compression == 0.0;
     return !good;
 }

@@ -45,13 +45,13 @@ Array = NDArray[np.float64]
 
 PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, CAPPED, HEADER = range(8)
 SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(7)
-_POWER, _DEGREE, _AT, _FUNCTION = range(4)
+FUNCTION_POWER, FUNCTION_DEGREE, FUNCTION_AT, FUNCTION = range(4)
 RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = range(
     6
 )  # functions of dm, in the order of a row
 FUNCTIONS = 6
 _U = tuple(np.uint64(n) for n in range(5))
-UNLOADING_ROW = OFFSET + 1 + FUNCTIONS * _FUNCTION
+UNLOADING_ROW = OFFSET + 1 + FUNCTIONS * FUNCTION
 
 HERTZ: Array = np.array(
     [1, 0, HEADER, HEADER + 2, HEADER + 2 + PIECE, HEADER + 3 + PIECE, 0]
@@ -153,9 +153,9 @@ def _unloading_row(law: Array, dm: float) -> int:
 def _function(law: Array, row: int, which: int, dm: float) -> float:
     """One of the functions of dm."""
     t = law[row + SCALE] * dm - law[row + OFFSET]
-    entry = row + OFFSET + 1 + which * _FUNCTION
-    value = polynomial(law, int(law[entry + _AT]), int(law[entry + _DEGREE]), t)
-    power = law[entry + _POWER]
+    entry = row + OFFSET + 1 + which * FUNCTION
+    value = polynomial(law, int(law[entry + FUNCTION_AT]), int(law[entry + FUNCTION_DEGREE]), t)
+    power = law[entry + FUNCTION_POWER]
     if power == 2.0:
         return value * ((dm - 1.0) * (dm - 1.0))
     return value if power == 0.0 else value * math.pow(dm - 1.0, power)
@@ -288,7 +288,9 @@ def check(law: Array) -> None:
     curve, family = curve.reshape(-1, PIECE), family.reshape(-1, UNLOADING_ROW)
     entries = [(row, DEGREE) for row in curve]
     entries += [
-        (row, OFFSET + 1 + n * _FUNCTION + _DEGREE) for row in family for n in range(FUNCTIONS)
+        (row, OFFSET + 1 + n * FUNCTION + FUNCTION_DEGREE)
+        for row in family
+        for n in range(FUNCTIONS)
     ]
     for row, column in entries:
         degree, start = _whole(row, column, size), _whole(row, column + 1, size)

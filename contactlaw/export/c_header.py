@@ -8,27 +8,32 @@ arrays that these read.
 from __future__ import annotations
 
 import hashlib
+import inspect
+import itertools
 import math
 import os
 import re
 import string
 import textwrap
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import fields
 from importlib import resources
+from types import ModuleType
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import _atomic
+from contactlaw import _atomic, evaluation, softsphere
 from contactlaw._version import VERSION
-from contactlaw.equation import waves
-from contactlaw.equation.integrator import LATE, MAX_STEPS, SPENT
-from contactlaw.evaluation import RTOL, with_plates
+from contactlaw.equation import force, integrator, waves
+from contactlaw.evaluation import with_plates
 from contactlaw.model import ImpactModel
+from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
+from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import factors
-from contactlaw.physical.validity import THINNEST, TRANSITS, Limits, Validity
+from contactlaw.physical.validity import Limits, Validity
 from contactlaw.softsphere import unit_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.nodes import coarser
@@ -38,11 +43,26 @@ Array = NDArray[np.float64]
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
 ERROR = 4e-6  # of COR beside the model's table: 1e-5 is promised, beside the equation
 _WIDTH = 96
-_OF_WAVES = (
-    "LONGER", "LONGER_3", "LONGEST", "USUAL", "WIDEST", "DEEPEST", "BROADEST", "SATURATION",
-    "CONTACT_TIME",
-)  # fmt: skip
-_LIMITS = "R_MIN", "R_MAX", "THINNEST", "V_MIN", "V_MAX"
+# Constants that the template names as their modules do.
+_CONSTANTS: dict[ModuleType, str] = {
+    waves: "LONGER LONGER_3 LONGEST USUAL WIDEST DEEPEST BROADEST SATURATION CONTACT_TIME",
+    lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
+    integrator: "MAX_STEPS SPENT LATE",
+    evaluation: "RTOL",
+    softsphere: "TOP MOST_ITERATIONS CONVERGED",
+    validity: "TRANSITS",
+}
+# Enumerators of C, which say where things are in an array.
+_IN_LAW = (
+    "PIECES UNLOADINGS STARTS CURVE FAMILY_STARTS FAMILY CAPPED SCALE OFFSET DEGREE AT FIRST NEXT "
+    "PIECE RESIDUAL EXPONENT LOSS CAP_LOW CAP_HIGH OTHER FUNCTION_POWER FUNCTION_DEGREE "
+    "FUNCTION_AT FUNCTION UNLOADING_ROW"
+)
+_IN_TABLE = (
+    "STRETCH X_MAX LOG_CHI_MAX NODES_PER_X COLUMNS SEGMENTS CURVED COR_AT HEADER BLOCKS START END "
+    "PER_LOG CELLS COLUMN GRADED LINE BLOCK"
+)
+_ATTRIBUTES = re.compile(r"^(\w+(?:, \w+)*)\n((?: {4}.+\n?)+)", re.MULTILINE)
 _SECTION = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 
 
@@ -113,6 +133,7 @@ def _text(model: ImpactModel, table: Table | None) -> str:
     spring = unit_spring(model, 1.0)
     made = factors(model.pair, model.force_law)
     transit = made.plate.transit * made.time  # of a shear wave, at H = 1 m
+    plate, groups = made.plate, list(_impact())
     values = {
         "version": VERSION,
         "about": "\n".join(_about(model, table)),
@@ -122,28 +143,60 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         "scale": _number(spring.scale),
         "relaxation": _number(spring.relaxation),
         "transit": _number(transit),
-        "bulk": _number(spring.mobility * transit**2),
-        "waves": _array(made.plate.waves),
+        "plate": ", ".join(plate._fields[:-1]),
+        "plate_values": _array(plate[:-1]),
+        "waves": ", ".join(plate.waves._fields),
+        "waves_values": _array(plate.waves),
         "law": _array(model.force_law.data),
-        "c_lam": _number(made.plate.inelasticity),
         "c_chi": _number(made.log_overload),
         "table": "" if table is None else _array(packed(model, table)),
-        **{name: _number(getattr(waves, name)) for name in _OF_WAVES},
-        **{name: _number(getattr(lookup, name)) for name in _LIMITS},
+        **_definitions(),
+        "impact": "\n".join(_members(names, text) for names, text in groups),
+        "nothing": ", ".join("none" for names, _ in groups for _ in names),
         "validity": ",\n".join(f"    CONTACTLAW_{one.name} = {one.value}" for one in Validity),
         "limits": "\n        ".join(textwrap.wrap(", ".join(Limits._fields), _WIDTH - 8)),
         "limit_values": _array(model.limits),
-        "THINNEST_ELASTIC": _number(THINNEST),
-        "TRANSITS": _number(TRANSITS),
-        "MAX_STEPS": str(MAX_STEPS),
-        "RTOL": _number(RTOL),
-        "SPENT": _number(SPENT),
-        "LATE": _number(LATE),
         "root_series": _array(lookup.ROOT),
         "fifths": _array(2.0 ** (n / 5) for n in range(1, 6)),
     }
     values["guard"] = hashlib.sha256(repr(values).encode()).hexdigest()[:16]
     return string.Template(template).substitute(values)
+
+
+def _definitions() -> dict[str, str]:
+    """Write the constants of Python that C needs."""
+    constants = ((module, name) for module, names in _CONSTANTS.items() for name in names.split())
+    return {
+        **{name: repr(getattr(module, name)) for module, name in constants},
+        "THINNEST_ELASTIC": repr(validity.THINNEST),
+        "law_offsets": _enumerators(force, _IN_LAW),
+        "table_offsets": _enumerators(lookup, _IN_TABLE),
+    }
+
+
+def _impact() -> Iterator[tuple[list[str], str]]:
+    """Members of an impact in C, and what `Rebound` says of them.
+
+    Its overload needs a second integration, and its flags have a function of their own.
+    """
+    said = {"loading_time": "Time from first touch to the largest compression [s]."}
+    for names, text in _ATTRIBUTES.findall(inspect.getdoc(Rebound) or ""):
+        said |= dict.fromkeys(names.split(", "), " ".join(text.replace("`", "").split()))
+    members = [one.name for one in fields(Rebound) if one.name not in ("overload", "flags")]
+    members.insert(members.index("contact_time") + 1, "loading_time")
+    for text, group in itertools.groupby(members, lambda name: said.get(name, "")):
+        yield list(group), text
+
+
+def _members(names: list[str], text: str) -> str:
+    """Members of a structure of C, below a comment."""
+    comment = textwrap.wrap(f"/* {text} */", _WIDTH - 4, subsequent_indent=" * ")
+    return textwrap.indent("\n".join([*comment, f"double {', '.join(names)};"]), "    ")
+
+
+def _enumerators(module: ModuleType, names: str) -> str:
+    """Write enumerators of C from a module's constants."""
+    return ",\n".join(f"    contactlaw_{name} = {getattr(module, name)}" for name in names.split())
 
 
 def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:

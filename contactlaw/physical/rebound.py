@@ -37,8 +37,10 @@ class Rebound:
         Shares of the initial kinetic energy lost to plastic flow, to the waves in the plate, and to
         friction, vibration and locked stresses of the bodies, which only the law ``"fem"`` knows
         [-]. 1 - restitution^2 is their sum.
-    inelasticity, overload
-        The dimensionless numbers lambda and chi of the impact [-].
+    inelasticity
+        The dimensionless number lambda of the impact [-].
+    overload
+        The dimensionless number chi of the impact [-].
     flags
         `Validity` limits that the impact exceeds; 0 is inside all of them.
     """

@@ -58,7 +58,7 @@ SEGMENTS, CURVED, COR_AT, OTHERS_AT, TRANSIT, REACH, SATURATED, WAVES = range(5,
 HEADER = WAVES + len(Waves._fields)
 DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
 START, END, PER_LOG, CELLS, COLUMN, GRADED, LINE, BLOCK = range(8)
-_BLOCKS = HEADER + DEGREE + 1
+BLOCKS = HEADER + DEGREE + 1
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
@@ -231,7 +231,7 @@ def _start(table: Array, block: int, t: float) -> float:
 def locate(table: Array, x: float, log_chi: float) -> tuple[int, int, float, float]:
     """Row and column of the first of 4 x 4 coefficients, and the place within the cell."""
     t = 2.0 / table[X_MAX] * x - 1.0
-    block, last = _BLOCKS, _BLOCKS + (int(table[SEGMENTS]) - 1) * BLOCK
+    block, last = BLOCKS, BLOCKS + (int(table[SEGMENTS]) - 1) * BLOCK
     low = table[block + START]
     while block < last:
         high = _start(table, block + BLOCK, t)
@@ -260,7 +260,7 @@ def _locate_all(
     """
     n, scale, curved = x.size, 2.0 / table[X_MAX], table[CURVED] > 0.0
     for k in range(int(table[SEGMENTS])):
-        block = _BLOCKS + k * BLOCK
+        block = BLOCKS + k * BLOCK
         start, per_log = table[block + START], table[block + PER_LOG]
         cells, graded = table[block + CELLS], table[block + GRADED]
         column = np.int32(table[block + COLUMN])
@@ -383,7 +383,7 @@ def _put(
     others = _other_fields(table, np.uint64(int(table[OTHERS_AT]) + 3 * first), s, t)
     out.contact_time[n] = others.contact_time
     out.wave_rate[n] = others.wave_rate
-    lowest = table[_BLOCKS + START]
+    lowest = table[BLOCKS + START]
     out.compression_ratio[n] = math.exp((others.growth - 1.0) * max(log_chi, lowest))
     out.elastic_compression[n] = math.exp(log_w)
 
@@ -531,7 +531,7 @@ def outcomes(
     scratch, first = np.empty((6, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
     cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
     others_at, plate = int(table[OTHERS_AT]), _plate(table, c_lam)
-    lowest = table[_BLOCKS + START]
+    lowest = table[BLOCKS + START]
     x_max, log_chi_max, y_1 = table[X_MAX], table[LOG_CHI_MAX], math.exp(-c_chi)
     outside = 0
     for start in range(0, speed.size, _CHUNK):

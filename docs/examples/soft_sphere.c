@@ -26,7 +26,7 @@ int main(void)
         for (n = 0; n < BEADS; ++n) {
             speed[n] += 0.5 * dt * (GRAVITY - state[n].force / spring.mass);
             height[n] -= dt * speed[n];
-            contactlaw_step(&spring, &state[n], -height[n], speed[n], dt);
+            contactlaw_step(&spring, &state[n], -height[n], dt);
             speed[n] += 0.5 * dt * (GRAVITY - state[n].force / spring.mass);
             if (state[n].force > peak[n])
                 peak[n] = state[n].force;

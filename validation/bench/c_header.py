@@ -40,7 +40,7 @@ void steps(int n, const double *x, int walks, double radius, double thickness, d
     for (i = 0; i < walks; ++i) {
         contactlaw_state state = CONTACTLAW_APART;
         for (k = 0; k < n; ++k)
-            out[k] = contactlaw_step(&spring, &state, x[k], 1.0, dt);
+            out[k] = contactlaw_step(&spring, &state, x[k], dt);
     }
 }
 """
