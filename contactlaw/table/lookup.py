@@ -258,7 +258,7 @@ def _locate_all(
     Row by columns + column goes into first, the places in the cell over x and into along. Low and
     high are scratch.
     """
-    n, scale, curved = x.size, 2.0 / table[X_MAX], table[CURVED] > 0.0
+    n, scale = x.size, 2.0 / table[X_MAX]
     for k in range(int(table[SEGMENTS])):
         block = BLOCKS + k * BLOCK
         start, per_log = table[block + START], table[block + PER_LOG]
@@ -272,19 +272,14 @@ def _locate_all(
         else:
             for i in range(n):
                 low[i] = start
-        if curved:
-            if k + 1 < int(table[SEGMENTS]):
-                next_line = int(table[block + BLOCK + LINE])
-                if next_line > 0:
-                    series = _power_series(table, next_line)
-                    for i in range(n):
-                        high[i] = cells / (_evaluate(series, scale * x[i] - 1.0) - low[i])
-                else:
-                    for i in range(n):
-                        high[i] = cells / (table[block + END] - low[i])
-            else:
-                for i in range(n):
-                    high[i] = cells / (table[block + END] - low[i])
+        next_line = int(table[block + BLOCK + LINE]) if k + 1 < int(table[SEGMENTS]) else 0
+        if next_line > 0:
+            series = _power_series(table, next_line)
+            for i in range(n):
+                high[i] = cells / (_evaluate(series, scale * x[i] - 1.0) - low[i])
+        elif line > 0:
+            for i in range(n):
+                high[i] = cells / (table[block + END] - low[i])
         else:
             for i in range(n):
                 high[i] = per_log
@@ -365,15 +360,6 @@ def _other_fields(table: Array, p: np.uint64, s: float, t: float) -> _Others:
 
 
 @kernel
-def _cor_at(table: Array, x: float, log_chi: float) -> float:
-    """COR at a place in the table."""
-    row, column, s, t = locate(table, x, log_chi)
-    step = int(table[COLUMNS])
-    first = int(table[COR_AT]) + row * step + column
-    return _cor(table, np.uint64(first), np.uint64(step), s, t)
-
-
-@kernel
 def _put(
     table: Array, first: int, s: float, t: float, log_chi: float, log_w: float, out: Outcome, n: int
 ) -> None:
@@ -396,8 +382,15 @@ def _blank(out: Outcome, n: int) -> None:
 
 
 @kernel(inline=True)
-def _restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: float) -> float:
-    """COR for a ratio R/H; NaN outside the table."""
+def _is_valid(speed: float, radius: float, thickness: float) -> bool:
+    """Whether an impact is none that is a mistake; without a branch, so that loops are vectors."""
+    valid = (speed >= V_MIN) & (speed <= V_MAX) & (thickness >= R_MIN)
+    return valid & (radius >= R_MIN) & (radius <= R_MAX) & (THINNEST * radius <= thickness)
+
+
+@kernel(cache=True)
+def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: float) -> float:
+    """COR for a ratio R/H; NaN where the speed is no positive number and outside the table."""
     if not V_MIN <= speed <= V_MAX:
         return math.nan
     log_speed, root = _log_and_root(speed)
@@ -413,13 +406,10 @@ def _restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: 
     log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
     if not log_chi <= table[LOG_CHI_MAX]:
         return math.nan
-    return _cor_at(table, x, log_chi)
-
-
-@kernel(cache=True)
-def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: float) -> float:
-    """COR for a ratio R/H; NaN where the speed is no positive number and outside the table."""
-    return _restitution(table, c_lam, c_chi, speed, ratio)
+    row, column, s, t = locate(table, x, log_chi)
+    step = int(table[COLUMNS])
+    first = int(table[COR_AT]) + row * step + column
+    return _cor(table, np.uint64(first), np.uint64(step), s, t)
 
 
 @kernel(cache=True)
@@ -427,11 +417,9 @@ def restitution_on_plate(
     table: Array, c_lam: float, c_chi: float, speed: float, radius: float, thickness: float
 ) -> float:
     """COR of one sphere on a plate; NaN for bad input and outside the table."""
-    if not (R_MIN <= radius <= R_MAX and thickness >= R_MIN):
+    if not _is_valid(speed, radius, thickness):
         return math.nan
-    if not THINNEST * radius <= thickness:
-        return math.nan
-    return _restitution(table, c_lam, c_chi, speed, radius / thickness)
+    return restitution(table, c_lam, c_chi, speed, radius / thickness)
 
 
 @kernel
@@ -475,11 +463,27 @@ def _coordinates(
         log_chi[i] = c_chi + 0.8 * log_chi[i] + log_w[i]
     good = 0
     for i in range(x.size):
-        valid = (speed[i] >= V_MIN) & (speed[i] <= V_MAX) & (thickness[i] >= R_MIN)
-        valid &= (radius[i] >= R_MIN) & (radius[i] <= R_MAX)
-        valid &= (THINNEST * radius[i] <= thickness[i]) & (x[i] >= 0.0)
+        valid = _is_valid(speed[i], radius[i], thickness[i]) & (x[i] >= 0.0)
         good += valid & (x[i] <= x_max) & (log_chi[i] <= log_chi_max)
     return good == x.size
+
+
+@kernel
+def _move_inside(
+    table: Array,
+    speed: Array,
+    radius: Array,
+    thickness: Array,
+    log_chi: Array,
+    x: Array,
+    outside: Array,
+) -> None:
+    """Move coordinates outside the table, or of no valid impact, to 0; outside is NaN for those."""
+    for i in range(x.size):
+        valid = _is_valid(speed[i], radius[i], thickness[i])
+        inside = valid and 0.0 <= x[i] <= table[X_MAX] and log_chi[i] <= table[LOG_CHI_MAX]
+        outside[i] = 0.0 if inside else math.nan
+        x[i], log_chi[i] = (x[i], log_chi[i]) if inside else (0.0, 0.0)
 
 
 @kernel(cache=True)
@@ -501,14 +505,16 @@ def restitutions(
         v, r, h = speed[start : start + n], radius[start : start + n], thickness[start : start + n]
         values = out[start : start + n]
         x, log_chi, along = scratch[0, :n], scratch[1, :n], scratch[2, :n]
-        a, b = scratch[3, :n], scratch[4, :n]
-        if _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, a, b):
-            _locate_all(table, x, log_chi, first[:n], along, a, b)
+        a, b, outside = scratch[3, :n], scratch[4, :n], scratch[5, :n]
+        inside = _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, a, b)
+        if not inside:
+            _move_inside(table, v, r, h, log_chi, x, outside)
+        _locate_all(table, x, log_chi, first[:n], along, a, b)
+        for i in range(n):
+            values[i] = _cor(table, np.uint64(cor_at + first[i]), step, x[i], along[i])
+        if not inside:
             for i in range(n):
-                values[i] = _cor(table, np.uint64(cor_at + first[i]), step, x[i], along[i])
-        else:  # one by one; such chunks are rare
-            for i in range(n):
-                values[i] = restitution_on_plate(table, c_lam, c_chi, v[i], r[i], h[i])
+                values[i] += outside[i]
                 bad += values[i] != values[i]
     return bad
 
@@ -528,12 +534,11 @@ def outcomes(
 
     Beside them V^(1/5) exp(eta) into root.
     """
-    scratch, first = np.empty((6, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
+    scratch, first = np.empty((7, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
     cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
     others_at, plate = int(table[OTHERS_AT]), _plate(table, c_lam)
-    lowest = table[BLOCKS + START]
-    x_max, log_chi_max, y_1 = table[X_MAX], table[LOG_CHI_MAX], math.exp(-c_chi)
-    outside = 0
+    lowest, y_1 = table[BLOCKS + START], math.exp(-c_chi)
+    bad = 0
     for start in range(0, speed.size, _CHUNK):
         n = min(_CHUNK, speed.size - start)
         v, r, h = speed[start : start + n], radius[start : start + n], thickness[start : start + n]
@@ -549,30 +554,28 @@ def outcomes(
                 out.inelasticity[start + i] = inelasticity_of(plate, roots[i], r[i] / h[i], 1.0)
                 square = roots[i] * roots[i]
                 out.yield_ratio[start + i] = y_1 / (square * square)
-        if inside:
-            _locate_all(table, x, log_chi, first[:n], along, scratch[4, :n], scratch[5, :n])
-            # by name here: a tuple of arrays that is handed on is counted for each impact
-            for i in range(n):
-                at, s, t = int(first[i]), x[i], along[i]
-                out.restitution[start + i] = _cor(table, np.uint64(cor_at + at), step, s, t)
-                others = _other_fields(table, np.uint64(others_at + 3 * at), s, t)
-                out.contact_time[start + i] = others.contact_time
-                out.wave_rate[start + i] = others.wave_rate
-                log_chi[i] = (others.growth - 1.0) * max(log_chi[i], lowest)
-            for i in range(n):
-                out.elastic_compression[start + i] = _exp(log_w[i])
-            for i in range(n):
-                out.compression_ratio[start + i] = _exp(log_chi[i])
-            continue
+        outside = scratch[6, :n]
+        if not inside:
+            _move_inside(table, v, r, h, log_chi, x, outside)
+        _locate_all(table, x, log_chi, first[:n], along, scratch[4, :n], scratch[5, :n])
+        # by name here: a tuple of arrays that is handed on is counted for each impact
         for i in range(n):
-            if 0.0 <= x[i] <= x_max and log_chi[i] <= log_chi_max:
-                row, column, s, t = locate(table, x[i], log_chi[i])
-                place = row * int(table[COLUMNS]) + column
-                _put(table, place, s, t, log_chi[i], log_w[i], out, start + i)
-            else:
-                _blank(out, start + i)
-                outside += 1
-    return outside
+            at, s, t = int(first[i]), x[i], along[i]
+            out.restitution[start + i] = _cor(table, np.uint64(cor_at + at), step, s, t)
+            others = _other_fields(table, np.uint64(others_at + 3 * at), s, t)
+            out.contact_time[start + i] = others.contact_time
+            out.wave_rate[start + i] = others.wave_rate
+            log_chi[i] = (others.growth - 1.0) * max(log_chi[i], lowest)
+        for i in range(n):
+            out.elastic_compression[start + i] = _exp(log_w[i])
+        for i in range(n):
+            out.compression_ratio[start + i] = _exp(log_chi[i])
+        if not inside:
+            for i in range(n):
+                if outside[i] != 0.0:
+                    _blank(out, start + i)
+                    bad += 1
+    return bad
 
 
 @kernel(cache=True)
