@@ -35,8 +35,8 @@ LAYERS = [
 # Within a folder without units, the same: the order of its files.
 FILES = {
     "equation": ["force", "outcome", "waves", "numbers", "integrator", "zener"],
-    "table": ["lookup", "grid", "splines", "shapes", "sweep", "certificate", "nodes", "guarded",
-              "file", "cache"],
+    "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
+              "guarded", "file", "cache"],
     "command": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",
                 "options", "curves", "sweep", "walls", "lines", "plots", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
@@ -44,7 +44,7 @@ FILES = {
 }  # fmt: skip
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),
-    *(ROOT / f"table/{name}.py" for name in ("lookup", "shapes", "splines", "grid")),
+    *(ROOT / f"table/{name}.py" for name in ("lookup", "shapes", "splines", "axes", "grid")),
 ]
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 VALIDATION = ROOT.parent / "validation"

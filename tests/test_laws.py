@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 import contactlaw as cl
 from contactlaw import laws, table
-from contactlaw.laws import _etsion, jackson_green, kogut_etsion, stronge
+from contactlaw.laws import HERTZ, Law, Loading, _etsion, jackson_green, kogut_etsion, stronge
 from contactlaw.table import Settings, cache, file
 
 DEEPEST = 60.0  # the packaged table ends at chi = 40
@@ -347,6 +347,22 @@ def test_jackson_green_refuses_what_its_fit_cannot_do():
         jackson_green.law(5.0, 0.3)
     with pytest.raises(ValueError, match="Poisson's ratio 0.5"):
         jackson_green.law(20.0, 0.5)
+
+
+def test_a_law_holds_its_parameters_with_all_digits():
+    number = 0.3 + 1e-9
+    law = laws.exact("kogut_etsion", poissons_ratio=number)
+    assert (law.family, law.parameters) == ("kogut_etsion", {"poissons_ratio": number})
+    assert law.name == "kogut_etsion(0.3)"
+    typed, taken = laws.law("jackson_green(150,0.3)"), laws.law("jackson_green", **NUMBERS)
+    assert typed.parameters == {"modulus_ratio": 150.0, "poissons_ratio": 0.3}
+    assert taken.parameters == {name: NUMBERS[name] for name in taken.from_pair}
+    assert laws.law("myc").parameters == {}
+
+
+def test_the_name_of_a_law_of_ones_own_is_not_read():
+    law = Law.of(name="spring(3)", source="", yield_coefficient=None, loading=[Loading(0.0, HERTZ)])
+    assert (law.family, law.name, law.parameters) == ("spring(3)", "spring(3)", {})
 
 
 def test_each_set_of_numbers_has_a_table_of_its_own(tmp_path):

@@ -12,7 +12,6 @@ from contactlaw import laws, table
 from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
 from contactlaw.table import file as store
-from contactlaw.table import grid
 
 MYC = laws.law("myc")
 CERTIFICATE = '{"points": 100, "seed": 0, "median": {}, "percentile_99": {}, "largest": %s}'
@@ -33,13 +32,26 @@ def path(built, tmp_path):
 def test_round_trip_is_exact(built, path):
     read = store.read(path)
     assert (read.law, read.settings) == (built.law, built.settings)
-    for ours, theirs in zip(read.grid.segments, built.grid.segments, strict=True):
-        for one, other in zip(ours, theirs, strict=True):
-            np.testing.assert_array_equal(one, other)
+    for ours, theirs in zip(read.grid.axes, built.grid.axes, strict=True):
+        assert (ours.name, ours.stretch) == (theirs.name, theirs.stretch)
+        for pair in zip(ours.segments, theirs.segments, strict=True):
+            for one, other in zip(*pair, strict=True):
+                np.testing.assert_array_equal(one, other)
     np.testing.assert_array_equal(read.grid.elastic_compression, built.grid.elastic_compression)
     np.testing.assert_array_equal(read.states, built.states)
     for name, values in built.fields.items():
         np.testing.assert_array_equal(read.fields[name], values)
+
+
+def test_parameters_of_a_law_are_numbers_in_its_file(tmp_path):
+    law = laws.law("jackson_green(120,0.3)")
+    store.write(table.build(law, SMALL), tmp_path / "t.h5")
+    with h5py.File(tmp_path / "t.h5") as file:
+        assert file.attrs["law"] == "jackson_green"
+        assert dict(file["law/parameters"].attrs) == {"modulus_ratio": 120.0, "poissons_ratio": 0.3}
+    read = store.read(tmp_path / "t.h5").law
+    assert (read.family, read.parameters) == (law.family, law.parameters)
+    assert read.name == "jackson_green(120,0.3)"
 
 
 def test_file_explains_itself(path):
@@ -96,9 +108,9 @@ def declare_huge_with_fitting_axes(file):
     """Nodes for an array of 1.1 TB; nothing else is to tell that it is not there."""
     rows, columns = 100_000, 1_000_000
     file.attrs.modify("inelasticity_nodes", rows)
-    sizes = {"inelasticity": grid.row_inelasticity(rows, 2.0, 5.0)}
-    sizes["segments/0/shares"] = np.linspace(0.0, 1.0, columns)
-    count = columns + sum(file[f"segments/{k}/shares"].size for k in (1,))
+    sizes = {"axes/inelasticity/0/shares": np.linspace(0.0, 1.0, rows)}
+    sizes["axes/log_overload/0/shares"] = np.linspace(0.0, 1.0, columns)
+    count = columns + file["axes/log_overload/1/shares"].size
     for name, values in sizes.items():
         del file[name]
         file[name] = values
@@ -155,7 +167,7 @@ def gain_energy(file):
         (lambda f: f.attrs.modify("format", "something"), "format"),
         (lambda f: f.pop("fields/contact_time"), "contact_time"),
         (put("fields/restitution", np.nan), "not finite"),
-        (lambda f: f.attrs.modify("inelasticity_nodes", 10), "shape"),
+        (lambda f: f.attrs.modify("inelasticity_nodes", 10), "axes are not those of its settings"),
         (
             lambda f: f["fields/restitution"].write_direct(
                 np.full(f["fields/restitution"].shape, 7.0)
@@ -163,7 +175,14 @@ def gain_energy(file):
             "outside 0 to 1",
         ),
         (put("law/outcome_kinks", 1.5, 0), "kinks"),
-        (lambda f: f["inelasticity"].write_direct(np.linspace(0, 5, 9)), "axes"),
+        (put("axes/inelasticity/0/shares", 0.4, 3), "axes are not those of its settings"),
+        (put("axes/inelasticity/0/shares", 0.4, 2), "axes along inelasticity do not rise"),
+        (put("axes/inelasticity/0/end", 4.0, ...), "axes are not those of its settings"),
+        (put("axes/log_overload/0/shares", 0.0, 1), "axes along log_overload do not rise"),
+        (put("axes/log_overload/1/start", 1.0, ...), "along log_overload do not meet"),
+        (put("axes/log_overload/1/end", 3.0, ...), "axes are not those of its settings"),
+        (lambda f: f["axes/inelasticity"].pop("0"), "along inelasticity do not meet"),
+        (lambda f: f["axes/log_overload"].attrs.modify("stretch", 9.0), "axes are not those"),
         (lambda f: f.attrs.modify("stretch", 3.0), "axes"),
         (put("fields/wave_rate", -0.5), "wave_rate reach from -0.5"),
         (put("fields/contact_time", 1e300), r"contact_time reach from .* to 1e\+300"),
@@ -187,6 +206,8 @@ def gain_energy(file):
         (link("fields", h5py.ExternalLink("elsewhere.h5", "x")), "or a link"),
         (link("law/data", h5py.SoftLink("/law/data")), "or a link"),
         (put_group, "law/data has the shape None"),
+        (store_anew("law/waves", dtype="f4"), "law/waves holds float32"),
+        (lambda f: f["law/parameters"].attrs.create("x", "y"), "attribute x is no single float"),
         (lambda f: f.attrs.create("law", 5.0), "attribute law is no single str"),
         (lambda f: f.attrs.create("law", ["myc"]), "attribute law is no single str"),
         (lambda f: f.attrs.create("rtol", [1e-9, 1e-9]), "rtol is no single float"),
@@ -292,7 +313,7 @@ def test_hdf5_programs_read_it(path):
         assert file.attrs["complete"]
         assert file["fields/restitution"].shape == (
             SMALL.inelasticity_nodes,
-            sum(segment["shares"].size for segment in file["segments"].values()),
+            sum(one["shares"].size for one in file["axes/log_overload"].values()),
         )
 
 

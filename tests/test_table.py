@@ -11,7 +11,7 @@ import contactlaw as cl
 from contactlaw import laws, table
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.force import HERTZ
-from contactlaw.table import file, lookup, splines, sweep
+from contactlaw.table import axes, file, lookup, splines, sweep
 from contactlaw.table.grid import on_demand
 
 MYC = laws.law("myc")
@@ -160,8 +160,9 @@ def test_spline_error_falls_with_the_fourth_power():
 
 
 def test_nodes_lie_on_both_kinks():
-    nodes = table.build(MYC, SMALL).grid.log_overload()
-    first = table.build(MYC, SMALL).grid.segments[0].shares.size
+    grid = table.build(MYC, SMALL).grid
+    _, nodes = grid.nodes()
+    first = grid.axes[1].sizes[0]
     for row in nodes:
         assert row[0] == 0.0
         assert row[first - 1] == row[first] == math.log(2.14 / 0.68)
@@ -170,9 +171,9 @@ def test_nodes_lie_on_both_kinks():
 
 def test_nodes_hold_what_the_solver_says():
     built = table.build(MYC, SMALL)
-    log_chi = built.grid.log_overload()
+    lam, log_chi = built.grid.nodes()
     for i, j in ((0, 0), (5, 3), (20, -1)):
-        exact, w_m = solve(MYC, built.grid.inelasticity[i], math.exp(log_chi[i, j]))
+        exact, w_m = solve(MYC, lam[i, j], math.exp(log_chi[i, j]))
         assert built.fields["restitution"][i, j] == pytest.approx(exact.restitution, abs=1e-11)
         ratio = built.fields["compression_ratio"][i, j]
         assert ratio * w_m == pytest.approx(exact.peak_compression, rel=1e-10)
@@ -281,6 +282,39 @@ def test_splines_reproduce_cubics():
         i = int(position)
         value = sum(w / 6 * c[i + k] for k, w in enumerate(lookup.weights(position - i)))
         assert value == pytest.approx(position**3 - 4 * position**2 + 2, abs=1e-12)
+
+
+def test_a_table_may_have_one_axis_more():
+    """Nodes and splines of three axes, the last of which has a kink that is a curve, and a map."""
+    rows = axes.Segment(
+        np.zeros(axes.SERIES), np.full(axes.SERIES, 4.0), np.linspace(0, 1, 9), False
+    )
+    first = axes.Axis("a", (rows,), 2.0)
+    second = axes.Axis("b", (rows._replace(shares=np.linspace(0, 1, 6)),))
+    kink = 1.0 + 0.1 * first.place(axes.series_values(first))
+    low = axes.Segment(np.full(axes.SERIES, 0.5), kink, np.linspace(0, 1, 5) ** 2, True)
+    high = axes.Segment(kink, np.full(axes.SERIES, 3.0), np.linspace(0, 1, 7), False)
+    grid = axes.Grid((first, second, axes.Axis("c", (low, high), 1.0)), np.ones(axes.SERIES))
+    assert grid.shape == (9, 6, 12)
+    a, b, c = grid.nodes()
+    assert a.shape == b.shape == c.shape == grid.shape
+    x = a / (a + 2.0)
+    np.testing.assert_allclose(np.diff(x, axis=0), 1 / 12, rtol=1e-12)
+    np.testing.assert_allclose(c[:, :, 4], 1.0 + 0.15 * x[:, :, 4], rtol=1e-12)
+    np.testing.assert_allclose(c[:, :, 4], c[:, :, 5], rtol=1e-14)
+    steps = np.diff((c / (c + 1.0))[:, :, 5:], axis=2)
+    np.testing.assert_allclose(steps, steps[:, :, :1] * np.ones(6), rtol=1e-12)
+
+    def values(n):  # along c by the number of the node, in which its nodes are even
+        return (1.0 + a**2) * (b - b**3) * np.where(n < 5, n**3, -(n**2))
+
+    held = values(np.arange(12.0))
+    coefficients = splines.surface(held, grid)
+    weights = np.array(lookup.weights(0.0)[:3]) / 6
+    for place, column in (((2, 3, 1), 1), ((7, 0, 9), 11), ((0, 5, 11), 13)):
+        part = coefficients[tuple(slice(n, n + 3) for n in (*place[:2], column))]
+        found = np.einsum("ijk,i,j,k", part, weights, weights, weights)
+        assert found == pytest.approx(held[place], rel=1e-12, abs=1e-12)
 
 
 def test_a_spline_needs_five_nodes():

@@ -7,7 +7,8 @@ them that everything else reads. A new law is a new module here that defines ``L
 has to be touched. Files that begin with ``_`` are no laws.
 
 A law whose scaled form depends on more than the compression defines ``PARAMETERS`` instead, their
-names, and a function ``law`` of them. Their values are part of its name, ``"kogut_etsion(0.3)"``.
+names, and a function ``law`` of them. A `Law` holds their values by name; users may type them in
+brackets, ``"kogut_etsion(0.3)"``, which `law` alone reads.
 
 Users bring laws of their own to `contactlaw.ImpactModel`: of formulas by `Law.of`, of measured
 points by `contactlaw.measured_law`.
@@ -23,7 +24,6 @@ import math
 import pkgutil
 import re
 from types import ModuleType
-from typing import Any
 
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
 from contactlaw.laws._law import Law
@@ -41,7 +41,7 @@ _RANGES = {
     "modulus_share": (0.0, 1.0),
     "plate_poissons_ratio": (0.0, 0.5),
 }  # of laws' parameters
-_BRACKETS = re.compile(r"[a-z_]+\([-+.,0-9e]+\)")
+_BRACKETS = re.compile(r"\([-+.,0-9e]+\)")
 
 
 @functools.cache
@@ -81,7 +81,8 @@ def parameters(name: str) -> tuple[str, ...]:
     >>> contactlaw.laws.parameters("kogut_etsion(0.3)")
     ()
     """
-    return () if "(" in str(name) else tuple(getattr(_module(name), "PARAMETERS", ()))
+    family, typed = _typed(name)
+    return () if typed else tuple(getattr(_module(family), "PARAMETERS", ()))
 
 
 def law(name: str, **numbers: float) -> Law:
@@ -107,20 +108,24 @@ def law(name: str, **numbers: float) -> Law:
     >>> law("kogut_etsion", poissons_ratio=0.3).name
     'kogut_etsion(0.3)'
     """
-    module = _module(name)
-    wanted = getattr(module, "PARAMETERS", None)
-    if wanted is None and "(" in name:
-        raise ValueError(f"law: {name!r} takes no numbers; name it as {name.partition('(')[0]!r}")
-    if wanted is None:
+    family, typed = _typed(name)
+    module = _module(family)
+    wanted: tuple[str, ...] = getattr(module, "PARAMETERS", ())
+    if typed and not wanted:
+        raise ValueError(f"law: {name!r} takes no numbers; name it as {family!r}")
+    if not wanted:
         found: Law = module.LAW
         return found
-    values = _values(name, wanted, numbers)
-    made: Law = module.law(*values)
-    return made if "(" in name else dataclasses.replace(made, from_pair=wanted)
+    form = f"{family}({','.join(wanted)})"
+    given = typed or [str(numbers[parameter]) for parameter in wanted if parameter in numbers]
+    if len(given) != len(wanted):
+        raise ValueError(f"law: {name!r} needs its numbers, got none or others: name it as {form}")
+    made: Law = module.law(*(_rounded(*one, form) for one in zip(wanted, given, strict=True)))
+    return made if typed else dataclasses.replace(made, from_pair=wanted)
 
 
 def exact(name: str, **numbers: float) -> Law:
-    """Law with all digits of its numbers, to differentiate by them; its name has six.
+    """Law with all digits of its numbers, to differentiate by them; its name shows six.
 
     Parameters
     ----------
@@ -141,32 +146,29 @@ def exact(name: str, **numbers: float) -> Law:
     return made
 
 
-def _module(name: str) -> ModuleType:
-    bare = str(name).partition("(")[0]
-    if bare not in names() or ("(" in str(name) and not _BRACKETS.fullmatch(name)):
-        near = difflib.get_close_matches(bare, names(), n=1)
+def _typed(name: str) -> tuple[str, list[str]]:
+    """Family of a law, and the numbers that a user has typed in brackets behind it."""
+    family, bracket, numbers = str(name).partition("(")
+    if family not in names() or (bracket and not _BRACKETS.fullmatch(bracket + numbers)):
+        near = difflib.get_close_matches(family, names(), n=1)
         hint = f"did you mean {near[0]!r}? " if near and near[0] != name else ""
         raise ValueError(f"law: unknown law {name!r}; {hint}known laws: {', '.join(names())}")
-    return importlib.import_module(f"{__name__}.{bare}")
+    return family, numbers[:-1].split(",") if bracket else []
 
 
-def _values(name: str, wanted: tuple[str, ...], numbers: dict[str, float]) -> list[float]:
-    given: list[Any] | None = name[:-1].partition("(")[2].split(",") if "(" in name else None
-    if given is None and numbers.keys() >= set(wanted):
-        given = [numbers[parameter] for parameter in wanted]
-    form = f"{name.partition('(')[0]}({','.join(wanted)})"
-    if given is None or len(given) != len(wanted):
-        raise ValueError(f"law: {name!r} needs its numbers, got none or others: name it as {form}")
-    values = []
-    for parameter, value in zip(wanted, given, strict=True):
-        low, high = _RANGES[parameter]
-        try:
-            number = float(f"{float(value):.6g}")  # as in the name, which a table is found by
-        except (TypeError, ValueError):
-            number = math.nan
-        if not low <= number <= high:
-            raise ValueError(
-                f"law: {parameter} must lie between {low:g} and {high:g}, got {value!r} in {form}"
-            )
-        values.append(number)
-    return values
+def _module(family: str) -> ModuleType:
+    return importlib.import_module(f"{__name__}.{family}")
+
+
+def _rounded(parameter: str, value: float | str, form: str) -> float:
+    """Parameter of a law, to the six digits that its name shows."""
+    low, high = _RANGES[parameter]
+    try:
+        number = float(f"{float(value):.6g}")
+    except (TypeError, ValueError):
+        number = math.nan
+    if not low <= number <= high:
+        raise ValueError(
+            f"law: {parameter} must lie between {low:g} and {high:g}, got {value!r} in {form}"
+        )
+    return number

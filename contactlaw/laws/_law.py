@@ -1,12 +1,12 @@
-"""What a force law is: a name, a source, its kinks, and the array that kernels read."""
+"""What a force law is: a family, its parameters and source, its kinks, and data for kernels."""
 
 from __future__ import annotations
 
 import functools
 import hashlib
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -26,8 +26,8 @@ class Law:
 
     Parameters
     ----------
-    name : str
-        What users call it, with its numbers in brackets.
+    family : str
+        What users call it, without its parameters.
     source : str
         Where the formulas come from.
     yield_coefficient : float or None
@@ -39,6 +39,8 @@ class Law:
         first is 1, that of yield. None for Hertz's law.
     data : ndarray of float64
         The law itself.
+    parameters : mapping of str to float, optional
+        Numbers that make it one law of its family, by name.
     yield_strains : tuple of float, optional
         Least and largest sigma_Y/E of a sphere for which finite elements favour the law once it has
         yielded well.
@@ -54,12 +56,13 @@ class Law:
         has none.
     """
 
-    name: str
+    family: str
     source: str
     yield_coefficient: float | None
     loading_kinks: tuple[float, ...]
     outcome_kinks: tuple[float, ...]
     data: Array
+    parameters: Mapping[str, float] = field(default_factory=dict)
     yield_strains: tuple[float, float] = (0.0, math.inf)
     from_pair: tuple[str, ...] = ()
     scale: float | None = None
@@ -74,6 +77,7 @@ class Law:
         yield_coefficient: float | None,
         loading: Sequence[Loading],
         unloading: Sequence[Unloading] = (),
+        parameters: Mapping[str, float] | None = None,
         yield_strains: tuple[float, float] = (0.0, math.inf),
         scale: float | None = None,
         range: tuple[float, float] = (1.0, math.inf),
@@ -83,7 +87,9 @@ class Law:
 
         Parameters
         ----------
-        name, source, yield_coefficient, yield_strains, scale, range, waves
+        name : str
+            Its `family`.
+        source, yield_coefficient, parameters, yield_strains, scale, range, waves
             As of `Law`.
         loading : sequence of Loading
             Branches of the loading curve. They have to meet, and to rise.
@@ -120,6 +126,8 @@ class Law:
         >>> round(law.loading(2.0), 4), round(law.residual(3.0), 4)
         (5.5, 1.3333)
         """
+        family, parameters = name, parameters or {}
+        name = _written(family, parameters)
         check_yield(name, yield_coefficient, loading, unloading)
         end = range[1] if range[1] < math.inf else END
         curve = LoadingCurve(name, loading, bool(unloading), end)
@@ -129,7 +137,8 @@ class Law:
         if range[1] < math.inf:
             starts.add(range[1])
         return Law(
-            name=name,
+            family=family,
+            parameters=parameters,
             source=source,
             yield_coefficient=yield_coefficient,
             loading_kinks=curve.kinks,
@@ -142,9 +151,9 @@ class Law:
         )
 
     @property
-    def family(self) -> str:
-        """Name without the numbers."""
-        return self.name.partition("(")[0]
+    def name(self) -> str:
+        """Family, with six digits of the parameters in brackets."""
+        return _written(self.family, self.parameters)
 
     @property
     def yields(self) -> bool:
@@ -214,6 +223,11 @@ class Law:
     def dissipation(self, dm: float) -> float:
         """Subtract unloading work from loading work [F_Y d_Y], of a contact that reached dm."""
         return _force.loss(self.data, dm)
+
+
+def _written(family: str, parameters: Mapping[str, float]) -> str:
+    values = ",".join(f"{value:.6g}" for value in parameters.values())
+    return f"{family}({values})" if values else family
 
 
 def _sample(data: Array, x: float, *, family: bool) -> list[float]:

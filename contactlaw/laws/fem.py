@@ -345,7 +345,8 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
             Unloading(1.0, lambda dm: works(dm).residual, exponent, loss, other, order=2.0)
         )
     return Law.of(
-        name=f"fem({','.join(f'{number:.6g}' for number in given)})",
+        name="fem",
+        parameters=given._asdict(),
         source="finite elements of contactlaw, validation.fem.campaign",
         yield_coefficient=curves.scale * (curves.ratio / math.pi) ** 2 if curves.ratio else None,
         loading=loading,

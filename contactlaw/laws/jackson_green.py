@@ -48,7 +48,8 @@ def law(modulus_ratio: float, poissons_ratio: float) -> Law:
         return np.asarray(elastic - 4.0 / c * hardness * np.expm1(-0.04 * d ** (5 / 9)) * d)
 
     return Law.of(
-        name=f"jackson_green({modulus_ratio:.6g},{poissons_ratio:.6g})",
+        name="jackson_green",
+        parameters={"modulus_ratio": modulus_ratio, "poissons_ratio": poissons_ratio},
         source="Jackson, Green, J. Tribol. 127 (2005) 343, joined continuously; unloading of "
         "Etsion, Kligerman, Kadin, Int. J. Solids Struct. 42 (2005) 3716",
         yield_coefficient=0.25 * c * c,

@@ -33,7 +33,8 @@ _SECOND: float = (1.40 / 1.03) ** (1 / 0.162)
 def law(poissons_ratio: float) -> Law:
     """Law of a sphere with this Poisson's ratio."""
     return Law.of(
-        name=f"kogut_etsion({poissons_ratio:.6g})",
+        name="kogut_etsion",
+        parameters={"poissons_ratio": poissons_ratio},
         source="Kogut, Etsion, J. Appl. Mech. 69 (2002) 657, joined continuously; unloading of "
         "Etsion, Kligerman, Kadin, Int. J. Solids Struct. 42 (2005) 3716",
         yield_coefficient=(1.4 * (0.454 + 0.41 * poissons_ratio)) ** 2,

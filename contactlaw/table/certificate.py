@@ -12,7 +12,8 @@ from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, shapes, sweep
-from contactlaw.table.grid import RANGES, Grid, Settings
+from contactlaw.table.axes import Grid
+from contactlaw.table.grid import RANGES, Settings
 from contactlaw.table.shapes import Shapes
 from contactlaw.table.sweep import Progress
 
@@ -102,13 +103,7 @@ def compare_outcomes(
     seed: int,
     progress: Progress,
 ) -> tuple[Outcome, dict[str, Array]]:
-    """Outcomes that are looked up at random points, and their errors by field.
-
-    Raises
-    ------
-    ValueError
-        If there are too few or too many points, or the seed is negative.
-    """
+    """Outcomes that are looked up at random points, and their errors by field."""
     if not 100 <= points <= 10_000_000:
         raise ValueError(f"points: at least 100 and at most 10 000 000 are taken, got {points!r}")
     if seed < 0:
@@ -129,15 +124,18 @@ def compare_outcomes(
 
 def compare_histories(law: Law, settings: Settings, packed: Shapes, looked: Outcome) -> Array:
     """Errors of the force histories of outcomes that were looked up."""
-    out = np.empty(looked.restitution.size)
+    ours, exact = (outcome.history(looked.restitution.size, _SAMPLES) for _ in range(2))
+    shapes.sample(law.data, packed, looked, ours)
+    lam, y, rtol = looked.inelasticity, looked.yield_ratio, _finer(settings)
 
-    def compare(part: slice) -> None:
-        shapes.deviations(
-            law.data, packed, outcome.part(looked, part), _finer(settings), _SAMPLES, out[part]
-        )
+    def solve(part: slice) -> None:
+        for n in range(lam.size)[part]:
+            zener.history(
+                law.data, lam[n], y[n], rtol, ours.time[n], *(one[n] for one in exact[1:])
+            )
 
-    sweep.in_parts(compare, out.size, -(-out.size // _PART), sweep.no_progress)
-    return out
+    sweep.in_parts(solve, lam.size, -(-lam.size // _PART), sweep.no_progress)
+    return np.asarray(np.abs(ours.force - exact.force).max(axis=1) / exact.force.max(axis=1))
 
 
 def _finer(settings: Settings) -> float:
@@ -146,17 +144,17 @@ def _finer(settings: Settings) -> float:
 
 def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array]:
     """Lambda and chi of points; kinks that are curves are taken where they begin and end."""
-    lows = [float(segment.start.min()) for segment in grid.segments]
-    highs = [float(segment.start.max()) for segment in grid.segments]
-    end = float(grid.segments[-1].end[0])
+    inelasticity, overload = grid.axes
+    lows = [float(segment.start.min()) for segment in overload.segments]
+    highs = [float(segment.start.max()) for segment in overload.segments]
     hertz = lows[0] == 0.0  # else what is below the table is none of a certificate's business
-    strata = [(-2.0, 0.0)] * hertz + [*zip(lows, [*highs[1:], end], strict=True)]
+    strata = [(-2.0, 0.0)] * hertz + [*zip(lows, [*highs[1:], overload.largest], strict=True)]
     strata += [(low - _NEAR_KINK, low) for low in lows[not hertz :]]
     strata += [(high, high + _NEAR_KINK) for high in highs]
     share = -(-count // len(strata))
     log_chi = np.concatenate([generator.uniform(low, high, share) for low, high in strata])
     # uniform in the root: COR changes most where lambda is small
-    root = generator.uniform(0.0, math.sqrt(grid.largest_inelasticity), log_chi.size)
+    root = generator.uniform(0.0, math.sqrt(inelasticity.largest), log_chi.size)
     root[generator.random(log_chi.size) < _HALF_SPACE] = 0.0
     return root**2, np.exp(log_chi)
 

@@ -31,21 +31,21 @@ from contactlaw.equation.outcome import STORED
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import guarded, shapes
+from contactlaw.table.axes import SERIES, Axis, Grid, Segment, series_values
 from contactlaw.table.certificate import BOUNDS, Certificate
-from contactlaw.table.grid import Grid, Segment, Settings
+from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table, shape_grid
 
 FORMAT = "contactlaw table"
-SCHEMA = 5
+SCHEMA = 6
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, ours: 700 times the packaged table, and memory that a PC has
 _LARGEST_LAW = 1_000_000  # numbers
-_PLATE = "law_b", "law_b_h", "law_b4", "law_b_p"  # `Law.waves`
-_MOST_KINKS, _MOST_COLUMNS = 1000, 1_000_000
+_MOST_KINKS, _MOST_NODES = 1000, 1_000_000
 _SEGMENT = {
-    "start": "ln chi of the kink at which it begins, over series_inelasticity [-]",
-    "end": "ln chi of the kink at which it ends [-]",
-    "shares": "of the way from start to end, of the columns of fields/ [-]",
+    "start": "where it begins along its axis, over series_inelasticity [-]",
+    "end": "where it ends [-]",
+    "shares": "of the way from start to end in x = v/(v + stretch), v itself if inf, at nodes [-]",
 }
 # Of the numbers beside the fields; w_m is (5/4)^(2/5) at lambda = 0, and falls; more beyond the end
 # of a law.
@@ -106,49 +106,45 @@ def _fill(file: h5py.File, table: Table) -> None:
     file.attrs.update(
         format=FORMAT,
         schema=SCHEMA,
-        law=law.name,
+        law=law.family,
         law_source=law.source,
         yield_coefficient=math.nan if law.yield_coefficient is None else law.yield_coefficient,
         law_scale=math.nan if law.scale is None else law.scale,
         law_smallest=law.range[0],
         law_largest=law.range[1],
-        **dict(zip(_PLATE, law.waves or [math.nan] * len(_PLATE), strict=True)),
         contactlaw_version=VERSION,
         **asdict(table.settings),
     )
-    datasets = {
+    datasets: dict[str, tuple[ArrayLike, str]] = {
         "law/data": (law.data, "force law, see contactlaw.equation.force [d_Y, F_Y]"),
-        "law/loading_kinks": (
-            np.array(law.loading_kinks, dtype=np.float64),
-            "of the loading curve [d_Y]",
-        ),
-        "law/outcome_kinks": (
-            np.array(law.outcome_kinks, dtype=np.float64),
-            "of the outcomes [d_Y]",
-        ),
-        "inelasticity": (grid.inelasticity, "lambda of the rows of fields/ [-]"),
-        "series_inelasticity": (grid.series_inelasticity(), "lambda of what follows [-]"),
+        "law/loading_kinks": (law.loading_kinks, "of the loading curve [d_Y]"),
+        "law/outcome_kinks": (law.outcome_kinks, "of the outcomes [d_Y]"),
+        "law/waves": (law.waves or (), "of plates, see contactlaw.equation.waves; none: thin [-]"),
+        "series_inelasticity": (series_values(grid.axes[0]), "lambda of what follows [-]"),
         "elastic_compression": (grid.elastic_compression, "w_m, of an elastic impact [V0 T_H]"),
         **{
-            f"segments/{k}/{name}": (getattr(segment, name), description)
-            for k, segment in enumerate(grid.segments)
+            f"axes/{axis.name}/{k}/{name}": (getattr(segment, name), description)
+            for axis in grid.axes
+            for k, segment in enumerate(axis.segments)
             for name, description in _SEGMENT.items()
         },
         **{f"fields/{name}": (table.fields[name], STORED[name].description) for name in STORED},
     }
     if table.states is not None:
-        shape_nodes = shape_grid(table)
+        nodes = dict(zip(grids.AXES, shape_grid(table).nodes(), strict=True))
         datasets |= {
-            "shapes/inelasticity": (shape_nodes.inelasticity, "lambda of the rows of states [-]"),
-            "shapes/log_overload": (shape_nodes.log_overload(), "ln chi of the states [-]"),
+            **{f"shapes/{name}": (values, "of the states [-]") for name, values in nodes.items()},
             "shapes/shares": (shapes.SHARES, "of the largest root compression, up and down [-]"),
             "shapes/states": (table.states, "when it passes them: times [T_H], speeds [V0]"),
         }
     for name, (values, description) in datasets.items():
-        file[name] = values
+        file[name] = np.asarray(values, dtype=getattr(values, "dtype", np.float64))
         file[name].attrs["description"] = description
-    for k, segment in enumerate(grid.segments):
-        file[f"segments/{k}"].attrs["graded"] = segment.graded
+    file.create_group("law/parameters").attrs.update(law.parameters)
+    for axis in grid.axes:
+        file[f"axes/{axis.name}"].attrs["stretch"] = axis.stretch
+        for k, segment in enumerate(axis.segments):
+            file[f"axes/{axis.name}/{k}"].attrs["graded"] = segment.graded
     if table.certificate is not None:
         file.attrs["certificate"] = json.dumps(asdict(table.certificate))
     file.attrs["complete"] = True  # last: a file cut short opens without complaint
@@ -213,15 +209,16 @@ def _from_file(file: h5py.File) -> Table:
     )
     law = _law(file)
     table = Table(law, settings, _grid(file, settings, law), {}, certificate=_certificate(file))
-    shape = table.grid.inelasticity.size, table.grid.columns
-    fields = {name: _values(file, f"fields/{name}", *shape) for name in STORED}
+    fields = {name: _values(file, f"fields/{name}", *table.grid.shape) for name in STORED}
     table = dataclasses.replace(table, fields=fields)
     if "shapes" not in file:
         return table
-    _compare(file, "shapes/shares", shapes.SHARES, "this version")
-    nodes = shape_grid(table)
-    shape_of_states = nodes.inelasticity.size, nodes.columns, 2, shapes.SIZE
-    states = _values(file, "shapes/states", *shape_of_states, kind=np.float32)
+    # in the last digit numpy's functions differ between its versions, and between processors
+    shares = _values(file, "shapes/shares", shapes.STATES)
+    if not np.allclose(shares, shapes.SHARES, rtol=1e-12, atol=1e-12):
+        raise ValueError("its shapes/shares are not those of this version")
+    shape = *shape_grid(table).shape, 2, shapes.SIZE
+    states = _values(file, "shapes/states", *shape, kind=np.float32)
     return dataclasses.replace(table, states=states)
 
 
@@ -229,23 +226,21 @@ def _values(file: h5py.File, name: str, *shape: int, kind: DTypeLike = np.float6
     return guarded.values(guarded.member(file, name), shape, kind)
 
 
-def _compare(file: h5py.File, name: str, expected: ArrayLike, whose: str) -> None:
-    # in the last digit numpy's functions differ between its versions, and between processors
-    if not np.allclose(_values(file, name, *np.shape(expected)), expected, rtol=1e-12, atol=1e-12):
-        raise ValueError(f"its {name} are not those of {whose}")
-
-
 def _law(file: h5py.File) -> Law:
     """Law of a table, in whose data kernels will follow addresses."""
     numbers = _listed(file, "law/data", _LARGEST_LAW)
     force.check(numbers)
-    b, b_h, b4, b_p = (guarded.attribute(file, name, float) for name in _PLATE)
+    parameters = guarded.member(file, "law/parameters")
+    waves = _listed(file, "law/waves", 4).tolist()
+    if len(waves) not in (0, 4):
+        raise ValueError(f"its law/waves are {len(waves)} numbers, not 4 or none")
     coefficient, scale, smallest, largest = (
         guarded.attribute(file, name, float)
         for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
     )
     return Law(
-        name=guarded.attribute(file, "law", str),
+        family=guarded.attribute(file, "law", str),
+        parameters={name: guarded.attribute(parameters, name, float) for name in parameters.attrs},
         source=guarded.attribute(file, "law_source", str),
         yield_coefficient=None if math.isnan(coefficient) else coefficient,
         loading_kinks=tuple(_listed(file, "law/loading_kinks", _MOST_KINKS).tolist()),
@@ -253,7 +248,7 @@ def _law(file: h5py.File) -> Law:
         data=numbers,
         scale=None if math.isnan(scale) else scale,
         range=(smallest, largest),
-        waves=None if math.isnan(b) else (b, b_h, b4, b_p),
+        waves=tuple(waves) or None,
     )
 
 
@@ -268,25 +263,20 @@ def _listed(file: h5py.File, name: str, most: int) -> NDArray[Any]:
 
 def _grid(file: h5py.File, settings: Settings, law: Law) -> Grid:
     """Nodes, which have to be those of the settings and of the law."""
-    expected = grids.row_inelasticity(
-        settings.inelasticity_nodes, settings.stretch, settings.largest_inelasticity
-    )
-    _compare(file, "inelasticity", expected, "its settings (axes)")
+    axes = tuple(_axis(file, name) for name in grids.AXES)
+    grids.check(axes, law, settings)
+    return Grid(axes, _values(file, "elastic_compression", SERIES))
+
+
+def _axis(file: h5py.File, name: str) -> Axis:
+    group = guarded.member(file, f"axes/{name}")
     segments = []
-    for k in range(len(guarded.member(file, "segments"))):
-        group = f"segments/{k}"
-        start, end = (_values(file, f"{group}/{name}", grids.SERIES) for name in ("start", "end"))
-        shares = _listed(file, f"{group}/shares", _MOST_COLUMNS)
-        graded = guarded.attribute(guarded.member(file, group), "graded", bool)
+    for k in range(len(group)):
+        start, end = (_values(file, f"axes/{name}/{k}/{end}", SERIES) for end in ("start", "end"))
+        shares = _listed(file, f"axes/{name}/{k}/shares", _MOST_NODES)
+        graded = guarded.attribute(guarded.member(group, str(k)), "graded", bool)
         segments.append(Segment(start, end, shares, graded))
-    grids.check(segments, law, math.log(settings.largest_overload))
-    return Grid(
-        settings.stretch,
-        settings.largest_inelasticity,
-        _values(file, "elastic_compression", grids.SERIES),
-        expected,
-        tuple(segments),
-    )
+    return Axis(name, tuple(segments), guarded.attribute(group, "stretch", float))
 
 
 def _certificate(file: h5py.File) -> Certificate | None:
@@ -322,7 +312,7 @@ def _check_ranges(table: Table) -> None:
             raise ValueError(
                 f"its {name} reach from {least:.6g} to {largest:.6g}, outside {low:g} to {high:g}"
             )
-    waves = table.grid.inelasticity[:, None] * table.fields["wave_rate"]
+    waves = table.grid.rows[:, None] * table.fields["wave_rate"]
     if not (table.fields["restitution"] ** 2 + waves <= 1.0 + _ENERGY).all():
         raise ValueError("it holds impacts that gain energy")
     if table.states is not None and not (np.diff(table.states[:, :, 0]) > 0.0).all():

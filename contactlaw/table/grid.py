@@ -1,8 +1,7 @@
 """Where the nodes of a table lie: along lambda, and along ln chi between the kinks of the law.
 
-Along lambda the nodes are uniform in x = lambda/(lambda + c). Along ln chi they are uniform within
-each segment between two kinks, so that no spline runs across one; a kink is a node twice, once as
-the end of a segment and once as the beginning of the next.
+Along lambda the nodes are uniform in x = lambda/(lambda + c), along ln chi within each segment
+between two kinks.
 
 As long as loading follows Hertz's curve, the largest compression is chi d_Y, and a kink of the law
 is a line of constant chi. A kink that comes later is a curve, chi_k(lambda), along which the
@@ -19,7 +18,6 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +25,11 @@ from numpy.typing import NDArray
 from contactlaw.equation import zener
 from contactlaw.laws import Law
 from contactlaw.laws._branches import END
+from contactlaw.table.axes import FEWEST, SERIES, Axis, Grid, Segment, series_values
 
 Array = NDArray[np.float64]
 
-SERIES = 48  # Chebyshev nodes along x of what is known along lambda alone: w_m and curved kinks
-_FEWEST = 5  # nodes of a segment; not-a-knot ends need as many
+AXES = "inelasticity", "log_overload"
 _FEWEST_GRADED = 24  # our choice: between two kinks of a capped law that are 8 % apart
 _COARSER = 4.0  # steps in ln chi below yield: only the sphere's stiffening is to be seen there
 _BEYOND = 1.5  # of the overload up to which a law was made, for a table of it
@@ -79,75 +77,27 @@ class Settings:
 RANGES = {
     "largest_inelasticity": (1e-3, 10.0),  # 10: COR is 7e-6 there
     "largest_overload": (1e-3, 1e20),  # above 2e18, of a body of sigma_Y = 1e-12 E, the weakest
-    "inelasticity_nodes": (_FEWEST, 100_000),
+    "inelasticity_nodes": (FEWEST, 100_000),
     "log_overload_step": (1e-4, 1.0),
     "stretch": (1e-3, 1e3),
     "rtol": (1e-13, 1e-4),
 }
 
 
-class Segment(NamedTuple):
-    """Columns of nodes between two kinks."""
-
-    start: Array  # ln chi at `series_nodes`; all equal for a kink of constant chi
-    end: Array
-    shares: Array  # of the way from start to end in ln chi, rising from 0 to 1, one for each node
-    graded: bool  # shares are squares of even steps, else even steps
+def inelasticity_axis(settings: Settings) -> Axis:
+    """Lambda from 0 to the largest, in one segment."""
+    ends = np.zeros(SERIES), np.full(SERIES, settings.largest_inelasticity)
+    shares = np.linspace(0.0, 1.0, settings.inelasticity_nodes)
+    return Axis(AXES[0], (Segment(*ends, shares, graded=False),), settings.stretch)
 
 
-@dataclass(frozen=True, eq=False)
-class Grid:
-    """Nodes of a table.
-
-    Parameters
-    ----------
-    stretch, largest_inelasticity : float
-        Of `Settings`.
-    elastic_compression : ndarray
-        w_m at `series_inelasticity` [V0 T_H].
-    inelasticity : ndarray
-        Lambda of the rows.
-    segments : tuple of Segment
-        Columns.
-    """
-
-    stretch: float
-    largest_inelasticity: float
-    elastic_compression: Array
-    inelasticity: Array
-    segments: tuple[Segment, ...]
-
-    @property
-    def columns(self) -> int:
-        """Nodes along ln chi."""
-        return sum(segment.shares.size for segment in self.segments)
-
-    def log_overload(self) -> Array:
-        """Ln chi of every node: (rows, columns)."""
-        at = _place(self.inelasticity, self.stretch, self.largest_inelasticity)
-        parts = []
-        for segment in self.segments:
-            start, end = (_from_series(ends, at)[:, None] for ends in (segment.start, segment.end))
-            parts.append(start + (end - start) * segment.shares)
-        return np.concatenate(parts, axis=1)
-
-    def segment_of(self, lam: Array, log_chi: Array) -> NDArray[np.intp]:
-        """Find the segments that places lie in, by number."""
-        at = _place(lam, self.stretch, self.largest_inelasticity)
-        starts = [_from_series(segment.start, at) for segment in self.segments[1:]]
-        return np.asarray(np.sum([log_chi > start for start in starts], axis=0, dtype=np.intp))
-
-    def series_inelasticity(self) -> Array:
-        """Lambda at the nodes of the series along lambda."""
-        return series_inelasticity(self.stretch, self.largest_inelasticity)
-
-
-def coarser(grid: Grid, rows: int, steps: float | Array) -> Grid:
-    """Other nodes between the same kinks; one step for all segments, or one for each."""
-    each = np.broadcast_to(steps, len(grid.segments))
-    segments = [_with_nodes(*one) for one in zip(grid.segments, each, strict=True)]
-    nodes = row_inelasticity(rows, grid.stretch, grid.largest_inelasticity)
-    return dataclasses.replace(grid, inelasticity=nodes, segments=tuple(segments))
+def coarser(grid: Grid, settings: Settings, steps: float | Array) -> Grid:
+    """Other nodes between the same kinks; one step for all segments of ln chi, or one for each."""
+    overload = grid.axes[1]
+    each = np.broadcast_to(steps, len(overload.segments))
+    segments = tuple(_with_nodes(*one) for one in zip(overload.segments, each, strict=True))
+    axes = inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)
+    return dataclasses.replace(grid, axes=axes)
 
 
 def largest_inelasticity(law: Law) -> float:
@@ -169,30 +119,24 @@ def on_demand(law: Law) -> Settings:
     )  # fmt: skip
 
 
-def check(segments: Sequence[Segment], law: Law, end: float) -> None:
-    """Refuse segments that are none, or not those of a law's kinks.
-
-    Raises
-    ------
-    ValueError
-        With what is wrong of the table.
-    """
+def check(axes: Sequence[Axis], law: Law, settings: Settings) -> None:
+    """Raise a ValueError if axes are not those of a law and of settings."""
+    for axis in axes:
+        axis.check()
+    first, second = axes
+    expected = inelasticity_axis(settings)
+    same = first.sizes == expected.sizes
+    same = same and (first.stretch, second.stretch) == (expected.stretch, math.inf)
+    for one, other in zip(first.segments[0][:3], expected.segments[0][:3], strict=True):
+        same = same and np.allclose(one, other, rtol=1e-12, atol=1e-12)
+    if not same or not (second.segments[-1].end == math.log(settings.largest_overload)).all():
+        raise ValueError("its axes are not those of its settings")
     kinks = [kink for kink in law.outcome_kinks if kink <= _straight(law)]
     if not law.is_hertz:
         kinks.insert(0, law.range[0])
-    starts = [segment.start[0] for segment in segments[: len(kinks)] if not np.ptp(segment.start)]
-    if not segments or not np.array_equal(starts, np.log(kinks[: len(segments)])):
+    starts = [one.start[0] for one in second.segments[: len(kinks)] if not np.ptp(one.start)]
+    if not np.array_equal(starts, np.log(kinks[: len(second.segments)])):
         raise ValueError(f"its kinks are not those of the law, {law.outcome_kinks}")
-    for one, following in itertools.pairwise(segments):
-        if not np.array_equal(one.end, following.start):
-            raise ValueError("its segments do not meet")
-    for segment in segments:
-        steps = np.diff(segment.shares)
-        whole = segment.shares[0] == 0.0 and segment.shares[-1] == 1.0 and (steps > 0.0).all()
-        if segment.shares.size < _FEWEST or not whole or not (segment.start < segment.end).all():
-            raise ValueError("its axes along ln chi do not rise")
-    if not (segments[-1].end == end).all():
-        raise ValueError("its axes are not those of its settings")
 
 
 def _straight(law: Law) -> float:
@@ -206,7 +150,7 @@ def _with_nodes(segment: Segment, step: float) -> Segment:
     """Place the nodes of a segment."""
     length = float((segment.end - segment.start).max())
     # even steps of the root are twice as far apart at the end as on average
-    least, denser = (_FEWEST_GRADED, 1.25) if segment.graded else (_FEWEST, 1.0)
+    least, denser = (_FEWEST_GRADED, 1.25) if segment.graded else (FEWEST, 1.0)
     if not segment.end.max() > 0.0:
         denser = 1.0 / _COARSER
     cells = max(least - 1, math.ceil(denser * length / step))
@@ -214,88 +158,19 @@ def _with_nodes(segment: Segment, step: float) -> Segment:
     return segment._replace(shares=shares**2 if segment.graded else shares)
 
 
-def row_inelasticity(count: int, stretch: float, largest: float) -> Array:
-    """Lambda of the rows of a table."""
-    nodes = _inelasticity(np.linspace(0.0, 1.0, count), stretch, largest)
-    nodes[-1] = largest  # not one rounding error beyond
-    return nodes
-
-
-def chebyshev_nodes() -> Array:
-    """Places in [0, 1] along x/x_max at which w_m and the curved kinks are given."""
-    nodes: Array = 0.5 - 0.5 * np.cos(np.pi * (np.arange(SERIES) + 0.5) / SERIES)
-    return nodes
-
-
-def series_inelasticity(stretch: float, largest: float) -> Array:
-    """Lambda at `chebyshev_nodes`."""
-    return _inelasticity(chebyshev_nodes(), stretch, largest)
-
-
-def _inelasticity(share: Array, stretch: float, largest: float) -> Array:
-    """Lambda at shares of the largest x."""
-    x = share * largest / (largest + stretch)
-    return np.asarray(stretch * x / (1.0 - x))
-
-
-def _place(lam: Array, stretch: float, largest: float) -> Array:
-    """Shares of the largest x, from lambda."""
-    return lam / (lam + stretch) * (largest + stretch) / largest
-
-
-def power_series(values: Array, degree: int) -> Array:
-    """Fit a polynomial in t = 2 x/x_max - 1 to values at `chebyshev_nodes`."""
-    t = 2.0 * chebyshev_nodes() - 1.0
-    basis = np.polynomial.chebyshev.chebvander(t, degree)
-    # the nodes make the basis orthogonal, so no system is to be solved
-    coefficients = (basis * values[:, None]).sum(axis=0) * (2.0 / SERIES)
-    coefficients[0] /= 2.0
-    return np.asarray(np.polynomial.chebyshev.cheb2poly(coefficients))
-
-
-def _from_series(values: Array, share: Array) -> Array:
-    """Values at shares of the largest x, from those at `chebyshev_nodes`."""
-    if np.ptp(values) == 0.0:
-        return np.full_like(share, values[0])
-    return np.asarray(np.polynomial.polynomial.polyval(2.0 * share - 1.0, power_series(values, 20)))
-
-
-def grid(law: Law, settings: Settings, rows: int, step: float) -> Grid:
-    """Place the nodes for a law.
-
-    Parameters
-    ----------
-    law : Law
-        One that yields.
-    settings : Settings
-        Extent of the table, and tolerance of the solver.
-    rows : int
-        Nodes along lambda.
-    step : float
-        Largest distance of two nodes in ln chi.
-
-    Returns
-    -------
-    Grid
-
-    Raises
-    ------
-    ValueError
-        If the law never yields: the elastic edge of any table serves it.
-    RuntimeError
-        If the solver does not find a kink.
-    """
+def grid(law: Law, settings: Settings) -> Grid:
+    """Place the nodes for a law that yields; its kinks are found by the solver."""
     if not law.yields and law.is_hertz:
         raise ValueError(f"law: {law.name!r} never yields; the edge chi = 1 of any table serves it")
-    c, largest = settings.stretch, settings.largest_inelasticity
-    lam = series_inelasticity(c, largest)
+    inelasticity = inelasticity_axis(settings)
+    lam = series_values(inelasticity)
     elastic = elastic_compressions(law, lam, settings.rtol)
-    bounds, graded = _kink_lines(law, settings, lam, elastic)
-    segments = [
-        _with_nodes(Segment(start, end, np.empty(0), root), step)
-        for (start, end), root in zip(itertools.pairwise(bounds), graded, strict=True)
-    ]
-    return Grid(c, largest, elastic, row_inelasticity(rows, c, largest), tuple(segments))
+    lines, graded = _kink_lines(law, settings, lam, elastic)
+    segments = tuple(
+        _with_nodes(Segment(start, end, np.empty(0), root), settings.log_overload_step)
+        for (start, end), root in zip(itertools.pairwise(lines), graded, strict=True)
+    )
+    return Grid((inelasticity, Axis(AXES[1], segments)), elastic)
 
 
 def _kink_lines(

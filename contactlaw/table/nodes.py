@@ -14,6 +14,7 @@ from contactlaw.equation.outcome import STORED, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import lookup, shapes, splines, sweep
+from contactlaw.table.axes import Grid
 from contactlaw.table.certificate import (
     Certificate,
     bounds,
@@ -21,7 +22,7 @@ from contactlaw.table.certificate import (
     compare_outcomes,
     random_points,
 )
-from contactlaw.table.grid import RANGES, Grid, Settings
+from contactlaw.table.grid import RANGES, Settings
 from contactlaw.table.sweep import Progress, no_progress
 
 Array = NDArray[np.float64]
@@ -84,7 +85,8 @@ class Table:
 
 def shape_grid(table: Table) -> Grid:
     """Nodes of the shapes: coarser, with the same segments."""
-    return grids.coarser(table.grid, shapes.ROWS, shapes.STEP)
+    settings = dataclasses.replace(table.settings, inelasticity_nodes=shapes.ROWS)
+    return grids.coarser(table.grid, settings, shapes.STEP)
 
 
 def build(
@@ -120,30 +122,17 @@ def build(
         If a node does not solve; the message names it.
     """
     settings = settings or (Settings() if law.is_hertz else grids.on_demand(law))
-    grid = grids.grid(law, settings, settings.inelasticity_nodes, settings.log_overload_step)
-    rows = grid.inelasticity.size
-    lam, chi = np.repeat(grid.inelasticity, grid.columns), np.exp(grid.log_overload()).ravel()
-    values = sweep.solve_overloads(law, lam, chi, settings.rtol, rows, progress)
-    fields = {name: getattr(values, name).reshape(rows, grid.columns) for name in STORED}
+    grid = grids.grid(law, settings)
+    lam, log_chi = (values.ravel() for values in grid.nodes())
+    parts = settings.inelasticity_nodes
+    values = sweep.solve_overloads(law, lam, np.exp(log_chi), settings.rtol, parts, progress)
+    fields = {name: getattr(values, name).reshape(grid.shape) for name in STORED}
     table = Table(law, settings, grid, fields)
     return dataclasses.replace(table, certificate=certify(table, points))
 
 
 def coarser(table: Table, error: float) -> Table:
-    """Table on as few nodes as it takes for a COR near that of a given one.
-
-    Parameters
-    ----------
-    table : Table
-        Where the values are looked up.
-    error : float
-        Largest difference of COR at random points.
-
-    Returns
-    -------
-    Table
-        Without shapes; the given one if fewer nodes do not suffice. It has a certificate.
-    """
+    """Table on as few nodes as it takes for a COR within `error`; else the one that is given."""
     rows, fewest = table.settings.inelasticity_nodes - 1, int(RANGES["inelasticity_nodes"][0])
     lam, chi = random_points(table.grid, _COMPARED, np.random.default_rng(0))
     exact = _looked_up(table, lam, chi).restitution
@@ -168,9 +157,10 @@ def _widest_steps(
     Splines do not run across kinks, so the error in a segment is that of its own steps.
     """
     lam, chi, exact = compared
-    segment = table.grid.segment_of(lam, np.log(chi))
+    inelasticity, overload = table.grid.axes
+    segment = overload.segment_of(np.log(chi), inelasticity.place(lam))
     step, widest = table.settings.log_overload_step, RANGES["log_overload_step"][1]
-    steps = np.full(len(table.grid.segments), step)
+    steps = np.full(len(overload.segments), step)
     passing = np.ones(steps.size, dtype=bool)
     for wider in (1.0, *_WIDER):
         one = min(step * wider, widest)
@@ -193,14 +183,13 @@ def _looked_up(table: Table, lam: Array, chi: Array) -> Outcome:
 
 def _resampled(table: Table, rows: int, steps: float | Array) -> Table:
     """Table on other nodes; one step along ln chi for all segments, or one for each."""
-    grid = grids.coarser(table.grid, rows, steps)
-    chi = np.exp(grid.log_overload())
-    found = _looked_up(table, np.repeat(grid.inelasticity, grid.columns), chi.ravel())
-    fields = {name: getattr(found, name).reshape(chi.shape) for name in STORED}
-    widest = float(np.max(steps))
     settings = dataclasses.replace(
-        table.settings, inelasticity_nodes=rows, log_overload_step=widest
+        table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps))
     )
+    grid = grids.coarser(table.grid, settings, steps)
+    lam, log_chi = (values.ravel() for values in grid.nodes())
+    found = _looked_up(table, lam, np.exp(log_chi))
+    fields = {name: getattr(found, name).reshape(grid.shape) for name in STORED}
     return Table(table.law, settings, grid, fields)
 
 
@@ -231,20 +220,23 @@ def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_p
 def _states(table: Table, progress: Progress) -> NDArray[np.float32]:
     """Shapes at the nodes; their error is far above that of single precision."""
     law, rtol, grid = table.law, table.settings.rtol, shape_grid(table)
-    chi = np.exp(grid.log_overload())
-    w_m = grids.elastic_compressions(law, grid.inelasticity, rtol)
+    rows, chi = grid.rows, np.exp(grid.nodes()[1])
+    w_m = grids.elastic_compressions(law, rows, rtol)
     out = np.empty((*chi.shape, 2, shapes.SIZE), dtype=np.float32)
 
     def solve(part: slice) -> None:
-        status, row, column = shapes.solve(
-            law.data, grid.inelasticity[part], w_m[part], chi[part], rtol, out[part]
-        )
-        if status != zener.OK:
-            raise RuntimeError(
-                f"table for law {law.name!r}: the shape at lambda = "
-                f"{grid.inelasticity[part][row]:.6g}, chi = {chi[part][row, column]:.6g} did not "
-                f"solve: {zener.MESSAGES[status]}"
-            )
+        time, speed = np.empty((2, shapes.SIZE + 1))
+        for row in range(len(chi))[part]:
+            for column, one in enumerate(chi[row]):
+                status = zener.shape(
+                    law.data, rows[row], w_m[row] / one, rtol, shapes.SHARES, time, speed
+                )
+                if status != zener.OK:
+                    raise RuntimeError(
+                        f"table for law {law.name!r}: the shape at lambda = {rows[row]:.6g}, chi = "
+                        f"{one:.6g} did not solve: {zener.MESSAGES[status]}"
+                    )
+                out[row, column] = time[:-1], speed[:-1]
 
     sweep.in_parts(solve, len(chi), len(chi), progress)
     return out

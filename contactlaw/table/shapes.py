@@ -26,12 +26,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation import force, zener
+from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.force import Curve
 from contactlaw.equation.integrator import NO_CURVE
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.table import lookup, splines
-from contactlaw.table.grid import Grid
+from contactlaw.table.axes import Grid
 
 Array = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -56,23 +56,6 @@ class Shapes(NamedTuple):
 
     header: Array  # see `contactlaw.table.lookup`
     coefficients: Singles  # (rows, columns, 2 SIZE): times [T_H], then speeds [V0]
-
-
-@kernel(cache=True)
-def solve(
-    law: Array, lam: Array, w_m: Array, chi: Array, rtol: float, out: Singles
-) -> tuple[int, int, int]:
-    """Shapes at overloads chi (rows, columns) into out; status, row and column of a failure."""
-    time, speed = np.empty(SIZE + 1), np.empty(SIZE + 1)
-    for row in range(lam.size):
-        for column in range(chi.shape[1]):
-            y = w_m[row] / chi[row, column]
-            status = zener.shape(law, lam[row], y, rtol, SHARES, time, speed)
-            if status != zener.OK:
-                return status, row, column
-            for k in range(SIZE):
-                out[row, column, 0, k], out[row, column, 1, k] = time[k], speed[k]
-    return zener.OK, 0, 0
 
 
 @kernel
@@ -101,24 +84,37 @@ def _force(law: Array, curve: Curve, loading: bool, d: float, y: float) -> float
     return force.unloading_force(law, curve, q) * (y * math.sqrt(y))
 
 
-@kernel(cache=True)
-def sample(law: Array, shapes: Shapes, outcome: Outcome, out: History) -> None:
+def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
     """Contacts at even times from touch to separation, for outcomes inside the table."""
+    along_cap = np.zeros(out.time.shape[0], dtype=np.bool_)
+    _sample(law, shapes, found, along_cap, out)
+    if along_cap.any():
+        part = outcome.history(int(along_cap.sum()), out.time.shape[1])
+        zener.histories(law, outcome.part(found, along_cap), _RTOL, part)
+        for values, integrated in zip(out, part, strict=True):
+            values[along_cap] = integrated
+
+
+@kernel(cache=True)
+def _sample(
+    law: Array, shapes: Shapes, found: Outcome, along_cap: NDArray[np.bool_], out: History
+) -> None:
+    """`sample`, but for contacts that come back along the cap, which are named instead."""
     samples, leaves = out.time.shape[1], force.leaves_hertz(law)
     inner = np.empty(2 * SIZE)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
-        e, end = outcome.restitution[n], outcome.contact_time[n]
+        e, end = found.restitution[n], found.contact_time[n]
         w_m, lam, y = (
-            outcome.elastic_compression[n],
-            outcome.inelasticity[n],
-            outcome.yield_ratio[n],
+            found.elastic_compression[n],
+            found.inelasticity[n],
+            found.yield_ratio[n],
         )
         _states(shapes, lam, math.log(w_m / y) if y < math.inf else 0.0, inner)
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
         for k in range(SIZE):  # a slice on the left takes the compiler a second
             t[k + 1], u[k + 1] = inner[k], inner[SIZE + k]
-        top = outcome.compression_ratio[n] * w_m
+        top = found.compression_ratio[n] * w_m
         curve = NO_CURVE
         residual = 0.0
         if top <= y * leaves:
@@ -127,7 +123,7 @@ def sample(law: Array, shapes: Shapes, outcome: Outcome, out: History) -> None:
             curve = force.unloading(law, top / y)
             residual = curve.residual * y
         if curve.cap_low < curve.cap_high:
-            zener.history_of(law, outcome, n, _RTOL, out)
+            along_cap[n] = True
             continue
         for k in range(STATES):
             d[k + 1] = top * SHARES[k] ** 2
@@ -156,22 +152,3 @@ def sample(law: Array, shapes: Shapes, outcome: Outcome, out: History) -> None:
                 i += 1
         out.time[n, samples - 1], out.force[n, samples - 1] = end, 0.0
         out.compression[n, samples - 1], out.impulse[n, samples - 1] = residual, 1.0 + e
-
-
-@kernel(cache=True)
-def deviations(
-    law: Array, shapes: Shapes, outcome: Outcome, rtol: float, samples: int, out: Array
-) -> None:
-    """Largest difference from the solver's force, over its peak, of each contact into out (n,)."""
-    room = np.empty((4, out.size, samples))
-    ours = History(room[0], room[1], room[2], room[3])
-    sample(law, shapes, outcome, ours)
-    exact, w, u = np.empty(samples), np.empty(samples), np.empty(samples)
-    for n in range(out.size):
-        lam, y = outcome.inelasticity[n], outcome.yield_ratio[n]
-        zener.history(law, lam, y, rtol, ours.time[n], exact, w, u)
-        worst = peak = 0.0
-        for i in range(samples):
-            worst = max(worst, abs(ours.force[n, i] - exact[i]))
-            peak = max(peak, exact[i])
-        out[n] = worst / peak

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.table import lookup
-from contactlaw.table.grid import Grid, power_series
+from contactlaw.table.axes import Grid, power_series
 from contactlaw.table.lookup import BLOCK, DEGREE, HEADER
 
 Array = NDArray[np.float64]
@@ -38,31 +38,32 @@ def spline_coefficients(values: Array) -> Array:
 
 
 def surface(values: Array, grid: Grid) -> Array:
-    """Coefficients of bicubic splines along axes 0 and 1; along 1, one for each segment.
+    """Coefficients of cubic splines along each axis of the grid, one spline for each segment.
 
     One more of each at the end: a kernel reads it with the weight 0, and needs no test.
     """
-    across = spline_coefficients(values).swapaxes(0, 1)
-    sizes = [segment.shares.size for segment in grid.segments]
-    parts = np.split(across, np.cumsum(sizes)[:-1])
-    both = np.concatenate([spline_coefficients(part) for part in parts]).swapaxes(0, 1)
-    return np.pad(both, ((0, 1), (0, 1), *[(0, 0)] * (both.ndim - 2)), mode="edge")
+    for k, axis in enumerate(grid.axes):
+        parts = np.split(values.swapaxes(0, k), np.cumsum(axis.sizes)[:-1])
+        values = np.concatenate([spline_coefficients(part) for part in parts]).swapaxes(0, k)
+    beyond = [(0, int(k < len(grid.axes))) for k in range(values.ndim)]
+    return np.pad(values, beyond, mode="edge")
 
 
 def header(grid: Grid) -> Array:
     """Begin an array with what `lookup.locate` reads."""
-    x_max = grid.largest_inelasticity / (grid.largest_inelasticity + grid.stretch)
-    sizes = np.array([segment.shares.size for segment in grid.segments])
+    inelasticity, overload = grid.axes
+    x_max = float(inelasticity.mapped(inelasticity.largest))
+    sizes = np.array(overload.sizes)
     head = np.zeros(HEADER)
-    head[[lookup.STRETCH, lookup.X_MAX]] = grid.stretch, x_max
-    head[lookup.LOG_CHI_MAX] = grid.segments[-1].end[0]
-    head[lookup.NODES_PER_X] = (grid.inelasticity.size - 1) / x_max
+    head[[lookup.STRETCH, lookup.X_MAX]] = inelasticity.stretch, x_max
+    head[lookup.LOG_CHI_MAX] = overload.largest
+    head[lookup.NODES_PER_X] = (inelasticity.sizes[0] - 1) / x_max
     head[lookup.COLUMNS], head[lookup.SEGMENTS] = (sizes + 2).sum() + 1, sizes.size
     blocks = np.zeros((sizes.size, BLOCK))
     series = [power_series(np.log(grid.elastic_compression), DEGREE)]
     lines_at = HEADER + DEGREE + 1 + blocks.size
     for block, segment, first in zip(
-        blocks, grid.segments, np.cumsum(sizes + 2) - (sizes + 2), strict=True
+        blocks, overload.segments, np.cumsum(sizes + 2) - (sizes + 2), strict=True
     ):
         cells = segment.shares.size - 1
         length = segment.end[0] - segment.start[0]
@@ -82,11 +83,11 @@ def _growth(ratio: Array, grid: Grid) -> Array:
     Just above yield, where residual compression and plastic share begin with d_m - d_Y, an error of
     p is one of that difference; an error of the ratio itself would be any multiple of it.
     """
-    log_chi = grid.log_overload()
+    log_chi = grid.nodes()[1]
     with np.errstate(invalid="ignore", divide="ignore"):
         growth = 1.0 + np.log(ratio) / log_chi
     at_yield = log_chi[0] == 0.0
-    if grid.segments[0].start[0] == 0.0:
+    if log_chi[0, 0] == 0.0:
         growth[:, at_yield] = 1.0  # Hertz's limit
         return growth
     for column in np.flatnonzero(at_yield):

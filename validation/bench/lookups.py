@@ -60,12 +60,12 @@ def peers(
     """Time per point of scipy's and interpn's interpolation on the same nodes."""
     table = file.packaged(laws.law("myc"))
     assert table is not None
-    nodes = table.grid.log_overload()[0]  # both kinks of myc are lines of constant chi
-    at_kink = table.grid.segments[0].shares.size
+    nodes = table.grid.nodes()[1][0]  # both kinks of myc are lines of constant chi
+    at_kink = table.grid.axes[1].sizes[0]
     nodes = np.delete(nodes, at_kink)
     values = np.delete(table.fields["restitution"], at_kink, axis=1)
     c = table.settings.stretch
-    x_nodes = table.grid.inelasticity / (table.grid.inelasticity + c)
+    x_nodes = table.grid.axes[0].mapped(table.grid.rows)
     some = slice(0, N, 10)
     hit = model.lookup(v[some], r[some], h[some])
     x = np.asarray(hit.inelasticity / (hit.inelasticity + c))

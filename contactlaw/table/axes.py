@@ -1,0 +1,144 @@
+"""The axes of a table: each coordinate of an impact with its map, its kinks and its nodes.
+
+An axis is cut at the kinks of the law into segments, so that no spline runs across one; a kink is a
+node twice, once as the end of a segment and once as the beginning of the next. Within a segment the
+nodes are spaced evenly, or by the squares of even steps, in the axis' map x of its values.
+
+What is known along the first axis alone is given at the nodes of a Chebyshev series there: the
+largest elastic compression, and kinks of later axes, which may be curves over the first.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+SERIES = 48  # nodes of the series along the first axis
+FEWEST = 5  # nodes of a segment; splines with not-a-knot ends need as many
+
+
+class Segment(NamedTuple):
+    """Nodes of an axis between two kinks."""
+
+    start: Array  # values at the nodes of the series; all equal for a kink that is a straight line
+    end: Array
+    shares: Array  # of the way in x from start to end, rising from 0 to 1, one for each node
+    graded: bool  # shares are squares of even steps, else even steps
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """One coordinate of a table."""
+
+    name: str
+    segments: tuple[Segment, ...]  # from kink to kink
+    stretch: float = math.inf  # c of the map x = v/(v + c) of values v; inf: x is v
+
+    @property
+    def sizes(self) -> list[int]:
+        """Number of nodes of each segment."""
+        return [segment.shares.size for segment in self.segments]
+
+    @property
+    def largest(self) -> float:
+        """Last value, which is the same wherever an impact lies along the first axis."""
+        return float(self.segments[-1].end[0])
+
+    def check(self) -> None:
+        """Raise a ValueError if segments do not meet, or nodes do not rise."""
+        pairs = itertools.pairwise(self.segments)
+        if not self.segments or not all(np.array_equal(a.end, b.start) for a, b in pairs):
+            raise ValueError(f"its segments along {self.name} do not meet")
+        for start, end, shares, _ in self.segments:
+            rises = shares.size >= FEWEST and (np.diff(shares) > 0.0).all() and (start < end).all()
+            if not (rises and shares[0] == 0.0 and shares[-1] == 1.0):
+                raise ValueError(f"its axes along {self.name} do not rise")
+
+    def mapped(self, values: Array | float) -> Array:
+        """Coordinate x of values."""
+        return np.asarray(values if math.isinf(self.stretch) else values / (values + self.stretch))
+
+    def place(self, values: Array) -> Array:
+        """Places of values from 0 to 1 in x, for an axis that begins at 0."""
+        return self.mapped(values) / self.mapped(self.largest)
+
+    def nodes(self, along: Array) -> Array:
+        """Values at all nodes: a row for each place along the first axis."""
+        parts = []
+        for segment in self.segments:
+            start, end = (_from_series(line, along)[:, None] for line in segment[:2])
+            low, high = self.mapped(start), self.mapped(end)
+            x = low + (high - low) * segment.shares
+            values = x if math.isinf(self.stretch) else self.stretch * x / (1.0 - x)
+            parts.append(np.clip(values, start, end))  # not one rounding error beyond
+        return np.concatenate(parts, axis=1)
+
+    def segment_of(self, values: Array, along: Array) -> NDArray[np.intp]:
+        """Find the segments that values lie in, by number."""
+        starts = [_from_series(segment.start, along) for segment in self.segments[1:]]
+        return np.asarray(np.sum([values > start for start in starts], axis=0, dtype=np.intp))
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Nodes of a table."""
+
+    axes: tuple[Axis, ...]  # the inelasticity lambda, then ln chi
+    elastic_compression: Array  # w_m at `series_values` of the first axis [V0 T_H]
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Number of nodes along each axis."""
+        return tuple(sum(axis.sizes) for axis in self.axes)
+
+    @property
+    def rows(self) -> Array:
+        """Values of the first axis at its nodes."""
+        return np.asarray(self.axes[0].nodes(np.zeros(1))[0])
+
+    def nodes(self) -> tuple[Array, ...]:
+        """Values along each axis at every node, each of the grid's shape."""
+        rows, others = self.rows, range(1, len(self.axes))
+        along = self.axes[0].place(rows)
+        lines = [rows[:, None], *(axis.nodes(along) for axis in self.axes[1:])]
+        spread = [
+            np.expand_dims(line, [other for other in others if other != max(k, 1)])
+            for k, line in enumerate(lines)
+        ]
+        return np.broadcast_arrays(*spread)
+
+
+def series_values(first: Axis) -> Array:
+    """Values of the first axis at the nodes of the series along it."""
+    whole = first.segments[0]._replace(shares=_chebyshev_nodes())
+    return np.asarray(dataclasses.replace(first, segments=(whole,)).nodes(np.zeros(1))[0])
+
+
+def power_series(values: Array, degree: int) -> Array:
+    """Fit a polynomial in t = 2 x/x_max - 1 to values at the nodes of the series."""
+    basis = np.polynomial.chebyshev.chebvander(2.0 * _chebyshev_nodes() - 1.0, degree)
+    # the nodes make the basis orthogonal, so no system is to be solved
+    coefficients = (basis * values[:, None]).sum(axis=0) * (2.0 / SERIES)
+    coefficients[0] /= 2.0
+    return np.asarray(np.polynomial.chebyshev.cheb2poly(coefficients))
+
+
+def _chebyshev_nodes() -> Array:
+    """Places of the series' nodes along the first axis, from 0 to 1."""
+    nodes: Array = 0.5 - 0.5 * np.cos(np.pi * (np.arange(SERIES) + 0.5) / SERIES)
+    return nodes
+
+
+def _from_series(values: Array, along: Array) -> Array:
+    """Values at places along the first axis, from those at the nodes of the series."""
+    if np.ptp(values) == 0.0:
+        return np.full_like(along, values[0])
+    return np.asarray(np.polynomial.polynomial.polyval(2.0 * along - 1.0, power_series(values, 20)))
