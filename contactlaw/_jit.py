@@ -25,6 +25,7 @@ import numba
 import numba.core.config
 from numba.core.caching import IndexDataCacheFile
 from numba.core.ccallback import CFunc
+from numba.core.registry import CPUDispatcher
 from numba.extending import intrinsic
 
 from contactlaw import _folder
@@ -39,15 +40,17 @@ _UNUSED = 30 * 86400.0  # [s] after which the code of another version is thrown 
 @overload
 def kernel(function: _F) -> _F: ...
 @overload
-def kernel(*, cache: bool = False, inline: bool = False) -> Callable[[_F], _F]: ...
 def kernel(
-    function: _F | None = None, *, cache: bool = False, inline: bool = False
+    *, cache: bool = False, inline: bool = False, entry: bool = False
+) -> Callable[[_F], _F]: ...
+def kernel(
+    function: _F | None = None, *, cache: bool = False, inline: bool = False, entry: bool = False
 ) -> _F | Callable[[_F], _F]:
     """Compile a function on its first call; to a type checker it stays what it was.
 
     `cache` keeps the machine code on disk, for kernels that Python calls: it contains that of the
-    kernels which they call. `inline` copies the function into its callers, where LLVM finds it too
-    large to do so.
+    kernels which they call. `entry` is for those that Python calls and that no disk can keep.
+    `inline` copies the machine code into its callers, where LLVM finds it too large to do so.
     """
 
     def compiled(python_function: _F) -> _F:
@@ -55,12 +58,13 @@ def kernel(
         # the default raises, and a raise in nogil code is costly. Of fastmath only "contract",
         # which fuses a product with a sum: under all of it isnan(nan) is False.
         _tell_apart(python_function)
-        dispatcher: Any = numba.njit(
-            error_model="numpy",
-            nogil=True,
-            fastmath={"contract"},
-            inline="always" if inline else "never",
-        )(python_function)
+        options: dict[str, Any] = {
+            "error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "forceinline": inline,
+        }  # fmt: skip
+        if not (cache or entry or switched_off()):
+            options |= {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+            return _Inner(python_function, targetoptions=options)  # type: ignore[return-value]
+        dispatcher: Any = numba.njit(**options)(python_function)
         if cache:
             _cached.append(dispatcher)
             if enable_caching.cache_info().currsize:  # the module came after the first answer
@@ -68,6 +72,16 @@ def kernel(
         return dispatcher  # type: ignore[no-any-return]
 
     return compiled if function is None else compiled(function)
+
+
+class _Inner(CPUDispatcher):
+    """A kernel that kernels call; Python, if it ever does, runs it as it was written.
+
+    The way in from Python takes as long to compile as a small kernel itself.
+    """
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.py_func(*arguments)
 
 
 def _tell_apart(function: Callable[..., Any]) -> None:

@@ -32,7 +32,7 @@ def jitted(table: NDArray[np.float64], c_lam: float, c_chi: float) -> Cor:
     """COR as a jitted function of speed, radius and thickness, with the table as a constant."""
     on_plate = lookup.restitution_on_plate
 
-    @kernel
+    @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float) -> float:
         if not _OFF and uncached() == 0:  # type: ignore[call-arg]  # never so, but the call has to be there
             return math.nan

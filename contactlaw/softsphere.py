@@ -124,7 +124,7 @@ def resized(unit: Spring, radius: float) -> Spring:
     )
 
 
-@kernel
+@kernel(entry=True)
 def impact(spring: Spring, speed: float) -> Numbers:
     """Dimensionless numbers of the impact with which a contact begins."""
     return numbers(

@@ -67,7 +67,7 @@ def inelasticity_of(plate: PlateConstants, root: float, ratio: float, more: floa
     return with_waves(plate.waves, thin, h / ratio, bulk, plastic)
 
 
-@kernel
+@kernel(entry=True)
 def numbers(
     plate: PlateConstants,
     mass: float,

@@ -232,7 +232,7 @@ def _y_at(ratio: float) -> float:
     return float((math.sqrt(1.25) / ratio) ** 0.8)
 
 
-@kernel
+@kernel(entry=True)
 def flags_of(
     limits: Limits,
     radius: float,
