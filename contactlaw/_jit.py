@@ -23,6 +23,7 @@ from typing import IO, Any, TypeVar, overload
 
 import numba
 import numba.core.config
+import numpy as np
 from numba.core.caching import IndexDataCacheFile
 from numba.core.ccallback import CFunc
 from numba.core.registry import CPUDispatcher
@@ -82,6 +83,14 @@ class _Inner(CPUDispatcher):
 
     def __call__(self, *arguments: Any) -> Any:
         return self.py_func(*arguments)
+
+
+def codes(count: int) -> tuple[int, ...]:
+    """Integers from 0 up, for a global name each, which numba takes for numbers.
+
+    It takes a plain one for a type of its own, and compiles whatever it is passed to anew.
+    """
+    return tuple(np.arange(count))
 
 
 def _tell_apart(function: Callable[..., Any]) -> None:

@@ -42,7 +42,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._jit import enable_caching, kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.force import Curve
-from contactlaw.equation.integrator import NO_CURVE
+from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
 from contactlaw.equation.waves import CONTACT_TIME
 from contactlaw.evaluation import OutsideTableError, too_thin

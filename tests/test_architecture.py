@@ -34,7 +34,8 @@ LAYERS = [
 ]
 # Within a folder without units, the same: the order of its files.
 FILES = {
-    "equation": ["force", "outcome", "waves", "numbers", "integrator", "zener"],
+    "equation": ["force", "outcome", "waves", "numbers", "plate", "legs", "losses", "motion",
+                 "integrator", "zener"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "guarded", "file", "cache"],
     "command": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",
@@ -191,9 +192,8 @@ EDITS = [
     ("table/lookup.py", "* (1.0 / 36.0)", "* (0.5 / 36.0)", (0, 1)),
     ("equation/force.py", "return piece_force(law, piece_at(law, q), q)",
      "return 2.0 * piece_force(law, piece_at(law, q), q)", (2,)),
-    ("equation/integrator.py", "u - beta * f, -2.0 * q * f, f\n\n    @",
-     "u - beta * f, -3.0 * q * f, f\n\n    @", (3,)),
-    ("equation/zener.py", "2.0 * y4 * end.j", "4.0 * y4 * end.j", ()),
+    ("equation/motion.py", "-2.0 * q * f, f", "-3.0 * q * f, f", (3,)),
+    ("equation/zener.py", "2.0 * scale.t * end", "4.0 * scale.t * end", ()),
     ("physical/rebound.py", "*= mass[n] * v / t", "*= 2.0 * mass[n] * v / t", (4,)),
     ("table/shapes.py", "return d * math.sqrt(d)", "return 2.0 * d * math.sqrt(d)", (5,)),
     ("softsphere.py", "force = f * unit", "force = 2.0 * f * unit", (6,)),

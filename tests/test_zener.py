@@ -1,6 +1,9 @@
 """The solver against closed forms, limits, invariants and an independent integration."""
 
 import math
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -11,7 +14,7 @@ from scipy.integrate import quad, solve_ivp
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.equation import force, integrator, outcome, zener
+from contactlaw.equation import force, integrator, losses, motion, outcome, zener
 from contactlaw.physical.scaling import law_of
 
 HERTZ = force.HERTZ.copy()
@@ -248,8 +251,9 @@ def test_too_thin_is_a_status():
 
 def test_a_level_next_to_a_turn_is_sought_within_the_step():
     """A trajectory that turns 1e-12 above a kink: where an impact of some 3e6 never ended."""
-    before = integrator.State(0.9999943343816174, 0.0, 1.5, 0.0, 0.005034003062177397, 0.0, 1.0)
-    beyond = integrator.State(1.0000000000007638, 0.0, 1.5, 0.0, -6.786642415387621e-10, 0.0, 1.0)
+    none = losses.NO_WORK
+    before = motion.State(0.9999943343816174, 0.0, 1.5, none, 0.005034003062177397, 0.0, 1.0)
+    beyond = motion.State(1.0000000000007638, 0.0, 1.5, none, -6.786642415387621e-10, 0.0, 1.0)
     step = 0.002250933219558533
     guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0, math.inf)
     assert 0.0 < guess < step
@@ -318,13 +322,58 @@ def test_times_of_a_sphere_that_stays_end_with_its_contact():
     lam, y = 0.75, 1e-5
     found = zener.solve(law, lam, y, 1e-10)
     time = np.linspace(0.0, found.contact_time, 301)
-    f, w, u = np.zeros((3, time.size))
-    zener.history(law, lam, y, 1e-10, time, f, w, u)
+    f, w, u = zener.history(law, lam, y, 1e-10, time)
     assert f[-1] < 1e-6 * f.max()
     assert (np.diff(w[time > found.loading_time]) <= 0.0).all()
     assert -u[-1] == pytest.approx(found.restitution, rel=1e-3)
     shares = np.linspace(0.0, 1.0, 33)[1:]
-    when, speed = np.zeros((2, 2 * shares.size))
-    assert zener.shape(law, lam, y, 1e-10, shares, when, speed) == zener.OK
+    status, (when,), _ = zener.shape(law, np.array([lam]), np.array([y]), 1e-10, shares)
+    assert status == zener.OK
     assert (np.diff(when) > 0.0).all()
     assert when[-1] == pytest.approx(found.contact_time, rel=1e-6)
+
+
+PARTS = """
+from contactlaw import laws
+from contactlaw.equation import force, legs, losses, plate, zener
+law = laws.law("myc").data
+def solved(lam, data=law):
+    found = zener.solve(data, lam, 0.4, 1e-8)
+    print(found.restitution, found.contact_time, found.wave_fraction)
+solved(0.6)
+solved(0.3 * 2.0**0.4, force.HERTZ)
+speed, force_on, power = plate.speed, legs.force_on, losses.power
+plate.speed = lambda plate, f: 2.0 * speed(plate, f)
+solved(0.3)
+plate.speed = speed
+legs.force_on = lambda leg, kind, data, q: 2.0 * force_on(leg, kind, data, q)
+solved(0.3, force.HERTZ)
+legs.force_on = force_on
+losses.power = lambda q, f: losses.Work(0.5 * power(q, f).wave)
+solved(0.6)
+"""
+
+
+def test_force_plate_and_losses_are_replaced_one_by_one():
+    """Without the compiler, which binds them: another plate, another force, another channel."""
+    run = subprocess.run(
+        [sys.executable, "-c", PARTS], env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+        check=True, capture_output=True, text=True,
+    )  # fmt: skip
+    thin, stiff, mobile, doubled, halved = np.loadtxt(run.stdout.splitlines())
+    assert mobile[:2] == pytest.approx(thin[:2], rel=1e-7)  # a plate that gives way twice as fast
+    assert doubled[0] == pytest.approx(stiff[0], rel=1e-7)  # lambda goes with K^0.4
+    assert halved[:2] == pytest.approx(thin[:2], rel=1e-12)  # losses follow from the motion
+    assert halved[2] == pytest.approx(0.5 * thin[2], rel=1e-12)
+
+
+@pytest.mark.parametrize("law", ALL_LAWS)
+def test_what_an_impact_loses_is_the_sum_of_its_channels(law):
+    """Of all fields with that ending, in `Solution` and in `Rebound`, and of no others."""
+    named = {f"{channel}_fraction" for channel in losses.Losses._fields}
+    for fields in (zener.Solution._fields, cl.Rebound.__dataclass_fields__):
+        assert {name for name in fields if name.endswith("_fraction")} == named
+    pair = cl.Pair("stainless-steel-304", "glass")
+    hit = cl.ImpactModel(pair, law).solve(np.geomspace(0.1, 20.0, 7), 1e-3, [[0.8e-3], [np.inf]])
+    lost = sum(getattr(hit, name) for name in named)
+    assert lost == pytest.approx(1.0 - hit.restitution**2, abs=1e-9)

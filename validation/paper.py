@@ -78,7 +78,7 @@ def restitution(speed_ratio: float, inelasticity_at_yield: float, law: laws.Law)
     """COR of any law by integration; v and lambda_Y of MYC's yield speed."""
     lam = inelasticity_at_yield * speed_ratio**0.2
     y = yield_unit(law) * 1.25**0.4 * speed_ratio**-0.8
-    return zener.solve(law.data, lam, y, 1e-10).restitution
+    return float(zener.solve(law.data, lam, y, 1e-10).restitution)
 
 
 @functools.cache

@@ -39,17 +39,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import codes, kernel
 
 Array = NDArray[np.float64]
 
 PIECES, UNLOADINGS, STARTS, CURVE, FAMILY_STARTS, FAMILY, CAPPED, HEADER = range(8)
 SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(7)
 FUNCTION_POWER, FUNCTION_DEGREE, FUNCTION_AT, FUNCTION = range(4)
-RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = range(
-    6
-)  # functions of dm, in the order of a row
 FUNCTIONS = 6
+# functions of dm, in the order of a row
+RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = codes(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
 UNLOADING_ROW = OFFSET + 1 + FUNCTIONS * FUNCTION
 
@@ -202,12 +201,6 @@ def is_hertz(law: Array) -> bool:
     at = int(law[row + AT])
     same = law[row + DEGREE] == 3.0 and law[row + SCALE] == 1.0 and law[row + OFFSET] == 0.0
     return bool(same and law[at] == law[at + 1] == law[at + 2] == 0.0 and law[at + 3] == 1.0)
-
-
-@kernel(cache=True)
-def begins_as_hertz(law: Array) -> bool:
-    """`is_hertz`, for Python."""
-    return is_hertz(law)
 
 
 @kernel(inline=True)

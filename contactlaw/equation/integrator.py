@@ -1,47 +1,29 @@
 """Integration along one contact: a step, and landing on what ends a stretch of the way.
 
-Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(m d_Y/F_Y).
-
-    d   compression                          u      speed of the sphere towards the plate
-    f   contact force                        lam    inelasticity parameter lambda, Eq. 2
-    dm  largest compression                  y      yield compression, d_Y/(V0 T_H)
-    q   root compression, sqrt(d - dr)       beta   plate mobility in the law's scale, lam y^(1/4)
-    dr  residual compression, Eq. 17         j      integral of f^2 dt; the wave took 2 beta j/u0^2
-
-The equation is Eq. 1 of Peng et al. 2021 in its first-order form,
-
-    du/dt = -f,    dd/dt = u - beta f,    d(0) = 0,  u(0) = u0 = y^(-5/4).
-
-A force that starts like d^1.5 has no second derivative at d = 0, where a Runge-Kutta method would
-lose its order. So q replaces d (dr = 0 while loading) and ds = dt/(2 q) replaces dt. Nothing is
-approximated, and for Hertz, f = q^3, the equation becomes polynomial:
-
-    dq/ds = u - beta f,    du/ds = -2 q f,    dt/ds = 2 q,    dj/ds = 2 q f^2
-
-The way of a contact is cut into legs, on each of which the force is one smooth function of q: up
-the loading curve from kink to kink, then down the unloading curve. A capped law's goes down in up
-to three parts: its unloading curve, the loading curve from kink to kink, its unloading curve.
-
 A sphere that has flattened far on a plate that gives way easily need not come back. Where the force
 falls more slowly than the compression that is left, with an exponent below 2, the contact becomes
 ever stiffer beside the plate, what is left goes into the plate, and the sphere never leaves. Once
 all that is left could throw it off with no more than `SPENT` of the speed that it came with, the
 sphere is turned back, the plate held, and it is. A restitution below that is rounded up to it.
 To know what is left, steps err less the less it is.
+
+Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q root compression,
+u speed, t time, s the variable of integration, y yield compression.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import kernel
-from contactlaw.equation import force
+from contactlaw._jit import codes, kernel
+from contactlaw.equation import force, legs, losses, motion, plate
 from contactlaw.equation.force import Curve
+from contactlaw.equation.legs import CUBIC, NO_CURVE, PIECES, POWER, Leg
+from contactlaw.equation.motion import Contact, State
 
 Array = NDArray[np.float64]
 
@@ -52,37 +34,7 @@ _LANDED = (
 SPENT = 1e-9  # restitution that is not told from less
 LATE = 1e-2  # restitution out of reach, at which, and at each of its powers, steps get finer
 # events: end of loading; a root compression is reached; a time is; the energy left is spent
-NONE, TURN, LEVEL, TIME, _OVER = 0, 1, 2, 3, 4
-_CUBIC, _PIECES, _POWER = 0, 1, 2  # how a leg's force is given
-_UP, _ABOVE, _ALONG, _BELOW = 0, 1, 2, 3  # loading; parts of unloading
-
-
-class State(NamedTuple):
-    """A point of the trajectory, with the rates there."""
-
-    q: float
-    u: float
-    t: float
-    j: float
-    dq: float  # dq/ds
-    du: float  # du/ds
-    f: float
-
-
-class Leg(NamedTuple):
-    """A stretch of the way on which the force is one smooth function of q."""
-
-    part: int
-    level: float  # root compression at which it ends
-    residual: float  # d = residual + q^2
-    kind: int
-    first: int  # pieces of the loading curve
-    last: int
-    c0: float  # of a cubic
-    c1: float
-    c2: float
-    c3: float
-    exponent: float  # of a power, with the stiffness c3
+NONE, TURN, LEVEL, TIME, _OVER = codes(5)
 
 
 class Scale(NamedTuple):
@@ -94,101 +46,6 @@ class Scale(NamedTuple):
     per_q: float  # 1/(q tolerance)
     per_u: float  # 1/(u tolerance)
     over: float  # square of the speed that may be left to leave with: below, event _OVER
-
-
-Force = Callable[[Array, Leg, float], float]
-
-
-@kernel
-def _along_loading(law: Array, part: int, first: int, last: int, level: float) -> Leg:
-    """Leg on pieces of the loading curve."""
-    row = force.row_of(law, first)
-    degree, at = int(law[row + force.DEGREE]), int(law[row + force.AT])
-    if (
-        last == first
-        and degree <= 3
-        and law[row + force.SCALE] == 1.0
-        and law[row + force.OFFSET] == 0.0
-    ):
-        c1 = law[at + 1] if degree > 0 else 0.0
-        c2 = law[at + 2] if degree > 1 else 0.0
-        c3 = law[at + 3] if degree > 2 else 0.0
-        return Leg(part, level, 0.0, _CUBIC, first, last, law[at], c1, c2, c3, 3.0)
-    return Leg(part, level, 0.0, _PIECES, first, last, 0.0, 0.0, 0.0, 0.0, 3.0)
-
-
-@kernel
-def _on_unloading_curve(part: int, curve: Curve, level: float) -> Leg:
-    """Leg on the unloading curve."""
-    kind = _CUBIC if curve.exponent == 3.0 else _POWER
-    return Leg(
-        part, level, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent
-    )
-
-
-@kernel
-def _up(law: Array, first: int) -> Leg:
-    """Leg of loading from a kink, the first of whose pieces is given, to the next."""
-    following = int(law[force.row_of(law, first) + force.NEXT])
-    level = force.start_of(law, following)
-    return _along_loading(law, _UP, first, following - 1, level)
-
-
-@kernel
-def _down(law: Array, curve: Curve, below: float) -> Leg:
-    """Leg of unloading along the loading curve, from below a root compression to a kink or cap."""
-    k = 0
-    while force.start_of(law, k + 1) < below:
-        k += 1
-    first = int(law[force.row_of(law, k) + force.FIRST])
-    low = 0.0 if curve.stiffness == 0.0 else math.sqrt(curve.cap_low)
-    level = max(low, force.start_of(law, first))
-    return _along_loading(law, _ALONG, first, k, level)
-
-
-@kernel
-def _first_down(law: Array, curve: Curve, dm: float) -> Leg:
-    """Leg on which unloading from dm begins."""
-    if curve.stiffness > 0.0 and curve.cap_low >= curve.cap_high:
-        return _on_unloading_curve(_BELOW, curve, 0.0)
-    if curve.stiffness > 0.0 and curve.cap_high < dm:
-        level = math.sqrt(curve.cap_high - curve.residual)
-        return _on_unloading_curve(_ABOVE, curve, level)
-    return _down(law, curve, math.sqrt(dm))
-
-
-@kernel
-def _next_leg(law: Array, curve: Curve, leg: Leg) -> Leg:
-    """Leg that follows on one that has ended at its level; the last one ends at level 0."""
-    if leg.part == _UP:
-        return _up(law, leg.last + 1)
-    if leg.part == _ABOVE:
-        return _down(law, curve, math.sqrt(curve.cap_high))
-    if curve.stiffness > 0.0 and leg.level <= math.sqrt(curve.cap_low):
-        return _on_unloading_curve(_BELOW, curve, 0.0)
-    return _down(law, curve, leg.level)
-
-
-@kernel
-def _cubic(law: Array, leg: Leg, q: float) -> float:
-    """Force on a leg that is a cubic: Hertz's law, the linear branch of MYC, most unloading."""
-    return (leg.c0 + leg.c1 * q) + (q * q) * (leg.c2 + leg.c3 * q)
-
-
-@kernel
-def _power(law: Array, leg: Leg, q: float) -> float:
-    """Force on an unloading curve of another exponent."""
-    return force.power_force(leg.c3, leg.exponent, q)
-
-
-@kernel
-def _pieces(law: Array, leg: Leg, q: float) -> float:
-    """Force on any stretch of a loading curve."""
-    k = leg.first
-    # a step on trial may pass the end of the leg on its way up: the law goes on there
-    while q >= force.start_of(law, k + 1) and (k < leg.last or leg.part == _UP):
-        k += 1
-    return force.piece_force(law, k, q)
 
 
 @kernel
@@ -227,151 +84,119 @@ def _guess(event: int, state: State, trial: State, h: float, level: float, until
     return h * (x if 0.0 < x < 1.0 else secant)  # next to a turn it may leave the step
 
 
-def _following(force_at: Force) -> Callable[..., tuple[State, int, float, int]]:
-    """Make `follow` for one kind of leg.
+@kernel(inline=True)
+def _step(
+    contact: Contact, leg: Leg, kind: int, state: State, h: float, scale: Scale
+) -> tuple[State, float]:
+    """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19.
 
-    The compiler makes a loop of its own of each: a choice within the step would cost half as much
-    again as the step does.
+    Its last rates are the first ones of the next step. The error is in units of the tolerance.
     """
+    q, u = state.q, state.u
+    a1, b1, f1 = state.dq, state.du, state.f
+    q2, u2 = q + h * (1 / 5 * a1), u + h * (1 / 5 * b1)
+    a2, b2, _ = motion.rates(contact, leg, kind, q2, u2)
+    q3 = q + h * (3 / 40 * a1 + 9 / 40 * a2)
+    u3 = u + h * (3 / 40 * b1 + 9 / 40 * b2)
+    a3, b3, f3 = motion.rates(contact, leg, kind, q3, u3)
+    q4 = q + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3)
+    u4 = u + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3)
+    a4, b4, f4 = motion.rates(contact, leg, kind, q4, u4)
+    q5 = q + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
+    u5 = u + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4)
+    a5, b5, f5 = motion.rates(contact, leg, kind, q5, u5)
+    q6 = q + h * (
+        9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
+    )
+    u6 = u + h * (
+        9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5
+    )
+    a6, b6, f6 = motion.rates(contact, leg, kind, q6, u6)
+    w1, w3, w4, w5, w6 = (
+        h * 35 / 384,
+        h * 500 / 1113,
+        h * 125 / 192,
+        h * -2187 / 6784,
+        h * 11 / 84,
+    )
+    q7 = q + (w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6)
+    u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
+    a7, b7, f7 = motion.rates(contact, leg, kind, q7, u7)
+    t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
+    work = losses.gathered(
+        state.work,
+        w1, losses.power(q, f1), w3, losses.power(q3, f3), w4, losses.power(q4, f4),
+        w5, losses.power(q5, f5), w6, losses.power(q6, f6),
+    )  # fmt: skip
+    error_q = (
+        71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6
+    ) - 1 / 40 * a7
+    error_u = (
+        71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6
+    ) - 1 / 40 * b7
+    error = h * max(abs(error_q) * scale.per_q, abs(error_u) * scale.per_u)
+    return State(q7, u7, t, work, a7, b7, f7), error
 
-    @kernel
-    def rates(law: Array, beta: float, leg: Leg, q: float, u: float) -> tuple[float, float, float]:
-        """dq/ds, du/ds and the force."""
-        f = force_at(law, leg, q)
-        return u - beta * f, -2.0 * q * f, f
 
-    @kernel(inline=True)
-    def step(
-        law: Array, beta: float, leg: Leg, state: State, h: float, scale: Scale
-    ) -> tuple[State, float]:
-        """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19.
+@kernel(inline=True)
+def _follow(
+    contact: Contact, leg: Leg, kind: int, state: State, h: float, scale: Scale, level: float,
+    until: float,
+) -> tuple[State, int, float, int]:  # fmt: skip
+    """See `follow`; the compiler makes a loop of its own of each kind of leg.
 
-        Its last rates are the first ones of the next step. The error is in units of the tolerance.
-        """
-        q, u = state.q, state.u
-        a1, b1, f1 = state.dq, state.du, state.f
-        q2, u2 = q + h * (1 / 5 * a1), u + h * (1 / 5 * b1)
-        a2, b2, f2 = rates(law, beta, leg, q2, u2)
-        q3 = q + h * (3 / 40 * a1 + 9 / 40 * a2)
-        u3 = u + h * (3 / 40 * b1 + 9 / 40 * b2)
-        a3, b3, f3 = rates(law, beta, leg, q3, u3)
-        q4 = q + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3)
-        u4 = u + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3)
-        a4, b4, f4 = rates(law, beta, leg, q4, u4)
-        q5 = q + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
-        u5 = u + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4)
-        a5, b5, f5 = rates(law, beta, leg, q5, u5)
-        q6 = q + h * (
-            9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
-        )
-        u6 = u + h * (
-            9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5
-        )
-        a6, b6, f6 = rates(law, beta, leg, q6, u6)
-        w1, w3, w4, w5, w6 = (
-            h * 35 / 384,
-            h * 500 / 1113,
-            h * 125 / 192,
-            h * -2187 / 6784,
-            h * 11 / 84,
-        )
-        q7 = q + (w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6)
-        u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
-        a7, b7, f7 = rates(law, beta, leg, q7, u7)
-        t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
-        # dj/ds = 2 q f^2 is -f du/ds
-        j = state.j - (w1 * f1 * b1 + w3 * f3 * b3 + w4 * f4 * b4 + w5 * f5 * b5 + w6 * f6 * b6)
-        error_q = (
-            71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6
-        ) - 1 / 40 * a7
-        error_u = (
-            71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6
-        ) - 1 / 40 * b7
-        error = h * max(abs(error_q) * scale.per_q, abs(error_u) * scale.per_u)
-        return State(q7, u7, t, j, a7, b7, f7), error
-
-    @kernel
-    def follow(
-        law: Array,
-        beta: float,
-        leg: Leg,
-        state: State,
-        h: float,
-        scale: Scale,
-        level: float,
-        until: float,
-    ) -> tuple[State, int, float, int]:
-        """See `follow` of the module."""
-        event, following = NONE, h
-        a = b = gap_a = gap_b = 0.0  # steps on either side of the event, and how far off they end
-        for steps in range(1, MAX_STEPS):
-            trial, error = step(law, beta, leg, state, h, scale)
-            if event == NONE:
-                if error > 1.0:
-                    h *= max(
-                        0.2, 0.9 / math.sqrt(math.sqrt(error))
-                    )  # a power is slower than a step
-                    continue
-                if leg.part == _UP and trial.dq < 0.0:
-                    event = TURN
-                elif (trial.q > level) if leg.part == _UP else (trial.q < level):
-                    event = LEVEL
-                elif trial.t > until:
-                    event = TIME
-                elif (
-                    leg.part == _BELOW
-                    and beta > 0.0
-                    and trial.u * trial.u < scale.over
-                    and _left(leg, trial) < scale.over
-                ):
-                    event = _OVER
-                else:
-                    state = trial
-                    h *= min(5.0, 0.9 / math.sqrt(math.sqrt(max(error, 1e-30))))
-                    continue
-                following = h
+    A choice within the step would cost half as much again as the step does.
+    """
+    loading = legs.is_loading(leg)
+    event, following = NONE, h
+    a = b = gap_a = gap_b = 0.0  # steps on either side of the event, and how far off they end
+    for steps in range(1, MAX_STEPS):
+        trial, error = _step(contact, leg, kind, state, h, scale)
+        if event == NONE:
+            if error > 1.0:
+                h *= max(0.2, 0.9 / math.sqrt(math.sqrt(error)))  # a power is slower than a step
+                continue
+            if loading and trial.dq < 0.0:
+                event = TURN
+            elif (trial.q > level) if loading else (trial.q < level):
+                event = LEVEL
+            elif trial.t > until:
+                event = TIME
+            elif (
+                legs.unloads(leg)
+                and plate.moves(contact.plate)
+                and trial.u * trial.u < scale.over
+                and _left(leg, trial) < scale.over
+            ):
+                event = _OVER
             else:
-                gap = _gap(event, leg, trial, level, until, scale)
-                if abs(gap) > _LANDED:
-                    if gap * gap_b < 0.0:
-                        a, gap_a = b, gap_b
-                    else:
-                        gap_a *= 0.5
-                    b, gap_b = h, gap
-                    h = b - gap_b * (b - a) / (gap_b - gap_a)
-                    continue
-                if event == TURN and trial.q > level:
-                    event = (
-                        LEVEL  # the step went over the kink before it turned: land there instead
-                    )
-                elif event != TIME and trial.t > until:
-                    event = TIME
+                state = trial
+                h *= min(5.0, 0.9 / math.sqrt(math.sqrt(max(error, 1e-30))))
+                continue
+            following = h
+        else:
+            gap = _gap(event, leg, trial, level, until, scale)
+            if abs(gap) > _LANDED:
+                if gap * gap_b < 0.0:
+                    a, gap_a = b, gap_b
                 else:
-                    return trial, event, following, steps
-            a, gap_a = 0.0, _gap(event, leg, state, level, until, scale)
-            b, gap_b = h, _gap(event, leg, trial, level, until, scale)
-            if event == _OVER:
-                h *= gap_a / (gap_a - gap_b)
+                    gap_a *= 0.5
+                b, gap_b = h, gap
+                h = b - gap_b * (b - a) / (gap_b - gap_a)
+                continue
+            if event == TURN and trial.q > level:
+                event = LEVEL  # the step went over the kink before it turned: land there instead
+            elif event != TIME and trial.t > until:
+                event = TIME
             else:
-                h = _guess(event, state, trial, h, level, until)
-        return state, event, h, MAX_STEPS
-
-    return follow
-
-
-_follow_cubic, _follow_power, _follow_pieces = map(_following, (_cubic, _power, _pieces))
-
-
-@kernel
-def _start(law: Array, beta: float, leg: Leg, q: float, u: float, t: float, j: float) -> State:
-    """State on a leg, with the rates there."""
-    if leg.kind == _CUBIC:
-        f = _cubic(law, leg, q)
-    elif leg.kind == _POWER:
-        f = _power(law, leg, q)
-    else:
-        f = _pieces(law, leg, q)
-    return State(q, u, t, j, u - beta * f, -2.0 * q * f, f)
+                return trial, event, following, steps
+        a, gap_a = 0.0, _gap(event, leg, state, level, until, scale)
+        b, gap_b = h, _gap(event, leg, trial, level, until, scale)
+        if event == _OVER:
+            h *= gap_a / (gap_a - gap_b)
+        else:
+            h = _guess(event, state, trial, h, level, until)
+    return state, event, h, MAX_STEPS
 
 
 @kernel
@@ -383,14 +208,7 @@ def _finer(scale: Scale, spent: float) -> Scale:
 
 @kernel
 def follow(
-    law: Array,
-    beta: float,
-    leg: Leg,
-    state: State,
-    h: float,
-    scale: Scale,
-    level: float,
-    until: float,
+    contact: Contact, leg: Leg, state: State, h: float, scale: Scale, level: float, until: float
 ) -> tuple[State, int, float, int]:
     """Integrate a leg to a level, or loading to its end, or to the time `until` if that is before.
 
@@ -400,83 +218,59 @@ def follow(
     spent = (SPENT * scale.u) ** 2
     steps = 0
     while True:
-        if leg.part == _BELOW:
+        if legs.unloads(leg):
             left = (1.0 - 1e-6) * _left(leg, state)  # an event is met to 1e-9
             while left < scale.over and scale.over > spent:
                 scale = _finer(scale, spent)
             if left < spent:
-                beta = 0.0
-                state = _start(law, beta, leg, state.q, -abs(state.u), state.t, state.j)
-        if leg.kind == _CUBIC:
-            state, event, h, more = _follow_cubic(law, beta, leg, state, h, scale, level, until)
-        elif leg.kind == _POWER:
-            state, event, h, more = _follow_power(law, beta, leg, state, h, scale, level, until)
+                contact = Contact(contact.law, plate.HELD)
+                state = motion.start(contact, leg, state.q, -abs(state.u), state.t, state.work)
+        if leg.kind == CUBIC:
+            state, event, h, more = _follow(contact, leg, CUBIC, state, h, scale, level, until)
+        elif leg.kind == POWER:
+            state, event, h, more = _follow(contact, leg, POWER, state, h, scale, level, until)
         else:
-            state, event, h, more = _follow_pieces(law, beta, leg, state, h, scale, level, until)
+            state, event, h, more = _follow(contact, leg, PIECES, state, h, scale, level, until)
         steps += more
         if event != _OVER:
             return state, event, h, steps
 
 
 @kernel
-def touch(law: Array, beta: float, scale: Scale) -> tuple[Leg, State]:
-    """First touch, and the leg that begins there."""
-    leg = _up(law, 0)
-    return leg, _start(law, beta, leg, 0.0, scale.u, 0.0, 0.0)
-
-
-@kernel
-def onto(law: Array, beta: float, leg: Leg, residual: float, state: State) -> State:
+def _onto(contact: Contact, leg: Leg, residual: float, state: State) -> State:
     """Express a state in the root compression of a leg; that of its own had this residual."""
     q = state.q
     if leg.residual != residual:
         q = math.sqrt(max(q * q + (residual - leg.residual), 0.0))
-    return _start(law, beta, leg, q, state.u, state.t, state.j)
+    return motion.start(contact, leg, q, state.u, state.t, state.work)
 
 
 @kernel
 def after(
-    law: Array, beta: float, curve: Curve, leg: Leg, event: int, state: State
+    contact: Contact, curve: Curve, leg: Leg, event: int, state: State
 ) -> tuple[Curve, Leg, State]:
     """Leg, and state on it, that follow on one that has ended: by its level, or where it turned."""
     residual = leg.residual
-    if leg.part == _UP and (event == TURN or state.dq <= 0.0):
+    if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
         dm = state.q * state.q
-        curve = force.unloading(law, dm)
-        leg = _first_down(law, curve, dm)
+        curve = force.unloading(contact.law, dm)
+        leg = legs.first_down(contact.law, curve, dm)
     else:
-        leg = _next_leg(law, curve, leg)
-    return curve, leg, onto(law, beta, leg, residual, state)
+        leg = legs.following(contact.law, curve, leg)
+    return curve, leg, _onto(contact, leg, residual, state)
 
 
 @kernel
-def is_loading(leg: Leg) -> bool:
-    """Whether a leg is part of the loading curve on the way up."""
-    return leg.part == _UP
-
-
-@kernel
-def has_parted(leg: Leg, event: int) -> bool:
-    """Whether a leg that ended with this event was the last."""
-    return leg.part != _UP and leg.level == 0.0 and event == LEVEL
-
-
-@kernel
-def load(law: Array, beta: float, scale: Scale, h: float) -> tuple[Leg, State, float, int]:
+def load(contact: Contact, scale: Scale, h: float) -> tuple[Leg, State, float, int]:
     """From first touch to the largest compression, landing on each kink."""
-    leg, state = touch(law, beta, scale)
+    leg, state = motion.touch(contact, scale.u)
     total = 0
     while True:
-        state, event, h, steps = follow(law, beta, leg, state, h, scale, leg.level, math.inf)
+        state, event, h, steps = follow(contact, leg, state, h, scale, leg.level, math.inf)
         total += steps
         if event != LEVEL or state.dq <= 0.0:
             return leg, state, h, total
-        leg = _next_leg(law, NO_CURVE, leg)
-        state = onto(law, beta, leg, 0.0, state)
-
-
-NO_CURVE = Curve(0.0, 0.0, 3.0, 0.0, 0.0)
-"""Before there is an unloading curve."""
+        _, leg, state = after(contact, NO_CURVE, leg, event, state)
 
 
 @kernel

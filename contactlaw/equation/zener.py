@@ -1,24 +1,31 @@
-"""The modified Zener model, solved: what becomes of one impact of a sphere on a plate.
+"""The modified Zener model, solved: what becomes of impacts of a sphere on a plate.
 
 Results are on Hertz's scale: speeds in V0, time in T_H, compressions in V0 T_H, forces in m V0/T_H.
 
-Legend, as in `contactlaw.equation.integrator`: lam inelasticity parameter lambda, y yield
-compression, w compression, w_m that of an elastic impact; a law is its data.
+Every integration goes through `_integrate`, which is told how far to go and what to note on the
+way: the integrator takes seconds to compile, and every kernel that Python calls is compiled with
+all that it calls.
+
+Legend, as in `contactlaw.equation.motion`: lam inelasticity parameter lambda, y yield compression,
+w compression, w_m that of an elastic impact; a law is its data.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation import force, integrator
-from contactlaw.equation.force import HERTZ
-from contactlaw.equation.integrator import LEVEL, MAX_STEPS, NO_CURVE, TIME
+from contactlaw.equation import force, integrator, legs, losses, motion
+from contactlaw.equation.force import HERTZ, Curve
+from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME, Scale
+from contactlaw.equation.legs import NO_CURVE, Leg
+from contactlaw.equation.motion import Contact, State
 from contactlaw.equation.outcome import Extremes, History, Outcome
+from contactlaw.equation.plate import Plate
 
 Array = NDArray[np.float64]
 
@@ -28,273 +35,310 @@ MESSAGES = {
     TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; the plate is far thinner than the model allows",
     BAD_INPUT: "lambda must be finite and >= 0, the yield compression finite and > 0",
 }
+# How far `_integrate` goes, and what it notes on the way.
+_TO_THE_TOP, _TO_THE_END, _AT_TIMES, _AT_SHARES = range(4)
 
 
 class Solution(NamedTuple):
-    """One impact in Hertz's scale; energies as shares of the initial kinetic energy."""
+    """Impacts in Hertz's scale, numbers or arrays; energies as shares of the initial one."""
 
-    status: int
-    steps: int
-    restitution: float
-    loading_time: float  # until the largest compression
-    contact_time: float
-    peak_force: float
-    peak_compression: float
-    residual_compression: float
-    plastic_fraction: float
-    other_fraction: float
-    wave_fraction: float
-    wave_rate: float  # wave_fraction / lam, which has a limit at lam = 0
+    status: Any
+    steps: Any
+    restitution: Any
+    loading_time: Any  # until the largest compression
+    contact_time: Any
+    peak_force: Any
+    peak_compression: Any
+    residual_compression: Any
+    plastic_fraction: Any
+    wave_fraction: Any
+    other_fraction: Any
+    wave_rate: Any  # wave_fraction / lam, which has a limit at lam = 0
 
 
-@kernel(cache=True)
-def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
-    """One impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol the error allowed per step."""
-    if not (0.0 <= lam < math.inf and 0.0 < y < math.inf):
-        return Solution(BAD_INPUT, 0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+class Notes(NamedTuple):
+    """Points on the ways of contacts, a row for each."""
+
+    at: Any  # rising times [T_H], or rising shares of the largest q, of which the last is 1
+    time: Any
+    speed: Any  # of the sphere
+    force: Any
+    compression: Any
+
+
+_NO_NOTES = Notes(*np.empty((5, 0, 0)))
+
+
+@kernel
+def _impact(contact: Contact, y: float, rtol: float, goal: int) -> Solution:
+    """One impact, to its largest compression or its end."""
     scale, h = integrator.scale_of(y, rtol)
-    y4 = math.sqrt(math.sqrt(y))
-    beta = lam * y4
-    leg, top, h, total = integrator.load(law, beta, scale, h)
-    longest = total
-    dm = top.q * top.q
-    curve, leg, end = integrator.after(law, beta, NO_CURVE, leg, integrator.TURN, top)
-    while True:
-        end, event, h, steps = integrator.follow(law, beta, leg, end, h, scale, leg.level, math.inf)
-        total, longest = total + steps, max(longest, steps)
-        if event != LEVEL or integrator.has_parted(leg, event):
-            break
-        curve, leg, end = integrator.after(law, beta, curve, leg, event, end)
-    wave_rate = 2.0 * y4 * end.j / scale.u**2
-    other = force.other_loss(law, dm)
+    leg, top, h, total = integrator.load(contact, scale, h)
+    longest, dm, end = total, top.q * top.q, top
+    curve = force.unloading(contact.law, dm)
+    if goal != _TO_THE_TOP:
+        curve, leg, end = integrator.after(contact, curve, leg, integrator.TURN, top)
+        event = LEVEL
+        while True:
+            end, event, h, steps = integrator.follow(
+                contact, leg, end, h, scale, leg.level, math.inf
+            )
+            total, longest = total + steps, max(longest, steps)
+            if event != LEVEL or legs.is_last(leg):
+                break
+            curve, leg, end = integrator.after(contact, curve, leg, event, end)
+    lost = losses.shares(contact.law, dm, end.work, contact.plate.mobility, scale.u)
     return Solution(
-        OK if longest < MAX_STEPS else TOO_MANY_STEPS,
-        total,
+        float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
+        float(total),
         min(max(-end.u / scale.u, 0.0), 1.0),  # the error of a step may lift it beyond
-        top.t / y4,
-        end.t / y4,
+        top.t / scale.t,
+        end.t / scale.t,
         top.f * y * math.sqrt(y),
         dm * y,
         curve.residual * y,
-        2.0 * (force.loss(law, dm) - other) / scale.u**2,
-        2.0 * other / scale.u**2,
-        lam * wave_rate,
-        wave_rate,
+        lost.plastic,
+        lost.wave,
+        lost.other,
+        2.0 * scale.t * end.work.wave / scale.u**2,
     )
 
 
-@kernel(cache=True)
-def history(
-    law: Array, lam: float, y: float, rtol: float, time: Array, f: Array, w: Array, u: Array
-) -> None:
-    """Force, compression and speed of the sphere at rising times [T_H] since first touch.
-
-    For lam and y that `solve` has solved. After the end of contact the state at its end holds.
-    """
+@kernel
+def _history(contact: Contact, y: float, rtol: float, n: int, notes: Notes) -> None:
+    """Note a contact at times; after its end the state there holds."""
     scale, h = integrator.scale_of(y, rtol)
-    beta, parted = lam * scale.t, False
+    parted = False
     curve = NO_CURVE
-    leg, state = integrator.touch(law, beta, scale)
-    for n in range(time.size):
-        until = time[n] * scale.t
+    leg, state = motion.touch(contact, scale.u)
+    for k in range(notes.at.shape[1]):
+        until = notes.at[n, k] * scale.t
         while state.t < until and not parted:
-            state, event, h, _ = integrator.follow(
-                law, beta, leg, state, h, scale, leg.level, until
-            )
+            state, event, h, _ = integrator.follow(contact, leg, state, h, scale, leg.level, until)
             if event == TIME:
                 break
-            parted = event == integrator.NONE or integrator.has_parted(leg, event)
+            parted = event == integrator.NONE or (event == LEVEL and legs.is_last(leg))
             if not parted:
-                curve, leg, state = integrator.after(law, beta, curve, leg, event, state)
-        f[n] = state.f * y * math.sqrt(y)
-        w[n] = (leg.residual + state.q * state.q) * y
-        u[n] = state.u / scale.u
-
-
-@kernel(cache=True)
-def history_of(law: Array, outcome: Outcome, n: int, rtol: float, out: History) -> None:
-    """Contact n at even times from touch to separation."""
-    last = out.time.shape[1] - 1
-    for i in range(last + 1):
-        out.time[n, i] = i * outcome.contact_time[n] / last
-    # an elastic law has y = inf; any scale does for it
-    y = outcome.yield_ratio[n] if outcome.yield_ratio[n] < math.inf else 1.0
-    speed = out.impulse[n]
-    history(
-        law, outcome.inelasticity[n], y, rtol, out.time[n], out.force[n], out.compression[n], speed
-    )
-    for i in range(last + 1):
-        out.impulse[n, i] = 1.0 - speed[i]
-    out.force[n, last] = 0.0
-
-
-@kernel(cache=True)
-def histories(law: Array, outcome: Outcome, rtol: float, out: History) -> None:
-    """Contacts at even times from touch to separation."""
-    for n in range(out.time.shape[0]):
-        history_of(law, outcome, n, rtol, out)
+                curve, leg, state = integrator.after(contact, curve, leg, event, state)
+        notes.force[n, k] = state.f * y * math.sqrt(y)
+        notes.compression[n, k] = (leg.residual + state.q * state.q) * y
+        notes.speed[n, k] = state.u / scale.u
 
 
 @kernel
 def _seek(
-    law: Array, beta: float, curve: force.Curve, leg: integrator.Leg, state: integrator.State,
-    h: float, scale: integrator.Scale, target: float, rising: bool,
-) -> tuple[force.Curve, integrator.Leg, integrator.State, float, int]:  # fmt: skip
+    contact: Contact, curve: Curve, leg: Leg, state: State, h: float, scale: Scale, target: float,
+    rising: bool,
+) -> tuple[Curve, Leg, State, float, int]:  # fmt: skip
     """Go on to a compression that is passed, up or down."""
     total = 0
     while total < MAX_STEPS:
         end = leg.level
         level = math.sqrt(max(target - leg.residual, 0.0))
         level = min(level, end) if rising else max(level, end)
-        state, event, h, steps = integrator.follow(law, beta, leg, state, h, scale, level, math.inf)
+        state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, math.inf)
         total += steps
         if level != end or end == 0.0:
             break
-        curve, leg, state = integrator.after(law, beta, curve, leg, event, state)
-        if rising != integrator.is_loading(leg):
+        curve, leg, state = integrator.after(contact, curve, leg, event, state)
+        if rising != legs.is_loading(leg):
             break
     return curve, leg, state, h, total
 
 
-@kernel(cache=True)
-def shape(
-    law: Array, lam: float, y: float, rtol: float, shares: Array, time: Array, speed: Array
-) -> int:
-    """Find when, and how fast, q passes given shares of its largest value.
-
-    Times [T_H] and speeds [V0], 2 n of each: up the rising shares, of which the last is 1, and down
-    to 0, separation.
-    """
-    if not (0.0 <= lam < math.inf and 0.0 < y < math.inf):
-        return BAD_INPUT
+@kernel
+def _shape(contact: Contact, y: float, rtol: float, n: int, notes: Notes) -> int:
+    """Note when, and how fast, q passes shares of its largest value, up and then down to 0."""
     scale, h = integrator.scale_of(y, rtol)
-    beta = lam * scale.t
-    top_leg, top, _, total = integrator.load(law, beta, scale, h)
+    top_leg, top, _, total = integrator.load(contact, scale, h)
     curve = NO_CURVE
-    leg, state = integrator.touch(law, beta, scale)
-    last = shares.size - 1
-    for n in range(last):
-        target = (shares[n] * top.q) ** 2
-        curve, leg, state, h, steps = _seek(law, beta, curve, leg, state, h, scale, target, True)
-        total += steps
-        time[n], speed[n] = state.t / scale.t, state.u / scale.u
-    time[last], speed[last] = top.t / scale.t, top.u / scale.u
-    dm = top.q * top.q
-    curve, leg, state = integrator.after(law, beta, NO_CURVE, top_leg, integrator.TURN, top)
-    left = curve.residual
-    for n in range(last, -1, -1):
-        share = shares[n - 1] if n > 0 else 0.0
-        target = left + share * share * (dm - left)
-        curve, leg, state, h, steps = _seek(law, beta, curve, leg, state, h, scale, target, False)
-        total += steps
-        k = 2 * last + 1 - n
-        time[k], speed[k] = state.t / scale.t, state.u / scale.u
+    leg, state = motion.touch(contact, scale.u)
+    last, dm, left = notes.at.shape[1] - 1, top.q * top.q, 0.0
+    for k in range(2 * last + 2):
+        if k == last:
+            leg, state = top_leg, top
+        elif k == last + 1:
+            curve, leg, state = integrator.after(contact, curve, leg, integrator.TURN, state)
+            left = curve.residual
+        if k != last:
+            beside = min(k, 2 * last - k)
+            share = notes.at[n, beside] if beside >= 0 else 0.0
+            target = left + share * share * (dm - left)
+            curve, leg, state, h, steps = _seek(
+                contact, curve, leg, state, h, scale, target, k < last
+            )
+            total += steps
+        notes.time[n, k], notes.speed[n, k] = state.t / scale.t, state.u / scale.u
     return OK if total < MAX_STEPS else TOO_MANY_STEPS
 
 
 @kernel(cache=True)
-def elastic_compression(law: Array, lam: float, rtol: float) -> tuple[int, float]:
+def _integrate(
+    goal: int, law: Array, lam: Array, y: Array, rtol: float, notes: Notes, out: Array
+) -> None:
+    """Integrate impacts: lam >= 0, y = d_Y/(V0 T_H) > 0, rtol the error allowed per step.
+
+    What becomes of each goes into a column of out, in the order of `Solution`; to those that are
+    followed, only the status.
+    """
+    for n in range(lam.size):
+        if not (0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf):
+            out[0, n] = BAD_INPUT
+            continue
+        contact = Contact(law, Plate(lam[n] * math.sqrt(math.sqrt(y[n]))))
+        if goal == _AT_TIMES:
+            _history(contact, y[n], rtol, n, notes)
+        elif goal == _AT_SHARES:
+            out[0, n] = _shape(contact, y[n], rtol, n, notes)
+        else:
+            one = _impact(contact, y[n], rtol, goal)
+            for k in range(len(one)):
+                out[k, n] = one[k]
+
+
+def _run(
+    goal: int, law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, notes: Notes = _NO_NOTES
+) -> Solution:
+    """Integrate impacts, and say what became of each; a law that never yields has any y."""
+    lams, ys = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in (lam, y))
+    size = max(lams.size, ys.size)
+    out = np.zeros((len(Solution._fields), size))
+    lams, ys = (np.ascontiguousarray(np.broadcast_to(each, size)) for each in (lams, ys))
+    _integrate(goal, law, lams, ys, rtol, notes, out)
+    return Solution(*out)
+
+
+def failure(status: Array) -> tuple[int, int]:
+    """Status, and index, of the first that has not solved; OK and 0 where all have."""
+    n = int(np.argmax(status != OK))
+    return int(status[n]), n
+
+
+def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
+    """One impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol the error allowed per step."""
+    return Solution(*(each.item() for each in _run(_TO_THE_END, law, lam, y, rtol)))
+
+
+def history(
+    law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, time: Array
+) -> tuple[Array, Array, Array]:
+    """Force, compression and speed of the sphere at rising times [T_H] since first touch.
+
+    For lam and y that `solve` has solved, one for each row of times. After the end of contact the
+    state at its end holds.
+    """
+    at = np.ascontiguousarray(np.atleast_2d(time))
+    notes = Notes(at, _NO_NOTES.time, *np.empty((3, *at.shape)))
+    _run(_AT_TIMES, law, lam, y, rtol, notes)
+    f, w, u = (each.reshape(time.shape) for each in (notes.force, notes.compression, notes.speed))
+    return f, w, u
+
+
+def histories(law: Array, outcome: Outcome, rtol: float, out: History) -> None:
+    """Contacts at even times from touch to separation."""
+    out.time[:] = outcome.contact_time[:, None] * np.linspace(0.0, 1.0, out.time.shape[1])
+    lam, y = outcome.inelasticity, _scale(outcome.yield_ratio)
+    out.force[:], out.compression[:], speed = history(law, lam, y, rtol, out.time)
+    out.impulse[:] = 1.0 - speed
+    out.force[:, -1] = 0.0
+
+
+def shape(
+    law: Array, lam: Array, y: Array, rtol: float, shares: Array
+) -> tuple[Array, Array, Array]:
+    """Find when, and how fast, q passes given shares of its largest value.
+
+    Status of each impact, times [T_H] and speeds [V0], 2 n of each: up the rising shares, of which
+    the last is 1, and down to 0, separation.
+    """
+    at = np.ascontiguousarray(np.broadcast_to(shares, (lam.size, shares.size)))
+    time, speed = np.zeros((2, lam.size, 2 * shares.size))
+    notes = _NO_NOTES._replace(at=at, time=time, speed=speed)
+    return _run(_AT_SHARES, law, lam, y, rtol, notes).status, time, speed
+
+
+def elastic_compression(law: Array, lam: Any, rtol: float) -> tuple[Any, Any]:
     """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
 
     Under a law that is Hertz's up to yield that of any elastic impact (Fig. 4 of the paper). Under
     another it depends a little on the speed: it is the y that is its own largest compression.
     """
-    if not 0.0 <= lam < math.inf:
-        return BAD_INPUT, 0.0
-    if force.is_hertz(law):
-        scale, h = integrator.scale_of(1.0, rtol)
-        _, state, _, steps = integrator.load(HERTZ.copy(), lam, scale, h)
-        return (OK if steps < MAX_STEPS else TOO_MANY_STEPS), state.q * state.q
-    y = 1.0
+    hertz, before = force.is_hertz(law), np.ones(np.size(lam))
     for _ in range(100):
-        scale, h = integrator.scale_of(y, rtol)
-        _, state, _, steps = integrator.load(law, lam * scale.t, scale, h)
-        if steps >= MAX_STEPS:
-            return TOO_MANY_STEPS, 0.0
-        grown = state.q * state.q
-        y *= grown
-        if abs(grown - 1.0) < 1e-11:
+        found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol)
+        w_m = found.peak_compression
+        if hertz or found.status.any() or (abs(w_m - before) < 1e-11 * before).all():
             break
-    return OK, y
+        before = w_m
+    return (found.status, w_m) if np.ndim(lam) else (found.status.item(), w_m.item())
 
 
-@kernel
-def _put(one: Solution, w_m: float, out: Outcome, n: int) -> None:
-    """Put an impact into the outcomes."""
-    out.restitution[n] = one.restitution
-    out.contact_time[n] = one.contact_time
-    out.wave_rate[n] = one.wave_rate
-    out.compression_ratio[n] = one.peak_compression / w_m
-    out.elastic_compression[n] = w_m
+def _scale(y: Array) -> Array:
+    """Yield ratios, of which an elastic law has none: any does for its scale."""
+    return np.where(y < math.inf, y, 1.0)
 
 
-@kernel(cache=True)
+def _put(one: Solution, w_m: Array, out: Outcome) -> None:
+    """Put impacts into the outcomes."""
+    out.restitution[:], out.contact_time[:] = one.restitution, one.contact_time
+    out.wave_rate[:], out.elastic_compression[:] = one.wave_rate, w_m
+    out.compression_ratio[:] = one.peak_compression / w_m
+
+
 def solve_all(law: Array, rtol: float, out: Outcome) -> tuple[int, int]:
     """Impacts with the inelasticities and yield ratios of `out`; status, index of a failure."""
-    leaves = force.leaves_hertz(law)
-    for n in range(out.inelasticity.size):
-        lam, y = out.inelasticity[n], out.yield_ratio[n]
-        y = y if y < math.inf else 1.0  # the law's scale: any does for an elastic one
-        one = solve(law, lam, y, rtol)
-        status, w_m = one.status, one.peak_compression
-        if status == OK and w_m > leaves * y:
-            status, w_m = elastic_compression(law, lam, rtol)
-        if status != OK:
-            return status, n
-        _put(one, w_m, out, n)
+    y = _scale(out.yield_ratio)
+    one = _run(_TO_THE_END, law, out.inelasticity, y, rtol)
+    if one.status.any():
+        return failure(one.status)
+    w_m = one.peak_compression.copy()
+    beyond = w_m > force.leaves_hertz(law) * y
+    if beyond.any():
+        status, w_m[beyond] = elastic_compression(law, out.inelasticity[beyond], rtol)
+        if status.any():
+            failed, n = failure(status)
+            return failed, int(np.flatnonzero(beyond)[n])
+    _put(one, w_m, out)
     return OK, 0
 
 
-@kernel(cache=True)
 def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> tuple[int, int]:
-    """`solve_all` at overloads chi = w_m/y; equal neighbours in lambda share their w_m."""
-    status, w_m = OK, 0.0
-    for n in range(out.inelasticity.size):
-        lam = out.inelasticity[n]
-        if n == 0 or lam != out.inelasticity[n - 1]:
-            status, w_m = elastic_compression(law, lam, rtol)
-        if status != OK:
-            return status, n
-        out.yield_ratio[n] = w_m / overload[n]
-        one = solve(law, lam, out.yield_ratio[n], rtol)
-        if one.status != OK:
-            return one.status, n
-        _put(one, w_m, out, n)
-    return OK, 0
+    """`solve_all` at overloads chi = w_m/y; impacts of one lambda share their w_m."""
+    lam, which = np.unique(out.inelasticity, return_inverse=True)
+    status, each = elastic_compression(law, lam, rtol)
+    if status.any():
+        return failure(status[which])
+    w_m = each[which]
+    out.yield_ratio[:] = w_m / overload
+    one = _run(_TO_THE_END, law, out.inelasticity, out.yield_ratio, rtol)
+    _put(one, w_m, out)
+    return failure(one.status)
 
 
-@kernel(cache=True)
-def overload_at(law: Array, lam: float, w_m: float, dm: float, rtol: float) -> float:
+def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float) -> Any:
     """Overload at which the largest compression is dm; NaN if the equation does not solve.
 
-    By regula falsi with Illinois' weights, in logarithms, in which dm nearly follows the overload.
+    By secants, in logarithms, in which dm nearly follows the overload.
     """
-    low, gap_low = math.log(dm), 0.0
-    high, gap_high = low, 0.0
-    found = low
-    for n in range(100):
-        beta_y = w_m / math.exp(found)
-        scale, h = integrator.scale_of(beta_y, rtol)
-        _, top, _, steps = integrator.load(law, lam * scale.t, scale, h)
-        if steps >= MAX_STEPS:
-            return math.nan
-        gap = 2.0 * math.log(top.q) - math.log(dm)
-        if abs(gap) < 1e-11:
+
+    def gap(log_chi: Array) -> Array:
+        y = w_m / np.exp(log_chi)
+        found = _run(_TO_THE_TOP, law, lam, y, rtol)
+        reached = np.log(found.peak_compression.reshape(y.shape) / (y * dm))
+        return np.where(found.status.reshape(y.shape) == OK, reached, math.nan)
+
+    before = np.full(np.shape(lam), math.log(dm))
+    gap_before = gap(before)
+    at = before - gap_before
+    for _ in range(100):
+        gap_at = gap(at)
+        if not (abs(gap_at) > 1e-11).any():
             break
-        if n == 0 or gap_low == 0.0 or gap_high == 0.0:  # not bracketed yet
-            if gap < 0.0:
-                low, gap_low = found, gap
-            else:
-                high, gap_high = found, gap
-            if gap_low == 0.0 or gap_high == 0.0:
-                found -= 1.5 * gap + math.copysign(1e-9, gap)
-                continue
-        elif gap < 0.0:
-            low, gap_low, gap_high = found, gap, 0.5 * gap_high
-        else:
-            high, gap_high, gap_low = found, gap, 0.5 * gap_low
-        found = high - gap_high * (high - low) / (gap_high - gap_low)
-    return math.exp(found)
+        rise = np.where(gap_at == gap_before, 1.0, gap_at - gap_before)
+        step = np.where(abs(gap_at) > 1e-11, gap_at * (at - before) / rise, 0.0)
+        before, gap_before, at = at, gap_at, at - step
+    found = np.where(abs(gap_at) <= 1e-11, np.exp(at), math.nan)
+    return found if found.shape else found.item()
 
 
 @kernel(cache=True)
@@ -307,7 +351,7 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
     leaves = force.leaves_hertz(law)
     beyond = np.empty(_CHUNK, dtype=np.int64)
     room = np.empty((4, _CHUNK))
-    dm, left, lost, other = room[0], room[1], room[2], room[3]
+    dm, left, plastic, other = room[0], room[1], room[2], room[3]
     for start in range(0, out.peak_force.size, _CHUNK):
         count = 0
         for n in range(start, min(start + _CHUNK, out.peak_force.size)):
@@ -319,12 +363,12 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
             dm[count] = w / outcome.yield_ratio[n]
             count += w > outcome.yield_ratio[n] * leaves
         for k in range(count):
-            left[k], lost[k], other[k] = force.residual_and_losses(law, dm[k])
+            left[k], plastic[k], other[k] = losses.at_the_contact(law, dm[k])
         for k in range(count):
             n = beyond[k]
             y = outcome.yield_ratio[n]
             unit = y * math.sqrt(y)  # F_Y
             out.peak_force[n] = force.loading(law, math.sqrt(dm[k])) * unit
             out.residual_compression[n] = left[k] * y
-            out.plastic_fraction[n] = 2.0 * (lost[k] - other[k]) * y * unit
+            out.plastic_fraction[n] = 2.0 * plastic[k] * y * unit
             out.other_fraction[n] = 2.0 * other[k] * y * unit

@@ -163,7 +163,7 @@ class Law:
     @property
     def is_hertz(self) -> bool:
         """Whether a contact is Hertz's until it yields."""
-        return bool(_force.begins_as_hertz(self.data))
+        return bool(_force.is_hertz(self.data))
 
     @property
     def capped(self) -> bool:

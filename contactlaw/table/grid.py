@@ -195,12 +195,7 @@ def _kink_lines(
 
 def _overloads(law: Law, kink: float, lam: Array, elastic: Array) -> Array:
     """Overloads at which the largest compression is that of a kink."""
-    found = np.array(
-        [
-            zener.overload_at(law.data, one, w_m, kink, 1e-12)
-            for one, w_m in zip(lam, elastic, strict=True)
-        ]
-    )
+    found: Array = zener.overload_at(law.data, lam, elastic, kink, 1e-12)
     if not np.isfinite(found).all():
         raise RuntimeError(f"law {law.name!r}: no impact was found that turns at {kink:g} d_Y")
     return found
@@ -208,9 +203,8 @@ def _overloads(law: Law, kink: float, lam: Array, elastic: Array) -> Array:
 
 def elastic_compressions(law: Law, lam: Array, rtol: float) -> Array:
     """Largest compressions w_m of impacts that just yield."""
-    out = np.empty_like(lam)
-    for n, value in enumerate(lam):
-        status, out[n] = zener.elastic_compression(law.data, value, rtol)
-        if status != zener.OK:
-            raise RuntimeError(f"w_m({value:.6g}) did not solve: {zener.MESSAGES[status]}")
-    return out
+    status, w_m = zener.elastic_compression(law.data, lam, rtol)
+    if status.any():
+        status, n = zener.failure(status)
+        raise RuntimeError(f"w_m({lam[n]:.6g}) did not solve: {zener.MESSAGES[status]}")
+    return np.asarray(w_m)

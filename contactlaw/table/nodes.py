@@ -225,18 +225,17 @@ def _states(table: Table, progress: Progress) -> NDArray[np.float32]:
     out = np.empty((*chi.shape, 2, shapes.SIZE), dtype=np.float32)
 
     def solve(part: slice) -> None:
-        time, speed = np.empty((2, shapes.SIZE + 1))
-        for row in range(len(chi))[part]:
-            for column, one in enumerate(chi[row]):
-                status = zener.shape(
-                    law.data, rows[row], w_m[row] / one, rtol, shapes.SHARES, time, speed
-                )
-                if status != zener.OK:
-                    raise RuntimeError(
-                        f"table for law {law.name!r}: the shape at lambda = {rows[row]:.6g}, chi = "
-                        f"{one:.6g} did not solve: {zener.MESSAGES[status]}"
-                    )
-                out[row, column] = time[:-1], speed[:-1]
+        lam = np.repeat(rows[part], chi.shape[1])
+        y = (w_m[part, None] / chi[part]).ravel()
+        status, time, speed = zener.shape(law.data, lam, y, rtol, shapes.SHARES)
+        if status.any():
+            failed, n = zener.failure(status)
+            raise RuntimeError(
+                f"table for law {law.name!r}: the shape at lambda = {lam[n]:.6g}, chi = "
+                f"{chi[part].flat[n]:.6g} did not solve: {zener.MESSAGES[failed]}"
+            )
+        found = np.stack((time, speed), axis=1)[:, :, :-1]
+        out[part] = found.reshape(out[part].shape)
 
     sweep.in_parts(solve, len(chi), len(chi), progress)
     return out

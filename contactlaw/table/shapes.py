@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation import force, outcome, zener
 from contactlaw.equation.force import Curve
-from contactlaw.equation.integrator import NO_CURVE
+from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.table import lookup, splines
 from contactlaw.table.axes import Grid

@@ -1,0 +1,146 @@
+"""The way of a contact, cut into legs on each of which the force is one smooth function of q.
+
+Loading goes up the loading curve from kink to kink, then the contact goes down the unloading curve.
+A capped law's goes down in up to three parts: its unloading curve, the loading curve from kink to
+kink, its unloading curve.
+
+Legend: d compression, dr residual compression, dm largest compression, q root compression,
+sqrt(d - dr).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import codes, kernel
+from contactlaw.equation import force
+from contactlaw.equation.force import Curve
+
+Array = NDArray[np.float64]
+
+CUBIC, PIECES, POWER = codes(3)  # how a leg's force is given
+_UP, _ABOVE, _ALONG, _BELOW = codes(4)  # loading; parts of unloading; the last ends a contact
+NO_CURVE = Curve(0.0, 0.0, 3.0, 0.0, 0.0)
+"""Before there is an unloading curve."""
+
+
+class Leg(NamedTuple):
+    """A stretch of the way on which the force is one smooth function of q."""
+
+    part: int
+    level: float  # root compression at which it ends
+    residual: float  # d = residual + q^2
+    kind: int
+    first: int  # pieces of the loading curve
+    last: int
+    c0: float  # of a cubic
+    c1: float
+    c2: float
+    c3: float
+    exponent: float  # of a power, with the stiffness c3
+
+
+@kernel(inline=True)
+def is_loading(leg: Leg) -> bool:
+    """Whether a leg is part of the loading curve on the way up."""
+    return leg.part == _UP
+
+
+@kernel(inline=True)
+def is_last(leg: Leg) -> bool:
+    """Whether a contact ends with a leg."""
+    return leg.part != _UP and leg.level == 0.0
+
+
+@kernel(inline=True)
+def unloads(leg: Leg) -> bool:
+    """Whether a leg is the part of the unloading curve that a contact ends with."""
+    return leg.part == _BELOW
+
+
+@kernel(inline=True)
+def force_on(leg: Leg, kind: int, law: Array, q: float) -> float:
+    """Force on a leg, of a kind that the compiler is to know."""
+    if kind == CUBIC:  # Hertz's law, the linear branch of MYC, most unloading
+        return (leg.c0 + leg.c1 * q) + (q * q) * (leg.c2 + leg.c3 * q)
+    if kind == POWER:
+        return force.power_force(leg.c3, leg.exponent, q)
+    k = leg.first
+    # a step on trial may pass the end of the leg on its way up: the law goes on there
+    while q >= force.start_of(law, k + 1) and (k < leg.last or leg.part == _UP):
+        k += 1
+    return force.piece_force(law, k, q)
+
+
+@kernel
+def _along_loading(law: Array, part: int, first: int, last: int, level: float) -> Leg:
+    """Leg on pieces of the loading curve."""
+    row = force.row_of(law, first)
+    degree, at = int(law[row + force.DEGREE]), int(law[row + force.AT])
+    if (
+        last == first
+        and degree <= 3
+        and law[row + force.SCALE] == 1.0
+        and law[row + force.OFFSET] == 0.0
+    ):
+        c1 = law[at + 1] if degree > 0 else 0.0
+        c2 = law[at + 2] if degree > 1 else 0.0
+        c3 = law[at + 3] if degree > 2 else 0.0
+        return Leg(part, level, 0.0, CUBIC, first, last, law[at], c1, c2, c3, 3.0)
+    return Leg(part, level, 0.0, PIECES, first, last, 0.0, 0.0, 0.0, 0.0, 3.0)
+
+
+@kernel
+def _on_unloading_curve(part: int, curve: Curve, level: float) -> Leg:
+    """Leg on the unloading curve."""
+    kind = CUBIC if curve.exponent == 3.0 else POWER
+    return Leg(
+        part, level, curve.residual, kind, 0, 0, 0.0, 0.0, 0.0, curve.stiffness, curve.exponent
+    )
+
+
+@kernel
+def up(law: Array, first: int) -> Leg:
+    """Leg of loading from a kink, the first of whose pieces is given, to the next."""
+    following = int(law[force.row_of(law, first) + force.NEXT])
+    level = force.start_of(law, following)
+    return _along_loading(law, _UP, first, following - 1, level)
+
+
+@kernel
+def _down(law: Array, curve: Curve, below: float) -> Leg:
+    """Leg of unloading along the loading curve, from below a root compression to a kink or cap."""
+    k = 0
+    while force.start_of(law, k + 1) < below:
+        k += 1
+    first = int(law[force.row_of(law, k) + force.FIRST])
+    low = 0.0 if curve.stiffness == 0.0 else math.sqrt(curve.cap_low)
+    level = max(low, force.start_of(law, first))
+    return _along_loading(law, _ALONG, first, k, level)
+
+
+@kernel
+def first_down(law: Array, curve: Curve, dm: float) -> Leg:
+    """Leg on which unloading from dm begins."""
+    if curve.stiffness > 0.0 and curve.cap_low >= curve.cap_high:
+        return _on_unloading_curve(_BELOW, curve, 0.0)
+    if curve.stiffness > 0.0 and curve.cap_high < dm:
+        level = math.sqrt(curve.cap_high - curve.residual)
+        return _on_unloading_curve(_ABOVE, curve, level)
+    return _down(law, curve, math.sqrt(dm))
+
+
+@kernel
+def following(law: Array, curve: Curve, leg: Leg) -> Leg:
+    """Leg that follows on one that has ended at its level; the last one ends at level 0."""
+    if leg.part == _UP:
+        return up(law, leg.last + 1)
+    if leg.part == _ABOVE:
+        return _down(law, curve, math.sqrt(curve.cap_high))
+    if curve.stiffness > 0.0 and leg.level <= math.sqrt(curve.cap_low):
+        return _on_unloading_curve(_BELOW, curve, 0.0)
+    return _down(law, curve, leg.level)

@@ -1,0 +1,74 @@
+"""The equation of motion of a contact, made of a force, a plate and losses.
+
+It is Eq. 1 of Peng et al. 2021 in its first-order form,
+
+    du/dt = -f,    dd/dt = u - v(f),    d(0) = 0,  u(0) = u0 = y^(-5/4),
+
+where v is the speed at which the plate gives way (`contactlaw.equation.plate`). A force that starts
+like d^1.5 has no second derivative at d = 0, where a Runge-Kutta method would lose its order. So q
+replaces d (dr = 0 while loading) and ds = dt/(2 q) replaces dt. Nothing is approximated, and for
+Hertz, f = q^3, the equation becomes polynomial:
+
+    dq/ds = u - v(f),    du/ds = -2 q f,    dt/ds = 2 q
+
+Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(m d_Y/F_Y).
+
+    d   compression                          u      speed of the sphere towards the plate
+    f   contact force                        y      yield compression, d_Y/(V0 T_H)
+    q   root compression, sqrt(d - dr)       dr     residual compression, Eq. 17
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.equation import legs, losses, plate
+from contactlaw.equation.legs import Leg
+from contactlaw.equation.losses import Work
+from contactlaw.equation.plate import Plate
+
+Array = NDArray[np.float64]
+
+
+class Contact(NamedTuple):
+    """The bodies of a contact."""
+
+    law: Array  # data of the force law
+    plate: Plate
+
+
+class State(NamedTuple):
+    """A point of the trajectory, with the rates there."""
+
+    q: float
+    u: float
+    t: float
+    work: Work
+    dq: float  # dq/ds
+    du: float  # du/ds
+    f: float
+
+
+@kernel(inline=True)
+def rates(contact: Contact, leg: Leg, kind: int, q: float, u: float) -> tuple[float, float, float]:
+    """dq/ds, du/ds and the force."""
+    f = legs.force_on(leg, kind, contact.law, q)
+    return u - plate.speed(contact.plate, f), -2.0 * q * f, f
+
+
+@kernel
+def start(contact: Contact, leg: Leg, q: float, u: float, t: float, work: Work) -> State:
+    """State on a leg, with the rates there."""
+    dq, du, f = rates(contact, leg, leg.kind, q, u)
+    return State(q, u, t, work, dq, du, f)
+
+
+@kernel
+def touch(contact: Contact, speed: float) -> tuple[Leg, State]:
+    """First touch, and the leg that begins there."""
+    leg = legs.up(contact.law, 0)
+    return leg, start(contact, leg, 0.0, speed, 0.0, losses.NO_WORK)
