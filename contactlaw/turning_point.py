@@ -10,27 +10,30 @@ second half of an elastic impact, of which one function G is all there is to kno
     G(x) = exp(-(J/2) x (1 + 0.304 x + 0.190 x^2))
     W   = (2/5) chi^(5/2) (1 + 0.56 lambda (1 - P/chi)^(5/2))
 
-with v = V0/V_Y0, lambda = lambda_Y v^(1/5), J = `contactlaw.closed_form.WAVE_SLOPE`, and for the
+with v = V0/V_Y0, lambda = lambda_Y v^(1/5), J = `WAVE_SLOPE`, and for the
 `myc` law s = d_m up to yield, sqrt(2 d_m - 1) beyond. Four numbers are fitted (0.0193, 0.304,
 0.190, 0.56), all else is derived: see ``validation/derivations/turning_point.md``.
 """
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.closed_form import (
-    FASTEST,
-    INTEGRATE,
-    LARGEST_AT_YIELD,
-    WAVE_SLOPE,
-    at_turning_point,
-)
 from contactlaw.laws.myc import P
 from contactlaw.physical.arguments import checked, shaped
 
 Array = NDArray[np.float64]
+
+WAVE_SLOPE: float = 0.8 * 1.25**1.6 * math.gamma(1.6) * math.gamma(0.5) / math.gamma(2.1)
+"""-de/dlambda at lambda = 0, 1.7302: the integral of f^2 dt over a lossless Hertzian contact,
+2 w_m^4 (2/5) B(8/5, 1/2) with w_m = (5/4)^(2/5) and u^2 = 1 - (w/w_m)^(5/2)."""
+
+LARGEST_AT_YIELD = 0.5  # lambda_Y to which the closed forms for plates are compared
+FASTEST = 20.0  # V0/V_Y0 to which they are
+INTEGRATE = "(beyond, take contactlaw.ImpactModel)"
 
 _SLOWEST = 1e-100  # V0/V_Y0 at which the COR has become 1, and no quotient is 0/0
 
@@ -73,6 +76,17 @@ def _work(lam: Array, chi: Array) -> Array:
     """Relate the loading work to that of Hertz's curve, which radiates a little more."""
     share: Array = 1.0 + 0.56 * lam * np.maximum(1.0 - P / chi, 0.0) ** 2.5
     return share
+
+
+def at_turning_point(chi: Array) -> tuple[Array, Array]:
+    """Force and span of unloading at the largest compression of impacts with checked overloads chi.
+
+    Beyond P the linear branch takes the loading work 0.4 chi^(5/2) that Hertz's curve would take.
+    """
+    excess = 8.0 / 15.0 * chi**2.5 / math.sqrt(P) - 4.0 / 45.0 * P**2
+    dm = np.where(chi < P, chi, P / 3.0 + np.sqrt(np.maximum(excess, 0.0)))
+    force = np.where(chi < P, dm**1.5, math.sqrt(P) * (1.5 * dm - 0.5 * P))
+    return force, np.where(dm < 1.0, dm, np.sqrt(np.maximum(2.0 * dm - 1.0, 0.0)))
 
 
 def restitution(speed_ratio: ArrayLike, inelasticity_at_yield: ArrayLike) -> float | Array:

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import closed_form, turning_point
+from contactlaw import turning_point
 from contactlaw.softsphere import Contacts, time_step
+from validation import closed_form
 
 R, H = 0.9e-3, 1e-3
 

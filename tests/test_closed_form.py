@@ -9,11 +9,11 @@ from oracle import yield_ratio
 from scipy.integrate import quad
 
 import contactlaw as cl
-from contactlaw import closed_form, laws, turning_point
+from contactlaw import laws, turning_point
 from contactlaw.equation import zener
 from contactlaw.equation.force import HERTZ
 from contactlaw.physical.scaling import scales, sphere_on_plate
-from validation import formulas
+from validation import closed_form, formulas
 
 SPEEDS = np.concatenate([np.linspace(0.03, 2.0, 24), np.linspace(2.2, 20.0, 72)])
 INELASTICITIES = np.linspace(0.0, 0.5, 31)
@@ -24,7 +24,7 @@ EQ_22 = {"speed_ratio": 6.0, "thickness_ratio": 1.0, "eta": 0.1, "c": 0.1}
 # every form with arguments inside its range; a limit is the largest value of its first argument
 COR = {
     closed_form.mueller: ({"inelasticity": 0.3}, 2.0),
-    formulas.raman: ({"inelasticity": 0.3}, 2.0 / closed_form.WAVE_SLOPE),
+    formulas.raman: ({"inelasticity": 0.3}, 2.0 / turning_point.WAVE_SLOPE),
     closed_form.zener: ({"inelasticity": 0.3}, 100.0),
     closed_form.thornton: ({"speed_ratio": 6.0}, 1e6),
     formulas.thornton_asymptote: ({"speed_ratio": 6.0}, 1e6),
@@ -65,14 +65,14 @@ def test_wave_slope_is_the_integral_over_a_lossless_contact():
         w = w_m * (1 - x * x)
         return 4 * w_m * x * w**3 / math.sqrt(1 - (w / w_m) ** 2.5)
 
-    assert quad(rate, 1e-12, 1)[0] == pytest.approx(closed_form.WAVE_SLOPE, rel=1e-9)
-    assert pytest.approx(1.7302, abs=5e-5) == closed_form.WAVE_SLOPE
+    assert quad(rate, 1e-12, 1)[0] == pytest.approx(turning_point.WAVE_SLOPE, rel=1e-9)
+    assert pytest.approx(1.7302, abs=5e-5) == turning_point.WAVE_SLOPE
 
 
 @pytest.mark.parametrize("form", [formulas.raman, closed_form.zener])
 def test_slopes_at_no_inelasticity(form):
     near, far = (1 - form(h) for h in (1e-3, 2e-3))
-    assert (4 * near - far) / 2e-3 == pytest.approx(closed_form.WAVE_SLOPE, rel=1e-4)
+    assert (4 * near - far) / 2e-3 == pytest.approx(turning_point.WAVE_SLOPE, rel=1e-4)
 
 
 def test_mueller_slope_is_another():

@@ -8,8 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from contactlaw import closed_form
-from validation import evidence, figures, report, trust
+from validation import closed_form, evidence, figures, report, trust
 from validation.__main__ import main
 from validation.claims import SECTIONS, claims, of_section
 from validation.paper import PAIR

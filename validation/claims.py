@@ -13,11 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 import contactlaw as cl
-from contactlaw import closed_form, laws
-from contactlaw.closed_form import WAVE_SLOPE, elastic_compression, yield_speed_ratio
+from contactlaw import laws
 from contactlaw.laws.myc import P
 from contactlaw.physical.scaling import plate_mobility, scales
-from validation import evidence, formulas
+from contactlaw.turning_point import WAVE_SLOPE
+from validation import closed_form, evidence, formulas
+from validation.closed_form import elastic_compression, yield_speed_ratio
 from validation.fem import compare, store
 from validation.paper import (
     ETA,

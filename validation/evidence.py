@@ -9,9 +9,9 @@ import numpy as np
 from scipy.optimize import brentq, newton
 
 import contactlaw as cl
-from contactlaw import closed_form, laws
+from contactlaw import laws
 from contactlaw.physical.scaling import Contact, scales, sphere_on_plate
-from validation import formulas
+from validation import closed_form, formulas
 from validation.fem import compare, store
 from validation.paper import (
     ETA,

@@ -1,6 +1,6 @@
 """Formulas of the literature that only the report needs: as printed, fitted, or for a limit.
 
-`contactlaw.closed_form` has what is correct, and says what arguments and errors mean; `eq_N` is an
+`validation.closed_form` has what is correct, and says what arguments and errors mean; `eq_N` is an
 equation of the paper as it is printed.
 """
 
@@ -11,24 +11,23 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contactlaw.closed_form import (
-    INTEGRATE,
+from contactlaw.physical.arguments import checked, shaped
+from contactlaw.turning_point import INTEGRATE, WAVE_SLOPE
+from validation.closed_form import (
     TOO_THIN,
-    WAVE_SLOPE,
     Array,
     approximate_yield_speed_ratio,
     mueller,
     peng,
 )
-from contactlaw.physical.arguments import checked, shaped
 
 
 def raman(inelasticity: ArrayLike) -> float | Array:
     """COR of an elastic impact, Raman's form (1 - k lambda)/(1 + k lambda).
 
     Raman (Phys. Rev. 15 (1920) 277) takes the wave's energy to be k lambda times what the sphere
-    brings and what it takes away. Here k = `contactlaw.closed_form.WAVE_SLOPE`/2 = 0.8651, which
-    makes the slope at lambda = 0 exact. 0.3 % below `contactlaw.closed_form.zener` at lambda = 0.1,
+    brings and what it takes away. Here k = `contactlaw.turning_point.WAVE_SLOPE`/2 = 0.8651, which
+    makes the slope at lambda = 0 exact. 0.3 % below `validation.closed_form.zener` at lambda = 0.1,
     2.0 % at 0.25.
 
     Parameters
@@ -54,7 +53,7 @@ def raman(inelasticity: ArrayLike) -> float | Array:
 
 
 def thornton_asymptote(speed_ratio: ArrayLike) -> float | Array:
-    """COR of `contactlaw.closed_form.thornton` far above yield, 1.185 v^(-1/4).
+    """COR of `validation.closed_form.thornton` far above yield, 1.185 v^(-1/4).
 
     Wu, Li, Thornton (Int. J. Impact Eng. 28 (2003) 929) find v^(-1/2) in place of v^(-1/4) once the
     deformation is finite, which no law here is made for.
@@ -92,7 +91,7 @@ def eq_6(inelasticity: ArrayLike) -> float | Array:
     Returns
     -------
     float or ndarray of float64
-        Up to 3.1 % below `contactlaw.closed_form.elastic_compression`.
+        Up to 3.1 % below `validation.closed_form.elastic_compression`.
 
     Examples
     --------
@@ -115,7 +114,7 @@ def eq_14(inelasticity_at_yield: ArrayLike) -> float | Array:
     Returns
     -------
     float or ndarray of float64
-        Above `contactlaw.closed_form.yield_speed_ratio` by 1.2 % at lambda_Y = 0.243, 4.3 % at 2.3.
+        Above `validation.closed_form.yield_speed_ratio` by 1.2 % at lambda_Y = 0.243, 4.3 % at 2.3.
 
     Examples
     --------
@@ -139,7 +138,7 @@ def eq_21(speed_ratio: ArrayLike) -> float | Array:
     -------
     float or ndarray of float64
         Exact up to v = (d_P/d_Y)^(5/4) = 4.19, where loading leaves Hertz's curve; above
-        `contactlaw.closed_form.half_space` by 2.0 % at v = 7, 4.4 % at 10.
+        `validation.closed_form.half_space` by 2.0 % at v = 7, 4.4 % at 10.
 
     Examples
     --------
@@ -159,7 +158,7 @@ def eq_22(
     Parameters
     ----------
     speed_ratio, thickness_ratio, eta, c : array_like
-        As of `contactlaw.closed_form.peng`, which has the factor that is missing here.
+        As of `validation.closed_form.peng`, which has the factor that is missing here.
 
     Returns
     -------

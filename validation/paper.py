@@ -10,10 +10,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import brentq
 
 import contactlaw as cl
-from contactlaw import closed_form, laws
+from contactlaw import laws
 from contactlaw.equation import zener
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import law_of, sphere_on_plate
+from validation import closed_form
 
 Array = NDArray[np.float64]
 

@@ -21,9 +21,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw import Validity, closed_form
+from contactlaw import Validity
 from contactlaw.laws.fem import ALONE
 from contactlaw.physical.rebound import Rebound
+from validation import closed_form
 from validation.fem import fit, store
 
 Array = NDArray[np.float64]

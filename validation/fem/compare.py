@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw import closed_form, turning_point
-from validation import formulas, paper
+from contactlaw import turning_point
+from validation import closed_form, formulas, paper
 from validation.fem import store
 from validation.fem.cases import elastic_plate
 

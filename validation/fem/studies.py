@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import contactlaw as cl
-from contactlaw.closed_form import eta
+from validation.closed_form import eta
 from validation.fem import calculix, campaign, cases, census, store
 from validation.fem.cases import Case
 from validation.fem.impact import expect, free_width, impact

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from contactlaw.closed_form import mueller, yield_speed_ratio
 from validation import figures
+from validation.closed_form import mueller, yield_speed_ratio
 from validation.figures import _style
 from validation.paper import ETA, FASTEST, THINNEST, impacts
 

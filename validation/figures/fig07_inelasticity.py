@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from contactlaw.closed_form import mueller, zener
 from validation import figures
+from validation.closed_form import mueller, zener
 from validation.figures import _matrix, _style
 from validation.formulas import raman
 from validation.paper import FASTEST, impacts

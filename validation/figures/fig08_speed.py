@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from contactlaw import turning_point
-from contactlaw.closed_form import peng
 from validation import figures
+from validation.closed_form import peng
 from validation.fem import compare
 from validation.figures import _style
 from validation.formulas import eq_22

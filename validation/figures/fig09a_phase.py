@@ -12,8 +12,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from contactlaw.closed_form import yield_speed_ratio
 from validation import figures
+from validation.closed_form import yield_speed_ratio
 from validation.evidence import fitted_border
 from validation.figures import _style
 from validation.formulas import border

@@ -13,9 +13,9 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from contactlaw import closed_form, laws, turning_point
+from contactlaw import laws, turning_point
 from contactlaw.laws.myc import P
-from validation import figures
+from validation import closed_form, figures
 from validation.figures import _style
 from validation.paper import ETA, restitution
 

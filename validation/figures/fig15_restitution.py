@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from contactlaw.closed_form import zener
 from validation import figures
+from validation.closed_form import zener
 from validation.fem import compare
 from validation.fem.studies import SLENDERNESS
 from validation.figures import _style

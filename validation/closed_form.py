@@ -25,24 +25,17 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.equation import zener as _zener
 from contactlaw.equation.force import HERTZ
-from contactlaw.laws.myc import P
+from contactlaw.laws import law
 from contactlaw.physical.arguments import checked, shaped, within
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.scaling import plate_mobility
+from contactlaw.physical.scaling import plate_constants
+from contactlaw.turning_point import FASTEST, INTEGRATE, LARGEST_AT_YIELD, at_turning_point
 
 Array = NDArray[np.float64]
-
-WAVE_SLOPE: float = 0.8 * 1.25**1.6 * math.gamma(1.6) * math.gamma(0.5) / math.gamma(2.1)
-"""-de/dlambda at lambda = 0, 1.7302: the integral of f^2 dt over a lossless Hertzian contact,
-2 w_m^4 (2/5) B(8/5, 1/2) with w_m = (5/4)^(2/5) and u^2 = 1 - (w/w_m)^(5/2)."""
-
-LARGEST_AT_YIELD = 0.5  # lambda_Y to which the closed forms for plates are compared
-FASTEST = 20.0  # V0/V_Y0 to which they are
 
 _RTOL = 1e-11  # of the integrations here
 TOO_THIN = "(the plate is far too thin for the model)"
 _RATIO = "(it is V0 over the yield speed V_Y0)"
-INTEGRATE = "(beyond, take contactlaw.ImpactModel)"
 
 
 def eta(pair: Pair) -> float:
@@ -70,20 +63,16 @@ def eta(pair: Pair) -> float:
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.closed_form import eta
+    >>> from validation.closed_form import eta
     >>> round(eta(cl.Pair("gamma-alumina", "glass")), 4)
     0.0751
     """
     if not isinstance(pair, Pair):
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
-    # lambda = alpha m/T_H with T_H = R (pi rho1/(E* sqrt(V0)))^(2/5), at R = H = 1
-    density = pair.sphere.density
     pair.sphere.require_yield_strength("myc")
     elastic = dataclasses.replace(pair.plate, yield_strength=None)  # V_Y0 is the sphere's
-    root_speed = math.sqrt(Pair(pair.sphere, elastic).yield_speed)
-    time = math.pow(math.pi * density / (pair.effective_modulus * root_speed), 0.4)
-    mobility = float(plate_mobility(pair.plate, np.ones(())))
-    return mobility * 4.0 / 3.0 * math.pi * density / time
+    at_one = plate_constants(pair, law("myc")).inelasticity  # lambda at 1 m/s
+    return at_one * math.pow(Pair(pair.sphere, elastic).yield_speed, 0.2)
 
 
 def mueller(inelasticity: ArrayLike) -> float | Array:
@@ -103,7 +92,7 @@ def mueller(inelasticity: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from contactlaw.closed_form import mueller
+    >>> from validation.closed_form import mueller
     >>> mueller([0.1, 0.25]).round(4)
     array([0.8545, 0.6731])
     """
@@ -129,7 +118,7 @@ def zener(inelasticity: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from contactlaw.closed_form import zener
+    >>> from validation.closed_form import zener
     >>> zener([0.1, 0.25]).round(4)
     array([0.8433, 0.6577])
     """
@@ -154,7 +143,7 @@ def elastic_compression(inelasticity: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from contactlaw.closed_form import elastic_compression
+    >>> from validation.closed_form import elastic_compression
     >>> elastic_compression([0.0, 0.5]).round(4)
     array([1.0934, 0.8257])
     """
@@ -181,7 +170,7 @@ def yield_speed_ratio(inelasticity_at_yield: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from contactlaw.closed_form import yield_speed_ratio
+    >>> from validation.closed_form import yield_speed_ratio
     >>> yield_speed_ratio([0.0, 0.2434]).round(4)
     array([1.    , 1.2156])
     """
@@ -219,7 +208,7 @@ def thornton(speed_ratio: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from contactlaw.closed_form import thornton
+    >>> from validation.closed_form import thornton
     >>> thornton([1.0, 5.0]).round(4)
     array([1.    , 0.7733])
     """
@@ -228,17 +217,6 @@ def thornton(speed_ratio: ArrayLike) -> float | Array:
     share = x / (x + 2.0 * np.sqrt(1.2 - 0.2 * x**2))
     factor = math.sqrt(1.2 * math.sqrt(3.0))
     return shaped(factor * np.sqrt(1.0 - x**2 / 6.0) * share**0.25, shape)
-
-
-def at_turning_point(chi: Array) -> tuple[Array, Array]:
-    """Force and span of unloading at the largest compression of impacts with checked overloads chi.
-
-    Beyond P the linear branch takes the loading work 0.4 chi^(5/2) that Hertz's curve would take.
-    """
-    excess = 8.0 / 15.0 * chi**2.5 / math.sqrt(P) - 4.0 / 45.0 * P**2
-    dm = np.where(chi < P, chi, P / 3.0 + np.sqrt(np.maximum(excess, 0.0)))
-    force = np.where(chi < P, dm**1.5, math.sqrt(P) * (1.5 * dm - 0.5 * P))
-    return force, np.where(dm < 1.0, dm, np.sqrt(np.maximum(2.0 * dm - 1.0, 0.0)))
 
 
 def half_space(speed_ratio: ArrayLike) -> float | Array:
@@ -256,7 +234,7 @@ def half_space(speed_ratio: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from contactlaw.closed_form import half_space
+    >>> from validation.closed_form import half_space
     >>> half_space([2.0, 10.0]).round(4)
     array([0.9513, 0.7042])
     """
@@ -299,7 +277,7 @@ def peng(
 
     Examples
     --------
-    >>> from contactlaw.closed_form import peng
+    >>> from validation.closed_form import peng
     >>> peng(3.0, [0.9, 1.8], eta=0.0751).round(4)
     array([0.8005, 0.5666])
     """
