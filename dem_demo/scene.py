@@ -94,7 +94,9 @@ class Beads:
 
     def mass(self, density: float) -> Floats:
         """Masses of the beads as spheres [kg], from their density [kg/m3]."""
-        return 4.0 / 3.0 * math.pi * density * self.radius**3
+        from contactlaw.physical.materials import sphere_mass
+
+        return sphere_mass(density, self.radius)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

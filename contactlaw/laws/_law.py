@@ -166,6 +166,11 @@ class Law:
         return bool(_force.is_hertz(self.data))
 
     @property
+    def thin_plate(self) -> bool:
+        """Whether the plate is a thin one, which answers a force as a dashpot does."""
+        return self.waves is None
+
+    @property
     def capped(self) -> bool:
         """Whether the way back is in part the loading curve, see `Unloading`."""
         return bool(self.data[_force.CAPPED])

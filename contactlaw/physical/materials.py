@@ -8,7 +8,10 @@ import tomllib
 from dataclasses import dataclass
 from importlib.resources import files
 from numbers import Real
-from typing import Any
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from contactlaw.physical.arguments import refuse_units
 
@@ -30,6 +33,16 @@ _LABELS = {
     "yield_strength": ("yield strength", " Pa"),
     "hardness": ("hardness", " Pa"),
 }
+
+
+T = TypeVar("T", float, NDArray[np.float64])
+
+
+def sphere_mass(density: Any, radius: T) -> T:
+    """Mass of a solid sphere [kg], from its density [kg/m3] and its radius [m]."""
+    # products: numpy's third power takes five times as long
+    mass: T = 4.0 / 3.0 * math.pi * density * (radius * radius * radius)
+    return mass
 
 
 class UnknownMaterialError(ValueError):

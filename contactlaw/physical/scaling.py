@@ -20,7 +20,7 @@ from contactlaw.equation.waves import CONTACT_TIME, SATURATION, THIN
 from contactlaw.equation.waves import waves as next_orders
 from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
-from contactlaw.physical.materials import Material
+from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
@@ -159,21 +159,20 @@ def log_overload(factors: Factors, share: float) -> float:
 def yield_scales(pair: Pair, coefficient: float, radius: float) -> tuple[float, float]:
     """Yield compression d_Y [m] and force F_Y [N] of a sphere on a plate."""
     compression = _yield_share(pair, coefficient, "measured") * radius
-    stiffness = 4.0 / 3.0 * pair.effective_modulus * math.sqrt(radius)
-    return compression, stiffness * compression**1.5
+    return compression, _stiffness(pair, np.array(radius)).item() * compression**1.5
 
 
-def _mass(material: Material, radius: Array) -> Array:
-    # products: numpy's third power takes five times as long
-    mass: Array = 4.0 / 3.0 * math.pi * material.density * (radius * radius * radius)
-    return mass
+def _stiffness(pair: Pair, radius: Array) -> Array:
+    """K of Hertz's law F = K d^1.5 for bodies of this reduced radius [N/m^1.5]."""
+    stiffness: Array = 4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius)
+    return stiffness
 
 
 def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Contact:
     """Contact of a sphere with a large plate: R* = R, m* = m."""
     return Contact(
-        mass=_mass(pair.sphere, radius),
-        stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(radius),
+        mass=sphere_mass(pair.sphere.density, radius),
+        stiffness=_stiffness(pair, radius),
         mobility=plate_mobility(pair.plate, thickness),
         yield_compression=_yield_compression(pair, radius, law),
         ratio=radius / thickness,
@@ -184,10 +183,11 @@ def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Co
 def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -> Contact:
     """Bulk limit of two spheres: R* = R1 R2/(R1 + R2), m* = m1 m2/(m1 + m2); the first yields."""
     reduced = radius * other_radius / (radius + other_radius)
-    mass, other_mass = _mass(pair.sphere, radius), _mass(pair.plate, other_radius)
+    mass = sphere_mass(pair.sphere.density, radius)
+    other_mass = sphere_mass(pair.plate.density, other_radius)
     return Contact(
         mass=mass * other_mass / (mass + other_mass),
-        stiffness=4.0 / 3.0 * pair.effective_modulus * np.sqrt(reduced),
+        stiffness=_stiffness(pair, reduced),
         mobility=np.zeros_like(reduced),
         yield_compression=_yield_compression(pair, reduced, law),
         ratio=np.zeros_like(reduced),
@@ -198,8 +198,8 @@ def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -
 def plate_constants(pair: Pair, law: Law) -> PlateConstants:
     """Constants of a pair's plates, at 1 m/s and R = H; all sizes are alike there."""
     one = np.ones(())
-    mass, time, waves = _mass(pair.sphere, one).item(), _unit_time(pair), THIN
-    if law.waves:
+    mass, time, waves = sphere_mass(pair.sphere.density, one).item(), _unit_time(pair), THIN
+    if law.waves is not None:
         share = pair.effective_modulus / pair.plate.plane_modulus
         b, b_h, b4, b_p = law.waves
         waves = next_orders(pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share)
@@ -239,5 +239,5 @@ def factors(pair: Pair, law: Law) -> Factors:
         plate=plate_constants(pair, law),
         log_overload=-math.log(_yield_compression(pair, one, law).item() / time),
         time=time,
-        mass=_mass(pair.sphere, one).item(),
+        mass=sphere_mass(pair.sphere.density, one).item(),
     )

@@ -176,11 +176,11 @@ def limits(pair: Pair, law: Law) -> Limits:
     rate = (pair.sphere.is_polymer or pair.plate.is_polymer) * Validity.RATE_DEPENDENT
     common = {
         # laws that differ in when they yield are held to one measure
-        "share": yield_share(pair, law) if law.waves else pair.yield_share(),
+        "share": pair.yield_share() if law.thin_plate else yield_share(pair, law),
         "bending": _BENDING * plate,
         "damage": _damage(pair),
     }
-    if law.waves:
+    if not law.thin_plate:
         flowing = [one for one in (sphere, plate) if min(sphere, plate) > ALONE * one]
         known = all(RATIOS[0] <= pair.effective_modulus / one <= RATIOS[1] for one in flowing)
         return Limits(

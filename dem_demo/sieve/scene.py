@@ -78,7 +78,9 @@ class Sieve:
     @property
     def mass(self) -> Floats:
         """Masses of the beads [kg]."""
-        return 4.0 / 3.0 * math.pi * self.sphere_material.density * self.radius**3
+        from contactlaw.physical.materials import sphere_mass
+
+        return sphere_mass(self.sphere_material.density, self.radius)
 
     @property
     def small(self) -> np.ndarray:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from contactlaw.engines.needs import RestitutionModel, knows_rebounds
 from contactlaw.engines.pymunk.models import ByBead, Models
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
+from contactlaw.physical.materials import sphere_mass
 
 
 class Roll:
@@ -109,7 +110,7 @@ def _complete(rows: NDArray[np.void], roll: Roll) -> None:
     """Look impacts up, each with the model of its materials; every model is a `ReboundModel`."""
     beads, plates, material = roll.beads(), roll.plates(), roll.materials
     density = np.array([roll.models.density(n) for n in range(len(roll.models.spheres))])
-    mass = 4.0 / 3.0 * math.pi * density[material] * beads["radius"] ** 3
+    mass = sphere_mass(density[material], beads["radius"])
     on_bead = rows["other"] >= 0
     bead, other = rows["bead"], rows["other"]
     radius = beads["radius"]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from contactlaw.engines.needs import Curve
 from contactlaw.engines.pymunk.models import ByBead
 from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.materials import sphere_mass
 
 if TYPE_CHECKING:
     import pymunk
@@ -234,7 +235,7 @@ def check_mass(mass: float, radius: float, density: float | None, name: str) -> 
     """Warn of a mass that is not the sphere's; the caller is called by `add_bead`."""
     if density is None:
         return
-    sphere = 4.0 / 3.0 * math.pi * radius**3 * density
+    sphere = sphere_mass(density, radius)
     if not sphere / MASS_RATIO <= mass <= sphere * MASS_RATIO:
         warnings.warn(
             f"body.mass: {mass:.4g} kg, but a sphere of {name} of radius {radius:.4g} m has "
