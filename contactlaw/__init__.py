@@ -13,8 +13,10 @@ array([0.666, 0.897, 0.983])
 
 from contactlaw import export
 from contactlaw._version import VERSION as __version__
+from contactlaw.answers.beads import restitution_sphere_sphere
+from contactlaw.answers.loads import LoadSignal, load_signal
+from contactlaw.answers.sensitivity import Sensitivity
 from contactlaw.fitting import Fit, Measurements, UnidentifiedError, fit
-from contactlaw.loads import LoadSignal, load_signal
 from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.materials import Material, material, materials
@@ -22,8 +24,6 @@ from contactlaw.physical.measured import measured_law
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Validity, edge_distance, explain
-from contactlaw.sensitivity import Sensitivity
-from contactlaw.spheres import restitution_sphere_sphere
 
 __all__ = [
     "Fit",

@@ -40,12 +40,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching, kernel
+from contactlaw.answers.backend import OutsideTableError, too_thin
 from contactlaw.equation import force as forces
 from contactlaw.equation.force import Curve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
 from contactlaw.equation.waves import CONTACT_TIME
-from contactlaw.evaluation import OutsideTableError, too_thin
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate

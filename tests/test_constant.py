@@ -10,7 +10,7 @@ from scene import make_bead, make_plate
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.constant import constant
+from contactlaw.answers.constant import constant
 from contactlaw.engines.pymunk import attach
 from dem_demo.baseline import ConstantRestitution
 

@@ -191,14 +191,14 @@ def test_a_lookup_is_that_of_numba_in_the_same_table(compiled):
     peer = cl.ImpactModel(model.pair, model.force_law, table=bare)
     v, r, h = impacts(100_000, seed=1)
     expected = np.empty(v.size)
-    lookups(peer._table, peer._c_lam, peer._c_chi, v, r, h, expected)
+    lookups(peer._tabulated.packed, peer._tabulated.c_lam, peer._tabulated.c_chi, v, r, h, expected)
     found = called(library.lookups, v.size, v, r, h)
     outside = np.isnan(expected)
     assert 0.005 < outside.mean() < 0.6
     assert (np.isnan(found) == outside).all()
     assert np.abs(found - expected)[~outside].max() < 1e-12
     whole = np.empty(v.size)
-    lookups(model._table, model._c_lam, model._c_chi, v, r, h, whole)
+    lookups(model._tabulated.packed, model._tabulated.c_lam, model._tabulated.c_chi, v, r, h, whole)
     assert np.abs(found - whole)[~outside].max() < 1e-5
     assert table.certificate.largest["restitution"] < 1e-5
 
@@ -504,7 +504,7 @@ def test_the_data_are_those_that_python_reads(compiled):
     text = (folder / "contactlaw.h").read_text()
     table = coarser(model.table, c_header.ERROR).packed.copy()
     plate = slice(lookup.TRANSIT, lookup.HEADER)
-    table[plate] = model._table[plate]  # which the pair adds
+    table[plate] = model._tabulated.packed[plate]  # which the pair adds
     for array, values in (("law", model.force_law.data), ("table", table)):
         inside = re.search(rf"contactlaw_{array}\[\] = {{(.*?)}}", text, re.DOTALL)[1]
         found = np.array(inside.replace("HUGE_VAL", "inf").split(","), dtype=np.float64)

@@ -445,7 +445,8 @@ def test_equal_beads_both_yield():
     """Their law is that of two equal bodies, whatever the plate of the pair is made of."""
     steel = "carbon-steel-1020"
     model = model_of(steel, "soda-lime-glass")
-    twins, law, _, _ = model._beads(None)
+    beads = model._beads(None)
+    twins, law = beads.pair, beads.law
     assert (twins.sphere, twins.plate) == (cl.material(steel),) * 2
     assert law == law_of(twins, "fem") and law != model.force_law
     speed = np.array([0.1, 1.0, 5.0])

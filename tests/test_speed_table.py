@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import laws, speedtable
-from contactlaw.speedtable import fewest
+from contactlaw import laws
+from contactlaw.answers import speed_table
+from contactlaw.answers.speed_table import fewest
 
 R, H = 0.9e-3, 1e-3
 RNG = np.random.default_rng(5)
@@ -61,7 +62,7 @@ def test_straight_lines_are_within_the_error(law):
 @pytest.mark.parametrize("error", [1e-2, 1e-3, 1e-4])
 def test_more_speeds_to_choose_from_do_not_save_a_row(model, error, monkeypatch):
     rows = model.speed_table(R, 0.5e-3, error)
-    monkeypatch.setattr(speedtable, "_CHOICE", 9001)
+    monkeypatch.setattr(speed_table, "_CHOICE", 9001)
     assert len(model.speed_table(R, 0.5e-3, error).speed) == len(rows.speed)
 
 

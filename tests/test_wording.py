@@ -5,8 +5,8 @@ import pickle
 import pytest
 
 import contactlaw as cl
+from contactlaw.answers.backend import OutsideTableError, UnsolvedError
 from contactlaw.command import wording
-from contactlaw.evaluation import OutsideTableError, UnsolvedError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 

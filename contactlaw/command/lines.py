@@ -8,12 +8,12 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from contactlaw._version import VERSION
+from contactlaw.answers.backend import OutsideTableError
+from contactlaw.answers.constant import Constant, Keep, constant
 from contactlaw.command.quantities import LENGTH, written
 from contactlaw.command.walls import Wall, meaning
-from contactlaw.constant import Constant, Keep, constant
 from contactlaw.dashpot import betan
 from contactlaw.engines.lammps.beads import hertz_material
-from contactlaw.evaluation import OutsideTableError
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import explain
 

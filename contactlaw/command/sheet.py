@@ -15,10 +15,10 @@ from typing import NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.answers.speed_table import SpeedTable
 from contactlaw.command import wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity, count_flags, explain
-from contactlaw.speedtable import SpeedTable
 
 Array = NDArray[np.float64]
 

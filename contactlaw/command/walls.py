@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._readable import rounded
+from contactlaw.answers.constant import Constant, Keep
 from contactlaw.command import wording
 from contactlaw.command.records import Impacts
 from contactlaw.command.sheet import aligned, explained
-from contactlaw.constant import Constant, Keep
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity
 

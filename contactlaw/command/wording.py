@@ -15,8 +15,8 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contactlaw.answers.backend import OutsideTableError, UnsolvedError
 from contactlaw.command.quantities import LENGTH, SPEED, written
-from contactlaw.evaluation import OutsideTableError, UnsolvedError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")

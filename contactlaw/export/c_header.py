@@ -24,10 +24,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import _atomic, evaluation, softsphere
+from contactlaw import _atomic, softsphere
 from contactlaw._version import VERSION
+from contactlaw.answers import solver
 from contactlaw.equation import force, integrator, waves
-from contactlaw.evaluation import with_plates
 from contactlaw.model import ImpactModel
 from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
@@ -48,7 +48,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     waves: "LONGER LONGER_3 LONGEST USUAL WIDEST DEEPEST BROADEST SATURATION CONTACT_TIME",
     lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
     integrator: "MAX_STEPS SPENT LATE",
-    evaluation: "RTOL",
+    solver: "RTOL",
     softsphere: "TOP MOST_ITERATIONS CONVERGED",
     validity: "TRANSITS",
 }
@@ -122,7 +122,7 @@ def header(
 
 def packed(model: ImpactModel, table: Table) -> Array:
     """COR's part of the array that the lookup kernels read."""
-    whole = with_plates(table, factors(model.pair, model.force_law))
+    whole = lookup.with_plate(table.packed, factors(model.pair, model.force_law).plate)
     return whole[: int(whole[lookup.OTHERS_AT])]
 
 

@@ -1,7 +1,8 @@
 """What the model says of rebounds with trial values, and how that moves with each of them.
 
 Every trial is integrated, with the law that follows its bodies: a table for each would take 0.7 s.
-Derivatives are differences, as in `contactlaw.sensitivity`, of contact times and forces too.
+Derivatives are differences, as in `contactlaw.answers.sensitivity`, of contact times and forces
+too.
 """
 
 from __future__ import annotations
@@ -13,14 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.evaluation import UnsolvedError, solved
+from contactlaw.answers.backend import SphereOnPlate, UnsolvedError
+from contactlaw.answers.solver import Solver
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting
 from contactlaw.laws import Law
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import following, scales, sphere_on_plate
-from contactlaw.physical.validity import limits
+from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.scaling import following
 
 Array = NDArray[np.float64]
 
@@ -146,17 +147,5 @@ class Predictor:
 
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
     """Integrate rebounds of any bodies, without a table."""
-    law = following(at.pair, law)
-    contact = sphere_on_plate(at.pair, law, at.radius, at.thickness)
-    units = scales(contact, speed)
-    found = solved(law, units, _RTOL)
-    return rebound(
-        law.data,
-        limits(at.pair, law),
-        Impacts(speed, at.radius, at.thickness, speed.shape),
-        units.time,
-        contact.mass,
-        (found.inelasticity.copy(), found.yield_ratio.copy()),
-        found,
-        np.zeros(speed.size, dtype=np.int64),
-    )
+    bodies = SphereOnPlate(at.pair, following(at.pair, law))
+    return Solver(bodies, _RTOL).rebounds(Impacts(speed, at.radius, at.thickness, speed.shape))

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.evaluation import UnsolvedError
+from contactlaw.answers.backend import UnsolvedError
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, bounds

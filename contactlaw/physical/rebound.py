@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import outcome as outcomes
 from contactlaw.equation import zener
 from contactlaw.equation.outcome import Extremes, Outcome
-from contactlaw.physical.arguments import shaped
+from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.validity import Limits, Validity, flags_of
 
 Array = NDArray[np.float64]
@@ -67,6 +67,13 @@ class Impacts:
     thickness: Array  # [m]
     shape: tuple[int, ...] | None
 
+    @staticmethod
+    def on_plates(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Impacts:
+        """Broadcast and check what the user gave."""
+        v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
+        check(speed=v, radius=r, thickness=h)
+        return Impacts(v, r, h, shape)
+
 
 class Units(NamedTuple):
     """Fields of `Rebound` that take units, or are quotients."""
@@ -118,29 +125,10 @@ def rebound(
     outcome: Outcome,
     flags: NDArray[np.int64],
 ) -> Rebound:
-    """Give outcomes their units, and add what follows from the law.
+    """Give outcomes their units, with T_H [s] and effective masses [kg], and what the law adds.
 
-    Parameters
-    ----------
-    law : ndarray
-        Data of the law.
-    limits : Limits
-        Of the model.
-    impacts : Impacts
-        What was asked.
-    time, mass : ndarray
-        T_H [s] and effective mass [kg].
-    asked : tuple of ndarray
-        Inelasticity and yield ratio of the impacts; those of the outcomes are others where they
-        were clamped.
-    outcome : Outcome
-        Of the impacts.
-    flags : ndarray of int
-        What is known of them already.
-
-    Returns
-    -------
-    Rebound
+    What was asked are inelasticity and yield ratio: those of the outcomes differ from them where
+    impacts were clamped, as the flags say already.
     """
     inelasticity, yield_ratio = asked
     out = Units(*np.empty((len(Units._fields), time.size)))

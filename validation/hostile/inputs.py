@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 
 import contactlaw as cl
-from contactlaw.evaluation import Outside, UnsolvedError
+from contactlaw.answers.backend import UnsolvedError
+from contactlaw.answers.tabulated import Outside
 from contactlaw.export import header
 from contactlaw.softsphere import Contacts
 

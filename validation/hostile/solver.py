@@ -13,8 +13,9 @@ from collections.abc import Iterator
 import numpy as np
 
 import contactlaw as cl
+from contactlaw.answers.backend import UnsolvedError
+from contactlaw.answers.solver import RTOL, solved
 from contactlaw.equation.numbers import Numbers
-from contactlaw.evaluation import RTOL, UnsolvedError, solved
 from contactlaw.laws import Law
 from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
 from validation.hostile.pairs import draw
@@ -51,7 +52,7 @@ def _unsolved(generator: np.random.Generator, pair: cl.Pair, law: Law, count: in
     units = Numbers(*(values[known] for values in units))
     while units.time.size:
         try:
-            found = solved(law, units, RTOL)
+            found = solved(law, units.inelasticity, units.yield_ratio, RTOL)
         except UnsolvedError as error:
             yield f"{error}: {pair.sphere!r}, {pair.plate!r}, law {law.name}"
             units = Numbers(*(np.delete(values, error.impact) for values in units))

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from contactlaw.answers.beads import restitution_sphere_sphere
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material, material
-from contactlaw.spheres import restitution_sphere_sphere
 
 
 def check_friction(friction: Any) -> None:

@@ -22,6 +22,9 @@ _ROUNDING = 1e-12  # of the energy: a smaller loss is none
 class Constant:
     """One COR in place of many, and the errors that it makes.
 
+    The impacts are taken as they are. Where beads bounce again and again, a simulation with another
+    COR has other impacts: take those of its own record, and repeat.
+
     Attributes
     ----------
     restitution
@@ -39,6 +42,16 @@ class Constant:
         How many there were.
     flags
         How many of them exceed each `Validity` limit that any does.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    >>> best = model.constant([0.1, 1.0, 10.0], radius=0.9e-3, thickness=0.5e-3)
+    >>> round(best.energy_error, 4), round(best.mean_energy_error, 4)
+    (0.0, -0.2477)
+    >>> f"single beads rebound to within {best.rebound_error:.0%} of their height"
+    'single beads rebound to within 44% of their height'
     """
 
     restitution: float
@@ -52,22 +65,7 @@ class Constant:
 
 
 def constant(speed: Array, radius: Array, weights: Array, rebound: Rebound, keep: Keep) -> Constant:
-    """Put one COR in place of those of some impacts.
-
-    Parameters
-    ----------
-    speed, radius, weights : ndarray (n,)
-        Of the impacts [m/s, m, -]; how often each happens, in any unit.
-    rebound : Rebound
-        What comes of each.
-    keep : {"energy", "momentum"}
-        What the wall shall take in all, as it does with each impact's own COR.
-
-    Raises
-    ------
-    ValueError
-        No impact, another `keep`, or weights that are negative, not finite or all zero.
-    """
+    """Put one COR in place of those of some impacts, as `contactlaw.ImpactModel.constant` says."""
     if keep not in ("energy", "momentum"):
         raise ValueError(f"keep: must be 'energy' or 'momentum', got {keep!r}")
     if speed.size == 0:

@@ -12,7 +12,7 @@ from contactlaw._jit import kernel
 from contactlaw.physical.arguments import broadcast, check, number
 
 if TYPE_CHECKING:
-    from contactlaw.model import ImpactModel
+    from contactlaw import ImpactModel
 
 Array = NDArray[np.float64]
 

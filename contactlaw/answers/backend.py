@@ -1,0 +1,127 @@
+"""What a way to an answer has to do, and how it says that it has none.
+
+There are two, interchangeable: `contactlaw.answers.tabulated.Tabulated` looks impacts up,
+`contactlaw.answers.solver.Solver` integrates them. Either begins with a `SphereOnPlate`.
+"""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+from typing import NoReturn, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.laws import Law
+from contactlaw.physical.history import ForceHistory
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.scaling import Contact, Factors, factors, sphere_on_plate
+from contactlaw.physical.validity import Limits, limits
+
+Array = NDArray[np.float64]
+
+
+class Backend(Protocol):
+    """A way from impacts of a sphere on plates to what becomes of them."""
+
+    def rebounds(self, impacts: Impacts) -> Rebound:
+        """Everything about impacts."""
+        ...
+
+    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
+        """Contacts at even times from first touch to separation."""
+        ...
+
+    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+        """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class SphereOnPlate:
+    """A pair of materials and its law, with the constants that follow from them."""
+
+    pair: Pair
+    law: Law
+
+    @functools.cached_property
+    def limits(self) -> Limits:
+        """Limits of the model."""
+        return limits(self.pair, self.law)
+
+    @functools.cached_property
+    def factors(self) -> Factors:
+        """Constants of the impacts' dimensionless numbers."""
+        return factors(self.pair, self.law)
+
+    def contact(self, impacts: Impacts) -> Contact:
+        """Contact of each sphere with its plate."""
+        return sphere_on_plate(self.pair, self.law, impacts.radius, impacts.thickness)
+
+
+class OutsideTableError(ValueError):
+    """An impact that the table does not reach.
+
+    Attributes
+    ----------
+    impact : int
+        Its number among those asked for.
+    reason : str
+        Which limit of the table it exceeds, and by how much.
+    """
+
+    def __init__(self, impact: int, reason: str) -> None:
+        super().__init__(impact, reason)  # as given, or it could not be pickled
+        self.impact, self.reason = impact, reason
+
+    def __str__(self) -> str:
+        return (
+            f"speed, radius, thickness: impact {self.impact} is outside the table, {self.reason}. "
+            'ImpactModel(..., outside="solve") integrates the equation there, "clamp" takes the '
+            "value at the table's border."
+        )
+
+
+class UnsolvedError(RuntimeError):
+    """An impact whose integration did not come to an end.
+
+    Attributes
+    ----------
+    impact : int
+        Its number among those asked for.
+    where, reason : str
+        Its dimensionless numbers, and what happened.
+    """
+
+    def __init__(self, impact: int, where: str, reason: str) -> None:
+        super().__init__(impact, where, reason)
+        self.impact, self.where, self.reason = impact, where, reason
+
+    def __str__(self) -> str:
+        return f"the equation did not solve at {self.where} (element {self.impact}): {self.reason}"
+
+
+def too_thin(lam: float, limit: float) -> str:
+    """Say why an impact is outside a table whose largest lambda is exceeded."""
+    return (
+        f"its inelasticity lambda = {lam:.4g} is above {limit:.4g}: the plate is too thin for "
+        "the bead"
+    )
+
+
+def too_fast(chi: float, limit: float) -> str:
+    """Say why an impact is outside a table whose largest overload is exceeded."""
+    return f"its overload chi = {chi:.4g} is above {limit:.4g}: the impact is too fast"
+
+
+def refuse_to_yield(
+    radius: Array, thickness: Array, beyond: NDArray[np.bool_], limit: float
+) -> NoReturn:
+    """Refuse the first plate under whose bead lambda is beyond a table's largest at yield."""
+    n = int(np.argmax(beyond))
+    raise ValueError(
+        f"thickness: at {thickness[n]:g} m under a bead of radius {radius[n]:g} m the inelasticity "
+        f"at yield is beyond the table's {limit:.4g}; the plate is too thin for the model"
+    )

@@ -1,0 +1,158 @@
+"""Bead on bead."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contactlaw.answers.tabulated import Border, Tabulated, curve, table_for
+from contactlaw.laws import DEFAULT, Law
+from contactlaw.physical.arguments import broadcast, check, scalars, shaped
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.rebound import Impacts, Rebound, rebound
+from contactlaw.physical.scaling import Contact, law_of, scales, sphere_on_sphere
+from contactlaw.physical.validity import Limits, limits
+from contactlaw.table import Table
+
+Array = NDArray[np.float64]
+Other = Material | str | None  # material of another bead; without it, that of the first
+
+
+class Beads:
+    """Two spheres, looked up in the table of their law.
+
+    Parameters
+    ----------
+    sphere, other : Material or str
+        Of which the weaker one comes first in `pair`: it yields.
+    law : str or Law
+        A law that takes numbers from a pair takes those of the two spheres. Numbers that the user
+        gave in its name hold for them as they do for the plate.
+    border : Border
+        What becomes of impacts outside the table.
+    table : callable, optional
+        Table that serves a law, in place of the law's own.
+    """
+
+    def __init__(
+        self,
+        sphere: Material | str,
+        other: Material | str,
+        law: str | Law,
+        border: Border,
+        table: Callable[[Law], Table] = lambda law: table_for(law, None),
+    ) -> None:
+        pair = Pair(sphere, other)
+        weak, strong = (one.yield_strength or math.inf for one in (pair.plate, pair.sphere))
+        self._swapped = weak < strong
+        self.pair = Pair(pair.plate, pair.sphere) if self._swapped else pair
+        self.law = law_of(self.pair, law)
+        self._border, self._table_of = border, table
+
+    @functools.cached_property
+    def table(self) -> Table:
+        """The table that serves the law."""
+        return self._table_of(self.law)
+
+    @functools.cached_property
+    def limits(self) -> Limits:
+        """Limits of the model."""
+        return limits(self.pair, self.law)
+
+    def rebounds(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Rebound:
+        """Everything about impacts; radii [m] in the order in which the materials were given."""
+        v, r, o, shape = _checked(speed, radius, other_radius)
+        contact = self._contact(r, o)
+        units = scales(contact, v)
+        found, flags = self._border.look_up(self.law, self.table.packed, units)
+        impacts = Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape)
+        asked = units.inelasticity, units.yield_ratio
+        return rebound(
+            self.law.data, self.limits, impacts, units.time, contact.mass, asked, found, flags
+        )
+
+    def restitutions(
+        self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
+    ) -> float | Array:
+        """COR of impacts, as in `rebounds`."""
+        v, r, o, shape = _checked(speed, radius, other_radius)
+        units = scales(self._contact(r, o), v)
+        found, _ = self._border.look_up(self.law, self.table.packed, units)
+        return shaped(found.restitution, shape)
+
+    def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
+        """COR of beads of these radii [m] by speed [m/s]."""
+        contact = self._contact(*scalars(radius=radius, other_radius=other_radius))
+        c_chi = -math.log(scales(contact, np.ones(1)).yield_ratio.item())
+        look_up = functools.partial(self._border.look_up, self.law)
+        return curve((self.table.packed, 0.0, c_chi, 0.0), lambda: contact, look_up)
+
+    def _contact(self, radius: Array, other_radius: Array) -> Contact:
+        radii = (other_radius, radius) if self._swapped else (radius, other_radius)
+        return sphere_on_sphere(self.pair, self.law, *radii)
+
+
+def beads_of(tabulated: Tabulated, other: Other) -> Beads:
+    """Let a model's sphere meet another."""
+    sphere, law = tabulated.bodies.pair.sphere, tabulated.bodies.law
+    takes = law.family if law.from_pair else law
+    return Beads(sphere, other or sphere, takes, tabulated.border, tabulated.table_of)
+
+
+def _checked(speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Any:
+    """Flat arrays and their shape."""
+    v, r, o, shape = broadcast(speed=speed, radius=radius, other_radius=other_radius)
+    check(speed=v, radius=r, other_radius=o)
+    return v, r, o, shape
+
+
+def restitution_sphere_sphere(
+    sphere: Material | str,
+    other: Material | str,
+    speed: ArrayLike,
+    radius: ArrayLike,
+    other_radius: ArrayLike,
+    *,
+    law: str | Law = DEFAULT,
+) -> float | Array:
+    """Coefficient of restitution of bead on bead: the bulk limit.
+
+    Parameters
+    ----------
+    sphere, other : Material or str
+        Materials of the two spheres; the weaker one yields.
+    speed : array_like
+        Normal approach speed [m/s].
+    radius, other_radius : array_like
+        Radii [m].
+    law : str or Law, optional
+        Normal force law, as in `ImpactModel`.
+
+    Returns
+    -------
+    float or ndarray of float64
+
+    Raises
+    ------
+    ValueError
+        As `ImpactModel` and `ImpactModel.restitution` do.
+
+    Notes
+    -----
+    The plate's law with lambda = 0, R* = R1 R2/(R1 + R2) and m* = m1 m2/(m1 + m2): no wave carries
+    energy off.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> bead = "gamma-alumina"
+    >>> cl.restitution_sphere_sphere(bead, bead, [20.0, 80.0], 1e-3, 1e-3).round(4)
+    array([0.9616, 0.6966])
+    """
+    return Beads(sphere, other, law, Border("raise")).restitutions(speed, radius, other_radius)

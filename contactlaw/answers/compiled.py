@@ -1,0 +1,137 @@
+"""The COR of a model as fast functions: for Python, for loops of numba, for C."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import _jit
+from contactlaw._jit import kernel, uncached
+from contactlaw.answers.beads import Beads, Other
+from contactlaw.answers.tabulated import Tabulated
+from contactlaw.physical.arguments import scalars
+from contactlaw.table import lookup
+
+_OFF = _jit.switched_off()
+
+
+class Compiled:
+    """What engines call once per collision; each is made for one model."""
+
+    _tabulated: Tabulated
+    _beads: Callable[[Other], Beads]  # the pair's sphere and another
+
+    def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
+        """COR of one bead class on one plate, as a fast function of speed.
+
+        Parameters
+        ----------
+        radius, thickness : float
+            As in `restitution`.
+
+        Returns
+        -------
+        callable
+            ``curve(speed)`` [m/s] -> COR; it raises the same errors as `restitution`.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> round(model.curve(radius=0.9e-3, thickness=1e-3)(5.0), 4)
+        0.8966
+        """
+        return self._tabulated.curve(*scalars(radius=radius, thickness=thickness))
+
+    def sphere_sphere_curve(
+        self, radius: float, other_radius: float, other: Other = None
+    ) -> Callable[[float], float]:
+        """COR of the pair's sphere and another one, as a fast function of approach speed.
+
+        Parameters
+        ----------
+        radius, other_radius : float
+            Radii of the beads [m].
+        other : Material or str, optional
+            Material of the other bead, without it that of the pair's sphere.
+
+        Returns
+        -------
+        callable
+            ``curve(speed)`` [m/s] -> COR; it raises the same errors as `restitution`.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> round(model.sphere_sphere_curve(1e-3, 1e-3)(20.0), 4)
+        0.9616
+        """
+        return self._beads(other).curve(radius, other_radius)
+
+    @functools.cached_property
+    def kernel(self) -> Callable[[float, float, float], float]:
+        """COR as a numba-jitted ``f(speed, radius, thickness)`` for loops of one's own [m/s, m, m].
+
+        It holds the table as a constant and does what `restitution` does for three floats, but
+        cannot raise (a raise would make a parallel loop serial): bad input and an impact outside
+        the table give NaN, whatever `outside` says. Test for it with ``e != e``. Numba does not
+        keep a caller of it on disk (``cache=True`` is without effect, with a NumbaWarning): the
+        table is part of the machine code.
+
+        Examples
+        --------
+        >>> import contactlaw as cl, numba
+        >>> cor = cl.ImpactModel(cl.Pair("gamma-alumina", "glass")).kernel
+        >>> @numba.njit
+        ... def rebound_speeds(speed, radius, thickness):
+        ...     return [cor(v, radius, thickness) * v for v in speed]
+        >>> [round(u, 3) for u in rebound_speeds((1.0, 5.0), 0.9e-3, 1e-3)]
+        [0.925, 4.483]
+        """
+        known = self._tabulated
+        return _jitted(known.packed, known.c_lam, known.c_chi)
+
+    @functools.cached_property
+    def _c_function(self) -> Any:
+        signature = numba.float64(numba.float64, numba.float64, numba.float64)
+        return _jit.c_function(signature, getattr(self.kernel, "py_func", self.kernel))
+
+    @property
+    def address(self) -> int:
+        """Address of a C function ``double f(double speed, double radius, double thickness)``.
+
+        For engines in C and C++: `kernel` behind a plain function pointer, valid as long as this
+        model lives, callable from any thread. It gives NaN where `kernel` does.
+
+        Examples
+        --------
+        >>> import contactlaw as cl, ctypes
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> double = ctypes.c_double
+        >>> f = ctypes.CFUNCTYPE(double, double, double, double)(model.address)
+        >>> round(f(5.0, 0.9e-3, 1e-3), 4)
+        0.8966
+        """
+        return int(self._c_function.address)
+
+
+def _jitted(
+    table: NDArray[np.float64], c_lam: float, c_chi: float
+) -> Callable[[float, float, float], float]:
+    """COR as a jitted function of speed, radius and thickness, with the table as a constant."""
+    on_plate = lookup.restitution_on_plate
+
+    @kernel(entry=True)
+    def cor(speed: float, radius: float, thickness: float) -> float:
+        if not _OFF and uncached() == 0:  # type: ignore[call-arg]  # never so, but the call has to be there
+            return math.nan
+        return on_plate(table, c_lam, c_chi, speed, radius, thickness)
+
+    return cor

@@ -1,0 +1,143 @@
+"""The solver as a way to an answer: every impact is integrated, and no table is needed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.answers.backend import (
+    OutsideTableError,
+    SphereOnPlate,
+    UnsolvedError,
+    refuse_to_yield,
+    too_fast,
+    too_thin,
+)
+from contactlaw.equation import outcome, zener
+from contactlaw.equation.numbers import Numbers
+from contactlaw.equation.outcome import History, Outcome
+from contactlaw.laws import Law
+from contactlaw.physical.history import ForceHistory, with_units
+from contactlaw.physical.rebound import Impacts, Rebound, rebound
+from contactlaw.physical.scaling import scales, yield_share
+from contactlaw.table.grid import Settings
+
+Array = NDArray[np.float64]
+Places = NDArray[np.intp]  # of impacts in the flat arrays that the user gave
+
+RTOL = 1e-10  # of an integration for which the user names no other
+_CONVERGED = 1e-9  # of a largest compression over d_Y, less 1
+_ROUNDS = 30
+_SLOPES = 0.5, 1.0  # of its logarithm over that of the speed; 2/3 to 4/5 of an elastic impact
+
+
+@dataclass(frozen=True, eq=False)
+class Solver:
+    """Integrates impacts; those outside a table of the given extent are refused as by a lookup."""
+
+    bodies: SphereOnPlate
+    rtol: float = RTOL
+    extent: Settings | None = None
+
+    def rebounds(self, impacts: Impacts) -> Rebound:
+        """Everything about impacts."""
+        contact = self.bodies.contact(impacts)
+        units = scales(contact, impacts.speed)
+        found = self._solved(units)
+        flags = np.zeros(impacts.speed.size, dtype=np.int64)
+        asked = units.inelasticity, units.yield_ratio
+        return rebound(
+            self.bodies.law.data, self.bodies.limits, impacts, units.time, contact.mass, asked,
+            found, flags,
+        )  # fmt: skip
+
+    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
+        """Contacts at even times from first touch to separation."""
+        contact = self.bodies.contact(impacts)
+        units = scales(contact, impacts.speed)
+        found = self._solved(units)
+        contacts = histories(self.bodies.law, found, samples)
+        return with_units(contacts, units, contact.mobility, impacts.shape)
+
+    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+        """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
+        share = yield_share(self.bodies.pair, self.bodies.law)
+        if math.isinf(share):
+            return np.full(radius.size, math.inf)
+        found = [
+            self._yield_speed(share, radius[n : n + 1], thickness[n : n + 1])
+            for n in range(radius.size)
+        ]
+        speed, lam = np.array(found).reshape(-1, 2).T
+        if self.extent is not None:
+            limit = self.extent.largest_inelasticity
+            beyond = lam > limit
+            if beyond.any():
+                refuse_to_yield(radius, thickness, beyond, limit)
+        return speed
+
+    def _yield_speed(self, share: float, radius: Array, thickness: Array) -> tuple[float, float]:
+        """Speed at which the largest compression is d_Y = share R, and lambda there.
+
+        By secants in logarithms, in which the compression nearly follows the speed. They begin
+        with a half-space, on which no bead yields later.
+        """
+        contact = self.bodies.contact(Impacts(np.ones(1), radius, thickness, None))
+        contact = contact._replace(yield_compression=share * radius)
+        thinnest = math.inf if self.extent is None else 2.0 * self.extent.largest_inelasticity
+        log_speed = 1.25 * math.log(float(scales(contact, np.ones(1)).yield_ratio[0]))
+        log_speed -= 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
+        slope, last, gap = 0.75, math.nan, 0.0
+        for _ in range(_ROUNDS):
+            units = scales(contact, np.array([math.exp(log_speed)]))
+            lam, y = float(units.inelasticity[0]), float(units.yield_ratio[0])
+            if lam > thinnest:
+                break
+            one = zener.solve(self.bodies.law.data, lam, y, self.rtol)
+            if one.status != zener.OK:
+                raise UnsolvedError(0, f"lambda = {lam:.6g}", zener.MESSAGES[one.status])
+            before, gap = gap, math.log(one.peak_compression / y)
+            if abs(gap) < _CONVERGED:
+                break
+            if last == last:
+                slope = min(max((gap - before) / (log_speed - last), _SLOPES[0]), _SLOPES[1])
+            last, log_speed = log_speed, log_speed - gap / slope
+        return math.exp(log_speed), lam
+
+    def _solved(self, units: Numbers) -> Outcome:
+        """Integrate impacts up to the first one that is outside the extent, which is refused."""
+        lam, y = units.inelasticity, units.yield_ratio
+        if self.extent is None:
+            return solved(self.bodies.law, lam, y, self.rtol)
+        thin = self.extent.largest_inelasticity
+        beyond = int(np.argmax(np.append(lam > thin, True)))
+        found = solved(self.bodies.law, lam[:beyond], y[:beyond], self.rtol)
+        chi = found.elastic_compression / found.yield_ratio
+        for n in np.flatnonzero(chi > self.extent.largest_overload)[:1].tolist():
+            raise OutsideTableError(n, too_fast(chi[n], self.extent.largest_overload))
+        if beyond < lam.size:
+            raise OutsideTableError(beyond, too_thin(lam[beyond], thin))
+        return found
+
+
+def solved(law: Law, lam: Array, y: Array, rtol: float, places: Places | None = None) -> Outcome:
+    """Outcomes at inelasticities and yield ratios, by integration.
+
+    Errors name the impact by its number in the user's arrays where these are only some of those.
+    """
+    out = outcome.at(lam, y)
+    status, n = zener.solve_all(law.data, rtol, out)
+    if status != zener.OK:
+        where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
+        raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])
+    return out
+
+
+def histories(law: Law, found: Outcome, samples: int) -> History:
+    """Contacts over time on Hertz's scale, by integration."""
+    out = outcome.history(found.inelasticity.size, samples)
+    zener.histories(law.data, found, RTOL, out)
+    return out

@@ -1,0 +1,294 @@
+"""The table as a way to an answer: impacts are looked up, and those beyond its border as asked."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import math
+import os
+import threading
+import warnings
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import laws
+from contactlaw._jit import direct, enable_caching
+from contactlaw.answers.backend import (
+    OutsideTableError,
+    SphereOnPlate,
+    refuse_to_yield,
+    too_fast,
+    too_thin,
+)
+from contactlaw.answers.solver import RTOL, histories, solved
+from contactlaw.equation import outcome
+from contactlaw.equation.numbers import Numbers
+from contactlaw.equation.outcome import History, Outcome
+from contactlaw.laws import Law
+from contactlaw.physical.arguments import check, scalars
+from contactlaw.physical.history import ForceHistory, with_units
+from contactlaw.physical.rebound import Impacts, Rebound, rebound
+from contactlaw.physical.scaling import Contact, log_overload, scales, yield_share
+from contactlaw.physical.validity import Validity
+from contactlaw.table import cache, file, grid, lookup, shapes
+from contactlaw.table.certificate import bounds
+from contactlaw.table.grid import Settings
+from contactlaw.table.nodes import Table
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.int64]
+Outside = Literal["raise", "solve", "clamp"]
+Given = Table | Settings | str | os.PathLike[str] | None  # as users name a table
+
+# begin with nothing at yield, where an error relative to them matters least
+_NEXT_TO_YIELD = {"residual_compression", "plastic_fraction"}
+
+
+class Border:
+    """What becomes of impacts outside a table, and how many of them got the value at its border."""
+
+    def __init__(self, outside: Outside) -> None:
+        if outside not in ("raise", "solve", "clamp"):
+            raise ValueError(f"outside: must be 'raise', 'solve' or 'clamp', got {outside!r}")
+        self.outside = outside
+        self.clamped = 0
+        self.lock = threading.Lock()
+
+    def look_up(self, law: Law, table: Array, units: Numbers) -> tuple[Outcome, Flags]:
+        """Outcomes by table, and beside them Validity.CLAMPED where its border was taken.
+
+        There, inelasticity and yield ratio are those of the border.
+        """
+        out = outcome.at(units.inelasticity, units.yield_ratio)
+        flags = np.zeros(out.inelasticity.size, dtype=np.int64)
+        if lookup.fields(table, False, out):
+            beyond = np.isnan(out.restitution)
+            flags[beyond] = self.complete(law, table, out, beyond)
+        return out, flags
+
+    def complete(self, law: Law, table: Array, out: Outcome, beyond: NDArray[np.bool_]) -> int:
+        """Fill in the outcomes that are beyond the table; return their flag."""
+        if self.outside == "raise":
+            n = int(np.argmax(beyond))
+            lam, y = float(out.inelasticity[n]), float(out.yield_ratio[n])
+            limit = lookup.lam_max(table)
+            if lam > limit:
+                raise OutsideTableError(n, too_thin(lam, limit))
+            chi = math.exp(lookup.log_elastic_compression(table, lam)) / y
+            raise OutsideTableError(n, too_fast(chi, lookup.chi_max(table)))
+        found = outcome.part(out, beyond)
+        if self.outside == "solve":
+            places = np.flatnonzero(beyond)
+            found = solved(law, found.inelasticity, found.yield_ratio, RTOL, places)
+        else:
+            lookup.fields(table, True, found)
+        for values, completed in zip(out, found, strict=True):
+            values[beyond] = completed
+        if self.outside == "solve":
+            return 0
+        with self.lock:
+            self.clamped += found.restitution.size
+        return int(Validity.CLAMPED)
+
+
+class Tabulated:
+    """Looks impacts up; the table, the law's own if none is given, is made when first asked for."""
+
+    def __init__(self, bodies: SphereOnPlate, given: Given, border: Border) -> None:
+        self.bodies, self.given, self.border = bodies, given, border
+        # the constants of the pair that kernels take
+        self.c_lam = bodies.factors.plate.inelasticity
+        self.c_chi = bodies.factors.log_overload
+
+    @functools.cached_property
+    def table(self) -> Table:
+        """The table that serves the law."""
+        return table_for(self.bodies.law, self.given)
+
+    @functools.cached_property
+    def packed(self) -> Array:
+        """What kernels look up in: the table, with the plates of the pair."""
+        return lookup.with_plate(self.table.packed, self.bodies.factors.plate)
+
+    @functools.cached_property
+    def restitution(self) -> Callable[[float, float, float], float]:
+        """COR of one impact, whose arguments have to be floats; NaN where there is none."""
+        return functools.partial(entries()[0], self.packed, self.c_lam, self.c_chi)
+
+    @property
+    def largest_inelasticity(self) -> float:
+        """Largest lambda of the table, known before the table is made."""
+        if self.given is None:
+            return grid.largest_inelasticity(_served(self.bodies.law))
+        return lookup.lam_max(self.table.packed)
+
+    def table_of(self, law: Law) -> Table:
+        """Find the table of another law, as of two of the pair's spheres; the same if it serves."""
+        own = self.given is not None and (law == self.bodies.law or self.table.law.follows(law))
+        return self.table if own else table_for(law, None)
+
+    def restitutions(self, speed: Array, radius: Array, thickness: Array) -> Array:
+        """COR of impacts that are checked here if a kernel has found no answer for one."""
+        out = np.empty(speed.size)
+        if lookup.restitutions(self.packed, self.c_lam, self.c_chi, speed, radius, thickness, out):
+            check(speed=speed, radius=radius, thickness=thickness)
+            out = self._outcomes(Impacts(speed, radius, thickness, None))[0].restitution
+        return out
+
+    def rebounds(self, impacts: Impacts) -> Rebound:
+        """Everything about impacts."""
+        found, flags, asked, root = self._outcomes(impacts)
+        r, made = impacts.radius, self.bodies.factors
+        return rebound(
+            self.bodies.law.data, self.bodies.limits, impacts, made.time * r / root,
+            made.mass * (r * r * r), asked, found, flags,
+        )  # fmt: skip
+
+    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
+        """Contacts at even times from first touch to separation."""
+        contact = self.bodies.contact(impacts)
+        units = scales(contact, impacts.speed)
+        found, _ = self.border.look_up(self.bodies.law, self.packed, units)
+        return with_units(self._shapes(found, samples), units, contact.mobility, impacts.shape)
+
+    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+        """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
+        out = np.full(radius.size, math.inf)
+        share = yield_share(self.bodies.pair, self.bodies.law)
+        if share < math.inf:
+            c_chi = log_overload(self.bodies.factors, share)
+            lookup.yield_speeds(self.packed, self.c_lam, c_chi, radius / thickness, out)
+            if np.isnan(out).any():
+                refuse_to_yield(radius, thickness, np.isnan(out), lookup.lam_max(self.packed))
+        return out
+
+    def curve(self, radius: Array, thickness: Array) -> Callable[[float], float]:
+        """COR of one sphere on one plate, by speed [m/s]."""
+        at_one = Impacts(np.ones(1), radius, thickness, None)
+        constants = self.packed, self.c_lam, self.c_chi, radius.item() / thickness.item()
+        contact = functools.partial(self.bodies.contact, at_one)
+        return curve(constants, contact, functools.partial(self.border.look_up, self.bodies.law))
+
+    def _outcomes(self, impacts: Impacts) -> tuple[Outcome, Flags, tuple[Array, Array], Array]:
+        """Outcomes, flags of the clamped ones, what was asked, and V^(1/5) exp(eta)."""
+        v, r, h = impacts.speed, impacts.radius, impacts.thickness
+        found, root = outcome.empty(v.size), np.empty(v.size)
+        flags = np.zeros(v.size, dtype=np.int64)
+        beyond = lookup.outcomes(self.packed, self.c_lam, self.c_chi, v, r, h, found, root)
+        asked = found.inelasticity, found.yield_ratio
+        if beyond:
+            outside = np.isnan(found.restitution)
+            part = Impacts(v[outside], r[outside], h[outside], None)
+            units = scales(self.bodies.contact(part), part.speed)
+            found.inelasticity[outside] = units.inelasticity
+            found.yield_ratio[outside] = units.yield_ratio
+            asked = asked[0].copy(), asked[1].copy()
+            law = self.bodies.law
+            flags[outside] = self.border.complete(law, self.packed, found, outside)
+        return found, flags, asked, root
+
+    def _shapes(self, found: Outcome, samples: int) -> History:
+        """Contacts over time on Hertz's scale, integrated where they are off the table."""
+        lam, chi = found.inelasticity, found.elastic_compression / found.yield_ratio
+        # a clamped impact lies on the border, give or take a rounding error
+        inside = (lam <= lookup.lam_max(self.packed) * (1 + 1e-9)) & (
+            chi <= lookup.chi_max(self.packed) * (1 + 1e-9)
+        )
+        law, packed = self.bodies.law, cache.cached_shapes(self.table).packed_shapes
+        out = outcome.history(lam.size, samples)
+        if inside.all():
+            shapes.sample(law.data, packed, found, out)
+            return out
+        part = outcome.history(int(np.count_nonzero(inside)), samples)
+        shapes.sample(law.data, packed, outcome.part(found, inside), part)
+        beyond = histories(law, outcome.part(found, ~inside), samples)
+        for values, ours, others in zip(out, part, beyond, strict=True):
+            values[inside], values[~inside] = ours, others
+        return out
+
+
+@functools.cache
+def entries() -> tuple[Callable[..., float], Callable[..., float]]:
+    """Entries of the kernels on a plate and at one speed, for Python; each argument a float."""
+    return (
+        direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8, f8)"),
+        direct(lookup.restitution, "float64(float64[::1], f8, f8, f8, f8)"),
+    )
+
+
+def curve(
+    constants: tuple[Array, float, float, float],
+    contact: Callable[[], Contact],
+    look_up: Callable[[Array, Numbers], tuple[Outcome, Flags]],
+) -> Callable[[float], float]:
+    """COR by speed [m/s], from a packed table, the constants of two bodies, and R/H."""
+    (table, c_lam, c_chi, ratio), at = constants, entries()[1]
+
+    def restitution(speed: float) -> float:
+        if not isinstance(speed, float):  # the entry would take "5" and True for numbers
+            speed = scalars(speed=speed)[0].item()
+        value = at(table, c_lam, c_chi, speed, ratio)
+        if value != value:  # NaN; half the time of a call of isnan
+            (v,) = scalars(speed=speed)
+            return float(look_up(table, scales(contact(), v))[0].restitution[0])
+        return value
+
+    return restitution
+
+
+def extent(law: Law) -> Settings:
+    """Extent of a law's own table, which is known before the table is made."""
+    return grid.on_demand(_served(law))
+
+
+@functools.cache
+def _default(law: Law) -> Table:
+    """Table that ships with the package, or that of the user's cache."""
+    return file.packaged(law) or cache.cached(law)
+
+
+def _served(law: Law) -> Law:
+    """Law whose table serves: Hertz's is the edge chi = 1 of any; myc's ships."""
+    return law if law.yields or not law.is_hertz else laws.law("myc")
+
+
+def table_for(law: Law, table: Given) -> Table:
+    """Table that serves a law: the user's, or the packaged one."""
+    enable_caching()
+    served = _served(law)
+    if table is None:
+        table = _default(served)
+    elif isinstance(table, Settings):
+        table = cache.cached(served, table)
+    elif isinstance(table, str | os.PathLike):
+        table = file.read(table)
+    elif not isinstance(table, Table):
+        raise TypeError(f"table: expected a Table, Settings or the path of a file, got {table!r}")
+    exceeded = table.exceeded
+    if exceeded.keys() - _NEXT_TO_YIELD:
+        warnings.warn(
+            f"the table is less accurate than contactlaw promises; its largest errors {exceeded} "
+            f"are above {bounds(table.law)}: take finer Settings",
+            stacklevel=_stack_level(),
+        )
+    if not table.law.follows(served):
+        raise ValueError(
+            f"table: it belongs to law {table.law.name!r}, the model needs one of {served.name!r}: "
+            f"leave it out, or contactlaw table build --law {served.family}, with --sphere and "
+            "--plate if the law takes numbers from them"
+        )
+    return table
+
+
+def _stack_level() -> int:
+    """How far up the user's line is, whichever question has asked for the table."""
+    level, frame = 0, inspect.currentframe()
+    while frame:
+        package = frame.f_globals.get("__name__", "").partition(".")[0]
+        if package not in ("contactlaw", "functools"):
+            break
+        level, frame = level + 1, frame.f_back
+    return level

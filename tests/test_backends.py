@@ -1,0 +1,113 @@
+"""Table and solver answer through one interface, and say the same."""
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw import laws
+from contactlaw.answers.backend import OutsideTableError, SphereOnPlate
+from contactlaw.answers.solver import Solver
+from contactlaw.answers.tabulated import Border, Tabulated, extent
+from contactlaw.equation.losses import Losses
+from contactlaw.physical.rebound import Impacts
+from contactlaw.physical.scaling import law_of
+
+R = 0.9e-3
+PAIRS = {
+    "the bead yields": ("gamma-alumina", "glass"),
+    "the plate yields": ("bearing-steel-52100", "aluminium-6061-t6"),
+    "both yield": ("carbon-steel-1020", "carbon-steel-1020"),
+}
+LOSSES = [f"{channel}_fraction" for channel in Losses._fields]
+
+
+def backends(pair, law, outside="raise"):
+    """Table and solver of one model."""
+    pair = cl.Pair(*pair)
+    bodies = SphereOnPlate(pair, law_of(pair, law))
+    tabulated = Tabulated(bodies, None, Border(outside))
+    return tabulated, Solver(bodies, extent=extent(bodies.law))
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+@pytest.mark.parametrize("law", laws.names())
+def test_yield_speeds_are_those_of_the_table(law, pair):
+    thickness = R / np.array([1e-12, 0.01, 0.5, 1.0, 1.5])
+    radius = np.full(thickness.size, R)
+    tabulated, solver = backends(PAIRS[pair], law)
+    found = solver.yield_speeds(radius, thickness)
+    assert found == pytest.approx(tabulated.yield_speeds(radius, thickness), rel=1e-6)
+    # where the bead begins to yield, by another way: what is left of the compression
+    if law in ("myc", "thornton") and pair == "the bead yields":
+        below, above = (
+            solver.rebounds(Impacts(found * by, radius, thickness, found.shape))
+            for by in (1 - 1e-4, 1 + 1e-4)
+        )
+        assert (below.plastic_fraction == 0.0).all() and (above.plastic_fraction > 0.0).all()
+
+
+def test_nothing_yields():
+    tabulated, solver = backends(("soda-lime-glass", "soda-lime-glass"), "hertz")
+    one = np.ones(2) * R
+    assert (solver.yield_speeds(one, one) == np.inf).all()
+    assert (tabulated.yield_speeds(one, one) == np.inf).all()
+
+
+@pytest.mark.parametrize("law", ["fem", "myc"])
+def test_a_solver_with_an_extent_refuses_what_the_table_does(law):
+    """Its speeds and sizes lie on both sides of either limit."""
+    refused = []
+    for v, h in ((1e-3, 1e-3), (5.0, 2e-5), (3000.0, 1e-2), (3.0, 3e-4), (20.0, 2e-3)):
+        impacts = Impacts.on_plates([1.0, v], R, [1e-2, h])
+        said = []
+        for backend in backends(PAIRS["the bead yields"], law):
+            try:
+                backend.rebounds(impacts)
+                said.append("")
+            except OutsideTableError as error:
+                said.append(str(error))
+        assert said[0] == said[1]
+        refused.append(said[0])
+    assert any("too thin" in one for one in refused) and any("too fast" in one for one in refused)
+    assert "" in refused
+
+
+@pytest.mark.parametrize("law", ["fem", "myc"])
+def test_plates_too_thin_to_say_when_they_yield(law):
+    radius, thickness = np.full(2, R), np.array([R, R / 20.0])
+    said = []
+    for backend in backends(PAIRS["the bead yields"], law):
+        with pytest.raises(ValueError, match="the plate is too thin for the model") as error:
+            backend.yield_speeds(radius, thickness)
+        said.append(str(error.value))
+    assert said[0] == said[1]
+
+
+@pytest.mark.parametrize("law", laws.names())
+def test_what_the_sphere_loses_is_the_sum_over_the_channels(law):
+    fractions = [name for name in cl.Rebound.__dataclass_fields__ if name.endswith("_fraction")]
+    assert fractions == LOSSES
+    speed = np.geomspace(0.01, 15.0, 40)
+    for pair in PAIRS.values():
+        tabulated, _ = backends(pair, law, outside="solve")
+        for backend, bound in ((tabulated, 1e-4), (Solver(tabulated.bodies), 1e-9)):
+            hit = backend.rebounds(Impacts.on_plates(speed, R, R / 0.7))
+            lost = sum(getattr(hit, name) for name in LOSSES)
+            assert 1.0 - hit.restitution**2 == pytest.approx(lost, abs=bound)
+            assert all((getattr(hit, name) >= 0.0).all() for name in LOSSES)
+
+
+def test_histories_are_those_of_the_table():
+    impacts = Impacts.on_plates([2.0, 9.0], R, 1e-3)
+    ours, exact = (one.histories(impacts, 33) for one in backends(PAIRS["both yield"], "fem"))
+    peak = exact.force.max(axis=1, keepdims=True)
+    assert np.abs(ours.force - exact.force).max() < 1e-4 * peak.max()
+    assert ours.time == pytest.approx(exact.time, rel=1e-4)
+
+
+def test_two_beads_build_no_table_of_plates():
+    model = cl.ImpactModel(cl.Pair(*PAIRS["the bead yields"]))
+    model.lookup_sphere_sphere(5.0, R, R)
+    assert "table" not in vars(model._tabulated)
+    assert model._beads(None) is model._beads(None)
+    assert model._beads(None).law != model.force_law  # which takes numbers from the plate
