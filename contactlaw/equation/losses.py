@@ -63,8 +63,7 @@ def at_the_contact(law: Array, dm: float) -> tuple[float, float, float]:
 
 
 @kernel(inline=True)
-def shares(law: Array, dm: float, work: Work, mobility: float, u0: float) -> Losses:
+def shares(plastic: float, work: Work, other: float, mobility: float, u0: float) -> Losses:
     """Losses of a contact that has ended."""
-    _, plastic, other = at_the_contact(law, dm)
     per_energy = 2.0 / (u0 * u0)
     return Losses(per_energy * plastic, per_energy * mobility * work.wave, per_energy * other)

@@ -20,10 +20,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force, integrator, legs, losses, motion
-from contactlaw.equation.force import HERTZ, Curve
-from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME, Scale
-from contactlaw.equation.legs import NO_CURVE, Leg
-from contactlaw.equation.motion import Contact, State
+from contactlaw.equation.force import HERTZ
+from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
+from contactlaw.equation.legs import NO_CURVE
+from contactlaw.equation.motion import Contact
 from contactlaw.equation.outcome import Extremes, History, Outcome
 from contactlaw.equation.plate import Plate
 
@@ -36,7 +36,7 @@ MESSAGES = {
     BAD_INPUT: "lambda must be finite and >= 0, the yield compression finite and > 0",
 }
 # How far `_integrate` goes, and what it notes on the way.
-_TO_THE_TOP, _TO_THE_END, _AT_TIMES, _AT_SHARES = range(4)
+_TO_THE_TOP, _TO_THE_END, _AT_TIMES, _AT_COMPRESSIONS = range(4)
 
 
 class Solution(NamedTuple):
@@ -59,7 +59,9 @@ class Solution(NamedTuple):
 class Notes(NamedTuple):
     """Points on the ways of contacts, a row for each."""
 
-    at: Any  # rising times [T_H], or rising shares of the largest q, of which the last is 1
+    # Rising times [T_H]; or compressions, as many rising ones, of which the last is infinity for
+    # the largest, as falling ones, of which the last is 0 for separation.
+    at: Any
     time: Any
     speed: Any  # of the sphere
     force: Any
@@ -69,131 +71,76 @@ class Notes(NamedTuple):
 _NO_NOTES = Notes(*np.empty((5, 0, 0)))
 
 
-@kernel
-def _impact(contact: Contact, y: float, rtol: float, goal: int) -> Solution:
-    """One impact, to its largest compression or its end."""
-    scale, h = integrator.scale_of(y, rtol)
-    leg, top, h, total = integrator.load(contact, scale, h)
-    longest, dm, end = total, top.q * top.q, top
-    curve = force.unloading(contact.law, dm)
-    if goal != _TO_THE_TOP:
-        curve, leg, end = integrator.after(contact, curve, leg, integrator.TURN, top)
-        event = LEVEL
-        while True:
-            end, event, h, steps = integrator.follow(
-                contact, leg, end, h, scale, leg.level, math.inf
-            )
-            total, longest = total + steps, max(longest, steps)
-            if event != LEVEL or legs.is_last(leg):
-                break
-            curve, leg, end = integrator.after(contact, curve, leg, event, end)
-    lost = losses.shares(contact.law, dm, end.work, contact.plate.mobility, scale.u)
-    return Solution(
-        float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
-        float(total),
-        min(max(-end.u / scale.u, 0.0), 1.0),  # the error of a step may lift it beyond
-        top.t / scale.t,
-        end.t / scale.t,
-        top.f * y * math.sqrt(y),
-        dm * y,
-        curve.residual * y,
-        lost.plastic,
-        lost.wave,
-        lost.other,
-        2.0 * scale.t * end.work.wave / scale.u**2,
-    )
-
-
-@kernel
-def _history(contact: Contact, y: float, rtol: float, n: int, notes: Notes) -> None:
-    """Note a contact at times; after its end the state there holds."""
-    scale, h = integrator.scale_of(y, rtol)
-    parted = False
-    curve = NO_CURVE
-    leg, state = motion.touch(contact, scale.u)
-    for k in range(notes.at.shape[1]):
-        until = notes.at[n, k] * scale.t
-        while state.t < until and not parted:
-            state, event, h, _ = integrator.follow(contact, leg, state, h, scale, leg.level, until)
-            if event == TIME:
-                break
-            parted = event == integrator.NONE or (event == LEVEL and legs.is_last(leg))
-            if not parted:
-                curve, leg, state = integrator.after(contact, curve, leg, event, state)
-        notes.force[n, k] = state.f * y * math.sqrt(y)
-        notes.compression[n, k] = (leg.residual + state.q * state.q) * y
-        notes.speed[n, k] = state.u / scale.u
-
-
-@kernel
-def _seek(
-    contact: Contact, curve: Curve, leg: Leg, state: State, h: float, scale: Scale, target: float,
-    rising: bool,
-) -> tuple[Curve, Leg, State, float, int]:  # fmt: skip
-    """Go on to a compression that is passed, up or down."""
-    total = 0
-    while total < MAX_STEPS:
-        end = leg.level
-        level = math.sqrt(max(target - leg.residual, 0.0))
-        level = min(level, end) if rising else max(level, end)
-        state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, math.inf)
-        total += steps
-        if level != end or end == 0.0:
-            break
-        curve, leg, state = integrator.after(contact, curve, leg, event, state)
-        if rising != legs.is_loading(leg):
-            break
-    return curve, leg, state, h, total
-
-
-@kernel
-def _shape(contact: Contact, y: float, rtol: float, n: int, notes: Notes) -> int:
-    """Note when, and how fast, q passes shares of its largest value, up and then down to 0."""
-    scale, h = integrator.scale_of(y, rtol)
-    top_leg, top, _, total = integrator.load(contact, scale, h)
-    curve = NO_CURVE
-    leg, state = motion.touch(contact, scale.u)
-    last, dm, left = notes.at.shape[1] - 1, top.q * top.q, 0.0
-    for k in range(2 * last + 2):
-        if k == last:
-            leg, state = top_leg, top
-        elif k == last + 1:
-            curve, leg, state = integrator.after(contact, curve, leg, integrator.TURN, state)
-            left = curve.residual
-        if k != last:
-            beside = min(k, 2 * last - k)
-            share = notes.at[n, beside] if beside >= 0 else 0.0
-            target = left + share * share * (dm - left)
-            curve, leg, state, h, steps = _seek(
-                contact, curve, leg, state, h, scale, target, k < last
-            )
-            total += steps
-        notes.time[n, k], notes.speed[n, k] = state.t / scale.t, state.u / scale.u
-    return OK if total < MAX_STEPS else TOO_MANY_STEPS
-
-
 @kernel(cache=True)
 def _integrate(
     goal: int, law: Array, lam: Array, y: Array, rtol: float, notes: Notes, out: Array
 ) -> None:
     """Integrate impacts: lam >= 0, y = d_Y/(V0 T_H) > 0, rtol the error allowed per step.
 
-    What becomes of each goes into a column of out, in the order of `Solution`; to those that are
-    followed, only the status.
+    What becomes of each goes into a column of out, in the order of `Solution`.
     """
     for n in range(lam.size):
-        if not (0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf):
-            out[0, n] = BAD_INPUT
-            continue
-        contact = Contact(law, Plate(lam[n] * math.sqrt(math.sqrt(y[n]))))
-        if goal == _AT_TIMES:
-            _history(contact, y[n], rtol, n, notes)
-        elif goal == _AT_SHARES:
-            out[0, n] = _shape(contact, y[n], rtol, n, notes)
-        else:
-            one = _impact(contact, y[n], rtol, goal)
+        out[0, n] = BAD_INPUT
+        if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
+            one = _impact(goal, law, lam[n], y[n], rtol, notes, n)
             for k in range(len(one)):
                 out[k, n] = one[k]
+
+
+@kernel
+def _impact(
+    goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int
+) -> Solution:
+    """Integrate one impact, and note in row n what is asked for on the way."""
+    scale, h = integrator.scale_of(y, rtol)
+    contact = Contact(law, Plate(lam * scale.t))
+    leg, state = motion.touch(contact, scale.u)
+    curve, top, total, longest = NO_CURVE, state, 0, 0
+    marks, noted, going = notes.at.shape[1], 0, True
+    while going:
+        level, until, loading = leg.level, math.inf, legs.is_loading(leg)
+        if goal == _AT_TIMES:
+            until = notes.at[n, noted] * scale.t
+        elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
+            mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
+            level = min(mark, level) if loading else max(mark, level)
+        event, turns, here = TIME, False, noted + 1
+        if until > state.t:
+            state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
+            total, longest = total + steps, max(longest, steps)
+        ends = event != TIME and level == leg.level  # of the leg, not a mark on it
+        if ends:
+            turns = loading and (event == integrator.TURN or state.dq <= 0.0)
+            going = not (event == integrator.NONE or (event == LEVEL and legs.is_last(leg)))
+            here = noted if going else marks
+        if turns:
+            top, going = state, goal != _TO_THE_TOP
+            here = marks // 2 if goal == _AT_COMPRESSIONS else noted
+        for k in range(noted, here):
+            notes.time[n, k], notes.speed[n, k] = state.t / scale.t, state.u / scale.u
+            notes.force[n, k] = state.f * y * math.sqrt(y)
+            notes.compression[n, k] = (leg.residual + state.q * state.q) * y
+        noted = here
+        going = going and (goal < _AT_TIMES or noted < marks)
+        if going and ends:
+            curve, leg, state = integrator.after(contact, curve, leg, event, state)
+    dm = top.q * top.q
+    residual, plastic, other = losses.at_the_contact(law, dm)
+    lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
+    return Solution(
+        float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
+        float(total),
+        min(max(-state.u / scale.u, 0.0), 1.0),  # the error of a step may lift it beyond
+        top.t / scale.t,
+        state.t / scale.t,
+        top.f * y * math.sqrt(y),
+        dm * y,
+        residual * y,
+        lost.plastic,
+        lost.wave,
+        lost.other,
+        2.0 * scale.t * state.work.wave / scale.u**2,
+    )
 
 
 def _run(
@@ -228,7 +175,7 @@ def history(
     state at its end holds.
     """
     at = np.ascontiguousarray(np.atleast_2d(time))
-    notes = Notes(at, _NO_NOTES.time, *np.empty((3, *at.shape)))
+    notes = Notes(at, *np.empty((4, *at.shape)))
     _run(_AT_TIMES, law, lam, y, rtol, notes)
     f, w, u = (each.reshape(time.shape) for each in (notes.force, notes.compression, notes.speed))
     return f, w, u
@@ -251,10 +198,13 @@ def shape(
     Status of each impact, times [T_H] and speeds [V0], 2 n of each: up the rising shares, of which
     the last is 1, and down to 0, separation.
     """
-    at = np.ascontiguousarray(np.broadcast_to(shares, (lam.size, shares.size)))
-    time, speed = np.zeros((2, lam.size, 2 * shares.size))
-    notes = _NO_NOTES._replace(at=at, time=time, speed=speed)
-    return _run(_AT_SHARES, law, lam, y, rtol, notes).status, time, speed
+    top = _run(_TO_THE_TOP, law, lam, y, rtol)
+    w, left = top.peak_compression[:, None], top.residual_compression[:, None]
+    inner, ends = shares[:-1] ** 2, np.full_like(w, math.inf)
+    falling = left + (w - left) * inner[::-1]
+    at = np.concatenate([w * inner, ends, falling, np.zeros_like(w)], axis=1)
+    notes = Notes(at, *np.zeros((4, *at.shape)))
+    return _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes).status, notes.time, notes.speed
 
 
 def elastic_compression(law: Array, lam: Any, rtol: float) -> tuple[Any, Any]:
