@@ -28,11 +28,13 @@ from numba.core.caching import IndexDataCacheFile
 from numba.core.ccallback import CFunc
 from numba.core.registry import CPUDispatcher
 from numba.extending import intrinsic
+from numpy.typing import NDArray
 
 from contactlaw import _folder
 from contactlaw._version import VERSION
 
 config: Any = numba.core.config
+carray: Any = numba.carray  # type: ignore[attr-defined]
 _F = TypeVar("_F", bound=Callable[..., Any])
 _cached: list[Any] = []
 _UNUSED = 30 * 86400.0  # [s] after which the code of another version is thrown away
@@ -289,16 +291,31 @@ def _warn_once(reason: str) -> None:
     )
 
 
-@intrinsic
-def uncached(typing_context: Any) -> Any:
-    """Nonzero, and known only to this process: numba keeps no caller of it on disk.
+def in_memory(values: NDArray[np.float64]) -> Callable[[], NDArray[np.float64]]:
+    """Make a kernel that gives an array as it lies in memory, for kernels which belong to it.
 
-    A kernel that holds a table as a constant looks the same to numba's cache whatever the table is,
-    so a user's own ``@njit(cache=True)`` loop would go on with that of an earlier process.
+    To numba an array that a kernel holds as a constant is of another type, for which all that it is
+    passed to is compiled anew. Its cache takes no caller of this one: by their sources they look
+    the same whatever the array is, so a user's own ``@njit(cache=True)`` loop would go on with that
+    of an earlier process.
     """
+    if switched_off():
+        return lambda: values
 
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        pointer = context.add_dynamic_addr(builder, 1, info="contactlaw: a table in memory")
-        return builder.ptrtoint(pointer, context.get_value_type(numba.types.intp))
+    @intrinsic
+    def pointer(typing_context: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            address = values.ctypes.data  # values live as long as this function
+            where = context.add_dynamic_addr(builder, address, info="contactlaw: a table in memory")
+            return builder.bitcast(where, context.get_value_type(signature.return_type))
 
-    return numba.types.intp(), generate
+        return numba.types.CPointer(numba.types.float64)(), generate  # type: ignore[no-untyped-call]
+
+    size = values.size
+
+    @kernel(inline=True)
+    def array() -> NDArray[np.float64]:
+        found: NDArray[np.float64] = carray(pointer(), (size,))  # type: ignore[call-arg]
+        return found
+
+    return array

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import functools
-import math
 from collections.abc import Callable
 from typing import Any
 
@@ -12,13 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _jit
-from contactlaw._jit import kernel, uncached
+from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.beads import Beads, Other
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.physical.arguments import scalars
 from contactlaw.table import lookup
-
-_OFF = _jit.switched_off()
 
 
 class Compiled:
@@ -79,7 +76,7 @@ class Compiled:
     def kernel(self) -> Callable[[float, float, float], float]:
         """COR as a numba-jitted ``f(speed, radius, thickness)`` for loops of one's own [m/s, m, m].
 
-        It holds the table as a constant and does what `restitution` does for three floats, but
+        It belongs to this model's table and does what `restitution` does for three floats, but
         cannot raise (a raise would make a parallel loop serial): bad input and an impact outside
         the table give NaN, whatever `outside` says. Test for it with ``e != e``. Numba does not
         keep a caller of it on disk (``cache=True`` is without effect, with a NumbaWarning): the
@@ -125,13 +122,11 @@ class Compiled:
 def _jitted(
     table: NDArray[np.float64], c_lam: float, c_chi: float
 ) -> Callable[[float, float, float], float]:
-    """COR as a jitted function of speed, radius and thickness, with the table as a constant."""
-    on_plate = lookup.restitution_on_plate
+    """COR as a jitted function of speed, radius and thickness, which belongs to one table."""
+    on_plate, packed = lookup.restitution_on_plate, in_memory(table)
 
     @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float) -> float:
-        if not _OFF and uncached() == 0:  # type: ignore[call-arg]  # never so, but the call has to be there
-            return math.nan
-        return on_plate(table, c_lam, c_chi, speed, radius, thickness)
+        return on_plate(packed(), c_lam, c_chi, speed, radius, thickness)
 
     return cor
