@@ -11,19 +11,28 @@ its solutions. All quantities are in SI units.
 array([0.666, 0.897, 0.983])
 """
 
-from contactlaw import export
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
 from contactlaw._version import VERSION as __version__
-from contactlaw.answers.beads import restitution_sphere_sphere
-from contactlaw.answers.loads import LoadSignal, load_signal
-from contactlaw.answers.sensitivity import Sensitivity
-from contactlaw.fitting import Fit, Measurements, UnidentifiedError, fit
-from contactlaw.model import ImpactModel
-from contactlaw.physical.history import ForceHistory
-from contactlaw.physical.materials import Material, material, materials
-from contactlaw.physical.measured import measured_law
-from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.validity import Validity, edge_distance, explain
+
+if TYPE_CHECKING:
+    from contactlaw import export
+    from contactlaw.answers.beads import restitution_sphere_sphere
+    from contactlaw.answers.loads import LoadSignal, load_signal
+    from contactlaw.answers.sensitivity import Sensitivity
+    from contactlaw.fitting.fit import Fit, fit
+    from contactlaw.fitting.identify import UnidentifiedError
+    from contactlaw.fitting.measurements import Measurements
+    from contactlaw.model import ImpactModel
+    from contactlaw.physical.history import ForceHistory
+    from contactlaw.physical.materials import Material, material, materials
+    from contactlaw.physical.measured import measured_law
+    from contactlaw.physical.pair import Pair
+    from contactlaw.physical.rebound import Rebound
+    from contactlaw.physical.validity import Validity, edge_distance, explain
 
 __all__ = [
     "Fit",
@@ -48,3 +57,45 @@ __all__ = [
     "measured_law",
     "restitution_sphere_sphere",
 ]
+
+# Where the public names are defined.
+_MODULES = {
+    "fitting.fit": "Fit fit",
+    "fitting.identify": "UnidentifiedError",
+    "fitting.measurements": "Measurements",
+    "answers.loads": "LoadSignal load_signal",
+    "model": "ImpactModel",
+    "physical.history": "ForceHistory",
+    "physical.materials": "Material material materials",
+    "physical.measured": "measured_law",
+    "physical.pair": "Pair",
+    "physical.rebound": "Rebound",
+    "physical.validity": "Validity edge_distance explain",
+    "answers.sensitivity": "Sensitivity",
+    "answers.beads": "restitution_sphere_sphere",
+}
+_MODULE_OF = {name: module for module, names in _MODULES.items() for name in names.split()}
+
+
+if not TYPE_CHECKING:  # else any name would do for type checkers
+
+    def __getattr__(name: str) -> Any:
+        """Import a public name, or a module of the package, when it is first used (PEP 562).
+
+        A program that uses a part of the package starts faster, and the command line can decide
+        whether kernels are compiled before the first one is defined.
+        """
+        if name in _MODULE_OF:
+            value = getattr(importlib.import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
+            globals()[name] = value
+            return value
+        try:
+            return importlib.import_module(f"{__name__}.{name}")
+        except ModuleNotFoundError as error:
+            if error.name != f"{__name__}.{name}":
+                raise
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}") from None
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
