@@ -1,8 +1,42 @@
-"""``python -m contactlaw``: the command line."""
+"""``contactlaw``, also as ``python -m contactlaw``: the command line."""
 
 import sys
+from collections.abc import Sequence
 
-from contactlaw.cli import main
+# Python integrates this many impacts in less time than numba takes to load compiled kernels.
+_FEW = 20
+
+
+def main() -> int:
+    """Run the command of this process, without a compiler if it asks for a few impacts."""
+    if asks_for_few(sys.argv[1:]):
+        from contactlaw import _jit
+
+        _jit.switch_off()
+    from contactlaw.cli import main as command
+
+    return command()
+
+
+def asks_for_few(words: Sequence[str]) -> bool:
+    """Whether a command line asks for a few impacts; one that is misread takes longer, no more.
+
+    A range is many values, a picture needs hundreds of impacts, and ``--outside clamp`` a table.
+
+    Examples
+    --------
+    >>> asks_for_few(["cor", "--speed", "1,2,5", "--radius", "1mm"])
+    True
+    >>> asks_for_few(["cor", "--speed", "1:5:50", "--radius", "1mm"])
+    False
+    """
+    if words[:1] != ["cor"] or any(":" in word or word.startswith("--plo") for word in words):
+        return False
+    count = 1
+    for word in words:
+        count *= 1 + word.count(",")
+    return count <= _FEW and not any(word.endswith("clamp") for word in words)
+
 
 if __name__ == "__main__":
     sys.exit(main())

@@ -108,8 +108,17 @@ def _tell_apart(function: Callable[..., Any]) -> None:
         function.__qualname__ += f"[{names}]"
 
 
+def switch_off() -> None:
+    """Leave the kernels of this process as Python; call it before the first one is defined.
+
+    The environment variable of numba would do so in child processes too.
+    """
+    config.DISABLE_JIT = 1
+    np.seterr(divide="ignore", over="ignore", invalid="ignore")  # as compiled kernels do
+
+
 def switched_off() -> bool:
-    """Whether numba was told to leave Python as it is (``NUMBA_DISABLE_JIT=1``)."""
+    """Whether the kernels are Python, by `switch_off` or by ``NUMBA_DISABLE_JIT=1``."""
     return bool(config.DISABLE_JIT)
 
 

@@ -15,10 +15,16 @@ from typing import NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._jit import switched_off
+from contactlaw.answers.backend import SphereOnPlate
+from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable
+from contactlaw.answers.tabulated import extent
 from contactlaw.command import wording
 from contactlaw.model import ImpactModel
+from contactlaw.physical.rebound import Impacts
 from contactlaw.physical.validity import Validity, count_flags, explain
+from contactlaw.table import file
 
 Array = NDArray[np.float64]
 
@@ -111,11 +117,29 @@ def impacts(
         )
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
     with wording.impacts(v, r, h):
-        rebound = model.solve(v, r, h) if solve else model.lookup(v, r, h)
+        if not solve and _tableless(model):
+            limited = model.outside == "raise"
+            rebound = _solver(model, limited).rebounds(Impacts.on_plates(v, r, h))
+        else:
+            rebound = model.solve(v, r, h) if solve else model.lookup(v, r, h)
     first = slice(None, None, len(speeds))  # of each bead on each plate
     yields = np.repeat(yield_speeds(model, r[first], h[first]), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
     return Sheet({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
+
+
+def _tableless(model: ImpactModel) -> bool:
+    """Whether to do without a table: Python would take minutes to build it."""
+    law = model.force_law
+    ships = (law.is_hertz and not law.yields) or file.packaged(law) is not None
+    return switched_off() and model.outside != "clamp" and not ships
+
+
+def _solver(model: ImpactModel, limited: bool) -> Solver:
+    """Solver of a model, within the limits of its table or without."""
+    law = model.force_law
+    bodies = SphereOnPlate(model.pair, law)
+    return Solver(bodies, extent=extent(law)) if limited else Solver(bodies)
 
 
 def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
@@ -131,6 +155,8 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
     array([7.92,  inf])
     """
     try:
+        if _tableless(model):
+            return _solver(model, True).yield_speeds(radius, thickness)
         return np.asarray(model.yield_speed(radius, thickness))
     except ValueError:
         if radius.size == 1:

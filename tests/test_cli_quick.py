@@ -1,0 +1,168 @@
+"""``contactlaw cor`` for a few impacts, which are integrated in Python, against the table."""
+
+import json
+import os
+import subprocess
+import sys
+
+import pytest
+
+from contactlaw.__main__ import asks_for_few
+
+PAIR = "cor --sphere gamma-alumina --plate glass --radius 0.9mm"
+STEEL = "cor --sphere stainless-steel-304 --plate aluminium-6061-t6 --radius 1mm"
+# A bead that touches the limits of its table: of thickness, of speed, of what may be asked.
+ANSWERED = [
+    f"{PAIR} --thickness 1mm --speed 12",
+    f"{PAIR} --thickness inf --speed 12",
+    f"{PAIR} --thickness 0.2mm,1mm --speed 1,40",
+    f"{PAIR} --thickness 0.05mm --speed 12 --outside solve",
+    f"{PAIR} --thickness 1mm --speed 2000 --outside solve",
+    f"{PAIR} --thickness 0.12mm --speed 12",
+    f"{STEEL} --thickness 1mm,10mm --speed 0.01,1",
+    "cor --sphere glass --plate glass --radius 1mm --thickness 2mm --speed 3",
+    *(
+        f"{PAIR} --thickness 1mm --speed 12 --law {law}"
+        for law in ("myc", "hertz", "jackson_green", "stronge")
+    ),
+]
+REFUSED = [
+    f"{PAIR} --thickness 0.05mm --speed 12",
+    f"{PAIR} --thickness 0.05mm --speed 12 --law jackson_green",
+    f"{PAIR} --thickness 1mm --speed 1,3000",
+    f"{PAIR} --thickness 0.05mm,1mm --speed 3000",
+    f"{PAIR} --thickness 1mm,0.05mm --speed 3000",
+    f"{PAIR} --thickness 9um --speed 1e5",
+    f"{PAIR} --thickness 1nm --speed 12",
+    f"{PAIR} --thickness 1mm --speed -1",
+    f"{PAIR} --thickness 1mm --speed 12 --law nobody",
+    "cor --sphere chalk --plate glass --radius 1mm --thickness 1mm --speed 1",
+]
+BOTH = """
+import contextlib, io, json, sys
+from contactlaw import _jit
+if sys.argv[1] == "python":
+    _jit.switch_off()
+from contactlaw.cli import main
+found = []
+for command in json.load(sys.stdin):
+    out, err = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        code = main(command.split())
+    found.append((code, out.getvalue(), err.getvalue()))
+json.dump(found, sys.stdout)
+"""
+
+
+def outcomes(commands, route):
+    done = subprocess.run(
+        [sys.executable, "-c", BOTH, route],
+        input=json.dumps(commands), capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def both():
+    """What each command says in Python and compiled: status, output and errors."""
+    commands = [*(f"{command} --json" for command in ANSWERED), *REFUSED, *ANSWERED[:4]]
+    routes = (outcomes(commands, route) for route in ("python", "compiled"))
+    return dict(zip(commands, zip(*routes, strict=True), strict=True))
+
+
+@pytest.mark.parametrize("command", ANSWERED)
+def test_both_routes_agree(command, both):
+    (code, ours, said), (other_code, table, others) = both[f"{command} --json"]
+    assert (code, said) == (other_code, others) == (0, "")
+    ours, table = json.loads(ours), json.loads(table)
+    if isinstance(ours, dict):
+        ours, table = [ours], [table]
+    for one, other in zip(ours, table, strict=True):
+        assert one.keys() == other.keys() and one["flags"] == other["flags"]
+        assert one["restitution"] == pytest.approx(other["restitution"], abs=1e-6)
+        for name in one.keys() - {"flags"}:
+            if other[name] is None:  # inf has no place in JSON
+                assert one[name] is None, name
+            else:
+                assert one[name] == pytest.approx(other[name], rel=1e-4, abs=1e-12), name
+
+
+@pytest.mark.parametrize("command", ANSWERED[:4])
+def test_both_print_the_same(command, both):
+    """The COR to every digit, other numbers to one of the last; words and units as they are."""
+    (code, ours, said), (other_code, table, others) = both[command]
+    assert (code, said) == (other_code, others) == (0, "")
+    ours, table = ours.split(), table.split()
+    assert len(ours) == len(table)
+    assert ours[:2] == table[:2]
+    for one, other in zip(ours, table, strict=True):
+        try:
+            assert float(one) == pytest.approx(float(other), rel=1e-5 if len(other) > 5 else 1e-3)
+        except ValueError:
+            assert one == other
+
+
+@pytest.mark.parametrize("command", REFUSED)
+def test_both_refuse_alike(command, both):
+    ours, table = both[command]
+    assert ours == table
+    assert ours[0] == 1 and ours[2].startswith("contactlaw: ") and ours[2].count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("few", "words"),
+    [
+        (True, "cor --speed 1,2,5 --radius 1mm"),
+        (True, "cor --speed 1,2,3,4 --radius 1mm,2mm,3mm"),
+        (True, "cor --speed 1 --outside solve"),
+        (False, "cor --speed 1,2,3,4 --radius 1mm,2mm,3mm --thickness 1mm,2mm"),
+        (False, "cor --speed 1:5:3"),
+        (False, "cor --speed 1 --plot cor.png"),
+        (False, "cor --speed 1 --plot=cor.png"),
+        (False, "cor --speed 1 --outside clamp"),
+        (False, "cor --speed 1 --outside=clamp"),
+        (False, "sweep --speed 1"),
+        (False, ""),
+    ],
+)
+def test_few_impacts_are_told_from_many(few, words):
+    assert asks_for_few(words.split()) is few
+
+
+def run(command, folder, *before):
+    """Run the command line as users do, in a home where nothing is."""
+    environment = {**os.environ, "HOME": str(folder), "XDG_CACHE_HOME": str(folder)}
+    for name in ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "CONTACTLAW_CACHE_DIR"):
+        environment.pop(name, None)
+    code = "import sys; from contactlaw.__main__ import main; sys.exit(main())"
+    return subprocess.run(
+        [sys.executable, "-c", "\n".join((*before, code)), *command.split()],
+        env=environment, capture_output=True, text=True,
+    )  # fmt: skip
+
+
+def test_a_few_impacts_leave_neither_code_nor_a_table(tmp_path, both):
+    done = run(ANSWERED[0], tmp_path)
+    assert [done.returncode, done.stdout, done.stderr] == both[ANSWERED[0]][0]
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_children_keep_their_compiler(tmp_path):
+    """As they would not if the environment said that there is none."""
+    child = "import os, atexit; atexit.register(lambda: print(os.environ.get('NUMBA_DISABLE_JIT')))"
+    assert run(ANSWERED[0], tmp_path, child).stdout.endswith("\nNone\n")
+
+
+def test_an_interrupt_ends_it_in_words(tmp_path):
+    raising = (
+        "from contactlaw import _jit",
+        "off = _jit.switch_off",
+        "def switch_off():",
+        "    off()",
+        "    from contactlaw.answers.solver import Solver",
+        "    def rebounds(*_): raise KeyboardInterrupt",
+        "    Solver.rebounds = rebounds",
+        "_jit.switch_off = switch_off",
+    )
+    done = run(ANSWERED[0], tmp_path, *raising)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "contactlaw: interrupted\n")
