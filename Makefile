@@ -1,7 +1,8 @@
 # Everything runs in a local .venv that sets itself up; a second call starts at once.
 PYTHON ?= python3
 BIN := .venv/bin
-INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --editable
+# Python compiles what is imported; pip would compile all of numba and matplotlib for 13 s.
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable
 
 .PHONY: demo test test-engines lint package validation bench clean
 

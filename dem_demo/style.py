@@ -106,11 +106,13 @@ def circles(axes: Axes, missing: str, **options: Any) -> EllipseCollection:
 
 def png(figure: Figure) -> bytes:
     """Render a figure as a small file."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image
 
-    whole, small = io.BytesIO(), io.BytesIO()
-    figure.savefig(whole, format="png")
+    canvas: Any = FigureCanvasAgg(figure)  # its methods are untyped
+    canvas.draw()  # once: savefig lays it out in a drawing of its own
+    drawn, small = Image.fromarray(np.asarray(canvas.buffer_rgba())), io.BytesIO()
     # 256 colours take a third of the room, and nobody sees it
-    reduced = Image.open(whole).convert("RGB").quantize(256, dither=Image.Dither.NONE)
+    reduced = drawn.convert("RGB").quantize(256, dither=Image.Dither.NONE)
     reduced.save(small, "PNG", optimize=True)
     return small.getvalue()
