@@ -1,19 +1,25 @@
-"""Whole processes: every method of a model once, a law that nobody has seen, LAMMPS attached.
+"""Whole processes: first answers on a fresh machine, a law that nobody has seen, LAMMPS attached.
 
-Before laws were data (version 0.1 at commit 16ff41f, on two cores of another day): every method
-7.0 s warm and 11 s cold, `attach` 9 s, a new law 4 to 22 s.
+First answers are CPU time, of all threads and children, because that says the same on a busy
+machine. Before laws were data (version 0.1 at commit 16ff41f, on two cores of another day):
+`attach` took 9 s, a new law 4 to 22 s.
 """
 
 from __future__ import annotations
 
 import os
+import resource
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
+import contactlaw as cl
+from validation.bench import fits
 from validation.bench.row import Row
 from validation.bench.startup import HIDDEN
 
@@ -75,6 +81,55 @@ print(time.perf_counter() - start)
 """
 
 
+COR = "cor --sphere gamma-alumina --plate glass --radius 0.9mm --thickness 1mm --speed 12"
+FIT = "fit rebounds.csv --sphere bearing-steel-52100 --plate aluminium-6061-t6 --radius 1mm"
+ROOT = Path(__file__).parent.parent.parent
+_CACHES = ("XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "CONTACTLAW_CACHE_DIR", "MPLCONFIGDIR")
+
+
+def cpu_time(command: Sequence[str], home: Path, folder: Path, **variables: str) -> float:
+    """CPU time [s] of a process whose home folder is `home`, with that of its children."""
+    environment = {name: value for name, value in os.environ.items() if name not in _CACHES}
+    environment |= {"HOME": str(home), **variables}
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    subprocess.run(command, check=True, env=environment, cwd=folder, capture_output=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def first_answers(folder: Path) -> Iterator[Row]:
+    """Measure first and second processes of what users begin with, each in a home of its own."""
+    rebounds = fits.measured(
+        cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), "fem", ("thickness",)
+    )
+    np.savetxt(
+        folder / "rebounds.csv", np.column_stack([rebounds["speed"], rebounds["restitution"]]),
+        delimiter=",", header="speed_m/s,COR", comments="",
+    )  # fmt: skip
+    python, module = [sys.executable, "-c"], [sys.executable, "-m", "contactlaw"]
+    asked = (
+        ("contactlaw cor", [*module, *COR.split()], 8, None),
+        ("every method of ImpactModel", [*python, EVERY_METHOD], 16, 1.2),
+        ("a script for LAMMPS", [*python, ATTACH], 20, None),
+        ("contactlaw fit, 50 rows", [*module, *FIT.split(), "--unknown", "thickness"], 10, 1.5),
+    )  # fmt: skip
+    for n, (name, command, first, second) in enumerate(asked):
+        home = folder / f"home-{n}"
+        home.mkdir()
+        path = {"PYTHONPATH": str(ROOT)}
+        yield Row(f"{name}, first", cpu_time(command, home, folder, **path), "s", first)
+        taken = min(cpu_time(command, home, folder, **path) for _ in range(3))
+        yield Row(f"{name}, then", taken, "s", second)
+    clone, home, pip = (folder / name for name in ("clone", "home-demo", "pip"))
+    home.mkdir()
+    subprocess.run(["git", "clone", "--quiet", str(ROOT), str(clone)], check=True)
+    variables = {"PIP_CACHE_DIR": str(pip), "PYTHONPATH": ""}
+    cpu_time(["make", ".venv/demo.done"], home, clone, **variables)  # downloads
+    cpu_time(["make", "clean"], home, clone, **variables)
+    taken = cpu_time(["make", "demo"], home, clone, **variables)
+    yield Row("make demo in a fresh clone", taken, "s", 60, note="of the last commit")
+
+
 def run(code: str, folder: str, tables: str | None = None) -> tuple[float, list[float]]:
     """Wall time of a fresh process [s], and the numbers that it prints."""
     environment = {**os.environ, "NUMBA_CACHE_DIR": folder}
@@ -93,12 +148,7 @@ def run(code: str, folder: str, tables: str | None = None) -> tuple[float, list[
 def rows() -> Iterator[Row]:
     """Measure processes, the interpreter's own start included."""
     with tempfile.TemporaryDirectory() as folder:
-        cold, _ = run(EVERY_METHOD, folder)
-        warm = min(run(EVERY_METHOD, folder)[0] for _ in range(5))
-        yield Row(
-            "every method once, warm cache", warm, "s", 1.5, note="7.0 s before laws were data"
-        )
-        yield Row("every method once, cold cache", cold, "s", 15, note="11 s before")
+        yield from first_answers(Path(folder))
         run(NEW_LAW, folder)
         firsts, builds = [], []
         for n in range(3):
