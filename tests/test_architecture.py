@@ -204,7 +204,7 @@ EDITS = [
     ("equation/force.py", "return piece_force(law, piece_at(law, q), q)",
      "return 2.0 * piece_force(law, piece_at(law, q), q)", (2,)),
     ("equation/motion.py", "-2.0 * q * f, f", "-3.0 * q * f, f", (3,)),
-    ("equation/zener.py", "2.0 * scale.t * end", "4.0 * scale.t * end", ()),
+    ("equation/zener.py", "2.0 * scale.t * state.work", "4.0 * scale.t * state.work", ()),
     ("physical/rebound.py", "*= mass[n] * v / t", "*= 2.0 * mass[n] * v / t", (4,)),
     ("table/shapes.py", "return d * math.sqrt(d)", "return 2.0 * d * math.sqrt(d)", (5,)),
     ("softsphere.py", "force = f * unit", "force = 2.0 * f * unit", (6,)),
