@@ -1,7 +1,9 @@
-"""Which modules cannot be searched for examples where LAMMPS is missing."""
+"""Which modules cannot be searched for examples where LAMMPS or trimesh is missing."""
 
 from importlib.util import find_spec
 
-collect_ignore_glob = ["contactlaw/engines/lammps/*"]
-if find_spec("lammps") and find_spec("mpi4py"):
-    collect_ignore_glob = []
+collect_ignore_glob = []
+if not (find_spec("lammps") and find_spec("mpi4py")):
+    collect_ignore_glob += ["contactlaw/engines/lammps/*"]
+if not find_spec("trimesh"):
+    collect_ignore_glob += ["contactlaw/walls/mesh.py"]

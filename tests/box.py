@@ -24,7 +24,7 @@ DT = 1e-7
 STEPS = 2400
 RAIN = ["rain", "--engine", "lammps", "--beads", "30", "--plates", "0.5e-3,inf"]
 RAIN += ["--duration", "0.03", "--speed", "8,15"]
-PLATE = 5  # column of the history: 0, or the plate that is being touched; three on, the force
+PLATE = 6  # column of the history: 0, or the plate that is being touched; three on, the force
 
 
 def flat(thickness, x=-0.05, width=0.1, height=0.0, **options):

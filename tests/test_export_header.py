@@ -28,7 +28,8 @@ from contactlaw.physical import validity
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.physical.validity import flags_of
-from contactlaw.softsphere import RELAXATION, Contacts, State, resized, unit_spring
+from contactlaw.softsphere import Contacts, State, resized, unit_spring
+from contactlaw.stepping.spring import RELAXATION
 from contactlaw.table import Settings, lookup
 from contactlaw.table.nodes import POINTS, coarser
 from validation.hostile import headers

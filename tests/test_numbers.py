@@ -10,7 +10,8 @@ from contactlaw import Validity
 from contactlaw.equation.waves import CONTACT_TIME, SATURATION, stiffening, with_waves
 from contactlaw.physical.scaling import plate_mobility, scales, sphere_on_plate
 from contactlaw.physical.validity import flags_of
-from contactlaw.softsphere import impact, resized, unit_spring
+from contactlaw.softsphere import resized, unit_spring
+from contactlaw.stepping.spring import impact
 
 STEEL = cl.Pair("stainless-steel-304", "stainless-steel-304")
 PAIRS = [cl.Pair("gamma-alumina", "glass"), STEEL, cl.Pair("glass", "carbon-steel-1020"),

@@ -24,7 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import _atomic, softsphere
+from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
 from contactlaw.equation import force, integrator, waves
@@ -35,6 +35,7 @@ from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import factors
 from contactlaw.physical.validity import Limits, Validity
 from contactlaw.softsphere import unit_spring
+from contactlaw.stepping import spring as stepping_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.nodes import coarser
 
@@ -49,7 +50,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
     integrator: "MAX_STEPS SPENT LATE",
     solver: "RTOL",
-    softsphere: "TOP MOST_ITERATIONS CONVERGED",
+    stepping_spring: "TOP MOST_ITERATIONS CONVERGED",
     validity: "TRANSITS",
 }
 # Enumerators of C, which say where things are in an array.

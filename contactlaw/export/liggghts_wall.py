@@ -17,7 +17,7 @@ from contactlaw._version import VERSION
 from contactlaw.equation.waves import CONTACT_TIME
 from contactlaw.export import c_header
 from contactlaw.model import ImpactModel
-from contactlaw.softsphere import FEWEST_STEPS
+from contactlaw.stepping.spring import FEWEST_STEPS
 from contactlaw.table import lookup
 
 _FILES = "normal_model_contactlaw.h.in", "wall_contactlaw.cpp", "build.sh", "README.txt.in"

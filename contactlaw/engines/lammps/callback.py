@@ -16,13 +16,9 @@ import numpy as np
 from numba import types
 
 from contactlaw._jit import c_function, kernel
-from contactlaw.engines.lammps.contact import Clock, Walls, interact
-from contactlaw.engines.lammps.geometry import Bead
-from contactlaw.engines.lammps.grid import MARGIN
 from contactlaw.engines.lammps.memory import (
-    ERROR,
-    KIND,
-    MASS,
+    FIRST,
+    HEAD,
     MINIMIZING,
     NO_STEPS,
     NOT_FINITE,
@@ -32,21 +28,26 @@ from contactlaw.engines.lammps.memory import (
     RETYPED,
     REWEIGHED,
     SHARED,
-    STARTS_INSIDE,
     TOO_FAST,
-    array_at,
-    carray,
+    WIDTH,
     complain,
     extract,
     keep,
     matrix_at,
     running,
     thermo,
-    touches,
 )
-from contactlaw.engines.lammps.motion import place
-from contactlaw.engines.lammps.surface import OVERLAP, ROOM, near
-from contactlaw.engines.lammps.walls import FACET, FRAME, SHEET
+from contactlaw.engines.record import IMPACT
+from contactlaw.stepping import Bead, Clock, Trouble, interact
+from contactlaw.stepping.bead import touches
+from contactlaw.stepping.contact import CONTACT, STATUS, Scene
+from contactlaw.stepping.friction import FRICTION
+from contactlaw.stepping.sheet import SHEET
+from contactlaw.walls.frame import FACET, FRAME
+from contactlaw.walls.grid import MARGIN
+from contactlaw.walls.memory import array_at, carray
+from contactlaw.walls.motion import move
+from contactlaw.walls.surface import OVERLAP, ROOM, box, near
 
 _SAME = 1e-6  # relative change of a radius or a mass that is rounding
 _EVERY = 100  # steps between looks for beads that fly further than their radius in a step
@@ -63,28 +64,35 @@ _SIGNATURE = types.void(
 
 
 @kernel
+def _head(history: Any, i: int) -> Any:
+    """Read what a bead remembers beside its contacts."""
+    return array_at(int(history[i].ctypes.data), 1, HEAD)[0]
+
+
+@kernel
 def _look_for_jumps(
-    shared: Any, clock: Clock, walls: Walls, tags: Any, v: Any, radius: Any, history: Any, last: Any
-) -> None:
+    shared: Any, clock: Clock, step: int, scene: Scene, tags: Any, v: Any, radius: Any,
+    history: Any, last: Any,
+) -> None:  # fmt: skip
     """Complain of beads that could be on the other side of a wall after one step.
 
     And forget the impacts of beads that are no more, whose rows new ones have taken.
     """
     fastest = 0.0
-    for frame in walls.frames:
+    for frame in scene.frames:
         fastest = max(fastest, frame.fastest)
     per = shared.length / shared.time
     for i in range(len(radius)):
         speed = per * math.sqrt(v[i, 0] ** 2 + v[i, 1] ** 2 + v[i, 2] ** 2) + fastest
-        size = shared.length * radius[i]
+        size, head = shared.length * radius[i], _head(history, i)
         if not speed * clock.dt < size:
             code = TOO_FAST if speed < math.inf else NOT_FINITE
-            complain(shared, clock.step, tags[i], history[i], code, -1, speed, size)
-        if history[i, OWNER] != tags[i]:
+            complain(shared, step, tags[i], head, code, -1, speed, size)
+        if head.owner != tags[i]:
             last[i] = 0.0
-        elif history[i, RADIUS] != 0.0 and not _same(size, history[i, RADIUS]):
+        elif head.radius != 0.0 and not _same(size, head.radius):
             # a bead that has become so small that no wall is near it
-            complain(shared, clock.step, tags[i], history[i], RESIZED, -1, size, history[i, RADIUS])
+            complain(shared, step, tags[i], head, RESIZED, -1, size, head.radius)
             _forget(history[i])
 
 
@@ -101,32 +109,28 @@ def _forget(row: Any) -> None:
 
 
 @kernel
-def _check_sphere(
-    shared: Any, sheets: Any, step: int, tag: int, row: Any, r: float, mass: float, kind: int
-) -> None:
+def _check_sphere(shared: Any, sheets: Any, step: int, head: Any, bead: Bead) -> None:
     """Complain of a bead that touches walls and is no more the sphere that began to touch them."""
-    before = int(row[KIND])
-    if not _same(r, row[RADIUS]):
-        complain(shared, step, tag, row, RESIZED, -1, r, row[RADIUS])
-    elif not _same(mass, row[MASS]):
-        complain(shared, step, tag, row, REWEIGHED, -1, mass, row[MASS])
-    elif kind != before:
-        now, then = sheets[kind * shared.sheet_count], sheets[before * shared.sheet_count]
+    tag, before = bead.number, int(head.kind)
+    if not _same(bead.r, head.radius):
+        complain(shared, step, tag, head, RESIZED, -1, bead.r, head.radius)
+    elif not _same(bead.mass, head.mass):
+        complain(shared, step, tag, head, REWEIGHED, -1, bead.mass, head.mass)
+    elif bead.kind != before:
+        now, then = sheets[bead.kind, 0], sheets[before, 0]
         if now.law != 0 and now.alike != then.alike:  # without a model the contact itself says so
-            complain(shared, step, tag, row, RETYPED, -1, kind + 1.0, before + 1.0)
+            complain(shared, step, tag, head, RETYPED, -1, bead.kind + 1.0, before + 1.0)
 
 
 @kernel
-def _keep_sphere(shared: Any, tag: int, row: Any, r: float, mass: float, kind: int) -> None:
+def _keep_sphere(head: Any, row: Any, bead: Bead) -> None:
     """Remember a bead that has begun to touch walls; forget contacts that mean nothing any more."""
-    if row[OWNER] != tag:
-        return
-    if row[ERROR] >= STARTS_INSIDE:
+    if head.error >= Trouble.STARTS_INSIDE.value:
         _forget(row)
-    elif not touches(row, shared):
-        row[RADIUS] = 0.0
-    elif row[RADIUS] == 0.0:
-        row[RADIUS], row[MASS], row[KIND] = r, mass, kind
+    elif not touches(bead):
+        head.radius = 0.0
+    elif head.radius == 0.0:
+        head.radius, head.mass, head.kind = bead.r, bead.mass, bead.kind
 
 
 @kernel
@@ -137,29 +141,7 @@ def _tick(shared: Any, clock: Clock, frames: Any) -> None:
         shared.ticks, shared.tick = 0, clock.dt
     if clock.advancing:
         shared.ticks += 1
-    time = shared.base + shared.ticks * shared.tick
-    for frame in frames:
-        if frame.moves != 0:
-            place(frame, time, clock.dt)
-
-
-@kernel
-def _box(frames: Any) -> tuple[float, float, float, float, float, float]:
-    """Box around all walls, where they are now: three lowest coordinates, three highest."""
-    low, high = np.full(3, math.inf), np.full(3, -math.inf)
-    for frame in frames:
-        small, large, turn = frame.low, frame.high, frame.turn
-        for k in range(3):
-            if frame.moves == 0:
-                a, b = small[k], large[k]
-            else:
-                a = b = frame.hub[k] + frame.shift[k]
-                for m in range(3):
-                    one = turn[3 * k + m] * (small[m] - frame.hub[m])
-                    other = turn[3 * k + m] * (large[m] - frame.hub[m])
-                    a, b = a + min(one, other), b + max(one, other)
-            low[k], high[k] = min(low[k], a), max(high[k], b)
-    return low[0], low[1], low[2], high[0], high[1], high[2]
+    move(frames, shared.base + shared.ticks * shared.tick, clock.dt)
 
 
 def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces: Any) -> None:
@@ -181,14 +163,17 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     before = shared.before if shared.before > 0.0 else dt
     if advancing:
         shared.before = dt
-    clock = Clock(step, time[0] * seconds + (step - at_step[0]) * dt, dt, before, advancing)
-    walls = Walls(
-        array_at(shared.sheets, shared.types * shared.sheet_count, SHEET),
+    clock = Clock(time[0] * seconds + (step - at_step[0]) * dt, dt, before, advancing)
+    scene = Scene(
+        array_at(shared.sheets, (shared.types, shared.sheet_count), SHEET),
         array_at(shared.frames, shared.frame_count, FRAME),
         array_at(shared.facets, shared.facet_count, FACET),
-        array_at(shared.overlaps, ROOM, OVERLAP),
+        array_at(shared.found, ROOM, OVERLAP),
+        array_at(shared.impacts, shared.capacity, IMPACT),
+        array_at(shared.status, 1, STATUS),
+        shared.friction,
     )
-    _tick(shared, clock, walls.frames)
+    _tick(shared, clock, scene.frames)
     history_address = extract(shared, shared.history)
     if n == 0 or history_address == 0:  # 0: a command has taken it away
         return
@@ -198,15 +183,16 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     kind = array_at(extract(shared, shared.type), n, np.int32)
     history = matrix_at(history_address, n, shared.columns)
     last = array_at(extract(shared, shared.last), n, np.float64)
-    omega, torque = v, v
+    omega, torque, sliding = v, v, 0
     if shared.friction > 0.0:
         omega = matrix_at(extract(shared, shared.omega), n, 3)
         torque = matrix_at(extract(shared, shared.torque), n, 3)
+        sliding = shared.places
     if step % _EVERY == 0:
-        _look_for_jumps(shared, clock, walls, tags, v, radius, history, last)
+        _look_for_jumps(shared, clock, step, scene, tags, v, radius, history, last)
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
-    per = length / seconds
-    x0, y0, z0, x1, y1, z1 = _box(walls.frames)
+    per, status, loads = length / seconds, scene.status[0], np.zeros((2, 3))
+    x0, y0, z0, x1, y1, z1 = box(scene.frames)
     for i in range(n):
         centre, reach = (
             (x[i, 0] * length, x[i, 1] * length, x[i, 2] * length),
@@ -221,27 +207,44 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             or centre[1] < y0 - reach
         ):
             continue
-        if not near(walls.frames, centre, radius[i] * length):
+        if not near(scene.frames, centre, radius[i] * length):
             continue
-        row, r, heavy = history[i], radius[i] * length, mass[i] * shared.mass
-        if row[OWNER] == tags[i] and row[RADIUS] != 0.0:
-            _check_sphere(shared, walls.sheets, step, tags[i], row, r, heavy, kind[i] - 1)
+        row, head = history[i], _head(history, i)
+        if head.owner != tags[i]:
+            row[OWNER:] = 0.0
+            head.owner, head.columns, last[i] = tags[i], shared.columns, 0.0
+        first = int(row.ctypes.data) + 8 * FIRST
         bead = Bead(
             tags[i],
             kind[i] - 1,
             centre,
             (v[i, 0] * per, v[i, 1] * per, v[i, 2] * per),
             (omega[i, 0] / seconds, omega[i, 1] / seconds, omega[i, 2] / seconds),
-            r,
-            heavy,
-            force[i],
-            torque[i],
-            row,
-            last[i : i + 1],
+            radius[i] * length,
+            mass[i] * shared.mass,
+            loads[0],
+            loads[1],
+            array_at(first, shared.places, CONTACT),
+            array_at(first + 8 * WIDTH * shared.places, sliding, FRICTION),
         )
-        if not row[ERROR] >= STARTS_INSIDE:
-            interact(shared, clock, walls, bead)
-        _keep_sphere(shared, tags[i], row, r, heavy, kind[i] - 1)
+        if head.radius != 0.0:
+            _check_sphere(shared, scene.sheets, step, head, bead)
+        if not head.error >= Trouble.STARTS_INSIDE.value:
+            recorded, loads[:] = status.impacts, 0.0
+            interact(scene, clock, bead)
+            for k in range(3):
+                force[i, k] += loads[0, k] * seconds**2 / (shared.mass * length)
+            if sliding > 0:
+                for k in range(3):
+                    torque[i, k] += loads[1, k] * seconds**2 / (shared.mass * length**2)
+            if status.impacts > recorded:
+                last[i] = scene.impacts[status.impacts - 1].restitution
+            if status.trouble != 0:
+                complain(shared, step, tags[i], head, status.trouble, status.wall, status.value,
+                         status.limit)  # fmt: skip
+                head.error = max(head.error, status.worst)
+                status.trouble = status.worst = 0
+        _keep_sphere(head, row, bead)
 
 
 @functools.cache

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from contactlaw.engines.lammps import memory
-from contactlaw.softsphere import FEWEST_STEPS
+from contactlaw.stepping import Trouble
+from contactlaw.stepping.spring import FEWEST_STEPS
 
 _CHANGED = (
     "; an impact is one of one sphere, so change beads that touch nothing, or detach() the plates "
     "before and attach them when the bead has left"
 )
-_MESSAGES = {
-    memory.STEP_TOO_LARGE: (
+_MESSAGES: dict[int, str] = {
+    Trouble.STEP_TOO_LARGE: (
         "timestep: too large for an impact at {value:.4g} m/s, which needs {steps} steps; take "
         "{limit:.2g} s or less"
     ),
-    memory.STARTS_INSIDE: (
+    Trouble.STARTS_INSIDE: (
         "the first touch finds it {value:.4g} m deep in the plate, more than its speed explains; "
         "place it outside, or at most {limit:.2g} m deep (and give by itself, not among other "
         "commands, a delete_atoms or reset_atoms that changes IDs in mid-contact)"
@@ -31,24 +32,24 @@ _MESSAGES = {
         "type: it is of atom type {value:.0f} and was of {limit:.0f}, of another model, when it "
         "began to touch" + _CHANGED
     ),
-    memory.TOO_THIN: (
+    Trouble.TOO_THIN: (
         "thickness: the plate is too thin for the bead, the inelasticity lambda = {value:.4g} is "
         "above {limit:.4g}, beyond which the model has no answer; take a thicker plate or smaller "
         "beads (ImpactModel(..., outside='solve') integrates what is not known)"
     ),
-    memory.FOIL: (
+    Trouble.FOIL: (
         "thickness: the plate is a foil beside the bead, R/H = {value:.4g} is above {limit:.4g}, "
         "and nothing is known of such impacts; take a thicker plate or smaller beads"
     ),
-    memory.CROSSED: (
+    Trouble.CROSSED: (
         "its centre went through the plate at {value:.4g} m/s, pushed by what is stronger than the "
         "contact: take a shorter timestep, or less load"
     ),
-    memory.WRONG_MASS: (
+    Trouble.WRONG_MASS: (
         "density: its mass is {value:.6g} kg, a sphere of the model's material has {limit:.6g} kg; "
         "'set group all density' to that of model.pair.sphere"
     ),
-    memory.TOO_MANY_RECORDS: (
+    Trouble.TOO_MANY_IMPACTS: (
         "records: more than {limit:.0f} impacts ended within one command; attach with more, or run "
         "fewer steps at a time"
     ),
@@ -56,7 +57,7 @@ _MESSAGES = {
         "timestep: at {value:.4g} m/s it flies further than its radius of {limit:.4g} m in a step, "
         "and could jump through a plate; take {quotient:.2g} s at most"
     ),
-    memory.NO_MODEL: (
+    Trouble.NO_MODEL: (
         "model: there is none for beads of its atom type {value:.0f} here; attach(lmp, "
         "{{{value:.0f}: model, ...}}, ...)"
     ),

@@ -1,10 +1,9 @@
-"""What Python, the C function and LAMMPS share: layouts, codes, and pointers to arrays."""
+"""What Python, the C function and LAMMPS share: layouts, codes, and calls of LAMMPS's interface."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numba
 import numpy as np
 from llvmlite import ir
 from numba import types
@@ -12,47 +11,45 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from contactlaw._jit import kernel
+from contactlaw.stepping.contact import CONTACT
+from contactlaw.stepping.friction import FRICTION
+from contactlaw.walls.memory import array_at
 
-carray: Any = numba.carray  # type: ignore[attr-defined]
+# A bead's history, in float64 as LAMMPS keeps it: this row, then those of its contacts, then, with
+# friction, those of their friction. LAMMPS gives a new bead the row that another one has left
+# behind: it is known by its owner.
+HEAD = np.dtype(
+    [
+        ("error", "f8"),  # code, which stops the run on all ranks; 0 without one
+        ("owner", "f8"),  # ID of the bead
+        ("columns", "f8"),  # of the history: a restart file may have another layout
+        # when it began to touch walls; a radius of 0: it touches none
+        ("radius", "f8"),  # [m]
+        ("mass", "f8"),  # [kg]
+        ("kind", "f8"),  # atom type, from 0
+    ]
+)
+ERROR, OWNER, COLUMNS, RADIUS = range(4)
+FIRST, WIDTH, SLIDING = (kind.itemsize // 8 for kind in (HEAD, CONTACT, FRICTION))
 
-# A bead's history is the code of an error, the bead's ID, radius [m], mass [kg] and atom type (from
-# 0) when it began to touch walls, and slots for its contacts. The radius is 0 if it touches none.
-# (LAMMPS gives a new bead the row that another one has left behind: by the ID it is known.) A slot:
-# the facet's number, counted from 1, negative if the bead is on the side from which the normal
-# points away, 0 if the slot is empty; the state of the contact; the time since first touch [s],
-# summed up (LAMMPS's clock has other bits when a run is cut into pieces, and can be reset);
-# approach speed [m/s]; energy to the wave, and energy to plastic flow that is in the record already
-# [J]; the overlap [m]; work of the contact's force on the bead, in the wall's frame, and of the
-# wall that moves [J]; a force of this step alone, beside that of the state [N]; whether it was
-# alone on one smooth surface, went across a kink or had company, or has shared its force with
-# another contact; power of the wall's motion by the normal force [W]; the force on the bead without
-# friction [N]; with friction, the three components of the tangential spring [m].
-ERROR, OWNER, RADIUS, MASS, KIND, FIRST = range(6)
-(FACET, DISPLACEMENT, LARGEST, FORCE, MOBILITY, STIFFENING, DURATION, SPEED, WAVE, TOLD, OVERLAP,
- WORK, WALL_WORK, KICK, TIED, POWER, PUSH) = range(17)  # fmt: skip
-SPRING = PUSH + 3
-_SLOTS = 8  # contacts that a bead may have at once: a corner has three, a hole as many as edges
-
-# From STARTS_INSIDE on the bead's contacts mean nothing any more: they are forgotten, and it feels
-# no wall until the run has ended, so that none of them gets into the record.
-(STEP_TOO_LARGE, TOO_MANY_RECORDS, TOO_FAST, NOT_FINITE, NO_MODEL, NO_STEPS, STARTS_INSIDE, CROSSED,
- WRONG_MASS, RESIZED, REWEIGHED, RETYPED, TOO_THIN, FOIL) = range(1, 15)  # fmt: skip
-
-ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0  # of TIED
+# Errors beside those of `contactlaw.stepping.Trouble`. From STARTS_INSIDE on, these included, they
+# empty the bead's contacts, and it feels no wall until the run has ended, so that none of them gets
+# into the record.
+TOO_FAST, NOT_FINITE, NO_STEPS = range(4, 7)
+RESIZED, REWEIGHED, RETYPED = range(20, 23)
 
 MINIMIZING = 2  # of LAMMPS's states; 1 is time steps
 
-# Integers up to "overlaps" are addresses; "calls" counts those of the C function, the last of them
-# in "step". Walls move by a clock of their own: `ticks` steps of length `tick` since `base`.
-# LAMMPS's has other bits when a run is cut into pieces, and can be reset.
+# Integers up to "status" are addresses; "calls" counts those of the C function, the last of them in
+# "step". Walls move by a clock of their own: `ticks` steps of length `tick` since `base`. LAMMPS's
+# has other bits when a run is cut into pieces, and can be reset.
 SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "lammps")]
     + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "omega", "torque")]
     + [(name, "i8") for name in ("history", "last", "elapsed", "dt", "atime", "atimestep")]
-    + [(name, "i8") for name in ("sheets", "frames", "facets", "records", "overlaps")]
+    + [(name, "i8") for name in ("sheets", "frames", "facets", "found", "impacts", "status")]
     + [(name, "i8") for name in ("types", "sheet_count", "frame_count", "facet_count")]
-    + [(name, "i8") for name in ("slots", "width", "columns", "calls", "step")]
-    + [(name, "i8") for name in ("record_capacity", "record_count", "unserved", "ticks")]
+    + [(name, "i8") for name in ("capacity", "places", "columns", "calls", "step", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
     + [
         (name, "f8")
@@ -61,22 +58,6 @@ SHARED = np.dtype(
     + [(name, "f8") for name in ("length", "time", "mass")],  # LAMMPS's units, in SI
     align=True,
 )
-
-
-def history_shape(facets: int, friction: bool) -> tuple[int, int, int]:
-    """Slots per bead, columns of a slot, and columns of the history."""
-    slots, width = min(facets, _SLOTS), SPRING + 3 * friction
-    return slots, width, FIRST + slots * width
-
-
-@intrinsic
-def _pointer(typing_context: Any, address: Any) -> Any:
-    """Turn an address into a void pointer."""
-
-    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
-
-    return types.voidptr(types.intp), generate
 
 
 @intrinsic
@@ -111,42 +92,17 @@ def running(shared: Any) -> Any:
 
 
 @kernel
-def array_at(address: int, shape: Any, kind: Any) -> Any:
-    """Array of this shape and kind that begins at an address."""
-    return carray(_pointer(address), shape, kind)  # type: ignore[call-arg]
-
-
-@kernel
 def matrix_at(address: int, rows: int, columns: int) -> Any:
     """Array whose rows LAMMPS points to; they lie one behind the other."""
     return array_at(array_at(address, 1, np.intp)[0], (rows, columns), np.float64)
 
 
 @kernel
-def slot_of(row: Any, shared: Any, facet: int) -> int:
-    """First column of a facet's slot, else 0; of an empty one for facet -1."""
-    for k in range(shared.slots):
-        at = FIRST + k * shared.width
-        if abs(row[at]) == facet + 1:
-            return int(at)
-    return 0
-
-
-@kernel
-def touches(row: Any, shared: Any) -> bool:
-    """Whether a bead has a contact."""
-    for k in range(shared.slots):
-        if row[FIRST + k * shared.width] != 0.0:
-            return True
-    return False
-
-
-@kernel
 def complain(
-    shared: Any, step: int, tag: int, row: Any, code: int, plate: int, value: float, limit: float
+    shared: Any, step: int, tag: int, head: Any, code: int, plate: int, value: float, limit: float
 ) -> None:
     """Keep the first error of a rank, and mark the bead, which stops the run on all ranks."""
-    row[ERROR] = code
+    head.error = max(head.error, code)
     keep(shared, step, tag, code, plate, value, limit)
 
 

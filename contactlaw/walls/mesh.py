@@ -12,9 +12,9 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.engines.lammps.motion import FARTHEST, Motion, check_motion, vector
-from contactlaw.engines.lammps.plate import Models, check_models
 from contactlaw.physical.arguments import check, number
+from contactlaw.walls.motion import FARTHEST, Motion, check_motion, vector
+from contactlaw.walls.plate import Models, check_models
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

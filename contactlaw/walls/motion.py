@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.engines.lammps.memory import array_at
 from contactlaw.physical.arguments import number
+from contactlaw.walls.memory import array_at
 
 Vector = Sequence[float]
 Floats = NDArray[np.float64]
@@ -288,7 +288,7 @@ def _swing(row: Any, time: float) -> tuple[float, float, float]:
     )
 
 
-@kernel
+@kernel(entry=True)
 def place(row: Any, time: float, dt: float) -> None:
     """Put a wall to where it is at a time, the end of a step of length dt [s]."""
     last, here, then = _swing(row, time - dt), _swing(row, time), _swing(row, time + dt)
@@ -303,3 +303,11 @@ def place(row: Any, time: float, dt: float) -> None:
     turn[0], turn[1], turn[2] = c + x * x * w, x * y * w - z * s, x * z * w + y * s
     turn[3], turn[4], turn[5] = x * y * w + z * s, c + y * y * w, y * z * w - x * s
     turn[6], turn[7], turn[8] = x * z * w - y * s, y * z * w + x * s, c + z * z * w
+
+
+@kernel
+def move(frames: Any, time: float, dt: float) -> None:
+    """Put all walls to where they are at a time, the end of a step of length dt [s]."""
+    for frame in frames:
+        if frame.moves != 0:
+            place(frame, time, dt)

@@ -28,8 +28,7 @@ from typing import Any
 import numpy as np
 
 from contactlaw._jit import kernel
-from contactlaw.engines.lammps.geometry import (
-    Bead,
+from contactlaw.walls.facet import (
     Point,
     Touch,
     cell_of,
@@ -40,7 +39,7 @@ from contactlaw.engines.lammps.geometry import (
     to_frame,
     turned,
 )
-from contactlaw.engines.lammps.memory import array_at
+from contactlaw.walls.memory import array_at
 
 _SEAM = 1e-4  # [r] between facets that are one surface to a bead
 _TIE = 1e-10  # [r] of overlap: rounding
@@ -83,9 +82,11 @@ def _has_deeper(found: Any, count: int, one: Any) -> bool:
 
 @kernel
 def _spare(found: Any, count: int) -> int:
-    """Shallowest facet that a deeper one beside it stands for; without any, the shallowest.
+    """Find the facet to drop when the list is full.
 
-    So the many facets of a floor leave room for the wall that the bead just begins to touch.
+    It is the shallowest one that lies beside a deeper one in nearly the same direction, else the
+    shallowest of all. So the many facets of a floor leave room for the wall that the bead just
+    begins to touch.
     """
     spare = least = -1
     for n in range(count):
@@ -117,6 +118,25 @@ def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
 
 
 @kernel
+def box(frames: Any) -> tuple[float, float, float, float, float, float]:
+    """Box around all walls, where they are now: three lowest coordinates, three highest."""
+    low, high = np.full(3, math.inf), np.full(3, -math.inf)
+    for frame in frames:
+        small, large, turn = frame.low, frame.high, frame.turn
+        for k in range(3):
+            if frame.moves == 0:
+                a, b = small[k], large[k]
+            else:
+                a = b = frame.hub[k] + frame.shift[k]
+                for m in range(3):
+                    one = turn[3 * k + m] * (small[m] - frame.hub[m])
+                    other = turn[3 * k + m] * (large[m] - frame.hub[m])
+                    a, b = a + min(one, other), b + max(one, other)
+            low[k], high[k] = min(low[k], a), max(high[k], b)
+    return low[0], low[1], low[2], high[0], high[1], high[2]
+
+
+@kernel
 def near(frames: Any, x: Point, r: float) -> bool:
     """Whether any facet may be near a bead: a quick look, for most are near none."""
     for f in range(len(frames)):
@@ -135,13 +155,13 @@ def near(frames: Any, x: Point, r: float) -> bool:
 
 
 @kernel
-def overlaps(frames: Any, facets: Any, bead: Bead, found: Any) -> int:
-    """List the facets that a bead overlaps, and count them."""
+def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any) -> int:
+    """List the facets that a sphere overlaps, and count them."""
     count = 0
     for f in range(len(frames)):
         frame = frames[f]
-        p, cells = to_frame(frame, bead.x), frame.cells
-        more = max(bead.r - frame.reach, 0.0)  # of a bead too large for one cell
+        p, cells = to_frame(frame, x), frame.cells
+        more = max(r - frame.reach, 0.0)  # of a bead too large for one cell
         i0, i1 = cell_of(frame, 0, p[0] - more), cell_of(frame, 0, p[0] + more)
         j0, j1 = cell_of(frame, 1, p[1] - more), cell_of(frame, 1, p[1] + more)
         k0, k1 = cell_of(frame, 2, p[2] - more), cell_of(frame, 2, p[2] + more)
@@ -152,9 +172,9 @@ def overlaps(frames: Any, facets: Any, bead: Bead, found: Any) -> int:
                 for k in range(max(k0, 0), min(k1 + 1, cells[2])):
                     for e in range(starts[row + k], starts[row + k + 1]):
                         facet = facets[entries[e]]
-                        if not abs(height(facet, p)) < bead.r:
+                        if not abs(height(facet, p)) < r:
                             continue
-                        touch = on_facet(facet, p, bead.r)
+                        touch = on_facet(facet, p, r)
                         if touch.x > 0.0:
                             count = _insert(found, count, entries[e], turned(frame, touch))
     return count
@@ -190,15 +210,15 @@ def _pass(a: Touch, b: Touch, r: float) -> float:
 
 
 @kernel
-def slope(frames: Any, facets: Any, bead: Bead, one: Any, other: Any) -> Point:
-    """Way on which the overlap of a pass between two facets falls, as a facet's on its normal."""
-    a, b, r = touch_of(one), touch_of(other), bead.r
+def slope(frames: Any, facets: Any, x: Point, r: float, one: Any, other: Any) -> Point:
+    """Direction in which the overlap of a pass between two facets falls, times its rate."""
+    a, b = touch_of(one), touch_of(other)
     low = a if a.x < b.x else b
     if _pass(a, b, r) == low.x:
         return low.nx, low.ny, low.nz
     first, second = facets[one.facet], facets[other.facet]
     here, there = frames[first.frame], frames[second.frame]
-    step, x = _NUDGE * r, bead.x
+    step = _NUDGE * r
     dx, dy, dz = 0.0, 0.0, 0.0
     for k in range(3):
         change = 0.0
@@ -263,10 +283,7 @@ def _search(found: Any, count: int, start: int, r: float) -> None:
 
 @kernel
 def join(r: float, found: Any, count: int) -> bool:
-    """Tell for each facet of the list what it is the surface of together with, and what it shares.
-
-    Whether two contacts share anything.
-    """
+    """Give facets that form one surface the same surface; whether two contacts share any force."""
     first, single, sharing = 0, True, False
     if count == 1:
         found[0].surface, found[0].shared = 0, 0.0

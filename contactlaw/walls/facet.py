@@ -1,7 +1,7 @@
-"""Where a bead is with respect to a facet, and which facets are near it.
+"""Where a sphere is with respect to a facet: overlap, normal and nearest point.
 
-Legend: r radius, x overlap of the sphere with the facet, n normal from the facet to the bead, s
-height over the facet's plane, u velocity of the bead relative to the surface.
+Legend: r radius, x overlap of the sphere with the facet or place of its centre, n normal from the
+facet to the sphere, s height of the centre over the facet's plane.
 """
 
 from __future__ import annotations
@@ -12,30 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw._jit import kernel
-from contactlaw.engines.lammps.memory import array_at
-from contactlaw.engines.lammps.walls import RECTANGLE
+from contactlaw.walls.frame import RECTANGLE
+from contactlaw.walls.memory import array_at
 
 Point = tuple[float, float, float]
 
 
-class Bead(NamedTuple):
-    """A bead in SI units, with views of LAMMPS's arrays for what is written."""
-
-    tag: int
-    kind: int  # atom type, from 0
-    x: Point
-    v: Point  # half a step before
-    omega: Point
-    r: float
-    mass: float
-    force: Any
-    torque: Any
-    history: Any
-    last: Any  # COR of its last impact
-
-
 class Touch(NamedTuple):
-    """Where a bead is with respect to a facet."""
+    """Where a sphere is with respect to a facet."""
 
     x: float
     s: float
@@ -172,15 +156,15 @@ def has(facet: Any, p: Point, margin: float) -> bool:
 
 
 @kernel
-def seen(frame: Any, facet: Any, bead: Bead) -> Touch:
-    """Touch of a bead and a facet of a frame, in space."""
-    return turned(frame, on_facet(facet, to_frame(frame, bead.x), bead.r))
+def seen(frame: Any, facet: Any, x: Point, r: float) -> Touch:
+    """Touch of a sphere and a facet of a frame, in space."""
+    return turned(frame, on_facet(facet, to_frame(frame, x), r))
 
 
 @kernel
-def nearest(touch: Touch, bead: Bead) -> Point:
-    """Point of a facet that is nearest to the bead's centre, in space."""
-    reach, x = bead.r - touch.x, bead.x
+def nearest(touch: Touch, x: Point, r: float) -> Point:
+    """Point of a facet that is nearest to the sphere's centre, in space."""
+    reach = r - touch.x
     return x[0] - reach * touch.nx, x[1] - reach * touch.ny, x[2] - reach * touch.nz
 
 

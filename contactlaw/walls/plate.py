@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from contactlaw.engines.lammps.motion import Motion, check_motion, vector
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
+from contactlaw.walls.motion import Motion, check_motion, vector
 
 Vector = Sequence[float]
 Models = ImpactModel | Mapping[int, ImpactModel]  # for all beads, or by their atom type
@@ -67,6 +67,15 @@ class Plate:
         scalars(thickness=self.thickness)
         check_models(self.model)
         check_motion(self.motion)
+
+
+def by_type(models: Models | None, types: int) -> dict[int, ImpactModel]:
+    """Models by atom type, from 1."""
+    if models is None:
+        return {}
+    if isinstance(models, Mapping):
+        return {int(kind): model for kind, model in models.items()}
+    return dict.fromkeys(range(1, types + 1), models)
 
 
 def check_models(models: Any) -> None:

@@ -1,4 +1,4 @@
-"""What the force of a contact does in LAMMPS's scheme, and what makes it what the law says.
+"""The energy ledger of a contact under velocity Verlet, and what makes it what the law says.
 
 Velocity Verlet pushes a bead at whole steps only, but a contact begins and ends inside a step. The
 force sets in as (t - t0)^1.5, and a sum over steps misses the integral of that by a zeta function
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.softsphere import FEWEST_STEPS, Spring, State, advance
+from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, advance
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -31,13 +31,15 @@ Point = tuple[float, float, float]
 _ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 0.0013675)
 # Largest change of the speed with which a bead leaves, over that speed or the one of its approach,
 # times (steps per contact)^2.5: twice what the scheme errs without it
-# (`contactlaw.softsphere.time_step`). A bead that more is missing of has been hit in between.
-# One that rolls over a corner may leave slowly after a hard approach.
+# (`contactlaw.softsphere.time_step`). If more energy is missing than that, another bead struck this
+# one in between: it is left as it is. One that rolls over a corner may leave slowly after a hard
+# approach.
 _MOST = 1.8
 # Largest relative change of the speed of a bead that went across kinks, times steps per contact: at
 # the force's peak the push of a step is 2.9/steps of the momentum that an elastic bead comes with.
 _KINKS = 3.0
-_ONE = 1.01  # step's way at most between first touch and the end of that step; an edge is round
+# Overlap at the end of the step of first touch over the path in a step; an edge is round.
+_ONE = 1.01
 
 
 @kernel

@@ -1,0 +1,313 @@
+"""A bead near walls in one time step: which contacts go on, end and begin."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.stepping.contact import (
+    ALONE,
+    AT_REST,
+    CONTACT,
+    SHARING,
+    STATUS,
+    UNEVEN,
+    Bead,
+    Clock,
+    Contact,
+    Scene,
+    Trouble,
+    contact_of,
+    forget,
+    press,
+)
+from contactlaw.stepping.energy import dot
+from contactlaw.stepping.friction import FRICTION
+from contactlaw.stepping.sheet import sheets
+from contactlaw.walls.facet import Touch, nearest, seen
+from contactlaw.walls.frame import Wall, framed
+from contactlaw.walls.plate import Models, by_type
+from contactlaw.walls.surface import OVERLAP, ROOM, join, on_it, overlaps, slope, touch_of
+
+Rows = NDArray[np.void]
+
+_PLACES = 8  # contacts that a bead may have at once: a corner has three, a hole as many as edges
+_RIGHT = 1e-6  # cosine of an angle that counts as a right one
+
+
+class WallContacts:
+    """Contacts of beads with walls, which a loop of one's own steps through.
+
+    Parameters
+    ----------
+    walls : sequence of Plate and Mesh
+        What the beads hit, of `contactlaw.walls`.
+    models : ImpactModel or dict of int to ImpactModel
+        Materials and law; of several materials by the beads' type, from 1.
+    largest : float
+        Radius of the largest bead [m].
+    impacts : structured array
+        Room for the record of impacts, with the columns of `contactlaw.engines.record.IMPACT`.
+    friction : float, optional
+        Coulomb's coefficient of friction between beads and walls [-].
+    types : int, optional
+        How many types of beads there are.
+
+    Attributes
+    ----------
+    scene : Scene
+        What the kernel `interact` reads, as long as this object lives.
+    places : int
+        Contacts that a bead may have at once.
+    """
+
+    def __init__(
+        self,
+        walls: Sequence[Wall],
+        models: Models,
+        largest: float,
+        impacts: Rows,
+        *,
+        friction: float = 0.0,
+        types: int = 1,
+    ) -> None:
+        rows, numbers, self._models = sheets(walls, by_type(models, types), types)
+        facets, frames, self._held = framed(walls, numbers, largest)
+        self.places = min(len(facets), _PLACES)
+        self.scene = Scene(
+            rows, frames, facets, np.zeros(ROOM, OVERLAP), impacts, np.zeros(1, STATUS), friction
+        )
+
+    def collisions(self) -> Rows:
+        """Impacts that have ended, one row each.
+
+        Raises
+        ------
+        RuntimeError
+            If anything went wrong in a step; it names the `Trouble`, the wall and what was wrong.
+        """
+        status = self.scene.status[0]
+        if status["trouble"]:
+            raise RuntimeError(
+                f"{Trouble(status['trouble']).name} on wall {status['wall']}: got "
+                f"{status['value']:.4g}, the limit is {status['limit']:.4g} (SI units)"
+            )
+        hits: Rows = self.scene.impacts[: status["impacts"]]
+        return hits
+
+    def memory(self, beads: int) -> tuple[Rows, Rows]:
+        """Rows of CONTACT and of FRICTION for each of some beads, all empty."""
+        sliding = self.places if self.scene.friction > 0.0 else 0
+        return np.zeros((beads, self.places), CONTACT), np.zeros((beads, sliding), FRICTION)
+
+
+@kernel
+def touches(bead: Bead) -> bool:
+    """Whether a bead has a contact."""
+    for k in range(len(bead.contacts)):
+        if bead.contacts[k].facet != 0.0:
+            return True
+    return False
+
+
+@kernel
+def _facet_of(row: Any) -> int:
+    """Facet of a contact, -1 of an empty row."""
+    return int(abs(row.facet)) - 1
+
+
+@kernel
+def _row_of(bead: Bead, facet: int) -> int:
+    """Row of the contact with a facet, or an empty one for facet -1; -1 if there is none."""
+    for k in range(len(bead.contacts)):
+        if abs(bead.contacts[k].facet) == facet + 1:
+            return k
+    return -1
+
+
+@kernel
+def _place_of(found: Any, count: int, facet: int) -> int:
+    """Place of a facet in the list of those that a bead overlaps, else -1."""
+    for n in range(count):
+        if found[n].facet == facet:
+            return n
+    return -1
+
+
+@kernel
+def _place_in(scene: Scene, bead: Bead, n: int, touching: bool) -> Contact:
+    """Contact with a facet of the list, less what it shares with another.
+
+    By Hertz's law, the energy at the pass is as (x_pass/x)^2.5 to that of the contact, and the
+    force as the power 1.5; under other laws the shares are the same.
+    """
+    found, row = scene.found, scene.found[n]
+    along = (row.nx, row.ny, row.nz)
+    if row.shared > 0.0:
+        share = row.shared / row.x
+        share *= math.sqrt(share)
+        less = slope(scene.frames, scene.facets, bead.x, bead.r, found[row.one], found[row.other])
+        along = (
+            along[0] - share * less[0], along[1] - share * less[1], along[2] - share * less[2]
+        )  # fmt: skip
+    return contact_of(scene, bead, row.facet, touch_of(row), along, touching, -1)
+
+
+@kernel
+def _path(clock: Clock, bead: Bead) -> float:
+    """Largest distance that a bead may seem to have moved in a step [m]."""
+    v = bead.v
+    return math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
+
+
+@kernel
+def _home(scene: Scene, bead: Bead, row: Any, count: int, path: float) -> int:
+    """Place in the list of the facet that a contact goes on with, else -1.
+
+    From a facet that is suddenly far, behind a periodic boundary, it goes on with what the bead
+    overlaps as deeply, within its path of a step; else it is -2.
+    """
+    found, facet = scene.found, _facet_of(row)
+    at = _place_of(found, count, facet)
+    if at >= 0:
+        return int(found[at].surface)
+    one = scene.facets[facet]
+    touch = seen(scene.frames[one.frame], one, bead.x, bead.r)
+    if touch.x > -bead.r:
+        point = nearest(touch, bead.x, bead.r)
+        for n in range(count):
+            if on_it(scene.frames, scene.facets, found[n], point, bead.r):
+                return int(found[n].surface)
+        return -1
+    best = -2
+    for n in range(count):
+        apart = abs(found[n].x - row.overlap)
+        if found[n].surface == n and apart <= path:
+            best, path = n, apart
+    return best
+
+
+@kernel
+def _hand_over(scene: Scene, clock: Clock, bead: Bead, count: int) -> None:
+    """Let contacts go along with a bead that crosses from facet to facet."""
+    found, path = scene.found, _path(clock, bead)
+    for k in range(len(bead.contacts)):
+        row = bead.contacts[k]
+        if row.facet == 0.0:
+            continue
+        home = _home(scene, bead, row, count, path)
+        if home == -2:
+            forget(bead, k)
+        elif home >= 0 and _row_of(bead, found[home].facet) < 0:
+            row.facet = math.copysign(found[home].facet + 1.0, found[home].s)
+
+
+@kernel
+def _part(scene: Scene, clock: Clock, bead: Bead, k: int, count: int) -> None:
+    """End a contact: the bead is off the facet, or it is one with another now."""
+    facet = _facet_of(bead.contacts[k])
+    one, n, heir = scene.facets[facet], _place_of(scene.found, count, facet), -1
+    if n >= 0:
+        heir = _row_of(bead, scene.found[scene.found[n].surface].facet)
+        heir = -1 if heir == k else heir
+    if heir >= 0:
+        bead.contacts[heir].company = SHARING
+    t = seen(scene.frames[one.frame], one, bead.x, bead.r)
+    if t.x > -bead.r:  # else it was taken away
+        t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
+        contact = contact_of(scene, bead, facet, t, (t.nx, t.ny, t.nz), True, heir)
+        press(scene, clock, bead, contact, k)
+    else:
+        forget(bead, k)
+
+
+@kernel
+def _deepest_new(found: Any, count: int, bead: Bead) -> int:
+    """Place in the list of the deepest facet that a contact has yet to begin with, else -1."""
+    new = -1
+    for n in range(count):
+        if found[n].surface == n and (new < 0 or found[n].x > found[new].x):
+            if _row_of(bead, found[n].facet) < 0:
+                new = n
+    return new
+
+
+@kernel
+def _begin_all(scene: Scene, clock: Clock, bead: Bead, count: int, touching: bool) -> None:
+    """Begin contacts, the deepest first; without an empty row, in place of a shallower one.
+
+    So the force has no jump where a contact takes the place of another.
+    """
+    found = scene.found
+    for _ in range(count):
+        new = _deepest_new(found, count, bead)
+        if new < 0:
+            return
+        at = _row_of(bead, -1)
+        if at < 0:
+            least = math.inf
+            for k in range(len(bead.contacts)):
+                n = _place_of(found, count, _facet_of(bead.contacts[k]))
+                x = found[n].x if n >= 0 else 0.0  # it has ended in this step
+                if x < least:
+                    least, at = x, k
+            if not found[new].x > least:
+                scene.status[0].left_out += 1
+                return
+            _part(scene, clock, bead, at, count)
+            forget(bead, at)
+        press(scene, clock, bead, _place_in(scene, bead, new, touching), at)
+        if found[new].shared > 0.0:
+            bead.contacts[at].company = SHARING
+
+
+@kernel
+def _company(bead: Bead) -> float:
+    """Whether contacts press a bead that work on each other; those at right angles do not.
+
+    The scheme of a contact takes its own force for all that moves the bead along its normal.
+    """
+    for k in range(len(bead.contacts)):
+        one = bead.contacts[k]
+        if not one.force > 0.0:
+            continue
+        push = one.push[0], one.push[1], one.push[2]
+        for j in range(k):
+            other = bead.contacts[j]
+            if other.force > 0.0:
+                pushes = other.push[0], other.push[1], other.push[2]
+                if abs(dot(push, pushes)) > _RIGHT * one.force * other.force:
+                    return UNEVEN
+    return ALONE
+
+
+@kernel(cache=True)
+def interact(scene: Scene, clock: Clock, bead: Bead) -> None:
+    """Add the force of the walls to a bead, and keep its contacts."""
+    found = scene.found
+    count = overlaps(scene.frames, scene.facets, bead.x, bead.r, found)
+    if count == 0 and not touches(bead):
+        return
+    sharing = join(bead.r, found, count)
+    if clock.advancing:
+        _hand_over(scene, clock, bead, count)
+    touching, company = touches(bead), ALONE
+    if count > 1:  # most beads have one contact, and their rows are far from each other in memory
+        company = SHARING if sharing else _company(bead)
+    for k in range(len(bead.contacts)):
+        row = bead.contacts[k]
+        if row.facet == 0.0:
+            continue
+        n = _place_of(found, count, _facet_of(row))
+        if n >= 0 and found[n].surface == n:
+            row.company = max(row.company, company)
+            press(scene, clock, bead, _place_in(scene, bead, n, touching), k)
+        elif clock.advancing or row.extra_force != 0.0:
+            _part(scene, clock, bead, k, count)
+    if clock.advancing:
+        _begin_all(scene, clock, bead, count, touching)

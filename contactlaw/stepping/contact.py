@@ -1,0 +1,413 @@
+"""One contact of a bead with a wall in one time step: normal force, friction, energies, record.
+
+Legend: r radius, x overlap of the sphere with the undeformed wall, u speed towards the wall, n
+normal from the wall to the bead, s height over the facet's plane.
+"""
+
+from __future__ import annotations
+
+import enum
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.equation import force
+from contactlaw.equation.waves import CONTACT_TIME
+from contactlaw.physical.validity import flags_of
+from contactlaw.stepping import energy
+from contactlaw.stepping.energy import dot
+from contactlaw.stepping.friction import pull, surface_velocity
+from contactlaw.stepping.sheet import limits_of, spring_of
+from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, impact
+from contactlaw.table.lookup import THINNEST
+from contactlaw.walls.facet import Point, Touch, nearest, velocity
+from contactlaw.walls.memory import array_at
+
+Array = NDArray[np.float64]
+
+AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a wall
+# A touching bead that is 1 % faster than when it arrived was struck by another: a new impact.
+_FASTER = 1.01
+_SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
+
+# What a bead remembers of a contact between two steps. All are float64, so that an engine can keep
+# them in whatever array of numbers it takes along with a bead.
+CONTACT = np.dtype(
+    [
+        # from 1; negative on the side from which the facet's normal points away; 0: an empty row
+        ("facet", "f8"),
+        *((name, "f8") for name in State._fields),
+        # since first touch [s], summed up: a clock has other bits when a run is cut into pieces
+        ("duration", "f8"),
+        ("approach_speed", "f8"),  # [m/s]
+        ("wave_energy", "f8"),  # that the plate has taken [J]
+        ("reported_loss", "f8"),  # energy lost in the contact that the record already holds [J]
+        ("overlap", "f8"),  # [m]
+        ("work", "f8"),  # of the contact's force on the bead, in the frame of the wall [J]
+        ("wall_work", "f8"),  # of the wall's motion on the bead [J]
+        ("extra_force", "f8"),  # of this step alone, beside `force` [N]
+        ("company", "f8"),  # ALONE, UNEVEN or SHARING
+        ("wall_power", "f8"),  # of the wall's motion by the normal force [W]
+        ("push", "f8", 3),  # force on the bead without friction [N]
+    ]
+)
+NO_CONTACT = np.zeros(1, CONTACT)
+
+# A contact on one smooth surface; one that went across a kink or beside which another one pressed;
+# one that has shared its force with another.
+ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
+
+
+class Trouble(enum.IntEnum):
+    """What ends a run; from STARTS_INSIDE on the contacts of the bead mean nothing any more."""
+
+    STEP_TOO_LARGE = 1
+    TOO_MANY_IMPACTS = 2
+    NO_MODEL = 3
+    STARTS_INSIDE = 10
+    CROSSED = 11
+    WRONG_MASS = 12
+    TOO_THIN = 13
+    FOIL = 14
+
+
+# What the kernels tell their caller, who clears it.
+STATUS = np.dtype(
+    [
+        ("impacts", "i8"),  # written to the record
+        ("left_out", "i8"),  # contacts without a force, for want of a place, summed over the steps
+        ("trouble", "i8"),  # the first `Trouble`, 0 without any
+        ("worst", "i8"),  # the largest
+        ("wall", "i8"),  # that the first one happened at; the value that was wrong, and its limit
+        ("value", "f8"),
+        ("limit", "f8"),
+    ]
+)
+
+
+class Clock(NamedTuple):
+    """Where a simulation is."""
+
+    now: float  # [s]
+    dt: float  # the step that ends now [s]
+    before: float  # the step before that [s]
+    advancing: bool  # else the forces of the last step are asked for again
+
+
+class Scene(NamedTuple):
+    """Walls that beads may touch, as `contactlaw.stepping.WallContacts` makes them."""
+
+    sheets: Any
+    frames: Any
+    facets: Any
+    found: Any  # room for the list of facets that a bead overlaps
+    impacts: Any  # the record
+    status: Any
+    friction: float  # Coulomb's coefficient [-]
+
+
+class Bead(NamedTuple):
+    """A bead in SI units, and arrays that are written: forces are added, contacts kept."""
+
+    number: int
+    kind: int  # its model's number, from 0
+    x: Point
+    v: Point  # half a step before
+    omega: Point
+    r: float
+    mass: float
+    force: Any
+    torque: Any
+    contacts: Any  # rows of CONTACT
+    friction: Any  # as many rows of FRICTION; none without friction
+
+
+class Contact(NamedTuple):
+    """A bead's contact with a facet."""
+
+    facet: int
+    sheet: int
+    wall: int  # number of the plate or mesh
+    triangle: int
+    touch: Touch
+    point: Point  # [m]
+    v: Point  # of the bead relative to the wall, half a step before [m/s]
+    w: Point  # of the wall [m/s]
+    along: Point  # force on the bead over that of the law: the normal, if nothing is shared
+    touching: bool  # whether the bead was on a wall before this step
+    heir: int  # row of the contact that this one has grown together with, else -1
+
+
+@kernel
+def contact_of(
+    scene: Scene, bead: Bead, facet: int, touch: Touch, along: Point, touching: bool, heir: int
+) -> Contact:
+    """Contact of a bead with a facet that it touches so."""
+    row, point = scene.facets[facet], nearest(touch, bead.x, bead.r)
+    frame = scene.frames[row.frame]
+    before, v = velocity(frame, frame.half_rate, point), bead.v
+    u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
+    w = velocity(frame, frame.rate, point)
+    return Contact(
+        facet, row.sheet, row.wall, row.triangle, touch, point, u, w, along, touching, heir
+    )  # fmt: skip
+
+
+@kernel
+def complain(scene: Scene, trouble: Trouble, wall: int, value: float, limit: float) -> None:
+    """Keep the first trouble, and how bad it became."""
+    status, code = scene.status[0], trouble.value
+    if status.trouble == 0:
+        status.trouble, status.wall, status.value, status.limit = code, wall, value, limit
+    status.worst = max(status.worst, code)
+
+
+@kernel
+def _check_step(scene: Scene, clock: Clock, wall: int, spring: Spring, u: float) -> None:
+    """Refuse a step that is too long for an impact at this speed."""
+    limit = CONTACT_TIME * impact(spring, u).time / FEWEST_STEPS
+    if clock.dt > limit:
+        complain(scene, Trouble.STEP_TOO_LARGE, wall, u, limit)
+
+
+@kernel
+def _begin(
+    scene: Scene, clock: Clock, bead: Bead, contact: Contact, row: Any, spring: Spring, u: float
+) -> None:
+    """Start a contact, or the next one of a bead that comes back before it has parted."""
+    wall, sheet, x = contact.wall, scene.sheets[bead.kind, contact.sheet], contact.touch.x
+    first = u > 0.0 and row.largest_compression == 0.0
+    row.duration = min(x / u, clock.dt) if first else 0.0
+    row.approach_speed, row.wave_energy, row.work, row.wall_work = u, 0.0, 0.0, 0.0
+    if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
+        complain(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
+    if u > 0.0:
+        _check_step(scene, clock, wall, spring, u)
+        lam = impact(spring, u).inelasticity
+        if not THINNEST * bead.r <= sheet.thickness:
+            complain(scene, Trouble.FOIL, wall, bead.r / sheet.thickness, 1.0 / THINNEST)
+        elif lam > sheet.largest:
+            complain(scene, Trouble.TOO_THIN, wall, lam, sheet.largest)
+
+
+@kernel
+def _partner(bead: Bead, k: int) -> int:
+    """Place of another contact that a tied one has shared its force with, else -1."""
+    if bead.contacts[k].company == SHARING:
+        for j in range(len(bead.contacts)):
+            other = bead.contacts[j]
+            if j != k and other.force > 0.0 and other.company == SHARING:
+                return j
+    return -1
+
+
+@kernel
+def _power(bead: Bead, k: int, v: Point) -> float:
+    """Power of the contacts but one on a bead of this velocity [W]."""
+    power = 0.0
+    for j in range(len(bead.contacts)):
+        other = bead.contacts[j]
+        if j != k and other.force > 0.0:
+            power += dot((other.push[0], other.push[1], other.push[2]), v)
+    return power
+
+
+@kernel
+def _kinked(held: Point, n: Point, v: Point, dt: float, distance: float) -> bool:
+    """Whether the normal has turned by more than the bead's path explains."""
+    size = math.sqrt(dot(held, held))
+    turn = 0.0
+    for k in range(3):
+        turn += (held[k] / size - n[k]) ** 2
+    return turn * distance * distance > 4.0 * dot(v, v) * dt * dt
+
+
+@kernel
+def _end(
+    law: Array,
+    scene: Scene,
+    clock: Clock,
+    bead: Bead,
+    contact: Contact,
+    k: int,
+    spring: Spring,
+    last: State,
+    u: float,
+) -> Point:
+    """Put a contact whose force has ended in this step into the record; the force that it lacks.
+
+    One that has grown together with another leaves its account to that, and no record.
+    """
+    row, scale, v, touch = bead.contacts[k], spring.scale, contact.v, contact.touch
+    unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
+    if last.stiffening > 0.0:
+        unit *= last.stiffening
+    dm = last.largest_compression / scale
+    lost, other = force.loss(law, dm) * unit * scale, force.other_loss(law, dm) * unit * scale
+    if contact.heir >= 0:
+        to = bead.contacts[contact.heir]
+        to.reported_loss += row.reported_loss - lost
+        to.wave_energy += row.wave_energy
+        to.work += row.work
+        to.wall_work += row.wall_work
+        return 0.0, 0.0, 0.0
+    reported, row.reported_loss = row.reported_loss, lost
+    if not row.approach_speed > 0.0:  # it was put there and then left
+        return 0.0, 0.0, 0.0
+    missing = reported - lost - row.wave_energy - row.work
+    steps, partner = row.duration / clock.dt, _partner(bead, k)
+    extra, leaves = (0.0, 0.0, 0.0), -u
+    if partner >= 0:  # what one has too much the other has too little
+        bead.contacts[partner].work -= missing
+    elif row.company != ALONE:
+        more = energy.scaled(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
+        size = more * bead.mass / clock.dt
+        extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
+    else:
+        size = energy.settle(missing, bead.mass, u, row.approach_speed, clock.dt, steps)
+        extra = size * touch.nx, size * touch.ny, size * touch.nz
+        leaves = size * clock.dt / bead.mass - u
+    if not touch.face and u < 0.0 and row.company == ALONE:
+        around = energy.turning(bead.r, row.overlap, touch.x, u, clock.dt)
+        leaves = energy.free_speed(leaves, around, bead.r, touch.x)
+    n = scene.status[0].impacts
+    if n == len(scene.impacts):
+        complain(scene, Trouble.TOO_MANY_IMPACTS, contact.wall, 0.0, n)
+        return extra
+    scene.status[0].impacts = n + 1
+    since = 0.0
+    if u < 0.0:  # between the steps, where the compression was down to the residual one
+        gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
+        since = min(max(gap / -u, 0.0), clock.dt)
+    record, sheet = scene.impacts[n], scene.sheets[bead.kind, contact.sheet]
+    record.time = clock.now - row.duration
+    record.bead, record.other = bead.number, -1
+    record.plate, record.triangle = contact.wall, contact.triangle
+    record.x, record.y, record.z = contact.point
+    record.approach_speed, record.restitution = row.approach_speed, leaves / row.approach_speed
+    record.contact_time = row.duration - since
+    record.peak_force = force.loading(law, math.sqrt(dm)) * unit
+    # a contact that goes on where another has dented the bead loses what is left of the loop
+    share = 1.0 - other / lost if lost > 0.0 else 0.0
+    record.plastic_energy, record.wave_energy = share * (lost - reported), row.wave_energy
+    record.other_energy = (1.0 - share) * (lost - reported)
+    record.wall_work = row.wall_work  # and what this step does, see `press`
+    record.flags = flags_of(
+        limits_of(sheet), bead.r, sheet.thickness,
+        impact(spring, record.approach_speed).compression, record.contact_time,
+        last.largest_compression, record.peak_force,
+    )  # fmt: skip
+    return extra
+
+
+@kernel
+def forget(bead: Bead, k: int) -> None:
+    """Empty the row of a contact."""
+    bead.contacts[k] = NO_CONTACT[0]
+    if len(bead.friction) > 0:
+        bead.friction[k].stretch[:] = 0.0
+
+
+@kernel
+def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
+    """Advance a contact by a step; its row is empty afterwards if the bodies have parted."""
+    row, v, touch = bead.contacts[k], contact.v, contact.touch
+    n, along = (touch.nx, touch.ny, touch.nz), contact.along
+    u = -dot(v, n)
+    side = math.copysign(contact.facet + 1.0, touch.s)
+    if row.facet == 0.0:
+        # no deeper than a step's path; on an edge that is not along the normal
+        deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
+        # (but a bead may come from one surface deep into the next)
+        if touch.x > deepest and not contact.touching:
+            complain(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)
+    elif touch.face and side != row.facet:
+        complain(scene, Trouble.CROSSED, contact.wall, u, 0.0)
+    sheet = scene.sheets[bead.kind, contact.sheet]
+    law, spring = array_at(sheet.law, sheet.law_size, np.float64), spring_of(sheet, bead.r)
+    last = State(
+        row.plate_displacement, row.largest_compression, row.force, row.mobility, row.stiffening
+    )
+    state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before)
+    held, power_0 = (0.0, 0.0, 0.0), 0.0
+    if last.force > 0.0:
+        held, power_0 = (row.push[0], row.push[1], row.push[2]), row.wall_power
+        if row.extra_force == 0.0 and _kinked(held, n, v, clock.dt, bead.r - touch.x):
+            row.company = max(row.company, UNEVEN)
+    if state.force > 0.0 and last.force == 0.0:
+        _begin(scene, clock, bead, contact, row, spring, u)
+    else:
+        first = 0.0 < row.duration < clock.before
+        if not touch.face and last.force > 0.0 and first and row.company == ALONE:
+            # the second step: the first one does not know how fast the normal turns
+            around = energy.turning(bead.r, row.overlap, touch.x, u, clock.dt)
+            row.approach_speed = energy.free_speed(
+                row.approach_speed, around, bead.r, row.overlap
+            )  # fmt: skip
+        row.duration += clock.dt
+        if u > _FASTER * max(row.approach_speed, 0.0):
+            row.approach_speed = u
+            _check_step(scene, clock, contact.wall, spring, u)
+        elif clock.dt > clock.before and row.approach_speed > 0.0:
+            _check_step(scene, clock, contact.wall, spring, row.approach_speed)
+    row.wave_energy += energy.wave_energy(spring, last, state, clock.dt)
+    push = state.force + extra
+    pushes = push * along[0], push * along[1], push * along[2]
+    power = dot(pushes, contact.w)
+    row.work += energy.work(
+        spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before
+    )
+    if state.force == 0.0 and last.force > 0.0:
+        pushes = _end(law, scene, clock, bead, contact, k, spring, last, u)
+        extra = dot(pushes, n)
+    row.plate_displacement = state.plate_displacement
+    row.largest_compression = state.largest_compression
+    row.force, row.mobility, row.stiffening = state.force, state.mobility, state.stiffening
+    row.facet, row.overlap = side, touch.x
+    if touch.x <= 0.0:
+        bead.contacts[k] = NO_CONTACT[0]
+        if extra == 0.0:
+            forget(bead, k)
+    if extra != 0.0:
+        row.facet = side  # also of a bead that has parted: a set-up asks for the force again
+    row.extra_force, row.wall_power = extra, power
+    row.push[0], row.push[1], row.push[2] = pushes
+
+
+@kernel
+def press(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
+    """Add the force of one contact to a bead, and keep the row of the contact."""
+    row, touch, sheet = bead.contacts[k], contact.touch, scene.sheets[bead.kind, contact.sheet]
+    if sheet.law == 0:
+        complain(scene, Trouble.NO_MODEL, contact.wall, bead.kind + 1.0, 0.0)
+        return
+    recorded = scene.status[0].impacts
+    if clock.advancing:
+        _advance(scene, clock, bead, contact, k)
+    if row.force == 0.0 and row.extra_force == 0.0:
+        return
+    n, sliding = (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0)
+    if len(bead.friction) > 0:
+        stiffness = sheet.tangential * math.sqrt(
+            bead.r * max(touch.x - row.plate_displacement, 0.0)
+        )
+        slip = surface_velocity(contact.v, bead.omega, bead.r, n)
+        sliding = pull(
+            bead.friction[k], scene.friction, stiffness, n, slip,
+            clock.dt if clock.advancing else 0.0, row.force, row.extra_force,
+        )  # fmt: skip
+        bead.torque[0] -= bead.r * (n[1] * sliding[2] - n[2] * sliding[1])
+        bead.torque[1] -= bead.r * (n[2] * sliding[0] - n[0] * sliding[2])
+        bead.torque[2] -= bead.r * (n[0] * sliding[1] - n[1] * sliding[0])
+    work = 0.0
+    for i in range(3):
+        both = row.push[i] + sliding[i]
+        bead.force[i] += both
+        work += both * contact.w[i]
+    if clock.advancing:
+        row.wall_work += clock.dt * work
+        if scene.status[0].impacts > recorded:  # with the last push
+            scene.impacts[recorded].wall_work += clock.dt * work

@@ -1,0 +1,219 @@
+"""The spring of a contact with a plate: its force, step by step.
+
+In each step an engine knows how deep the sphere is in the undeformed plate, the overlap; `advance`
+gives the force and keeps five numbers per contact, `State`. The plate's displacement u2 is advanced
+by the trapezoidal rule, implicit in the force F' at the end of the step,
+
+    u2' = u2 + alpha dt (F + F')/2,
+    d'  = x' - u2' + alpha dt (F' - F)/12 - dt^2 F'/(12 m),    F' = F(d'; dm).
+
+The last two terms of the compression d' take back what the schemes get wrong. The first is the
+error of the trapezoidal rule, alpha dt^2/12 dF/dt. The second is Numerov's: what an engine's Verlet
+scheme moves by the forces F is not the sphere but the sum of its position and dt^2 F/(12 m), to
+fourth order (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.10). Only
+where contact begins and ends inside a step an error of order dt^2.5 is left.
+
+The largest compression lies between two steps as a rule. Where the bead turns, d'' = -F/m whatever
+the plate does, so the parabola through the last two compressions gives it to third order.
+
+Legend, as in `contactlaw.equation`: scaled by d_Y and F_Y inside the kernels,
+
+    d   compression                    q   root compression, sqrt(d - dr)
+    dm  largest compression so far     b   (5/12) alpha dt + dt^2/(12 m)
+    dr  residual compression           f   contact force
+
+Under a law that takes the plate's mobility to the next order it depends on how long the contact
+will last, and so on the speed of the approach: that of the second step, when it is first known.
+
+An infinite plate recedes for ever under a force that stays, as a bead's weight does. A real one has
+edges: here u2 relaxes within 1e5 contact times, too slow for an impact to notice, and a bead at
+rest sinks by alpha F times that and no further.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.equation import force as forces
+from contactlaw.equation.force import Curve
+from contactlaw.equation.legs import NO_CURVE
+from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
+from contactlaw.equation.waves import CONTACT_TIME
+from contactlaw.model import ImpactModel
+from contactlaw.physical.scaling import sphere_on_plate
+
+Array = NDArray[np.float64]
+
+RELAXATION = 1e5  # [contact times]; u2 then moves by 1e-5 of itself within an impact
+FEWEST_STEPS = 20  # per contact; with fewer the error no longer follows the order of the method
+
+TOP = 1.0 - 1e-12  # of the loading curve: a force above came from there, and not by reloading
+MOST_ITERATIONS = 60
+CONVERGED = 1e-8  # last change of q, relative; the secant method squares it, almost
+
+
+class State(NamedTuple):
+    """One contact between two steps, all zero where the bodies are apart; floats or arrays."""
+
+    plate_displacement: Any  # u2 [m]
+    largest_compression: Any  # dm [m]
+    force: Any  # F [N]
+    mobility: Any = 0.0  # of the plate in this contact [m/(s N)]; 0 where it is the spring's
+    stiffening: Any = 0.0  # of the contact, over the spring's stiffness; 0 likewise
+
+
+class Spring(NamedTuple):
+    """What does not change during a contact; floats or arrays."""
+
+    mass: Any  # [kg]
+    stiffness: Any  # K in F = K d^1.5 [N/m^1.5]
+    mobility: Any  # alpha of a thin plate [m/(s N)]
+    scale: Any  # d_Y [m], or the radius for a law that never yields
+    relaxation: Any  # time in which the plate's displacement relaxes [s]
+    ratio: Any  # R/H
+    plate: PlateConstants
+
+
+PARTED = State(0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def unit_spring(model: ImpactModel, thickness: float) -> Spring:
+    """Spring of a bead of radius 1 m; `resized` makes that of any other."""
+    one = np.ones(())
+    contact = sphere_on_plate(model.pair, model.force_law, one, thickness * one)
+    scale = float(contact.yield_compression)
+    mass, stiffness = float(contact.mass), float(contact.stiffness)
+    return Spring(
+        mass=mass,
+        stiffness=stiffness,
+        mobility=float(contact.mobility),
+        scale=scale if scale < math.inf else 1.0,
+        relaxation=relaxation(mass, stiffness),
+        ratio=float(contact.ratio),
+        plate=contact.plate,
+    )
+
+
+def relaxation(mass: Any, stiffness: Any) -> Any:
+    """Time in which the plate's displacement relaxes [s], from the contact time at 1 m/s."""
+    return RELAXATION * CONTACT_TIME * (mass / stiffness) ** 0.4
+
+
+@kernel(cache=True)
+def resized(unit: Spring, radius: float) -> Spring:
+    """Spring of a bead of this radius [m], from that of radius 1 m on the same plate."""
+    return Spring(
+        unit.mass * (radius * radius * radius),
+        unit.stiffness * math.sqrt(radius),
+        unit.mobility,
+        unit.scale * radius,
+        unit.relaxation * radius,
+        unit.ratio * radius,
+        unit.plate,
+    )
+
+
+@kernel(entry=True)
+def impact(spring: Spring, speed: float) -> Numbers:
+    """Dimensionless numbers of the impact with which a contact begins."""
+    return numbers(
+        spring.plate, spring.mass, spring.stiffness, spring.scale, speed, spring.ratio
+    )  # fmt: skip
+
+
+@kernel
+def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> tuple[float, float]:
+    """Mobility and stiffening of a contact in its second step, when the speed is first known."""
+    if not state.largest_compression > 0.0 or state.stiffening > 0.0:
+        return state.mobility, state.stiffening
+    speed = (overlap - state.plate_displacement - state.largest_compression) / step
+    if not speed > 0.0:
+        return spring.mobility, 1.0
+    found = impact(spring, speed)
+    more = found.stiffer
+    return found.inelasticity * found.time / spring.mass, more * more * math.sqrt(more)
+
+
+@kernel
+def _force(law: Array, loading: bool, q: float, curve: Curve) -> float:
+    return forces.loading(law, q) if loading else forces.unloading_force(law, curve, q)
+
+
+@kernel
+def _balance(law: Array, loading: bool, curve: Curve, b: float, r: float) -> tuple[float, float]:
+    """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
+
+    The left side is convex, so the secant method comes down to the root from the right and cannot
+    jump over it; its first slope takes f for Hertz's.
+    """
+    if not r > 0.0:
+        return 0.0, 0.0
+    q = math.sqrt(r)
+    f = _force(law, loading, q, curve)
+    if b == 0.0:
+        return q, f
+    gap = b * f
+    slope = 2.0 * q + 3.0 * gap / q
+    for _ in range(MOST_ITERATIONS):
+        change = gap / slope
+        q = max(q - change, 0.0)
+        f = _force(law, loading, q, curve)
+        if not abs(change) > CONVERGED * q:
+            break
+        last, gap = gap, q * q + b * f - r
+        if gap == last:
+            break
+        slope = (last - gap) / change
+    return q, f
+
+
+@kernel(cache=True)
+def advance(law: Array, spring: Spring, state: State, overlap: float, step: float) -> State:
+    """State at the end of a step in which the overlap has become this [m]; the step in [s].
+
+    The force to apply is the state's. Compression that falls, or grows again below its largest
+    value, follows the unloading curve. An overlap of zero or less clears the state.
+    """
+    if not overlap > 0.0:
+        return PARTED
+    scale = spring.scale
+    unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
+    leak = 0.5 * step / spring.relaxation
+    before = unit * state.stiffening if state.stiffening > 0.0 else unit
+    own, stiffening, mobility = 0.0, 0.0, spring.mobility
+    if spring.plate.waves.bulk_factor > 0.0:
+        own, stiffening = _next_orders(spring, state, overlap, step)
+        if stiffening > 0.0:
+            mobility, unit = own, unit * stiffening
+    moved = 0.5 * step * mobility / (1.0 + leak)  # of the plate, per force at either end
+    known = state.plate_displacement * (1.0 - leak) / (1.0 + leak) + moved * state.force
+    ahead = moved / 6.0  # of the trapezoidal rule, by its error
+    b = (moved - ahead + step * step / (12.0 * spring.mass)) * unit / scale
+    r = (overlap - known - ahead * state.force) / scale
+    dm = state.largest_compression / scale
+    top = state.force >= TOP * forces.loading(law, math.sqrt(dm)) * before  # compression was dm
+    loading, q, f = True, 0.0, 0.0
+    least = forces.lossless(law)
+    if dm > least and not top:
+        curve = forces.unloading(law, dm)
+        q, f = _balance(law, False, curve, b, r - curve.residual)
+        loading = q * q + curve.residual > dm
+    if loading:
+        q, f = _balance(law, True, NO_CURVE, b, r)
+        d = q * q
+        fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
+        if top and fall > 0.0:
+            turn = 0.5 + (d - dm) / fall  # of the parabola, in steps
+            if turn < 1.0:
+                dm = max(d, dm + 0.5 * fall * max(turn, 0.0) ** 2)
+                if dm > least:
+                    curve = forces.unloading(law, dm)
+                    q, f = _balance(law, False, curve, b, r - curve.residual)
+        dm = max(d, dm)
+    force = f * unit
+    return State(known + moved * force, dm * scale, force, own, stiffening)

@@ -1,0 +1,119 @@
+"""Walls as kernels read them: facets, and frames that move as one.
+
+A *facet* is a rectangle or a triangle. A *frame* holds the facets of all walls of one motion, in
+coordinates that do not change, and a grid by which those near a sphere are found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.walls.grid import GRID, Grid
+from contactlaw.walls.mesh import Mesh
+from contactlaw.walls.motion import MOTION, POSE
+from contactlaw.walls.plate import Plate
+
+Rows = NDArray[np.void]
+Wall = Plate | Mesh
+
+RECTANGLE, TRIANGLE = 4, 3
+FACET = np.dtype(
+    # of a rectangle unit vectors, of a triangle its edges
+    [("corner", "f8", 3), ("normal", "f8", 3), ("a", "f8", 3), ("b", "f8", 3)]
+    + [("length_a", "f8"), ("length_b", "f8"), ("between", "f8")]  # between: a . b
+    + [(name, "i8") for name in ("kind", "sheet", "frame", "wall", "triangle")],
+    align=True,
+)
+FRAME = np.dtype(
+    [*MOTION, *POSE, *GRID, ("fastest", "f8")],  # of any point of it [m/s]
+    align=True,
+)
+
+
+class Framed(NamedTuple):
+    """Walls in the kernels' words, and the objects whose memory the frames point to."""
+
+    facets: Rows
+    frames: Rows
+    held: list[Any]
+
+
+def framed(walls: Sequence[Wall], sheets: Sequence[Any], largest: float) -> Framed:
+    """Facets and frames of walls.
+
+    `sheets` has for each wall the number, or those of its triangles, that its facets are given;
+    `largest` is the radius of the largest sphere [m], 0 where that is not known yet.
+    """
+    groups: dict[Any, list[Rows]] = {}
+    for number, (wall, sheet) in enumerate(zip(walls, sheets, strict=True)):
+        rows = _rectangle(wall) if isinstance(wall, Plate) else _triangles(wall)
+        rows["sheet"], rows["wall"] = sheet, number
+        groups.setdefault(wall.motion, []).append(rows)
+    facets = np.concatenate([rows for parts in groups.values() for rows in parts])
+    frames, held, first = np.zeros(len(groups), FRAME), [], 0
+    for number, (motion, parts) in enumerate(groups.items()):
+        frame, count = frames[number], sum(map(len, parts))
+        facets["frame"][first : first + count] = number
+        corners = _corners(facets[first : first + count])
+        if motion is not None:
+            motion.fill(frame)
+        grid = Grid(corners, first, largest)
+        grid.fill(frame)
+        frame["fastest"] = 0.0 if motion is None else _fastest(motion, corners)
+        held += [motion, grid]
+        first += count
+    return Framed(facets, frames, held)
+
+
+def _rectangle(plate: Plate) -> Rows:
+    row = np.zeros(1, FACET)
+    a, b = np.asarray(plate.edge_a, dtype=float), np.asarray(plate.edge_b, dtype=float)
+    row["kind"], row["triangle"] = RECTANGLE, -1
+    row["corner"] = plate.corner
+    row["length_a"], row["length_b"] = np.linalg.norm(a), np.linalg.norm(b)
+    row["a"], row["b"] = a / row["length_a"], b / row["length_b"]
+    row["normal"] = np.cross(row["a"], row["b"])
+    return row
+
+
+def _triangles(mesh: Mesh) -> Rows:
+    rows = np.zeros(len(mesh.triangles), FACET)
+    first, second, third = (mesh.vertices[mesh.triangles[:, n]] for n in range(3))
+    rows["kind"], rows["triangle"] = TRIANGLE, mesh.kept
+    rows["corner"], rows["a"], rows["b"] = first, second - first, third - first
+    rows["length_a"] = np.linalg.norm(rows["a"], axis=1)
+    rows["length_b"] = np.linalg.norm(rows["b"], axis=1)
+    rows["between"] = (rows["a"] * rows["b"]).sum(axis=1)
+    normal = np.cross(rows["a"], rows["b"])
+    rows["normal"] = normal / np.linalg.norm(normal, axis=1)[:, None]
+    return rows
+
+
+def _corners(facets: Rows) -> NDArray[np.float64]:
+    """Corners of facets, shape (n, 4, 3) [m]; a triangle has one of them twice."""
+    box = facets["kind"] == RECTANGLE
+    a = facets["a"] * np.where(box, facets["length_a"], 1.0)[:, None]
+    b = facets["b"] * np.where(box, facets["length_b"], 1.0)[:, None]
+    here = facets["corner"]
+    return np.stack((here, here + a, here + a * box[:, None] + b, here + b), axis=1)
+
+
+def _fastest(motion: Any, corners: NDArray[np.float64]) -> float:
+    """Bound of the speed of any point of a frame [m/s]."""
+    row = np.zeros(1, FRAME)[0]
+    motion.fill(row)
+    arm = np.linalg.norm(corners - row["hub"], axis=2).max()
+    table = 0.0
+    if row["count"]:
+        steps = np.diff(motion.displacements, axis=0) / np.diff(motion.times)[:, None]
+        table = float(np.linalg.norm(steps, axis=1).max())
+    return float(
+        np.linalg.norm(row["velocity"])
+        + abs(row["spin"]) * arm
+        + row["frequency"] * np.linalg.norm(row["amplitude"])
+        + table
+    )
