@@ -329,7 +329,7 @@ def test_no_constant_of_python_is_repeated_in_the_template():
     """Those with a value of their own; small whole numbers mean many things."""
     folder = Path(c_header.__file__).parent
     values = {float(getattr(module, name)): name for module, name in CONSTANTS}
-    values |= {RELAXATION: "RELAXATION", validity.THINNEST: "THINNEST"}
+    values |= {RELAXATION: "RELAXATION", validity.SLENDER: "THINNEST"}
     number = re.compile(r"(?<![\w.$])\d+(?:\.\d*)?(?:e-?\d+)?(?![\w.])")
     for path in (folder / "contactlaw.h.in", folder / "liggghts/normal_model_contactlaw.h.in"):
         code = path.read_text().partition("BSD 3-Clause License")[0]

@@ -21,6 +21,7 @@ from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable
 from contactlaw.answers.tabulated import extent
 from contactlaw.command import wording
+from contactlaw.equation.losses import Losses
 from contactlaw.model import ImpactModel
 from contactlaw.physical.rebound import Impacts
 from contactlaw.physical.validity import Validity, count_flags, explain
@@ -48,9 +49,7 @@ _COLUMNS = (
     _Column("peak_force", "N", "force", "N"),
     _Column("peak_compression", "m"),
     _Column("residual_compression", "m"),
-    _Column("plastic_fraction", "", "plastic"),
-    _Column("wave_fraction", "", "wave"),
-    _Column("other_fraction", "", "other"),
+    *(_Column(f"{channel}_fraction", "", channel) for channel in Losses._fields),
     _Column("inelasticity", ""),
     _Column("overload", ""),
     _Column("yield_speed", "m/s", "yield at", "m/s"),

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import Validity
+from contactlaw.equation.losses import DESCRIPTIONS
 
 if TYPE_CHECKING:
     from contactlaw import Rebound
@@ -48,14 +49,9 @@ COLUMNS = (
     Column("restitution", "f8", "1", "coefficient of restitution"),
     Column("contact_time", "f8", "s", "duration of the contact"),
     Column("peak_force", "f8", "N", "largest contact force"),
-    Column("plastic_energy", "f8", "J", "energy lost to plastic flow at the contact"),
-    Column("wave_energy", "f8", "J", "energy carried off by the bending wave in the plate"),
-    Column(
-        "other_energy",
-        "f8",
-        "J",
-        "energy that the normal impact leaves in vibration and locked-in stress (law fem); the "
-        "work of sliding friction is in no column",
+    *(
+        Column(f"{channel}_energy", "f8", "J", f"energy {what}")
+        for channel, what in DESCRIPTIONS._asdict().items()
     ),
     Column("wall_work", "f8", "J", "work of a moving wall on the bead during the contact"),
     Column("triangle", "i8", "1", "number of the mesh's triangle, -1: the plate is no mesh"),
@@ -90,8 +86,7 @@ def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) 
     """
     rows["contact_time"] = rebound.contact_time
     rows["peak_force"] = rebound.peak_force
-    rows["plastic_energy"] = rebound.plastic_fraction * energy
-    rows["wave_energy"] = rebound.wave_fraction * energy
-    rows["other_energy"] = rebound.other_fraction * energy
+    for channel in DESCRIPTIONS._fields:
+        rows[f"{channel}_energy"] = getattr(rebound, f"{channel}_fraction") * energy
     rows["wall_work"], rows["triangle"] = 0.0, -1
     rows["flags"] = rebound.flags

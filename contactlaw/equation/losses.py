@@ -29,6 +29,15 @@ class Losses(NamedTuple):
     other: Any  # what the law loses between loading and unloading that is no plastic work
 
 
+DESCRIPTIONS = Losses(
+    plastic="lost to plastic flow at the contact",
+    wave="carried off by the bending wave in the plate",
+    other="that the normal impact leaves in vibration and locked-in stress (law fem); the "
+    "work of sliding friction is in no column",
+)
+"""What records of impacts say of the energy of each channel."""
+
+
 class Work(NamedTuple):
     """Work that channels have taken along the way."""
 

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation.waves import Waves, stiffening, with_waves
+from contactlaw.equation.waves import Waves, is_thin, stiffening, with_waves
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def stiffening_of(plate: PlateConstants, root: float, ratio: float) -> float:
 @kernel(inline=True)
 def inelasticity_of(plate: PlateConstants, root: float, ratio: float, more: float) -> float:
     """Inelasticity lambda of an impact, from V^(1/5), R/H and exp(eta)."""
-    if plate.waves.bulk_factor == 0.0:
+    if is_thin(plate.waves):
         return plate.inelasticity * root * (ratio * ratio)
     slow = min(root, plate.saturated)
     plastic = ratio * plate.reach * (root * root - slow * slow)
@@ -78,7 +78,7 @@ def numbers(
 ) -> Numbers:
     """Numbers of an impact, from m [kg], K [N/m^1.5], d_Y [m], V [m/s] and R/H."""
     root, time = speed**0.2, (mass / stiffness) ** 0.4
-    more = math.exp(stiffening_of(plate, root, ratio)) if plate.waves.bulk_factor > 0.0 else 1.0
+    more = 1.0 if is_thin(plate.waves) else math.exp(stiffening_of(plate, root, ratio))
     unit = time / (root * more)
     way = speed * unit
     lam = inelasticity_of(plate, root, ratio, more)

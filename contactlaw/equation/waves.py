@@ -114,6 +114,12 @@ def waves(
 
 
 @kernel(inline=True)
+def is_thin(waves: Waves) -> bool:
+    """Whether a plate is the paper's."""
+    return waves.bulk_factor == 0.0
+
+
+@kernel(inline=True)
 def _lengthening(lam: float) -> float:
     """Contact time over that without losses, as far as the frequencies count."""
     return 1.0 + LONGER * lam + LONGER_3 * (lam * lam * lam)

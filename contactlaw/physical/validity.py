@@ -19,8 +19,8 @@ from contactlaw.physical.scaling import yield_share
 
 Array = NDArray[np.float64]
 
-THINNEST = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
-_THINNEST_YIELDED = 1.4  # R/H for "fem"; the errors of everyday impacts are twice as large beyond
+SLENDER = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
+_SLENDER_YIELDED = 1.4  # R/H for "fem"; the errors of everyday impacts are twice as large beyond
 _YIELDED = 2.0  # V0/V_Y0; our choice, between 1.5 and 3.5 of our finite elements
 _FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
 _SWIFTEST = 0.0131  # V0/sqrt(E*/rho1), 50 m/s for steel: "fem" is made of impacts up to there
@@ -184,7 +184,7 @@ def limits(pair: Pair, law: Law) -> Limits:
         flowing = [one for one in (sphere, plate) if min(sphere, plate) > ALONE * one]
         known = all(RATIOS[0] <= pair.effective_modulus / one <= RATIOS[1] for one in flowing)
         return Limits(
-            slender=_THINNEST_YIELDED, slowness=0.0, always=int(rate), yielded=0, trusted=0.0,
+            slender=_SLENDER_YIELDED, slowness=0.0, always=int(rate), yielded=0, trusted=0.0,
             fastest=0.0,
             swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H is that of V0/sqrt(E*/rho1), times R
             deepest=law.range[1] * (law.scale or 0.0),
@@ -199,7 +199,7 @@ def limits(pair: Pair, law: Law) -> Limits:
     least, largest = law.yield_strains
     other = not (law.yields and least <= sphere / pair.sphere.youngs_modulus <= largest)
     return Limits(
-        slender=THINNEST,
+        slender=SLENDER,
         slowness=slowness,
         always=int(rate | soft * Validity.SOFT_PLATE),
         yielded=int((other or soft) * Validity.OTHER_LAW),
@@ -244,11 +244,11 @@ def flags_of(
 ) -> int:
     """Flag an impact; scale is V0 T_H [m], compression and force the largest ones [m, N]."""
     flags = limits.always
-    thinnest = THINNEST
+    slenderest = SLENDER
     if compression > limits.share * radius:
-        thinnest = limits.slender
+        slenderest = limits.slender
         flags |= limits.untried
-    if radius > thinnest * thickness:
+    if radius > slenderest * thickness:
         flags |= _THIN_PLATE
     if thickness < math.inf and contact_time < TRANSITS * thickness * limits.slowness:
         flags |= _THICK_PLATE

@@ -33,7 +33,7 @@ AXES = "inelasticity", "log_overload"
 _FEWEST_GRADED = 24  # our choice: between two kinks of a capped law that are 8 % apart
 _COARSER = 4.0  # steps in ln chi below yield: only the sphere's stiffening is to be seen there
 _BEYOND = 1.5  # of the overload up to which a law was made, for a table of it
-_THINNEST = 6.0  # lambda of a table that is made for a pair: 1 mm of carbide on 0.6 mm at 10 m/s
+_LARGEST = 6.0  # lambda of a table that is made for a pair: 1 mm of carbide on 0.6 mm at 10 m/s
 # In ln chi, of a table that is made for a pair, as fine as its rows; and of a long one, for a soft
 # body, most of which is complete flow: its largest errors are the same.
 _STEP, _LONG_STEP = 0.03, 0.05
@@ -102,7 +102,7 @@ def coarser(grid: Grid, settings: Settings, steps: float | Array) -> Grid:
 
 def largest_inelasticity(law: Law) -> float:
     """Largest lambda of a law's own table, which is known before the table is built."""
-    return Settings.largest_inelasticity if math.isinf(law.range[1]) else _THINNEST
+    return Settings.largest_inelasticity if math.isinf(law.range[1]) else _LARGEST
 
 
 def on_demand(law: Law) -> Settings:

@@ -38,7 +38,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation.numbers import PlateConstants, inelasticity_of, stiffening_of
 from contactlaw.equation.outcome import Outcome
-from contactlaw.equation.waves import THIN, Waves
+from contactlaw.equation.waves import THIN, Waves, is_thin
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -395,7 +395,7 @@ def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: f
         return math.nan
     log_speed, root = _log_and_root(speed)
     plate, more = _plate(table, c_lam), 1.0
-    if plate.waves.bulk_factor > 0.0:
+    if not is_thin(plate.waves):
         eta = stiffening_of(plate, root, ratio)
         more = _exp(eta)
         c_chi -= eta
@@ -444,7 +444,7 @@ def _coordinates(
     for i in range(x.size):
         log_chi[i], root[i] = _log_and_root(speed[i])
     plate = _plate(table, c_lam)
-    if plate.waves.bulk_factor == 0.0:
+    if is_thin(plate.waves):
         for i in range(x.size):
             # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
             above = c_lam * root[i] * radius[i] * radius[i]
@@ -545,7 +545,7 @@ def outcomes(
         roots = root[start : start + n]
         x, log_chi, along, log_w = scratch[0, :n], scratch[1, :n], scratch[2, :n], scratch[3, :n]
         inside = _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, log_w, roots)
-        if plate.waves.bulk_factor > 0.0:
+        if not is_thin(plate.waves):
             for i in range(n):  # x = lam/(lam + stretch), chi = w_m/y
                 out.inelasticity[start + i] = table[STRETCH] * x[i] / (1.0 - x[i])
                 out.yield_ratio[start + i] = _exp(log_w[i] - log_chi[i])
@@ -615,7 +615,7 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
         log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
             root = math.exp(0.2 * log_speed)
-            eta = stiffening_of(plate, root, ratio[n]) if plate.waves.bulk_factor > 0.0 else 0.0
+            eta = 0.0 if is_thin(plate.waves) else stiffening_of(plate, root, ratio[n])
             lam = inelasticity_of(plate, root, ratio[n], math.exp(eta))
             x = lam / (lam + table[STRETCH])
             if not 0.0 <= x <= table[X_MAX]:
