@@ -24,6 +24,7 @@ Array = NDArray[np.float64]
 
 CUBIC, PIECES, POWER = codes(3)  # how a leg's force is given
 _UP, _ABOVE, _ALONG, _BELOW = codes(4)  # loading; parts of unloading; the last ends a contact
+(FIRST,) = codes(1)  # piece of a loading curve
 NO_CURVE = Curve(0.0, 0.0, 3.0, 0.0, 0.0)
 """Before there is an unloading curve."""
 

@@ -70,5 +70,5 @@ def start(contact: Contact, leg: Leg, q: float, u: float, t: float, work: Work) 
 @kernel
 def touch(contact: Contact, speed: float) -> tuple[Leg, State]:
     """First touch, and the leg that begins there."""
-    leg = legs.up(contact.law, 0)
+    leg = legs.up(contact.law, legs.FIRST)
     return leg, start(contact, leg, 0.0, speed, 0.0, losses.NO_WORK)
