@@ -43,7 +43,7 @@ from contactlaw.equation import force as forces
 from contactlaw.equation.force import Curve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
-from contactlaw.equation.waves import CONTACT_TIME
+from contactlaw.equation.waves import CONTACT_TIME, is_thin
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import sphere_on_plate
 
@@ -186,7 +186,7 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     leak = 0.5 * step / spring.relaxation
     before = unit * state.stiffening if state.stiffening > 0.0 else unit
     own, stiffening, mobility = 0.0, 0.0, spring.mobility
-    if spring.plate.waves.bulk_factor > 0.0:
+    if not is_thin(spring.plate.waves):
         own, stiffening = _next_orders(spring, state, overlap, step)
         if stiffening > 0.0:
             mobility, unit = own, unit * stiffening
