@@ -363,7 +363,7 @@ def test_replace_checks_again() -> None:
 def test_import_reads_no_catalogue() -> None:
     # In a fresh process, since this one has long read it.
     code = (
-        "import sys, contactlaw; "
+        "import sys, contactlaw; contactlaw.Pair; "
         "print(sys.modules['contactlaw.physical.materials']._catalogue.cache_info().currsize)"
     )
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
