@@ -285,3 +285,10 @@ def test_a_full_disk_under_numbas_cache_costs_a_warning_only(tmp_path):
     )
     assert [float(word) for word in done.stdout.split()] == pytest.approx([0.908113] * 2, abs=1e-6)
     assert done.stderr.count("numba cannot keep compiled code on disk") == 1
+
+
+def test_every_public_name_is_there():
+    """Modules are imported when a name is first used: a typo would show only then."""
+    assert set(contactlaw.__all__) <= set(dir(contactlaw))
+    for name in contactlaw.__all__:
+        assert getattr(contactlaw, name) is not None
