@@ -67,7 +67,8 @@ def kernel(
         if not (cache or entry or switched_off()):
             options |= {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
             return _Inner(python_function, targetoptions=options)  # type: ignore[return-value]
-        dispatcher: Any = numba.njit(**options)(python_function)
+        # a C function is wanted of those only which users may pass on
+        dispatcher: Any = numba.njit(**options, no_cfunc_wrapper=cache)(python_function)
         if cache:
             _cached.append(dispatcher)
             if enable_caching.cache_info().currsize:  # the module came after the first answer
