@@ -68,7 +68,8 @@ def kernel(
             options |= {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
             return _Inner(python_function, targetoptions=options)  # type: ignore[return-value]
         # a C function is wanted of those only which users may pass on
-        dispatcher: Any = numba.njit(**options, no_cfunc_wrapper=cache)(python_function)
+        options["no_cfunc_wrapper"] = cache
+        dispatcher: Any = numba.njit(**options)(python_function)
         if cache:
             _cached.append(dispatcher)
             if enable_caching.cache_info().currsize:  # the module came after the first answer
@@ -164,8 +165,9 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
         return function
     enable_caching()
     dispatcher: Any = function
-    dispatcher.compile(signature)
     types, _ = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
+    # By its types, as kernels ask for it: by a string it is another to numba's cache.
+    dispatcher.compile(types)
     entry: Callable[..., Any] = dispatcher.overloads[types].entry_point
     return entry
 

@@ -178,7 +178,7 @@ def impacts(count, seed):
     return v, r, h
 
 
-@kernel
+@kernel(entry=True)
 def lookups(table, c_lam, c_chi, v, r, h, out):
     for n in range(out.size):
         out[n] = lookup.restitution_on_plate(table, c_lam, c_chi, v[n], r[n], h[n])

@@ -20,7 +20,7 @@ CASES = [(math.inf, 3.0), (math.inf, 20.0), (1e-3, 5.0), (1e-3, 15.0), (0.5e-3, 
 CASES += [(0.5e-3, 20.0), (0.35e-3, 6.0), (0.35e-3, 20.0), (0.25e-3, 3.0), (0.2e-3, 3.0)]
 
 
-@kernel
+@kernel(entry=True)
 def drop(law, spring, speed, step, phase):
     """COR of one bead that first touches at this phase of a step."""
     x, u, state = -phase * speed * step, speed, PARTED
@@ -34,7 +34,7 @@ def drop(law, spring, speed, step, phase):
     return math.nan
 
 
-@kernel
+@kernel(entry=True)
 def walk(law, spring, overlaps, step, forces):
     """Forces along a path that is given: the plate is a half-space, so overlap is compression."""
     state = PARTED
@@ -44,7 +44,7 @@ def walk(law, spring, overlaps, step, forces):
     return state
 
 
-@kernel
+@kernel(entry=True)
 def rest(law, spring, weight, step, steps):
     """Largest speed and last state of a bead laid on the plate, in the last tenth of the time."""
     x, u, state, fastest = 0.0, 0.0, PARTED, 0.0

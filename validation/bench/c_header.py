@@ -92,7 +92,7 @@ def _lookups(model: cl.ImpactModel, library: ctypes.CDLL) -> Row:
     h = r * rng.uniform(0.8, 10.0, N)
     cor, ours, theirs = model.kernel, np.empty(N), np.empty(N)
 
-    @kernel
+    @kernel(entry=True)
     def loop(v: Array, r: Array, h: Array, out: Array) -> None:
         for n in range(v.size):
             out[n] = cor(v[n], r[n], h[n])
@@ -107,7 +107,7 @@ def _lookups(model: cl.ImpactModel, library: ctypes.CDLL) -> Row:
     )  # fmt: skip
 
 
-@kernel
+@kernel(entry=True)
 def _walk(law: Array, spring: Spring, x: Array, walks: int, dt: float, out: Array) -> None:
     for _ in range(walks):
         state = PARTED

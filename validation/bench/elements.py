@@ -55,7 +55,7 @@ def rows() -> Iterator[Row]:
     yield Row("the paper's impact, 0.01 R", taken, "s", 15, note=f"{one.elements} elements")
 
 
-@kernel
+@kernel(entry=True)
 def _only_move(body: Body, x: Array, v: Array, force: Array) -> None:
     """Read and write what an element must, and compute next to nothing."""
     for e in range(body.elements.shape[0]):

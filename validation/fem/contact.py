@@ -38,7 +38,7 @@ class Surfaces(NamedTuple):
     reach: float  # a gap that cannot close within a step [m]
 
 
-@kernel
+@kernel(entry=True)
 def approach(pair: Surfaces, x: Array, v: Array) -> int:
     """Find the segment below each slave; return how many slaves are near enough to touch.
 
@@ -63,7 +63,7 @@ def approach(pair: Surfaces, x: Array, v: Array) -> int:
     return pair.slave.size
 
 
-@kernel
+@kernel(entry=True)
 def resolve(
     pair: Surfaces, x: Array, v: Array, inverse_mass: Array, dt: float, count: int
 ) -> float:
@@ -107,7 +107,7 @@ def resolve(
     return lift
 
 
-@kernel
+@kernel(entry=True)
 def _direction(x: Array, a: int, b: int) -> tuple[float, float]:
     """Return the unit vector (e_r, e_z) along a segment; (-e_z, e_r) is its normal."""
     e_r, e_z = x[b, 0] - x[a, 0], x[b, 1] - x[a, 1]

@@ -40,7 +40,7 @@ class Body(NamedTuple):
     strength: float  # yield strength [Pa]; inf: elastic
 
 
-@kernel
+@kernel(entry=True)
 def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
     """Advance the stress by a step of velocities v, and add what it does to the nodes."""
     plastic, hourglass = 0.0, 0.0

@@ -48,7 +48,7 @@ class System(NamedTuple):
     surfaces: Surfaces
 
 
-@kernel
+@kernel(entry=True)
 def advance(system: System, load: Array, dt: float, steps: int) -> tuple[float, int]:
     """Take some steps; mean contact force [N per radian], and the last step with contact, from 1.
 
