@@ -108,7 +108,8 @@ def _impact(
         if until > state.t:
             state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
             total, longest = total + steps, max(longest, steps)
-        ends = event != TIME and level == leg.level  # of the leg, not a mark on it
+        # the leg does, where no time or compression was met that is to be noted
+        ends = event != TIME and (event != LEVEL or level == leg.level)
         if ends:
             turns = loading and (event == integrator.TURN or state.dq <= 0.0)
             going = not (event == integrator.NONE or (event == LEVEL and legs.is_last(leg)))
