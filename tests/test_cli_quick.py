@@ -114,7 +114,7 @@ def test_both_refuse_alike(command, both):
     [
         (True, "cor --speed 1,2,5 --radius 1mm"),
         (True, "cor --speed 1,2,3,4 --radius 1mm,2mm,3mm"),
-        (True, "cor --speed 1 --outside solve"),
+        (False, "cor --speed 1 --outside solve"),
         (False, "cor --speed 1,2,3,4 --radius 1mm,2mm,3mm --thickness 1mm,2mm"),
         (False, "cor --speed 1:5:3"),
         (False, "cor --speed 1 --plot cor.png"),

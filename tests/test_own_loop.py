@@ -1,15 +1,18 @@
 """The loop of one's own in docs/examples, beside the same scene in LAMMPS."""
 
 import importlib.util
+import math
 from pathlib import Path
 
+import numba
 import numpy as np
 import pytest
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT
-from contactlaw.stepping import WallContacts
-from contactlaw.walls import Mesh
+from contactlaw.softsphere import time_step
+from contactlaw.stepping import Bead, Clock, WallContacts, interact
+from contactlaw.walls import Mesh, Plate, Translation, move
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
 
@@ -66,3 +69,67 @@ def test_it_stops_at_a_step_that_is_too_long(example):
         RuntimeError, match=r"STEP_TOO_LARGE on wall 0: got 3, the limit is 2\.3\de-07"
     ):
         walls.collisions()
+
+
+@numba.njit
+def hit(scene, contacts, friction, speed, mass, radius, dt, steps):
+    """One bead above the plate z = 0, without gravity; its speed afterwards."""
+    x, v, force, torque = 1.001 * radius, -speed, np.zeros(3), np.zeros(3)
+    for step in range(steps):
+        move(scene.frames, step * dt, dt)
+        v += 0.5 * dt * force[2] / mass
+        x += dt * v
+        force[:] = 0.0
+        clock = Clock(step * dt, dt, dt, True)
+        interact(scene, clock, Bead(0, 0, (0.0, 0.0, x), (0.0, 0.0, v), (0.0, 0.0, 0.0), radius,
+                                    mass, force, torque, contacts, friction))  # fmt: skip
+        v += 0.5 * dt * force[2] / mass
+    return v
+
+
+@pytest.mark.parametrize("rising", [0.0, 1.5, 3.0])
+def test_a_plate_that_rises_hits_as_hard_as_the_bead_that_falls(example, rising):
+    """Galileo's: what counts is the speed of one relative to the other."""
+    model, r = cl.ImpactModel(example.PAIR), example.RADIUS
+    motion = Translation((0.0, 0.0, rising)) if rising else None
+    plate = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3, motion=motion)
+    walls = WallContacts([plate], model, r, np.zeros(9, IMPACT))
+    dt = time_step(model, 6.0, r, 1e-3)
+    mass = 4 / 3 * math.pi * r**3 * example.PAIR.sphere.density
+    (contacts,), (friction,) = walls.memory(1)
+    leaves = hit(walls.scene, contacts, friction, 3.0 - rising, mass, r, dt, 4000)
+    (row,) = walls.collisions()
+    assert row["approach_speed"] == pytest.approx(3.0, rel=1e-9)
+    assert (leaves - rising) / 3.0 == pytest.approx(row["restitution"], rel=1e-6)
+    assert row["restitution"] == pytest.approx(model.restitution(3.0, r, 1e-3), abs=1e-4)
+
+
+def test_a_type_without_a_model_is_named(example):
+    walls = WallContacts(
+        [Plate((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)],
+        cl.ImpactModel(example.PAIR), 1e-3, np.zeros(9, IMPACT),
+    )  # fmt: skip
+    (contacts,), (friction,) = walls.memory(1)
+    at, still = (0.05, 0.05, 9.9e-4), (0.0, 0.0, 0.0)
+    bead = Bead(0, 7, at, still, still, 1e-3, 1e-5, np.zeros(3), np.zeros(3), contacts, friction)
+    interact(walls.scene, Clock(0.0, 1e-8, 1e-8, True), bead)
+    with pytest.raises(RuntimeError, match="NO_MODEL.*got 8"):
+        walls.collisions()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"friction": math.nan}, "friction: must be finite"),
+        ({"models": {2: None}}, "models"),
+        ({"models": "glass"}, "model"),
+    ],
+)
+def test_what_it_refuses(example, change, message):
+    model = cl.ImpactModel(example.PAIR)
+    if change.get("models") == {2: None}:
+        change = {"models": {2: model}}
+    plate = Plate((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)
+    given = {"models": model, **change}
+    with pytest.raises((TypeError, ValueError), match=message):
+        WallContacts([plate], largest=1e-3, impacts=np.zeros(9, IMPACT), **given)

@@ -8,9 +8,11 @@ import h5py
 import numpy as np
 import pytest
 
+import contactlaw as cl
 from contactlaw import laws, table
 from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
+from contactlaw.physical.scaling import law_of
 from contactlaw.table import file as store
 
 MYC = laws.law("myc")
@@ -52,6 +54,16 @@ def test_parameters_of_a_law_are_numbers_in_its_file(tmp_path):
     read = store.read(tmp_path / "t.h5").law
     assert (read.family, read.parameters) == (law.family, law.parameters)
     assert read.name == "jackson_green(120,0.3)"
+
+
+def test_parameters_of_a_law_keep_their_order(tmp_path):
+    """The law's name is made of them; HDF5 has attributes by the alphabet unless it is told."""
+    law = law_of(cl.Pair("gamma-alumina", "glass"), "fem")
+    assert list(law.parameters) != sorted(law.parameters)
+    store.write(table.build(law, SMALL), tmp_path / "t.h5")
+    read = store.read(tmp_path / "t.h5").law
+    assert list(read.parameters) == list(law.parameters)
+    assert read.name == law.name
 
 
 def test_file_explains_itself(path):

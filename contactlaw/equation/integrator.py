@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import codes, kernel
 from contactlaw.equation import force, legs, losses, motion, plate
 from contactlaw.equation.force import Curve
-from contactlaw.equation.legs import CUBIC, NO_CURVE, PIECES, POWER, Leg
+from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import Contact, State
 
 Array = NDArray[np.float64]
@@ -232,7 +232,7 @@ def follow(
         else:
             state, event, h, more = _follow(contact, leg, PIECES, state, h, scale, level, until)
         steps += more
-        if event != _OVER:
+        if event != _OVER or more == MAX_STEPS:
             return state, event, h, steps
 
 
@@ -258,19 +258,6 @@ def after(
     else:
         leg = legs.following(contact.law, curve, leg)
     return curve, leg, _onto(contact, leg, residual, state)
-
-
-@kernel
-def load(contact: Contact, scale: Scale, h: float) -> tuple[Leg, State, float, int]:
-    """From first touch to the largest compression, landing on each kink."""
-    leg, state = motion.touch(contact, scale.u)
-    total = 0
-    while True:
-        state, event, h, steps = follow(contact, leg, state, h, scale, leg.level, math.inf)
-        total += steps
-        if event != LEVEL or state.dq <= 0.0:
-            return leg, state, h, total
-        _, leg, state = after(contact, NO_CURVE, leg, event, state)
 
 
 @kernel

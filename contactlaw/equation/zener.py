@@ -177,7 +177,9 @@ def history(
     """
     at = np.ascontiguousarray(np.atleast_2d(time))
     notes = Notes(at, *np.empty((4, *at.shape)))
-    _run(_AT_TIMES, law, lam, y, rtol, notes)
+    status, n = failure(_run(_AT_TIMES, law, lam, y, rtol, notes).status)
+    if status != OK:
+        raise RuntimeError(f"the contact of impact {n} did not solve: {MESSAGES[status]}")
     f, w, u = (each.reshape(time.shape) for each in (notes.force, notes.compression, notes.speed))
     return f, w, u
 

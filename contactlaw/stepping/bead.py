@@ -22,16 +22,17 @@ from contactlaw.stepping.contact import (
     Contact,
     Scene,
     Trouble,
+    complain,
     contact_of,
     forget,
     press,
 )
 from contactlaw.stepping.energy import dot
-from contactlaw.stepping.friction import FRICTION
+from contactlaw.stepping.friction import FRICTION, check_friction
 from contactlaw.stepping.sheet import sheets
 from contactlaw.walls.facet import Touch, nearest, seen
 from contactlaw.walls.frame import Wall, framed
-from contactlaw.walls.plate import Models, by_type
+from contactlaw.walls.plate import Models, by_type, check_models
 from contactlaw.walls.surface import OVERLAP, ROOM, join, on_it, overlaps, slope, touch_of
 
 Rows = NDArray[np.void]
@@ -42,6 +43,10 @@ _RIGHT = 1e-6  # cosine of an angle that counts as a right one
 
 class WallContacts:
     """Contacts of beads with walls, which a loop of one's own steps through.
+
+    Walls that move are where `contactlaw.walls.move` has put them: before the first step, and once
+    a step before `interact`, with ``scene.frames``, the time and the step. A scene is for one
+    thread: beads share its scratch memory.
 
     Parameters
     ----------
@@ -76,6 +81,11 @@ class WallContacts:
         friction: float = 0.0,
         types: int = 1,
     ) -> None:
+        check_friction(friction)
+        check_models(models)
+        kinds = sorted(by_type(models, types))
+        if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
+            raise ValueError(f"models: the types of beads are 1 to {types}, got {kinds}")
         rows, numbers, self._models = sheets(walls, by_type(models, types), types)
         facets, frames, self._held = framed(walls, numbers, largest)
         self.places = min(len(facets), _PLACES)
@@ -289,6 +299,9 @@ def _company(bead: Bead) -> float:
 @kernel(cache=True)
 def interact(scene: Scene, clock: Clock, bead: Bead) -> None:
     """Add the force of the walls to a bead, and keep its contacts."""
+    if not 0 <= bead.kind < len(scene.sheets):
+        complain(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
+        return
     found = scene.found
     count = overlaps(scene.frames, scene.facets, bead.x, bead.r, found)
     if count == 0 and not touches(bead):

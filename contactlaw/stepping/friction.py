@@ -17,6 +17,14 @@ from contactlaw.walls.facet import Point
 FRICTION = np.dtype([("stretch", "f8", 3)])  # of the tangential spring [m]
 
 
+def check_friction(friction: Any) -> None:
+    """Refuse what is no coefficient of friction."""
+    if not isinstance(friction, int | float | np.number) or isinstance(friction, bool):
+        raise TypeError(f"friction: expected a number, got {friction!r}")
+    if not 0.0 <= friction < math.inf:
+        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
+
+
 @kernel
 def pull(
     row: Any, friction: float, stiffness: float, n: Point, slip: Point, dt: float, force: float,

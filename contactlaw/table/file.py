@@ -140,7 +140,7 @@ def _fill(file: h5py.File, table: Table) -> None:
     for name, (values, description) in datasets.items():
         file[name] = np.asarray(values, dtype=getattr(values, "dtype", np.float64))
         file[name].attrs["description"] = description
-    file.create_group("law/parameters").attrs.update(law.parameters)
+    file.create_group("law/parameters", track_order=True).attrs.update(law.parameters)
     for axis in grid.axes:
         file[f"axes/{axis.name}"].attrs["stretch"] = axis.stretch
         for k, segment in enumerate(axis.segments):

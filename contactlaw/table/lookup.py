@@ -38,7 +38,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import codes, kernel
 from contactlaw.equation.numbers import PlateConstants, inelasticity_of, stiffening_of
 from contactlaw.equation.outcome import Outcome
-from contactlaw.equation.waves import THIN, Waves, is_thin
+from contactlaw.equation.waves import Waves, is_thin
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -65,7 +65,7 @@ _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level ca
 
 def with_plate(table: Array, plate: PlateConstants) -> Array:
     """Copy a table for plates that have next orders; the table itself for others."""
-    if plate.waves == THIN:
+    if is_thin(plate.waves):
         return table
     table = table.copy()
     table[TRANSIT:WAVES] = plate.transit, plate.reach, plate.saturated

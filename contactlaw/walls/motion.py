@@ -305,7 +305,7 @@ def place(row: Any, time: float, dt: float) -> None:
     turn[6], turn[7], turn[8] = x * z * w - y * s, y * z * w + x * s, c + z * z * w
 
 
-@kernel
+@kernel(entry=True)
 def move(frames: Any, time: float, dt: float) -> None:
     """Put all walls to where they are at a time, the end of a step of length dt [s]."""
     for frame in frames:

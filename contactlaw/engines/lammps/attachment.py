@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.engines.lammps import commands
-from contactlaw.engines.lammps.beads import check_friction
 from contactlaw.engines.lammps.callback import callback
 from contactlaw.engines.lammps.errors import message
 from contactlaw.engines.lammps.memory import (
@@ -29,6 +28,7 @@ from contactlaw.engines.lammps.memory import (
 from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
 from contactlaw.stepping import WallContacts
+from contactlaw.stepping.friction import check_friction
 from contactlaw.walls.frame import Wall
 from contactlaw.walls.plate import Models, by_type, check_models
 

@@ -2,22 +2,10 @@
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
-import numpy as np
-
 from contactlaw.answers.beads import restitution_sphere_sphere
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material, material
-
-
-def check_friction(friction: Any) -> None:
-    """Refuse what is no coefficient of friction."""
-    if not isinstance(friction, int | float | np.number) or isinstance(friction, bool):
-        raise TypeError(f"friction: expected a number, got {friction!r}")
-    if not 0.0 <= friction < math.inf:
-        raise ValueError(f"friction: must be finite and not negative, got {friction!r}")
+from contactlaw.stepping.friction import check_friction
 
 
 def hertz_material(
