@@ -158,8 +158,8 @@ def _run(
 
 def failure(status: Array) -> tuple[int, int]:
     """Status, and index, of the first that has not solved; OK and 0 where all have."""
-    n = int(np.argmax(status != OK))
-    return int(status[n]), n
+    failed = np.flatnonzero(status != OK)
+    return (int(status[failed[0]]), int(failed[0])) if failed.size else (OK, 0)
 
 
 def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
