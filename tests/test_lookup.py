@@ -5,26 +5,42 @@ import math
 import numpy as np
 import pytest
 
+from contactlaw._jit import kernel
 from contactlaw.table import lookup
+
+
+def compiled(inner):
+    """Give a kernel that kernels call a way in from Python, which would run it as it is written."""
+
+    @kernel(entry=True)
+    def outer(*arguments):
+        return inner(*arguments)
+
+    return outer
+
+
+log_and_root, exp, evaluate, weights = map(
+    compiled, (lookup._log_and_root, lookup._exp, lookup._evaluate, lookup.weights)
+)
 
 
 def test_logarithm_and_fifth_root():
     # dense enough to meet every mantissa's neighbourhood; the series end at 1e-13 and 5e-12
     for v in np.geomspace(lookup.V_MIN, lookup.V_MAX, 20_011):
-        log, root = lookup._log_and_root(v)
+        log, root = log_and_root(v)
         assert log == pytest.approx(math.log(v), rel=1e-14, abs=2e-13)
         assert root == pytest.approx(v**0.2, rel=1e-11)
 
 
 def test_logarithm_and_root_do_not_crash_on_what_is_no_speed():
     for v in (0.0, -1.0, math.inf, -math.inf, math.nan, 5e-324, 1e308):
-        lookup._log_and_root(v)  # garbage, but an index within the table of roots
+        log_and_root(v)  # garbage, but an index within the table of roots
 
 
 def test_power_series_is_horners():
     c = tuple(np.random.default_rng(0).normal(size=21))
     for t in (-1.0, -0.3, 0.0, 0.7, 1.0):
-        assert lookup._evaluate(c, t) == pytest.approx(np.polyval(c[::-1], t), rel=1e-13)
+        assert evaluate(c, t) == pytest.approx(np.polyval(c[::-1], t), rel=1e-13)
 
 
 def test_weights_are_the_b_splines():
@@ -34,9 +50,9 @@ def test_weights_are_the_b_splines():
         # the uniform cubic B-spline on [0, 4]; each weight is one of its four pieces
         spline = BSpline.basis_element(np.arange(5.0), extrapolate=False)
         expected = [float(spline(3.0 - k + t)) if 3.0 - k + t < 4.0 else 0.0 for k in range(4)]
-        assert np.array(lookup.weights(t)) / 6 == pytest.approx(expected, abs=1e-15)
+        assert np.array(weights(t)) / 6 == pytest.approx(expected, abs=1e-15)
 
 
 def test_exponential():
     for x in (*np.linspace(-40.0, 40.0, 10_001), 0.0, 1e-300, -600.0, 600.0):
-        assert lookup._exp(x) == pytest.approx(math.exp(x), rel=1e-15)
+        assert exp(x) == pytest.approx(math.exp(x), rel=1e-15)

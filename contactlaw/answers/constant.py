@@ -48,8 +48,8 @@ class Constant:
     >>> import contactlaw as cl
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
     >>> best = model.constant([0.1, 1.0, 10.0], radius=0.9e-3, thickness=0.5e-3)
-    >>> round(best.energy_error, 4), round(best.mean_energy_error, 4)
-    (0.0, -0.2477)
+    >>> abs(best.energy_error) < 1e-9, round(best.mean_energy_error, 4)
+    (True, -0.2477)
     >>> f"single beads rebound to within {best.rebound_error:.0%} of their height"
     'single beads rebound to within 44% of their height'
     """
