@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
-from contactlaw.answers.backend import SphereOnPlate
+from contactlaw.answers.backend import Backend, SphereOnPlate
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
@@ -311,7 +311,7 @@ class ImpactModel(Compiled):
             raise ValueError(f"samples: must be an integer from 2 to 1 000 000, got {samples!r}")
         if method not in ("table", "solve"):
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
-        backend = self._tabulated if method == "table" else Solver(self._bodies)
+        backend: Backend = self._tabulated if method == "table" else Solver(self._bodies)
         return backend.histories(Impacts.on_plates(speed, radius, thickness), samples)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | NDArray[np.float64]:
