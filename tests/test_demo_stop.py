@@ -78,6 +78,26 @@ def test_an_interrupt_before_it_rains_leaves_nothing(tmp_path):
     assert names(tmp_path) == set()
 
 
+def test_an_interrupt_that_python_drops_ends_the_rain_with_its_next_frame(
+    tmp_path, monkeypatch, capsys
+):
+    class Thing:
+        def __del__(self):
+            signal.raise_signal(signal.SIGINT)  # Python drops what a destructor raises
+
+    def run(scene, model, recorder):
+        Thing()
+        real(scene, model, recorder)
+
+    engine = engines.load("pymunk")
+    real = engine.run
+    monkeypatch.setattr(engine, "run", run)
+    monkeypatch.setattr(sys, "unraisablehook", lambda dropped: None)  # pytest has one that warns
+    assert cli.main([*SMALL, "--out", str(tmp_path / "out")]) == 130
+    rain = read(tmp_path / "out" / "rain.h5")
+    assert (rain.reason, rain.time.size) == ("interrupted by SIGINT", 1)
+
+
 def test_an_interrupt_while_figures_are_drawn_keeps_the_record(tmp_path, monkeypatch, capsys):
     def draw(name, run, real=figures.draw):
         if name == sorted(figures.names())[2]:

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from dem_demo import engines, options
 from dem_demo.options import Refused
 from dem_demo.sieve import defaults
+from dem_demo.signals import Interrupted, undisturbed
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel
@@ -83,8 +84,9 @@ def start(arguments: argparse.Namespace, command: str) -> int:
     """Run the command; returns its exit status."""
     engine = engines.load(defaults.ENGINE)
     try:
-        from dem_demo import session
-        from dem_demo.sieve import products, record, report
+        with undisturbed():  # extension modules of matplotlib drop an interrupt, or crash
+            from dem_demo import session
+            from dem_demo.sieve import products, record, report
 
         version, rank = engine.version(), engine.rank()
     except ModuleNotFoundError as error:
@@ -166,7 +168,6 @@ def _simulate(plan: _Plan, folder: Path, files: Set[str]) -> BaseException | Non
     from dem_demo.session import FORESEEN
     from dem_demo.sieve.deck import FORM, write_stl
     from dem_demo.sieve.record import CONSTANT, RECORD, sieve_recorder
-    from dem_demo.signals import Interrupted
 
     triangles = plan.scene.deck.triangles()
     write_stl(folder / FORM, triangles)
