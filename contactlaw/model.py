@@ -28,7 +28,7 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
 from contactlaw.physical.scaling import law_of
 from contactlaw.physical.validity import Limits
-from contactlaw.table import Table
+from contactlaw.table import Settings, Table
 
 
 class ImpactModel(Compiled):
@@ -84,7 +84,7 @@ class ImpactModel(Compiled):
         self._tabulated = Tabulated(self._bodies, table, self._border)
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
         enable_caching()
-        if table is not None:
+        if not isinstance(table, Settings | None):
             self.table  # noqa: B018 - what is wrong with it is said here, not at the first impact
 
     def __reduce__(self) -> tuple[Any, ...]:

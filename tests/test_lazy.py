@@ -112,8 +112,10 @@ def test_a_warning_about_the_table_shows_the_users_line():
     coarse = cl.table.Settings(inelasticity_nodes=8, log_overload_step=0.9)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc", table=coarse)
-        exec("cl.ImpactModel(pair, law='myc', table=table)",  # without a __name__
+        model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc", table=coarse)
+        assert not caught  # it is made when first asked for
+        model.restitution(5.0, 1e-3, 1e-3)
+        exec("cl.ImpactModel(pair, law='myc', table=table).lookup(5.0, 1e-3, 1e-3)",  # no __name__
              {"cl": cl, "pair": cl.Pair("gamma-alumina", "glass"), "table": coarse})  # fmt: skip
     lines = [one.filename for one in caught if "less accurate" in str(one.message)]
     assert lines == [__file__, "<string>"]

@@ -60,7 +60,7 @@ class Solver:
         units = scales(contact, impacts.speed)
         found = self._solved(units)
         contacts = histories(self.bodies.law, found, samples)
-        return with_units(contacts, units, contact.mobility, impacts.shape)
+        return with_units(contacts, units, found.inelasticity, impacts.shape)
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
@@ -105,6 +105,8 @@ class Solver:
             if last == last:
                 slope = min(max((gap - before) / (log_speed - last), _SLOPES[0]), _SLOPES[1])
             last, log_speed = log_speed, log_speed - gap / slope
+        else:
+            raise UnsolvedError(0, f"lambda = {lam:.6g}", "no speed was found at which it yields")
         return math.exp(log_speed), lam
 
     def _solved(self, units: Numbers) -> Outcome:

@@ -152,7 +152,8 @@ class Tabulated:
         contact = self.bodies.contact(impacts)
         units = scales(contact, impacts.speed)
         found, _ = self.border.look_up(self.bodies.law, self.packed, units)
-        return with_units(self._shapes(found, samples), units, contact.mobility, impacts.shape)
+        contacts = self._shapes(found, samples)
+        return with_units(contacts, units, found.inelasticity, impacts.shape)
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""

@@ -30,10 +30,11 @@ from contactlaw.equation.plate import Plate
 Array = NDArray[np.float64]
 
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
-OK, TOO_MANY_STEPS, BAD_INPUT = 0, 1, 2  # status of a solution
+OK, TOO_MANY_STEPS, BAD_INPUT, NOT_FOUND = range(4)  # status of a solution
 MESSAGES = {
     TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; the plate is far thinner than the model allows",
     BAD_INPUT: "lambda must be finite and >= 0, the yield compression finite and > 0",
+    NOT_FOUND: "the yield compression of an impact that just yields was not found",
 }
 # How far `_integrate` goes, and what it notes on the way.
 _TO_THE_TOP, _TO_THE_END, _AT_TIMES, _AT_COMPRESSIONS = range(4)
@@ -220,9 +221,12 @@ def elastic_compression(law: Array, lam: Any, rtol: float) -> tuple[Any, Any]:
     for _ in range(100):
         found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol)
         w_m = found.peak_compression
-        if hertz or found.status.any() or (abs(w_m - before) < 1e-11 * before).all():
+        moved = abs(w_m - before) >= 1e-11 * before
+        if hertz or found.status.any() or not moved.any():
             break
         before = w_m
+    else:
+        found.status[moved] = NOT_FOUND
     return (found.status, w_m) if np.ndim(lam) else (found.status.item(), w_m.item())
 
 

@@ -30,8 +30,9 @@ class ForceHistory(NamedTuple):
         Integral of the force since first touch [N s]; at the end m V0 (1 + e). It is exact where a
         rule over the samples is not: above lambda = 3 the force has a long tail behind its peak.
     plate_displacement
-        Displacement of the plate at the contact point [m]: its mobility times the impulse. An
-        infinite plate does not come back; a real one does when the bending wave returns.
+        Displacement of the plate at the contact point [m]: its mobility times the impulse, with the
+        mobility that the law has for this impact. An infinite plate does not come back; a real one
+        does when the bending wave returns.
     """
 
     time: Array
@@ -42,15 +43,19 @@ class ForceHistory(NamedTuple):
 
 
 def with_units(
-    contacts: History, units: Numbers, mobility: Array, shape: tuple[int, ...] | None
+    contacts: History, units: Numbers, inelasticity: Array, shape: tuple[int, ...] | None
 ) -> ForceHistory:
-    """Give contacts (n, samples) their units and the shape of the answer."""
+    """Give contacts (n, samples) their units and the shape of the answer.
+
+    The inelasticity is that of the contacts, which at a table's border is not the impact's.
+    """
     scales = units.time, units.force, units.compression, units.force * units.time
     time, force, compression, impulse = (
         values * scale[:, None] for values, scale in zip(contacts, scales, strict=True)
     )
     whole = (*(shape or ()), time.shape[1])
-    displacement = mobility[:, None] * impulse
+    # by the mobility that the equation took, which is lambda T_H/m
+    displacement = (inelasticity * units.compression)[:, None] * contacts.impulse
     return ForceHistory(
         *(values.reshape(whole) for values in (time, force, compression, impulse, displacement))
     )

@@ -11,7 +11,7 @@ from numba.core import cgutils
 from numba.extending import intrinsic
 
 from contactlaw._jit import kernel
-from contactlaw.stepping.contact import CONTACT
+from contactlaw.stepping.contact import CONTACT, Trouble
 from contactlaw.stepping.friction import FRICTION
 from contactlaw.walls.memory import array_at
 
@@ -32,11 +32,13 @@ HEAD = np.dtype(
 ERROR, OWNER, COLUMNS, RADIUS = range(4)
 FIRST, WIDTH, SLIDING = (kind.itemsize // 8 for kind in (HEAD, CONTACT, FRICTION))
 
-# Errors beside those of `contactlaw.stepping.Trouble`. From STARTS_INSIDE on, these included, they
-# empty the bead's contacts, and it feels no wall until the run has ended, so that none of them gets
-# into the record.
-TOO_FAST, NOT_FINITE, NO_STEPS = range(4, 7)
-RESIZED, REWEIGHED, RETYPED = range(20, 23)
+# Errors beside those of `contactlaw.stepping.Trouble`, whose numbers they go on from. From
+# STARTS_INSIDE on, these included, they empty the bead's contacts, and it feels no wall until the
+# run has ended, so that none of them gets into the record.
+_MILD = max(code for code in Trouble if code < Trouble.STARTS_INSIDE)
+TOO_FAST, NOT_FINITE, NO_STEPS = range(_MILD + 1, _MILD + 4)
+assert NO_STEPS < Trouble.STARTS_INSIDE
+RESIZED, REWEIGHED, RETYPED = range(max(Trouble) + 1, max(Trouble) + 4)
 
 MINIMIZING = 2  # of LAMMPS's states; 1 is time steps
 
