@@ -24,6 +24,7 @@ from typing import IO, Any, TypeVar, overload
 import numba
 import numba.core.config
 import numpy as np
+from numba import types
 from numba.core.caching import IndexDataCacheFile
 from numba.core.ccallback import CFunc
 from numba.core.codegen import JITCodeLibrary
@@ -119,20 +120,16 @@ class _Inner(CPUDispatcher):
     def __call__(self, *arguments: Any) -> Any:
         return self.py_func(*arguments)
 
+    def compile(self, signature: Any) -> Any:
+        """Compile for numbers, not for each constant among the arguments anew."""
+        return super().compile(tuple(map(types.unliteral, signature)))
+
     def add_overload(self, result: Any) -> None:
         # callers look for it under this, in the place of what Python would call
         result = result._replace(entry_point=object())
         self.overloads[tuple(result.signature.args)] = result
         target: Any = self.targetctx
         target.insert_user_function(result.entry_point, result.fndesc, [result.library])
-
-
-def codes(count: int) -> tuple[int, ...]:
-    """Integers from 0 up, for a global name each, which numba takes for numbers.
-
-    It takes a plain one for a type of its own, and compiles whatever it is passed to anew.
-    """
-    return tuple(np.arange(count))
 
 
 def _tell_apart(function: Callable[..., Any]) -> None:

@@ -39,7 +39,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import codes, kernel
+from contactlaw._jit import kernel
 
 Array = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ SCALE, OFFSET, DEGREE, AT, FIRST, NEXT, PIECE = range(7)
 FUNCTION_POWER, FUNCTION_DEGREE, FUNCTION_AT, FUNCTION = range(4)
 FUNCTIONS = 6
 # functions of dm, in the order of a row
-RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = codes(FUNCTIONS)
+RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
 UNLOADING_ROW = OFFSET + 1 + FUNCTIONS * FUNCTION
 

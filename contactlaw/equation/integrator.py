@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import codes, kernel
+from contactlaw._jit import kernel
 from contactlaw.equation import force, legs, losses, motion, plate
 from contactlaw.equation.force import Curve
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
@@ -34,7 +34,7 @@ _LANDED = (
 SPENT = 1e-9  # restitution that is not told from less
 LATE = 1e-2  # restitution out of reach, at which, and at each of its powers, steps get finer
 # events: end of loading; a root compression is reached; a time is; the energy left is spent
-NONE, TURN, LEVEL, TIME, _OVER = codes(5)
+NONE, TURN, LEVEL, TIME, _OVER = range(5)
 
 
 class Scale(NamedTuple):

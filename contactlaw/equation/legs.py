@@ -16,15 +16,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import codes, kernel
+from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.force import Curve
 
 Array = NDArray[np.float64]
 
-CUBIC, PIECES, POWER = codes(3)  # how a leg's force is given
-_UP, _ABOVE, _ALONG, _BELOW = codes(4)  # loading; parts of unloading; the last ends a contact
-(FIRST,) = codes(1)  # piece of a loading curve
+CUBIC, PIECES, POWER = range(3)  # how a leg's force is given
+_UP, _ABOVE, _ALONG, _BELOW = range(4)  # loading; parts of unloading; the last ends a contact
+FIRST = 0  # piece of a loading curve
 NO_CURVE = Curve(0.0, 0.0, 3.0, 0.0, 0.0)
 """Before there is an unloading curve."""
 

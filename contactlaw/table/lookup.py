@@ -35,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import codes, kernel
+from contactlaw._jit import kernel
 from contactlaw.equation.numbers import PlateConstants, inelasticity_of, stiffening_of
 from contactlaw.equation.outcome import Outcome
 from contactlaw.equation.waves import Waves, is_thin
@@ -55,11 +55,10 @@ THINNEST = 0.01
 
 STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X, COLUMNS = range(5)
 SEGMENTS, CURVED, COR_AT, OTHERS_AT, TRANSIT, REACH, SATURATED, WAVES = range(5, 13)
-HEADER = WAVES + len(Waves._fields)
+HEADER = WAVES + len(Waves._fields)  # where the series of ln w_m begins
 DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
 START, END, PER_LOG, CELLS, COLUMN, GRADED, LINE, BLOCK = range(8)
 BLOCKS = HEADER + DEGREE + 1
-_ELASTIC = codes(HEADER + 1)[HEADER]  # where the series of ln w_m begins
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
@@ -205,7 +204,7 @@ def _evaluate(c: tuple[float, ...], t: float) -> float:
 @kernel
 def _log_elastic(table: Array, x: float) -> float:
     """Logarithm of w_m at x."""
-    return _evaluate(_power_series(table, _ELASTIC), 2.0 / table[X_MAX] * x - 1.0)
+    return _evaluate(_power_series(table, HEADER), 2.0 / table[X_MAX] * x - 1.0)
 
 
 @kernel(cache=True)
@@ -441,7 +440,7 @@ def _coordinates(
     Whether all of them are valid and in the table.
     """
     stretch, x_max, scale = table[STRETCH], table[X_MAX], 2.0 / table[X_MAX]
-    power_series, log_chi_max = _power_series(table, _ELASTIC), table[LOG_CHI_MAX]
+    power_series, log_chi_max = _power_series(table, HEADER), table[LOG_CHI_MAX]
     for i in range(x.size):
         log_chi[i], root[i] = _log_and_root(speed[i])
     plate = _plate(table, c_lam)
