@@ -149,10 +149,10 @@ def _run(
     goal: int, law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, notes: Notes = _NO_NOTES
 ) -> Solution:
     """Integrate impacts, and say what became of each; a law that never yields has any y."""
-    lams, ys = (np.atleast_1d(np.asarray(each, dtype=np.float64)) for each in (lam, y))
-    size = max(lams.size, ys.size)
-    out = np.zeros((len(Solution._fields), size))
-    lams, ys = (np.ascontiguousarray(np.broadcast_to(each, size)) for each in (lams, ys))
+    lams, ys = np.array(lam, np.float64, ndmin=1), np.array(y, np.float64, ndmin=1)
+    if lams.size != ys.size:
+        lams, ys = (each.copy() for each in np.broadcast_arrays(lams, ys))
+    out = np.zeros((len(Solution._fields), lams.size))
     _integrate(goal, law, lams, ys, rtol, notes, out)
     return Solution(*out)
 

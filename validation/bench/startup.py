@@ -42,7 +42,7 @@ def imports() -> tuple[float, str, None, str, None, None, str]:
         if len(parts := line.split("|")) == 3 and parts[1].strip().isdigit()
     }
     note = ", ".join(f"{name} {times[name]:.2f} s" for name in ("numpy", "numba", "h5py"))
-    taken = times["contactlaw"] + times["contactlaw.model"]
+    taken = sum(time for name, time in times.items() if name in ("contactlaw", "contactlaw.model"))
     return taken, "s", None, "", None, None, f"of it {note}"
 
 
