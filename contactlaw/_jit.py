@@ -37,6 +37,7 @@ from contactlaw import _folder
 from contactlaw._version import VERSION
 
 config: Any = numba.core.config
+normalize_signature: Any = numba.core.sigutils.normalize_signature
 carray: Any = numba.carray  # type: ignore[attr-defined]
 _F = TypeVar("_F", bound=Callable[..., Any])
 _cached: list[Any] = []
@@ -85,16 +86,18 @@ def kernel(
 
 
 class _InnerCode(JITCodeLibrary):
-    """What the callers of a kernel take over: its instructions, made simpler, no machine code.
+    """The code of a kernel, simplified for its callers but not translated to machine code.
 
-    The caller optimizes them with its own. Numba would do all of that here too, and then translate
-    what nobody calls, which took a fifth of the time of all compilations.
+    Each caller optimizes it together with its own. Numba would optimize and translate every kernel
+    also by itself, which took a fifth of the time of all compilations.
     """
 
     def _optimize_final_module(self) -> None:
         codegen: Any = self._codegen
-        passes, builder = codegen._module_pass_manager(loop_vectorize=False, cost="cheap")
-        passes.run(self._final_module, builder)
+        made = codegen._module_pass_manager(loop_vectorize=False, cost="cheap")
+        # numba 0.61 has no builder beside the passes
+        passes, *builder = made if isinstance(made, tuple) else (made,)
+        passes.run(self._final_module, *builder)
 
     def _finalize_final_module(self) -> None:
         self._finalize_dynamic_globals()  # type: ignore[no-untyped-call]
@@ -116,7 +119,8 @@ class _InnerCompiler(Compiler):
 class _Inner(CPUDispatcher):
     """A kernel that kernels call; Python, if it ever does, runs it as it was written.
 
-    The way in from Python takes as long to compile as a small kernel itself.
+    The way in from Python takes as long to compile as a small kernel itself. Without it a kernel
+    cannot print, nor raise an error whose arguments it computes.
     """
 
     def __call__(self, *arguments: Any) -> Any:
@@ -124,10 +128,11 @@ class _Inner(CPUDispatcher):
 
     def compile(self, signature: Any) -> Any:
         """Compile for numbers, not for each constant among the arguments anew."""
-        return super().compile(tuple(map(types.unliteral, signature)))
+        arguments, _ = normalize_signature(signature)
+        return super().compile(tuple(map(types.unliteral, arguments)))
 
     def add_overload(self, result: Any) -> None:
-        # callers look for it under this, in the place of what Python would call
+        # Callers find the code by this object, where other kernels have what Python calls.
         result = result._replace(entry_point=object())
         self.overloads[tuple(result.signature.args)] = result
         target: Any = self.targetctx
@@ -184,7 +189,7 @@ def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = Fa
         raise RuntimeError(
             "numba is switched off (NUMBA_DISABLE_JIT is set), and a C function needs its compiler"
         )
-    types = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
+    types = normalize_signature(signature)
     made: Any = CFunc(function, types, {}, {"error_model": "numpy"})
     if cache:
         _keep(made)
@@ -202,7 +207,7 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
         return function
     enable_caching()
     dispatcher: Any = function
-    types, _ = numba.core.sigutils.normalize_signature(signature)  # type: ignore[no-untyped-call]
+    types, _ = normalize_signature(signature)
     # By its types, as kernels ask for it: by a string it is another to numba's cache.
     dispatcher.compile(types)
     entry: Callable[..., Any] = dispatcher.overloads[types].entry_point

@@ -48,8 +48,8 @@ class ImpactModel(Compiled):
         when it is first asked, in less than a second, and kept in the user's cache folder;
         `solve`, soft spheres and LAMMPS need none.
     table : Table, path-like or Settings, optional
-        A table in place of the law's own; `contactlaw.table.Settings` of a larger or finer one are
-        built, in less than a second as a rule, and kept in the user's cache folder.
+        A table in place of the law's own; that of `contactlaw.table.Settings`, larger or finer, is
+        built when first asked, in less than a second as a rule, and kept in the cache folder.
     outside : {"raise", "solve", "clamp"}, optional
         What to do outside the table: refuse, integrate the equation, or take the value at the
         border (each such impact is counted in `clamped` and flagged in `Rebound.flags`).

@@ -39,7 +39,7 @@ def _stop(number: int, frame: FrameType | None) -> None:
 
 
 def raise_dropped() -> None:
-    """Raise again what Python, or a library, dropped; for places that no interrupt leads to.
+    """Raise again what Python, or a library, dropped: call it where no interrupt is being handled.
 
     Python drops an exception that is raised while it calls a destructor, the callback of a weak
     reference or a callback from C. Imports and compilation are full of these: of a hundred
@@ -70,9 +70,11 @@ def _on_signals(
 @contextmanager
 def interruptible() -> Iterator[None]:
     """Within this block, Ctrl-C, a request to terminate and a hang-up raise `Interrupted`."""
-    _raised.clear()
-    with _on_signals(_stop):
-        yield
+    try:
+        with _on_signals(_stop):
+            yield
+    finally:
+        _raised.clear()
 
 
 @contextmanager

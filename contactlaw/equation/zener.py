@@ -221,7 +221,7 @@ def elastic_compression(law: Array, lam: Any, rtol: float) -> tuple[Any, Any]:
     for _ in range(100):
         found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol)
         w_m = found.peak_compression
-        moved = abs(w_m - before) >= 1e-11 * before
+        moved = ~(abs(w_m - before) < 1e-11 * before)
         if hertz or found.status.any() or not moved.any():
             break
         before = w_m

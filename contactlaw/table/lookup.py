@@ -494,7 +494,7 @@ def _part(values: Array, start: int, count: int) -> Array:
 
 @kernel(inline=True)
 def _room(scratch: Array, row: int, count: int) -> Array:
-    """Part of a row."""
+    """Beginning of a row."""
     return scratch[row, :count]
 
 

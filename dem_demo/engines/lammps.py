@@ -272,5 +272,5 @@ def run(scene: Scene, model: ImpactModel, recorder: Recorder | None) -> None:
 def _record(rain: _Rain, recorder: Recorder | None) -> None:
     frame, rows = rain.look(), rain.collisions()
     if recorder is not None and frame is not None and rows is not None:
-        recorder.frame(frame)
         recorder.collisions(rows)
+        recorder.frame(frame)

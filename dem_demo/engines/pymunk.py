@@ -138,7 +138,7 @@ def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Record
     # disable=None: no bar where there is no terminal
     for _ in tqdm(range(scene.frames), desc="rain", unit="frame", disable=None):
         rain.advance(scene.steps_per_frame)
-        recorder.frame(rain.look())
         collisions = rain.impacts.collisions()
         recorder.collisions(collisions[told:])
         told = collisions.size
+        recorder.frame(rain.look())

@@ -209,5 +209,5 @@ def run(
 def _record(sieving: _Sieving, recorder: Recorder | None) -> None:
     frame, rows = sieving.look(), sieving.impacts.take()
     if recorder is not None and frame is not None and rows is not None:
-        recorder.frame(frame)
         recorder.collisions(rows)
+        recorder.frame(frame)
