@@ -296,7 +296,8 @@ def _company(bead: Bead) -> float:
     return ALONE
 
 
-@kernel(cache=True)
+# inline: its arguments are some 70 numbers, which a call would write to memory for each bead
+@kernel(cache=True, inline=True)
 def interact(scene: Scene, clock: Clock, bead: Bead) -> None:
     """Add the force of the walls to a bead, and keep its contacts."""
     if not 0 <= bead.kind < len(scene.sheets):
