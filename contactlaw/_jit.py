@@ -24,7 +24,6 @@ from typing import IO, Any, TypeVar, overload
 import numba
 import numba.core.config
 import numpy as np
-from numba import types
 from numba.core.caching import IndexDataCacheFile
 from numba.core.ccallback import CFunc
 from numba.core.codegen import JITCodeLibrary
@@ -110,8 +109,8 @@ class _InnerCompiler(Compiler):
 
     def define_pipelines(self) -> Any:
         state: Any = self.state
-        made: Any = _InnerCode
-        state.library = made(state.targetctx.codegen(), state.func_id.func_qualname)
+        codegen, name = state.targetctx.codegen(), state.func_id.func_qualname
+        state.library = _InnerCode(codegen, name)  # type: ignore[no-untyped-call]
         state.flags.no_compile = True
         return super().define_pipelines()  # type: ignore[no-untyped-call]
 
@@ -129,7 +128,7 @@ class _Inner(CPUDispatcher):
     def compile(self, signature: Any) -> Any:
         """Compile for numbers, not for each constant among the arguments anew."""
         arguments, _ = normalize_signature(signature)
-        return super().compile(tuple(map(types.unliteral, arguments)))
+        return super().compile(tuple(map(numba.types.unliteral, arguments)))
 
     def add_overload(self, result: Any) -> None:
         # Callers find the code by this object, where other kernels have what Python calls.

@@ -1,6 +1,6 @@
 """The command ``dem-demo``.
 
-What takes long to import is imported inside the commands, where Ctrl-C is already caught.
+What takes long to import is imported inside the commands, where Ctrl-C is already heard.
 """
 
 from __future__ import annotations

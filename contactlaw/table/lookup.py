@@ -488,7 +488,7 @@ def _move_inside(
 
 @kernel(inline=True)
 def _part(values: Array, start: int, count: int) -> Array:
-    """Part of an array: numba takes a tenth of a second for each slice that it compiles."""
+    """Part of an array; one kernel for all slices, since each is slow to compile."""
     return values[start : start + count]
 
 

@@ -1,6 +1,6 @@
 """``dem-demo sieve``: options, and the two simulations.
 
-What takes long to import is imported inside functions, where Ctrl-C is already caught.
+What takes long to import is imported inside functions, where Ctrl-C is already heard.
 """
 
 from __future__ import annotations
