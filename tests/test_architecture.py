@@ -36,7 +36,7 @@ LAYERS = [
 # Within a folder without units, the same: the order of its files.
 FILES = {
     "equation": ["force", "outcome", "waves", "numbers", "plate", "legs", "losses", "motion",
-                 "integrator", "zener"],
+                 "creep", "integrator", "zener"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "guarded", "file", "cache"],
     "answers": ["backend", "solver", "tabulated", "beads", "compiled", "constant", "loads",

@@ -344,14 +344,18 @@ def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
     cl.export.header(tmp_path / "contactlaw.h", model, table="none")
     calls = '#include "contactlaw.h"\n' + CALLS[CALLS.index("void rebounds") :]
     library = ctypes.CDLL(build(tmp_path, calls, "-O2", "-shared", "-fPIC", *WARNINGS))
-    v, h = np.array(np.meshgrid(np.geomspace(1e-6, 1e-3, 9), np.geomspace(4e-4, 4e-3, 9)))
+    v, h = np.array(np.meshgrid(np.geomspace(1e-6, 1.0, 16), np.geomspace(1.5e-4, 4e-3, 9)))
     v, h = v.ravel(), h.ravel()
     r = np.full_like(v, 1e-3)
+    lam = scales(sphere_on_plate(model.pair, model.force_law, r, h), v).inelasticity
+    v, r, h = v[lam < 60.0], r[lam < 60.0], h[lam < 60.0]
     found = called(library.rebounds, v.size, v, r, h, fields=len(FIELDS))
     expected = model.solve(v, r, h)
     assert expected.restitution.min() < 2e-6 < 1e-2 < expected.restitution.max()
     assert np.abs(found[:, 0] - expected.restitution).max() < 1e-10
     assert found[:, 1] == pytest.approx(expected.contact_time, rel=1e-7)
+    waves = FIELDS.index("wave_fraction")
+    assert np.abs(found[:, waves] - expected.wave_fraction).max() < 1e-8
 
 
 @pytest.mark.parametrize("table", ["cor", "none"])
@@ -554,7 +558,8 @@ def test_nothing_that_threads_could_share(tmp_path):
     kinds = {tuple(line.split()[-2:]) for line in symbols if line}
     assert {kind for kind, _ in kinds} <= {"T", "t", "r", "U"}
     outside = {name for kind, name in kinds if kind == "U"}
-    assert outside <= {"sqrt", "pow", "exp", "_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"}
+    known = {"sqrt", "pow", "exp", "expm1", "log"}
+    assert outside <= known | {"_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"}
 
 
 def test_several_source_files_may_include_it(tmp_path):

@@ -5,7 +5,8 @@ falls more slowly than the compression that is left, with an exponent below 2, t
 ever stiffer beside the plate, what is left goes into the plate, and the sphere never leaves. Once
 all that is left could throw it off with no more than `SPENT` of the speed that it came with, the
 sphere is turned back, the plate held, and it is. A restitution below that is rounded up to it.
-To know what is left, steps err less the less it is.
+To know what is left, steps err less the less it is. Where the steps would be too many, a series
+takes their place (`contactlaw.equation.creep`).
 
 Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q root compression,
 u speed, t time, s the variable of integration, y yield compression.
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force, legs, losses, motion, plate
+from contactlaw.equation.creep import creep, left
 from contactlaw.equation.force import Curve
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
 from contactlaw.equation.motion import Contact, State
@@ -49,21 +51,12 @@ class Scale(NamedTuple):
 
 
 @kernel
-def _left(leg: Leg, state: State) -> float:
-    """Square of the speed that the sphere would leave with on an unloading curve, the plate held.
-
-    The work of a force that falls as q^b is 2 f q^2/(b + 2).
-    """
-    return state.u * state.u + 4.0 * state.f * state.q * state.q / (leg.exponent + 2.0)
-
-
-@kernel
 def _gap(event: int, leg: Leg, state: State, level: float, until: float, scale: Scale) -> float:
     """How far an event is off, in units of its scale; its sign changes there."""
     if event == TURN:
         return state.dq / scale.u
     if event == _OVER:
-        return 1.0 - _left(leg, state) / scale.over
+        return 1.0 - left(leg, state) / scale.over
     return (level - state.q) / scale.q if event == LEVEL else (until - state.t) / scale.t
 
 
@@ -166,7 +159,7 @@ def _follow(
                 legs.unloads(leg)
                 and plate.moves(contact.plate)
                 and trial.u * trial.u < scale.over
-                and _left(leg, trial) < scale.over
+                and left(leg, trial) < scale.over
             ):
                 event = _OVER
             else:
@@ -219,10 +212,12 @@ def follow(
     steps = 0
     while True:
         if legs.unloads(leg):
-            left = (1.0 - 1e-6) * _left(leg, state)  # an event is met to 1e-9
-            while left < scale.over and scale.over > spent:
+            if plate.moves(contact.plate):
+                state = creep(contact, leg, state, level, until, spent)
+            over = (1.0 - 1e-6) * left(leg, state)  # an event is met to 1e-9
+            while over < scale.over and scale.over > spent:
                 scale = _finer(scale, spent)
-            if left < spent:
+            if over < spent:
                 contact = Contact(contact.law, plate.HELD)
                 state = motion.start(contact, leg, state.q, -abs(state.u), state.t, state.work)
         if leg.kind == CUBIC:

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
-from contactlaw.equation import force, integrator, waves
+from contactlaw.equation import creep, force, integrator, waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
@@ -49,6 +49,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     waves: "LONGER LONGER_3 LONGEST USUAL WIDEST DEEPEST BROADEST SATURATION CONTACT_TIME",
     lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
     integrator: "MAX_STEPS SPENT LATE",
+    creep: "SLOW",
     solver: "RTOL",
     stepping_spring: "TOP MOST_ITERATIONS CONVERGED",
     validity: "TRANSITS",
