@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching, kernel
 from contactlaw.answers.backend import OutsideTableError, too_thin
+from contactlaw.answers.solver import RTOL, solved
 from contactlaw.equation.waves import CONTACT_TIME
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
@@ -270,6 +271,7 @@ def time_step(
     lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
     if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
         raise OutsideTableError(0, too_thin(lam, largest))
-    time = np.minimum(model.solve(v, r, h).contact_time, CONTACT_TIME * units.time)
+    found = solved(model.force_law, units.inelasticity, units.yield_ratio, RTOL)
+    time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
     steps: float = (_ERROR / error) ** 0.4
-    return float(time[0]) / max(FEWEST_STEPS, steps)
+    return time / max(FEWEST_STEPS, steps)

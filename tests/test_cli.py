@@ -167,7 +167,8 @@ def test_a_table_with_a_plate_too_thin_for_a_yield_speed(capsys):
         (["--plot", "cor.xyz"], "--plot: got 'cor.xyz', must end in .png, .svg or .pdf"),
         (["--plot", "cor"], "--plot: got 'cor', must end in"),
         (["--plot", "nowhere/cor.png"], "--plot: there is no folder nowhere"),
-        (["--solve", "--speed", "1e4", "--radius", "1m", "--thickness", "1cm"], "did not solve"),
+        (["--solve", "--law", "hertz", "--speed", "1e4", "--radius", "1m", "--thickness", "1cm"],
+         "did not solve"),
     ],
 )  # fmt: skip
 def test_refused_physics_is_status_1_and_one_sentence(change, message, capsys):

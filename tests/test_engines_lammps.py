@@ -473,6 +473,8 @@ def test_two_beads_rebound_as_asked(speed, friction):
     lmp.command("run 2000")
     v = lmp.numpy.extract_atom("v")[:2, 0]
     expected = cl.restitution_sphere_sphere("gamma-alumina", "gamma-alumina", speed, R, R)
+    line = pair_coeff("gamma-alumina", radius=R, speed=speed, friction=friction)
+    assert float(line.split()[5]) == pytest.approx(expected, abs=2e-6)  # 6 digits; the table's
     assert abs(v[0] - v[1]) / speed == pytest.approx(expected, abs=1e-3)
     assert expected < 0.97 or speed == 5.0
     lmp.close()

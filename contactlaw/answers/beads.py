@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.answers.tabulated import Border, Tabulated, curve, table_for
+from contactlaw._jit import enable_caching
+from contactlaw.answers.solver import RTOL, within
+from contactlaw.answers.tabulated import Border, Tabulated, curve, extent, table_for
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.materials import Material
@@ -84,6 +86,15 @@ class Beads:
         v, r, o, shape = _checked(speed, radius, other_radius)
         units = scales(self._contact(r, o), v)
         found, _ = self._border.look_up(self.law, self.table.packed, units)
+        return shaped(found.restitution, shape)
+
+    def integrated(
+        self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
+    ) -> float | Array:
+        """COR of impacts, as in `rebounds`, but integrated: a few need no table."""
+        enable_caching()
+        v, r, o, shape = _checked(speed, radius, other_radius)
+        found = within(self.law, scales(self._contact(r, o), v), RTOL, extent(self.law))
         return shaped(found.restitution, shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:

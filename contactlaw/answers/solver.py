@@ -46,7 +46,7 @@ class Solver:
         """Everything about impacts."""
         contact = self.bodies.contact(impacts)
         units = scales(contact, impacts.speed)
-        found = self._solved(units)
+        found = within(self.bodies.law, units, self.rtol, self.extent)
         flags = np.zeros(impacts.speed.size, dtype=np.int64)
         asked = units.inelasticity, units.yield_ratio
         return rebound(
@@ -58,7 +58,7 @@ class Solver:
         """Contacts at even times from first touch to separation."""
         contact = self.bodies.contact(impacts)
         units = scales(contact, impacts.speed)
-        found = self._solved(units)
+        found = within(self.bodies.law, units, self.rtol, self.extent)
         contacts = histories(self.bodies.law, found, samples)
         return with_units(contacts, units, found.inelasticity, impacts.shape)
 
@@ -109,20 +109,21 @@ class Solver:
             raise UnsolvedError(0, f"lambda = {lam:.6g}", "no speed was found at which it yields")
         return math.exp(log_speed), lam
 
-    def _solved(self, units: Numbers) -> Outcome:
-        """Integrate impacts up to the first one that is outside the extent, which is refused."""
-        lam, y = units.inelasticity, units.yield_ratio
-        if self.extent is None:
-            return solved(self.bodies.law, lam, y, self.rtol)
-        thin = self.extent.largest_inelasticity
-        beyond = int(np.argmax(np.append(lam > thin, True)))
-        found = solved(self.bodies.law, lam[:beyond], y[:beyond], self.rtol)
-        chi = found.elastic_compression / found.yield_ratio
-        for n in np.flatnonzero(chi > self.extent.largest_overload)[:1].tolist():
-            raise OutsideTableError(n, too_fast(chi[n], self.extent.largest_overload))
-        if beyond < lam.size:
-            raise OutsideTableError(beyond, too_thin(lam[beyond], thin))
-        return found
+
+def within(law: Law, units: Numbers, rtol: float, extent: Settings | None) -> Outcome:
+    """Integrate impacts up to the first one that is outside the extent, which is refused."""
+    lam, y = units.inelasticity, units.yield_ratio
+    if extent is None:
+        return solved(law, lam, y, rtol)
+    thin = extent.largest_inelasticity
+    beyond = int(np.argmax(np.append(lam > thin, True)))
+    found = solved(law, lam[:beyond], y[:beyond], rtol)
+    chi = found.elastic_compression / found.yield_ratio
+    for n in np.flatnonzero(chi > extent.largest_overload)[:1].tolist():
+        raise OutsideTableError(n, too_fast(chi[n], extent.largest_overload))
+    if beyond < lam.size:
+        raise OutsideTableError(beyond, too_thin(lam[beyond], thin))
+    return found
 
 
 def solved(law: Law, lam: Array, y: Array, rtol: float, places: Places | None = None) -> Outcome:

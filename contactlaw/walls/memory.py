@@ -7,23 +7,26 @@ from typing import Any
 import numba
 from numba import types
 from numba.extending import intrinsic
-
-from contactlaw._jit import kernel
+from numba.np import arrayobj
 
 carray: Any = numba.carray  # type: ignore[attr-defined]
+_cfarray: Any = arrayobj.np_cfarray
 
 
-@intrinsic
-def _pointer(typing_context: Any, address: Any) -> Any:
-    """Turn an address into a void pointer."""
+def _array_at(typing_context: Any, address: Any, shape: Any, kind: Any) -> Any:
+    dimensions = len(shape) if isinstance(shape, types.BaseTuple) else 1
+    array = types.Array(kind.dtype, dimensions, "C")
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-        return builder.inttoptr(arguments[0], context.get_value_type(types.voidptr))
+        start, size, _ = arguments
+        pointer = builder.inttoptr(start, context.get_value_type(types.voidptr))
+        return _cfarray(context, builder, array(types.voidptr, shape), (pointer, size))
 
-    return types.voidptr(types.intp), generate
+    return array(types.intp, shape, kind), generate
 
 
-@kernel
-def array_at(address: int, shape: Any, kind: Any) -> Any:
-    """Array of this shape and kind that begins at an address."""
-    return carray(_pointer(address), shape, kind)  # type: ignore[call-arg]
+array_at: Any = intrinsic(_array_at)
+"""Array at an address, of a shape and a kind.
+
+Numba's carray would do, but is two functions to be compiled for each kind and type of shape.
+"""

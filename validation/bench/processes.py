@@ -84,6 +84,7 @@ print(time.perf_counter() - start)
 COR = "cor --sphere gamma-alumina --plate glass --radius 0.9mm --thickness 1mm --speed 12"
 FIT = "fit rebounds.csv --sphere bearing-steel-52100 --plate aluminium-6061-t6 --radius 1mm"
 ROOT = Path(__file__).parent.parent.parent
+LAMMPS = "docs/examples/plates_lammps.py"
 _CACHES = ("XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "CONTACTLAW_CACHE_DIR", "MPLCONFIGDIR")
 
 
@@ -110,7 +111,7 @@ def first_answers(folder: Path) -> Iterator[Row]:
     asked = (
         ("contactlaw cor", [*module, *COR.split()], 8, None),
         ("every method of ImpactModel", [*python, EVERY_METHOD], 16, 1.2),
-        ("a script for LAMMPS", [*python, ATTACH], 20, None),
+        ("plates_lammps.py", [sys.executable, str(ROOT / LAMMPS)], 20, None),
         ("contactlaw fit, 50 rows", [*module, *FIT.split(), "--unknown", "thickness"], 10, 1.5),
     )  # fmt: skip
     for n, (name, command, first, second) in enumerate(asked):

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from contactlaw.answers.beads import restitution_sphere_sphere
+from contactlaw.answers.beads import Beads
+from contactlaw.answers.tabulated import Border
+from contactlaw.laws import DEFAULT
 from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import Material, material
 from contactlaw.stepping.friction import check_friction
@@ -69,7 +71,8 @@ def pair_coeff(
     one = material(sphere) if isinstance(sphere, str) else sphere
     scalars(radius=radius, speed=speed)
     check_friction(friction)
-    restitution = restitution_sphere_sphere(one, one, speed, radius, radius)
+    beads = Beads(one, one, DEFAULT, Border("raise"))
+    restitution = beads.integrated(speed, radius, radius)
     tangential = f"mindlin NULL 0 {friction:g}" if friction else "linear_nohistory 0 0"
     return "pair_coeff * * " + hertz_material(
         one.youngs_modulus, float(restitution), one.poissons_ratio, tangential
