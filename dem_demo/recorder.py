@@ -84,6 +84,7 @@ class Recorder:
         axes: str,
         files: Set[str],
     ) -> None:
+        raise_dropped()  # nothing has been written yet
         self.folder = path.parent
         self.reason: str | None = None
         self._path, self._disk = path, Disk(path)

@@ -98,6 +98,24 @@ def test_an_interrupt_that_python_drops_ends_the_rain_with_its_next_frame(
     assert (rain.reason, rain.time.size) == ("interrupted by SIGINT", 1)
 
 
+def test_an_interrupt_that_python_drops_before_the_record_leaves_nothing(
+    tmp_path, monkeypatch, capsys
+):
+    class Thing:
+        def __del__(self):
+            signal.raise_signal(signal.SIGINT)
+
+    def load(name, real=engines.load):
+        Thing()
+        return real(name)
+
+    monkeypatch.setattr(engines, "load", load)
+    monkeypatch.setattr(sys, "unraisablehook", lambda dropped: None)
+    assert cli.main([*SMALL, "--out", str(tmp_path / "out")]) == 130
+    assert "nothing was written" in capsys.readouterr().err
+    assert names(tmp_path) == set()
+
+
 def test_an_interrupt_while_figures_are_drawn_keeps_the_record(tmp_path, monkeypatch, capsys):
     def draw(name, run, real=figures.draw):
         if name == sorted(figures.names())[2]:

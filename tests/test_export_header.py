@@ -24,6 +24,8 @@ from contactlaw._version import VERSION
 from contactlaw.equation import force, zener
 from contactlaw.equation.waves import CONTACT_TIME
 from contactlaw.export import c_header
+from contactlaw.laws import Law
+from contactlaw.laws._branches import Loading
 from contactlaw.physical import validity
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import scales, sphere_on_plate
@@ -356,6 +358,21 @@ def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
     assert found[:, 1] == pytest.approx(expected.contact_time, rel=1e-7)
     waves = FIELDS.index("wave_fraction")
     assert np.abs(found[:, waves] - expected.wave_fraction).max() < 1e-8
+
+
+def test_the_series_is_not_for_the_loading_curve(tmp_path):
+    """An elastic contact goes back along it, and this one is no power of the compression."""
+    stiffening = np.polynomial.Polynomial([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e3])
+    law = Law.of(name="stiffening", source="s", yield_coefficient=None, scale=1e-5,
+                 loading=[Loading(0.0, stiffening)])  # fmt: skip
+    model = cl.ImpactModel(cl.Pair("zirconia", "glass"), law)
+    cl.export.header(tmp_path / "contactlaw.h", model, table="none")
+    calls = '#include "contactlaw.h"\n' + CALLS[CALLS.index("void rebounds") :]
+    library = ctypes.CDLL(build(tmp_path, calls, "-O2", "-shared", "-fPIC", *WARNINGS))
+    (found,) = called(library.rebounds, 1, [100.0], [1e-3], [0.2e-3], fields=len(FIELDS))
+    expected = model.solve(100.0, 1e-3, 0.2e-3)
+    assert found[1] == pytest.approx(expected.contact_time, rel=1e-6)
+    assert found[FIELDS.index("wave_fraction")] == pytest.approx(1.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("table", ["cor", "none"])
