@@ -1,6 +1,8 @@
 """`dem-demo sieve`: its deck, its record, its energy, and what it leaves when it is stopped."""
 
+import csv
 import dataclasses
+import io
 import math
 import os
 import signal
@@ -19,6 +21,8 @@ pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[
 import trimesh  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
+from contactlaw import cli as cli_of_contactlaw  # noqa: E402
+from contactlaw.command import records  # noqa: E402
 from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 from dem_demo import cli  # noqa: E402
@@ -54,6 +58,25 @@ def test_all_files_are_there_and_nothing_else(folder):
     assert [path.name for path in folder.parent.iterdir()] == ["out"]
     page = (folder / "index.html").read_text()
     assert page.count("<figure") == len(PICTURES) and "$" not in page.partition("<section>")[2]
+
+
+@pytest.mark.parametrize("name", ["sieve.h5", "constant.h5"])
+def test_the_record_gives_a_constant(name, folder, capsys):
+    """The same walls as the engine's impacts with the scene's own sizes give."""
+    run = record._read(folder / name)
+    found = records.read(folder / name)
+    rows = run.collisions
+    assert rows.size > 3
+    assert np.array_equal(found.speed, rows["approach_speed"])
+    assert np.array_equal(found.radius, run.scene.radius[rows["bead"]])
+    assert set(found.thickness) == {run.scene.thickness}
+    assert (found.pair, found.law) == (run.pair, run.law)
+    capsys.readouterr()
+    assert cli_of_contactlaw.main(["constant", "--record", str(folder / name), "--csv"]) == 0
+    (wall,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
+    model = cl.ImpactModel(run.pair, law=run.law)
+    one = model.constant(found.speed, found.radius, found.thickness)
+    assert float(wall["restitution"]) == pytest.approx(one.restitution, rel=1e-12)
 
 
 def test_the_record_explains_itself(folder):

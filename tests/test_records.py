@@ -105,7 +105,7 @@ def test_a_rain_of_the_demo(tmp_path):
         ("a.csv", b"\xff\xfe\x00\x01speed", "neither text, nor HDF5"),
         ("a.npy", b"speed", "no file of np.save"),
         ("a.h5", b"speed", "no HDF5 file, or a damaged one"),
-        ("a.h5", None, "no record of dem-demo, whose format is 'contactlaw-rain'"),
+        ("a.h5", None, "no record of dem-demo, whose formats are 'contactlaw-rain' and 'contac"),
     ],
 )
 def test_what_is_refused(name, content, message, tmp_path):

@@ -173,8 +173,9 @@ def _add_constant(command: argparse.ArgumentParser) -> None:
     add(
         "--record",
         metavar="FILE",
-        help="impacts that have happened: rain.h5 of dem-demo, an engine's record (.npy), or CSV "
-        "with a column speed_m/s, and perhaps radius_m, thickness_m, weight and plate",
+        help="impacts that have happened: rain.h5 or sieve.h5 of dem-demo, an engine's record "
+        "(.npy), or CSV with a column speed_m/s, and perhaps radius_m, thickness_m, weight and "
+        "plate",
     )
     _add_law(command, default=None)
     command.add_argument(

@@ -63,7 +63,7 @@ _COLUMNS = {
     "weights": Column(("weight", "weights"), None),
     "plate": Column(("plate",), None),
 }
-_DEMO = "contactlaw-rain"
+_RAIN, _SIEVE = "contactlaw-rain", "contactlaw-sieve"
 
 
 def read(path: str | os.PathLike[str]) -> Recorded:
@@ -72,11 +72,11 @@ def read(path: str | os.PathLike[str]) -> Recorded:
     Parameters
     ----------
     path : path-like
-        ``rain.h5`` of ``dem-demo``; an impact record of an engine, as ``np.save`` writes it
-        (``.npy``); or else text: columns between commas, semicolons or tabs, with names and units
-        in the first line, as in ``speed_m/s,radius_mm`` or ``Speed [m/s];Radius [mm]``. Speeds may
-        be called speed, approach speed, normal speed or impact speed; a column without a unit is in
-        that of the SI. Columns called radius, thickness, weight and plate are optional.
+        ``rain.h5`` or ``sieve.h5`` of ``dem-demo``; an impact record of an engine, as ``np.save``
+        writes it (``.npy``); or else text: columns between commas, semicolons or tabs, with names
+        and units in the first line, as in ``speed_m/s,radius_mm`` or ``Speed [m/s];Radius [mm]``.
+        Speeds may be called speed, approach speed, normal speed or impact speed; a column without a
+        unit is in that of the SI. Columns called radius, thickness, weight and plate are optional.
 
     Raises
     ------
@@ -190,10 +190,14 @@ def _sized(
 
 def _hdf5(content: bytes) -> Recorded:
     with hdf5.opened(content) as file:
-        if hdf5.format_of(file) != _DEMO:
-            raise ValueError(f"no record of dem-demo, whose format is {_DEMO!r}")
+        form = hdf5.format_of(file)
+        if form == _RAIN:
+            thickness = hdf5.numbers(hdf5.group(file, "plates"), "thickness")
+        elif form == _SIEVE:  # one deck
+            thickness = np.array([hdf5.attribute(file, "thickness", float)])
+        else:
+            raise ValueError(f"no record of dem-demo, whose formats are {_RAIN!r} and {_SIEVE!r}")
         radius = hdf5.numbers(hdf5.group(file, "beads"), "radius")
-        thickness = hdf5.numbers(hdf5.group(file, "plates"), "thickness")
         hits = hdf5.group(file, "collisions")
         speed = hdf5.numbers(hits, "approach_speed")
         plate = hdf5.indices(hits, "plate", thickness.size, speed.size)
