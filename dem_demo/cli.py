@@ -65,7 +65,7 @@ def _joined(words: Sequence[str]) -> Sequence[str]:
     """Join options with negative quantities; a help page need not load contactlaw for that."""
     if all(word[:1] != "-" or word[:2] in ("--", "-h") for word in words):
         return words
-    from contactlaw.command.options import joined
+    from contactlaw.cli.parts.options import joined
 
     return joined(words)
 
@@ -173,7 +173,7 @@ def _plan(
 ) -> tuple[Scene, ImpactModel | ConstantRestitution, ImpactModel]:
     """Scene, what rules its impacts, and the model; whatever they refuse is refused now."""
     from contactlaw import ImpactModel, Pair, laws
-    from contactlaw.command import wording
+    from contactlaw.cli.parts import wording
     from dem_demo.baseline import ConstantRestitution
     from dem_demo.nozzles import rain
 

@@ -47,7 +47,7 @@ def speeds(words: str) -> tuple[float, float]:
 
 
 def _values(words: str, quantity: str) -> tuple[float, ...]:
-    from contactlaw.command import options, quantities
+    from contactlaw.cli.parts import options, quantities
 
     kind = getattr(quantities, quantity)
     found: tuple[float, ...] = options.reader_of(quantities.values, kind)(words)

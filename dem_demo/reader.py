@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel, Pair
-from contactlaw.command.hdf5 import material_of
+from contactlaw.cli.parts.hdf5 import material_of
 from contactlaw.engines.record import IMPACT, fill
 from dem_demo.recorder import COMPLETE, FORMAT, PARTIAL, SCHEMA
 from dem_demo.scene import Beads, Floats, Plate, Scene

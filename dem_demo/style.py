@@ -15,7 +15,7 @@ from matplotlib.collections import EllipseCollection
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from contactlaw.command import wording
+from contactlaw.cli.parts import wording
 
 # Okabe and Ito (2008), Color Universal Design.
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"

@@ -30,7 +30,6 @@ LAYERS = [
     {"softsphere"},
     {"export", "turning_point"},
     {"engines"},
-    {"command"},
     {"cli"},
 ]
 # Within a folder without units, the same: the order of its files.
@@ -43,8 +42,8 @@ FILES = {
                 "sensitivity", "speed_table"],
     "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
     "stepping": ["spring", "energy", "friction", "sheet", "contact", "bead"],
-    "command": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",
-                "options", "curves", "sweep", "walls", "lines", "plots", "fits", "fitplot"],
+    "cli/parts": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",
+                  "options", "curves", "walls", "lines", "plots", "asked", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
                  "rebound"],
 }  # fmt: skip
@@ -122,9 +121,17 @@ def test_imports_run_upwards_only(path):
         assert level(name[0]) <= level(folder), f"{path} imports {'.'.join(name)}"
         if len(place) == 1 and name[0] != folder:
             assert level(name[0]) < level(folder), f"{path} imports {'.'.join(name)}"
-        order = FILES.get(folder)
-        if order and name[0] == folder and stem != "__init__" and len(name) > 1:
-            assert name[1] not in order[order.index(stem) :], f"{path} imports {'.'.join(name)}"
+        inside = place[:-1]
+        order = FILES.get("/".join(inside))
+        if order and name[: len(inside)] == inside and stem != "__init__" and name > inside:
+            later = order[order.index(stem) :]
+            assert name[len(inside)] not in later, f"{path} imports {'.'.join(name)}"
+
+
+def test_a_subcommand_knows_no_other():
+    for path in (ROOT / "cli").glob("[a-z]*.py"):
+        inner = [name[1:2] for name in own(path) if name[0] == "cli"]
+        assert set(inner) == {("parts",)}, path
 
 
 def test_the_model_is_public_methods():

@@ -16,7 +16,6 @@ import pytest
 import contactlaw as cl
 from contactlaw import cli, laws, table
 from contactlaw.cli import main
-from contactlaw.command import options
 from contactlaw.table import file
 
 COR = ["cor", "--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]
@@ -223,7 +222,7 @@ def test_a_warning_is_a_sentence_too(monkeypatch, capsys):
         warnings.warn("the cache is full", stacklevel=1)
         return ("glass",)
 
-    monkeypatch.setattr(cli, "materials", full)
+    monkeypatch.setattr("contactlaw.cli.materials.materials", full)
     with warnings.catch_warnings():
         warnings.simplefilter("always")
         assert main(["materials"]) == 0
@@ -245,7 +244,7 @@ def parsers(parser, name="contactlaw"):
                 yield from parsers(inner, f"{name} {command}")
 
 
-@pytest.mark.parametrize(("name", "parser"), list(parsers(options.parser())))
+@pytest.mark.parametrize(("name", "parser"), list(parsers(cli.parser())))
 def test_every_option_is_explained(name, parser):
     for action in parser._actions:
         assert action.help, (name, action.dest)

@@ -8,9 +8,8 @@ import pytest
 from test_fit import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
-from contactlaw import cli
 from contactlaw.cli import main
-from contactlaw.command import measured
+from contactlaw.cli.parts import measured
 
 BODIES = ["--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name]
 FIT = [*BODIES, "--radius", "1mm", "--unknown", "thickness"]
@@ -157,7 +156,7 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
 
 
 def test_where_yield_begins_is_drawn(tmp_path):
-    from contactlaw.command.fitplot import curve_of, groups_of
+    from contactlaw.cli.parts.fitplot import curve_of, groups_of
 
     pair = cl.Pair("gamma-alumina", "glass")
     data = rebounds(pair, speed=np.geomspace(1.0, 30.0, 12), without=("thickness",))
@@ -171,7 +170,7 @@ def test_an_interrupt_leaves_nothing(usual, tmp_path, monkeypatch, capsys):
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cli, "fit", interrupted)
+    monkeypatch.setattr("contactlaw.cli.fit.fit", interrupted)
     path = tmp_path / "fit.png"
     assert main(["fit", usual, *FIT, "--plot", str(path)]) == 130
     assert "interrupted" in capsys.readouterr().err and not path.exists()

@@ -22,7 +22,7 @@ import trimesh  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import cli as cli_of_contactlaw  # noqa: E402
-from contactlaw.command import records  # noqa: E402
+from contactlaw.cli.parts import records  # noqa: E402
 from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 from dem_demo import cli  # noqa: E402

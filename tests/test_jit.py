@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_cli import parsers
 
 import contactlaw as cl
 from contactlaw import _jit, cli
@@ -400,5 +401,6 @@ def test_a_second_process_compiles_nothing(command, tmp_path):
 
 
 def test_every_subcommand_has_its_second_process():
-    names = {f"contactlaw {name}" for name in cli._RUN} | {"dem-demo rain", "dem-demo sieve"}
+    names = {name for name, one in parsers(cli.parser()) if one.get_default("run")}
+    names |= {"dem-demo rain", "dem-demo sieve"}
     assert {name for name in names for command in COMMANDS if command.startswith(name)} == names

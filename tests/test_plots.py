@@ -8,7 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import contactlaw as cl
-from contactlaw.command import curves, plots
+from contactlaw.cli.parts import curves, plots
 
 R, INF = 0.9e-3, math.inf
 

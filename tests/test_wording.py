@@ -6,7 +6,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
-from contactlaw.command import wording
+from contactlaw.cli.parts import wording
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 

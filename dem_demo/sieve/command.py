@@ -112,7 +112,7 @@ def start(arguments: argparse.Namespace, command: str) -> int:
 def _plan(arguments: argparse.Namespace, engine: tuple[str, str], command: str) -> _Plan:
     """Scene and models; whatever they refuse is refused now."""
     from contactlaw import ImpactModel, Pair, laws
-    from contactlaw.command import wording
+    from contactlaw.cli.parts import wording
     from dem_demo.sieve.constant import constant_model
     from dem_demo.sieve.engine import time_step
     from dem_demo.sieve.scene import sieve

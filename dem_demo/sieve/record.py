@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel, Pair
-from contactlaw.command.hdf5 import material_of
+from contactlaw.cli.parts.hdf5 import material_of
 from dem_demo.reader import closed, impacts, versions
 from dem_demo.recorder import Dataset, Recorder, made_by, write, write_materials
 from dem_demo.scene import Floats

@@ -9,7 +9,7 @@ import tempfile
 from pathlib import Path
 
 import contactlaw as cl
-from contactlaw.command import fitplot, measured
+from contactlaw.cli.parts import fitplot, measured
 
 REBOUNDS = Path(__file__).with_name("rebounds.csv")  # beads of alumina on glass of 1 mm
 RADIUS, THICKNESS = 0.9e-3, 1e-3  # [m]

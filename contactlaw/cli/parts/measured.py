@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw.command import columns
-from contactlaw.command.columns import Column
-from contactlaw.command.quantities import FORCE, LENGTH, SHARE, SPEED, TIME
+from contactlaw.cli.parts import columns
+from contactlaw.cli.parts.columns import Column
+from contactlaw.cli.parts.quantities import FORCE, LENGTH, SHARE, SPEED, TIME
 from contactlaw.fitting import Measurements
 
 _KINDS = {

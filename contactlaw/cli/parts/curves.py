@@ -9,8 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.command import wording
-from contactlaw.command.sheet import yield_speeds
+from contactlaw.cli.parts import wording
+from contactlaw.cli.parts.sheet import yield_speeds
 from contactlaw.model import ImpactModel
 
 Array = NDArray[np.float64]

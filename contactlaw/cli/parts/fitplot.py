@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.command.fits import values_in_words
-from contactlaw.command.plots import (
+from contactlaw.cli.parts.fits import values_in_words
+from contactlaw.cli.parts.plots import (
     BLUE,
     INK,
     check_suffix,

@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 from contactlaw._jit import switched_off
 from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.solver import Solver
-from contactlaw.answers.speed_table import SpeedTable
 from contactlaw.answers.tabulated import extent
-from contactlaw.command import wording
+from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.model import ImpactModel
 from contactlaw.physical.rebound import Impacts
@@ -220,31 +219,6 @@ def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
     for flag, count in sorted(flags.items()):
         (words,) = explain(flag)
         yield f"{flag.name}, {count} of {total}: {words}"
-
-
-def speed_table(found: SpeedTable) -> Iterator[str]:
-    """Lines for a terminal: rows of COR over speed, how right they are, and what the flags say.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> for line in speed_table(model.speed_table(0.9e-3, 1e-3, error=0.05)):
-    ...     print(line)
-    speed     COR
-    [m/s]     [-]
-      0.1  0.9567
-       10  0.8878
-    <BLANKLINE>
-    2 rows, straight lines between them within 0.021 in COR
-    """
-    rows = [
-        (f"{v:.6g}", f"{e:.4g}", "") for v, e in zip(found.speed, found.restitution, strict=True)
-    ]
-    yield from aligned(list(zip(("speed", "COR", ""), ("[m/s]", "[-]", ""), *rows, strict=True)))
-    yield ""
-    yield f"{len(rows)} rows, straight lines between them within {found.error:.2g} in COR"
-    yield from explained(found.flags, len(rows))
 
 
 def write_csv(sheet: Sheet, out: TextIO) -> None:

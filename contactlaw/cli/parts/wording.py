@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import re
+import sys
 import textwrap
 from collections.abc import Container, Iterator
 from contextlib import contextmanager
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
-from contactlaw.command.quantities import LENGTH, SPEED, written
+from contactlaw.cli.parts.quantities import LENGTH, SPEED, written
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
@@ -91,7 +92,7 @@ def material_of(option: str) -> Iterator[None]:
     >>> with material_of("plate"):
     ...     raise UnknownMaterialError("soap", ())
     Traceback (most recent call last):
-    contactlaw.command.wording.Refused: --plate: unknown material 'soap': `contactlaw materials` \
+    contactlaw.cli.parts.wording.Refused: --plate: unknown material 'soap': `contactlaw materials` \
 lists all
     """
     try:
@@ -111,7 +112,7 @@ def file_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     >>> with file_of("plot", "nowhere/cor.png"):
     ...     print("not reached")
     Traceback (most recent call last):
-    contactlaw.command.wording.Refused: --plot: there is no folder nowhere
+    contactlaw.cli.parts.wording.Refused: --plot: there is no folder nowhere
     """
     path = os.fspath(path)
     if os.path.isdir(path):
@@ -129,7 +130,7 @@ def folder_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     >>> with folder_of("out", "nowhere/liggghts"):
     ...     print("not reached")
     Traceback (most recent call last):
-    contactlaw.command.wording.Refused: --out: there is no folder nowhere
+    contactlaw.cli.parts.wording.Refused: --out: there is no folder nowhere
     """
     path = os.path.normpath(path)
     if os.path.lexists(path) and not os.path.isdir(path):
@@ -158,7 +159,7 @@ def impacts(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Iterat
     >>> with impacts(1e4, 0.9e-3, [1e-3, 2e-3]):
     ...     raise UnsolvedError(1, "lambda = 120", "too many steps")
     Traceback (most recent call last):
-    contactlaw.command.wording.Refused: 10000 m/s, radius 0.9 mm, thickness 2 mm: the equation \
+    contactlaw.cli.parts.wording.Refused: 10000 m/s, radius 0.9 mm, thickness 2 mm: the equation \
 did not solve at lambda = 120: too many steps
     """
     try:
@@ -176,3 +177,14 @@ did not solve at lambda = 120: too many steps
                 "there, --outside clamp takes the value at the table's border"
             )
         raise Refused(f"{impact}: {what}") from error
+
+
+def say(message: str) -> None:
+    """Write a message beside the output."""
+    if sys.stderr is not None:  # None is where the shell says 2>&-, and to print the output
+        print(f"contactlaw: {message}", file=sys.stderr)
+
+
+def say_warning(message: Warning | str, *_: object) -> None:
+    """Write a warning likewise; also for `warnings.showwarning`."""
+    say(f"warning: {message}")

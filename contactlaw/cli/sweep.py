@@ -1,23 +1,48 @@
-"""A grid of impacts as a file: every field and flag over speed, thickness and radius."""
+"""``contactlaw sweep``: all fields and flags over a grid, as a file."""
 
 from __future__ import annotations
 
+import argparse
 import io
 import os
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import h5py
 
 from contactlaw import _atomic
 from contactlaw._version import VERSION
-from contactlaw.command.sheet import Sheet, units, write_csv
+from contactlaw.cli.parts import asked, options, quantities, wording
+from contactlaw.cli.parts.sheet import Sheet, explained, impacts, units, write_csv
 from contactlaw.model import ImpactModel
-from contactlaw.physical.validity import Validity
+from contactlaw.physical.validity import Validity, count_flags
 
 _FORMAT, _SCHEMA = "contactlaw-sweep", 1
 _AXES = ("radius", "thickness", "speed")  # speeds change fastest along a sheet
 _SUFFIXES = (".csv", ".h5", ".hdf5")
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand and its options."""
+    about = "all fields and flags over a grid, as a file"
+    command = options.command(commands, "sweep", about, _run)
+    options.add_impact(command, quantities.values)
+    command.add_argument("--out", required=True, metavar="FILE",
+                         help="file to write: .csv, or .h5 with the grid's axes")  # fmt: skip
+    command.epilog = f"{options.UNITS} {options.LISTS}"
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    asked.check_quantities(arguments)
+    with wording.file_of("out", arguments.out):
+        check_suffix(arguments.out)
+        axes = (arguments.speed, arguments.radius, arguments.thickness)
+        model = asked.model(arguments)
+        found = impacts(model, *axes, solve=arguments.solve)
+        save(found, model, axes, arguments.out)
+    flags = explained(count_flags(found.flags), len(found))
+    print(f"{arguments.out}: {len(found)} impacts", *flags, sep="\n")
 
 
 def check_suffix(path: str | os.PathLike[str]) -> None:
@@ -41,7 +66,7 @@ def save(
     Parameters
     ----------
     sheet : Sheet
-        Of every combination, as `contactlaw.command.sheet.impacts` gives it.
+        Of every combination, as `contactlaw.cli.parts.sheet.impacts` gives it.
     model : ImpactModel
         That answered.
     axes : sequence of sequence of float

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.command import columns, hdf5
-from contactlaw.command.columns import Column
-from contactlaw.command.quantities import LENGTH, SPEED
+from contactlaw.cli.parts import columns, hdf5
+from contactlaw.cli.parts.columns import Column
+from contactlaw.cli.parts.quantities import LENGTH, SPEED
 from contactlaw.physical.arguments import check
 from contactlaw.physical.pair import Pair
 

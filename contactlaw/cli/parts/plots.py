@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.command import wording
-from contactlaw.command.curves import Curve, is_logarithmic
-from contactlaw.command.quantities import LENGTH, written
+from contactlaw.cli.parts import wording
+from contactlaw.cli.parts.curves import Curve, is_logarithmic
+from contactlaw.cli.parts.quantities import LENGTH, written
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import Validity, limits_in_words
 
@@ -130,7 +130,7 @@ def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLik
     Parameters
     ----------
     curves : sequence of Curve
-        As `contactlaw.command.curves.restitution_curves` makes them.
+        As `contactlaw.cli.parts.curves.restitution_curves` makes them.
     title : str
         What it is.
     path : path-like

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.command.quantities import Quantity
+from contactlaw.cli.parts.quantities import Quantity
 
 Array = NDArray[np.float64]
 
@@ -73,7 +73,7 @@ def locate(names: Sequence[str], columns: dict[str, Column]) -> dict[str, Found]
 
     Examples
     --------
-    >>> from contactlaw.command.quantities import SPEED
+    >>> from contactlaw.cli.parts.quantities import SPEED
     >>> locate(["No", "Speed [cm/s]"], {"speed": Column(("speed",), SPEED)})
     {'speed': Found(place=1, per_unit=100.0)}
     """

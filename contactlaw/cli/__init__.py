@@ -1,0 +1,88 @@
+"""Command line: ``contactlaw cor | sweep | constant | fit | history | export | ...``.
+
+Each file of this folder is a subcommand, with its options and what it does: its function `add`
+takes what argparse adds subcommands to. What several of them need is in `parts`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import os
+import pkgutil
+import sys
+import warnings
+from collections.abc import Sequence
+
+from contactlaw._version import VERSION
+from contactlaw.cli.parts import options, wording
+
+_DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Returns
+    -------
+    int
+        0 done, 1 refused with a message on stderr, 130 interrupted; wrong usage exits with 2.
+
+    Examples
+    --------
+    >>> main(["cor", "--sphere", "glass", "--plate", "glass", "--radius", "1e-3",
+    ...       "--thickness", "1e-3", "--speed", "1", "--law", "hertz", "--json"])
+    ... # doctest: +ELLIPSIS
+    {
+      "restitution": 0.7...
+    """
+    arguments = parser().parse_args(options.joined(sys.argv[1:] if argv is None else argv))
+    if sys.stdout is None:  # so Python has it where the shell says >&-
+        wording.say("the standard output is closed")
+        return _REFUSED
+    try:
+        with warnings.catch_warnings():
+            warnings.showwarning = wording.say_warning  # type: ignore[assignment]
+            arguments.run(arguments)
+        sys.stdout.flush()  # here, where a reader that has gone can be dealt with
+    except KeyboardInterrupt:
+        wording.say("interrupted")
+        return _INTERRUPTED
+    except BrokenPipeError:  # the reader has seen enough, as `head` does
+        _drop_output()
+        return _DONE
+    except (ValueError, RuntimeError, OSError, ImportError) as error:
+        wording.say(wording.sentence(error, vars(arguments)))
+        try:
+            sys.stdout.flush()
+        except OSError:  # a full disk
+            _drop_output()
+        return _REFUSED
+    return _DONE
+
+
+def parser() -> argparse.ArgumentParser:
+    """Make the parser of ``contactlaw``.
+
+    What it returns has the name of the command among its attributes, and as `run` what does it.
+
+    Examples
+    --------
+    >>> parser().parse_args(["table", "info", "--law", "myc"]).command
+    'table info'
+    """
+    made = argparse.ArgumentParser(
+        prog="contactlaw", description="Restitution of beads that hit thin plates."
+    )
+    made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}",
+                      help="print the version and exit")  # fmt: skip
+    commands = made.add_subparsers(required=True, metavar="COMMAND", help="what to do")
+    for found in pkgutil.iter_modules(__path__):
+        if not found.ispkg:
+            importlib.import_module(f"{__name__}.{found.name}").add(commands)
+    return made
+
+
+def _drop_output() -> None:
+    """Let what is left in the buffer go nowhere, where Python would write it at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

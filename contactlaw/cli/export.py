@@ -1,0 +1,49 @@
+"""``contactlaw export``: files for codes that Python cannot reach."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from contactlaw import export
+from contactlaw.cli.parts import asked, options, wording
+from contactlaw.model import ImpactModel
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand and its options."""
+    about = "files for codes that Python cannot reach: header, liggghts"
+    kinds = options.group(commands, "export", about, "KIND", "what to write")
+    header = options.command(
+        kinds, "export header", "the law and a table of COR as one file in C, which C++ takes too",
+        _header,
+    )  # fmt: skip
+    options.add_pair(header)
+    options.add_name_of_law(header)
+    header.add_argument("--out", default="contactlaw.h", metavar="FILE",
+                        help="file to write (default: %(default)s)")  # fmt: skip
+    header.add_argument("--table", default="cor", choices=["cor", "none"],
+                        help="with a table of COR, or without: law and integration alone "
+                        "(default: %(default)s)")  # fmt: skip
+    liggghts = options.command(
+        kinds, "export liggghts", "a normal model for the walls of LIGGGHTS, and how it is built",
+        _liggghts,
+    )  # fmt: skip
+    options.add_pair(liggghts)
+    options.add_name_of_law(liggghts)
+    liggghts.add_argument("--out", required=True, metavar="DIR",
+                          help="folder to write into, made if need be")  # fmt: skip
+
+
+def _header(arguments: argparse.Namespace) -> None:
+    with wording.file_of("out", arguments.out):
+        model = ImpactModel(asked.pair(arguments), law=arguments.law)
+        export.header(arguments.out, model, arguments.table)
+    print(arguments.out)
+
+
+def _liggghts(arguments: argparse.Namespace) -> None:
+    with wording.folder_of("out", arguments.out):
+        model = ImpactModel(asked.pair(arguments), law=arguments.law)
+        export.liggghts(arguments.out, model)
+    print(arguments.out)

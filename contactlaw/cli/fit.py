@@ -1,0 +1,97 @@
+"""``contactlaw fit``: strengths, sizes and more from measured rebounds, with their errors."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from contextlib import nullcontext
+from typing import Any
+
+from contactlaw.cli.parts import asked, fitplot, fits, measured, options, quantities, wording
+from contactlaw.cli.parts.options import reader_of
+from contactlaw.cli.parts.quantities import LENGTH
+from contactlaw.fitting import fit
+from contactlaw.fitting.unknowns import UNKNOWNS
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand and its options."""
+    about = "strengths, sizes and more from measured rebounds, with their errors"
+    command = options.command(commands, "fit", about, _run)
+    add = command.add_argument
+    add(
+        "data",
+        metavar="FILE",
+        help="CSV with a row per rebound: speed_m/s, one at least of COR, contact_time_us and "
+        "peak_force_N, each perhaps with its standard error (COR_error), and perhaps radius_mm "
+        "and thickness_mm",
+    )
+    options.add_pair(command)
+    length = reader_of(quantities.value, LENGTH)
+    add("--radius", metavar="R", type=length,
+        help="radius of all beads [m], or with a unit")  # fmt: skip
+    add("--thickness", metavar="H", type=length,
+        help="thickness of all plates [m], or with a unit; inf: a half-space")  # fmt: skip
+    add("--unknown", required=True, metavar="NAME", type=_names,
+        help=f"what to find, up to three: {', '.join(UNKNOWNS)}")  # fmt: skip
+    add(
+        "--prior",
+        action="append",
+        default=[],
+        metavar="NAME=ERROR",
+        type=_prior,
+        help="standard error of one of these that is given, as density=20kg/m3; may be repeated "
+        "(default: all that is given is exact)",
+    )
+    options.add_name_of_law(command)
+    add = command.add_mutually_exclusive_group().add_argument
+    add("--json", action="store_true", help="print all of it in SI units")
+    add("--plot", metavar="FILE",
+        help="draw data, fit, its band and residuals into FILE (PNG, SVG, PDF)")  # fmt: skip
+    command.epilog = options.UNITS
+
+
+def _names(text: str) -> tuple[str, ...]:
+    return tuple(name.strip().replace("-", "_") for name in text.split(","))
+
+
+def _prior(text: str) -> tuple[str, float]:
+    """Read a name and a standard error, in the unit of what it is of.
+
+    Examples
+    --------
+    >>> _prior("density=20kg/m3")
+    ('density', 20.0)
+    """
+    name, _, size = text.partition("=")
+    name = name.strip().replace("-", "_")
+    if name not in UNKNOWNS or not size:
+        raise argparse.ArgumentTypeError(
+            f"got {text!r}, expected NAME=ERROR with a NAME of {', '.join(UNKNOWNS)}"
+        )
+    kinds = {"Pa": quantities.STRESS, "kg/m3": quantities.DENSITY, "m": LENGTH}
+    error: float = reader_of(quantities.value, kinds[UNKNOWNS[name].unit])(size)
+    return name, error
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    asked.check_quantities(arguments)
+    pair = asked.pair(arguments)
+    read = measured.read(arguments.data)
+    if read.unused:
+        wording.say_warning(
+            f"{arguments.data}: columns that are not used: {', '.join(read.unused)}"
+        )
+    data = measured.completed(
+        read, arguments.data, radius=arguments.radius, thickness=arguments.thickness
+    )
+    priors = dict(arguments.prior)
+    with nullcontext() if arguments.plot is None else asked.picture(arguments):
+        found = fit(pair, data, arguments.unknown, arguments.law, priors)
+        if arguments.plot is not None:
+            title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
+            fitplot.save_fit(found, title, arguments.plot)
+        if arguments.json:
+            print(json.dumps(fits.record(found), indent=2))
+        else:
+            print(*fits.text(found), "", *fits.rows(found), sep="\n")

@@ -1,0 +1,52 @@
+"""What the options that subcommands share ask for."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import numpy as np
+
+from contactlaw.cli.parts import plots, wording
+from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import scalars
+from contactlaw.physical.materials import material
+from contactlaw.physical.pair import Pair
+
+
+def model(arguments: argparse.Namespace) -> ImpactModel:
+    """Model of the materials, with the law and what to do outside its table."""
+    return ImpactModel(pair(arguments), law=arguments.law, outside=arguments.outside)
+
+
+def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
+    """Materials that are named, or else known."""
+    bodies = {}
+    for name in ("sphere", "plate"):
+        asked = getattr(arguments, name)
+        if asked is None:
+            if known is None:
+                raise wording.Refused(f"--{name}: has to be given, no record says it")
+            bodies[name] = getattr(known, name)
+        else:
+            with wording.material_of(name):
+                bodies[name] = material(asked)
+    return Pair(**bodies)
+
+
+def check_quantities(arguments: argparse.Namespace) -> None:
+    """Refuse each value beyond its limits by itself: in all combinations it has no number."""
+    for name in ("speed", "radius", "thickness"):
+        given = getattr(arguments, name, None)
+        for value in () if given is None else np.atleast_1d(given).tolist():
+            scalars(**{name: value})
+
+
+@contextmanager
+def picture(arguments: argparse.Namespace) -> Iterator[None]:
+    """Refuse what cannot be drawn into, before anything is computed."""
+    with wording.file_of("plot", arguments.plot):
+        plots.check_suffix(arguments.plot)
+        yield
+    print(arguments.plot)

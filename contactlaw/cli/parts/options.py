@@ -1,0 +1,121 @@
+"""Options that subcommands share, and what the help says of them."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from contactlaw import laws
+from contactlaw.cli.parts.quantities import LENGTH, SPEED, Quantity
+
+Reader = Callable[[str, Quantity], Any]
+Run = Callable[[argparse.Namespace], None]
+
+UNITS = "Quantities are numbers in SI units, or carry one of their own: 0.9mm, 500um, 50nm, 36km/h."
+LISTS = (
+    "Several are a list, 1,5,10, or a range start:stop:count, 0.1:10:50, with logarithmic steps "
+    "0.1:10:50log; every combination of speeds, radii and thicknesses is an impact."
+)
+
+
+_NEGATIVE = re.compile(r"-(?:\.?\d|inf)")
+
+
+def joined(words: Iterable[str]) -> list[str]:
+    """Join an option with a negative quantity that follows it.
+
+    argparse takes -1 for a number and -1mm for an option, whose name is then missing. Whether a
+    quantity may be negative is for its reader to say.
+
+    Examples
+    --------
+    >>> joined(["cor", "--thickness", "-1mm", "--csv"])
+    ['cor', '--thickness=-1mm', '--csv']
+    """
+    found: list[str] = []
+    for word in words:
+        if found and _NEGATIVE.match(word) and re.fullmatch("--[a-z-]+", found[-1]):
+            found[-1] += f"={word}"
+        else:
+            found.append(word)
+    return found
+
+
+def command(commands: Any, name: str, about: str, run: Run) -> argparse.ArgumentParser:
+    """Add a subcommand, which `run` does; in the names of those of a group that comes first."""
+    made: argparse.ArgumentParser = commands.add_parser(
+        name.split()[-1], help=about, description=_sentence(about)
+    )
+    made.set_defaults(command=name, run=run)
+    return made
+
+
+def group(commands: Any, name: str, about: str, metavar: str, what: str) -> Any:
+    """Add a subcommand that has some of its own; what they are added to."""
+    made = commands.add_parser(name, help=about, description=_sentence(about))
+    return made.add_subparsers(required=True, metavar=metavar, help=what)
+
+
+def _sentence(about: str) -> str:
+    return f"{about[0].upper()}{about[1:]}."
+
+
+def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
+    """Add the options of commands about impacts; quantities are read as one or as several."""
+    add_pair(command)
+    add_sizes(command, read)
+    command.add_argument("--speed", required=True, metavar="V", type=reader_of(read, SPEED),
+                         help="normal approach speed [m/s], or with a unit")  # fmt: skip
+    add_law(command)
+    command.add_argument(
+        "--solve", action="store_true", help="integrate the equation instead of looking up"
+    )
+
+
+_OF_RECORD = " (default: that of the record)"
+
+
+def add_pair(command: argparse.ArgumentParser, required: bool = True) -> None:
+    """Add materials; what is not required has a record that may know it."""
+    add, known = command.add_argument, "" if required else _OF_RECORD
+    add("--sphere", required=required, metavar="NAME",
+        help=f"material of the bead, see materials{known}")  # fmt: skip
+    add("--plate", required=required, metavar="NAME", help=f"material of the plate{known}")
+
+
+def add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = True) -> None:
+    """Add sizes, likewise."""
+    add, known = command.add_argument, "" if required else _OF_RECORD
+    add("--radius", required=required, metavar="R", type=reader_of(read, LENGTH),
+        help=f"radius of the bead [m], or with a unit{known}")  # fmt: skip
+    add("--thickness", required=required, metavar="H", type=reader_of(read, LENGTH),
+        help=f"thickness of the plate [m], or with a unit; inf: a half-space{known}")  # fmt: skip
+
+
+def add_name_of_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
+    """Add the law."""
+    stated = default or f"that of the record, or {laws.DEFAULT}"
+    command.add_argument("--law", default=default, metavar="LAW",
+        help=f"force law: {', '.join(laws.names())} (default: {stated})")  # fmt: skip
+
+
+def add_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
+    """Add the law, and what to do outside its table."""
+    add_name_of_law(command, default)
+    command.add_argument("--outside", default="raise", choices=["raise", "solve", "clamp"],
+        help="outside the table: refuse, integrate the equation, or take the value at its border "
+        "(default: %(default)s)")  # fmt: skip
+
+
+def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
+    """Make of a reader of quantities one for an option, with errors that argparse takes over."""
+
+    def one(text: str) -> Any:
+        try:
+            return read(text, quantity)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from None
+
+    return one

@@ -1,0 +1,79 @@
+"""``contactlaw speed-table``: COR over speed in the fewest rows that straight lines may join."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from contactlaw.answers.speed_table import SpeedTable
+from contactlaw.cli.parts import asked, options, quantities, wording
+from contactlaw.cli.parts.options import reader_of
+from contactlaw.cli.parts.quantities import SPEED
+from contactlaw.cli.parts.sheet import aligned, explained
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand and its options."""
+    about = "COR over speed in the fewest rows that straight lines may join"
+    command = options.command(commands, "speed-table", about, _run)
+    options.add_pair(command)
+    options.add_sizes(command, quantities.value)
+    speed = reader_of(quantities.value, SPEED)
+    add = command.add_argument
+    add("--slowest", default=0.1, metavar="V", type=speed,
+        help="first speed [m/s], or with a unit (default: %(default)s)")  # fmt: skip
+    add("--fastest", default=10.0, metavar="V", type=speed,
+        help="last speed, likewise (default: %(default)s)")  # fmt: skip
+    add(
+        "--error",
+        default=1e-3,
+        metavar="E",
+        type=float,
+        help="largest error in COR of straight lines between rows (default: %(default)s)",
+    )
+    options.add_law(command)
+    add("--csv", action="store_true", help="print the two columns alone, every digit")
+    command.epilog = options.UNITS
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    asked.check_quantities(arguments)
+    ends = (arguments.slowest, arguments.fastest)
+    with wording.impacts(ends, arguments.radius, arguments.thickness):
+        found = asked.model(arguments).speed_table(
+            arguments.radius, arguments.thickness, arguments.error, *ends
+        )
+    if arguments.csv:
+        print("speed_m/s,restitution")
+        np.savetxt(sys.stdout, np.column_stack(found[:2]), fmt="%.17g", delimiter=",")
+    else:
+        print(*text(found), sep="\n")
+
+
+def text(found: SpeedTable) -> Iterator[str]:
+    """Lines for a terminal: rows of COR over speed, how right they are, and what the flags say.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    >>> for line in text(model.speed_table(0.9e-3, 1e-3, error=0.05)):
+    ...     print(line)
+    speed     COR
+    [m/s]     [-]
+      0.1  0.9567
+       10  0.8878
+    <BLANKLINE>
+    2 rows, straight lines between them within 0.021 in COR
+    """
+    rows = [
+        (f"{v:.6g}", f"{e:.4g}", "") for v, e in zip(found.speed, found.restitution, strict=True)
+    ]
+    yield from aligned(list(zip(("speed", "COR", ""), ("[m/s]", "[-]", ""), *rows, strict=True)))
+    yield ""
+    yield f"{len(rows)} rows, straight lines between them within {found.error:.2g} in COR"
+    yield from explained(found.flags, len(rows))
