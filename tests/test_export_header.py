@@ -340,12 +340,17 @@ def test_no_constant_of_python_is_repeated_in_the_template():
         assert repeated == set()
 
 
+def without_a_table(folder, model):
+    """Library of a header that integrates."""
+    cl.export.header(folder / "contactlaw.h", model, table="none")
+    calls = '#include "contactlaw.h"\n' + CALLS[CALLS.index("void rebounds") :]
+    return ctypes.CDLL(build(folder, calls, "-O2", "-shared", "-fPIC", *WARNINGS))
+
+
 def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
     """COR 1e-2 to 0: once what is left of an impact can do no more, the contact is over."""
     model = cl.ImpactModel(STAYING)
-    cl.export.header(tmp_path / "contactlaw.h", model, table="none")
-    calls = '#include "contactlaw.h"\n' + CALLS[CALLS.index("void rebounds") :]
-    library = ctypes.CDLL(build(tmp_path, calls, "-O2", "-shared", "-fPIC", *WARNINGS))
+    library = without_a_table(tmp_path, model)
     v, h = np.array(np.meshgrid(np.geomspace(1e-6, 1.0, 16), np.geomspace(1.5e-4, 4e-3, 9)))
     v, h = v.ravel(), h.ravel()
     r = np.full_like(v, 1e-3)
@@ -366,9 +371,7 @@ def test_the_series_is_not_for_the_loading_curve(tmp_path):
     law = Law.of(name="stiffening", source="s", yield_coefficient=None, scale=1e-5,
                  loading=[Loading(0.0, stiffening)])  # fmt: skip
     model = cl.ImpactModel(cl.Pair("zirconia", "glass"), law)
-    cl.export.header(tmp_path / "contactlaw.h", model, table="none")
-    calls = '#include "contactlaw.h"\n' + CALLS[CALLS.index("void rebounds") :]
-    library = ctypes.CDLL(build(tmp_path, calls, "-O2", "-shared", "-fPIC", *WARNINGS))
+    library = without_a_table(tmp_path, model)
     (found,) = called(library.rebounds, 1, [100.0], [1e-3], [0.2e-3], fields=len(FIELDS))
     expected = model.solve(100.0, 1e-3, 0.2e-3)
     assert found[1] == pytest.approx(expected.contact_time, rel=1e-6)

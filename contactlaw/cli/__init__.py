@@ -64,12 +64,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 def parser() -> argparse.ArgumentParser:
     """Make the parser of ``contactlaw``.
 
-    What it returns has the name of the command among its attributes, and as `run` what does it.
+    What it reads has what does the subcommand as `run`.
 
     Examples
     --------
-    >>> parser().parse_args(["table", "info", "--law", "myc"]).command
-    'table info'
+    >>> run = parser().parse_args(["table", "info", "--law", "myc"]).run
+    >>> run.__module__, run.__name__
+    ('contactlaw.cli.table', '_info')
     """
     made = argparse.ArgumentParser(
         prog="contactlaw", description="Restitution of beads that hit thin plates."

@@ -49,8 +49,8 @@ def _as_json(rows: list[dict[str, object]]) -> object:
     """Rows; of one impact, which its caller knows, what comes of it."""
     if len(rows) > 1:
         return rows
-    asked = ("speed", "radius", "thickness")
-    return {name: value for name, value in rows[0].items() if name not in asked}
+    known = ("speed", "radius", "thickness")
+    return {name: value for name, value in rows[0].items() if name not in known}
 
 
 def _print_one(found: sheet.Sheet) -> None:

@@ -15,7 +15,7 @@ def add(commands: Any) -> None:
     about = "files for codes that Python cannot reach: header, liggghts"
     kinds = options.group(commands, "export", about, "KIND", "what to write")
     header = options.command(
-        kinds, "export header", "the law and a table of COR as one file in C, which C++ takes too",
+        kinds, "header", "the law and a table of COR as one file in C, which C++ takes too",
         _header,
     )  # fmt: skip
     options.add_pair(header)
@@ -26,7 +26,7 @@ def add(commands: Any) -> None:
                         help="with a table of COR, or without: law and integration alone "
                         "(default: %(default)s)")  # fmt: skip
     liggghts = options.command(
-        kinds, "export liggghts", "a normal model for the walls of LIGGGHTS, and how it is built",
+        kinds, "liggghts", "a normal model for the walls of LIGGGHTS, and how it is built",
         _liggghts,
     )  # fmt: skip
     options.add_pair(liggghts)

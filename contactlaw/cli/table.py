@@ -20,14 +20,10 @@ def add(commands: Any) -> None:
     actions = options.group(
         commands, "table", "lookup tables: build, info, check", "ACTION", "what to do"
     )
-    info = options.command(
-        actions, "table info", "extent, settings and certificate of a table", _info
-    )
+    info = options.command(actions, "info", "extent, settings and certificate of a table", _info)
     about = "certify a table at fresh random points, fail above the bounds"
-    check = options.command(actions, "table check", about, _check)
-    build = options.command(
-        actions, "table build", "solve the equation at every node of a table", _build
-    )
+    check = options.command(actions, "check", about, _check)
+    build = options.command(actions, "build", "solve the equation at every node of a table", _build)
     for action in (info, check):
         action.add_argument("file", nargs="?", metavar="FILE",
                             help="a table (default: the one in use for LAW)")  # fmt: skip

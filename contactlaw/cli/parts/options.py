@@ -44,22 +44,22 @@ def joined(words: Iterable[str]) -> list[str]:
 
 
 def command(commands: Any, name: str, about: str, run: Run) -> argparse.ArgumentParser:
-    """Add a subcommand, which `run` does; in the names of those of a group that comes first."""
-    made: argparse.ArgumentParser = commands.add_parser(
-        name.split()[-1], help=about, description=_sentence(about)
-    )
-    made.set_defaults(command=name, run=run)
+    """Add a subcommand, which `run` does."""
+    made = _described(commands, name, about)
+    made.set_defaults(run=run)
     return made
 
 
 def group(commands: Any, name: str, about: str, metavar: str, what: str) -> Any:
     """Add a subcommand that has some of its own; what they are added to."""
-    made = commands.add_parser(name, help=about, description=_sentence(about))
+    made = _described(commands, name, about)
     return made.add_subparsers(required=True, metavar=metavar, help=what)
 
 
-def _sentence(about: str) -> str:
-    return f"{about[0].upper()}{about[1:]}."
+def _described(commands: Any, name: str, about: str) -> argparse.ArgumentParser:
+    sentence = f"{about[0].upper()}{about[1:]}."
+    made: argparse.ArgumentParser = commands.add_parser(name, help=about, description=sentence)
+    return made
 
 
 def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
