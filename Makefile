@@ -17,7 +17,7 @@ ENGINES := liggghts libliggghts-dev libopenmpi-dev g++
 test-engines: .venv/test.done  ## run the tests of engines that PyPI does not have
 	@dpkg-query --show $(ENGINES) >/dev/null || \
 	  { echo "for LIGGGHTS: apt-get install --no-install-recommends $(ENGINES)"; exit 1; }
-	$(BIN)/python -m pytest tests/test_export_liggghts.py
+	$(BIN)/python -m pytest tests/export/test_liggghts.py
 
 lint: .venv/dev.done  ## check style and types
 	$(BIN)/ruff check .

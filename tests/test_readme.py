@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracle import ALL_LAWS
+from places import ROOT
 from rains import write_rain
 
 import contactlaw as cl
@@ -19,7 +20,6 @@ from contactlaw import cli, laws, table
 from contactlaw.table import file
 from contactlaw.table.grid import on_demand
 
-ROOT = Path(__file__).parent.parent
 PAGES = {
     page.stem: page.read_text() for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
 }

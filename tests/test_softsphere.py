@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from verlet import drop
 
 import contactlaw as cl
 from contactlaw._jit import kernel
@@ -18,20 +19,6 @@ PHASES = np.linspace(0.02, 0.98, 13)  # of the first touch within a step
 # thickness and speed: lambda 0 to 2, below and above yield (7.4 m/s on a half-space)
 CASES = [(math.inf, 3.0), (math.inf, 20.0), (1e-3, 5.0), (1e-3, 15.0), (0.5e-3, 3.0)]
 CASES += [(0.5e-3, 20.0), (0.35e-3, 6.0), (0.35e-3, 20.0), (0.25e-3, 3.0), (0.2e-3, 3.0)]
-
-
-@kernel(entry=True)
-def drop(law, spring, speed, step, phase):
-    """COR of one bead that first touches at this phase of a step."""
-    x, u, state = -phase * speed * step, speed, PARTED
-    for n in range(10**7):
-        u -= 0.5 * step * state.force / spring.mass
-        x += u * step
-        state = advance(law, spring, state, x, step)
-        u -= 0.5 * step * state.force / spring.mass
-        if n > 2 and state.force == 0.0 and u < 0.0:
-            return -u / speed
-    return math.nan
 
 
 @kernel(entry=True)

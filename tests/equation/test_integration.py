@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from oracle import ALL_LAWS, RATIO, impact, impact_of, yield_ratio
 from scipy.integrate import quad, solve_ivp
+from staying import STAYING
 
 import contactlaw as cl
 from contactlaw import laws
@@ -257,12 +258,6 @@ def test_a_level_next_to_a_turn_is_sought_within_the_step():
     step = 0.002250933219558533
     guess = integrator._guess(integrator.LEVEL, before, beyond, step, 1.0, math.inf)
     assert 0.0 < guess < step
-
-
-STAYING = cl.Pair(  # a sphere of 1 kPa strength: its force falls as the 0.8th power at unloading
-    cl.Material("stiff", 960e9, 0.164, 52e3, yield_strength=947.0),
-    cl.Material("soft", 227e6, 0.0395, 897.0, yield_strength=947.0),
-)
 
 
 def test_a_sphere_that_never_leaves_is_done_when_its_energy_is():

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from test_fit import RADIUS, STEEL, THICKNESS, rebounds
+from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
 from contactlaw.cli import main

@@ -2,11 +2,11 @@
 
 import importlib.util
 import math
-from pathlib import Path
 
 import numba
 import numpy as np
 import pytest
+from places import ROOT
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT
@@ -16,7 +16,7 @@ from contactlaw.walls import Mesh, Plate, Translation, move
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
 
-SCRIPT = Path(__file__).parent.parent / "docs/examples/own_loop.py"
+SCRIPT = ROOT / "docs/examples/own_loop.py"
 
 
 @pytest.fixture(scope="module")

@@ -12,6 +12,7 @@ import warnings
 
 import numpy as np
 import pytest
+from command_line import parsers
 
 import contactlaw as cl
 from contactlaw import cli, laws, table
@@ -234,14 +235,6 @@ def test_the_version(capsys):
         main(["--version"])
     assert stop.value.code == 0
     assert capsys.readouterr().out == f"contactlaw {cl.__version__}\n"
-
-
-def parsers(parser, name="contactlaw"):
-    yield name, parser
-    for action in parser._actions:
-        if isinstance(action, argparse._SubParsersAction):
-            for command, inner in action.choices.items():
-                yield from parsers(inner, f"{name} {command}")
 
 
 @pytest.mark.parametrize(("name", "parser"), list(parsers(cli.parser())))

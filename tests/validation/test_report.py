@@ -7,6 +7,7 @@ import signal
 from pathlib import Path
 
 import pytest
+from places import ROOT
 
 from validation import closed_form, evidence, figures, report, trust
 from validation.__main__ import main
@@ -213,7 +214,7 @@ def test_the_report_states_its_size(drawn):
 
 def test_the_report_says_of_calculix_what_the_docs_say(drawn):
     """There it is tested."""
-    docs = (Path(__file__).parents[1] / "docs" / "laws.md").read_text()
+    docs = (ROOT / "docs/laws.md").read_text()
     said = [
         re.search(r"within (\d\.\d), (\d\.\d) and (\d\.\d) %", text).groups()
         for text in ((drawn[1] / "index.html").read_text(), docs)

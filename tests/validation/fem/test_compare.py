@@ -4,10 +4,10 @@ import re
 import signal
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from places import ROOT
 
 import contactlaw as cl
 from contactlaw import laws
@@ -19,7 +19,7 @@ from validation.fem.compare import force_at
 from validation.fem.impact import impact
 from validation.fem.studies import STUDIES
 
-SAID = " ".join((Path(__file__).parent.parent / "docs/laws.md").read_text().split())
+SAID = " ".join((ROOT / "docs/laws.md").read_text().split())
 
 
 @pytest.fixture(scope="module")

@@ -8,10 +8,11 @@ import shutil
 import subprocess
 import sys
 import tracemalloc
-from pathlib import Path
 
 import numpy as np
 import pytest
+from places import ROOT
+from rebounds import KINDS, RADIUS, STEEL, THICKNESS, rebounds
 from scipy import stats
 from scipy.optimize import least_squares
 
@@ -22,25 +23,6 @@ from contactlaw.fitting.predictions import Predictor, Values, impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
 from contactlaw.physical.scaling import law_of
 from validation.inverse import coverage, elements, model
-
-STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
-RADIUS, THICKNESS = 1e-3, 1.2e-3
-KINDS = ("restitution", "contact_time", "peak_force")
-
-
-def rebounds(pair, law="fem", kinds=KINDS[:1], noise=0.0, seed=0, speed=None, without=()):
-    """What would be measured of a bead of 1 mm on a plate of 1.2 mm."""
-    v = np.geomspace(0.2, 8.0, 12) if speed is None else np.asarray(speed, dtype=float)
-    size = np.ones_like(v)
-    hit = impacts(Setting(pair, RADIUS * size, THICKNESS * size), law_of(pair, law), v)
-    random = np.random.default_rng(seed)
-    sizes = {"radius": RADIUS, "thickness": THICKNESS}
-    data = {"speed": v} | {name: size for name, size in sizes.items() if name not in without}
-    for kind in kinds:
-        exact = np.asarray(getattr(hit, kind))
-        data[kind] = exact * (1.0 + noise * random.standard_normal(v.size))
-        data[f"{kind}_error"] = max(noise, 0.01) * exact
-    return data
 
 
 def true(pair, name):
@@ -439,7 +421,7 @@ def test_finite_elements_that_no_fit_has_seen():
 
 def test_the_page_prints_what_the_command_prints(capsys, monkeypatch, tmp_path):
     """Command and output, as they stand in docs/fit.md."""
-    docs = Path(__file__).parent.parent / "docs"
+    docs = ROOT / "docs"
     command, shown = re.search(
         r"(contactlaw fit rebounds.csv .*?)```\n\n```text\n(.*?)```",
         (docs / "fit.md").read_text("utf-8"), re.DOTALL,

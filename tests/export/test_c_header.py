@@ -12,9 +12,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_own_laws import measured, own
-from test_softsphere import drop
-from test_zener import STAYING
+from own_laws import measured, own
+from places import ROOT
+from staying import STAYING
+from verlet import drop
 
 import contactlaw as cl
 from contactlaw import Validity, cli, laws
@@ -36,7 +37,6 @@ from contactlaw.table import Settings, lookup
 from contactlaw.table.nodes import POINTS, coarser
 from validation.hostile import headers
 
-ROOT = Path(__file__).parent.parent
 COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 PAIR = cl.Pair("gamma-alumina", "glass")

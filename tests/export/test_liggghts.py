@@ -9,12 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from places import ROOT
 
 import contactlaw as cl
 from contactlaw import _atomic, cli
 from contactlaw.softsphere import Contacts, time_step
 
-ROOT = Path(__file__).parent.parent
 TOOLS = "liggghts", "mpicxx", "mpirun.openmpi"
 MISSING = [name for name in TOOLS if not shutil.which(name)]
 if not Path("/usr/include/liggghts/fix_wall_gran_base.h").exists():

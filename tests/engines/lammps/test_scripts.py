@@ -1,6 +1,7 @@
 """The LAMMPS adapter under the commands of users' scripts: each does right, or says why not."""
 
 import gc
+import os
 import subprocess
 import sys
 import warnings
@@ -408,7 +409,14 @@ def two_ranks(tmp_path_factory):
     """What `main` printed on two ranks; it ends, so no rank waits for another."""
     mpirun = Path(sys.executable).with_name("mpirun")
     command = [mpirun, "-np", "2", sys.executable, __file__, tmp_path_factory.mktemp("ranks")]
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
+    shared = {"PYTHONPATH": str(Path(box.__file__).parent)}
+    done = subprocess.run(
+        list(map(str, command)),
+        capture_output=True,
+        text=True,
+        timeout=300,
+        env=os.environ | shared,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
