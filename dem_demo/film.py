@@ -11,7 +11,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from PIL import Image
 
-from dem_demo import paths, style
+from contactlaw import style
+from dem_demo import paths
 from dem_demo.figures._rain import Picture, instants
 from dem_demo.reader import Run
 from dem_demo.report import title

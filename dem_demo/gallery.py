@@ -55,7 +55,7 @@ class Gallery:
         run : object
             The run, as the figures of this folder take it.
         """
-        from dem_demo import style  # matplotlib is loaded when a figure is drawn
+        from contactlaw import style  # matplotlib is loaded when a figure is drawn
 
         drawn = []
         for narrow in (False, True):

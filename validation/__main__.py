@@ -58,7 +58,7 @@ def _write(folder: Path) -> collections.Counter[str]:
     """Draw, judge and write; count the verdicts."""
     from tqdm import tqdm
 
-    from dem_demo.style import png
+    from contactlaw.style import png
     from validation import figures
     from validation.claims import SECTIONS, of_section
     from validation.figures import _style

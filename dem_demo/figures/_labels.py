@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.reader import Run
 from dem_demo.report import progress
 from dem_demo.scene import Floats

@@ -8,7 +8,8 @@ from matplotlib.collections import EllipseCollection, LineCollection
 from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
-from dem_demo import paths, style
+from contactlaw import style
+from dem_demo import paths
 from dem_demo.measure import restitution_range
 from dem_demo.reader import Run
 from dem_demo.report import label

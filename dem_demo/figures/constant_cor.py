@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.figures._labels import ring, ringed, source, thickness_axis
 from dem_demo.measure import constant_beside_model, outside
 from dem_demo.reader import Run

@@ -9,7 +9,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.figures._labels import source, thickness_axis
 from dem_demo.measure import model_shares, plate_rows
 from dem_demo.reader import Run

@@ -11,8 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from contactlaw import load_signal
-from dem_demo import style
+from contactlaw import load_signal, style
 from dem_demo.figures._labels import source
 from dem_demo.reader import Run
 from dem_demo.report import label

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.figures._labels import ring, ringed, source, thickness_axis
 from dem_demo.measure import Rebounds, first_rebounds
 from dem_demo.reader import Run

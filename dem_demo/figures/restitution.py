@@ -10,7 +10,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.figures._labels import ring, ringed, source
 from dem_demo.measure import outside
 from dem_demo.reader import Run

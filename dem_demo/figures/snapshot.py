@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from dem_demo import paths, style
+from contactlaw import style
+from dem_demo import paths
 from dem_demo.figures._labels import ringed, source
 from dem_demo.figures._rain import EXPOSURE, MAGNIFIED, PLATES_MAGNIFIED, Picture, instants
 from dem_demo.reader import Run

@@ -9,7 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.film import encoded
 from dem_demo.sieve.figures._bed import Bed, restitution_range, window
 from dem_demo.sieve.figures._labels import panels

@@ -10,8 +10,9 @@ import pytest
 from matplotlib.image import imread
 
 import contactlaw as cl
+from contactlaw import style
 from contactlaw.engines.record import COLUMNS, IMPACT
-from dem_demo import cli, figures, nozzles, style
+from dem_demo import cli, figures, nozzles
 from dem_demo.measure import limits, model_shares, plate_rows
 from dem_demo.reader import read
 from dem_demo.scene import GRAVITY

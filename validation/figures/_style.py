@@ -13,14 +13,14 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.lines import Line2D
 
-from dem_demo import style
-from dem_demo.style import BLUE as BLUE
-from dem_demo.style import GREEN as GREEN
-from dem_demo.style import INK as INK
-from dem_demo.style import MUTED as MUTED
-from dem_demo.style import ORANGE as ORANGE
-from dem_demo.style import PALE as PALE
-from dem_demo.style import VERMILION as VERMILION
+from contactlaw import style
+from contactlaw.style import BLUE as BLUE
+from contactlaw.style import GREEN as GREEN
+from contactlaw.style import INK as INK
+from contactlaw.style import MUTED as MUTED
+from contactlaw.style import ORANGE as ORANGE
+from contactlaw.style import PALE as PALE
+from contactlaw.style import VERMILION as VERMILION
 
 SKY, PURPLE = "#56B4E9", "#CC79A7"  # Okabe and Ito (2008), as the others
 SPEED = "impact speed over yield speed  V$_0$ / V$_{Y0}$"

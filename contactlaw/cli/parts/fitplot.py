@@ -10,17 +10,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw import style
 from contactlaw.cli.parts.fits import values_in_words
-from contactlaw.cli.parts.plots import (
-    BLUE,
-    INK,
-    check_suffix,
-    colour_of,
-    figure_of,
-    length_of,
-    plate_of,
-    style,
-)
+from contactlaw.cli.parts.plots import check_suffix, colour_of, length_of, plate_of
 from contactlaw.fitting import Fit
 from contactlaw.physical.validity import Validity, limits_in_words
 
@@ -89,15 +81,15 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
     groups = list(groups_of(found))
     curves = [curve_of(found, group) for group in groups] if len(groups) <= _MOST_CURVES else []
     kinds = list(found.residuals)
-    with style():
+    with style.applied():
         width = 9.0 if len(kinds) == 1 else 1.5 + 5.6 * len(kinds)
-        figure = figure_of(width, 7.4, title, _caption(found, groups, curves))
+        figure = style.figure(width, 7.4, title, _caption(found, groups, curves))
         grid = figure.subplots(
             2, len(kinds), sharex=True, squeeze=False, gridspec_kw={"height_ratios": [2.6, 1.0]}
         )
         for (above, below), kind in zip(grid.T, kinds, strict=True):
             for n, group in enumerate(groups):
-                colour = colour_of(n, len(groups)) if len(curves) > 1 else BLUE
+                colour = colour_of(n, len(groups)) if len(curves) > 1 else style.BLUE
                 if curves:
                     _draw_curve(above, below, curves[n], kind, colour)
                 _draw_values(above, below, found, group, kind, colour, bool(curves))
@@ -175,24 +167,26 @@ def _draw_values(
     for part, face in ((inside, colour), (~inside, "white")):
         if not part.any():
             continue
-        style: dict[str, Any] = {
+        look: dict[str, Any] = {
             "fmt": "o", "color": colour, "markersize": 6.5, "markeredgecolor": colour,
             "markerfacecolor": face, "elinewidth": 1.3, "zorder": 3,
         }  # fmt: skip
         bars = None if errors is None else errors[rows][part]
         above.errorbar(v[part], measured[part] * scale, None if bars is None else bars * scale,
-                       label=name, **style)  # fmt: skip
+                       label=name, **look)  # fmt: skip
         name = "_"
         below.errorbar(v[part], 100.0 * off[part],
-                       None if bars is None else 100.0 * bars / fitted[part], **style)  # fmt: skip
+                       None if bars is None else 100.0 * bars / fitted[part], **look)  # fmt: skip
     if not on_curve:
-        above.plot(v, fitted * scale, "_", color=INK, markersize=11, markeredgewidth=1.8, zorder=4)
+        above.plot(
+            v, fitted * scale, "_", color=style.INK, markersize=11, markeredgewidth=1.8, zorder=4
+        )
 
 
 def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:
     speed = _speeds(found)
     low, high = speed.min() / _WIDER, speed.max() * _WIDER
-    below.axhline(0.0, color=INK, linewidth=1.0)
+    below.axhline(0.0, color=style.INK, linewidth=1.0)
     largest = 1.15 * max(abs(number) for number in below.get_ylim())
     below.set_ylim(-largest, largest)
     below.set(xlabel="impact speed [m/s]", ylabel="off the fit [%]")

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import math
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.cli.parts import wording
+from contactlaw import style
 from contactlaw.cli.parts.curves import Curve, is_logarithmic
 from contactlaw.cli.parts.quantities import LENGTH, written
 from contactlaw.physical.history import ForceHistory
@@ -24,23 +23,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-BLUE, _VERMILION = "#0072B2", "#D55E00"  # Okabe and Ito 2008
-INK, MUTED = "#222222", "#6E6E6E"
-_SETTINGS: dict[Any, Any] = {
-    "font.size": 12,
-    "axes.labelsize": 13,
-    "axes.labelcolor": INK,
-    "axes.edgecolor": MUTED,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "grid.color": "#EBEBEB",
-    "xtick.color": INK,
-    "ytick.color": INK,
-    "legend.frameon": False,
-    "savefig.dpi": 150,
-}
 _HALF_SPACE = "half-space"
 _SUFFIXES = (".png", ".svg", ".pdf")
 
@@ -59,17 +41,6 @@ def check_suffix(path: str | os.PathLike[str]) -> None:
         raise ValueError(
             f"path: got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
         )
-
-
-@contextlib.contextmanager
-def style() -> Iterator[None]:
-    """Load matplotlib, and have the common style within this block."""
-    try:
-        import matplotlib as mpl
-    except ImportError as error:
-        raise ImportError("a plot needs matplotlib: pip install 'contactlaw[demo]'") from error
-    with mpl.rc_context(_SETTINGS):
-        yield
 
 
 def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]) -> None:
@@ -92,14 +63,17 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
         If the suffix names no format.
     """
     check_suffix(path)
-    with style():
+    with style.applied():
         from matplotlib.figure import Figure
 
         figure = Figure(figsize=(10.0, 4.6), layout="constrained")
         figure.suptitle(title, x=0.012, ha="left", fontsize=13, fontweight="bold")
         left, right = figure.subplots(1, 2, sharey=True)
         top = int(np.argmax(contact.force))
-        parts = ((slice(top + 1), BLUE, "loading"), (slice(top, None), _VERMILION, "unloading"))
+        parts = (
+            (slice(top + 1), style.BLUE, "loading"),
+            (slice(top, None), style.VERMILION, "unloading"),
+        )
         for part, colour, name in parts:
             left.plot(contact.time[part] * 1e6, contact.force[part], color=colour, linewidth=2.2)
             right.plot(
@@ -110,9 +84,9 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
         left.set_xlim(0.0, 1.02 * contact.time[-1] * 1e6)
         plate = left.twinx()
         plate.plot(
-            contact.time * 1e6, contact.plate_displacement * 1e6, color=MUTED, linestyle="--"
+            contact.time * 1e6, contact.plate_displacement * 1e6, color=style.MUTED, linestyle="--"
         )
-        plate.set_ylabel("displacement of the plate [µm] (dashed)", color=MUTED)
+        plate.set_ylabel("displacement of the plate [µm] (dashed)", color=style.MUTED)
         plate.set_ylim(0.0, None)
         plate.grid(visible=False)
         plate.spines["right"].set_visible(True)
@@ -145,7 +119,7 @@ def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLik
     radii = dict.fromkeys(curve.radius for curve in curves)
     by_radius = len(radii) == len(curves) > 1
     panels = [list(curves)] if by_radius else [[c for c in curves if c.radius == r] for r in radii]
-    with style():
+    with style.applied():
         figure = _restitution_figure(panels, title, by_radius)
         figure.savefig(path)
 
@@ -154,7 +128,7 @@ def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) 
     columns = len(panels) if len(panels) < 4 else -(-len(panels) // 2)
     rows = -(-len(panels) // columns)
     width = 9.0 if columns == 1 else 2.0 + 4.4 * columns
-    figure = figure_of(width, 1.2 + 4.4 * rows, title, _caption(panels, by_radius))
+    figure = style.figure(width, 1.2 + 4.4 * rows, title, _caption(panels, by_radius))
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for axes, curves in zip(grid.flat, panels, strict=False):
         for n, curve in enumerate(curves):
@@ -170,21 +144,6 @@ def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) 
     for axes, curves in zip(grid.flat, panels, strict=False):
         names = _names(curves, by_radius, short=len(panels) > 1)
         _label(axes, curves, names)
-    return figure
-
-
-def figure_of(width: float, height: float, title: str, caption: str) -> Figure:
-    """Make an empty figure of a size in inches, with a title and what the marks are."""
-    from matplotlib.figure import Figure
-    from matplotlib.layout_engine import ConstrainedLayoutEngine
-
-    lines = wording.balanced(caption, 10.6 * width)  # letters of 11.5 points to an inch
-    room = 0.5 + 0.2 * len(lines)
-    layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 0.985, 1.0 - room / height))
-    figure = Figure(figsize=(width, height), layout=layout)
-    figure.text(0.012, 1.0 - 0.14 / height, title, fontsize=16, fontweight="bold", color=INK,
-                va="top")  # fmt: skip
-    figure.text(0.012, 1.0 - 0.5 / height, "\n".join(lines), fontsize=11.5, color=MUTED, va="top")
     return figure
 
 
@@ -283,7 +242,7 @@ def _label(axes: Axes, curves: list[Curve], names: list[str]) -> None:
         colour = colour_of(n, len(curves))
         axes.plot([1.0, 1.02], [at, to], transform=axes.transAxes, color=colour, linewidth=2.0,
                   clip_on=False)  # fmt: skip
-        axes.text(1.03, to, names[n], transform=axes.transAxes, color=INK, va="center",
+        axes.text(1.03, to, names[n], transform=axes.transAxes, color=style.INK, va="center",
                   fontweight="bold")  # fmt: skip
 
 

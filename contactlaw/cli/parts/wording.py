@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import re
 import sys
-import textwrap
 from collections.abc import Container, Iterator
 from contextlib import contextmanager
 
@@ -65,22 +64,6 @@ def sentence(error: Exception, options: Container[str]) -> str:
         if all(name in options for name in names):
             return f"--{', --'.join(names)}{message[arguments.end() :]}"
     return message
-
-
-def balanced(text: str, letters: float) -> list[str]:
-    """Break a text into as few lines as fit, about equally long: no word alone on the last.
-
-    Examples
-    --------
-    >>> balanced("the quick brown fox jumps over it", 30)
-    ['the quick brown', 'fox jumps over it']
-    """
-    lines = textwrap.wrap(text, int(letters))
-    for width in range(len(text) // max(1, len(lines)), int(letters)):
-        even = textwrap.wrap(text, width)
-        if len(even) == len(lines):
-            return even
-    return lines
 
 
 @contextmanager

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.scene import Floats
 from dem_demo.sieve.figures._labels import MM
 from dem_demo.sieve.record import Run

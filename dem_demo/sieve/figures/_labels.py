@@ -5,7 +5,7 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.report import label
 from dem_demo.sieve.record import Run, Runs
 from dem_demo.sieve.report import progress

@@ -12,7 +12,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.sieve.figures._labels import MM, panels, source
 from dem_demo.sieve.measure import density, on_sheet
 from dem_demo.sieve.record import Run, Runs

@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.sieve.figures._labels import panels, source
 from dem_demo.sieve.measure import account
 from dem_demo.sieve.record import Runs

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.sieve.figures._labels import source
 from dem_demo.sieve.measure import curve, on_faces
 from dem_demo.sieve.record import Runs

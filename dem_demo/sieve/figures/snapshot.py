@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from matplotlib.figure import Figure
 
-from dem_demo import style
+from contactlaw import style
 from dem_demo.sieve.figures._bed import SLICE, Bed, restitution_range, window
 from dem_demo.sieve.figures._labels import MM, panels, source
 from dem_demo.sieve.record import Runs

@@ -1,21 +1,24 @@
-"""One look for all figures, the demo's and the report's: readable in a talk, colours told apart."""
+"""The style of all figures: those of the command line, of the demo and of the validation.
+
+Readable in a talk, in colours that colour-blind people can tell apart. Matplotlib is loaded when a
+figure is made.
+"""
 
 from __future__ import annotations
 
 import io
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.collections import EllipseCollection
-from matplotlib.figure import Figure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-from contactlaw.cli.parts import wording
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.collections import EllipseCollection
+    from matplotlib.figure import Figure
 
 # Okabe and Ito (2008), Color Universal Design.
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -56,7 +59,16 @@ def applied(*, narrow: bool = False) -> Iterator[None]:
     ----------
     narrow : bool, optional
         Whether they are for a phone.
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib; the message says how to install it.
     """
+    try:
+        import matplotlib as mpl
+    except ImportError as error:
+        raise ImportError("a plot needs matplotlib: pip install 'contactlaw[demo]'") from error
     before = _narrow.set(narrow)
     try:
         with mpl.rc_context(_SETTINGS):
@@ -75,8 +87,11 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
 
     One for a phone is as high, but no wider than `NARROW`.
     """
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
     width = min(width, NARROW) if _narrow.get() else width
-    head, lines = wording.balanced(title, 7.6 * width), wording.balanced(subtitle, 10.6 * width)
+    head, lines = balanced(title, 7.6 * width), balanced(subtitle, 10.6 * width)
     # The axes leave room for the lines above them.
     below = 0.22 + 0.28 * len(head)
     room = below + 0.02 + 0.2 * len(lines)
@@ -91,14 +106,33 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     return made
 
 
+def balanced(text: str, letters: float) -> list[str]:
+    """Break a text into as few lines as fit, about equally long: no word alone on the last.
+
+    Examples
+    --------
+    >>> balanced("the quick brown fox jumps over it", 30)
+    ['the quick brown', 'fox jumps over it']
+    """
+    lines = textwrap.wrap(text, int(letters))
+    for width in range(len(text) // max(1, len(lines)), int(letters)):
+        even = textwrap.wrap(text, width)
+        if len(even) == len(lines):
+            return even
+    return lines
+
+
 def circles(axes: Axes, missing: str, **options: Any) -> EllipseCollection:
     """Add circles that have yet to get their sizes and places, in the axes' units, and values.
 
     Those without a value have the colour `missing`; `options` are those of the collection.
     """
+    from matplotlib import colormaps
+    from matplotlib.collections import EllipseCollection
+
     made = EllipseCollection(
         [], [], [], units="xy", offsets=np.empty((0, 2)), offset_transform=axes.transData,
-        cmap=mpl.colormaps["viridis"].with_extremes(bad=missing), zorder=3, **options,
+        cmap=colormaps["viridis"].with_extremes(bad=missing), zorder=3, **options,
     )  # fmt: skip
     axes.add_collection(made)
     return made
