@@ -4,6 +4,9 @@ BIN := .venv/bin
 # Python compiles what is imported; pip would compile all of numba and matplotlib for 13 s.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable
 
+# Without byte code on disk each process would compile numba's sources again, for 2 s.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test test-engines lint package validation bench clean
 
 demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 import tempfile
 
 # A stale cache would let an old result pass; and the tests must not write into a user's folders.
@@ -9,6 +10,10 @@ import tempfile
 if "PYTEST_XDIST_WORKER" not in os.environ:
     _CACHE = tempfile.TemporaryDirectory(prefix="contactlaw-numba-")
     os.environ["NUMBA_CACHE_DIR"] = _CACHE.name
+
+# Tests start hundreds of processes, and each would compile numba's sources again, for 2 s.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 
 # A shell starts background jobs with Ctrl-C ignored, and so would be what the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -91,10 +91,10 @@ class Beads:
     def integrated(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
     ) -> float | Array:
-        """COR of impacts, as in `rebounds`, but integrated: a few need no table."""
+        """COR of impacts, as in `rebounds`, but integrated to nine digits: a few need no table."""
         enable_caching()
         v, r, o, shape = _checked(speed, radius, other_radius)
-        found = within(self.law, scales(self._contact(r, o), v), RTOL, extent(self.law))
+        found = within(self.law, scales(self._contact(r, o), v), RTOL, extent(self.law), few=True)
         return shaped(found.restitution, shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:

@@ -110,14 +110,16 @@ class Solver:
         return math.exp(log_speed), lam
 
 
-def within(law: Law, units: Numbers, rtol: float, extent: Settings | None) -> Outcome:
+def within(
+    law: Law, units: Numbers, rtol: float, extent: Settings | None, few: bool = False
+) -> Outcome:
     """Integrate impacts up to the first one that is outside the extent, which is refused."""
     lam, y = units.inelasticity, units.yield_ratio
     if extent is None:
-        return solved(law, lam, y, rtol)
+        return solved(law, lam, y, rtol, few=few)
     thin = extent.largest_inelasticity
     beyond = int(np.argmax(np.append(lam > thin, True)))
-    found = solved(law, lam[:beyond], y[:beyond], rtol)
+    found = solved(law, lam[:beyond], y[:beyond], rtol, few=few)
     chi = found.elastic_compression / found.yield_ratio
     for n in np.flatnonzero(chi > extent.largest_overload)[:1].tolist():
         raise OutsideTableError(n, too_fast(chi[n], extent.largest_overload))
@@ -126,13 +128,21 @@ def within(law: Law, units: Numbers, rtol: float, extent: Settings | None) -> Ou
     return found
 
 
-def solved(law: Law, lam: Array, y: Array, rtol: float, places: Places | None = None) -> Outcome:
+def solved(
+    law: Law,
+    lam: Array,
+    y: Array,
+    rtol: float,
+    places: Places | None = None,
+    few: bool = False,
+) -> Outcome:
     """Outcomes at inelasticities and yield ratios, by integration.
 
     Errors name the impact by its number in the user's arrays where these are only some of those.
+    A few impacts need no compiler, if their last digits do not matter.
     """
     out = outcome.at(lam, y)
-    status, n = zener.solve_all(law.data, rtol, out)
+    status, n = zener.solve_all(law.data, rtol, out, few)
     if status != zener.OK:
         where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
         raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])

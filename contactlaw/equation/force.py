@@ -212,7 +212,7 @@ def leaves_hertz(law: Array) -> float:
     return min(leaves * leaves, lossless(law))
 
 
-@kernel(cache=True)
+@kernel
 def unloading(law: Array, dm: float) -> Curve:
     """Find the unloading curve from dm."""
     row = _unloading_row(law, dm)

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw._jit import kernel
+from contactlaw._jit import at_first_as_python, kernel
 from contactlaw.equation import force, integrator, legs, losses, motion
 from contactlaw.equation.force import HERTZ
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
@@ -145,15 +145,26 @@ def _impact(
     )
 
 
+# Python integrates this many impacts in less time than the compiler takes.
+_integrate_few = at_first_as_python(_integrate, 50)
+
+
 def _run(
-    goal: int, law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, notes: Notes = _NO_NOTES
+    goal: int,
+    law: Array,
+    lam: ArrayLike,
+    y: ArrayLike,
+    rtol: float,
+    notes: Notes = _NO_NOTES,
+    few: bool = False,
 ) -> Solution:
     """Integrate impacts, and say what became of each; a law that never yields has any y."""
     lams, ys = np.array(lam, np.float64, ndmin=1), np.array(y, np.float64, ndmin=1)
     if lams.size != ys.size:
         lams, ys = (each.copy() for each in np.broadcast_arrays(lams, ys))
     out = np.zeros((len(Solution._fields), lams.size))
-    _integrate(goal, law, lams, ys, rtol, notes, out)
+    integrate = _integrate_few if few else _integrate
+    integrate(goal, law, lams, ys, rtol, notes, out)
     return Solution(*out)
 
 
@@ -211,7 +222,7 @@ def shape(
     return _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes).status, notes.time, notes.speed
 
 
-def elastic_compression(law: Array, lam: Any, rtol: float) -> tuple[Any, Any]:
+def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) -> tuple[Any, Any]:
     """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
 
     Under a law that is Hertz's up to yield that of any elastic impact (Fig. 4 of the paper). Under
@@ -219,7 +230,7 @@ def elastic_compression(law: Array, lam: Any, rtol: float) -> tuple[Any, Any]:
     """
     hertz, before = force.is_hertz(law), np.ones(np.size(lam))
     for _ in range(100):
-        found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol)
+        found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol, few=few)
         w_m = found.peak_compression
         moved = ~(abs(w_m - before) < 1e-11 * before)
         if hertz or found.status.any() or not moved.any():
@@ -242,16 +253,20 @@ def _put(one: Solution, w_m: Array, out: Outcome) -> None:
     out.compression_ratio[:] = one.peak_compression / w_m
 
 
-def solve_all(law: Array, rtol: float, out: Outcome) -> tuple[int, int]:
-    """Impacts with the inelasticities and yield ratios of `out`; status, index of a failure."""
+def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False) -> tuple[int, int]:
+    """Solve impacts with the inelasticities and yield ratios of `out`.
+
+    Status, index of a failure. A few may do without the compiler, if their last digits do not
+    matter.
+    """
     y = _scale(out.yield_ratio)
-    one = _run(_TO_THE_END, law, out.inelasticity, y, rtol)
+    one = _run(_TO_THE_END, law, out.inelasticity, y, rtol, few=few)
     if one.status.any():
         return failure(one.status)
     w_m = one.peak_compression.copy()
     beyond = w_m > force.leaves_hertz(law) * y
     if beyond.any():
-        status, w_m[beyond] = elastic_compression(law, out.inelasticity[beyond], rtol)
+        status, w_m[beyond] = elastic_compression(law, out.inelasticity[beyond], rtol, few)
         if status.any():
             failed, n = failure(status)
             return failed, int(np.flatnonzero(beyond)[n])
@@ -272,7 +287,7 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
     return failure(one.status)
 
 
-def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float) -> Any:
+def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float, few: bool = False) -> Any:
     """Overload at which the largest compression is dm; NaN if the equation does not solve.
 
     By secants, in logarithms, in which dm nearly follows the overload.
@@ -280,7 +295,7 @@ def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float) -> Any:
 
     def gap(log_chi: Array) -> Array:
         y = w_m / np.exp(log_chi)
-        found = _run(_TO_THE_TOP, law, lam, y, rtol)
+        found = _run(_TO_THE_TOP, law, lam, y, rtol, few=few)
         reached = np.log(found.peak_compression.reshape(y.shape) / (y * dm))
         return np.where(found.status.reshape(y.shape) == OK, reached, math.nan)
 

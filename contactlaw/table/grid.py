@@ -109,8 +109,8 @@ def on_demand(law: Law) -> Settings:
     """Choose settings of a table that is built when it is first needed, in tenths of a second."""
     if math.isinf(law.range[1]):
         return Settings(log_overload_step=_STEP, rtol=1e-11)
-    w_m = zener.elastic_compression(law.data, 0.0, 1e-11)[1]
-    deepest = zener.overload_at(law.data, 0.0, w_m, law.range[1], 1e-11)
+    w_m = zener.elastic_compression(law.data, 0.0, 1e-11, few=True)[1]
+    deepest = zener.overload_at(law.data, 0.0, w_m, law.range[1], 1e-11, few=True)
     return Settings(
         largest_inelasticity=largest_inelasticity(law),
         largest_overload=float(f"{_BEYOND * deepest:.3g}"),

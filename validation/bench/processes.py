@@ -85,12 +85,19 @@ COR = "cor --sphere gamma-alumina --plate glass --radius 0.9mm --thickness 1mm -
 FIT = "fit rebounds.csv --sphere bearing-steel-52100 --plate aluminium-6061-t6 --radius 1mm"
 ROOT = Path(__file__).parent.parent.parent
 LAMMPS = "docs/examples/plates_lammps.py"
-_CACHES = ("XDG_CACHE_HOME", "NUMBA_CACHE_DIR", "CONTACTLAW_CACHE_DIR", "MPLCONFIGDIR")
+# A user's processes find byte code on disk, and these begin with empty caches.
+_UNSET = (
+    "PYTHONDONTWRITEBYTECODE",
+    "XDG_CACHE_HOME",
+    "NUMBA_CACHE_DIR",
+    "CONTACTLAW_CACHE_DIR",
+    "MPLCONFIGDIR",
+)
 
 
 def cpu_time(command: Sequence[str], home: Path, folder: Path, **variables: str) -> float:
     """CPU time [s] of a process whose home folder is `home`, with that of its children."""
-    environment = {name: value for name, value in os.environ.items() if name not in _CACHES}
+    environment = {name: value for name, value in os.environ.items() if name not in _UNSET}
     environment |= {"HOME": str(home), **variables}
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(command, check=True, env=environment, cwd=folder, capture_output=True)
