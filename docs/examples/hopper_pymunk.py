@@ -1,4 +1,4 @@
-"""Beads run through a funnel of sheet metal; each wall gives the COR of its own thickness."""
+"""Beads run through a funnel of sheet metal whose two walls differ in thickness, and so in COR."""
 
 import math
 
@@ -14,7 +14,7 @@ STEP = 1e-5  # [s]
 
 
 def main(beads=20, duration=0.4):
-    """Let steel beads fall into a funnel; list COR by wall."""
+    """Let steel beads fall into a funnel; print the range of the COR on each wall."""
     space = pymunk.Space()
     space.gravity = (0.0, -9.81)
     model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "stainless-steel-304"))

@@ -1,7 +1,7 @@
-"""A contact law from a measured force curve, beside the one from finite elements.
+"""A contact law from a measured force curve, compared with the law from finite elements.
 
-Press a bead slowly into a block of the plate's material, note force and compression: that is the
-loading curve beyond yield. Unloading follows Hertz with a larger radius.
+Force and compression of a bead that is pressed slowly into a block of the plate's material are the
+loading curve beyond yield. Unloading is then Hertz's, with the larger radius of the flattened bead.
 """
 
 import contactlaw as cl
@@ -12,7 +12,7 @@ FORCE = [18.4, 38.1, 67.5, 111.0, 183.0]  # [N]
 
 
 def main():
-    """Compare what two laws say of the same impacts."""
+    """Compare the COR of the same impacts by the two laws."""
     pair = cl.Pair("gamma-alumina", "glass")
     pressed = cl.measured_law(pair, radius=RADIUS, compression=COMPRESSION, force=FORCE)
     models = {"measured": cl.ImpactModel(pair, law=pressed), "fem": cl.ImpactModel(pair, law="fem")}

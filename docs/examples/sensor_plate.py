@@ -1,7 +1,7 @@
 """The load that a rain of beads puts on a force sensor under its plate.
 
-Each impact is a pulse of some microseconds; `contactlaw.load_signal` adds them up on the sensor's
-own time axis, so that no impulse is lost between two samples.
+Each impact is a pulse of some microseconds. `contactlaw.load_signal` averages the force over each
+sample of the sensor, so that no impulse is lost between two samples.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-/* Beads hit a plate, time step by time step: velocity Verlet with the force of the contact.
+/* Beads hit a plate, in time steps of velocity Verlet with the contact force of the law.
  *
  *     contactlaw export header --sphere gamma-alumina --plate glass --out contactlaw.h
  *     cc -O2 soft_sphere.c -o soft_sphere -lm && ./soft_sphere
@@ -15,7 +15,7 @@ int main(void)
     const double dt = contactlaw_rebound(fastest, radius, thickness).contact_time / 50.0;
     const contactlaw_spring spring = contactlaw_spring_of(radius, thickness);
     double height[BEADS], speed[BEADS], peak[BEADS] = { 0.0 }; /* of the lowest points; downwards */
-    contactlaw_state state[BEADS] = { CONTACTLAW_APART };      /* and of all others, in C */
+    contactlaw_state state[BEADS] = { CONTACTLAW_APART };      /* the others become 0 too */
     int n, step;
 
     for (n = 0; n < BEADS; ++n) {

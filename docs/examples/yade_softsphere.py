@@ -1,10 +1,10 @@
 """One bead on each of three plates in YADE, with the force of ``contactlaw.softsphere``.
 
-Run with YADE 2023.02a of Debian 12: numpy 1.24.2, numba 0.68.1, h5py 3.16.0; not in CI. It runs in
-the system's Python. What contactlaw needs goes elsewhere, without numpy, and behind it:
+Tested by hand with YADE 2023.02a of Debian 12, numpy 1.24.2, numba 0.68.1, h5py 3.16.0. YADE uses
+the system's Python and numpy. Run from the repository, pip installs the rest in a folder DIR:
 
-    pip install --no-deps --target DIR contactlaw numba llvmlite h5py platformdirs filelock tqdm
-    CONTACTLAW_PATH=DIR yade -x -n yade_softsphere.py
+    pip install --no-deps --target DIR . numba llvmlite h5py platformdirs filelock tqdm
+    CONTACTLAW_PATH=DIR yade -x -n docs/examples/yade_softsphere.py
 """
 
 import os
@@ -23,7 +23,7 @@ from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, np.array([0.5e-3, 1e-3, 3e-3])  # [m], [m/s], [m]
 model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
 contacts = Contacts(model, RADIUS, THICKNESS)
-soft = O.materials.append(engine.FrictMat(young=1e-9))  # and so is YADE's own spring to it
+soft = O.materials.append(engine.FrictMat(young=1e-9))  # YADE's own spring is then negligible
 hard = O.materials.append(engine.FrictMat(density=model.pair.sphere.density))
 plate = O.bodies.append(utils.wall(0.0, axis=2, material=soft))
 places = [(0.01 * n, 0.0, 1.1 * RADIUS) for n in range(THICKNESS.size)]
@@ -34,7 +34,7 @@ O.dt = time_step(model, SPEED, RADIUS, THICKNESS.max())
 
 
 def push():
-    """Let the law act where YADE has found a bead on the plate."""
+    """Add the force of the law where YADE has found a bead on the plate."""
     overlap = np.zeros(THICKNESS.size)
     for i in filter(lambda i: i.isReal, O.interactions.withBody(plate)):
         overlap[beads.index(max(i.id1, i.id2))] = i.geom.penetrationDepth
