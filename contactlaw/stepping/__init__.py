@@ -1,7 +1,7 @@
-"""What happens in contacts in one time step; no engine.
+"""Forces in the contacts of beads with walls in one time step, for any engine.
 
-`spring` gives the normal force, `energy` accounts for it under a velocity Verlet scheme, `friction`
-is the tangential force, `contact` puts them together, and `bead` finds the contacts with walls.
+`spring` gives the normal force, `energy` corrects it for the errors of velocity Verlet, `friction`
+gives the tangential force, `contact` puts them together, and `bead` finds the contacts.
 """
 
 from contactlaw.stepping.bead import WallContacts, interact

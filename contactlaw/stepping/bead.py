@@ -1,4 +1,4 @@
-"""A bead near walls in one time step: which contacts go on, end and begin."""
+"""Contacts of a bead with walls in one time step: which go on, which end and which begin."""
 
 from __future__ import annotations
 
@@ -37,38 +37,43 @@ from contactlaw.walls.surface import OVERLAP, ROOM, join, on_it, overlaps, slope
 
 Rows = NDArray[np.void]
 
-_PLACES = 8  # contacts that a bead may have at once: a corner has three, a hole as many as edges
-_RIGHT = 1e-6  # cosine of an angle that counts as a right one
+_PLACES = 8  # most contacts of a bead at once: three in a corner, in a hole one for each edge
+_RIGHT = 1e-6  # two forces count as perpendicular if the cosine of their angle is at most this
 
 
 class WallContacts:
-    """Contacts of beads with walls, which a loop of one's own steps through.
+    """Contacts of beads with walls, for a time-stepping loop of your own.
 
-    Walls that move are where `contactlaw.walls.move` has put them: before the first step, and once
-    a step before `interact`, with ``scene.frames``, the time and the step. A scene is for one
-    thread: beads share its scratch memory.
+    `contactlaw.walls.move` puts moving walls in place: call it with ``scene.frames``, the time and
+    the step before the first step, and then in each step before `interact`. A scene is for one
+    thread, because all beads share its scratch memory.
 
     Parameters
     ----------
     walls : sequence of Plate and Mesh
-        What the beads hit, of `contactlaw.walls`.
+        Walls of `contactlaw.walls` that the beads may hit.
     models : ImpactModel or dict of int to ImpactModel
-        Materials and law; of several materials by the beads' type, from 1.
+        Materials and law, one model for all beads or one for each type of beads, from 1.
     largest : float
         Radius of the largest bead [m].
     impacts : structured array
-        Room for the record of impacts, with the columns of `contactlaw.engines.record.IMPACT`.
+        Rows for the record of impacts, with the columns of `contactlaw.engines.record.IMPACT`.
     friction : float, optional
         Coulomb's coefficient of friction between beads and walls [-].
     types : int, optional
-        How many types of beads there are.
+        Number of types of beads.
 
     Attributes
     ----------
     scene : Scene
-        What the kernel `interact` reads, as long as this object lives.
+        Argument of the kernel `interact`, valid as long as this object lives.
     places : int
-        Contacts that a bead may have at once.
+        Most contacts that a bead may have at once.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the friction is no finite number of 0 or more, or `models` holds no models of the types.
     """
 
     def __init__(
@@ -99,7 +104,7 @@ class WallContacts:
         Raises
         ------
         RuntimeError
-            If anything went wrong in a step; it names the `Trouble`, the wall and what was wrong.
+            If a step met a `Trouble`; the message has its name, the wall, the value and the limit.
         """
         status = self.scene.status[0]
         if status["trouble"]:
@@ -111,7 +116,7 @@ class WallContacts:
         return hits
 
     def memory(self, beads: int) -> tuple[Rows, Rows]:
-        """Rows of CONTACT and of FRICTION for each of some beads, all empty."""
+        """Empty rows of CONTACT and of FRICTION for a number of beads, shape (beads, n) each."""
         sliding = self.places if self.scene.friction > 0.0 else 0
         return np.zeros((beads, self.places), CONTACT), np.zeros((beads, sliding), FRICTION)
 
@@ -127,7 +132,7 @@ def touches(bead: Bead) -> bool:
 
 @kernel
 def _facet_of(row: Any) -> int:
-    """Facet of a contact, -1 of an empty row."""
+    """Facet's number, or -1 if the row is empty."""
     return int(abs(row.facet)) - 1
 
 
@@ -142,7 +147,7 @@ def _row_of(bead: Bead, facet: int) -> int:
 
 @kernel
 def _place_of(found: Any, count: int, facet: int) -> int:
-    """Place of a facet in the list of those that a bead overlaps, else -1."""
+    """Position of a facet in the list of those that a bead overlaps, else -1."""
     for n in range(count):
         if found[n].facet == facet:
             return n
@@ -151,10 +156,10 @@ def _place_of(found: Any, count: int, facet: int) -> int:
 
 @kernel
 def _place_in(scene: Scene, bead: Bead, n: int, touching: bool) -> Contact:
-    """Contact with a facet of the list, less what it shares with another.
+    """Contact with facet n of the list, without the force that it shares with another one.
 
-    By Hertz's law, the energy at the pass is as (x_pass/x)^2.5 to that of the contact, and the
-    force as the power 1.5; under other laws the shares are the same.
+    Hertz's force is proportional to the overlap to the power 1.5, so the shared part is
+    (x_pass/x)^1.5, with the pass of `contactlaw.walls.surface`. Other laws take the same share.
     """
     found, row = scene.found, scene.found[n]
     along = (row.nx, row.ny, row.nz)
@@ -170,17 +175,17 @@ def _place_in(scene: Scene, bead: Bead, n: int, touching: bool) -> Contact:
 
 @kernel
 def _path(clock: Clock, bead: Bead) -> float:
-    """Largest distance that a bead may seem to have moved in a step [m]."""
+    """Largest path of a bead in a step, plus the overlap of one put down at rest [m]."""
     v = bead.v
     return math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
 
 
 @kernel
 def _home(scene: Scene, bead: Bead, row: Any, count: int, path: float) -> int:
-    """Place in the list of the facet that a contact goes on with, else -1.
+    """Position in the list of the facet on which a contact goes on, else -1.
 
-    From a facet that is suddenly far, behind a periodic boundary, it goes on with what the bead
-    overlaps as deeply, within its path of a step; else it is -2.
+    A facet that is suddenly far away was left across a periodic boundary. The contact then goes on
+    where the overlap differs the least and by no more than `path`; if there is no such facet: -2.
     """
     found, facet = scene.found, _facet_of(row)
     at = _place_of(found, count, facet)
@@ -204,7 +209,7 @@ def _home(scene: Scene, bead: Bead, row: Any, count: int, path: float) -> int:
 
 @kernel
 def _hand_over(scene: Scene, clock: Clock, bead: Bead, count: int) -> None:
-    """Let contacts go along with a bead that crosses from facet to facet."""
+    """Move the contacts of a bead to the facets that it has crossed to."""
     found, path = scene.found, _path(clock, bead)
     for k in range(len(bead.contacts)):
         row = bead.contacts[k]
@@ -219,7 +224,7 @@ def _hand_over(scene: Scene, clock: Clock, bead: Bead, count: int) -> None:
 
 @kernel
 def _part(scene: Scene, clock: Clock, bead: Bead, k: int, count: int) -> None:
-    """End a contact: the bead is off the facet, or it is one with another now."""
+    """End a contact whose facet the bead has left, or whose surface has another contact now."""
     facet = _facet_of(bead.contacts[k])
     one, n, heir = scene.facets[facet], _place_of(scene.found, count, facet), -1
     if n >= 0:
@@ -228,7 +233,7 @@ def _part(scene: Scene, clock: Clock, bead: Bead, k: int, count: int) -> None:
     if heir >= 0:
         bead.contacts[heir].company = SHARING
     t = seen(scene.frames[one.frame], one, bead.x, bead.r)
-    if t.x > -bead.r:  # else it was taken away
+    if t.x > -bead.r:  # else something has moved the bead far away between two steps
         t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
         contact = contact_of(scene, bead, facet, t, (t.nx, t.ny, t.nz), True, heir)
         press(scene, clock, bead, contact, k)
@@ -238,7 +243,7 @@ def _part(scene: Scene, clock: Clock, bead: Bead, k: int, count: int) -> None:
 
 @kernel
 def _deepest_new(found: Any, count: int, bead: Bead) -> int:
-    """Place in the list of the deepest facet that a contact has yet to begin with, else -1."""
+    """Position in the list of the deepest facet that has no contact yet, else -1."""
     new = -1
     for n in range(count):
         if found[n].surface == n and (new < 0 or found[n].x > found[new].x):
@@ -249,9 +254,9 @@ def _deepest_new(found: Any, count: int, bead: Bead) -> int:
 
 @kernel
 def _begin_all(scene: Scene, clock: Clock, bead: Bead, count: int, touching: bool) -> None:
-    """Begin contacts, the deepest first; without an empty row, in place of a shallower one.
+    """Begin contacts, the deepest first; if no row is empty, a shallower contact is replaced.
 
-    So the force has no jump where a contact takes the place of another.
+    The two overlaps are nearly equal when one replaces the other, so the force does not jump.
     """
     found = scene.found
     for _ in range(count):
@@ -263,7 +268,7 @@ def _begin_all(scene: Scene, clock: Clock, bead: Bead, count: int, touching: boo
             least = math.inf
             for k in range(len(bead.contacts)):
                 n = _place_of(found, count, _facet_of(bead.contacts[k]))
-                x = found[n].x if n >= 0 else 0.0  # it has ended in this step
+                x = found[n].x if n >= 0 else 0.0  # 0: this contact has ended in this step
                 if x < least:
                     least, at = x, k
             if not found[new].x > least:
@@ -278,9 +283,9 @@ def _begin_all(scene: Scene, clock: Clock, bead: Bead, count: int, touching: boo
 
 @kernel
 def _company(bead: Bead) -> float:
-    """Whether contacts press a bead that work on each other; those at right angles do not.
+    """UNEVEN if two contacts press the bead and are not at right angles, else ALONE.
 
-    The scheme of a contact takes its own force for all that moves the bead along its normal.
+    The energy account of a contact assumes that no other force acts along its normal.
     """
     for k in range(len(bead.contacts)):
         one = bead.contacts[k]
@@ -296,10 +301,10 @@ def _company(bead: Bead) -> float:
     return ALONE
 
 
-# inline: its arguments are some 70 numbers, which a call would write to memory for each bead
+# Inlined, because a call would write its arguments, some 70 numbers, to memory for each bead.
 @kernel(cache=True, inline=True)
 def interact(scene: Scene, clock: Clock, bead: Bead) -> None:
-    """Add the force of the walls to a bead, and keep its contacts."""
+    """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``."""
     if not 0 <= bead.kind < len(scene.sheets):
         complain(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
         return
@@ -311,7 +316,7 @@ def interact(scene: Scene, clock: Clock, bead: Bead) -> None:
     if clock.advancing:
         _hand_over(scene, clock, bead, count)
     touching, company = touches(bead), ALONE
-    if count > 1:  # most beads have one contact, and their rows are far from each other in memory
+    if count > 1:  # most beads have one contact: they need no search, which is slow in memory
         company = SHARING if sharing else _company(bead)
     for k in range(len(bead.contacts)):
         row = bead.contacts[k]

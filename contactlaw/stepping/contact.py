@@ -1,7 +1,7 @@
 """One contact of a bead with a wall in one time step: normal force, friction, energies, record.
 
 Legend: r radius, x overlap of the sphere with the undeformed wall, u speed towards the wall, n
-normal from the wall to the bead, s height over the facet's plane.
+normal from the wall to the bead, s height of the bead's centre over the facet's plane.
 """
 
 from __future__ import annotations
@@ -28,41 +28,41 @@ from contactlaw.walls.memory import array_at
 
 Array = NDArray[np.float64]
 
-AT_REST = 1e-3  # [r] that a bead may overlap which is put down on a wall
+AT_REST = 1e-3  # [r] overlap with which a bead may be put down on a wall
 # A touching bead that is 1 % faster than when it arrived was struck by another: a new impact.
 _FASTER = 1.01
-_SOLID = 1e-6  # a bead's mass may differ so much, relatively, from that of a sphere of the model
+_SOLID = 1e-6  # largest relative difference of a bead's mass from that of the model's solid sphere
 
-# What a bead remembers of a contact between two steps. All are float64, so that an engine can keep
-# them in whatever array of numbers it takes along with a bead.
+# State of a contact between two steps. All fields are float64, so that an engine can keep them in
+# any array of numbers that it stores with its beads.
 CONTACT = np.dtype(
     [
-        # from 1; negative on the side from which the facet's normal points away; 0: an empty row
+        # number from 1, negative if the bead is on the side opposite to the normal; 0: an empty row
         ("facet", "f8"),
         *((name, "f8") for name in State._fields),
-        # since first touch [s], summed up: a clock has other bits when a run is cut into pieces
+        # time since first touch [s]: a sum of steps, so that a run in pieces gives the same bits
         ("duration", "f8"),
         ("approach_speed", "f8"),  # [m/s]
-        ("wave_energy", "f8"),  # that the plate has taken [J]
+        ("wave_energy", "f8"),  # energy that the plate has taken [J]
         ("reported_loss", "f8"),  # energy lost in the contact that the record already holds [J]
         ("overlap", "f8"),  # [m]
-        ("work", "f8"),  # of the contact's force on the bead, in the frame of the wall [J]
-        ("wall_work", "f8"),  # of the wall's motion on the bead [J]
-        ("extra_force", "f8"),  # of this step alone, beside `force` [N]
+        ("work", "f8"),  # work of the normal force on the bead, in the frame of the wall [J]
+        ("wall_work", "f8"),  # work that the wall's motion does on the bead [J]
+        ("extra_force", "f8"),  # correction added to `force` in this step alone [N]
         ("company", "f8"),  # ALONE, UNEVEN or SHARING
-        ("wall_power", "f8"),  # of the wall's motion by the normal force [W]
+        ("wall_power", "f8"),  # power of the normal force at the wall's velocity [W]
         ("push", "f8", 3),  # force on the bead without friction [N]
     ]
 )
 NO_CONTACT = np.zeros(1, CONTACT)
 
-# A contact on one smooth surface; one that went across a kink or beside which another one pressed;
-# one that has shared its force with another.
+# A contact is ALONE on one smooth surface, UNEVEN if it crossed a kink or another one pressed at
+# the same time, and SHARING if it has shared its force with another one.
 ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
 
 
 class Trouble(enum.IntEnum):
-    """What ends a run; from STARTS_INSIDE on the contacts of the bead mean nothing any more."""
+    """Errors that end a run; from STARTS_INSIDE on, the bead's contacts are no longer valid."""
 
     STEP_TOO_LARGE = 1
     TOO_MANY_IMPACTS = 2
@@ -70,18 +70,18 @@ class Trouble(enum.IntEnum):
     STARTS_INSIDE = 10
     CROSSED = 11
     WRONG_MASS = 12
-    TOO_THIN = 13
-    FOIL = 14
+    TOO_THIN = 13  # for the speed: the inelasticity is beyond the model's table
+    FOIL = 14  # thinner than any plate that the model is for, relative to the bead
 
 
-# What the kernels tell their caller, who clears it.
+# What the kernels report to their caller, who clears it.
 STATUS = np.dtype(
     [
-        ("impacts", "i8"),  # written to the record
-        ("left_out", "i8"),  # contacts without a force, for want of a place, summed over the steps
+        ("impacts", "i8"),  # number of impacts in the record
+        ("left_out", "i8"),  # contacts left out because no row was empty, counted in every step
         ("trouble", "i8"),  # the first `Trouble`, 0 without any
-        ("worst", "i8"),  # the largest
-        ("wall", "i8"),  # that the first one happened at; the value that was wrong, and its limit
+        ("worst", "i8"),  # the `Trouble` with the largest number
+        ("wall", "i8"),  # of the first `Trouble`, as are the wrong value and its limit
         ("value", "f8"),
         ("limit", "f8"),
     ]
@@ -89,12 +89,12 @@ STATUS = np.dtype(
 
 
 class Clock(NamedTuple):
-    """Where a simulation is."""
+    """Time and steps of a simulation."""
 
     now: float  # [s]
     dt: float  # the step that ends now [s]
     before: float  # the step before that [s]
-    advancing: bool  # else the forces of the last step are asked for again
+    advancing: bool  # False if an engine asks for the last step's forces again, as at a set-up
 
 
 class Scene(NamedTuple):
@@ -104,18 +104,18 @@ class Scene(NamedTuple):
     frames: Any
     facets: Any
     found: Any  # room for the list of facets that a bead overlaps
-    impacts: Any  # the record
+    impacts: Any  # rows of the record
     status: Any
     friction: float  # Coulomb's coefficient [-]
 
 
 class Bead(NamedTuple):
-    """A bead in SI units, and arrays that are written: forces are added, contacts kept."""
+    """A bead in SI units; kernels add to its force and torque, and update its contacts."""
 
     number: int
-    kind: int  # its model's number, from 0
+    kind: int  # its type, from 0
     x: Point
-    v: Point  # half a step before
+    v: Point  # velocity half a step before
     omega: Point
     r: float
     mass: float
@@ -134,18 +134,18 @@ class Contact(NamedTuple):
     triangle: int
     touch: Touch
     point: Point  # [m]
-    v: Point  # of the bead relative to the wall, half a step before [m/s]
-    w: Point  # of the wall [m/s]
-    along: Point  # force on the bead over that of the law: the normal, if nothing is shared
+    v: Point  # velocity of the bead relative to the wall, half a step before [m/s]
+    w: Point  # velocity of the wall [m/s]
+    along: Point  # force on the bead over the law's; the normal, if no force is shared
     touching: bool  # whether the bead was on a wall before this step
-    heir: int  # row of the contact that this one has grown together with, else -1
+    heir: int  # row of the contact that this one has merged into, else -1
 
 
 @kernel
 def contact_of(
     scene: Scene, bead: Bead, facet: int, touch: Touch, along: Point, touching: bool, heir: int
 ) -> Contact:
-    """Contact of a bead with a facet that it touches so."""
+    """Contact of a bead with a facet, with the velocities at the point of touch."""
     row, point = scene.facets[facet], nearest(touch, bead.x, bead.r)
     frame = scene.frames[row.frame]
     before, v = velocity(frame, frame.half_rate, point), bead.v
@@ -158,7 +158,7 @@ def contact_of(
 
 @kernel
 def complain(scene: Scene, trouble: Trouble, wall: int, value: float, limit: float) -> None:
-    """Keep the first trouble, and how bad it became."""
+    """Record a trouble if it is the first, and the largest trouble number so far."""
     status, code = scene.status[0], trouble.value
     if status.trouble == 0:
         status.trouble, status.wall, status.value, status.limit = code, wall, value, limit
@@ -177,7 +177,7 @@ def _check_step(scene: Scene, clock: Clock, wall: int, spring: Spring, u: float)
 def _begin(
     scene: Scene, clock: Clock, bead: Bead, contact: Contact, row: Any, spring: Spring, u: float
 ) -> None:
-    """Start a contact, or the next one of a bead that comes back before it has parted."""
+    """Start an impact: of a new contact, or of a bead that returns before it has left the wall."""
     wall, sheet, x = contact.wall, scene.sheets[bead.kind, contact.sheet], contact.touch.x
     first = u > 0.0 and row.largest_compression == 0.0
     row.duration = min(x / u, clock.dt) if first else 0.0
@@ -195,7 +195,7 @@ def _begin(
 
 @kernel
 def _partner(bead: Bead, k: int) -> int:
-    """Place of another contact that a tied one has shared its force with, else -1."""
+    """Row of another contact that shares its force, if contact k does so too, else -1."""
     if bead.contacts[k].company == SHARING:
         for j in range(len(bead.contacts)):
             other = bead.contacts[j]
@@ -206,7 +206,7 @@ def _partner(bead: Bead, k: int) -> int:
 
 @kernel
 def _power(bead: Bead, k: int, v: Point) -> float:
-    """Power of the contacts but one on a bead of this velocity [W]."""
+    """Power of all contacts except k on a bead of velocity v [W]."""
     power = 0.0
     for j in range(len(bead.contacts)):
         other = bead.contacts[j]
@@ -217,7 +217,7 @@ def _power(bead: Bead, k: int, v: Point) -> float:
 
 @kernel
 def _kinked(held: Point, n: Point, v: Point, dt: float, distance: float) -> bool:
-    """Whether the normal has turned by more than the bead's path explains."""
+    """Whether the normal has turned by more than the bead's motion in the step explains."""
     size = math.sqrt(dot(held, held))
     turn = 0.0
     for k in range(3):
@@ -237,9 +237,9 @@ def _end(
     last: State,
     u: float,
 ) -> Point:
-    """Put a contact whose force has ended in this step into the record; the force that it lacks.
+    """Record an impact whose force ended in this step; return the force that settles its energy.
 
-    One that has grown together with another leaves its account to that, and no record.
+    A contact that has merged into another adds its energies to that one and is not recorded.
     """
     row, scale, v, touch = bead.contacts[k], spring.scale, contact.v, contact.touch
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
@@ -255,12 +255,12 @@ def _end(
         to.wall_work += row.wall_work
         return 0.0, 0.0, 0.0
     reported, row.reported_loss = row.reported_loss, lost
-    if not row.approach_speed > 0.0:  # it was put there and then left
+    if not row.approach_speed > 0.0:  # the bead did not arrive: it was put down in contact
         return 0.0, 0.0, 0.0
     missing = reported - lost - row.wave_energy - row.work
     steps, partner = row.duration / clock.dt, _partner(bead, k)
     extra, leaves = (0.0, 0.0, 0.0), -u
-    if partner >= 0:  # what one has too much the other has too little
+    if partner >= 0:  # the other contact has the energy that this one lacks
         bead.contacts[partner].work -= missing
     elif row.company != ALONE:
         more = energy.scaled(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
@@ -279,7 +279,7 @@ def _end(
         return extra
     scene.status[0].impacts = n + 1
     since = 0.0
-    if u < 0.0:  # between the steps, where the compression was down to the residual one
+    if u < 0.0:  # time since the compression fell to the residual one, within this step
         gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
         since = min(max(gap / -u, 0.0), clock.dt)
     record, sheet = scene.impacts[n], scene.sheets[bead.kind, contact.sheet]
@@ -290,11 +290,11 @@ def _end(
     record.approach_speed, record.restitution = row.approach_speed, leaves / row.approach_speed
     record.contact_time = row.duration - since
     record.peak_force = force.loading(law, math.sqrt(dm)) * unit
-    # a contact that goes on where another has dented the bead loses what is left of the loop
+    # earlier impacts of the same contact have reported a part of the loss already
     share = 1.0 - other / lost if lost > 0.0 else 0.0
     record.plastic_energy, record.wave_energy = share * (lost - reported), row.wave_energy
     record.other_energy = (1.0 - share) * (lost - reported)
-    record.wall_work = row.wall_work  # and what this step does, see `press`
+    record.wall_work = row.wall_work  # `press` adds the work of this step
     record.flags = flags_of(
         limits_of(sheet), bead.r, sheet.thickness,
         impact(spring, record.approach_speed).compression, record.contact_time,
@@ -319,9 +319,9 @@ def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -
     u = -dot(v, n)
     side = math.copysign(contact.facet + 1.0, touch.s)
     if row.facet == 0.0:
-        # no deeper than a step's path; on an edge that is not along the normal
+        # The overlap is at most the path of a step, which on an edge is not along the normal.
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
-        # (but a bead may come from one surface deep into the next)
+        # A bead that was on a wall already may begin deep in the next surface.
         if touch.x > deepest and not contact.touching:
             complain(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)
     elif touch.face and side != row.facet:
@@ -342,7 +342,7 @@ def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -
     else:
         first = 0.0 < row.duration < clock.before
         if not touch.face and last.force > 0.0 and first and row.company == ALONE:
-            # the second step: the first one does not know how fast the normal turns
+            # How fast the normal turns is first known in the second step.
             around = energy.turning(bead.r, row.overlap, touch.x, u, clock.dt)
             row.approach_speed = energy.free_speed(
                 row.approach_speed, around, bead.r, row.overlap
@@ -372,14 +372,14 @@ def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -
         if extra == 0.0:
             forget(bead, k)
     if extra != 0.0:
-        row.facet = side  # also of a bead that has parted: a set-up asks for the force again
+        row.facet = side  # kept after parting too, because a set-up asks for this force again
     row.extra_force, row.wall_power = extra, power
     row.push[0], row.push[1], row.push[2] = pushes
 
 
 @kernel
 def press(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
-    """Add the force of one contact to a bead, and keep the row of the contact."""
+    """Add the force of one contact to a bead, and update the row of the contact."""
     row, touch, sheet = bead.contacts[k], contact.touch, scene.sheets[bead.kind, contact.sheet]
     if sheet.law == 0:
         complain(scene, Trouble.NO_MODEL, contact.wall, bead.kind + 1.0, 0.0)
@@ -409,5 +409,5 @@ def press(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -> N
         work += both * contact.w[i]
     if clock.advancing:
         row.wall_work += clock.dt * work
-        if scene.status[0].impacts > recorded:  # with the last push
+        if scene.status[0].impacts > recorded:  # the impact was recorded without this step's work
             scene.impacts[recorded].wall_work += clock.dt * work

@@ -1,11 +1,11 @@
-"""The energy ledger of a contact under velocity Verlet, and what makes it what the law says.
+"""Energies of a contact under velocity Verlet, and the forces that correct the scheme's errors.
 
-Velocity Verlet pushes a bead at whole steps only, but a contact begins and ends inside a step. The
-force sets in as (t - t0)^1.5, and a sum over steps misses the integral of that by a zeta function
-of the phase (Navot, J. Math. and Phys. 40, 1961, 271): the force of the first step is corrected by
-it. Where the contact ends, the bead is given what its energy then lacks of what law and wave have
-left it. The work is summed up just as Verlet's scheme does it, whatever other forces act, so that
-an elastic bead keeps its energy to rounding.
+Velocity Verlet applies forces at whole steps only, but a contact begins and ends inside a step. The
+force begins as (t - t0)^1.5, and a sum over steps misses its integral by a zeta function of the
+phase (Navot, J. Math. and Phys. 40, 1961, 271): the force of the first step is corrected by that.
+In its last step, a contact gives the bead what it lacks of the energy that the losses have left.
+The work is summed up exactly as Verlet's scheme does it, whatever other forces act, so that an
+elastic bead keeps its energy to rounding.
 
 Legend: x overlap, u speed towards the plate, m mass, r radius, s distance of the bead's centre from
 the nearest point of the plate, h step, f force; 0 and 1 are the beginning and the end of a step.
@@ -29,16 +29,16 @@ Point = tuple[float, float, float]
 
 # zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6: a least-squares fit
 _ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 0.0013675)
-# Largest change of the speed with which a bead leaves, over that speed or the one of its approach,
-# times (steps per contact)^2.5: twice what the scheme errs without it
-# (`contactlaw.softsphere.time_step`). If more energy is missing than that, another bead struck this
-# one in between: it is left as it is. One that rolls over a corner may leave slowly after a hard
-# approach.
+# Largest correction of the rebound speed, times (steps per contact)^2.5: twice the scheme's error
+# (`contactlaw.softsphere.time_step`). If more energy is missing, another bead struck this one in
+# between: it is left as it is. The correction is relative to the larger of the rebound and the
+# approach speed, because a bead that rolls over a corner may leave slowly.
 _MOST = 1.8
-# Largest relative change of the speed of a bead that went across kinks, times steps per contact: at
-# the force's peak the push of a step is 2.9/steps of the momentum that an elastic bead comes with.
+# Largest relative correction of the speed of a bead that crossed kinks, times steps per contact. At
+# the peak of Hertz's force the impulse of a step is 3.7/steps of the momentum of the approach.
 _KINKS = 3.0
-# Overlap at the end of the step of first touch over the path in a step; an edge is round.
+# Largest overlap after the first step of a contact over the path in that step; on an edge it may
+# be a little above 1, because the normal turns.
 _ONE = 1.01
 
 
@@ -46,11 +46,11 @@ _ONE = 1.01
 def step(
     law: Array, spring: Spring, state: State, x: float, u: float, h: float, before: float
 ) -> tuple[State, float]:
-    """State at the end of a step, and a force to add to the state's there and then only.
+    """State at the end of a step, and a force to add to the state's in this step alone.
 
     Verlet's position differs from the sphere's by h^2 f/(12 m), see `contactlaw.softsphere`, and so
-    does its speed. Where the step was another one before, the sphere must not jump: the change of
-    position goes into the plate's displacement, that of the speed into the force to add.
+    does its speed. If the step changes, the sphere must not jump: the change of position goes into
+    the plate's displacement, that of the speed into the force to add.
     """
     f0, u2 = state.force, state.plate_displacement
     shift = (h - before) * (h + before) / (12.0 * spring.mass) if f0 > 0.0 else 0.0
@@ -70,7 +70,7 @@ def step(
 
 @kernel
 def _before_the_first(spring: Spring, x: float, way: float) -> Any:
-    """Force that the sum over the steps of a contact lacks where it begins."""
+    """Correction of the force in the first step, because a contact begins inside that [N]."""
     t, zeta = x / way, 0.0
     for coefficient in _ZETA[::-1]:
         zeta = zeta * t + coefficient
@@ -97,19 +97,19 @@ def work(
     mass: float, f0: Point, f1: Point, v: Point, power_0: float, power_1: float, h: float,
     before: float,
 ) -> Any:  # fmt: skip
-    """Work of the forces on the bead in a step, less the wall's; half of that of either end [J].
+    """Work of the forces at the two ends of a step on the bead, less that of the wall [J].
 
-    They are vectors, for the normal turns where the nearest point is on an edge, and jumps where
-    the bead goes on from a facet to one that leans towards it.
+    The forces are vectors, because the normal turns while the nearest point is on an edge and jumps
+    where the bead crosses to a facet that leans towards it.
     """
-    # where the step changes, Verlet's force acts for half of either
+    # If the step changes, Verlet's f0 acts for half of the last step and half of the new one.
     uneven = (h - before) * (h + before) * dot(f0, f0) / (8.0 * mass)
     return 0.5 * h * (dot(f0, v) + dot(f1, v) - power_0 - power_1) - uneven
 
 
 @kernel
 def settle(missing: float, m: float, u: float, approach: float, h: float, steps: float) -> float:
-    """Force to add in the last step, for a bead that leaves with so much energy too little [N]."""
+    """Force in the last step that gives a rebounding bead its missing energy [N]."""
     square = u * u + 2.0 * missing / m
     if not (u < 0.0 and square > 0.0):
         return 0.0
@@ -121,11 +121,11 @@ def settle(missing: float, m: float, u: float, approach: float, h: float, steps:
 
 @kernel
 def scaled(missing: float, m: float, v: Point, power: float, h: float, steps: float) -> float:
-    """Share of its velocity to add to a bead whose contact went across kinks, or had company.
+    """Relative change of the velocity that gives a bead of an UNEVEN contact its missing energy.
 
-    A force that jumps within a step errs by up to half of its push of a step, in the direction of
-    the jump: which may be that along which the bead does not leave. So all of the velocity changes.
-    `power` is that of the contacts which still press: they, too, push the bead in this step.
+    A force that jumps within a step errs by up to half of its impulse in that step, along the jump,
+    and the bead may leave in another direction. So all components of the velocity are scaled.
+    `power` is that of the other contacts, which still press the bead in this step [W].
     """
     twice = m * dot(v, v)
     one = 1.0 + 0.5 * power * h / twice
@@ -138,17 +138,17 @@ def scaled(missing: float, m: float, v: Point, power: float, h: float, steps: fl
 
 @kernel
 def turning(r: float, x0: float, x1: float, u: float, h: float) -> float:
-    """Square of the speed around an edge or a corner [m^2/s^2]."""
+    """Square of the tangential speed around an edge or a corner [m^2/s^2]."""
     way = 2.0 * r - x0 - x1 + u * h
     return max((x1 - x0 - u * h) * way, 0.0) / (h * h)
 
 
 @kernel
 def free_speed(u: float, turning: float, r: float, x: float) -> float:
-    """Take a normal speed u at overlap x to overlap 0, along a free flight.
+    """Speed along the normal at overlap 0, in free flight, of a bead with u at overlap x.
 
-    Around an edge the normal turns during the contact. With speeds at one distance from the edge
-    the energies of an impact add up, and an elastic bead has a COR of 1.
+    Around an edge the normal turns during the contact. Approach and rebound are compared at the
+    same distance from the edge, so that an elastic bead has a COR of 1.
     """
     s = 1.0 - x / r
     return math.sqrt(u * u + turning * (1.0 - s * s))

@@ -1,7 +1,7 @@
-"""Sliding friction of a contact: a part that the contact asks for a tangential force.
+"""Tangential force of a contact: a spring that slides.
 
 The spring is that of LAMMPS's ``mindlin``, k = 8 G* sqrt(r d), without damping, and slides at
-Coulomb's limit. `FRICTION` is all that it remembers of a contact between two steps.
+Coulomb's limit. `FRICTION` is its state between two steps.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ import numpy as np
 from contactlaw._jit import kernel
 from contactlaw.walls.facet import Point
 
-FRICTION = np.dtype([("stretch", "f8", 3)])  # of the tangential spring [m]
+FRICTION = np.dtype([("stretch", "f8", 3)])  # elongation of the tangential spring [m]
 
 
 def check_friction(friction: Any) -> None:
-    """Refuse what is no coefficient of friction."""
+    """Refuse a coefficient of friction that is no finite number of 0 or more."""
     if not isinstance(friction, int | float | np.number) or isinstance(friction, bool):
         raise TypeError(f"friction: expected a number, got {friction!r}")
     if not 0.0 <= friction < math.inf:
@@ -30,10 +30,10 @@ def pull(
     row: Any, friction: float, stiffness: float, n: Point, slip: Point, dt: float, force: float,
     extra: float,
 ) -> Point:  # fmt: skip
-    """Tangential force on a bead [N], from the velocity of its surface over the wall's.
+    """Tangential force on a bead [N], from the velocity of its surface relative to the wall.
 
-    `force` and `extra` are the normal force and what a step adds to it; with `extra` alone the
-    contact has just ended. A step dt of 0 asks for the force of the last step again.
+    `force` is the normal force and `extra` its correction in this step; a contact with `extra`
+    alone has just ended. A step dt of 0 gives the force of the last step again.
     """
     stretch = row.stretch
     ended = force == 0.0 and extra != 0.0
@@ -46,7 +46,7 @@ def pull(
         if force > 0.0 and size > most:
             share = most / size
         stretch[0], stretch[1], stretch[2] = share * x, share * y, share * z
-    if ended:  # it slides
+    if ended:  # a contact that has just ended slides
         size = math.sqrt(stretch[0] ** 2 + stretch[1] ** 2 + stretch[2] ** 2)
         stiffness = friction * extra / size if size > 0.0 else 0.0
     elif extra != 0.0:

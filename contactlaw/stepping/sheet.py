@@ -1,7 +1,7 @@
-"""What contacts need of the walls' materials and thicknesses, as rows that kernels read.
+"""Constants of the contacts between bead types and walls, as rows that kernels read.
 
-A *sheet* is one thickness of one material under beads of one type: the spring of a bead of 1 m, the
-limits of the model's validity, and the contact law.
+A *sheet* is a plate of one thickness and material under beads of one type. Its row holds the spring
+of a bead of radius 1 m, the limits of the model's validity, and the contact law.
 """
 
 from __future__ import annotations
@@ -34,13 +34,13 @@ SHEET = np.dtype(
             *Waves._fields,
         )
     ]
-    # of the flags of an impact, beside what a Limits has
+    # the flags of an impact need the thickness and the fields of Limits
     + [("thickness", "f8")]
     + [
         (name, "i8" if "int" in str(kind) else "f8")
         for name, kind in Limits.__annotations__.items()
     ]
-    # largest inelasticity that the model answers; first type with the same row on all sheets
+    # largest inelasticity that the model accepts; first bead type with equal rows on all sheets
     + [("largest", "f8"), ("alike", "i8")]
     # address and size of the law; 0: there is no model for beads of this type
     + [("law", "i8"), ("law_size", "i8")],
@@ -51,7 +51,7 @@ SHEET = np.dtype(
 def sheets(
     walls: Sequence[Wall], models: Mapping[int, ImpactModel], types: int
 ) -> tuple[Rows, list[NDArray[np.intp]], list[ImpactModel]]:
-    """Sheets by type and number, the numbers of each wall's facets, and the models behind them."""
+    """Sheets by bead type and number, the sheet numbers of each wall's facets, and the models."""
     table: dict[Any, int] = {}
     numbers = []
     by_id = {id(model): model for model in models.values()}
@@ -73,9 +73,9 @@ def sheets(
 
 
 def _first_alike(rows: Any, laws: list[list[str]]) -> NDArray[np.intp]:
-    """First type, from 0, with the same numbers and laws on all sheets, for each type.
+    """First bead type, from 0, with equal rows and laws on all sheets, for each bead type.
 
-    Laws are compared by their keys: equal models have the data at addresses of their own.
+    Laws are compared by their keys, because equal models hold their data at different addresses.
     """
     numbers = [name for name in SHEET.names or () if name != "law"]
     said = [(row[numbers].tolist(), keys) for row, keys in zip(rows, laws, strict=True)]
@@ -94,7 +94,7 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     row["law"], row["law_size"] = law.ctypes.data, law.size
     row["thickness"] = thickness
     row["largest"] = math.inf
-    if model.outside == "raise":  # other models are asked for what is beyond their table
+    if model.outside == "raise":  # other models answer beyond their table too
         row["largest"] = model.largest_inelasticity
 
 

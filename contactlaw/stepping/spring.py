@@ -1,19 +1,19 @@
-"""The spring of a contact with a plate: its force, step by step.
+"""Normal force of a sphere on a plate, step by step.
 
-In each step an engine knows how deep the sphere is in the undeformed plate, the overlap; `advance`
-gives the force and keeps five numbers per contact, `State`. The plate's displacement u2 is advanced
-by the trapezoidal rule, implicit in the force F' at the end of the step,
+In each step an engine knows the overlap of the sphere with the undeformed plate; `advance` gives
+the force and keeps five numbers per contact, `State`. The plate's displacement u2 is advanced by
+the trapezoidal rule, implicit in the force F' at the end of the step,
 
     u2' = u2 + alpha dt (F + F')/2,
     d'  = x' - u2' + alpha dt (F' - F)/12 - dt^2 F'/(12 m),    F' = F(d'; dm).
 
-The last two terms of the compression d' take back what the schemes get wrong. The first is the
-error of the trapezoidal rule, alpha dt^2/12 dF/dt. The second is Numerov's: what an engine's Verlet
-scheme moves by the forces F is not the sphere but the sum of its position and dt^2 F/(12 m), to
-fourth order (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.10). Only
-where contact begins and ends inside a step an error of order dt^2.5 is left.
+The last two terms of the compression d' correct errors of the schemes. The first is the error of
+the trapezoidal rule, alpha dt^2/12 dF/dt. The second is Numerov's: what an engine's Verlet scheme
+moves by the forces F is not the sphere but the sum of its position and dt^2 F/(12 m), to fourth
+order (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, III.10). An error of
+order dt^2.5 is left only where contact begins and ends, because that is inside a step.
 
-The largest compression lies between two steps as a rule. Where the bead turns, d'' = -F/m whatever
+The largest compression usually lies between two steps. Where the bead turns, d'' = -F/m whatever
 the plate does, so the parabola through the last two compressions gives it to third order.
 
 Legend, as in `contactlaw.equation`: scaled by d_Y and F_Y inside the kernels,
@@ -22,12 +22,12 @@ Legend, as in `contactlaw.equation`: scaled by d_Y and F_Y inside the kernels,
     dm  largest compression so far     b   (5/12) alpha dt + dt^2/(12 m)
     dr  residual compression           f   contact force
 
-Under a law that takes the plate's mobility to the next order it depends on how long the contact
-will last, and so on the speed of the approach: that of the second step, when it is first known.
+Where a law corrects the mobility of a thin plate (`contactlaw.equation.waves`), it depends on the
+contact time, and so on the approach speed, which is first known in the second step.
 
-An infinite plate recedes for ever under a force that stays, as a bead's weight does. A real one has
-edges: here u2 relaxes within 1e5 contact times, too slow for an impact to notice, and a bead at
-rest sinks by alpha F times that and no further.
+An infinite plate recedes for ever under a lasting force such as a bead's weight. A real one has
+edges: here u2 relaxes within 1e5 contact times, too slowly to change an impact, and a bead at rest
+sinks by alpha F times that time and no further.
 """
 
 from __future__ import annotations
@@ -52,9 +52,9 @@ Array = NDArray[np.float64]
 RELAXATION = 1e5  # [contact times]; u2 then moves by 1e-5 of itself within an impact
 FEWEST_STEPS = 20  # per contact; with fewer the error no longer follows the order of the method
 
-TOP = 1.0 - 1e-12  # of the loading curve: a force above came from there, and not by reloading
+TOP = 1.0 - 1e-12  # a force of at least this share of the loading curve's is on that curve
 MOST_ITERATIONS = 60
-CONVERGED = 1e-8  # last change of q, relative; the secant method squares it, almost
+CONVERGED = 1e-8  # last relative change of q; the error of the secant method is almost its square
 
 
 class State(NamedTuple):
@@ -63,12 +63,12 @@ class State(NamedTuple):
     plate_displacement: Any  # u2 [m]
     largest_compression: Any  # dm [m]
     force: Any  # F [N]
-    mobility: Any = 0.0  # of the plate in this contact [m/(s N)]; 0 where it is the spring's
-    stiffening: Any = 0.0  # of the contact, over the spring's stiffness; 0 likewise
+    mobility: Any = 0.0  # of the plate in this contact [m/(s N)]; 0 where the spring's holds
+    stiffening: Any = 0.0  # stiffness of the contact over the spring's; 0 where the latter holds
 
 
 class Spring(NamedTuple):
-    """What does not change during a contact; floats or arrays."""
+    """Constants of a contact; floats or arrays."""
 
     mass: Any  # [kg]
     stiffness: Any  # K in F = K d^1.5 [N/m^1.5]
@@ -149,7 +149,7 @@ def _balance(law: Array, loading: bool, curve: Curve, b: float, r: float) -> tup
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
     The left side is convex, so the secant method comes down to the root from the right and cannot
-    jump over it; its first slope takes f for Hertz's.
+    jump over it. The first slope is the one that Hertz's force would have.
     """
     if not r > 0.0:
         return 0.0, 0.0
@@ -174,7 +174,7 @@ def _balance(law: Array, loading: bool, curve: Curve, b: float, r: float) -> tup
 
 @kernel(cache=True)
 def advance(law: Array, spring: Spring, state: State, overlap: float, step: float) -> State:
-    """State at the end of a step in which the overlap has become this [m]; the step in [s].
+    """State at the end of a step [s], from the overlap [m] at its end.
 
     The force to apply is the state's. Compression that falls, or grows again below its largest
     value, follows the unloading curve. An overlap of zero or less clears the state.
@@ -190,13 +190,13 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
         own, stiffening = _next_orders(spring, state, overlap, step)
         if stiffening > 0.0:
             mobility, unit = own, unit * stiffening
-    moved = 0.5 * step * mobility / (1.0 + leak)  # of the plate, per force at either end
+    moved = 0.5 * step * mobility / (1.0 + leak)  # motion of the plate per force at either end
     known = state.plate_displacement * (1.0 - leak) / (1.0 + leak) + moved * state.force
-    ahead = moved / 6.0  # of the trapezoidal rule, by its error
+    ahead = moved / 6.0  # the trapezoidal rule's error in it
     b = (moved - ahead + step * step / (12.0 * spring.mass)) * unit / scale
     r = (overlap - known - ahead * state.force) / scale
     dm = state.largest_compression / scale
-    top = state.force >= TOP * forces.loading(law, math.sqrt(dm)) * before  # compression was dm
+    top = state.force >= TOP * forces.loading(law, math.sqrt(dm)) * before  # at compression dm
     loading, q, f = True, 0.0, 0.0
     least = forces.lossless(law)
     if dm > least and not top:
@@ -208,7 +208,7 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
         d = q * q
         fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
         if top and fall > 0.0:
-            turn = 0.5 + (d - dm) / fall  # of the parabola, in steps
+            turn = 0.5 + (d - dm) / fall  # time of the parabola's vertex, in steps
             if turn < 1.0:
                 dm = max(d, dm + 0.5 * fall * max(turn, 0.0) ** 2)
                 if dm > least:
