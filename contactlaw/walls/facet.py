@@ -1,7 +1,7 @@
 """Where a sphere is with respect to a facet: overlap, normal and nearest point.
 
-Legend: r radius, x overlap of the sphere with the facet or place of its centre, n normal from the
-facet to the sphere, s height of the centre over the facet's plane.
+Legend: r radius, x overlap of the sphere with the facet or position of its centre, n normal from
+the facet to the sphere, s height of the centre over the facet's plane.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class Touch(NamedTuple):
     nx: float
     ny: float
     nz: float
-    face: bool  # else the nearest point is on an edge
+    face: bool  # whether the nearest point is on the face; else it is on an edge
 
 
 @kernel
@@ -45,7 +45,7 @@ def to_frame(frame: Any, x: Point) -> Point:
 
 @kernel
 def turned(frame: Any, t: Touch) -> Touch:
-    """Touch whose normal is that in space."""
+    """Touch with its normal turned from a frame's own coordinates into space."""
     if frame.moves == 0:
         return t
     turn = frame.turn
@@ -61,7 +61,7 @@ def turned(frame: Any, t: Touch) -> Touch:
 
 @kernel
 def velocity(frame: Any, rate: Any, x: Point) -> Point:
-    """Velocity of a frame's material at a point of space, `rate` being that of its shift."""
+    """Velocity of a frame's material at a point of space; `rate` is the velocity of its shift."""
     if frame.moves == 0:
         return 0.0, 0.0, 0.0
     hub, shift, axis, spin = frame.hub, frame.shift, frame.axis, frame.spin
@@ -75,14 +75,14 @@ def velocity(frame: Any, rate: Any, x: Point) -> Point:
 
 @kernel
 def _away(r: float, s: float, dx: float, dy: float, dz: float) -> Touch:
-    """Touch of a point on an edge, from there to the bead's centre."""
+    """Touch on an edge; dx, dy and dz lead from the nearest point to the sphere's centre."""
     distance = math.sqrt(dx * dx + dy * dy + dz * dz)
     return Touch(r - distance, s, dx / distance, dy / distance, dz / distance, False)
 
 
 @kernel
 def _over(facet: Any, r: float, s: float) -> Touch:
-    """Touch of the face itself."""
+    """Touch on the face."""
     sign, n = math.copysign(1.0, s), facet.normal
     return Touch(r - abs(s), s, sign * n[0], sign * n[1], sign * n[2], True)
 
@@ -170,7 +170,7 @@ def nearest(touch: Touch, x: Point, r: float) -> Point:
 
 @kernel
 def cell_of(frame: Any, k: int, coordinate: float) -> int:
-    """Cell in direction k."""
+    """Index of the cell of a coordinate in direction k."""
     return int(math.floor((coordinate - frame.origin[k]) * frame.per_length))
 
 

@@ -22,20 +22,20 @@ Wall = Plate | Mesh
 
 RECTANGLE, TRIANGLE = 4, 3
 FACET = np.dtype(
-    # of a rectangle unit vectors, of a triangle its edges
+    # a and b: along a rectangle's edges as unit vectors, or a triangle's edges themselves [m]
     [("corner", "f8", 3), ("normal", "f8", 3), ("a", "f8", 3), ("b", "f8", 3)]
     + [("length_a", "f8"), ("length_b", "f8"), ("between", "f8")]  # between: a . b
     + [(name, "i8") for name in ("kind", "sheet", "frame", "wall", "triangle")],
     align=True,
 )
 FRAME = np.dtype(
-    [*MOTION, *POSE, *GRID, ("fastest", "f8")],  # of any point of it [m/s]
+    [*MOTION, *POSE, *GRID, ("fastest", "f8")],  # upper bound of the speed of its points [m/s]
     align=True,
 )
 
 
 class Framed(NamedTuple):
-    """Walls in the kernels' words, and the objects whose memory the frames point to."""
+    """Walls as rows for the kernels, and the objects whose memory the frames point to."""
 
     facets: Rows
     frames: Rows
@@ -45,8 +45,8 @@ class Framed(NamedTuple):
 def framed(walls: Sequence[Wall], sheets: Sequence[Any], largest: float) -> Framed:
     """Facets and frames of walls.
 
-    `sheets` has for each wall the number, or those of its triangles, that its facets are given;
-    `largest` is the radius of the largest sphere [m], 0 where that is not known yet.
+    `sheets` has for each wall the number of its sheet, or one number for each of its triangles;
+    `largest` is the radius of the largest sphere [m], 0 if that is not known yet.
     """
     groups: dict[Any, list[Rows]] = {}
     for number, (wall, sheet) in enumerate(zip(walls, sheets, strict=True)):
@@ -94,7 +94,7 @@ def _triangles(mesh: Mesh) -> Rows:
 
 
 def _corners(facets: Rows) -> NDArray[np.float64]:
-    """Corners of facets, shape (n, 4, 3) [m]; a triangle has one of them twice."""
+    """Corners of facets, shape (n, 4, 3) [m]; of a triangle the third corner is there twice."""
     box = facets["kind"] == RECTANGLE
     a = facets["a"] * np.where(box, facets["length_a"], 1.0)[:, None]
     b = facets["b"] * np.where(box, facets["length_b"], 1.0)[:, None]
@@ -103,7 +103,7 @@ def _corners(facets: Rows) -> NDArray[np.float64]:
 
 
 def _fastest(motion: Any, corners: NDArray[np.float64]) -> float:
-    """Bound of the speed of any point of a frame [m/s]."""
+    """Upper bound of the speed of a frame's points [m/s]."""
     row = np.zeros(1, FRAME)[0]
     motion.fill(row)
     arm = np.linalg.norm(corners - row["hub"], axis=2).max()

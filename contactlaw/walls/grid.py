@@ -1,7 +1,7 @@
-"""A grid over the facets of a frame: those near a bead, without looking at all of them.
+"""A grid over the facets of a frame, by which those near a bead are found.
 
-A cell lists the facets that a bead of at most a certain radius may touch whose centre is in the
-cell, so that one cell is enough for it; for a larger bead the cells around are read too.
+A cell lists all facets that a bead may touch whose centre is in the cell and whose radius is at
+most the grid's reach. For a larger bead the cells around are read too.
 """
 
 from __future__ import annotations
@@ -19,14 +19,14 @@ Floats = NDArray[np.float64]
 GRID: list[tuple[Any, ...]] = [
     ("origin", "f8", 3), ("per_length", "f8"), ("cells", "i8", 3),
     ("starts", "i8"), ("entries", "i8"), ("entry_count", "i8"),  # addresses of the lists
-    ("busy", "i8"), ("cell_count", "i8"),  # a bit per cell, set if its list is not empty
-    ("reach", "f8"), ("low", "f8", 3), ("high", "f8", 3),  # of the facets themselves
+    ("busy", "i8"), ("cell_count", "i8"),  # address of a bit per cell, set if its list has facets
+    ("reach", "f8"), ("low", "f8", 3), ("high", "f8", 3),  # low, high: box around the facets
 ]  # fmt: skip
 
-_MOST = 1 << 20  # cells; their starts are then 4 MB
-_FEW = 27  # cells of a block that is not halved: as many are around a facet smaller than a cell
-_DEEPEST = 64  # blocks at once; halving the largest grid, of 2^21 cells, takes some 20
-MARGIN = 1.1  # a bead that parts is still in the cell's list in the next step
+_MOST = 1 << 20  # cells that a grid is made for; their starts take 8 MB
+_FEW = 27  # blocks of so many cells are not halved: a facet smaller than a cell has 27 around it
+_DEEPEST = 64  # room for blocks; halving the largest grid, of 2^21 cells, takes some 20
+MARGIN = 1.1  # so that a facet is still in the list in the step after a bead has left it
 
 
 class Grid:
@@ -35,9 +35,9 @@ class Grid:
     Parameters
     ----------
     corners : ndarray, shape (n, 4, 3)
-        Corners of the facets [m]; a triangle has its last but one twice or lies in their hull.
+        Corners of the facets in order [m]; of a triangle the third corner is there twice.
     first : int
-        Number of the first of them.
+        Number of the first facet.
     largest : float
         Largest radius of beads that find all they touch in one cell [m]; 0: not known yet.
     """
@@ -50,7 +50,7 @@ class Grid:
         size = self.high + self.reach - low
         cell = max(self.reach, float((np.prod(size) / _MOST) ** (1.0 / 3.0)))
         cells = np.maximum(np.ceil(size / cell), 1.0).astype(np.int64)
-        while np.prod(cells.astype(float)) > 2 * _MOST:  # a slab: one cell in some direction
+        while np.prod(cells.astype(float)) > 2 * _MOST:  # as of a slab less than a cell thick
             cell *= 1.1
             cells = np.maximum(np.ceil(size / cell), 1.0).astype(np.int64)
         self.origin, self.per_length, self.cells = low, 1.0 / cell, cells
@@ -67,7 +67,7 @@ class Grid:
         self.entries += first
 
     def fill(self, row: Any) -> None:
-        """Write it into a frame of the kernel's memory."""
+        """Write the grid into a row of FRAME."""
         row["origin"], row["per_length"], row["cells"] = self.origin, self.per_length, self.cells
         row["starts"], row["entries"] = self.starts.ctypes.data, self.entries.ctypes.data
         row["entry_count"], row["reach"] = self.entries.size, self.reach
@@ -91,7 +91,7 @@ def _segment(p: Any, a: Any, b: Any) -> float:
 
 @kernel
 def _near(p: Any, corners: Any, most: float) -> bool:
-    """Whether a point is at most so far from a facet: flat, convex, of four corners."""
+    """Whether a point is no farther than `most` from a flat, convex facet of four corners."""
     a, b, d = corners[0], corners[1], corners[3]
     for n in range(4):
         if _segment(p, corners[n], corners[(n + 1) % 4]) <= most * most:
@@ -129,7 +129,7 @@ def _parted(block: Any, other: Any) -> None:
 def _list(
     corners: Floats, low: Floats, cell: float, cells: Any, reach: float, ends: Any, entries: Any
 ) -> None:
-    """Count the facets of each cell (one place on), or, if there is room for them, write them.
+    """Count the facets of each cell in `ends`, one index on, or write them if `entries` has room.
 
     The box around a long thin facet that lies across the axes holds nearly all cells, and the facet
     is near few of them. So a block of many cells is halved, and left out if the facet is not near.
@@ -137,7 +137,7 @@ def _list(
     writing = entries.size > 0
     half = 0.5 * math.sqrt(3.0) * cell
     middle = np.empty(3)
-    blocks = np.empty((_DEEPEST, 3, 2), np.int64)  # yet to be looked at: their first and last cell
+    blocks = np.empty((_DEEPEST, 3, 2), np.int64)  # blocks still to do: first and last cell of each
     for n in range(len(corners)):
         for k in range(3):
             small, large = math.inf, -math.inf

@@ -1,4 +1,4 @@
-"""Arrays by their addresses, which a row of numbers can hold and an array of arrays cannot."""
+"""Arrays by address: a row of numbers cannot hold arrays, but it can hold their addresses."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _array_at(typing_context: Any, address: Any, shape: Any, kind: Any) -> Any:
 
 
 array_at: Any = intrinsic(_array_at)
-"""Array at an address, of a shape and a kind.
+"""Array at an address, from its shape and the type of its elements.
 
-Numba's carray would do, but is two functions to be compiled for each kind and type of shape.
+Numba's carray does the same, but compiles two functions for each type of elements and of shape.
 """

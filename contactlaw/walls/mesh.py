@@ -20,46 +20,46 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Vector = Sequence[float]
 
-_FLAT = 1e-10  # height of a triangle over its longest side; below, it has no normal to speak of
+_FLAT = 1e-10  # least height of a triangle over its longest side; a flatter one has no sure normal
 
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
     """A wall of triangles, which beads touch from either side.
 
-    It need not be closed, nor its triangles wound in one sense. Faces that meet at less than 20
-    degrees, as those of a tessellated cylinder, are one smooth surface to a bead.
+    The wall may be open, and its triangles wound in either sense. Beads feel faces that meet at
+    less than 20 degrees, as those of a tessellated cylinder, as one smooth surface.
 
     Parameters
     ----------
     vertices : array_like, shape (n, 3)
         Corners of the triangles [m].
     triangles : array_like of int, shape (m, 3)
-        For each triangle the numbers of its three corners.
+        For each triangle the numbers of its three corners, from 0.
     thickness : float or array_like, shape (m,)
-        Thickness of the sheet for the model, of all triangles or of each [m]; ``inf`` is the
-        half-space. It is no geometry.
+        Plate thickness in the model, of all triangles or of each [m]; ``inf`` is the half-space.
+        The geometry has no thickness.
     model : ImpactModel or dict of int to ImpactModel, optional
-        For a wall of another material than that of the attached model; by atom type.
+        For a wall of another material than the attached model's; a dict has one by atom type.
     motion : Translation, Rotation, Vibration or Tabulated, optional
-        How it moves; it stands still otherwise.
+        How the wall moves; without it, the wall stands still.
 
     Attributes
     ----------
     dropped : int
-        Triangles without area, or there already, that have been left out; a warning tells of them.
+        Number of triangles left out, with a warning: those without area, and duplicates.
     kept : ndarray of int
-        Number that each triangle left had in what was given.
+        For each triangle of the mesh, its number in the `triangles` that were given.
 
     Raises
     ------
-    ValueError
+    TypeError, ValueError
         If the arrays do not fit together, a coordinate is not finite or beyond 1e6 m, no triangle
-        has an area, or a thickness is no positive number.
+        has an area, a thickness is no positive number, or the model or motion is of no such type.
 
     Examples
     --------
-    A square of two sheets, a thin one and a thick one:
+    A square that is thin in one half and thick in the other:
 
     >>> corners = [[0, 0, 0], [0.1, 0, 0], [0.1, 0.1, 0], [0, 0.1, 0]]
     >>> mesh = Mesh(corners, [[0, 1, 2], [0, 2, 3]], thickness=[0.5e-3, 2e-3])
@@ -76,7 +76,7 @@ class Mesh:
     kept: Any = field(default=None, init=False)
 
     def __post_init__(self) -> None:
-        """Refuse what is no mesh, and drop triangles that are none."""
+        """Check the arguments, and drop triangles without area and duplicates."""
         vertices = _vertices(self.vertices)
         triangles = _triangles(self.triangles, len(vertices))
         thickness = _thickness(self.thickness, len(triangles))
@@ -88,8 +88,7 @@ class Mesh:
             raise ValueError(f"triangles: none of {len(triangles)} has an area [m2]")
         if lost:
             warnings.warn(
-                f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or there "
-                "already",
+                f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or duplicates",
                 stacklevel=3,
             )
         for name, value in (
@@ -120,23 +119,23 @@ class Mesh:
         model: Models | None = None,
         motion: Motion | None = None,
     ) -> Self:
-        """Read a mesh from a file: STL (binary or text), PLY, OBJ or what else trimesh reads.
+        """Read a mesh from a file: STL (binary or text), PLY, OBJ or another that trimesh reads.
 
         Parameters
         ----------
         path : str or Path
             The file.
         thickness : float or array_like
-            As of `Mesh`; for each triangle in the order of the file.
+            As in `Mesh`; an array has the triangles in the order of the file.
         scale : float, optional
             Length of the file's unit [m]: 1e-3 for a drawing in millimetres.
         model, motion
-            As of `Mesh`.
+            As in `Mesh`.
 
         Raises
         ------
-        ImportError, FileNotFoundError, ValueError
-            No trimesh; no such file; no mesh in it, or as `Mesh`.
+        ImportError, FileNotFoundError, TypeError, ValueError
+            If trimesh or the file is missing, the file holds no mesh, or `Mesh` refuses it.
 
         Examples
         --------
@@ -171,7 +170,7 @@ class Mesh:
             vertices, triangles = np.asarray(found.vertices), np.asarray(found.faces)
             if not len(triangles):
                 raise ValueError("no triangles")
-        except Exception as error:  # each of its readers raises what it will
+        except Exception as error:  # trimesh's readers raise errors of many types
             raise ValueError(
                 f"path: {str(path)!r} is no mesh that trimesh reads: {error}"
             ) from error
@@ -190,21 +189,21 @@ class Mesh:
         model: Models | None = None,
         motion: Motion | None = None,
     ) -> Self:
-        """Wall of a cone, or a part of one: a hopper's, open at both ends.
+        """Wall of a cone or a truncated cone, open at both ends, as of a hopper.
 
         Parameters
         ----------
         start, end : sequence of 3 floats
-            Ends of its axis [m].
+            Ends of the axis [m].
         start_radius, end_radius : float
-            Radii there [m]; one of them may be 0. The corners of the facets are on the cone.
+            Radii at the ends [m]; one may be 0. The corners of the facets are on the cone.
         thickness : float
-            Of the sheet [m].
+            Plate thickness in the model [m].
         facets : int, optional
-            Facets around, at least 3; fewer than 18 meet at more than 20 degrees and are no smooth
-            surface to a bead.
+            Number of facets around the axis, at least 3. Fewer than 18 meet at more than 20
+            degrees, and beads do not feel them as a smooth surface.
         model, motion
-            As of `Mesh`.
+            As in `Mesh`.
 
         Examples
         --------
@@ -241,7 +240,7 @@ class Mesh:
         model: Models | None = None,
         motion: Motion | None = None,
     ) -> Self:
-        """Wall of a cylinder, open at both ends; as `cone` with one radius [m].
+        """Wall of a cylinder, open at both ends: a `cone` with the same radius [m] at both.
 
         Examples
         --------
@@ -270,11 +269,11 @@ class Mesh:
         Parameters
         ----------
         centre, normal : sequence of 3 floats
-            Its centre [m], and a direction across it.
+            Centre of the disc [m], and a vector normal to it of any length but zero.
         radius, thickness : float
-            Of the disc, and of its sheet [m].
+            Radius of the disc, and plate thickness in the model [m].
         facets, model, motion
-            As of `cone`.
+            As in `cone`.
 
         Examples
         --------
@@ -352,13 +351,13 @@ def _thickness(given: Any, triangles: int) -> Floats:
 
 
 def _sound(vertices: Floats, triangles: Integers) -> Integers:
-    """Numbers of the triangles that have an area, each place once."""
+    """Numbers of the triangles that have an area, without duplicates."""
     corners = vertices[triangles]
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
     twice = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
                            axis=1)  # fmt: skip
     some = np.flatnonzero(twice > _FLAT * sides.max(axis=1) ** 2)
-    # the same three places, in whatever order and under whatever numbers
+    # Duplicates have the same three corners, in any order and under any vertex numbers.
     _, number_of = np.unique(vertices, axis=0, return_inverse=True)
     key = np.sort(number_of.ravel()[triangles[some]], axis=1)
     _, first = np.unique(key, axis=0, return_index=True)

@@ -1,4 +1,4 @@
-"""How walls move: rigid motions, told as data, and where they put a wall at a time."""
+"""Rigid motions of walls, given as data, and the position of a wall at a time."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from contactlaw.walls.memory import array_at
 Vector = Sequence[float]
 Floats = NDArray[np.float64]
 
-FARTHEST = 1e6  # [m]: beyond it a double no longer knows the thickness of a hair
+FARTHEST = 1e6  # largest coordinate [m]; a double resolves 1e-10 m there, less than an overlap
 
-# A motion as the kernel reads it: the sum of all kinds, of which each fills its own part.
+# A motion as the kernel reads it: the sum of all kinds of motion, of which each fills its own part.
 MOTION: list[tuple[Any, ...]] = [
     ("moves", "i8"),
     ("velocity", "f8", 3),  # of a translation
@@ -30,7 +30,7 @@ MOTION: list[tuple[Any, ...]] = [
 
 
 def vector(name: str, value: Any, unit: str = "m") -> Floats:
-    """Three finite numbers that are no nonsense, or an error that names them."""
+    """Three numbers of at most FARTHEST as an array, or an error that names the argument."""
     try:
         found = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
@@ -44,17 +44,17 @@ def vector(name: str, value: Any, unit: str = "m") -> Floats:
 
 @dataclass(frozen=True)
 class Translation:
-    """A wall that moves at a constant velocity: a belt without an end, a plate in a lift.
+    """A wall that moves at a constant velocity: an endless belt, a plate in a lift.
 
     Parameters
     ----------
     velocity : sequence of 3 floats
-        Its velocity [m/s].
+        Velocity of the wall [m/s].
 
     Raises
     ------
     ValueError
-        If that is no velocity.
+        If the velocity is not three finite numbers.
 
     Examples
     --------
@@ -89,7 +89,7 @@ class Rotation:
     Raises
     ------
     ValueError
-        If these are no axis, no finite speed or no point.
+        If the axis has no direction, or the speed or the centre is not finite.
 
     Examples
     --------
@@ -120,7 +120,7 @@ class Rotation:
 
 @dataclass(frozen=True)
 class Vibration:
-    """A wall that swings harmonically about its place: a sieve, a feeder.
+    """A wall that vibrates harmonically about its given position: a sieve, a feeder.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class Vibration:
     Raises
     ------
     ValueError
-        If these are no displacement, no positive frequency or no finite phase.
+        If the amplitude or the phase is not finite, or the frequency not positive and finite.
 
     Examples
     --------
@@ -171,12 +171,12 @@ class Tabulated:
         Ascending times [s], at least two. Between them the wall moves at a constant velocity;
         before the first and after the last it stands still.
     displacements : array_like, shape (n, 3)
-        Displacement from the given place at these times [m].
+        Displacement of the wall from its given position at these times [m].
 
     Raises
     ------
     ValueError
-        If the two do not fit together or hold impossible values.
+        If the shapes do not fit together, a value is not finite, or the times do not ascend.
 
     Examples
     --------
@@ -208,7 +208,7 @@ class Tabulated:
         if not (abs(places) <= FARTHEST).all():
             raise ValueError(f"displacements: must be finite [m], none beyond {FARTHEST:g}")
         for name, value in (("times", times), ("displacements", places)):
-            value.setflags(write=False)  # a simulation reads them in every step
+            value.setflags(write=False)  # because a simulation reads them in every step
             object.__setattr__(self, name, value)
 
     def fill(self, row: Any) -> None:
@@ -242,12 +242,12 @@ def check_motion(motion: Any) -> None:
         )
 
 
-# Where a motion has put its wall: a point p of it is at hub + shift + turn (p - hub) then.
+# Position of a moving wall: its point p is at hub + shift + turn (p - hub).
 POSE: list[tuple[Any, ...]] = [
     ("turn", "f8", 9),  # row by row
     ("shift", "f8", 3),
-    # mean velocity of the shift over the step before, and over that and the next [m/s]: with
-    # Verlet's velocities, which are those in mid-step, overlaps and energies so add up
+    # Mean velocity of the shift over the last step, and over the last and the next one [m/s]. They
+    # go with Verlet's velocities, which are those at mid-step, so that energies add up.
     ("half_rate", "f8", 3),
     ("rate", "f8", 3),
 ]
@@ -255,7 +255,7 @@ POSE: list[tuple[Any, ...]] = [
 
 @kernel
 def _interval(times: Any, time: float) -> int:
-    """Interval of a table that a time is in; -1 before it, the last number after it."""
+    """Index of the table's last time that has passed; -1 before the first."""
     low, high = -1, len(times)
     while high - low > 1:
         middle = (low + high) // 2
@@ -268,7 +268,7 @@ def _interval(times: Any, time: float) -> int:
 
 @kernel
 def _swing(row: Any, time: float) -> tuple[float, float, float]:
-    """Displacement of a vibration and a table."""
+    """Displacement of a wall by its vibration and its table at a time [m]."""
     out, a = math.sin(row.frequency * time + row.phase), row.amplitude
     x, y, z = a[0] * out, a[1] * out, a[2] * out
     if row.count == 0:
@@ -290,7 +290,7 @@ def _swing(row: Any, time: float) -> tuple[float, float, float]:
 
 @kernel(entry=True)
 def place(row: Any, time: float, dt: float) -> None:
-    """Put a wall to where it is at a time, the end of a step of length dt [s]."""
+    """Set a wall's position and velocity at a time, the end of a step of length dt [s]."""
     last, here, then = _swing(row, time - dt), _swing(row, time), _swing(row, time + dt)
     for k in range(3):
         row.shift[k] = row.velocity[k] * time + here[k]
@@ -307,7 +307,7 @@ def place(row: Any, time: float, dt: float) -> None:
 
 @kernel(entry=True)
 def move(frames: Any, time: float, dt: float) -> None:
-    """Put all walls to where they are at a time, the end of a step of length dt [s]."""
+    """Move all walls to their positions at a time, the end of a step of length dt [s]."""
     for frame in frames:
         if frame.moves != 0:
             place(frame, time, dt)

@@ -15,7 +15,7 @@ from contactlaw.walls.motion import Motion, check_motion, vector
 Vector = Sequence[float]
 Models = ImpactModel | Mapping[int, ImpactModel]  # for all beads, or by their atom type
 
-_SQUARE = 1e-9  # cosine of two edges that count as perpendicular: rounding of a rotated pair
+_SQUARE = 1e-9  # largest cosine between perpendicular edges; a rotated pair has rounding errors
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,21 +25,22 @@ class Plate:
     Parameters
     ----------
     corner : sequence of 3 floats
-        One of its corners [m].
+        One of the plate's corners [m].
     edge_a, edge_b : sequence of 3 floats
-        From there to the two neighbouring corners [m]; perpendicular.
+        From that corner to its two neighbours [m]; perpendicular to each other.
     thickness : float
-        Thickness for the model [m]; ``inf`` is the half-space. It is no geometry: beads touch the
-        rectangle itself, from either side.
+        Thickness in the model [m]; ``inf`` is the half-space. The geometry has none: beads touch
+        the rectangle itself, from either side.
     model : ImpactModel or dict of int to ImpactModel, optional
-        For a plate of another material than that of the attached model; by atom type.
+        For a plate of another material than the attached model's; a dict has one by atom type.
     motion : Translation, Rotation, Vibration or Tabulated, optional
-        How it moves; it stands still otherwise.
+        How the plate moves; without it, the plate stands still.
 
     Raises
     ------
-    ValueError
-        If the three vectors span no rectangle, or the thickness is no positive number.
+    TypeError, ValueError
+        If the three vectors span no rectangle, the thickness is no positive number, or the model
+        or motion is of no such type.
 
     Examples
     --------
@@ -55,7 +56,7 @@ class Plate:
     motion: Motion | None = None
 
     def __post_init__(self) -> None:
-        """Refuse what is no plate."""
+        """Check the arguments."""
         vector("corner", self.corner)
         a, b = vector("edge_a", self.edge_a), vector("edge_b", self.edge_b)
         area = float(np.linalg.norm(a) * np.linalg.norm(b))
@@ -79,7 +80,7 @@ def by_type(models: Models | None, types: int) -> dict[int, ImpactModel]:
 
 
 def check_models(models: Any) -> None:
-    """Refuse what is no model, and no model for each of some atom types."""
+    """Refuse anything but None, a model, or a dict of models by atom type."""
     if models is None or isinstance(models, ImpactModel):
         return
     if not isinstance(models, Mapping):

@@ -1,23 +1,23 @@
-"""Which of the facets that a bead overlaps it is in contact with: one, where they are one surface.
+"""Contacts of a bead that overlaps several facets: one contact for each surface that they form.
 
-The force on an elastic bead must have a potential, whatever facets come into its reach, meet and
-leave it again. Let a ball around the bead's centre grow up to the bead: it touches the walls in
-patches, which become more, and which grow together. Each patch counts as far as it is one of its
-own: its contact, from the place where the ball first touches it, less the contact of an overlap as
-at the *pass* where it grows together with one that was there before. The potential is the sum over
-the patches,
+The force on an elastic bead must have a potential, whatever facets come within its reach, meet and
+leave it again. Let a ball around the bead's centre grow to the size of the bead: it cuts the walls
+in patches, which appear one after the other and merge. A patch i first appears at the overlap x_i,
+and merges with an older patch at the *pass*, whose overlap is x_pass,i. It counts with the energy
+of a contact of overlap x_i, less that of overlap x_pass,i. The potential is the sum over the
+patches,
 
     E = sum E(x_i) - E(x_pass,i),
 
-continuous in the bead's place, for patches begin, end and take over from each other where x_i is
-0 or that of the pass (in topology: persistent homology of order 0, and its stability). On a plane,
-an edge, a corner, on all that bends away from the bead, one patch is left, however it is
-tessellated. In a groove there are two, which share nothing if its bottom is out of reach.
+continuous in the bead's position, because patches begin, end and replace each other where x_i is 0
+or x_pass,i (in topology: persistent homology of order 0, and its stability). On a plane, an edge, a
+corner and all that bends away from the bead, one patch is left, however it is tessellated. In a
+groove there are two, which share nothing if the bottom of the groove is out of reach.
 
-Where the pass lies follows from the two nearest points: where the planes through them that touch
-the ball meet. It is drawn nearer by as much as to leave no pass between facets that lean towards
-each other by less than 20 degrees: a tessellated cylinder is one surface from its inside, too,
-and the contact is with its deepest facet.
+The pass lies where the tangent planes of the ball at the two nearest points meet. Its distance is
+reduced so far that there is no pass between facets that lean towards each other by less than 20
+degrees: a tessellated cylinder is one surface from the inside, too, and the contact is with its
+deepest facet.
 """
 
 from __future__ import annotations
@@ -41,21 +41,21 @@ from contactlaw.walls.facet import (
 )
 from contactlaw.walls.memory import array_at
 
-_SEAM = 1e-4  # [r] between facets that are one surface to a bead
-_TIE = 1e-10  # [r] of overlap: rounding
-_SMOOTH = math.cos(math.radians(20.0))  # facets of one surface
-# Share of the way from the centre to a pass that counts: so that faces which lean towards each
-# other by 20 degrees have none between them.
+_SEAM = 1e-4  # [r] distance from a facet within which a point counts as on it
+_TIE = 1e-10  # [r] difference of overlaps that is rounding
+_SMOOTH = math.cos(math.radians(20.0))  # least cosine between facets of one smooth surface
+# Factor on the distance of a pass from the bead's centre, so that there is no pass between faces
+# that lean towards each other by 20 degrees.
 _LOWER = math.cos(math.radians(10.0))
-_NUDGE = 1e-6  # [r] by which a slope is taken
-# Facets that a bead may overlap before shallow ones are left out, and room for one more. Where
-# facets are that small, a deeper one is beside each of these, and in contact in its place.
+_NUDGE = 1e-6  # [r] step of the finite differences in `slope`
+# A bead's list holds so many facets, and one more while the shallowest is sought, to be left out.
+# Where facets are that small, a deeper one beside it is in contact in its place.
 _MOST = 64
 ROOM = _MOST + 1
 
-# A facet that a bead overlaps. `surface` is the place in the list of what it is the surface of
-# together with: its own, if it is in contact. Then `shared` is the overlap of the pass, 0 without
-# any, and the pass lies between the places `one` and `other`. The search needs the others.
+# A facet that a bead overlaps. `surface` is the list position of the facet with which the bead is
+# in contact on this surface. If that is the facet itself, `shared` is the overlap of its pass, 0 if
+# it has none, and the pass lies between list positions `one` and `other`. The search uses the rest.
 OVERLAP = np.dtype(
     [(name, "i8") for name in ("facet", "face", "surface", "one", "other", "done", "near", "far")]
     + [(name, "f8") for name in ("x", "s", "nx", "ny", "nz", "shared", "level")],
@@ -65,7 +65,7 @@ OVERLAP = np.dtype(
 
 @kernel
 def touch_of(row: Any) -> Touch:
-    """Read a row of the list."""
+    """Touch of a row of the list."""
     return Touch(row.x, row.s, row.nx, row.ny, row.nz, row.face != 0)
 
 
@@ -99,7 +99,7 @@ def _spare(found: Any, count: int) -> int:
 
 @kernel
 def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
-    """Put a facet into the list, once; the list is in the order of the facets' numbers."""
+    """Put a facet into the list, which has each facet once and is sorted by their numbers."""
     at = count
     while at > 0 and found[at - 1].facet >= facet:
         at -= 1
@@ -119,7 +119,7 @@ def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
 
 @kernel
 def box(frames: Any) -> tuple[float, float, float, float, float, float]:
-    """Box around all walls, where they are now: three lowest coordinates, three highest."""
+    """Box around all walls at their present positions: three lowest coordinates, three highest."""
     low, high = np.full(3, math.inf), np.full(3, -math.inf)
     for frame in frames:
         small, large, turn = frame.low, frame.high, frame.turn
@@ -138,7 +138,7 @@ def box(frames: Any) -> tuple[float, float, float, float, float, float]:
 
 @kernel
 def near(frames: Any, x: Point, r: float) -> bool:
-    """Whether any facet may be near a bead: a quick look, for most are near none."""
+    """Whether a bead may be near any facet: a quick test, because most beads are not."""
     for f in range(len(frames)):
         frame = frames[f]
         p = to_frame(frame, x)
@@ -161,7 +161,7 @@ def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any) -> int:
     for f in range(len(frames)):
         frame = frames[f]
         p, cells = to_frame(frame, x), frame.cells
-        more = max(r - frame.reach, 0.0)  # of a bead too large for one cell
+        more = max(r - frame.reach, 0.0)  # a bead too large for one cell reads those around too
         i0, i1 = cell_of(frame, 0, p[0] - more), cell_of(frame, 0, p[0] + more)
         j0, j1 = cell_of(frame, 1, p[1] - more), cell_of(frame, 1, p[1] + more)
         k0, k1 = cell_of(frame, 2, p[2] - more), cell_of(frame, 2, p[2] + more)
@@ -182,16 +182,17 @@ def overlaps(frames: Any, facets: Any, x: Point, r: float, found: Any) -> int:
 
 @kernel
 def _rank(row: Any, r: float) -> tuple[int, int, int]:
-    """Sort facets: the deepest first, of those at one point a face before an edge."""
+    """Sort key of facets: the deepest first, and at equal overlap a face before an edge."""
     return math.floor(-row.x / (_TIE * r)), 1 - row.face, row.facet
 
 
 @kernel
 def _farthest(a: Touch, b: Touch, r: float) -> float:
-    """How far from the centre the way leads from one nearest point to the other.
+    """Largest distance from the centre on the path from one nearest point to the other [m].
 
-    It goes along the planes that touch the ball up to there, over the line where they meet; but
-    straight if it comes nearer all the time. Two right angles stand over the chord: Thales.
+    The path follows the tangent planes of the ball at the two points to the line where they meet,
+    and is straight where that comes nearer to the centre all the time. Each point sees the centre
+    and the line at a right angle, so all four are on one circle (Thales).
     """
     far, near = r - min(a.x, b.x), r - max(a.x, b.x)
     square = (a.nx - b.nx) ** 2 + (a.ny - b.ny) ** 2 + (a.nz - b.nz) ** 2
@@ -205,13 +206,13 @@ def _farthest(a: Touch, b: Touch, r: float) -> float:
 
 @kernel
 def _pass(a: Touch, b: Touch, r: float) -> float:
-    """Overlap of the pass between two facets' nearest points; that of the shallower at most."""
+    """Overlap of the pass between two facets' nearest points, at most that of the shallower one."""
     return min(a.x, b.x, r - _LOWER * _farthest(a, b, r))
 
 
 @kernel
 def slope(frames: Any, facets: Any, x: Point, r: float, one: Any, other: Any) -> Point:
-    """Direction in which the overlap of a pass between two facets falls, times its rate."""
+    """Negative gradient of the overlap at a pass between two facets with the bead's position."""
     a, b = touch_of(one), touch_of(other)
     low = a if a.x < b.x else b
     if _pass(a, b, r) == low.x:
@@ -250,7 +251,7 @@ def on_it(frames: Any, facets: Any, row: Any, point: Point, r: float) -> bool:
 
 @kernel
 def _search(found: Any, count: int, start: int, r: float) -> None:
-    """Find the highest pass from a facet to a deeper one: the widest path, by Dijkstra's search."""
+    """Find the pass of largest overlap to a deeper facet: the widest path, by Dijkstra's search."""
     for n in range(count):
         found[n].level, found[n].done = 0.0, 0
     mine, row, at = _rank(found[start], r), found[start], start
@@ -283,7 +284,7 @@ def _search(found: Any, count: int, start: int, r: float) -> None:
 
 @kernel
 def join(r: float, found: Any, count: int) -> bool:
-    """Give facets that form one surface the same surface; whether two contacts share any force."""
+    """Give facets that form one surface the same `surface`; return whether contacts share force."""
     first, single, sharing = 0, True, False
     if count == 1:
         found[0].surface, found[0].shared = 0, 0.0
