@@ -1,6 +1,6 @@
-"""Adapters: one folder per engine, each a translation of the engine's collision and back.
+"""Adapters to simulation engines, one folder per engine.
 
-`record` has the impacts that they all write, `needs` what they ask of a model.
+`record` defines the impacts that all adapters write, `needs` what they require of a model.
 
 An engine is imported when its adapter is used, never by ``import contactlaw``.
 """

@@ -1,4 +1,4 @@
-"""What an engine asks of a model; `contactlaw.ImpactModel` answers all of it."""
+"""What an adapter requires of a model; `contactlaw.ImpactModel` has all of it."""
 
 from __future__ import annotations
 
@@ -16,26 +16,26 @@ Curve = Callable[[float], float]  # COR [-] by normal speed of approach [m/s]
 
 
 class RestitutionModel(Protocol):
-    """The least: the COR of a bead on a plate."""
+    """A model of the COR of beads on plates, the least that an adapter needs."""
 
     def curve(self, radius: float, thickness: float, /) -> Curve:
-        """COR of beads of a radius [m] on a plate of a thickness [m], ``inf``: a half-space."""
+        """COR by speed, by radius [m] and plate thickness [m]; ``inf`` is the half-space."""
         ...
 
 
 class BeadModel(RestitutionModel, Protocol):
-    """Where beads meet: their COR, too.
+    """A model that knows the COR of two beads, too.
 
-    Where beads of two materials meet, an engine gives the other bead's as one more argument.
+    For beads of two materials, an adapter passes that of the other bead as one more argument.
     """
 
     def sphere_sphere_curve(self, radius: float, other_radius: float, /) -> Curve:
-        """COR of two beads of these radii [m]."""
+        """COR by speed of two beads of these radii [m]."""
         ...
 
 
 class ReboundModel(BeadModel, Protocol):
-    """For the whole impact record: what else is to be known of impacts, many at a time."""
+    """A model that fills all columns of the impact record, for many impacts at a time."""
 
     @property
     def pair(self) -> Pair:
@@ -51,10 +51,10 @@ class ReboundModel(BeadModel, Protocol):
         ...
 
 
-# Not isinstance(): from Python 3.12 on it would not see what a model passes on to another one by
-# __getattr__, and 3.11 does.
+# Not isinstance(), because from Python 3.12 on that does not see methods that a model passes on to
+# another one by __getattr__.
 def knows_beads(model: object) -> TypeGuard[BeadModel]:
-    """Whether a model has an answer where beads meet."""
+    """Whether a model knows the COR of two beads."""
     return hasattr(model, "sphere_sphere_curve")
 
 

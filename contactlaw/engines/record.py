@@ -1,4 +1,4 @@
-"""The impact record, one for all engines: its columns, their units, and how a model fills them."""
+"""The impact record of all engines: its columns, their units, and how a model fills them."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ if TYPE_CHECKING:
 
 
 class Column(NamedTuple):
-    """What one column of the record holds.
+    """One column of the record.
 
     Attributes
     ----------
     name : str
-        In arrays, and in files.
+        Name of the column, in arrays and in files.
     kind : str
         Type of the numbers, as numpy abbreviates it.
     unit : str
-        SI unit; ``"1"`` without one.
+        SI unit, ``"1"`` for a number without one.
     description : str
-        What the number is.
+        Meaning of the number.
     """
 
     name: str
@@ -59,7 +59,7 @@ COLUMNS = (
 )
 IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
 _NAMES = tuple(column.name for column in COLUMNS)
-# All that there is where a model gives a COR and nothing else.
+# The columns of a record whose model gives a COR and nothing else.
 OBSERVED = _NAMES[: _NAMES.index("contact_time")]
 
 
@@ -71,7 +71,7 @@ def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) 
     rows : structured array (n,)
         Impacts, with the columns of `IMPACT`; changed in place.
     rebound : Rebound
-        What a model says of them.
+        A model's results for these impacts.
     energy : array (n,)
         Kinetic energy of the normal motion before each impact [J].
 

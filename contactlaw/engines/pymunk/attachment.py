@@ -1,4 +1,4 @@
-"""How a model gets hold of a pymunk space."""
+"""Attach a model to a pymunk space."""
 
 from __future__ import annotations
 
@@ -21,25 +21,25 @@ def attach(
     Parameters
     ----------
     space : pymunk.Space
-        In metres and seconds. Its ``step`` and ``on_collision`` are taken over until
-        `PymunkImpacts.detach`; use them as ever.
+        A space in metres and seconds. The adapter replaces its ``step`` and ``on_collision`` until
+        `PymunkImpacts.detach`; use them as before.
     model : RestitutionModel, or list of them
         An `ImpactModel`, or any object with ``curve(radius, thickness)``, which gives a function of
-        speed; for bead on bead ``sphere_sphere_curve(radius, other_radius)`` too. One that is no
-        `contactlaw.engines.needs.ReboundModel` leaves the record without contact times, forces,
-        energies and flags. For beads or plates of several materials a list with one model for each
-        pair that meets; beads and plates that name no material are those of the first.
+        speed; where beads meet, also with ``sphere_sphere_curve(radius, other_radius)``. With a
+        model that is no `contactlaw.engines.needs.ReboundModel`, the record has no contact times,
+        forces, energies and flags. For beads or plates of several materials, a list with one model
+        for each pair that meets; beads and plates without a material have those of the first.
 
     Returns
     -------
     PymunkImpacts
-        Register beads and plates with it, then step the space as ever.
+        Attachment with which beads and plates are registered; then step the space as before.
 
     Raises
     ------
     ImportError, TypeError, ValueError, RuntimeError
-        No pymunk; not a space or a model; several models for one pair of materials, or without a
-        pair to tell them apart; a space that has a model attached already.
+        If pymunk is missing; the space or a model is of another type; two models are for one pair
+        of materials, or one of several has no pair; the space has a model attached already.
 
     Examples
     --------

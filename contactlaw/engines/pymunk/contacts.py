@@ -1,4 +1,4 @@
-"""What happens in a contact: who it is of, how fast they approach, what the model says to it."""
+"""The callbacks of contacts: which bead and plate meet, how fast, and with what restitution."""
 
 from __future__ import annotations
 
@@ -13,28 +13,29 @@ from contactlaw.engines.pymunk.seams import is_anothers
 if TYPE_CHECKING:
     import pymunk
 
-# An approach slower than this many times the speed that gravity gives in one step rests. Without
-# it a pile of 120 beads with restitution 0.9 never settles (5000 impacts per bead and second).
+# An approach slower than this many times the speed that gravity gives in one step is at rest.
+# Otherwise a pile of 120 beads with restitution 0.9 never settles (5000 impacts per bead, second).
 RESTING = 2.0
-# Slower than this many smallest radii per step is rounding, and all that rests without gravity.
+# Speeds below this many smallest radii per step are rounding errors. Without gravity this is the
+# only limit.
 ROUNDING = 1e-12
 
 
 class Contacts:
-    """The contacts of one space, as callbacks see them.
+    """The contacts of one space, answered by two callbacks.
 
     Attributes
     ----------
     beads, plates : dict
-        By id of the shape.
+        Registered beads and plates by the id of their shape.
     record : Record
-        Gets every impact.
+        Record of all impacts.
     time, steps : float, int
         Sum [s] and number of the steps so far.
     resting : int
-        Contacts too slow for an impact.
+        Number of contacts too slow for an impact.
     error : BaseException or None
-        The first one in this step; an interrupt goes before everything.
+        The first error in this step; an interrupt takes precedence over others.
     """
 
     def __init__(self) -> None:
@@ -48,13 +49,13 @@ class Contacts:
         self._resting_speed = 0.0
 
     def begin(self, dt: float, gravity: float, reach: float) -> None:
-        """Get ready for a step: of this length [s], gravity [m/s2] and smallest bead [m]."""
+        """Prepare for a step of length dt [s] under gravity [m/s2]; reach: smallest bead [m]."""
         self._resting_speed = max(RESTING * gravity * dt, ROUNDING * reach / dt)
         self.time += dt
         self.steps += 1
 
-    # What the two callbacks look up is found beforehand, and little is called: they run for every
-    # contact in every step, and a pile has many.
+    # The two callbacks run for every contact in every step, and a pile has many contacts. So
+    # attributes are looked up once, and few functions are called.
     def on_plates(self, hooks: list[Hook]) -> Callback:
         """Make the callback for contacts of beads with plates; it calls those of the user first."""
         bead_of, plate_of, record = self.beads.get, self.plates.get, self.record.add
@@ -125,7 +126,7 @@ class Contacts:
         return pre_solve
 
     def _take_up(self, arbiter: pymunk.Arbiter, bead: Bead, plate: Plate) -> None:
-        """Let a contact be again that was left to a neighbour: pymunk keeps it off until told."""
+        """Process a contact again that was left to a neighbour, as pymunk does not by itself."""
         if bead.left.pop(plate.index, None) == self.steps - 1:
             arbiter.process_collision = True
 
@@ -135,18 +136,18 @@ class Contacts:
         bead.left[plate.index] = self.steps
 
     def _rest(self, arbiter: pymunk.Arbiter, speed: float) -> None:
-        """Settle a contact that is too slow for an impact."""
+        """Let a contact rest that is too slow for an impact."""
         arbiter.restitution = 0.0
-        if speed > 0.0:  # or else they separate, or stay together
+        if speed > 0.0:  # at other speeds the bodies separate or stay together
             self.resting += 1
 
     def is_ours(self, arbiter: pymunk.Arbiter) -> bool:
-        """Whether a contact is one that is answered here."""
+        """Whether both shapes of a contact are registered."""
         keys = [id(shape) for shape in arbiter.shapes]
         return all(key in self.beads or key in self.plates for key in keys)
 
     def undo(self, arbiter: pymunk.Arbiter) -> None:
-        """Take an impact back that a user's handler has switched off after it was recorded."""
+        """Remove the impact of a contact that a user's handler has switched off since."""
         keys = [id(shape) for shape in arbiter.shapes]  # in the order of that handler's types
         beads = [self.beads[key].index for key in keys if key in self.beads]
         plates = [self.plates[key].index for key in keys if key in self.plates]
@@ -164,7 +165,7 @@ class Contacts:
         shape: Any,
         speed: float,
     ) -> float:
-        """Ask the model, check for the engine, which checks nothing, and tell it."""
+        """Ask the model for the restitution, check it, and give it to the engine."""
         if circle.radius != bead.radius:
             raise changed(bead, circle)
         try:
@@ -184,7 +185,7 @@ class Contacts:
         return f"for {bead} on {other} at {speed:.9g} m/s, t = {self.time:.9g} s"
 
     def keep(self, error: BaseException, arbiter: pymunk.Arbiter | None = None) -> None:
-        """Keep the first error of a step; an interrupt goes before everything."""
+        """Keep the first error of a step; an interrupt takes precedence over others."""
         if arbiter is not None:
             arbiter.restitution = 0.0
         if self.error is None or not isinstance(error, Exception):
@@ -192,7 +193,7 @@ class Contacts:
 
 
 def _call(hooks: list[Hook], arbiter: pymunk.Arbiter, space: pymunk.Space) -> None:
-    """Call the user's ``pre_solve``; the model's answer comes after it."""
+    """Call the user's ``pre_solve``, before the model sets the restitution."""
     before = arbiter.restitution
     for callback, data in hooks:
         callback(arbiter, space, data)

@@ -1,4 +1,4 @@
-"""Handlers of the user beside the adapter's: nobody's ``pre_solve`` pushes out the other's."""
+"""Collision handlers of the user beside the adapter's, so that neither replaces the other."""
 
 from __future__ import annotations
 
@@ -14,27 +14,27 @@ Hook = tuple[Callback, Any]  # a pre_solve of the user, and the data to call it 
 
 
 class Handlers:
-    """Stands in for ``space.on_collision`` from `attach` to `detach`.
+    """Replacement of ``space.on_collision`` from `attach` to `detach`.
 
-    pymunk keeps one ``pre_solve`` for each key, the last one given. A user's for a key of the
-    adapter becomes a hook that the adapter's calls first. Those for a wildcard, or for the two
-    types in the other order, are called by pymunk after the adapter's, when restitution and record
-    are made: they are watched.
+    pymunk keeps one ``pre_solve`` for each key, the last one given. A user's ``pre_solve`` for a
+    key of the adapter becomes a hook that the adapter's calls first. One for a wildcard, or for the
+    two types in the other order, is called by pymunk after the adapter's, when the restitution is
+    set and the impact recorded: it is watched.
 
     Parameters
     ----------
     space : pymunk.Space
-        Whose handlers they are.
+        Space of the handlers.
     own : dict
-        By key, what makes the adapter's callback from the list of the user's that it calls first.
+        For each key, a function that makes the adapter's callback from the list of user's hooks.
     late : tuple of keys
-        Which of the user's are called after those.
+        Keys whose callbacks pymunk calls after the adapter's.
     keep : callable
-        Told of the errors of late ones.
+        Called with an error of a late callback.
     is_ours : callable
-        Whether a contact is one that the adapter answers.
+        Whether the adapter answers a contact.
     undo : callable
-        Told of a contact that a late one has switched off.
+        Called with a contact that a late callback has switched off.
     """
 
     def __init__(
@@ -74,7 +74,7 @@ class Handlers:
         separate: Callback | None = None,
         data: Any = None,
     ) -> None:
-        """Do what pymunk's does, and keep the adapter's ``pre_solve``."""
+        """Set handlers as pymunk's ``on_collision`` does, but keep the adapter's ``pre_solve``."""
         import pymunk
 
         key = collision_type_a, collision_type_b
@@ -92,7 +92,7 @@ class Handlers:
         self._engine(*key, begin, pre_solve, post_solve, separate, data)
 
     def check(self) -> None:
-        """Take in what came past us, as by ``pymunk.Space.on_collision(space, ...)``."""
+        """Make hooks of handlers that ``pymunk.Space.on_collision(space, ...)`` has set."""
         for key, handler, callback in self._installed:
             found = handler.pre_solve
             if found is not callback:
@@ -100,11 +100,11 @@ class Handlers:
                 handler.pre_solve = callback
 
     def replaced(self) -> bool:
-        """Whether somebody stands in for us."""
+        """Whether the user has replaced ``space.on_collision``."""
         return vars(self._space).get("on_collision") != self.on_collision
 
     def detach(self) -> None:
-        """Leave the space with the user's handlers alone."""
+        """Remove the adapter's handlers from the space; the user's stay."""
         import pymunk
 
         state = vars(self._space)
@@ -118,7 +118,7 @@ class Handlers:
             self._engine(*key, pre_solve=callback, data=data)
 
     def _watch(self, key: Key, callback: Callback) -> Callback:
-        """Make a callback that tells what the user's changes in a contact of the adapter's."""
+        """Wrap a user's callback, to notice what it changes in a contact of the adapter's."""
 
         def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
             try:
@@ -136,9 +136,9 @@ class Handlers:
 
 
 def overridden(key: Key, restitution: float) -> RuntimeError:
-    """Make the error for a handler that answers in the model's place."""
+    """Make the error for a handler that sets a restitution in place of the model."""
     return RuntimeError(
         f"pre_solve of {key}: sets arbiter.restitution to {restitution!r} where a bead hits, but "
-        "there the model answers; leave it alone, and give what differs a model of its own: "
+        "there the model answers; do not set it, and give a plate that differs a model of its own: "
         "add_plate(..., model=...), any object with curve()"
     )

@@ -1,4 +1,4 @@
-"""The attachment of a model to a pymunk space: who is registered, and what a step does."""
+"""The attachment of a model to a pymunk space: registered beads and plates, and the steps."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ if TYPE_CHECKING:
 
     from contactlaw import Material
 
-# Far from the small numbers that people choose; below 2**32, the limit on 32-bit machines.
+# The first collision type, far above those that users choose and below 2**32, pymunk's limit on
+# 32-bit machines.
 _collision_types = count(0xC0A70000)
 
 
@@ -51,7 +52,7 @@ class PymunkImpacts:
     bead_type, plate_type : int
         Collision types of the registered shapes, for handlers of your own:
         ``space.on_collision(impacts.bead_type, my_type, begin=...)``, in any phase. A ``pre_solve``
-        for both of them is called before the model, which has the last word on the restitution.
+        for both of them is called before the model sets the restitution.
     """
 
     def __init__(self, space: pymunk.Space, models: Models) -> None:
@@ -62,8 +63,8 @@ class PymunkImpacts:
         self._contacts = Contacts()
         self._bodies: dict[int, Bead] = {}  # by id of the body
         self._mounts: dict[int, Mount] = {}  # by id of a body with plates
-        self._kinds: Counter[Kind] = Counter()  # of the beads that there are
-        self._gone: list[Any] = []  # references to shapes that the user has let go
+        self._kinds: Counter[Kind] = Counter()  # numbers of present beads by kind
+        self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
         self._roll = Roll(models)
         self._seams = Seams()
         self._attached = True
@@ -94,7 +95,7 @@ class PymunkImpacts:
 
     @property
     def resting(self) -> int:
-        """Contacts too slow for an impact, one per contact and step."""
+        """Number of contacts too slow for an impact, one per contact and step."""
         return self._contacts.resting
 
     def add_bead(self, circle: pymunk.Circle, *, material: Material | str | None = None) -> int:
@@ -103,10 +104,10 @@ class PymunkImpacts:
         Parameters
         ----------
         circle : pymunk.Circle
-            Centred on a dynamic body of its own, with collision type 0. The body's mass should be
-            the sphere's, ``4/3 pi radius**3 density`` [kg]: there is a warning if it is far off.
+            A circle of collision type 0, centred on a dynamic body of its own. The body's mass
+            should be the sphere's, ``4/3 pi radius**3 density`` [kg]; a warning says if it is not.
         material : Material or str, optional
-            That of the sphere in one of the attached models; without it, in the first.
+            Material of spheres in one of the attached models; by default that of the first model.
 
         Returns
         -------
@@ -115,9 +116,9 @@ class PymunkImpacts:
 
         Raises
         ------
-        TypeError, ValueError
-            Not such a circle; registered already; a radius above 1 m, as of pixels; a material that
-            no attached model is for.
+        TypeError, ValueError, RuntimeError
+            If the circle is no such circle, is registered already, or has a radius above 1 m, as
+            in pixels; if no attached model is for the material; after `detach`.
 
         Examples
         --------
@@ -188,22 +189,26 @@ class PymunkImpacts:
         Parameters
         ----------
         shape : pymunk.Segment or pymunk.Poly
-            With collision type 0. A polygon or box is solid, and each of its sides a face of the
-            plate. Its size and radius are geometry only. If it moves, then by its body's velocity:
-            an engine takes no notice of a position that is set. Where plates on the same body, or
-            on bodies that never move, share an end or a corner, a bead hits one of them.
+            A shape of collision type 0. A polygon or box is solid, and each side is a face of the
+            plate. Its size and radius are geometry only. Move it by its body's velocity: the engine
+            sees no motion in a position that is set. Where plates on the same body, or on bodies
+            that never move, share an end or a corner, a bead hits one of them.
         thickness : float
-            Thickness for the model [m]; ``inf`` is the half-space.
+            Thickness in the model [m]; ``inf`` is the half-space.
         material : Material or str, optional
-            That of the plate in one of the attached models; without it, in the first.
+            Material of plates in one of the attached models; by default that of the first model.
         model : RestitutionModel or list of them, optional
-            For this plate alone, in place of the attached ones: one, or one for each material of
-            beads.
+            Model for this plate in place of the attached ones, or one for each material of beads.
 
         Returns
         -------
         int
             Index of the plate in the record, never given to another one.
+
+        Raises
+        ------
+        TypeError, ValueError, RuntimeError
+            As `add_bead`; also if the shape has no length or the thickness is no positive number.
         """
         import pymunk
 
@@ -235,7 +240,7 @@ class PymunkImpacts:
         Parameters
         ----------
         circle : pymunk.Circle
-            As given to `add_bead`; it stays in the space if it is there.
+            Circle that `add_bead` was given, else a ValueError; it stays in the space if there.
         """
         if id(circle) not in self._contacts.beads:
             raise ValueError(f"circle: {circle!r} is no bead of this attachment")
@@ -248,7 +253,7 @@ class PymunkImpacts:
         Parameters
         ----------
         shape : pymunk.Segment or pymunk.Poly
-            As given to `add_plate`; it stays in the space if it is there.
+            Shape that `add_plate` was given, else a ValueError; it stays in the space if there.
         """
         if id(shape) not in self._contacts.plates:
             raise ValueError(f"shape: {shape!r} is no plate of this attachment")
@@ -256,24 +261,24 @@ class PymunkImpacts:
         shape.collision_type = 0
 
     def beads(self) -> NDArray[np.void]:
-        """Who has which index in the record: one row for each bead that was ever registered.
+        """All beads that were ever registered, by their index in the record.
 
         Returns
         -------
         structured array
-            radius [m]; material, its name, "" if the model does not tell its pair. The materials of
-            impacts are ``beads()["material"][rows["bead"]]``, those on plates
-            ``plates()["material"][rows["plate"]]``.
+            Columns radius [m] and material, a name, or "" if the model has no pair. In an impact
+            record `rows`, the materials of the beads are ``beads()["material"][rows["bead"]]``, and
+            those of the plates ``plates()["material"][rows["plate"]]``.
         """
         return self._roll.beads()
 
     def plates(self) -> NDArray[np.void]:
-        """Who has which index in the record: one row for each plate that was ever registered.
+        """All plates that were ever registered, by their index in the record.
 
         Returns
         -------
         structured array
-            thickness [m]; material, its name, "" if the model does not tell its pair.
+            Columns thickness [m] and material, a name, or "" if the model has no pair.
         """
         return self._roll.plates()
 
@@ -283,17 +288,17 @@ class PymunkImpacts:
         Returns
         -------
         structured array
-            A copy with the columns of `contactlaw.engines.record.COLUMNS`, which have their units
-            there: time, bead, plate, other, x, y, z (0), approach_speed, restitution; if every
-            model is a `ReboundModel` also contact_time, peak_force, plastic_energy, wave_energy,
-            other_energy, wall_work (0: the engine does not tell), triangle (-1) and flags. Energies
+            A copy with columns of `contactlaw.engines.record.COLUMNS`, where their units are: time,
+            bead, plate, other, x, y, z (0), approach_speed and restitution; if every model is a
+            `ReboundModel`, also contact_time, peak_force, plastic_energy, wave_energy,
+            other_energy, wall_work (0, unknown to the engine), triangle (-1) and flags. Energies
             are those of solid spheres (bead on bead: of the relative motion, with the reduced
-            mass); what friction takes is in none of them.
+            mass), without the work of friction.
         """
         return self._contacts.record.read(self._roll)
 
     def detach(self) -> None:
-        """Give the space back as it was; the record stays readable. Again: nothing happens.
+        """Restore the space as it was; the record stays readable. A second call has no effect.
 
         Raises
         ------
@@ -336,9 +341,9 @@ class PymunkImpacts:
         return body_of(shape, kinds, self._space, collision_type)
 
     def _clean(self) -> None:
-        """Forget beads and plates that are no more: they go at any time, and are noted when so.
+        """Forget beads and plates whose shape or body no longer exists.
 
-        Python's ids and pymunk's go to new ones afterwards.
+        Their ids, Python's and pymunk's, may be given to new shapes and bodies.
         """
         while self._gone:
             gone = self._gone.pop()
@@ -369,7 +374,7 @@ class PymunkImpacts:
                 self._lookahead.reach = min((r for r, _ in self._kinds), default=math.inf)
 
     def _step(self, dt: float) -> None:
-        """Stand in for ``space.step``."""
+        """Replace ``space.step``: check, step, and raise the errors of callbacks."""
         if not 0.0 < dt < math.inf:
             raise ValueError(f"dt: must be positive and finite [s], got {dt!r}")
         self._contacts.error = None
@@ -377,9 +382,9 @@ class PymunkImpacts:
         self._handlers.check()
         self._lookahead.check(dt, self._contacts.time)
         self._contacts.begin(dt, self._space.gravity.length, self._lookahead.reach)
-        # cffi hands exceptions in callbacks to this hook: those of the user's own handlers, and a
-        # Ctrl-C, which as a rule arrives in pymunk's Python code around a callback and not in ours.
-        # The hook is for all threads, signals are for the main thread: so only there.
+        # cffi passes exceptions in callbacks to this hook: those of the user's own handlers, and a
+        # Ctrl-C, which usually arrives in pymunk's Python code around a callback and not in ours.
+        # It is set in the main thread only, because that gets the signals and the hook is global.
         if threading.current_thread() is threading.main_thread():
             self._hook, sys.unraisablehook = sys.unraisablehook, self._unraisable
             try:

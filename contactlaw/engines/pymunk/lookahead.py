@@ -1,4 +1,4 @@
-"""What the pymunk adapter checks before every step: finite numbers, and no jump over a plate."""
+"""Checks before every step of a pymunk space: finite numbers, and no bead jumps over a plate."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class TunnellingError(RuntimeError):
         Normal speed of the bead relative to the plate [m/s].
     safe_step : float or None
         Steps below this would have been safe [s]. None if the bead was pressed through the plate
-        bit by bit: then overlaps or too few iterations are to blame.
+        bit by bit, because of overlaps or too few iterations.
     """
 
     bead: int
@@ -50,12 +50,12 @@ class Line(NamedTuple):
     start: tuple[float, float]  # ends [m]
     end: tuple[float, float]
     pivot: tuple[float, float]  # centre of rotation [m]
-    velocity: tuple[float, float]  # of the pivot [m/s]
+    velocity: tuple[float, float]  # velocity of the pivot [m/s]
     spin: float  # [rad/s]
 
 
 class LookAhead:
-    """Checks of one space; `reach`, the radius of the smallest bead, is kept by the caller."""
+    """Checks of one space; the caller sets `reach`, the radius of the smallest bead [m]."""
 
     def __init__(
         self,
@@ -83,7 +83,7 @@ class LookAhead:
         motion = np.frombuffer(self._buffer.float_buf()).reshape(-1, 4)
         if not len(motion):
             return
-        # No speed exceeds sqrt(2) times the largest number in there. With a NaN this is false.
+        # No speed exceeds sqrt(2) times the largest component. With a NaN this is false.
         if math.sqrt(2) * dt * max(motion.max(), -motion.min()) < reach:
             return
         travel = (np.hypot(motion[:, 2], motion[:, 3]) + plate_speed) * dt
@@ -106,7 +106,7 @@ class LookAhead:
         get_space_bodies(self._space, fields, self._buffer)
 
     def _refuse(self, key: int, motion: Array) -> None:
-        """Raise for a bead or plate that is nowhere; other bodies are not the adapter's."""
+        """Raise if a body whose position or velocity is not finite carries a bead or plate."""
         names = []
         for plate in self._plates.values():
             shape = plate.shape()
@@ -118,7 +118,7 @@ class LookAhead:
             raise ValueError(f"{names[0]}: not finite: position ({x}, {y}), velocity ({vx}, {vy})")
 
     def _cross(self, beads: list[Bead], motion: Array, dt: float, time: float) -> None:
-        """Raise for the bead that needs the smallest step."""
+        """Raise if beads would cross plates, for the bead that needs the smallest step."""
         found = []
         for plate in self._plates.values():
             shape = plate.shape()
@@ -138,7 +138,7 @@ class LookAhead:
 
 
 def _lines(shape: Face, body: pymunk.Body) -> Iterator[Line]:
-    """Each side of a plate: a segment has one, a polygon as many as corners."""
+    """Sides of a plate: one of a segment, of a polygon as many as it has corners."""
     import pymunk
 
     still = body.body_type == pymunk.Body.STATIC  # the engine never moves it, whatever its speed
@@ -167,7 +167,7 @@ def tunnelling(
 
 
 def approach(positions: Array, velocities: Array, line: Line, dt: float) -> tuple[Array, Array]:
-    """Who crosses a plate's centre line within a step, and how.
+    """Distance and speed of beads that cross a plate's centre line within a step.
 
     Parameters
     ----------

@@ -19,7 +19,7 @@ class ByBead(dict[int, RestitutionModel]):
         self.plate = _name(plate)
 
     def __missing__(self, number: int) -> NoReturn:
-        """Say which model is wanting."""
+        """Raise for a pair of materials that no model is for."""
         raise ValueError(
             f"model: none is attached for Pair({_name(self._spheres[number])!r}, {self.plate!r}): "
             "attach(space, [model, ...]) takes one for each pair of materials that meets"
@@ -27,19 +27,19 @@ class ByBead(dict[int, RestitutionModel]):
 
 
 class Models:
-    """The models of one space, one for each pair of materials; the first names the usual ones.
+    """The models of one space, one per pair of materials; the first has the default materials.
 
     Parameters
     ----------
     given : RestitutionModel or sequence of RestitutionModel
-        As `attach` takes them.
+        The models that `attach` was given.
 
     Attributes
     ----------
     all : list of RestitutionModel
-        In the order in which they were given.
+        The models in the order in which they were given.
     spheres : list
-        Materials of beads; a model that does not tell its pair has None.
+        Materials of beads; None for a model without a pair.
 
     Examples
     --------
@@ -55,7 +55,7 @@ class Models:
     def __init__(self, given: RestitutionModel | Sequence[RestitutionModel]) -> None:
         self.all = _listed(given)
         self.spheres: list[Any] = []
-        self._plates: list[tuple[Any, ByBead]] = []  # by material
+        self._plates: list[tuple[Any, ByBead]] = []  # materials of plates, and their models
         seen: list[tuple[Any, Any]] = []
         for model in self.all:
             pair = sphere_of(model), plate_of(model)
@@ -65,7 +65,8 @@ class Models:
                     "it one (an attribute `pair`, a contactlaw.Pair), or attach it alone"
                 )
             if pair in seen:
-                raise ValueError(f"model: two are for {_name(pair[0])} on {_name(pair[1])}")
+                names = f"{_name(pair[0])} on {_name(pair[1])}"
+                raise ValueError(f"model: two are for {names}; give one for each pair")
             seen.append(pair)
             if pair[0] not in self.spheres:
                 self.spheres.append(pair[0])
@@ -80,7 +81,7 @@ class Models:
                 self._plates.append((pair[1], models))
 
     def bead(self, material: Material | str | None) -> int:
-        """Tell the number of a bead's material; without one, that of the first model."""
+        """Return the number of a bead's material, by default that of the first model."""
         if material is None:
             return 0
         for number, sphere in enumerate(self.spheres):
@@ -89,14 +90,14 @@ class Models:
         raise self._missing("spheres", material, self.spheres)
 
     def plate(self, material: Material | str | None) -> ByBead:
-        """Models for a plate of a material; without one, that of the first model."""
+        """Models for a plate of a material, by default that of the first model."""
         for plate, models in self._plates:
             if material is None or _is(material, plate):
                 return models
         raise self._missing("plates", material, [plate for plate, _ in self._plates])
 
     def own(self, given: RestitutionModel | Sequence[RestitutionModel]) -> ByBead:
-        """Models that were given for one plate."""
+        """Models of a plate that was given its own."""
         models = _listed(given)
         found = ByBead(self.spheres, plate_of(models[0]))
         for model in models:
@@ -111,12 +112,12 @@ class Models:
         return found
 
     def of_bead(self, number: int) -> RestitutionModel:
-        """Model that knows how beads of a material meet others."""
+        """First model for beads of a material, which answers where they meet other beads."""
         sphere = self.spheres[number]
         return next(model for model in self.all if sphere_of(model) == sphere)
 
     def others(self, number: int, other: int) -> tuple[Any, ...]:
-        """Further argument of that model's questions: the other bead's material if it differs."""
+        """Further argument of that model's methods: the other bead's material if it differs."""
         return () if number == other else (self.spheres[other],)
 
     def sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> Curve:
@@ -128,12 +129,12 @@ class Models:
         return model.sphere_sphere_curve(radius, other_radius, *self.others(number, other))
 
     def density(self, number: int) -> float | None:
-        """Density of a bead's material [kg/m3], if the model tells."""
+        """Density of a bead's material [kg/m3], None if the model does not have it."""
         density: float | None = getattr(self.spheres[number], "density", None)
         return density
 
     def names(self) -> list[str]:
-        """Of the bead materials, "" where the model does not tell."""
+        """Names of the bead materials, "" for a model without a pair."""
         return [_name(sphere) for sphere in self.spheres]
 
     def _missing(self, kind: str, material: Any, known: list[Any]) -> ValueError:
@@ -145,12 +146,12 @@ class Models:
 
 
 def sphere_of(model: RestitutionModel) -> Any:
-    """Material of a model's beads, None if it does not tell."""
+    """Material of a model's beads, None if it has no pair."""
     return getattr(getattr(model, "pair", None), "sphere", None)
 
 
 def plate_of(model: RestitutionModel) -> Any:
-    """Material of a model's plates, None if it does not tell."""
+    """Material of a model's plates, None if it has no pair."""
     return getattr(getattr(model, "pair", None), "plate", None)
 
 
@@ -161,7 +162,7 @@ def _listed(given: Any) -> list[RestitutionModel]:
     for model in models:
         if not callable(getattr(model, "curve", None)):
             raise TypeError(
-                f"model: expected an ImpactModel, or a like with curve(), got {model!r}"
+                f"model: expected an ImpactModel or an object with curve(), got {model!r}"
             )
     return models
 
@@ -173,7 +174,7 @@ def _is(material: Material | str, known: Any) -> bool:
 
 
 def _catalogued(name: str) -> Material | None:
-    """Material of a name, which may be an alias; one's own need not be in the catalogue."""
+    """Material of a name or alias in the catalogue; None for a name that is not there."""
     try:
         return catalogued(name)
     except ValueError:

@@ -1,4 +1,4 @@
-"""The record of impacts that an adapter keeps: what was seen in the run, the rest on demand."""
+"""The adapter's record of impacts; the columns that the run does not give are filled on demand."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from contactlaw.physical.materials import sphere_mass
 
 
 class Roll:
-    """Who was ever registered, by index: a few bytes each, for the record outlives the shapes."""
+    """All beads and plates ever registered, by index, because the record outlives the shapes."""
 
     def __init__(self, models: Models) -> None:
         self.models = models
@@ -27,13 +27,13 @@ class Roll:
         self._plates: list[ByBead] = []
 
     def bead(self, material: int, radius: float) -> int:
-        """Index of one more bead."""
+        """Add a bead and return its index."""
         self._radii.append(radius)
         self._materials.append(material)
         return len(self._radii) - 1
 
     def plate(self, models: ByBead, thickness: float) -> int:
-        """Index of one more plate."""
+        """Add a plate and return its index."""
         self._thicknesses.append(thickness)
         self._plates.append(models)
         return len(self._plates) - 1
@@ -54,14 +54,14 @@ class Roll:
         return np.array(self._materials, dtype=np.int64)
 
     def every_model(self) -> list[RestitutionModel]:
-        """Each once."""
+        """All models of beads and plates, each once."""
         found = {id(model): model for model in self.models.all}
         for models in {id(models): models for models in self._plates}.values():
             found |= {id(model): model for model in models.values()}
         return list(found.values())
 
     def by_model(self, rows: NDArray[np.void]) -> list[tuple[Any, NDArray[np.bool_]]]:
-        """Models, and which of these impacts on plates each is to be asked about."""
+        """Models, each with a mask of the impacts on plates that it answers."""
         kinds = len(self.models.spheres)
         pairs = rows["plate"] * kinds + self.materials[rows["bead"]]
         pairs, place = np.unique(pairs, return_inverse=True)
@@ -76,10 +76,10 @@ class Record:
     def __init__(self) -> None:
         self._seen = array("d")  # 72 bytes per impact; a list of tuples takes five times that
         self.add = self._seen.extend  # takes one tuple in the order of OBSERVED
-        self._rows = np.empty(0, IMPACT)  # of the first impacts seen: those that were read already
+        self._rows = np.empty(0, IMPACT)  # rows of the first impacts, which were read before
 
     def undo(self, time: float, bead: int, plate: int, other: int) -> None:
-        """Take the last impact back, if it is this one."""
+        """Remove the last impact if it is this one."""
         if self._seen[-len(OBSERVED) : -len(OBSERVED) + 4].tolist() == [time, bead, plate, other]:
             del self._seen[-len(OBSERVED) :]
             self._rows = self._rows[: len(self._seen) // len(OBSERVED)]
@@ -90,7 +90,7 @@ class Record:
         Parameters
         ----------
         roll : Roll
-            Beads, plates and their models: at least those of the last call. Unless every model is a
+            Beads, plates and their models, with all those of the last call. Unless every model is a
             `ReboundModel`, there are only the columns of OBSERVED.
         """
         whole = all(knows_rebounds(model) for model in roll.every_model())
@@ -102,7 +102,7 @@ class Record:
             if whole:
                 _complete(rows, roll)
             self._rows = np.concatenate((self._rows, rows))
-        # Where a COR was all that was known, it is so for the rest of the run.
+        # Once a model gives a COR alone, the rest of the run has the columns of OBSERVED only.
         return self._rows.copy() if whole else repack_fields(self._rows[list(OBSERVED)])
 
 
@@ -117,7 +117,7 @@ def _complete(rows: NDArray[np.void], roll: Roll) -> None:
     target = np.where(
         on_bead, radius[other], np.append(plates["thickness"], math.nan)[rows["plate"]]
     )
-    # m1 m2/(m1 + m2); a plate counts as a mass without end
+    # m1 m2/(m1 + m2); a plate has an infinite mass
     reduced = mass[bead] / (1.0 + np.where(on_bead, mass[bead] / mass[other], 0.0))
     energy = 0.5 * reduced * rows["approach_speed"] ** 2
     questions: list[tuple[Any, NDArray[np.bool_], tuple[Any, ...]]] = [

@@ -1,4 +1,4 @@
-"""Beads and plates as the pymunk adapter knows them, and what may become one."""
+"""Registered beads and plates of the pymunk adapter, and checks of shapes to be registered."""
 
 from __future__ import annotations
 
@@ -20,19 +20,18 @@ if TYPE_CHECKING:
     Face = pymunk.Segment | pymunk.Poly
 
 Vector = tuple[float, float]
-Kind = tuple[float, int]  # of beads that rebound alike: radius [m], number of the material
-Joint = tuple[float, float, "Plate"]  # an end [m], in coordinates of the body, and who shares it
-NEVER = (-1, 0.0, 0.0)  # what `Bead.touched` has of a plate that it never did
-FEW = 8  # plates that a bead touches at once: what is remembered of more is cleaned up
-# A boulder; what is larger was measured in pixels.
-LARGEST = 1.0  # [m]
-# Beside it, porosity and a density that is not quite the material's; a disc, a mass of 1 or a
+Kind = tuple[float, int]  # beads that rebound alike: radius [m], number of the material
+Joint = tuple[float, float, "Plate"]  # a shared end [m], in the body's coordinates; other plate
+NEVER = (-1, 0.0, 0.0)  # entry of `Bead.touched` for a plate that the bead has not touched
+FEW = 8  # entries of `Bead.touched` beyond which old ones are deleted
+LARGEST = 1.0  # radius [m] of a boulder; a larger one was given in pixels
+# Allows for porosity and for a density that is not quite the material's. A disc, a mass of 1 or a
 # diameter taken for the radius are far outside.
 MASS_RATIO = 1.5
 
 
-# Shapes and bodies are the user's: an attachment holds them weakly, or else whatever has rained
-# through a space would stay in memory.
+# The attachment holds weak references to shapes and bodies, because otherwise all beads that have
+# ever been in a space would stay in memory.
 @dataclass(slots=True, eq=False)
 class Bead:
     """A registered sphere, which hits plates and other spheres."""
@@ -40,10 +39,10 @@ class Bead:
     index: int
     shape: weakref.ref[pymunk.Circle]
     body: weakref.ref[pymunk.Body]
-    body_id: int  # pymunk gives it to another one after the body
+    body_id: int  # pymunk may give it to another body after this one
     radius: float
     kind: Kind
-    pair_curve: Callable[[Kind, Kind], Curve]  # of two beads, the smaller first
+    pair_curve: Callable[[Kind, Kind], Curve]  # COR by speed of two beads, the smaller first
     # by plate: the last step in which it touched, and the normal then
     touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
     # by plate: the last step in which a neighbour of the plate had the contact
@@ -54,7 +53,7 @@ class Bead:
         return f"bead {self.index}"
 
     def curve(self, bead: Bead, shape: pymunk.Circle) -> Curve:
-        """Restitution of a bead on this one by speed."""
+        """COR by speed of a bead on this one."""
         if shape.radius != self.radius:
             raise changed(self, shape)
         return self.pair_curve(*sorted((bead.kind, self.kind)))
@@ -62,24 +61,24 @@ class Bead:
 
 @dataclass(slots=True, eq=False)
 class Plate:
-    """A registered plate, and what is remembered of it from step to step."""
+    """A registered plate, and its state from step to step."""
 
     index: int
     shape: weakref.ref[Face]
     mount: Mount
     thickness: float
     models: ByBead
-    joints: list[Joint] = field(default_factory=list)  # ends where the plate goes on as another
+    joints: list[Joint] = field(default_factory=list)  # ends shared with other plates
     curves: dict[Kind, Curve] = field(default_factory=dict)
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
-    change: float = 0.0  # of that velocity, within the last step [m/s]
-    shake: float = 0.0  # the same while it goes on, else about 0 [m/s]
+    change: float = 0.0  # change of that velocity in the last step [m/s]
+    shake: float = 0.0  # the change per step of a plate that keeps changing, else about 0 [m/s]
 
     def __str__(self) -> str:
         return f"plate {self.index}"
 
     def curve(self, bead: Bead, shape: pymunk.Shape) -> Curve:
-        """Restitution of beads of this kind by speed; made once."""
+        """COR by speed of beads of this kind; made once."""
         curve = self.curves.get(bead.kind)
         if curve is None:
             radius, material = bead.kind
@@ -88,7 +87,7 @@ class Plate:
         return curve
 
     def velocity_at(self, shape: pymunk.Shape, x: float, y: float) -> Vector:
-        """Tell its velocity [m/s] at the point [m] where a bead touches it."""
+        """Return the plate's velocity [m/s] at the point [m] where a bead touches it."""
         mount = self.mount
         if mount.still:
             return 0.0, 0.0
@@ -99,7 +98,7 @@ class Plate:
         return velocity
 
     def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
-        """Whether a bead that touches has been pressed through: its normal has turned round."""
+        """Whether a touching bead has been pressed through: its normal is reversed."""
         last, old_nx, old_ny = bead.touched.get(self.index, NEVER)
         if len(bead.touched) > FEW:
             bead.touched = {n: seen for n, seen in bead.touched.items() if seen[0] >= step - 1}
@@ -107,7 +106,7 @@ class Plate:
         return last == step - 1 and old_nx * nx + old_ny * ny < 0.0
 
     def watch(self, body: pymunk.Body, dt: float) -> float:
-        """Update `shake` of a kinematic plate; speed of a plate's fastest point [m/s]."""
+        """Update `shake` of a kinematic plate; return the speed of its fastest point [m/s]."""
         import pymunk
 
         shape = self.shape()
@@ -120,7 +119,7 @@ class Plate:
             old_vx, old_vy, old_spin = self.velocity
             turning = extent * (abs(spin - old_spin) + spin**2 * dt)
             change = math.hypot(vx - old_vx, vy - old_vy) + turning
-            # The lesser of two steps: a plate that jumps to its speed strikes, it does not shake.
+            # The smaller change of two steps: a plate that jumps to its speed does not shake.
             self.shake = min(change, self.change)
             self.velocity, self.change = (vx, vy, spin), change
         return math.hypot(vx, vy) + abs(spin) * extent
@@ -128,18 +127,18 @@ class Plate:
 
 @dataclass(slots=True, eq=False)
 class Mount:
-    """The rigid body that plates are fixed to, and what is known of it within a step."""
+    """A rigid body that carries plates, with its pose in the present step."""
 
     key: int  # id of the body
     body: weakref.ref[pymunk.Body]
     plates: dict[int, Plate] = field(default_factory=dict)
-    # Whether it has no speed; None: static, so very likely. To ask pymunk for the speed of a point
-    # takes a tenth of what a collision does.
+    # Whether the body has no velocity; None for a static body, until that is looked up. To ask
+    # pymunk for the velocity of a point takes a tenth of the time of a collision.
     still: bool | None = False
-    frame: tuple[float, float, float, float] | None = None  # origin [m], cosine and sine of turning
+    frame: tuple[float, float, float, float] | None = None  # origin [m], cosine and sine of angle
 
     def watch(self, dt: float) -> float:
-        """Get ready for a step; speed of the fastest point of its plates [m/s]."""
+        """Prepare for a step; return the speed of the fastest point of its plates [m/s]."""
         import pymunk
 
         body = self.body()
@@ -154,7 +153,7 @@ class Mount:
         return max((plate.watch(body, dt) for plate in self.plates.values()), default=0.0)
 
     def local(self, x: float, y: float) -> Vector:
-        """Place in coordinates of the body [m]."""
+        """Point in coordinates of the body [m]."""
         if self.frame is None:
             body: Any = self.body()
             self.frame = (*body.local_to_world((0.0, 0.0)), *body.rotation_vector)
@@ -163,7 +162,7 @@ class Mount:
 
 
 def ends(shape: Face) -> list[pymunk.Vec2d]:
-    """Corners of a plate [m], in coordinates of its body; a polygon's follow each other."""
+    """Corners of a plate [m], in coordinates of its body; those of a polygon in order."""
     import pymunk
 
     return [shape.a, shape.b] if isinstance(shape, pymunk.Segment) else shape.get_vertices()
@@ -192,7 +191,7 @@ def body_of(
         raise ValueError(f"{shape!r} has no body, or is a sensor: it would never rebound")
     if shape_of.space not in (None, space):
         raise ValueError(f"{shape!r} belongs to another space")
-    if shape_of.collision_type not in (0, collision_type):  # a copied shape brings ours with it
+    if shape_of.collision_type not in (0, collision_type):  # a copied shape has the adapter's type
         raise ValueError(
             f"collision_type: the attachment needs its own, {shape!r} has "
             f"{shape_of.collision_type}; leave it 0 and make handlers for impacts.bead_type and "
@@ -215,8 +214,8 @@ def radius_of(circle: pymunk.Circle) -> float:
     radius = scalar(radius=circle.radius)
     if radius > LARGEST:
         raise ValueError(
-            f"radius: {radius!r} m is no bead's, are these pixels? Space, gravity, speeds and "
-            "shapes must be in metres and seconds; scale where you draw: "
+            f"radius: {radius!r} m is above {LARGEST:g} m; are these pixels? Space, gravity, "
+            "speeds and shapes must be in metres and seconds; scale where you draw: "
             "pymunk.SpaceDebugDrawOptions has a transform"
         )
     return radius
@@ -232,7 +231,7 @@ def changed(bead: Bead, circle: pymunk.Circle) -> ValueError:
 
 
 def check_mass(mass: float, radius: float, density: float | None, name: str) -> None:
-    """Warn of a mass that is not the sphere's; the caller is called by `add_bead`."""
+    """Warn of a mass that is not the sphere's; to be called by `add_bead`."""
     if density is None:
         return
     sphere = sphere_mass(density, radius)
@@ -240,13 +239,13 @@ def check_mass(mass: float, radius: float, density: float | None, name: str) -> 
         warnings.warn(
             f"body.mass: {mass:.4g} kg, but a sphere of {name} of radius {radius:.4g} m has "
             f"{sphere:.4g} kg, and the COR and the energies in the record are that sphere's; set "
-            "body.mass = 4/3*pi*radius**3*density, also where beads meet",
+            "body.mass = 4/3*pi*radius**3*density",
             stacklevel=3,
         )
 
 
 def unregistered(shape: Any) -> ValueError:
-    """Make the error for a shape that copied a collision type."""
+    """Make the error for a shape with the adapter's collision type that is not registered."""
     return ValueError(
         f"{shape!r} has the collision type of this attachment, but was never registered (a copy of "
         "a bead?): call add_bead or add_plate"

@@ -1,4 +1,4 @@
-"""Plates that go on as other plates: a bead on the seam hits one of them."""
+"""Plates that share ends or corners: a bead there hits one of them."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ if TYPE_CHECKING:
 
     from contactlaw.engines.pymunk.registry import Face
 
-# Ends that are closer are one: far below any bead, far above the roundings of a drawing [m].
+# Ends closer than this are one [m]: far below any bead's size, far above a drawing's rounding.
 SAME = 1e-7
-# The nearest point of a plate is its end if it is as near as this share of the bead's radius; the
-# distances themselves have roundings of 1e-13 of it.
+# An end is the plate's nearest point to a bead if it is farther by at most this share of the bead's
+# radius; the distances have rounding errors of 1e-13 of it.
 AT_END = 1e-9
 
 Cell = tuple[int, int, int]
 
 
 class Seams:
-    """Ends of all plates, by place."""
+    """Ends of all plates, found by their position."""
 
     def __init__(self) -> None:
         self._ends: dict[Cell, list[tuple[Vector, Plate, Vector]]] = {}
@@ -56,9 +56,9 @@ class Seams:
 
 
 def is_anothers(bead: Bead, plate: Plate, circle: Any, shape: Any, x: float, y: float) -> bool:
-    """Whether a contact of a bead at x, y belongs to a plate that shares the end which it touches.
+    """Whether a contact of a bead at x, y belongs to another plate that shares the touched end.
 
-    The nearest one has it; of those that are equally near, the one that was registered first.
+    It belongs to the nearest plate, and of equally near plates to the one registered first.
     """
     u, v = plate.mount.local(x, y)
     reach = bead.radius + shape.radius
@@ -70,7 +70,7 @@ def is_anothers(bead: Bead, plate: Plate, circle: Any, shape: Any, x: float, y: 
         if mine == math.inf:
             mine = shape.point_query((x, y)).distance
         if away - shape.radius > mine + AT_END * bead.radius:
-            continue  # it touches the plate's own side
+            continue  # the bead touches the side of this plate, not the end
         there = other.shape()
         if there is not None and may_meet(circle, there):
             its = there.point_query((x, y)).distance
@@ -80,7 +80,7 @@ def is_anothers(bead: Bead, plate: Plate, circle: Any, shape: Any, x: float, y: 
 
 
 def _place(end: pymunk.Vec2d, body: pymunk.Body) -> tuple[int, Vector]:
-    """Rigid body that an end moves with, and where it is there: all that never moves is one."""
+    """Rigid body of an end, and its coordinates there; all static bodies count as one."""
     import pymunk
 
     if body.body_type == pymunk.Body.STATIC:
