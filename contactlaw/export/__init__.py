@@ -1,4 +1,4 @@
-"""Files for codes that Python cannot reach: the law as C, for a pair of materials."""
+"""Source files for codes that do not run Python: the law of a pair of materials in C."""
 
 from contactlaw.export.c_header import header
 from contactlaw.export.liggghts_wall import liggghts

@@ -1,8 +1,8 @@
-"""One C header for a pair of materials: the law and a table of COR as data, and what reads them.
+"""One C header for a pair of materials: the law and a table of COR as data, and functions.
 
-The functions are the same for every law, those of ``contactlaw.h.in``; they are what
-`contactlaw.equation`, `contactlaw.softsphere` and `contactlaw.table.lookup` do. The data are the
-arrays that these read.
+The functions, in ``contactlaw.h.in``, are the same for every law. They compute what
+`contactlaw.equation`, `contactlaw.softsphere` and `contactlaw.table.lookup` do, and read the same
+arrays.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ from contactlaw.table.nodes import coarser
 Array = NDArray[np.float64]
 
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
-ERROR = 4e-6  # of COR beside the model's table: 1e-5 is promised, beside the equation
+ERROR = 4e-6  # of COR against the model's table, so that it is within 1e-5 of the equation
 _WIDTH = 96
-# Constants that the template names as their modules do.
+# Constants that have the same names in the template as in their modules.
 _CONSTANTS: dict[ModuleType, str] = {
     waves: "LONGER LONGER_3 LONGEST USUAL WIDEST DEEPEST BROADEST SATURATION CONTACT_TIME",
     lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
@@ -54,7 +54,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     stepping_spring: "TOP MOST_ITERATIONS CONVERGED",
     validity: "TRANSITS",
 }
-# Enumerators of C, which say where things are in an array.
+# Offsets into the arrays, which become enumerators of C.
 _IN_LAW = (
     "PIECES UNLOADINGS STARTS CURVE FAMILY_STARTS FAMILY CAPPED SCALE OFFSET DEGREE AT FIRST NEXT "
     "PIECE RESIDUAL EXPONENT LOSS CAP_LOW CAP_HIGH OTHER FUNCTION_POWER FUNCTION_DEGREE "
@@ -71,14 +71,14 @@ _SECTION = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 def header(
     path: str | os.PathLike[str], model: ImpactModel, table: Literal["cor", "none"] = "cor"
 ) -> None:
-    """Write a C header that answers for a pair of materials: C99 and C++11, one file.
+    """Write the law and the COR of a pair of materials as one C header, for C99 and C++11.
 
-    Its first lines say how it is used.
+    The first lines of the header say how it is used.
 
     Parameters
     ----------
     path : path-like
-        Where to; an existing file is replaced.
+        File to write; an existing file is replaced.
     model : ImpactModel
         Pair, law and table.
     table : {"cor", "none"}, optional
@@ -91,14 +91,14 @@ def header(
     TypeError
         If the model is no ImpactModel.
     ValueError
-        An unknown kind of table, or a header that would exceed 500 kB, by a large table.
+        If the kind of table is unknown, or a large table would make the header exceed 500 kB.
     OSError
         If the file cannot be written; nothing is left behind then.
 
     Notes
     -----
-    With ``contactlaw_step`` any law acts as in `contactlaw.softsphere`, with ``contactlaw_rebound``
-    as in `ImpactModel.solve`, with ``contactlaw_restitution`` as in `ImpactModel.kernel`.
+    For every law, ``contactlaw_step`` computes what `contactlaw.softsphere` does,
+    ``contactlaw_rebound`` `ImpactModel.solve`, and ``contactlaw_restitution`` `ImpactModel.kernel`.
 
     Examples
     --------
@@ -123,7 +123,7 @@ def header(
 
 
 def packed(model: ImpactModel, table: Table) -> Array:
-    """COR's part of the array that the lookup kernels read."""
+    """Array of the lookup kernels, without the part that COR does not need."""
     whole = lookup.with_plate(table.packed, factors(model.pair, model.force_law).plate)
     return whole[: int(whole[lookup.OTHERS_AT])]
 
@@ -134,7 +134,7 @@ def _text(model: ImpactModel, table: Table | None) -> str:
     template = _SECTION.sub("" if table is None else r"\1", template)
     spring = unit_spring(model, 1.0)
     made = factors(model.pair, model.force_law)
-    transit = made.plate.transit * made.time  # of a shear wave, at H = 1 m
+    transit = made.plate.transit * made.time  # time of a shear wave through a plate of H = 1 m
     plate, groups = made.plate, list(_impact())
     values = {
         "version": VERSION,
@@ -177,9 +177,10 @@ def _definitions() -> dict[str, str]:
 
 
 def _impact() -> Iterator[tuple[list[str], str]]:
-    """Members of an impact in C, and what `Rebound` says of them.
+    """Members of an impact in C, in groups, with the descriptions of `Rebound`.
 
-    Its overload needs a second integration, and its flags have a function of their own.
+    The overload is left out, as it needs a second integration, and so are the flags, which have a
+    function of their own.
     """
     said = {"loading_time": "Time from first touch to the largest compression [s]."}
     for names, text in _ATTRIBUTES.findall(inspect.getdoc(Rebound) or ""):
@@ -230,7 +231,7 @@ def _body(material: Material) -> str:
 
 
 def _comment(text: str) -> list[str]:
-    """Lines within a comment of C, whatever a user calls a law or a material."""
+    """Lines within a comment of C, which no name of a law or a material can end."""
     plain = text.encode("ascii", "replace").decode()
     plain = "".join(c if c.isprintable() else " " for c in plain)
     plain = plain.replace("*/", "* /").replace("/*", "/ *").replace("\\", "/").replace("??", "?")
@@ -240,7 +241,7 @@ def _comment(text: str) -> list[str]:
 
 
 def _number(value: float) -> str:
-    """Write a number of C that is read back as it is."""
+    """Write a number for C, which reads back the same double."""
     if math.isinf(value):
         return "HUGE_VAL" if value > 0.0 else "-HUGE_VAL"
     return repr(float(value))

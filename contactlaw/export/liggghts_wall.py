@@ -1,7 +1,7 @@
-"""A normal model for the walls of LIGGGHTS: its header, and what makes a library of it.
+"""A normal model for the walls of LIGGGHTS: its header, and the files to build a library of it.
 
-The law is that of `contactlaw.export.header`, which each contact steps through; LIGGGHTS has the
-walls, their motion, friction and the ranks.
+The force of each contact is that of `contactlaw.export.header`, step by step. Walls, their motion,
+friction and ranks are LIGGGHTS's.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ _FILES = "normal_model_contactlaw.h.in", "wall_contactlaw.cpp", "build.sh", "REA
 
 
 def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
-    """Write what adds a pair of materials to LIGGGHTS 3.8, as a normal model of ``fix wall/gran``.
+    """Write a pair of materials as a normal model of LIGGGHTS 3.8, for ``fix wall/gran``.
 
     Parameters
     ----------
     folder : path-like
-        Where to; it is made if need be, in a folder that is there. Files of the same names are
+        Folder to write into; it is made if its parent exists. Files of the same names are
         replaced.
     model : ImpactModel
         Pair and law.
@@ -45,10 +45,11 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     -----
     ``README.txt`` says how it is built and used. ``build.sh`` makes a library that Debian's binary
     loads; the headers ``contactlaw.h`` and ``normal_model_contactlaw.h`` also go into the sources
-    of LIGGGHTS. A wall's thickness is a property of its type, so one pair serves walls of several.
+    of LIGGGHTS. The thickness is a property of a wall's atom type, so walls of one pair may differ
+    in thickness.
 
-    Normal impacts as in `contactlaw.softsphere`, with LIGGGHTS's ``tangential history`` for
-    friction. Bead on bead is LIGGGHTS's own.
+    Normal forces are those of `contactlaw.softsphere`, friction is LIGGGHTS's ``tangential
+    history``. Contacts between beads are LIGGGHTS's own.
 
     Examples
     --------
@@ -59,7 +60,7 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     >>> sorted(path.name for path in folder.iterdir())  # doctest: +NORMALIZE_WHITESPACE
     ['README.txt', 'build.sh', 'contactlaw.h', 'normal_model_contactlaw.h', 'wall_contactlaw.cpp']
     """
-    folder = Path(os.path.realpath(folder))  # beside what a link leads to: one file system
+    folder = Path(os.path.realpath(folder))  # the temporary folder has to be on its file system
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as made:
         c_header.header(Path(made) / "contactlaw.h", model, table="none")
         for name, content in _texts(model).items():
