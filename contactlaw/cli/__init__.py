@@ -1,7 +1,7 @@
 """Command line: ``contactlaw cor | sweep | constant | fit | history | export | ...``.
 
-Each file of this folder is a subcommand, with its options and what it does: its function `add`
-takes what argparse adds subcommands to. What several of them need is in `parts`.
+Each file of this folder is a subcommand: its function `add` adds the parser and options to
+argparse's subparsers. Code that several subcommands share is in `parts`.
 """
 
 from __future__ import annotations
@@ -37,18 +37,18 @@ def main(argv: Sequence[str] | None = None) -> int:
       "restitution": 0.7...
     """
     arguments = parser().parse_args(options.joined(sys.argv[1:] if argv is None else argv))
-    if sys.stdout is None:  # so Python has it where the shell says >&-
+    if sys.stdout is None:  # the shell has closed it by >&-
         wording.say("the standard output is closed")
         return _REFUSED
     try:
         with warnings.catch_warnings():
             warnings.showwarning = wording.say_warning  # type: ignore[assignment]
             arguments.run(arguments)
-        sys.stdout.flush()  # here, where a reader that has gone can be dealt with
+        sys.stdout.flush()  # here, so that a closed pipe is caught below
     except KeyboardInterrupt:
         wording.say("interrupted")
         return _INTERRUPTED
-    except BrokenPipeError:  # the reader has seen enough, as `head` does
+    except BrokenPipeError:  # the reader has closed the pipe, as `head` does
         _drop_output()
         return _DONE
     except (ValueError, RuntimeError, OSError, ImportError) as error:
@@ -62,9 +62,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """Make the parser of ``contactlaw``.
-
-    What it reads has what does the subcommand as `run`.
+    """Make the parser of ``contactlaw``; parsed arguments have the subcommand's function as `run`.
 
     Examples
     --------
@@ -85,5 +83,5 @@ def parser() -> argparse.ArgumentParser:
 
 
 def _drop_output() -> None:
-    """Let what is left in the buffer go nowhere, where Python would write it at its end."""
+    """Discard the rest of the buffer, which Python would otherwise write at its exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

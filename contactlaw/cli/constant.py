@@ -1,4 +1,4 @@
-"""``contactlaw constant``: one COR for each wall, and what it gets wrong."""
+"""``contactlaw constant``: one COR for each wall, and its errors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from contactlaw.model import ImpactModel
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    about = "one COR for each wall, and what it gets wrong"
+    about = "one COR for each wall, and its errors"
     command = options.command(commands, "constant", about, _run)
     options.add_pair(command, required=False)
     options.add_sizes(command, quantities.values, required=False)
@@ -24,21 +24,20 @@ def add(commands: Any) -> None:
         "--speed",
         metavar="V",
         type=reader_of(quantities.values, SPEED),
-        help="normal approach speeds [m/s], or with a unit, one as frequent as the other",
+        help="normal approach speeds [m/s], or with a unit; all are equally frequent",
     )
     add(
         "--record",
         metavar="FILE",
-        help="impacts that have happened: rain.h5 or sieve.h5 of dem-demo, an engine's record "
-        "(.npy), or CSV with a column speed_m/s, and perhaps radius_m, thickness_m, weight and "
-        "plate",
+        help="recorded impacts: rain.h5 or sieve.h5 of dem-demo, an engine's record (.npy), or "
+        "CSV with a column speed_m/s and, optionally, radius_m, thickness_m, weight and plate",
     )
     options.add_law(command, default=None)
     command.add_argument(
         "--keep",
         default="energy",
         choices=["energy", "momentum"],
-        help="what the wall takes in all as with each impact's own COR (default: %(default)s)",
+        help="what the wall takes in total as with each impact's own COR (default: %(default)s)",
     )
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print a row per wall in SI units, every digit")
@@ -68,7 +67,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _happened(arguments: argparse.Namespace) -> records.Impacts:
-    """Impacts of the record, or every combination of the speeds with what else options say."""
+    """Impacts of the record, or every combination of the given speeds, radii and thicknesses."""
     asked.check_quantities(arguments)
     sizes = (arguments.radius, arguments.thickness)
     if arguments.record is None:

@@ -20,10 +20,10 @@ def add(commands: Any) -> None:
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
     add("--json", action="store_true",
-        help="print all fields in SI units, of several impacts a list; inf is null")  # fmt: skip
+        help="print all fields in SI units, a list for several impacts; inf is null")  # fmt: skip
     add("--plot", metavar="FILE",
-        help="draw the COR over these speeds into FILE (PNG, SVG, PDF), a curve per thickness; a "
-        "single speed is where they end")  # fmt: skip
+        help="draw the COR over these speeds into FILE (PNG, SVG, PDF), a curve per thickness; "
+        "with a single speed, up to that")  # fmt: skip
     command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
@@ -46,7 +46,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _as_json(rows: list[dict[str, object]]) -> object:
-    """Rows; of one impact, which its caller knows, what comes of it."""
+    """Rows; for a single impact, one record without the speed and sizes that the user gave."""
     if len(rows) > 1:
         return rows
     known = ("speed", "radius", "thickness")

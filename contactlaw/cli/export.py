@@ -1,4 +1,4 @@
-"""``contactlaw export``: files for codes that Python cannot reach."""
+"""``contactlaw export``: source files for codes that do not run Python."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from contactlaw.model import ImpactModel
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    about = "files for codes that Python cannot reach: header, liggghts"
+    about = "source files for codes that do not run Python: header, liggghts"
     kinds = options.group(commands, "export", about, "KIND", "what to write")
     header = options.command(
-        kinds, "header", "the law and a table of COR as one file in C, which C++ takes too",
+        kinds, "header", "the law and a table of COR as one file for C and C++",
         _header,
     )  # fmt: skip
     options.add_pair(header)
@@ -26,7 +26,7 @@ def add(commands: Any) -> None:
                         help="with a table of COR, or without: law and integration alone "
                         "(default: %(default)s)")  # fmt: skip
     liggghts = options.command(
-        kinds, "liggghts", "a normal model for the walls of LIGGGHTS, and how it is built",
+        kinds, "liggghts", "a normal model for the walls of LIGGGHTS, with a build script",
         _liggghts,
     )  # fmt: skip
     options.add_pair(liggghts)

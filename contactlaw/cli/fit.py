@@ -22,9 +22,9 @@ def add(commands: Any) -> None:
     add(
         "data",
         metavar="FILE",
-        help="CSV with a row per rebound: speed_m/s, one at least of COR, contact_time_us and "
-        "peak_force_N, each perhaps with its standard error (COR_error), and perhaps radius_mm "
-        "and thickness_mm",
+        help="CSV with a row per rebound: speed_m/s, at least one of COR, contact_time_us and "
+        "peak_force_N, and optionally their standard errors (COR_error), radius_mm and "
+        "thickness_mm",
     )
     options.add_pair(command)
     length = reader_of(quantities.value, LENGTH)
@@ -40,12 +40,12 @@ def add(commands: Any) -> None:
         default=[],
         metavar="NAME=ERROR",
         type=_prior,
-        help="standard error of one of these that is given, as density=20kg/m3; may be repeated "
-        "(default: all that is given is exact)",
+        help="standard error of a known one of these quantities, as density=20kg/m3; may be "
+        "repeated (default: known quantities are exact)",
     )
     options.add_name_of_law(command)
     add = command.add_mutually_exclusive_group().add_argument
-    add("--json", action="store_true", help="print all of it in SI units")
+    add("--json", action="store_true", help="print the whole fit in SI units")
     add("--plot", metavar="FILE",
         help="draw data, fit, its band and residuals into FILE (PNG, SVG, PDF)")  # fmt: skip
     command.epilog = options.UNITS
@@ -56,7 +56,7 @@ def _names(text: str) -> tuple[str, ...]:
 
 
 def _prior(text: str) -> tuple[str, float]:
-    """Read a name and a standard error, in the unit of what it is of.
+    """Read the name of a quantity and its standard error, in a unit of that quantity.
 
     Examples
     --------

@@ -37,7 +37,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _contact(arguments: argparse.Namespace) -> ForceHistory:
-    """Force over time; what the flags say goes beside the output, which is CSV alone."""
+    """Force over time; flags are warnings on stderr, because the output is CSV alone."""
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
     model = asked.model(arguments)

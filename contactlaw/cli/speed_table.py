@@ -1,4 +1,4 @@
-"""``contactlaw speed-table``: COR over speed in the fewest rows that straight lines may join."""
+"""``contactlaw speed-table``: COR over speed in the fewest rows for linear interpolation."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from contactlaw.cli.parts.sheet import aligned, explained
 
 def add(commands: Any) -> None:
     """Add the subcommand and its options."""
-    about = "COR over speed in the fewest rows that straight lines may join"
+    about = "COR over speed in the fewest rows for linear interpolation"
     command = options.command(commands, "speed-table", about, _run)
     options.add_pair(command)
     options.add_sizes(command, quantities.value)
@@ -27,7 +27,7 @@ def add(commands: Any) -> None:
     add("--slowest", default=0.1, metavar="V", type=speed,
         help="first speed [m/s], or with a unit (default: %(default)s)")  # fmt: skip
     add("--fastest", default=10.0, metavar="V", type=speed,
-        help="last speed, likewise (default: %(default)s)")  # fmt: skip
+        help="last speed [m/s], or with a unit (default: %(default)s)")  # fmt: skip
     add(
         "--error",
         default=1e-3,
@@ -55,7 +55,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def text(found: SpeedTable) -> Iterator[str]:
-    """Lines for a terminal: rows of COR over speed, how right they are, and what the flags say.
+    """Lines for a terminal: rows of COR over speed, their error, and the meaning of the flags.
 
     Examples
     --------

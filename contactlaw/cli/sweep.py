@@ -19,7 +19,7 @@ from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity, count_flags
 
 _FORMAT, _SCHEMA = "contactlaw-sweep", 1
-_AXES = ("radius", "thickness", "speed")  # speeds change fastest along a sheet
+_AXES = ("radius", "thickness", "speed")  # from row to row, speeds change fastest
 _SUFFIXES = (".csv", ".h5", ".hdf5")
 
 
@@ -46,7 +46,7 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def check_suffix(path: str | os.PathLike[str]) -> None:
-    """Refuse a name that does not tell which kind of file is meant.
+    """Refuse a file name whose suffix is none of CSV or HDF5.
 
     Examples
     --------
@@ -66,23 +66,23 @@ def save(
     Parameters
     ----------
     sheet : Sheet
-        Of every combination, as `contactlaw.cli.parts.sheet.impacts` gives it.
+        Impacts of every combination, from `contactlaw.cli.parts.sheet.impacts`.
     model : ImpactModel
-        That answered.
+        Model of these impacts.
     axes : sequence of sequence of float
         Speeds, radii and thicknesses [m/s, m, m].
     path : path-like
         ``.csv``: a row per impact, units in the header. ``.h5``: radius, thickness and speed are
         the axes (HDF5 dimension scales), each field an array over them with its unit in the
-        attribute ``units`` (``"1"`` without one), and the limits that a flag stands for in the
-        attributes of ``flags``.
+        attribute ``units`` (``"1"`` without one). The attributes of ``flags`` have the number of
+        each limit.
 
     Raises
     ------
     ValueError
-        A file of another kind.
+        If the suffix is another.
     OSError
-        If the folder does not exist, is not writable or full.
+        If the folder does not exist or is not writable, or the disk is full.
     """
     check_suffix(path)
     if Path(path).suffix.lower() == ".csv":

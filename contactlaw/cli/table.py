@@ -28,7 +28,7 @@ def add(commands: Any) -> None:
         action.add_argument("file", nargs="?", metavar="FILE",
                             help="a table (default: the one in use for LAW)")  # fmt: skip
     for action in (info, check, build):
-        # not laws.DEFAULT, which may take numbers from a pair: this one's table ships
+        # not laws.DEFAULT, which may take numbers from a pair; the table of this law ships
         action.add_argument("--law", default="myc", metavar="LAW",
                             help="force law of the table (default: %(default)s)")  # fmt: skip
         action.add_argument(
@@ -36,7 +36,7 @@ def add(commands: Any) -> None:
             metavar="NAME",
             help="material of the bead, for laws that take numbers from a pair",
         )
-        action.add_argument("--plate", metavar="NAME", help="material of the plate, likewise")
+        action.add_argument("--plate", metavar="NAME", help="material of the plate, for such laws")
     check.add_argument("--points", type=int, default=10_000, metavar="N",
                        help="number of points, at least 100 (default: %(default)s)")  # fmt: skip
     check.add_argument("--seed", type=int, metavar="S",
@@ -86,7 +86,7 @@ def _stored(arguments: argparse.Namespace) -> table.Table:
 
 
 def _law(arguments: argparse.Namespace) -> laws.Law:
-    """Law of a table: by its name, or by that and a pair of materials."""
+    """Law of a table, by its name and, for laws with parameters of a pair, by the materials."""
     if not laws.parameters(arguments.law):
         return laws.law(arguments.law)
     if arguments.sphere is None or arguments.plate is None:

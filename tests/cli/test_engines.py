@@ -109,7 +109,7 @@ def test_a_constant_has_its_errors_beside_it(model, capsys):
         f"{100 * best.mean_energy_error:.2f}", "FAST_IMPACT",
     ]  # fmt: skip
     assert thick.split()[0] == "inf"
-    assert "95 of 100 impacts rebound to a height that is within this of their own" in meaning
+    assert "95 of 100 impacts rebound to a height that is within this share of their own" in meaning
     assert flag.startswith("FAST_IMPACT, 4 of 60: ")
 
 

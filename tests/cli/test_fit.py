@@ -76,7 +76,7 @@ def test_tables_as_people_write_them(head, rows, table):
     [
         (["velocity,COR", "1,0.5"], "no column of speeds in its first line, 'velocity, COR'"),
         (["speed_m/s,rebound", "1,0.5"], "nothing measured in its first line"),
-        (["speed_m/s,COR"], "it has no row beside the first line"),
+        (["speed_m/s,COR"], "it has no row after the first line"),
         (["speed_m/s,COR", "1,half"], "half"),
         (["speed [mph],COR", "1,0.5"], "'mph' is no unit of speed"),
         (["speed,COR,COR", "1,0.5,0.5"], "two columns of restitution"),

@@ -1,1 +1,1 @@
-"""What the command line is made of: options, wording, sheets, figures, records, lines."""
+"""Parts that subcommands share: options, messages, tables, figures, records, engines' lines."""

@@ -1,4 +1,4 @@
-"""What the options that subcommands share ask for."""
+"""Models, materials and figures from the options that subcommands share."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from contactlaw.physical.pair import Pair
 
 
 def model(arguments: argparse.Namespace) -> ImpactModel:
-    """Model of the materials, with the law and what to do outside its table."""
+    """Model of the given materials and law, with the given behaviour outside its table."""
     return ImpactModel(pair(arguments), law=arguments.law, outside=arguments.outside)
 
 
 def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
-    """Materials that are named, or else known."""
+    """Materials that the options name, otherwise those of the `known` pair of a record."""
     bodies = {}
     for name in ("sphere", "plate"):
         asked = getattr(arguments, name)
@@ -36,7 +36,7 @@ def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
 
 
 def check_quantities(arguments: argparse.Namespace) -> None:
-    """Refuse each value beyond its limits by itself: in all combinations it has no number."""
+    """Refuse values beyond their limits one by one, so that the message can name the value."""
     for name in ("speed", "radius", "thickness"):
         given = getattr(arguments, name, None)
         for value in () if given is None else np.atleast_1d(given).tolist():
@@ -45,7 +45,7 @@ def check_quantities(arguments: argparse.Namespace) -> None:
 
 @contextmanager
 def picture(arguments: argparse.Namespace) -> Iterator[None]:
-    """Refuse what cannot be drawn into, before anything is computed."""
+    """Refuse a file that cannot be drawn into before anything is computed; print its name after."""
     with wording.file_of("plot", arguments.plot):
         plots.check_suffix(arguments.plot)
         yield

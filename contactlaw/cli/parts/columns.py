@@ -20,28 +20,28 @@ _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 
 
 class Column(NamedTuple):
-    """What a column may be called, in lower case with underscores, and what is in it."""
+    """Possible names of a column, in lower case with underscores, and its quantity."""
 
     names: tuple[str, ...]
     quantity: Quantity | None  # None for bare numbers
 
 
 class Found(NamedTuple):
-    """Where a column is, and how many of its units are one of the SI."""
+    """Index of a column, and the number of its units in one SI unit."""
 
     place: int
-    per_unit: float  # to divide by, which rounds but once
+    per_unit: float  # values are divided by this, which rounds only once
 
 
 def heads(content: bytes) -> tuple[list[str], list[str], str]:
-    r"""Split a table into the names in its first line, its rows, and what stands between columns.
+    r"""Split a table into the names in its first line, its rows, and the delimiter of columns.
 
     Rows are the lines after the first; those that hold no data are empty.
 
     Raises
     ------
     ValueError
-        What is no text.
+        If the content is not text.
 
     Examples
     --------
@@ -61,15 +61,15 @@ def heads(content: bytes) -> tuple[list[str], list[str], str]:
 
 
 def locate(names: Sequence[str], columns: dict[str, Column]) -> dict[str, Found]:
-    """Find columns by their names; others are left alone.
+    """Find columns by their names; others are ignored.
 
-    A unit follows in brackets, or after a space or an underscore; a column without one is in that
-    of the SI.
+    A unit follows in brackets, or after a space or an underscore; a column without a unit is in SI
+    units.
 
     Raises
     ------
     ValueError
-        Two columns of one kind, or a unit of something else.
+        If two columns hold one quantity, or a unit is of another quantity.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def locate(names: Sequence[str], columns: dict[str, Column]) -> dict[str, Found]
 
 
 def _unit(head: str, column: Column) -> str | None:
-    """Take the unit of a head that is a column's name, empty without one; None: it is not."""
+    """Take the unit of a column's head, "" if it has none; None for another column's head."""
     bare = head.strip().lower().translate(_MICRO)
     match = _BRACKET.fullmatch(bare)
     name, unit = (match["name"], match["unit"].strip()) if match else (bare, "")
@@ -127,21 +127,21 @@ def numbers(
     Parameters
     ----------
     rows : sequence of str
-        As `heads` gives them.
+        Rows that `heads` returned.
     delimiter : str
-        What stands between columns.
+        Delimiter of columns.
     count : int
-        How many columns the first line names.
+        Number of columns that the first line names.
     wanted : list of int
-        Which to read.
+        Indices of the columns to read.
     read : callable, optional
-        From the text of a cell to its number.
+        Function that reads the number in the text of a cell.
 
     Raises
     ------
     ValueError
-        What is no number, with its row; a row with more fields than the first line, or with too
-        few for the columns that are wanted.
+        If a cell is no number, or a row has more fields than the first line or too few for the
+        wanted columns; the message names the row.
 
     Examples
     --------
@@ -151,7 +151,7 @@ def numbers(
     """
     _check_fields(rows, delimiter, count, max(wanted, default=-1) + 1)
     rows = [row for row in rows if row]
-    if not rows:  # of which loadtxt would warn
+    if not rows:  # loadtxt would warn
         return np.empty((0, len(wanted)))
     return np.loadtxt(
         rows, delimiter=delimiter, usecols=wanted, ndmin=2, quotechar='"', converters=read
@@ -159,7 +159,7 @@ def numbers(
 
 
 def _fields(row: str, delimiter: str) -> list[str]:
-    """Split a row, less a comment at its end and the separators that spreadsheets leave there."""
+    """Split a row, without a comment or the delimiters that spreadsheets leave at its end."""
     try:
         found = next(csv.reader([row.partition("#")[0]], delimiter=delimiter), [])
     except csv.Error as error:
@@ -170,10 +170,10 @@ def _fields(row: str, delimiter: str) -> list[str]:
 
 
 def _check_fields(rows: Sequence[str], delimiter: str, count: int, least: int) -> None:
-    """Refuse rows with more fields than the first line: numbers would shift in silence.
+    """Refuse rows with more fields than the first line: numbers might be in the wrong column.
 
-    Those that end before the last wanted column, which is the `least` number of fields, are refused
-    too, unless they have the separators up to there.
+    Rows with fewer than the `least` number of fields, which ends with the last wanted column, are
+    refused too, unless they have the delimiters up to there.
     """
     for line, row in enumerate(rows, start=2):
         fields = _fields(row, delimiter)
@@ -191,7 +191,7 @@ def _counted(count: int, what: str) -> str:
 
 
 def _why(row: str, delimiter: str, more: bool) -> str:
-    """Say what has most likely happened to a row with too many or too few fields."""
+    """Likely cause and remedy for a row with too many or too few fields."""
     if more and delimiter == "," and "." not in row and re.search(r"\d,\d", row):
         return (
             "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns "

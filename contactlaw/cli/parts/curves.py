@@ -1,4 +1,4 @@
-"""COR over speed, a curve per bead and plate: what pictures of it are made of."""
+"""COR over speed, a curve per bead and plate, to be drawn."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from contactlaw.model import ImpactModel
 
 Array = NDArray[np.float64]
 
-_SAMPLES = 400  # speeds of a curve: steps of half a millimetre on a slide
-_MOST_CURVES, _MOST_PANELS = 8, 6  # that can be told apart in one picture
+_SAMPLES = 400  # speeds per curve: steps of half a millimetre on a slide
+_MOST_CURVES, _MOST_PANELS = 8, 6  # more could not be distinguished in one figure
 
 
 class Curve(NamedTuple):
@@ -28,7 +28,7 @@ class Curve(NamedTuple):
     restitution: Array
     flags: NDArray[np.int64]
     yield_speed: float  # inf if nothing yields
-    at_yield: float  # COR there; NaN where the curve does not reach it
+    at_yield: float  # COR at the yield speed; NaN if the curve does not reach it
 
 
 def restitution_curves(
@@ -43,21 +43,22 @@ def restitution_curves(
     Parameters
     ----------
     model : ImpactModel
-        Of the pair of materials.
+        Model of the pair of materials.
     speeds, radii, thicknesses : sequence of float
-        Of impacts [m/s], beads and plates [m]. With one speed curves begin at a tenth of it.
+        Impact speeds [m/s], bead radii [m] and plate thicknesses [m]. With a single speed, curves
+        begin at a tenth of it.
     solve : bool, optional
-        Whether to integrate the equation.
+        Whether to integrate the equation instead of using the table.
 
     Returns
     -------
     list of Curve
-        By radius, and by thickness for each radius.
+        Sorted by radius, and by thickness for each radius.
 
     Raises
     ------
     ValueError
-        More curves than can be told apart in one picture, or what the model refuses.
+        If there are too many curves for one figure, or the model refuses an impact.
 
     Examples
     --------
@@ -88,7 +89,7 @@ def _speeds(least: float, largest: float) -> Array:
 
 
 def is_logarithmic(least: float, largest: float) -> bool:
-    """Tell whether a range of speeds is so wide that it is spaced and drawn logarithmically.
+    """Whether a range of speeds is so wide that it is spaced and drawn logarithmically.
 
     Examples
     --------

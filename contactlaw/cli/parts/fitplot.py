@@ -1,4 +1,4 @@
-"""The picture of a fit: data, fitted curve, its band and the residuals, and where yield begins."""
+"""The figure of a fit: data, fitted curve with its band, residuals, and the speed of yield."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _SAMPLES = 160  # speeds of a curve
-_MOST_CURVES = 6  # beads and plates that can be told apart; of more, the fitted values are drawn
-_WIDER = 1.25  # than the data's speeds, on either side
+_MOST_CURVES = 6  # more could not be distinguished: then only the fitted values are drawn
+_WIDER = 1.25  # ratio of a curve's ends to the extreme speeds of the data
 
 
 class _Kind(NamedTuple):
     """How a quantity is drawn."""
 
     label: str
-    scale: float  # of its unit in the picture
+    scale: float  # figure units per SI unit
 
 
 _KINDS = {
@@ -49,13 +49,13 @@ class Group(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """Fit over speed."""
+    """Fitted quantities over speed, of one bead on one plate."""
 
     speed: Array
     values: dict[str, Array]
     errors: dict[str, Array]
-    yield_speed: float  # NaN where yield does not begin within the curve
-    yields: bool  # anywhere
+    yield_speed: float  # NaN if yield does not begin within the curve
+    yields: bool  # whether anything yields at some speed of the curve
 
 
 def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
@@ -64,16 +64,16 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
     Parameters
     ----------
     found : Fit
-        As `contactlaw.fit` gives it.
+        Result of `contactlaw.fit`.
     title : str
-        What it is.
+        Title of the figure.
     path : path-like
-        PNG, SVG or PDF, by its suffix.
+        File to write: PNG, SVG or PDF, by its suffix.
 
     Raises
     ------
     ImportError
-        Without matplotlib; the message says how to install it.
+        If matplotlib is missing; the message says how to install it.
     ValueError
         If the suffix names no format.
     """
@@ -101,7 +101,7 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
 
 
 def groups_of(found: Fit) -> Iterator[Group]:
-    """Part the rebounds by bead and plate."""
+    """Group the rebounds by bead and plate."""
     sizes = np.column_stack([found.radius, found.thickness])
     for radius, thickness in np.unique(sizes, axis=0).tolist():
         rows = np.flatnonzero((sizes == (radius, thickness)).all(axis=1))
@@ -113,7 +113,7 @@ def _speeds(found: Fit) -> Array:
 
 
 def curve_of(found: Fit, group: Group) -> Curve:
-    """Predict rebounds over a little more than the measured speeds, with standard errors."""
+    """Predict rebounds over a range a little wider than the measured speeds, with their errors."""
     speed = _speeds(found)
     v = np.geomspace(speed.min() / _WIDER, speed.max() * _WIDER, _SAMPLES)
     hit, errors = found.curve(v, group.radius, group.thickness)

@@ -1,4 +1,4 @@
-"""A fit for people and for programs: lines of text, and JSON."""
+"""A fit as lines of text and as JSON."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from contactlaw.fitting.unknowns import UNKNOWNS
 
 
 def text(found: Fit) -> Iterator[str]:
-    """Lines for a terminal: each value with its error and what it consists of, then what to know.
+    """Lines for a terminal: each value with its error and the error's parts, residuals, and notes.
 
     Examples
     --------
@@ -43,7 +43,7 @@ def text(found: Fit) -> Iterator[str]:
 
 
 def values_in_words(found: Fit) -> list[str]:
-    """Say what each unknown is, with its error."""
+    """Title, value and error of each unknown."""
     return [f"{UNKNOWNS[name].title} {_number(found, name)}" for name in found.unknown]
 
 

@@ -25,8 +25,8 @@ _LEAST = 0.05  # LIGGGHTS 3.8.0: "0.05 < coefficientRestitution <= 1 required"
 def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     """Lines of LAMMPS: ``pair_coeff`` for bead on bead, a ``fix wall/gran`` for each wall.
 
-    LAMMPS reads the modulus of a wall as E/(2 (1 - nu^2)), whatever the bead's: it is given the
-    one that makes this the pair's.
+    LAMMPS takes E/(2 (1 - nu^2)) of a wall as the effective modulus, whatever the bead's material
+    is. The line has the E for which this is the effective modulus of the pair.
 
     Examples
     --------
@@ -42,7 +42,7 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     sphere, pair = model.pair.sphere, model.pair
     beads = _bead_on_bead(model, found, keep)
     free = "linear_nohistory 0 0"
-    yield "# No friction: put your own after `tangential`. Say first where each wall is, as in"
+    yield "# No friction: put your own after `tangential`. Define first where each wall is, as in"
     yield '#     variable wall1 string "zplane 0 NULL"'
     yield "# Bead on bead, by the same law at the same speeds; after `pair_style granular`."
     yield "pair_coeff * * " + hertz_material(
@@ -60,7 +60,7 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
     Raises
     ------
     ValueError
-        A COR that LIGGGHTS does not take.
+        If a COR is below LIGGGHTS's limit.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
             )
     types = (f"{n} {_name(wall)}" for n, wall in enumerate(found, start=2))
     yield f"# Atom types: 1 beads, {', '.join(types)}. Wall on wall never happens: 1."
-    yield "# Bead on bead by the same law at the same speeds. `model hertz` gives what it is told;"
+    yield "# Bead on bead by the same law at the same speeds. `model hertz` reproduces this COR;"
     yield "# its moduli are property/global, too, and above 1 GPa it needs `hard_particles yes`."
     size = 1 + len(found)
     matrix = np.ones((size, size))
@@ -124,7 +124,7 @@ def _name(wall: Wall) -> str:
 
 
 def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
-    """Say where the numbers come from, and what each of them gets wrong."""
+    """Lines of a comment: the source of the numbers, and the errors of each."""
     pair = f"{model.pair.sphere.name} on {model.pair.plate.name}"
     yield f"{mark} contactlaw {VERSION}: {pair}, law {model.force_law.family}; SI units"
     yield from (f"{mark} {sentence}." for sentence in meaning(keep).rstrip(".").split(". "))
@@ -141,7 +141,7 @@ def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Itera
 
 
 def _bead_on_bead(model: ImpactModel, found: list[Wall], keep: Keep) -> Constant:
-    """One COR of beads that hit one of their own size as fast as they hit the walls."""
+    """One COR for beads that hit beads of their own size at the speeds of the impacts on walls."""
     v, r, w = (
         np.concatenate([getattr(wall, name) for wall in found])
         for name in ("speed", "radius", "weights")

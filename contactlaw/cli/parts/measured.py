@@ -32,7 +32,7 @@ _COLUMNS = {
 
 
 class Read(NamedTuple):
-    """Columns of a file in SI units, by the names of `Measurements`, and those it has beside."""
+    """Columns of a file in SI units, by the names of `Measurements`, and names of unused ones."""
 
     columns: dict[str, Any]
     unused: tuple[str, ...]
@@ -44,11 +44,11 @@ def read(path: str | os.PathLike[str]) -> Read:
     Parameters
     ----------
     path : path-like
-        Text: columns between commas, semicolons or tabs, with names and units in the first line,
-        as in ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``; a column without a
-        unit is in that of the SI. Speeds, and one at least of COR (restitution), contact time and
-        peak force, each perhaps with its standard error, ``..._error``; perhaps radius and
-        thickness. An empty cell was not measured.
+        Text file with columns between commas, semicolons or tabs, and names and units in the first
+        line, as in ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``; a column
+        without a unit is in SI units. Required are speeds, and at least one of COR (restitution),
+        contact time and peak force. Optional are their standard errors, ``..._error``, and radius
+        and thickness. An empty cell was not measured.
 
     Returns
     -------
@@ -57,9 +57,9 @@ def read(path: str | os.PathLike[str]) -> Read:
     Raises
     ------
     ValueError
-        What is no table, lacks a column, or has a cell that is no number.
+        If the file is no table, lacks a column, or has a cell that is no number.
     OSError
-        A file that cannot be opened.
+        If the file cannot be opened.
 
     Examples
     --------
@@ -94,7 +94,7 @@ def _read(content: bytes) -> Read:
             "or peak_force_N"
         )
     if not rows:
-        raise ValueError("it has no row beside the first line")
+        raise ValueError("it has no row after the first line")
     wanted = [one.place for one in found.values()]
     table = columns.numbers(rows, delimiter, len(names), wanted, columns.number_or_nan)
     picked = {
@@ -106,14 +106,14 @@ def _read(content: bytes) -> Read:
 
 
 def measurements(path: str | os.PathLike[str], **sizes: float | None) -> Measurements:
-    r"""Read a table of rebounds, whose radius and thickness may be given for all.
+    r"""Read a table of rebounds; a radius and a thickness may be given for all of them.
 
     Parameters
     ----------
     path : path-like
         As in `read`.
     **sizes : float or None
-        ``radius`` and ``thickness`` [m]; None where the table has its own, or they are unknown.
+        ``radius`` and ``thickness`` [m]; None if the table has the column, or it is unknown.
 
     Returns
     -------
@@ -122,7 +122,7 @@ def measurements(path: str | os.PathLike[str], **sizes: float | None) -> Measure
     Raises
     ------
     ValueError
-        As in `read`; a size that the table has, too; values out of range.
+        As in `read`; also if the table has a given size, too, or values are out of range.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Options that subcommands share, and what the help says of them."""
+"""Options that subcommands share, with their help."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ _NEGATIVE = re.compile(r"-(?:\.?\d|inf)")
 def joined(words: Iterable[str]) -> list[str]:
     """Join an option with a negative quantity that follows it.
 
-    argparse takes -1 for a number and -1mm for an option, whose name is then missing. Whether a
-    quantity may be negative is for its reader to say.
+    argparse takes -1 for a number but -1mm for an option. The reader of the quantity decides
+    whether it may be negative.
 
     Examples
     --------
@@ -44,14 +44,14 @@ def joined(words: Iterable[str]) -> list[str]:
 
 
 def command(commands: Any, name: str, about: str, run: Run) -> argparse.ArgumentParser:
-    """Add a subcommand, which `run` does."""
+    """Add a subcommand, which calls `run`."""
     made = _described(commands, name, about)
     made.set_defaults(run=run)
     return made
 
 
 def group(commands: Any, name: str, about: str, metavar: str, what: str) -> Any:
-    """Add a subcommand that has some of its own; what they are added to."""
+    """Add a subcommand with actions of its own; return the subparsers to add these to."""
     made = _described(commands, name, about)
     return made.add_subparsers(required=True, metavar=metavar, help=what)
 
@@ -63,7 +63,7 @@ def _described(commands: Any, name: str, about: str) -> argparse.ArgumentParser:
 
 
 def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
-    """Add the options of commands about impacts; quantities are read as one or as several."""
+    """Add the options of commands about impacts; `read` reads one value or several."""
     add_pair(command)
     add_sizes(command, read)
     command.add_argument("--speed", required=True, metavar="V", type=reader_of(read, SPEED),
@@ -78,7 +78,7 @@ _OF_RECORD = " (default: that of the record)"
 
 
 def add_pair(command: argparse.ArgumentParser, required: bool = True) -> None:
-    """Add materials; what is not required has a record that may know it."""
+    """Add the options of materials; if not required, a record may have them."""
     add, known = command.add_argument, "" if required else _OF_RECORD
     add("--sphere", required=required, metavar="NAME",
         help=f"material of the bead, see materials{known}")  # fmt: skip
@@ -86,7 +86,7 @@ def add_pair(command: argparse.ArgumentParser, required: bool = True) -> None:
 
 
 def add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = True) -> None:
-    """Add sizes, likewise."""
+    """Add the options of sizes; if not required, a record may have them."""
     add, known = command.add_argument, "" if required else _OF_RECORD
     add("--radius", required=required, metavar="R", type=reader_of(read, LENGTH),
         help=f"radius of the bead [m], or with a unit{known}")  # fmt: skip
@@ -95,14 +95,14 @@ def add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = T
 
 
 def add_name_of_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
-    """Add the law."""
+    """Add the option of the law."""
     stated = default or f"that of the record, or {laws.DEFAULT}"
     command.add_argument("--law", default=default, metavar="LAW",
         help=f"force law: {', '.join(laws.names())} (default: {stated})")  # fmt: skip
 
 
 def add_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
-    """Add the law, and what to do outside its table."""
+    """Add the options of the law and of the behaviour outside its table."""
     add_name_of_law(command, default)
     command.add_argument("--outside", default="raise", choices=["raise", "solve", "clamp"],
         help="outside the table: refuse, integrate the equation, or take the value at its border "
@@ -110,7 +110,7 @@ def add_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT
 
 
 def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
-    """Make of a reader of quantities one for an option, with errors that argparse takes over."""
+    """Reader of an option from a reader of quantities, with errors that argparse reports."""
 
     def one(text: str) -> Any:
         try:

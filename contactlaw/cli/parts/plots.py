@@ -1,4 +1,4 @@
-"""Figures that the command line draws; matplotlib is loaded when one is asked for."""
+"""Figures that the command line draws; matplotlib is loaded when one is drawn."""
 
 from __future__ import annotations
 
@@ -49,16 +49,16 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
     Parameters
     ----------
     contact : ForceHistory
-        Of one impact.
+        Force, compression and displacement over time of one impact.
     title : str
-        What it is.
+        Title of the figure.
     path : path-like
-        PNG, SVG or PDF, by its suffix.
+        File to write: PNG, SVG or PDF, by its suffix.
 
     Raises
     ------
     ImportError
-        Without matplotlib; the message says how to install it.
+        If matplotlib is missing; the message says how to install it.
     ValueError
         If the suffix names no format.
     """
@@ -98,17 +98,17 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
 def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLike[str]) -> None:
     """Draw the COR over speed into a file: a curve per plate or bead, first yield marked.
 
-    A curve is dashed where an answer carries a flag of `Validity.ACCURACY`. Several beads on
-    several plates have a panel per bead.
+    A curve is dashed where impacts have a flag of `Validity.ACCURACY`. Several beads on several
+    plates have a panel per bead.
 
     Parameters
     ----------
     curves : sequence of Curve
-        As `contactlaw.cli.parts.curves.restitution_curves` makes them.
+        Result of `contactlaw.cli.parts.curves.restitution_curves`.
     title : str
-        What it is.
+        Title of the figure.
     path : path-like
-        PNG, SVG or PDF, by its suffix.
+        File to write: PNG, SVG or PDF, by its suffix.
 
     Raises
     ------
@@ -140,7 +140,7 @@ def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) 
     for axes in grid.flat[len(panels) :]:
         axes.set_visible(False)
     _axes(grid, panels)
-    figure.draw_without_rendering()  # where the ends of the curves are is known then
+    figure.draw_without_rendering()  # so that the positions of the curves' ends are known
     for axes, curves in zip(grid.flat, panels, strict=False):
         names = _names(curves, by_radius, short=len(panels) > 1)
         _label(axes, curves, names)
@@ -185,16 +185,16 @@ def plate_of(thickness: float) -> str:
 
 
 def length_of(length: float) -> str:
-    """Write a length [m] in the unit that suits it; inf is that of a half-space."""
+    """Write a length [m] in a suitable unit; an infinite one is that of a half-space."""
     return _HALF_SPACE if length == math.inf else written(length, LENGTH).replace("um", "µm")
 
 
 def _draw(axes: Axes, curve: Curve, colour: Any) -> None:
-    """Draw a curve: solid, and dashed from where the first flag to where the last one is."""
+    """Draw a curve: dashed where it has flags of `Validity.ACCURACY`, otherwise solid."""
     flagged = (curve.flags & Validity.ACCURACY) != 0
     changes = np.flatnonzero(np.diff(flagged)) + 1
     for part in np.split(np.arange(flagged.size), changes):
-        # to the next part's first point, or there would be a gap
+        # Each part goes to the first point of the next one, because otherwise there is a gap.
         to = min(part[-1] + 2, flagged.size)
         line = (0, (3.0, 1.6)) if flagged[part[0]] else "-"
         axes.plot(
@@ -219,12 +219,12 @@ def _axes(grid: NDArray[Any], panels: list[list[Curve]]) -> None:
         decades = range(math.floor(math.log10(least)), math.ceil(math.log10(largest)) + 1)
         ticks = [step * 10.0**n for n in decades for step in steps]
         shown = [tick for tick in ticks if 0.999 * least <= tick <= 1.001 * largest]
-        shown = shown[:: 1 + len(shown) // 16]  # of thirty decades not every one
+        shown = shown[:: 1 + len(shown) // 16]  # at most 16 ticks, also over thirty decades
         first.set_xticks(shown, [f"{tick:g}" for tick in shown])
         first.minorticks_off()
     first.set_xlim(least, largest)
     lowest = min(float(curve.restitution.min()) for curve in curves)
-    span = max(1.0 - lowest, 0.05)  # elastic on a half-space it is 1
+    span = max(1.0 - lowest, 0.05)  # the COR of elastic beads on a half-space is 1 throughout
     first.set_ylim(max(0.0, 1.0 - 1.06 * span), 1.0 + 0.03 * span)
     for axes in grid.flat[max(0, len(panels) - grid.shape[1]) :]:  # the lowest of each column
         axes.set_xlabel("impact speed [m/s]")
@@ -234,7 +234,7 @@ def _axes(grid: NDArray[Any], panels: list[list[Curve]]) -> None:
 
 
 def _label(axes: Axes, curves: list[Curve], names: list[str]) -> None:
-    """Write at the end of each curve which one it is, none over another."""
+    """Write the name of each curve at its end, without overlap."""
     ends = [axes.transData.transform((curve.speed[-1], curve.restitution[-1])) for curve in curves]
     heights = axes.transAxes.inverted().transform(ends)[:, 1]
     line = 1.3 * 12.0 / 72.0 / (axes.bbox.height / axes.figure.dpi)
@@ -247,17 +247,17 @@ def _label(axes: Axes, curves: list[Curve], names: list[str]) -> None:
 
 
 def colour_of(n: int, count: int) -> Any:
-    """Dark to bright, none too pale for a line."""
+    """Colour of line n of some, from dark to bright, none too pale for a line."""
     from matplotlib import colormaps
 
     return colormaps["viridis"](0.82 * n / max(count - 1, 1))
 
 
 def _spread(heights: Array, least: float) -> Array:
-    """Move heights in an axes apart to a least distance, as little as that takes (squared)."""
+    """Move heights apart to a least distance, with the least sum of squared displacements."""
     order = np.argsort(heights)
     shifts = least * np.arange(heights.size)
-    # that is an isotonic regression, of neighbours pooled about their mean where they are too near
+    # This is an isotonic regression: neighbours that are too near are pooled about their mean.
     blocks: list[list[float]] = []
     for height in heights[order] - shifts:
         blocks.append([float(height)])

@@ -1,8 +1,7 @@
-"""Quantities as people write them: ``0.9mm``, ``0.5mm,1mm,inf``, ``0.1:10:50log``.
+"""Quantities on the command line: ``0.9mm``, ``0.5mm,1mm,inf``, ``0.1:10:50log``.
 
-Two dozen units of seven kinds are one table. A library of units such as pint knows a thousand,
-would be one more dependency of everybody's, and would leave lists and ranges to be read here all
-the same.
+A library of units such as pint would be one more dependency for two dozen units, and lists and
+ranges would still have to be read here.
 """
 
 from __future__ import annotations
@@ -23,14 +22,14 @@ _COUNT = re.compile(r"\s*[0-9]{1,9}\s*(log)?\s*")
 
 
 class Quantity(NamedTuple):
-    """What is measured, and the units in which it may be given; the first is that of the SI."""
+    """A physical quantity, and the units in which it may be given; the first is the SI unit."""
 
     name: str
     units: dict[str, Decimal]
 
     @property
     def si(self) -> str:
-        """Unit of a number that has none."""
+        """SI unit, which holds for a number without a unit."""
         return next(iter(self.units))
 
 
@@ -65,27 +64,26 @@ class _Item(NamedTuple):
 
 
 def values(text: str, quantity: Quantity) -> tuple[float, ...]:
-    """Read a list of numbers and ranges, each with its unit or all in that of the SI.
+    """Read a list of numbers and ranges, each with its unit or all in SI units.
 
     Parameters
     ----------
     text : str
         Items with commas between them: a number, or a range start:stop:count of evenly spaced
-        values, its ends among them; ``log`` after the count spaces them logarithmically.
+        values that include both ends; ``log`` after the count spaces them logarithmically.
     quantity : Quantity
         `LENGTH`, `SPEED` or another of this module.
 
     Returns
     -------
     tuple of float
-        In SI units, in the order given, and as they would be typed with the point shifted: 0.9mm is
-        0.9e-3 to the last bit. Any sign, ``inf`` and ``nan`` are read: who takes the values has
-        limits for them.
+        Values in SI units, in the order given, without rounding by the unit: 0.9mm is 0.9e-3 to
+        the last bit. Any sign, ``inf`` and ``nan`` are read: limits are for the caller to check.
 
     Raises
     ------
     ValueError
-        What cannot be read, a unit of something else, units at some of the numbers only.
+        If the text cannot be read, a unit is of another quantity, or only some numbers have units.
 
     Examples
     --------
@@ -104,7 +102,7 @@ def values(text: str, quantity: Quantity) -> tuple[float, ...]:
 
 
 def value(text: str, quantity: Quantity) -> float:
-    """Read one number with its unit, or in that of the SI.
+    """Read one number with its unit, or in the SI unit.
 
     Examples
     --------
@@ -118,7 +116,7 @@ def value(text: str, quantity: Quantity) -> float:
 
 
 def written(size: float, quantity: Quantity) -> str:
-    """Write a value with six digits, a length in the unit that suits it.
+    """Write a value with six digits, a length in a suitable unit.
 
     Examples
     --------
@@ -129,14 +127,14 @@ def written(size: float, quantity: Quantity) -> str:
         return f"{size:g}"
     unit = quantity.si
     if quantity is LENGTH:
-        # in mm what people have in mm: a plate of 0.1 mm as much as one of 20 mm
+        # from 0.1 mm to 1 m in mm, because plates are usually given in mm
         unit = next((u for u, least in (("m", 1.0), ("mm", 1e-4), ("um", 1e-7)) if size >= least),
                     "nm")  # fmt: skip
     return f"{size / float(quantity.units[unit]):g} {unit}"
 
 
 def _ends(item: str) -> list[str]:
-    """Parts of an item that are numbers with a unit: one, or the two ends of a range."""
+    """Parts of an item that are numbers with units: a number, or the two ends of a range."""
     parts = item.split(":")
     if len(parts) == 1:
         return parts

@@ -1,7 +1,6 @@
-"""Impacts as rows: every combination of some speeds, radii and thicknesses.
+"""Impacts as rows of a table: every combination of some speeds, radii and thicknesses.
 
-A sheet is printed for people, for spreadsheets (CSV) or for programs (JSON); which columns there
-are, and in which units, is listed once.
+A sheet is printed for a terminal, as CSV or as JSON; its columns and their units are listed once.
 """
 
 from __future__ import annotations
@@ -28,15 +27,15 @@ from contactlaw.table import file
 
 Array = NDArray[np.float64]
 
-_MOST = 1_000_000  # impacts: half a minute of text, 100 MB of it
+_MOST = 1_000_000  # impacts, which take half a minute to print: 100 MB of text
 
 
 class _Column(NamedTuple):
     name: str
-    unit: str  # of the SI, as in CSV
-    title: str = ""  # on a terminal; those without one are not shown there
+    unit: str  # SI unit, as in CSV
+    title: str = ""  # name on a terminal; a column without one is not shown there
     shown: str = "-"  # unit on a terminal
-    scale: float = 1.0  # of that unit
+    scale: float = 1.0  # number of these units in one SI unit
 
 
 _COLUMNS = (
@@ -57,13 +56,13 @@ _COLUMNS = (
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """Impacts and what comes of them, in SI units, each column an array of one length.
+    """Impacts and their results in SI units; all columns have the same length.
 
     Attributes
     ----------
     columns : dict of str to ndarray
-        Speed, radius, thickness, the fields of a `Rebound` but for its flags, and the yield speed:
-        inf where nothing yields, or so thin a plate is hit that it is beyond the table.
+        Speed, radius, thickness, the fields of a `Rebound` except its flags, and the yield speed,
+        which is inf if nothing yields or an impact at yield is outside the table.
     flags : ndarray of int64
         `Validity` limits that an impact exceeds.
     """
@@ -88,16 +87,17 @@ def impacts(
     Parameters
     ----------
     model : ImpactModel
-        Of the pair of materials.
+        Model of the pair of materials.
     speeds, radii, thicknesses : sequence of float
-        Of impacts [m/s], beads and plates [m]; speeds change fastest along the sheet.
+        Impact speeds [m/s], bead radii [m] and plate thicknesses [m]; along the rows, speeds change
+        fastest.
     solve : bool, optional
-        Whether to integrate the equation.
+        Whether to integrate the equation instead of using the table.
 
     Raises
     ------
     ValueError
-        More than a million impacts, or what the model refuses.
+        If there are more than a million impacts, or the model refuses one.
 
     Examples
     --------
@@ -120,30 +120,30 @@ def impacts(
             rebound = _solver(model, limited).rebounds(Impacts.on_plates(v, r, h))
         else:
             rebound = model.solve(v, r, h) if solve else model.lookup(v, r, h)
-    first = slice(None, None, len(speeds))  # of each bead on each plate
+    first = slice(None, None, len(speeds))  # first row of each bead on each plate
     yields = np.repeat(yield_speeds(model, r[first], h[first]), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
     return Sheet({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
 
 
 def _tableless(model: ImpactModel) -> bool:
-    """Whether to do without a table: Python would take minutes to build it."""
+    """Whether to integrate instead: without numba's compiler, building a table takes minutes."""
     law = model.force_law
     ships = (law.is_hertz and not law.yields) or file.packaged(law) is not None
     return switched_off() and model.outside != "clamp" and not ships
 
 
 def _solver(model: ImpactModel, limited: bool) -> Solver:
-    """Solver of a model, within the limits of its table or without."""
+    """Solver of a model, limited to the extent of its table or unlimited."""
     law = model.force_law
     bodies = SphereOnPlate(model.pair, law)
     return Solver(bodies, extent=extent(law)) if limited else Solver(bodies)
 
 
 def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
-    """Yield speeds [m/s]; inf for so thin a plate that it is beyond the table.
+    """Yield speeds [m/s]; inf if an impact at that speed is outside the table.
 
-    An impact on that plate need not be beyond it.
+    Other impacts on the same plate may be inside the table.
 
     Examples
     --------
@@ -164,7 +164,7 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
 
 
 def text(sheet: Sheet) -> Iterator[str]:
-    """Lines for a terminal: names, units, a row per impact, and what the flags say.
+    """Lines for a terminal: names, units, a row per impact, and the meaning of the flags.
 
     Examples
     --------
@@ -189,7 +189,7 @@ def text(sheet: Sheet) -> Iterator[str]:
 
 
 def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
-    """Lines of columns that end at one place; the last one begins at one.
+    """Pad columns to equal width, aligned on the right; the last column is left-aligned.
 
     Examples
     --------
@@ -207,7 +207,7 @@ def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
 
 
 def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
-    """Lines that say what flags mean, and of how many impacts; none where there is no flag.
+    """Lines with the meaning of each flag and its number of impacts; none without flags.
 
     Examples
     --------
@@ -222,7 +222,7 @@ def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
 
 
 def write_csv(sheet: Sheet, out: TextIO) -> None:
-    """Write rows with every digit; the header has names and units of the SI.
+    """Write rows with every digit; the header has names and SI units.
 
     Examples
     --------
@@ -246,7 +246,7 @@ def write_csv(sheet: Sheet, out: TextIO) -> None:
 
 
 def records(sheet: Sheet) -> list[dict[str, object]]:
-    """Rows for JSON, which has no inf: no yield speed, and a half-space's thickness, are None.
+    """Rows for JSON, which has no inf: an infinite yield speed or thickness is None.
 
     Examples
     --------
@@ -268,7 +268,7 @@ def records(sheet: Sheet) -> list[dict[str, object]]:
 
 
 def units() -> dict[str, str]:
-    """Units of the columns; an empty one for those that have none.
+    """SI units of the columns, "" for a column without one.
 
     Examples
     --------
@@ -279,7 +279,7 @@ def units() -> dict[str, str]:
 
 
 def flag_names(flags: int) -> list[str]:
-    """Names of the limits that some flags stand for.
+    """Names of the limits in a sum of flags.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One COR for each wall of a machine: constants by thickness, printed or as CSV."""
+"""One COR for each wall of a machine, one per thickness, as text or CSV."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from contactlaw.physical.validity import Validity
 
 Array = NDArray[np.float64]
 
-_MOST = 100  # walls of different thickness, each of them a type of its own in an engine
+_MOST = 100  # walls of different thickness; in an engine, each takes a type of its own
 
 
 class Wall(NamedTuple):
-    """A wall: its thickness [m], its impacts [m/s, m, -], and one COR for all of them."""
+    """A wall, its impacts with speeds [m/s], radii [m] and weights [-], and one COR for all."""
 
     thickness: float
     speed: Array
@@ -33,26 +33,26 @@ class Wall(NamedTuple):
 
 
 def walls(model: ImpactModel, happened: Impacts, keep: Keep) -> list[Wall]:
-    """Put one COR in place of those of all impacts on plates of one thickness.
+    """Find one COR for all impacts on plates of one thickness.
 
     Parameters
     ----------
     model : ImpactModel
-        Of beads and plates.
+        Model of beads and plates.
     happened : Impacts
-        On all plates.
+        Impacts on all plates.
     keep : {"energy", "momentum"}
         As in `ImpactModel.constant`.
 
     Returns
     -------
     list of Wall
-        By rising thickness.
+        Walls, sorted by thickness.
 
     Raises
     ------
     ValueError
-        More than a hundred thicknesses, and what `ImpactModel.constant` refuses.
+        If there are more than a hundred thicknesses; as `ImpactModel.constant`.
 
     Examples
     --------
@@ -79,7 +79,7 @@ def walls(model: ImpactModel, happened: Impacts, keep: Keep) -> list[Wall]:
 
 
 def flags_of(found: list[Wall]) -> dict[Validity, int]:
-    """How many impacts on any wall exceed each limit."""
+    """Count the impacts on all walls that exceed each limit."""
     counts = ((flag, count) for wall in found for flag, count in wall.best.flags.items())
     total: dict[Validity, int] = {}
     for flag, count in counts:
@@ -88,16 +88,16 @@ def flags_of(found: list[Wall]) -> dict[Validity, int]:
 
 
 def meaning(keep: Keep) -> str:
-    """Say what the numbers beside a constant are."""
+    """Explain the columns beside a constant."""
     return (
-        f"COR keeps the {keep} that the wall takes in all. energy: how far the dissipated energy "
-        "is off with it, and with the plain mean of the CORs. rebound: 95 of 100 impacts rebound "
-        "to a height that is within this of their own."
+        f"COR keeps the {keep} that the wall takes in all. energy: relative error of the "
+        "dissipated energy with it, and with the plain mean of the CORs. rebound: 95 of 100 "
+        "impacts rebound to a height that is within this share of their own."
     )
 
 
 def text(found: list[Wall], keep: Keep) -> Iterator[str]:
-    """Lines for a terminal: a row per wall, with what its COR gets wrong, and what that means."""
+    """Lines for a terminal: a row per wall with its COR and errors, and what these mean."""
     best = [wall.best for wall in found]
     yield from aligned(
         [

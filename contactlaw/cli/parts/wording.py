@@ -1,4 +1,4 @@
-"""What went wrong, in the words of the shell: options for arguments, commands for calls.
+"""Error messages of the command line, with options in place of arguments.
 
 Errors of the library name its arguments, ``speed: got -1.0``, and what to call instead. On the
 command line arguments are options of the same name, and the remedy is another option.
@@ -21,7 +21,7 @@ from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialE
 
 _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
 
-_OTHER_NAMES = {"path": "plot", "priors": "prior"}  # options of other names
+_OTHER_NAMES = {"path": "plot", "priors": "prior"}  # arguments whose options have other names
 
 
 class Refused(ValueError):
@@ -29,12 +29,12 @@ class Refused(ValueError):
 
 
 def sentence(error: Exception, options: Container[str]) -> str:
-    """Say in the words of the shell what an error is about.
+    """Write the message of an error with options in place of arguments.
 
     Parameters
     ----------
     error : Exception
-        As the library raised it.
+        Error that the library raised.
     options : container of str
         Names of the options of the command; arguments of other names keep theirs.
 
@@ -88,7 +88,7 @@ lists all
 def file_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     """Name the option and the file that could not be written.
 
-    A folder that is not there is told before anything within is done.
+    A missing folder is refused before the body of the ``with`` statement runs.
 
     Examples
     --------
@@ -163,11 +163,11 @@ did not solve at lambda = 120: too many steps
 
 
 def say(message: str) -> None:
-    """Write a message beside the output."""
-    if sys.stderr is not None:  # None is where the shell says 2>&-, and to print the output
+    """Write a message to stderr."""
+    if sys.stderr is not None:  # None if the shell has closed it by 2>&-; print would take stdout
         print(f"contactlaw: {message}", file=sys.stderr)
 
 
 def say_warning(message: Warning | str, *_: object) -> None:
-    """Write a warning likewise; also for `warnings.showwarning`."""
+    """Write a warning to stderr; also takes the arguments of `warnings.showwarning`."""
     say(f"warning: {message}")
