@@ -1,17 +1,17 @@
 """Normal force laws in scaled form, one file each, chosen by name.
 
 A law knows no unit: compressions are in units of the yield compression d_Y, forces in units of
-F_Y = K d_Y^1.5, so that every law follows Hertz, F = d^1.5, up to d = 1. A file is plain numpy: its
-formulas, the kinks between which they are smooth, and their source; `Law.of` makes the data of
-them that everything else reads. A new law is a new module here that defines ``LAW``; nothing else
-has to be touched. Files that begin with ``_`` are no laws.
+F_Y = K d_Y^1.5, so that a law that follows Hertz up to yield is F = d^1.5 up to d = 1. A file holds
+plain numpy formulas, the kinks between which they are smooth, and their source; `Law.of` turns them
+into the array that everything else reads. A new law is a new module here that defines ``LAW``;
+nothing else has to be touched. Files that begin with ``_`` are no laws.
 
-A law whose scaled form depends on more than the compression defines ``PARAMETERS`` instead, their
-names, and a function ``law`` of them. A `Law` holds their values by name; users may type them in
-brackets, ``"kogut_etsion(0.3)"``, which `law` alone reads.
+A law whose scaled form depends on more than the compression defines ``PARAMETERS``, the names of
+its numbers, and a function ``law`` of them. A `Law` holds their values by name. Users may also type
+the values in brackets, ``"kogut_etsion(0.3)"``, which only `law` reads.
 
-Users bring laws of their own to `contactlaw.ImpactModel`: of formulas by `Law.of`, of measured
-points by `contactlaw.measured_law`.
+Users give laws of their own to `contactlaw.ImpactModel`: `Law.of` makes them from formulas,
+`contactlaw.measured_law` from measured points.
 """
 
 from __future__ import annotations
@@ -31,16 +31,16 @@ from contactlaw.laws._law import Law
 __all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Unloading", "exact", "law", "names", "parameters"]
 
 DEFAULT = "fem"
-"""The law where none is named; it holds what was asked of it in ``validation.fem.acceptance``."""
+"""The law if none is named; it meets the targets of ``validation.fem.acceptance``."""
 
-_RANGES = {
+_RANGES = {  # lowest and highest value of each parameter that a law may have
     "modulus_ratio": (2.0, 1e6),
     "poissons_ratio": (0.0, 0.5),
-    "sphere_ratio": (0.0, 1e13),  # above that of any Material, whose sigma_Y is at least 1e-12 E
+    "sphere_ratio": (0.0, 1e13),  # no Material reaches 1e13: its sigma_Y is at least 1e-12 E
     "plate_ratio": (0.0, 1e13),
     "modulus_share": (0.0, 1.0),
     "plate_poissons_ratio": (0.0, 0.5),
-}  # of laws' parameters
+}
 _BRACKETS = re.compile(r"\([-+.,0-9e]+\)")
 
 
@@ -64,14 +64,14 @@ def parameters(name: str) -> tuple[str, ...]:
     Parameters
     ----------
     name : str
-        As `law` takes it; none are missing where it gives them.
+        A law, as `law` takes it. With the values in brackets it takes none from the pair.
 
     Returns
     -------
     tuple of str
-        Some of ``"modulus_ratio"``, E*/sigma_Y, and ``"poissons_ratio"``, those of the sphere;
-        ``"sphere_ratio"`` and ``"plate_ratio"``, E*/sigma_Y, 0 for a body that does not yield;
-        ``"modulus_share"``, the sphere's E1'/(E1' + E2').
+        Some of ``"modulus_ratio"``, the sphere's E*/sigma_Y; ``"sphere_ratio"`` and
+        ``"plate_ratio"``, E*/sigma_Y of each body, 0 if it does not yield; ``"modulus_share"``,
+        the sphere's E1'/(E1' + E2'); ``"poissons_ratio"`` (sphere), ``"plate_poissons_ratio"``.
 
     Examples
     --------
@@ -91,14 +91,14 @@ def law(name: str, **numbers: float) -> Law:
     Parameters
     ----------
     name : str
-        One of `names`; for a law with `parameters` with or without their values in brackets.
+        One of `names`. The values of a law's `parameters` may follow in brackets.
     **numbers : float
-        Their values, where the name has none; six digits count. A law takes what it needs.
+        Values of its `parameters` if the name has none, rounded to six digits; others are ignored.
 
     Raises
     ------
     ValueError
-        If there is no such law, the message lists those there are; or if a number is missing.
+        If no law has this name (the message lists all), or a number is missing or out of range.
 
     Examples
     --------
@@ -119,20 +119,20 @@ def law(name: str, **numbers: float) -> Law:
     form = f"{family}({','.join(wanted)})"
     given = typed or [str(numbers[parameter]) for parameter in wanted if parameter in numbers]
     if len(given) != len(wanted):
-        raise ValueError(f"law: {name!r} needs its numbers, got none or others: name it as {form}")
+        raise ValueError(f"law: {name!r} needs a value for each parameter: name it as {form}")
     made: Law = module.law(*(_rounded(*one, form) for one in zip(wanted, given, strict=True)))
     return made if typed else dataclasses.replace(made, from_pair=wanted)
 
 
 def exact(name: str, **numbers: float) -> Law:
-    """Law with all digits of its numbers, to differentiate by them; its name shows six.
+    """Make a law from unrounded parameters, to differentiate by them; its name shows six digits.
 
     Parameters
     ----------
     name : str
-        Of a law with `parameters`, without their values.
+        Name of a law with `parameters`, without their values.
     **numbers : float
-        Their values. A law takes what it needs.
+        Values of the parameters; others are ignored.
 
     Examples
     --------
@@ -147,7 +147,7 @@ def exact(name: str, **numbers: float) -> Law:
 
 
 def _typed(name: str) -> tuple[str, list[str]]:
-    """Family of a law, and the numbers that a user has typed in brackets behind it."""
+    """Split a name as ``"kogut_etsion(0.3)"`` into the family and the numbers in brackets."""
     family, bracket, numbers = str(name).partition("(")
     if family not in names() or (bracket and not _BRACKETS.fullmatch(bracket + numbers)):
         near = difflib.get_close_matches(family, names(), n=1)
@@ -161,7 +161,7 @@ def _module(family: str) -> ModuleType:
 
 
 def _rounded(parameter: str, value: float | str, form: str) -> float:
-    """Parameter of a law, to the six digits that its name shows."""
+    """Round a law's parameter to the six digits that its name shows, and check its range."""
     low, high = _RANGES[parameter]
     try:
         number = float(f"{float(value):.6g}")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Formula = Callable[[Array], Array]
 
-END = 1e5  # [d_Y], of a law without a range; beyond, it goes on by its tangent, see `Law.of`
+END = 1e5  # [d_Y]; a law without a range follows its formulas up to here, then see `Law.of`
 HERTZ = Polynomial([0.0, 0.0, 0.0, 1.0])  # F = q^3
 
 
@@ -26,8 +26,8 @@ class Loading:
     start : float
         Compression at which it begins [d_Y]; 0 for the first.
     force : callable or Polynomial
-        Force [F_Y]: a function of arrays of the compression [d_Y], or a polynomial in the *root*
-        compression, as the first branch has to be: Hertz's `HERTZ`, q^3, or one that begins so.
+        Force [F_Y]: a function of an array of compressions [d_Y], or a polynomial in the *root*
+        compression q. The first branch has to be a polynomial: `HERTZ`, q^3, or one that begins so.
     """
 
     start: float
@@ -41,23 +41,23 @@ class Unloading:
     Parameters
     ----------
     start : float
-        Largest compression at which it begins [d_Y]. Below the first branch the contact is elastic.
-        The first one begins at yield, 1, unless loading is stiffer than Hertz's from the start.
+        Largest compression dm [d_Y] at which it begins. Below the first branch the contact is
+        elastic. The first begins at yield, 1, unless loading is stiffer than Hertz's throughout.
     residual : callable
-        Compression left after unloading from dm, over (dm - 1)^order [d_Y].
+        Function of dm: compression left after unloading from dm, over (dm - 1)^order [d_Y].
     exponent : callable or float, optional
-        n in F = Fm ((d - dr)/(dm - dr))^n; 1.5 is Hertz's.
+        n in F = Fm ((d - dr)/(dm - dr))^n, a number or a function of dm; 1.5 is Hertz's.
     loss : callable, optional
-        Loading work less unloading work over (dm - 1)^loss_order [F_Y d_Y], where the difference
-        of the two would lose its digits.
+        Function of dm: loading work minus unloading work, over (dm - 1)^loss_order [F_Y d_Y]. Give
+        it where computing the difference of the two works would lose digits.
     other : callable, optional
-        What of the loss is not plastic work [F_Y d_Y]; none by default.
+        Function of dm: part of the loss that is not plastic work [F_Y d_Y]; none by default.
     order, loss_order : float, optional
-        How residual and loss begin at dm = 1; 2 for most laws. With 0 no factor is taken out, and
-        the law follows them to 1e-13 of dm and of the loading work.
+        Powers of dm - 1 with which residual and loss begin at yield; 2 for most laws. With 0 they
+        are not divided, and the law follows them to 1e-13 of dm and of the loading work.
     cap : tuple of callable, optional
-        Compressions, lower and upper, between which the way back is the loading curve, which is
-        lower there than the unloading curve; the upper one is None if that is so from dm on.
+        Functions of dm: lower and upper compression between which the contact unloads along the
+        loading curve, which lies below the unloading curve there. None as the upper one is dm.
     """
 
     start: float
@@ -71,7 +71,7 @@ class Unloading:
 
 
 def bisect(above: Callable[[Any], Any], low: Any, high: Any) -> Any:
-    """Place, or places, between which a condition that holds at `low` ends."""
+    """Find where a condition ends that holds at `low` and not at `high`; numbers or arrays."""
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     for _ in range(60):
         middle = 0.5 * (low + high)

@@ -6,7 +6,7 @@ Etsion, Kligerman, Kadin, Int. J. Solids Struct. 42 (2005) 3716, for dm up to 17
 
 Just above yield, n falls faster than dr rises: as printed, unloading from dm < 1.2 lies above
 Hertz's curve, and from dm < 1.11 it returns more work than loading took, up to 0.05 %. There n is
-the least exponent for which it does not, 1.5 (1 - dr/dm), which meets Hertz's slope at dm.
+1.5 (1 - dr/dm) instead, the least exponent that does not: unloading begins with Hertz's slope.
 
 Legend: d compression, dm the largest so far, dr what remains of it, all in units of d_Y; x = dr/dm.
 """
@@ -25,7 +25,7 @@ def share(dm: Array) -> Array:
 
 
 def _residual(dm: Array) -> Array:
-    """Compression left, over (dm - 1)^2."""
+    """Residual compression, over (dm - 1)^2."""
     return dm * share(dm) / (dm - 1.0) ** 2
 
 
@@ -35,12 +35,12 @@ def _next_to_yield(dm: Array) -> Array:
 
 
 def _printed(dm: Array) -> Array:
-    """Exponent of the unloading curve beyond."""
+    """Exponent of the unloading curve from `KINK` on."""
     return 1.5 * dm**-0.0331
 
 
 def _loss_next_to_yield(dm: Array) -> Array:
-    """0.4 - (1 - x)/(n + 1), of the Hertzian work, over (dm - 1)^2."""
+    """Loss below `KINK`, dm^2.5 (0.4 - (1 - x)/(n + 1)), over (dm - 1)^2."""
     x = share(dm)
     return dm**2.5 * 0.16 * x / (1.0 - 0.6 * x) / (dm - 1.0) ** 2
 

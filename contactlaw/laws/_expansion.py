@@ -1,8 +1,8 @@
 """From the formulas of a law to the array that kernels read, see `contactlaw.equation.force`.
 
-Formulas become piecewise polynomials that hold them to 1e-13: they are expanded in Chebyshev
+Formulas become piecewise polynomials that agree with them to 1e-13: they are expanded in Chebyshev
 polynomials on pieces that are halved until the last terms vanish. A `numpy.polynomial.Polynomial`
-is taken as it is.
+is used without expansion.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ from contactlaw.equation import force as _force
 from contactlaw.laws._branches import END, HERTZ, Array, Formula, Loading, Unloading
 
 _FUNCTIONS = _force.FUNCTIONS
-_TERMS = 18  # Chebyshev terms of a piece
-_WIDEST = 1.7  # ratio of the ends of a piece at first
-_VANISHED = 2e-14  # a term, relatively to the least value on its piece
-_ROUNDING = 1e-13  # of its size, by which a value may fall below zero
-_MOST_PIECES = 400  # of one branch; a formula that needs more is not smooth
+_TERMS = 18  # Chebyshev terms per piece
+_WIDEST = 1.7  # largest ratio of the ends of a piece, before any is halved
+_VANISHED = 2e-14  # a term counts as zero below this share of the least value on its piece
+_ROUNDING = 1e-13  # a value may be negative by this share of its size, from rounding
+_MOST_PIECES = 400  # per branch; a formula that needs more is not smooth
 _NODES = np.cos(math.pi * (np.arange(_TERMS) + 0.5) / _TERMS)
 # values at the nodes -> coefficients of Chebyshev polynomials -> of powers
 _TO_CHEBYSHEV = chebyshev.chebvander(_NODES, _TERMS - 1) * 2.0 / _TERMS
@@ -47,7 +47,7 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Part:
-    """A function to be expanded, what it is, and the size of what it was computed from."""
+    """A function to expand, its name in messages, and the size of the numbers it comes from."""
 
     what: str
     function: Formula
@@ -55,7 +55,7 @@ class _Part:
 
 
 def _expand(name: str, parts: Sequence[_Part | float], low: float, high: float) -> list[_Piece]:
-    """Polynomials for some functions on [low, high], all on the same pieces; numbers stay exact."""
+    """Expand functions on [low, high], all on the same pieces; a constant stays exact."""
     count = max(1, math.ceil(math.log(high / low) / math.log(_WIDEST)))
     edges = np.geomspace(low, high, count + 1)
     edges[[0, -1]] = low, high
@@ -83,7 +83,7 @@ def _expand(name: str, parts: Sequence[_Part | float], low: float, high: float) 
 
 
 def _lengths(rows: Array) -> list[int]:
-    """Terms of each row up to the last that is not zero, at least one."""
+    """Count the terms of each row up to the last that is not zero, at least one."""
     beyond = np.argmax(rows[:, ::-1] != 0.0, axis=1)  # 0 where all are zero, too
     sizes = np.where(rows.any(axis=1), rows.shape[1] - beyond, 1)
     return [int(size) for size in sizes]
@@ -99,11 +99,11 @@ def _powers(name: str, part: _Part | float, at: Array) -> tuple[Array, NDArray[n
     if wrong.any():
         n = int(np.argmax(wrong))
         _refuse(name, part.what, values.flat[n], at.flat[n])
-    level = values[:, :1]  # without it the sums round by what the values vary, not by their size
+    level = values[:, :1]  # subtracted, so that rounding is relative to the values' variation
     terms = (values - level) @ _TO_CHEBYSHEV
     terms[:, :1] += level
     small = np.abs(terms) <= _VANISHED * size.min(axis=1, keepdims=True)
-    kept = np.cumsum(~small[:, ::-1], axis=1)[:, ::-1] > 0  # up to the last that counts
+    kept = np.cumsum(~small[:, ::-1], axis=1)[:, ::-1] > 0  # up to the last that is not small
     return (terms * kept) @ _TO_POWERS, small[:, -2:].all(axis=1)
 
 
@@ -116,14 +116,14 @@ def _refuse(name: str, what: str, value: float, at: float) -> NoReturn:
 
 
 def _values(name: str, what: str, function: Formula, at: Array) -> Array:
-    """Values of a user's formula."""
+    """Evaluate a user's formula; refuse one that does not take arrays."""
     with np.errstate(all="ignore"):
         try:
             return np.broadcast_to(np.asarray(function(at), dtype=np.float64), at.shape)
         except (TypeError, ValueError) as error:
             raise ValueError(
                 f"law: the {what} of {name!r} has to take an array, as numpy's functions do, and "
-                f"give one number for each of its; it says: {error}"
+                f"return one number for each of its elements; it raised: {error}"
             ) from error
 
 
@@ -142,7 +142,7 @@ class LoadingCurve:
         self.stiffer = branches[0].force != HERTZ
         self.kinks = tuple(float(branch.start) for branch in branches[1:])
         self.pieces: list[_Piece] = []
-        self.first: list[int] = []  # piece at the last kink, of each piece
+        self.first: list[int] = []  # for each piece, the first piece of its branch
         for branch, end in _ends(branches, self.end):
             first = len(self.pieces)
             force = branch.force
@@ -167,7 +167,7 @@ class LoadingCurve:
         _check_rise(name, self.force, 1e-3, self.end, 2000)
 
     def _go_on(self) -> None:
-        """Add the tangent over the compression at the end, in powers of q."""
+        """Continue beyond the end along the tangent in d, as a polynomial in q."""
         end = np.array([self.end, self.end * (1.0 + 1e-6)])
         force, work = self.force(end), self.work(end)
         piece = self.pieces[-1]
@@ -176,7 +176,7 @@ class LoadingCurve:
         slope = 0.5 * piece.scale * Polynomial(piece.parts[0]).deriv()(t) / root
         self.tangent = float(force[0]), float(slope), float(work[0])
         if piece.scale == 1.0 and piece.parts[0].size <= 3 and piece.parts[0][1] == 0.0:
-            return  # it is its own tangent
+            return  # the last piece is linear in d already
         constant = float(force[0] - slope * self.end)
         tail = np.array([constant, 0.0, float(slope)])
         self.pieces.append(_Piece(root, 1.0, 0.0, [tail]))
@@ -219,7 +219,7 @@ class LoadingCurve:
 
 
 def _begins_as_hertz(force: Formula | Polynomial) -> bool:
-    """Whether a branch is q^3, or that and higher powers."""
+    """Whether a branch is q^3, or q^3 and higher powers that make it stiffer."""
     if not isinstance(force, Polynomial):
         return False
     powers = np.asarray(force.coef, dtype=np.float64)
@@ -270,12 +270,12 @@ def check_yield(
 
 
 def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading]) -> None:
-    """Refuse unloading curves that change at once, or begin with a jump: so would outcomes."""
+    """Refuse unloading curves that jump at yield or between branches: outcomes would jump too."""
     before: tuple[float, float] | None = None if curve.stiffer else (0.0, 0.0)
     for branch, end in _ends(branches, curve.end):
         dm = np.array([branch.start * (1.0 + 1e-9), end * (1.0 - 1e-9)])
         left, lost = (np.asarray(f(dm)) for f in _residual_and_loss(curve, branch))
-        if before is None:  # friction takes its share of any contact, however small
+        if before is None:  # a stiffer law has friction, which takes energy of any contact
             before = float(left[0]), float(lost[0])
         for what, value, last, scale in (
             ("residual compression", left, before[0], branch.start),
@@ -290,12 +290,12 @@ def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading])
 
 
 def _over_root(force: Formula) -> Formula:
-    """Take the root compression."""
+    """Turn a function of d into one of the root compression."""
     return lambda q: force(q * q)
 
 
 def _ends(branches: Sequence[Any], last: float) -> list[tuple[Any, float]]:
-    """Branches with the compressions at which they end; those have to rise."""
+    """Pair branches with the compressions at which they end; refuse branches out of order."""
     starts = [branch.start for branch in branches]
     if any(not low < high for low, high in itertools.pairwise([*starts, last])):
         raise ValueError(f"law: branches have to begin one after the other, below {last:g} d_Y")
@@ -312,7 +312,7 @@ class _Row:
 
 
 def _residual_and_loss(curve: LoadingCurve, branch: Unloading) -> tuple[Formula, Formula]:
-    """Residual compression and loss themselves."""
+    """Residual compression and loss of a branch, multiplied by their powers of dm - 1."""
     exponent, given = branch.exponent, branch.loss
 
     def residual(dm: Array) -> Array:
@@ -338,8 +338,8 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
             f"{some[int(np.argmax(deep))]:.6g} d_Y"
         )
 
-    # what a residual and a loss have to keep their digits of: the span dm - dr where that is
-    # smaller, and the loss itself; rounding allows for shares of 0.05
+    # Sizes to which the expansion is accurate: for a residual, the span dm - dr keeps its digits;
+    # for a loss, the loss itself. Rounding does not allow less than 0.05 of dm and of the work.
     def smaller(dm: Array) -> Array:
         return branch.residual(dm) * np.clip(1.0 - residual(dm) / dm, 0.05, 1.0)
 
@@ -356,7 +356,7 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
     if branch.loss is None:
         parts.append(_Part("loss", loss, lost))
     else:
-        # a factor that is taken out leaves what does not vanish
+        # divided by its power of dm - 1, a loss does not vanish and is its own size
         parts.append(_Part("loss", branch.loss, None if branch.loss_order else lost))
     low, high = branch.cap or (None, None)
     parts.append(0.0 if low is None else _Part("cap", low, np.positive))
@@ -376,7 +376,7 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
 
 
 def _beyond(curve: LoadingCurve, last: _Row) -> _Row:
-    """Row from the end on: residual in proportion to dm, exponent kept, loss from the works."""
+    """Row beyond the end: residual in proportion to dm, same exponent, loss from the works."""
     piece, end = last.piece, curve.end
     values = [horner(part, piece.scale * end - piece.offset) for part in piece.parts]
     share = float(values[_force.RESIDUAL]) * (end - 1.0) ** last.powers[_force.RESIDUAL] / end
@@ -386,7 +386,7 @@ def _beyond(curve: LoadingCurve, last: _Row) -> _Row:
     up = np.array([work - at_zero * end - 0.5 * slope * end**2, at_zero, 0.5 * slope])
     down = np.array([0.0, at_zero, slope]) * (2.0 * (1.0 - share) / (exponent + 2.0))
     rest = np.zeros(1)
-    # plastic work keeps its share of the loading work
+    # plastic work stays the same share of the loading work
     lost = float(values[_force.LOSS]) * (end - 1.0) ** last.powers[_force.LOSS]
     other = up - down - (lost - float(values[_force.OTHER])) / work * up
     if not last.other:
@@ -396,7 +396,7 @@ def _beyond(curve: LoadingCurve, last: _Row) -> _Row:
 
 
 def law_data(name: str, curve: LoadingCurve, unloading: Sequence[Unloading]) -> Array:
-    """Expand the unloading curves too, and put all of a law into one array."""
+    """Expand the unloading curves, and lay out the law as one array."""
     rows = [
         row
         for branch in _ends(unloading, curve.end)
@@ -409,7 +409,7 @@ def law_data(name: str, curve: LoadingCurve, unloading: Sequence[Unloading]) -> 
 
 
 def _packed(curve: LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
-    """Put all of it into one array, see `contactlaw.equation.force`."""
+    """Lay out pieces and rows as one array, see `contactlaw.equation.force`."""
     pieces = curve.pieces
     starts = [*(piece.start for piece in pieces), math.inf]
     family_starts = [*(row.piece.start for row in rows), math.inf]
@@ -434,7 +434,7 @@ def _packed(curve: LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
         following = next((k for k in curve.first if k > first), len(pieces))
         entries = put(piece.parts[0], piece.parts[0].size)
         curve_rows += [piece.scale, piece.offset, *entries, first, following]
-    # one length for all pieces of a function: a loop of constant length is predicted
+    # A function has one length on all pieces: the processor predicts loops of constant length.
     terms = [max((row.piece.parts[n].size for row in rows), default=0) for n in range(_FUNCTIONS)]
     family_rows: list[float] = []
     for row in rows:

@@ -1,4 +1,4 @@
-"""What a force law is: a family, its parameters and source, its kinks, and data for kernels."""
+"""A force law: its family, parameters, source and kinks, and the array that kernels read."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from contactlaw.equation.force import Curve
 from contactlaw.laws._branches import END, Array, Loading, Unloading
 from contactlaw.laws._expansion import LoadingCurve, check_yield, horner, law_data
 
-_CORNER = 1e-4  # relative jump of a slope; differences err by 1e-8 of it
+_CORNER = 1e-4  # relative jump of the slope at a kink; finite differences err by 1e-8
 
 
 @dataclass(frozen=True, eq=False)
 class Law:
     """A normal force law, as data: see `contactlaw.equation.force` for the array's layout.
 
-    Two laws are equal if their data and the coefficient of their yield compression are.
+    Two laws are equal if their arrays and their yield coefficients are.
 
     Parameters
     ----------
     family : str
-        What users call it, without its parameters.
+        Name of the law, without its parameters.
     source : str
         Where the formulas come from.
     yield_coefficient : float or None
@@ -35,25 +35,25 @@ class Law:
     loading_kinks : tuple of float
         Compressions [d_Y], rising, at which the loading curve changes its formula.
     outcome_kinks : tuple of float
-        All largest compressions [d_Y], rising, at which an impact's outcome is not smooth; the
-        first is 1, that of yield. None for Hertz's law.
+        Largest compressions [d_Y], rising, at which an impact's outcome is not smooth; the first
+        is 1 for a law that yields. Empty for Hertz's law.
     data : ndarray of float64
-        The law itself.
+        Loading and unloading curves, in the layout of `contactlaw.equation.force`.
     parameters : mapping of str to float, optional
-        Numbers that make it one law of its family, by name.
+        Numbers that single it out of its family, by name.
     yield_strains : tuple of float, optional
         Least and largest sigma_Y/E of a sphere for which finite elements favour the law once it has
         yielded well.
     from_pair : tuple of str, optional
-        Names of the numbers, beside d_Y, that the pair of materials has given it.
+        Names of those parameters that come from the pair of materials.
     scale : float, optional
-        d_Y/R* of a law that was made for one pair, whichever of its bodies yields; 1 if neither
-        does, and the compressions of the law are in radii. None: `yield_coefficient` rules.
+        d_Y/R* of a law made for one pair, whichever body yields. 1 if neither yields: the law's
+        compressions are then in R*. None: d_Y follows from `yield_coefficient`.
     range : tuple of float, optional
-        Compressions [d_Y] from which on the law differs from Hertz's, and up to which it was made.
+        Compressions [d_Y] from which on the law differs from Hertz's, and up to which it holds.
     waves : tuple of float, optional
-        b, b_h, b4 and b_p of the plate's next orders, see `contactlaw.equation.waves`; None: it
-        has none.
+        b, b_h, b4 and b_p, the plate's corrections beyond a thin-plate dashpot, see
+        `contactlaw.equation.waves`. None: the plate is that dashpot.
     """
 
     family: str
@@ -90,7 +90,7 @@ class Law:
         name : str
             Its `family`.
         source, yield_coefficient, parameters, yield_strains, scale, range, waves
-            As of `Law`.
+            As in `Law`.
         loading : sequence of Loading
             Branches of the loading curve. They have to meet, and to rise.
         unloading : sequence of Unloading, optional
@@ -106,13 +106,13 @@ class Law:
         Raises
         ------
         ValueError
-            If a formula gives what is no positive finite number, is not smooth between its kinks,
+            If a formula gives a negative or no finite number, is not smooth between its kinks,
             branches do not meet, a loop would gain energy, or the law does not follow Hertz's curve
             up to yield; the message says where.
 
         Examples
         --------
-        A sphere whose pressure is cut off at yield, and which comes back as Hertz's:
+        A sphere whose contact pressure is cut off at yield, and which unloads as Hertz's:
 
         >>> import contactlaw as cl
         >>> from contactlaw.laws import HERTZ, Law, Loading, Unloading
@@ -132,7 +132,7 @@ class Law:
         end = range[1] if range[1] < math.inf else END
         curve = LoadingCurve(name, loading, bool(unloading), end)
         starts = {*curve.kinks, *(float(branch.start) for branch in unloading)}
-        if curve.stiffer:  # friction takes its share below yield, too: no kink begins with it
+        if curve.stiffer:  # friction takes energy below yield, too: its branch begins no kink
             starts = {start for start in starts if start >= 1.0}
         if range[1] < math.inf:
             starts.add(range[1])
@@ -157,27 +157,27 @@ class Law:
 
     @property
     def yields(self) -> bool:
-        """Whether there is a compression from which the sphere yields."""
+        """Whether a body yields at some compression."""
         return self.yield_coefficient is not None
 
     @property
     def is_hertz(self) -> bool:
-        """Whether a contact is Hertz's until it yields."""
+        """Whether loading follows Hertz's curve up to yield."""
         return bool(_force.is_hertz(self.data))
 
     @property
     def thin_plate(self) -> bool:
-        """Whether the plate is a thin one, which answers a force as a dashpot does."""
+        """Whether the law takes the plate as thin, a dashpot, as the paper does."""
         return self.waves is None
 
     @property
     def capped(self) -> bool:
-        """Whether the way back is in part the loading curve, see `Unloading`."""
+        """Whether some unloading runs along the loading curve, see `Unloading`."""
         return bool(self.data[_force.CAPPED])
 
     @functools.cached_property
     def key(self) -> str:
-        """Hash of the data: what tables are kept by."""
+        """Hash of the data, by which tables are found."""
         return hashlib.sha256(self.data.tobytes()).hexdigest()[:16]
 
     def __eq__(self, other: object) -> bool:
@@ -189,12 +189,12 @@ class Law:
         return hash((self.key, self.yield_coefficient))
 
     def follows(self, other: Law) -> bool:
-        """Whether another law is this one, but for rounding; without a kernel to compile."""
+        """Whether another law equals this one up to rounding; compiles no kernel."""
         mine, theirs = self._samples(), other._samples()
         return len(mine) == len(theirs) and bool(np.allclose(mine, theirs, rtol=1e-11, atol=1e-14))
 
     def _samples(self) -> list[float]:
-        """Numbers that tell laws apart."""
+        """Kinks, and values along the curves, by which laws are compared."""
         values = [*self.loading_kinks, *self.outcome_kinks]
         for d in (*self.outcome_kinks, *np.geomspace(0.5, 1e4, 25).tolist()):
             values += [_sample(self.data, math.sqrt(d), family=False)[0]]
@@ -226,7 +226,7 @@ class Law:
         return _force.unloading_force(self.data, curve, q)
 
     def dissipation(self, dm: float) -> float:
-        """Subtract unloading work from loading work [F_Y d_Y], of a contact that reached dm."""
+        """Energy [F_Y d_Y] that a contact loses that was loaded to dm."""
         return _force.loss(self.data, dm)
 
 
@@ -236,7 +236,7 @@ def _written(family: str, parameters: Mapping[str, float]) -> str:
 
 
 def _sample(data: Array, x: float, *, family: bool) -> list[float]:
-    """Polynomials of a law's data at one place, of its loading curve or its unloading family."""
+    """Evaluate a law's polynomials at x: of the loading curve, or of the unloading family."""
     starts_at, rows_at, count, length = (
         (_force.FAMILY_STARTS, _force.FAMILY, _force.UNLOADINGS, _force.UNLOADING_ROW)
         if family

@@ -1,36 +1,36 @@
 """fem: a law read off finite elements, for bodies of which either, both or neither may yield.
 
 `validation.fem.campaign` presses spheres into blocks and lets them fall on plates, E*/sigma_Y from
-11 to 2000 and compressions to a quarter of the radius; `validation.fem.fit` puts what came of it
-into the numbers of fem.json. With d the compression, dm the largest one so far, q = sqrt(d):
+11 to 2000 and compressions to a quarter of the radius; `validation.fem.fit` fits the numbers of
+fem.json to its results. With d the compression, dm the largest one so far, q = sqrt(d):
 
     F = q^3 (1 + s q) / (1 + (q - 1) g(q))             loading; g = 0 below yield
     W = (1 - phi) (1 - v(q)) W_l / (1 + (q - 1) h(q))  what unloading from q = sqrt(dm) gives back
                                                        of the loading work W_l
-    dr = dm (1 - 1/(1 + (q - 1) k(q)))                 what remains of dm
+    dr = dm (1 - 1/(1 + (q - 1) k(q)))                 residual compression
     F = Fm ((d - dr)/(dm - dr))^n                      unloading, with the n that gives back W
 
-s is the stiffening of a finite sphere, whose centre comes less near than Hertz's half-spaces let
-it; phi is what friction of 0.1 takes of any contact, v what an impact loses beyond a slow contact:
-the bodies go on vibrating, and flow more where inertia adds to the force. As long as the contact is
-small beside the sphere, w = sqrt(d/R) << 1, small-strain similarity makes g, h and k functions of q
-alone; where it is not, flattened spheres and indented plates part:
+s is the stiffening of a finite sphere, whose centre approaches less than Hertz's half-spaces would
+let it; phi is the share that a friction coefficient of 0.1 takes of the loading work; v is what an
+impact loses beyond a slow contact: the bodies go on vibrating, and flow more where inertia adds to
+the force. While w = sqrt(d/R) << 1, small-strain similarity makes g, h and k functions of q alone.
+In deeper contacts flattened spheres and indented plates differ:
 
     g = t (sum of g_ij t^i w^j),    t = (q - 1)/(q + 2)
 
 and likewise h, k, v/t and the plastic share 1 - exp(-sum) of the loss, with sums that are linear
 in Poisson's ratio and, but for deep contacts, in the modulus of the body that yields, each for
-three cases: the sphere yields, the plate, or both alike. v has one term more, of how fast the
-sphere's own waves are: what it goes on vibrating with. Where one body is stronger by a factor
-1/z, the answer lies between that of both alike and that of the weaker body alone, by a share that
-falls from 1 at z = 1 to 0 at z = 0.36: the weaker body presses on the other with no more than 3 of
-its strengths, and the other yields at a mean pressure of 1.07 of its own. Poisson's ratios count by
-each body's share of the flow, a half at equal strengths, so that nothing jumps where another body
+three cases: the sphere yields, the plate, or both alike. v has one more term, for the waves within
+the sphere that keep it vibrating. Where one body is stronger by a factor 1/z, the answer lies
+between that of both alike and that of the weaker body alone, by a share that falls from 1 at z = 1
+to 0 at z = 0.36: the weaker body presses on the other with at most 3 times its own yield strength,
+and the other yields at a mean pressure of 1.07 times its own. Poisson's ratios are weighted by each
+body's share of the flow, a half at equal strengths, so that nothing jumps where another body
 becomes the weaker one.
 
-A body softer than the campaign's flows completely before its contact is as deep as any of these:
-up to there similarity makes g, h and k functions of q, beyond it functions of w, those of the
-softest body that was pressed (`Curves`).
+A body softer than the campaign's flows completely in contacts that are shallower than any of these.
+Up to complete flow, similarity makes g, h and k functions of q; beyond, they are functions of w,
+those of the softest body that was pressed (`Curves`).
 
 Legend: compressions in units of the yield compression d_Y of the weaker body, or of R where
 none yields; forces in K d_Y^1.5.
@@ -55,23 +55,23 @@ Array = NDArray[np.float64]
 
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by similarity
 _FLOWN = (20.0, 10.0)  # q at which flow is complete, in indentations and in v
-_DEEPEST = (23.0, 0.2), (40.0, 0.1)  # E*/sigma_Y, and its deepest contacts, d/R
-_SMALLEST = 1e-8  # d/R; below, the contact's radius is under 1e-4 R and no stiffening to be seen
-_EARLIEST = 0.01  # d_Y, where that is more: a table begins before yield
-SHIFT = 2.0  # of t
-_LEAST_FRICTION = 5e-4  # of bodies that hardly slip
-_SHARES, _RATIOS = 0.45, 0.1  # about 0.5 and 0.3; beyond, what holds there
-# Of the deepest compression; a body that yields later is elastic: what is left to lose is less than
-# 1e-5 of the energy, and a law needs some room between its kinks.
+_DEEPEST = (23.0, 0.2), (40.0, 0.1)  # two E*/sigma_Y, each with its deepest contacts, d/R
+_SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiffening negligible
+_EARLIEST = 0.01  # [d_Y], if less than `_SMALLEST`: a table has to begin before yield
+SHIFT = 2.0  # 2 in t = (q - 1)/(q + 2)
+_LEAST_FRICTION = 5e-4  # phi of bodies that hardly slip
+_SHARES, _RATIOS = 0.45, 0.1  # reach of the fit about modulus share 0.5 and nu 0.3; constant beyond
+# A body that yields only beyond this share of the deepest compression is taken as elastic: it would
+# lose less than 1e-5 of the energy, and a law needs some room between its kinks.
 _LATE = 0.98
-ALONE = 0.36  # z, below which the stronger body does not yield
-_POWERS = (5, 4)  # of t and w
+ALONE = 0.36  # z, ratio of the strengths, below which the stronger body does not yield
+_POWERS = (5, 4)  # number of powers of t and of w
 _GAUSS = np.polynomial.legendre.leggauss(40)
 
 
 @functools.cache
 def numbers() -> dict[str, Any]:
-    """Read what the fit has found."""
+    """Read the fitted numbers."""
     text = files("contactlaw.laws").joinpath("fem.json").read_text("utf-8")
     found: dict[str, Any] = json.loads(text)
     return found
@@ -95,7 +95,7 @@ def _within(value: float, most: float) -> float:
 
 
 def _sized(powers: list[list[float]]) -> Array:
-    """Powers of t and w, filled up with zeros."""
+    """Pad coefficients of powers of t and w with zeros to `_POWERS`."""
     found = np.array(powers)
     return np.pad(found, [(0, most - n) for most, n in zip(_POWERS, found.shape, strict=True)])
 
@@ -117,7 +117,7 @@ def deepest(ratio: float) -> float:
 
 
 class Given(NamedTuple):
-    """What the law takes from a pair; in the order of `PARAMETERS`."""
+    """Numbers that the law takes from a pair, in the order of `PARAMETERS`."""
 
     sphere_ratio: float  # E*/sigma_Y; 0 for a body that does not yield
     plate_ratio: float
@@ -136,9 +136,9 @@ class Given(NamedTuple):
         return "plate" if self.plate_ratio > self.sphere_ratio else "sphere"
 
     def both(self, blend: float) -> float:
-        """Share of both alike in the answer, from 1 at equal strengths to 0 where one body yields.
+        """Share of the case that both yield alike: 1 at equal strengths, 0 if one yields alone.
 
-        In between it falls with the power `blend` of the ratio of the strengths.
+        In between, it is the power `blend` of a line in the ratio of the strengths.
         """
         z = min(self.sphere_ratio, self.plate_ratio) / self.ratio
         return float((max(0.0, z - ALONE) / (1.0 - ALONE)) ** blend)
@@ -146,8 +146,8 @@ class Given(NamedTuple):
     def flow(self, blend: float) -> dict[str, float]:
         """Share of each body in the plastic flow: a half each at equal strengths.
 
-        What depends on which body yields goes by these shares. By the weaker body alone it would
-        jump where the other one becomes the weaker.
+        Poisson's ratios are weighted by these shares. With the weaker body's alone, the law would
+        jump where the other body becomes the weaker one.
         """
         other = 0.5 * self.both(blend)
         plate = 1.0 - other if self.weaker == "plate" else other
@@ -160,9 +160,9 @@ class Given(NamedTuple):
         return yield_scale(self.ratio, mean)
 
     def weights(self, blend: float) -> dict[tuple[str, str], float]:
-        """Weights of the tables of powers, by who yields and what of the sum they are.
+        """Weights of the tables of coefficients, by which body yields and the term of the sum.
 
-        Of bodies alike the moduli do not matter, since they share the flow.
+        If both yield alike they share the flow, so their moduli have no term.
         """
         both, flow = self.both(blend), self.flow(blend)
         own = self.modulus_share if self.weaker == "sphere" else 1.0 - self.modulus_share
@@ -175,7 +175,7 @@ class Given(NamedTuple):
                 (body, "poissons_ratio"): flow[body] * _within(nu - 0.3, _RATIOS)
                 for body, nu in ratios.items()
             },
-            # a wave's way through the sphere, over the contact time, goes as sqrt(E*/E1')
+            # time of a wave through the sphere over the contact time is as sqrt(E*/E1')
             ("any", "vibration"): math.sqrt(1.0 - self.modulus_share),
         }
 
@@ -184,25 +184,25 @@ PARAMETERS = Given._fields
 
 
 class _Works(NamedTuple):
-    """What the law says of contacts at some largest compressions, one array for each."""
+    """What the law gives for an array of largest compressions."""
 
     force: Array
-    loading: Array  # work
-    recovery: Array  # of it, as a share
-    plastic: Array
-    residual: Array  # over (q^2 - 1)^2; 0 where nothing yields
-    span: Array  # what comes back of the compression
+    loading: Array  # loading work
+    recovery: Array  # share of it that unloading gives back
+    plastic: Array  # share of it that is plastic work
+    residual: Array  # over (q^2 - 1)^2; 0 if no body yields
+    span: Array  # compression that unloading gives back, dm - dr
 
 
 class Curves:
-    """What the law says for a pair, as functions of the root compression q.
+    """Curves of the law for a pair, as functions of the root compression q.
 
     Parameters
     ----------
     given : Given
         Numbers of the pair.
     found : dict, optional
-        Those of a fit; by default what the package ships.
+        Numbers of a fit; by default those of fem.json.
     """
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
@@ -225,7 +225,7 @@ class Curves:
                 powers = cases.get(case, {}).get(part)
                 if powers is not None:
                     terms[int(part == "share")] += weight * _sized(powers)
-            usual, moved = terms  # which counts by 1 - t
+            usual, moved = terms  # the term with the modulus has a factor 1 - t
             self._terms[name] = np.pad(usual + moved, [(0, 1), (0, 0)])
             self._terms[name][1:] -= moved
 
@@ -236,7 +236,7 @@ class Curves:
         return np.asarray(np.polynomial.polynomial.polyval2d(t, w, self._terms[name]))
 
     def _known(self, q: Array, flown: float) -> Array:
-        """Where the sums are known for what a body softer than the campaign's does at q.
+        """Map q of a body softer than the campaign's to the q at which its sums are known.
 
         Up to q = `flown` small-strain similarity makes the sums functions of q alone. Beyond, flow
         is complete: they are functions of w alone, those of the softest body of the campaign.
@@ -265,7 +265,7 @@ class Curves:
         return np.asarray(elastic + half * ((2.0 * at**2 * self.force(at)) @ _GAUSS[1]))
 
     def residual(self, q: Array) -> Array:
-        """Compression that is left of q^2, over (q^2 - 1)^2; from yield on."""
+        """Residual compression after loading to q^2, over (q^2 - 1)^2; from yield on."""
         over = (self._sum("residual", q)) / (q + SHIFT)
         return q**2 * over / ((1.0 + (q - 1.0) ** 2 * over) * (q + 1.0) ** 2)
 
@@ -275,21 +275,21 @@ class Curves:
         return np.asarray(share * (1.0 - self.impact(q)))
 
     def impact(self, q: Array) -> Array:
-        """Share of what a slow contact would give back that an impact does not."""
+        """Share v of the work a slow contact gives back that an impact does not."""
         if not self.ratio:
             return np.zeros_like(q)
         above = np.maximum(q, 1.0)
         return np.asarray(((above - 1.0) / (above + SHIFT)) ** 2 * self._sum("impact", above))
 
     def plastic(self, q: Array, recovery: Array) -> Array:
-        """Plastic work over the loading work, where that share of it is given back."""
+        """Plastic work over the loading work, from the share that unloading gives back."""
         if not self.ratio:
             return np.zeros_like(q)
         lost = 1.0 - recovery / (1.0 - self.friction)
         return np.asarray(lost * -np.expm1(-self._sum("plastic", np.maximum(q, 1.0))))
 
     def works(self, q: Array) -> _Works:
-        """All of it at once, each function computed but once."""
+        """All quantities at once, each computed only once."""
         recovery = self.recovery(q)
         return _Works(
             force=self.force(q),
@@ -301,7 +301,7 @@ class Curves:
         )
 
 
-@functools.lru_cache(maxsize=64)  # a fit makes one for every trial
+@functools.lru_cache(maxsize=64)  # a fit to measurements makes a law for every trial
 def law(*given: float) -> Law:
     """Law of a pair, from the numbers of `PARAMETERS`."""
     return law_of(Given(*given), numbers())
@@ -311,10 +311,10 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
     """Law of a pair from the numbers of a fit."""
     curves = Curves(given, found)
     if curves.ratio and curves.scale > _LATE * deepest(curves.ratio):
-        # so strong that it would yield where the law ends
+        # the bodies are so strong that they would yield only where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 
-    known: list[tuple[Array, _Works]] = []  # of one array, which four formulas are asked about
+    known: list[tuple[Array, _Works]] = []  # of the last array: four formulas are called with it
 
     def works(dm: Array) -> _Works:
         if not (known and known[0][0] is dm):
@@ -337,7 +337,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
     start = min(_SMALLEST / curves.scale, _EARLIEST)
     end = deepest(curves.ratio) / curves.scale
     loading = [Loading(0.0, first)]
-    # a table begins at `start`, where it must not meet contacts without any loss
+    # tables begin at `start`; the loss begins below, so that no contact in a table is lossless
     unloading = [Unloading(0.1 * start, np.zeros_like, exponent, loss=loss, other=other)]
     if curves.ratio:
         loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))

@@ -9,7 +9,7 @@ Jackson, Green, J. Tribol. 127 (2005) 343, in units of yield, with e_y = sigma_Y
 
 d_Y = (pi C sigma_Y/(2 E*))^2 R*, a coefficient of C^2/4. As printed the force jumps at d = 1.9,
 by +7 % for nu = 0, +0.5 % for 0.3 and -3 % for 0.5. Here the second form takes over where it meets
-Hertz's curve: at 4.1, 2.0 and 1.26 for stiff pairs, at 2.13 for the paper's.
+Hertz's curve: at d = 4.1, 2.0 and 1.26 for stiff pairs with these nu, at 2.13 for the paper's pair.
 
 Fitted for e_y from 0.001 to 0.008 or so; the paper's pair has 0.043.
 
@@ -30,11 +30,11 @@ from contactlaw.laws._law import Law
 
 PARAMETERS = ("modulus_ratio", "poissons_ratio")
 
-_SOFTEST = 10.0  # E*/sigma_Y; our choice: contact radii above R at a few d_Y
+_SOFTEST = 10.0  # least E*/sigma_Y, our choice: below, contact radii exceed R at a few d_Y
 _LARGEST = 200.0  # [d_Y]; the force has to rise up to here
 
 
-@functools.lru_cache(maxsize=64)  # a fit makes one for every trial
+@functools.lru_cache(maxsize=64)  # a fit to measurements makes a law for every trial
 def law(modulus_ratio: float, poissons_ratio: float) -> Law:
     """Law of a pair with these E*/sigma_Y and Poisson's ratio of the sphere."""
     c = 1.295 * math.exp(0.736 * poissons_ratio)

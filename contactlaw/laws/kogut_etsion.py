@@ -9,8 +9,8 @@ As printed the force jumps by 3 % at d = 1 and by 1.7 % at d = 6. Here each bran
 meets the one before: at 1.03^(1/0.075) = 1.483 and (1.40/1.03)^(1/0.162) = 6.65.
 
 d_Y = (pi K H/(2 E*))^2 R* with the hardness H = 2.8 sigma_Y and K = 0.454 + 0.41 nu (Chang, Etsion,
-Bogy, J. Tribol. 109 (1987) 257): a coefficient of (1.4 K)^2. Their flat is rigid; with an elastic
-one E* takes its place.
+Bogy, J. Tribol. 109 (1987) 257): a coefficient of (1.4 K)^2. Their flat is rigid; here E* accounts
+for an elastic one.
 
 Legend: d compression in units of d_Y; forces in units of F_Y.
 """
@@ -29,7 +29,7 @@ _FIRST: float = 1.03 ** (1 / 0.075)
 _SECOND: float = (1.40 / 1.03) ** (1 / 0.162)
 
 
-@functools.lru_cache(maxsize=64)  # a fit makes one for every trial
+@functools.lru_cache(maxsize=64)  # a fit to measurements makes a law for every trial
 def law(poissons_ratio: float) -> Law:
     """Law of a sphere with this Poisson's ratio."""
     return Law.of(

@@ -51,7 +51,7 @@ def _work(d: Array) -> Array:
 
 
 def _log_stiffness(dm: Array) -> Array:
-    """Logarithm of k, whose digits count next to dm = 1; the span is sqrt(s)."""
+    """Logarithm of k, accurate next to dm = 1, where k is 1; dm - dr is sqrt(s)."""
     log = np.log(2.0 * dm - 1.0)
     return 0.25 * log + np.log1p(log / 3.3)
 
@@ -78,12 +78,12 @@ def _loss_below(dm: Array) -> Array:
 
 
 def _loss_next_to_yield(dm: Array) -> Array:
-    """Over (dm - 1)^(7/2): `_cap_low` and the bracket begin in proportion to dm - 1."""
+    """`_loss_below` over (dm - 1)^3.5: its low and its bracket both begin as dm - 1."""
     return _loss_below(dm) / (dm - 1.0) ** 3.5
 
 
 def _loss_between(dm: Array) -> Array:
-    """With the area above `_cap_high`."""
+    """Area between the curves below `_cap_low` and above `_cap_high`."""
     high, dr = _cap_high(dm), residual(dm) * (dm - 1.0) ** 2
     back = 0.4 * np.exp(_log_stiffness(dm)) * ((dm - dr) ** 2.5 - (high - dr) ** 2.5)
     return _loss_below(dm) + (_work(dm) - _work(high) - back)

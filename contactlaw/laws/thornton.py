@@ -2,7 +2,7 @@
 
 Thornton, J. Appl. Mech. 64 (1997) 383. Beyond yield the pressure over the contact is cut off at
 p_y, so the force rises by pi p_y R* per compression, which is Hertz's slope at yield. Unloading is
-Hertz's with the radius R_p of the flattened sphere, such that the contact area at the largest
+Hertz's with the radius R_p of the flattened sphere, chosen so that the contact area at the largest
 compression is that of Hertz, a^2 = R* d: R_p/R* = dm^1.5/fm.
 
 d_Y = pi^2 p_y^2 R*/(4 E*^2); p_y = sigma_Y in Peng et al. 2021 and here, so that the coefficient is
