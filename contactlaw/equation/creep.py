@@ -1,10 +1,10 @@
-"""The way back of a sphere that a plate never throws off, along a series instead of in steps.
+"""Unloading of a sphere that its plate hardly throws off, by a series instead of time steps.
 
 Where the force falls as q^b, with k its slope over d and beta the mobility of the plate, the force
-follows the speed of the sphere within 1/(beta k), and the speed decays within beta. If their ratio
-delta = 1/(beta^2 k) is small, explicit steps, which are no longer than the shorter of the two,
-creep along by the hundred thousand. By du/dt = -f and df/dt = k (u - beta f), in powers of delta,
-which goes as u^-p with p = 1 - 2/b,
+follows the speed of the sphere with the time constant 1/(beta k), and the speed decays with the
+time constant beta. If their ratio delta = 1/(beta^2 k) is small, explicit steps, which are no
+longer than the shorter of the two, are needed by the hundred thousand. From du/dt = -f and
+df/dt = k (u - beta f) follows, in powers of delta, which goes as u^-p with p = 1 - 2/b,
 
     beta f = u/(1 - delta),    dt = -(1 - delta) beta du/u
 
@@ -28,7 +28,7 @@ SLOW = 1e-4  # delta, below which the series is used
 
 @kernel
 def left(leg: Leg, state: State) -> float:
-    """Square of the speed that the sphere would leave with on an unloading curve, the plate held.
+    """Square of the speed with which the sphere would rebound if the plate were held from now on.
 
     The work of a force that falls as q^b is 2 f q^2/(b + 2).
     """
@@ -39,13 +39,13 @@ def left(leg: Leg, state: State) -> float:
 def creep(
     contact: Contact, leg: Leg, state: State, level: float, until: float, least: float
 ) -> State:
-    """Go on while the series holds: to where `left` is the least, or short of a level or a time."""
+    """Follow the series while it holds, until `left` is `least` or just before a level or time."""
     beta, b, q, u = contact.plate.mobility, leg.exponent, state.q, state.u
     delta = 2.0 * q * q / (b * beta * beta * state.f)
     if not (delta < SLOW and abs(state.dq) < SLOW * u):
         return state
     p = 1.0 - 2.0 / b
-    x = math.log(u / math.sqrt(least))  # ln of what the speed falls by
+    x = math.log(u / math.sqrt(least))  # ln of the ratio by which the speed falls
     x += b / (b + 2.0) * delta * math.exp(p * x)
     if p > 0.0:
         x = min(x, math.log(SLOW / delta) / p)

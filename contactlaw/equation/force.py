@@ -1,16 +1,16 @@
 """A force law as one array of numbers: its layout, and the force that kernels read from it.
 
-A law is known along two lines. The loading curve is a force over the root compression q = sqrt(d),
-in pieces, each a polynomial in t = scale q - offset. The unloading curve from the largest
-compression dm is F = a |q|^b over q = sqrt(d - dr), a such that it begins on the loading curve;
-residual dr and exponent b are functions of dm, and so are the loss, loading work minus unloading
-work, and what of it is not plastic work. These, too, come in pieces, each (dm - 1)^power times a
-polynomial in t = scale dm - offset, so that what begins at yield as (dm - 1)^2 keeps its digits
-there. With dm below the first piece the contact goes back along the loading curve and nothing is
-lost.
+A law has a loading curve and a family of unloading curves. The loading curve is a force over the
+root compression q = sqrt(d), in pieces, each a polynomial in t = scale q - offset. The unloading
+curve from the largest compression dm is F = a |q|^b over q = sqrt(d - dr), where a is such that it
+begins on the loading curve. Functions of dm are the residual dr, the exponent b, the loss (loading
+work minus unloading work) and the part of it that is not plastic work. They come in pieces too,
+each (dm - 1)^power times a polynomial in t = scale dm - offset: what begins at yield as (dm - 1)^2
+keeps its digits. With dm below the first piece the contact unloads along the loading curve without
+a loss.
 
 A law may be capped: where the unloading curve would lie above the loading curve, from the
-compression `cap_high` down to `cap_low`, the contact goes back along the loading curve.
+compression `cap_high` down to `cap_low`, the contact unloads along the loading curve.
 
 The array begins with a header, then come the starts of the pieces, the rows, and the coefficients
 from the constant one up:
@@ -24,8 +24,8 @@ from the constant one up:
                                DEGREE, AT     of its polynomial
     row of the unloading       SCALE, OFFSET  of t, and POWER, DEGREE, AT of each function of dm
 
-Coefficients are filled up with zeros to a multiple of four. A last start of either kind is
-infinity. Between two kinks the loading curve is smooth, however many pieces it takes: an
+Coefficients are padded with zeros to a multiple of four. The last of the starts, and of the family
+starts, is infinity. Between two kinks the loading curve is smooth, however many pieces it has: an
 integration has to stop at kinks only.
 
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
@@ -64,18 +64,18 @@ HERTZ: Array = np.array(
 
 
 class Curve(NamedTuple):
-    """The way back from a largest compression dm."""
+    """The unloading curve from a largest compression dm."""
 
     residual: float  # dr
-    stiffness: float  # a; 0 where the way back is the loading curve
+    stiffness: float  # a; 0 where the contact unloads along the loading curve
     exponent: float  # b
-    cap_low: float  # between these compressions it is the loading curve too, if they differ
+    cap_low: float  # between these two it unloads along the loading curve; equal: nowhere
     cap_high: float
 
 
 @kernel(inline=True)
 def polynomial(law: Array, at: int, degree: int, t: float) -> float:
-    """Polynomial whose coefficients begin at `at`: four at a time, which is one instruction."""
+    """Evaluate the polynomial whose coefficients begin at `at`, four at a time in one vector."""
     square = t * t
     fourth = square * square
     k = np.uint64(at + degree // 4 * 4)  # unsigned: no test for a negative index
@@ -92,7 +92,7 @@ def polynomial(law: Array, at: int, degree: int, t: float) -> float:
 
 @kernel(inline=True)
 def _count(law: Array, at: int, most: int, x: float) -> int:
-    """How many of some starts are not above x: counted, not searched for, without a branch."""
+    """Count the starts that are not above x; to compare them all is faster than a search."""
     count, first = 0, np.uint64(at)
     for k in range(np.uint64(most)):
         count += x >= law[first + k]
@@ -114,7 +114,7 @@ def row_of(law: Array, k: int) -> int:
 
 @kernel(inline=True)
 def piece_at(law: Array, q: float) -> int:
-    """Index of the loading curve's piece at a root compression; a kink belongs to what follows."""
+    """Index of the loading curve's piece at q; a kink belongs to the piece that begins there."""
     return max(_count(law, int(law[STARTS]), int(law[PIECES]), q) - 1, 0)
 
 
@@ -134,14 +134,14 @@ def loading(law: Array, q: float) -> float:
 
 @kernel(inline=True)
 def lossless(law: Array) -> float:
-    """Largest compression up to which nothing is lost."""
+    """Largest compression from which a contact unloads without a loss."""
     least: float = law[int(law[FAMILY_STARTS])]
     return least
 
 
 @kernel(inline=True)
 def _unloading_row(law: Array, dm: float) -> int:
-    """Where the row of a largest compression begins; 0 where the contact is elastic."""
+    """Where the row for a largest compression begins; 0 if the contact stays elastic."""
     at = int(law[FAMILY_STARTS])
     if not dm > law[at]:
         return 0
@@ -176,7 +176,7 @@ def loss(law: Array, dm: float) -> float:
 
 @kernel(cache=True)
 def other_loss(law: Array, dm: float) -> float:
-    """Take from the loss what is plastic work."""
+    """Part of the loss that is not plastic work."""
     row = _unloading_row(law, dm)
     return _function(law, row, OTHER, dm) if row > 0 else 0.0
 
@@ -196,7 +196,7 @@ def residual_and_losses(law: Array, dm: float) -> tuple[float, float, float]:
 
 @kernel(inline=True)
 def is_hertz(law: Array) -> bool:
-    """Whether loading begins as Hertz's."""
+    """Whether the loading curve begins as Hertz's, q^3."""
     row = row_of(law, 0)
     at = int(law[row + AT])
     same = law[row + DEGREE] == 3.0 and law[row + SCALE] == 1.0 and law[row + OFFSET] == 0.0
@@ -205,7 +205,7 @@ def is_hertz(law: Array) -> bool:
 
 @kernel(inline=True)
 def leaves_hertz(law: Array) -> float:
-    """Compression up to which contacts are Hertz's, and come back without a loss."""
+    """Compression up to which contacts follow Hertz's law and unload without a loss."""
     if not is_hertz(law):
         return 0.0
     leaves = start_of(law, 1)
@@ -227,7 +227,7 @@ def unloading(law: Array, dm: float) -> Curve:
         reach = math.pow(span, 0.5 * exponent)
     low = high = 0.0
     if law[CAPPED] > 0.0:
-        # next to yield its rounding errors are larger than it is
+        # next to yield, the rounding error of the lower cap is larger than the cap itself
         low = max(_function(law, row, CAP_LOW, dm), left)
         high = _function(law, row, CAP_HIGH, dm)
     return Curve(left, loading(law, math.sqrt(dm)) / reach, exponent, low, high)
@@ -235,7 +235,7 @@ def unloading(law: Array, dm: float) -> Curve:
 
 @kernel(inline=True)
 def power_force(stiffness: float, exponent: float, q: float) -> float:
-    """Force a |q|^b with the sign of q: a step on trial may pass q = 0."""
+    """Force a |q|^b with the sign of q, since a trial step may pass q = 0."""
     if exponent == 3.0:
         return stiffness * (q * q * q)
     return math.copysign(stiffness * math.pow(abs(q), exponent), q)
@@ -243,7 +243,7 @@ def power_force(stiffness: float, exponent: float, q: float) -> float:
 
 @kernel(cache=True)
 def unloading_force(law: Array, curve: Curve, q: float) -> float:
-    """Force at the compression residual + q^2 on the way back."""
+    """Force at the compression residual + q^2 on an unloading curve."""
     if curve.stiffness == 0.0:
         return loading(law, q)
     force = power_force(curve.stiffness, curve.exponent, q)
@@ -253,12 +253,12 @@ def unloading_force(law: Array, curve: Curve, q: float) -> float:
 
 
 def check(law: Array) -> None:
-    """Refuse an array that is no law: kernels would follow its addresses out of memory.
+    """Refuse an array that is no law, because kernels would follow its addresses out of bounds.
 
     Raises
     ------
     ValueError
-        With what is wrong of it.
+        If the array is not a law; the message says what is wrong.
     """
     size = law.size
     header = [_whole(law, n, size) for n in range(HEADER)]

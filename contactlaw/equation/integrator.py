@@ -1,12 +1,12 @@
-"""Integration along one contact: a step, and landing on what ends a stretch of the way.
+"""Integration along one contact: steps, and landing on the event that ends a leg.
 
-A sphere that has flattened far on a plate that gives way easily need not come back. Where the force
-falls more slowly than the compression that is left, with an exponent below 2, the contact becomes
-ever stiffer beside the plate, what is left goes into the plate, and the sphere never leaves. Once
-all that is left could throw it off with no more than `SPENT` of the speed that it came with, the
-sphere is turned back, the plate held, and it is. A restitution below that is rounded up to it.
-To know what is left, steps err less the less it is. Where the steps would be too many, a series
-takes their place (`contactlaw.equation.creep`).
+A sphere that has flattened far on a compliant plate need not rebound. Where the force falls more
+slowly than the elastic compression that is left, with an exponent below 2, the contact becomes ever
+stiffer beside the plate: the energy that is left goes into the plate, and the sphere stays. Once
+that energy could throw the sphere off with no more than `SPENT` of its impact speed, the plate is
+held and the sphere is thrown off so. A restitution below `SPENT` is thus rounded up to it. The less
+energy is left, the finer are the steps, so that they resolve it. Where the steps would be too many,
+a series takes their place (`contactlaw.equation.creep`).
 
 Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q root compression,
 u speed, t time, s the variable of integration, y yield compression.
@@ -30,12 +30,12 @@ from contactlaw.equation.motion import Contact, State
 Array = NDArray[np.float64]
 
 MAX_STEPS = 200_000
-_LANDED = (
-    1e-9  # an event is met to this; compression and time are stationary there, so err by its square
-)
-SPENT = 1e-9  # restitution that is not told from less
-LATE = 1e-2  # restitution out of reach, at which, and at each of its powers, steps get finer
-# events: end of loading; a root compression is reached; a time is; the energy left is spent
+# Events are met to this share of their scale. The compression at the end of loading and the time at
+# separation are stationary, so they err only by its square.
+_LANDED = 1e-9
+SPENT = 1e-9  # smallest restitution; smaller ones are rounded up to it
+LATE = 1e-2  # steps get finer each time the largest possible restitution falls by this factor
+# no event; end of loading; a root compression is reached; a time is reached; little energy is left
 NONE, TURN, LEVEL, TIME, _OVER = range(5)
 
 
@@ -47,12 +47,12 @@ class Scale(NamedTuple):
     t: float
     per_q: float  # 1/(q tolerance)
     per_u: float  # 1/(u tolerance)
-    over: float  # square of the speed that may be left to leave with: below, event _OVER
+    over: float  # event _OVER: the square of the possible rebound speed has fallen to this
 
 
 @kernel
 def _gap(event: int, leg: Leg, state: State, level: float, until: float, scale: Scale) -> float:
-    """How far an event is off, in units of its scale; its sign changes there."""
+    """Distance to an event in units of its scale; its sign changes at the event."""
     if event == TURN:
         return state.dq / scale.u
     if event == _OVER:
@@ -62,7 +62,7 @@ def _gap(event: int, leg: Leg, state: State, level: float, until: float, scale: 
 
 @kernel
 def _guess(event: int, state: State, trial: State, h: float, level: float, until: float) -> float:
-    """Step to an event between two points, by the cubic through q or t and its rate at both."""
+    """Step to an event between two points, from the cubic through q or t and its rates there."""
     value, rise, rate, last = state.q, trial.q - state.q, state.dq, trial.dq
     if event == TIME:  # dt/ds = 2 q
         value, rise, rate, last = state.t, trial.t - state.t, 2.0 * state.q, 2.0 * trial.q
@@ -74,7 +74,7 @@ def _guess(event: int, state: State, trial: State, h: float, level: float, until
     secant = x = (level - value) / rise
     for _ in range(3):
         x -= (((c3 * x + c2) * x + c1) * x - (level - value)) / ((3 * c3 * x + 2 * c2) * x + c1)
-    return h * (x if 0.0 < x < 1.0 else secant)  # next to a turn it may leave the step
+    return h * (x if 0.0 < x < 1.0 else secant)  # near a turn Newton's method may leave the step
 
 
 @kernel(inline=True)
@@ -83,7 +83,7 @@ def _step(
 ) -> tuple[State, float]:
     """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19.
 
-    Its last rates are the first ones of the next step. The error is in units of the tolerance.
+    The rates at its end are the first ones of the next step. The error is in tolerances.
     """
     q, u = state.q, state.u
     a1, b1, f1 = state.dq, state.du, state.f
@@ -136,18 +136,18 @@ def _follow(
     contact: Contact, leg: Leg, kind: int, state: State, h: float, scale: Scale, level: float,
     until: float,
 ) -> tuple[State, int, float, int]:  # fmt: skip
-    """See `follow`; the compiler makes a loop of its own of each kind of leg.
+    """Follow a leg of one kind up to an event; the compiler makes a separate loop for each kind.
 
-    A choice within the step would cost half as much again as the step does.
+    Choosing the kind within the step would make a step 50 % slower.
     """
     loading = legs.is_loading(leg)
     event, following = NONE, h
-    a = b = gap_a = gap_b = 0.0  # steps on either side of the event, and how far off they end
+    a = b = gap_a = gap_b = 0.0  # step lengths on either side of the event, and their gaps
     for steps in range(1, MAX_STEPS):
         trial, error = _step(contact, leg, kind, state, h, scale)
         if event == NONE:
             if error > 1.0:
-                h *= max(0.2, 0.9 / math.sqrt(math.sqrt(error)))  # a power is slower than a step
+                h *= max(0.2, 0.9 / math.sqrt(math.sqrt(error)))  # pow is slower than a step
                 continue
             if loading and trial.dq < 0.0:
                 event = TURN
@@ -178,7 +178,7 @@ def _follow(
                 h = b - gap_b * (b - a) / (gap_b - gap_a)
                 continue
             if event == TURN and trial.q > level:
-                event = LEVEL  # the step went over the kink before it turned: land there instead
+                event = LEVEL  # the step passed the kink before it turned: land on the kink
             elif event != TIME and trial.t > until:
                 event = TIME
             else:
@@ -194,7 +194,7 @@ def _follow(
 
 @kernel
 def _finer(scale: Scale, spent: float) -> Scale:
-    """Scale for what is left once that is below the event's: its steps err as much less."""
+    """Scale after event _OVER: its next limit is lower, its tolerances tighter by that factor."""
     over = max(LATE * LATE * scale.over, spent)
     return Scale(scale.q, scale.u, scale.t, scale.per_q / LATE, scale.per_u / LATE, over)
 
@@ -203,9 +203,9 @@ def _finer(scale: Scale, spent: float) -> Scale:
 def follow(
     contact: Contact, leg: Leg, state: State, h: float, scale: Scale, level: float, until: float
 ) -> tuple[State, int, float, int]:
-    """Integrate a leg to a level, or loading to its end, or to the time `until` if that is before.
+    """Integrate a leg to a level, the end of loading or the time `until`, whichever comes first.
 
-    Returns the point reached, the event, a step to go on with and the number of steps. An event is
+    Returns the point reached, the event, the next step length and the number of steps. An event is
     met by shortening the step that passes it: regula falsi with Illinois' weights.
     """
     spent = (SPENT * scale.u) ** 2
@@ -214,7 +214,7 @@ def follow(
         if legs.unloads(leg):
             if plate.moves(contact.plate):
                 state = creep(contact, leg, state, level, until, spent)
-            over = (1.0 - 1e-6) * left(leg, state)  # an event is met to 1e-9
+            over = (1.0 - 1e-6) * left(leg, state)  # less: the last _OVER was met only to 1e-9
             while over < scale.over and scale.over > spent:
                 scale = _finer(scale, spent)
             if over < spent:
@@ -233,7 +233,7 @@ def follow(
 
 @kernel
 def _onto(contact: Contact, leg: Leg, residual: float, state: State) -> State:
-    """Express a state in the root compression of a leg; that of its own had this residual."""
+    """Convert a state from the root compression over `residual` to that of a leg."""
     q = state.q
     if leg.residual != residual:
         q = math.sqrt(max(q * q + (residual - leg.residual), 0.0))
@@ -244,7 +244,7 @@ def _onto(contact: Contact, leg: Leg, residual: float, state: State) -> State:
 def after(
     contact: Contact, curve: Curve, leg: Leg, event: int, state: State
 ) -> tuple[Curve, Leg, State]:
-    """Leg, and state on it, that follow on one that has ended: by its level, or where it turned."""
+    """Next leg, and the state on it, after a leg that ended at its level or with loading."""
     residual = leg.residual
     if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
         dm = state.q * state.q

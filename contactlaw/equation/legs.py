@@ -1,8 +1,8 @@
-"""The way of a contact, cut into legs on each of which the force is one smooth function of q.
+"""The path of a contact, cut into legs on each of which the force is one smooth function of q.
 
 Loading goes up the loading curve from kink to kink, then the contact goes down the unloading curve.
-A capped law's goes down in up to three parts: its unloading curve, the loading curve from kink to
-kink, its unloading curve.
+With a capped law it goes down in up to three parts: the unloading curve, the loading curve from
+kink to kink, the unloading curve again.
 
 Legend: d compression, dr residual compression, dm largest compression, q root compression,
 sqrt(d - dr).
@@ -23,31 +23,31 @@ from contactlaw.equation.force import Curve
 Array = NDArray[np.float64]
 
 CUBIC, PIECES, POWER = range(3)  # how a leg's force is given
-_UP, _ABOVE, _ALONG, _BELOW = range(4)  # loading; parts of unloading; the last ends a contact
-FIRST = 0  # piece of a loading curve
+_UP, _ABOVE, _ALONG, _BELOW = range(4)  # loading; unloading above, along and below the cap
+FIRST = 0  # index of the first piece of a loading curve
 NO_CURVE = Curve(0.0, 0.0, 3.0, 0.0, 0.0)
-"""Before there is an unloading curve."""
+"""Placeholder of the unloading curve while a contact loads."""
 
 
 class Leg(NamedTuple):
-    """A stretch of the way on which the force is one smooth function of q."""
+    """Part of a contact's path on which the force is one smooth function of q."""
 
     part: int
     level: float  # root compression at which it ends
     residual: float  # d = residual + q^2
     kind: int
-    first: int  # pieces of the loading curve
+    first: int  # first and last piece of the loading curve
     last: int
-    c0: float  # of a cubic
+    c0: float  # coefficients of a cubic
     c1: float
     c2: float
     c3: float
-    exponent: float  # of a power, with the stiffness c3
+    exponent: float  # exponent of a power, whose stiffness is c3
 
 
 @kernel(inline=True)
 def is_loading(leg: Leg) -> bool:
-    """Whether a leg is part of the loading curve on the way up."""
+    """Whether the contact loads on a leg."""
     return leg.part == _UP
 
 
@@ -65,13 +65,13 @@ def unloads(leg: Leg) -> bool:
 
 @kernel(inline=True)
 def force_on(leg: Leg, kind: int, law: Array, q: float) -> float:
-    """Force on a leg, of a kind that the compiler is to know."""
+    """Force on a leg; its kind is an argument so that the compiler knows it."""
     if kind == CUBIC:  # Hertz's law, the linear branch of MYC, most unloading
         return (leg.c0 + leg.c1 * q) + (q * q) * (leg.c2 + leg.c3 * q)
     if kind == POWER:
         return force.power_force(leg.c3, leg.exponent, q)
     k = leg.first
-    # a step on trial may pass the end of the leg on its way up: the law goes on there
+    # a trial step may pass the end of a loading leg: the next piece of the law goes on there
     while q >= force.start_of(law, k + 1) and (k < leg.last or leg.part == _UP):
         k += 1
     return force.piece_force(law, k, q)
@@ -106,7 +106,7 @@ def _on_unloading_curve(part: int, curve: Curve, level: float) -> Leg:
 
 @kernel
 def up(law: Array, first: int) -> Leg:
-    """Leg of loading from a kink, the first of whose pieces is given, to the next."""
+    """Leg of loading from a kink to the next; `first` is the piece that begins at the kink."""
     following = int(law[force.row_of(law, first) + force.NEXT])
     level = force.start_of(law, following)
     return _along_loading(law, _UP, first, following - 1, level)
@@ -137,7 +137,7 @@ def first_down(law: Array, curve: Curve, dm: float) -> Leg:
 
 @kernel
 def following(law: Array, curve: Curve, leg: Leg) -> Leg:
-    """Leg that follows on one that has ended at its level; the last one ends at level 0."""
+    """Leg after one that has ended at its level; the last leg of a contact ends at level 0."""
     if leg.part == _UP:
         return up(law, leg.last + 1)
     if leg.part == _ABOVE:

@@ -1,10 +1,10 @@
 """Where the energy of an impact goes: one list of channels, and the work that each of them takes.
 
-A channel takes work along the way of a contact (`Work`, which the integrator adds up), or all at
-once, by how far the contact was loaded. `Losses` has them all, and with the square of the
-restitution its members are one.
+Some channels take work during the contact (`Work`, which the integrator adds up), the others an
+amount that follows from the largest compression. `Losses` lists all of them; its members and the
+square of the restitution add up to one.
 
-Legend: q root compression, f contact force, dm largest compression, u0 first speed, in the law's
+Legend: q root compression, f contact force, dm largest compression, u0 impact speed, in the law's
 scale; ds = dt/(2 q).
 """
 
@@ -25,8 +25,8 @@ class Losses(NamedTuple):
     """Shares of the initial kinetic energy that an impact loses."""
 
     plastic: Any  # plastic work at the contact
-    wave: Any  # the bending wave, and what else runs away in the plate
-    other: Any  # what the law loses between loading and unloading that is no plastic work
+    wave: Any  # the bending wave and all other waves in the plate
+    other: Any  # part of the law's loss that is not plastic work
 
 
 DESCRIPTIONS = Losses(
@@ -35,13 +35,13 @@ DESCRIPTIONS = Losses(
     other="that the normal impact leaves in vibration and locked-in stress (law fem); the "
     "work of sliding friction is in no column",
 )
-"""What records of impacts say of the energy of each channel."""
+"""How records of impacts describe the energy of each channel."""
 
 
 class Work(NamedTuple):
-    """Work that channels have taken along the way."""
+    """Work that channels have taken since first touch."""
 
-    wave: float  # over the mobility, a ratio that has a limit where the plate is held
+    wave: float  # over the mobility: a ratio with a limit at mobility 0
 
 
 NO_WORK = Work(0.0)
@@ -50,7 +50,7 @@ NO_WORK = Work(0.0)
 
 @kernel(inline=True)
 def power(q: float, f: float) -> Work:
-    """Work that each channel takes, over ds."""
+    """Work that each channel takes per ds."""
     return Work(2.0 * q * f * f)
 
 
@@ -59,7 +59,7 @@ def gathered(
     work: Work, w1: float, p1: Work, w3: float, p3: Work, w4: float, p4: Work,
     w5: float, p5: Work, w6: float, p6: Work,
 ) -> Work:  # fmt: skip
-    """Work after a step, from the weights of its stages and the power at them."""
+    """Work after a step, from the weights and powers of its stages."""
     wave = w1 * p1.wave + w3 * p3.wave + w4 * p4.wave + w5 * p5.wave + w6 * p6.wave
     return Work(work.wave + wave)
 

@@ -4,10 +4,10 @@ It is Eq. 1 of Peng et al. 2021 in its first-order form,
 
     du/dt = -f,    dd/dt = u - v(f),    d(0) = 0,  u(0) = u0 = y^(-5/4),
 
-where v is the speed at which the plate gives way (`contactlaw.equation.plate`). A force that starts
+where v is the speed of the plate at the contact (`contactlaw.equation.plate`). A force that starts
 like d^1.5 has no second derivative at d = 0, where a Runge-Kutta method would lose its order. So q
-replaces d (dr = 0 while loading) and ds = dt/(2 q) replaces dt. Nothing is approximated, and for
-Hertz, f = q^3, the equation becomes polynomial:
+replaces d (dr = 0 while loading) and ds = dt/(2 q) replaces dt. This is exact, and for Hertz's law,
+f = q^3, the equation becomes polynomial:
 
     dq/ds = u - v(f),    du/ds = -2 q f,    dt/ds = 2 q
 
@@ -69,6 +69,6 @@ def start(contact: Contact, leg: Leg, q: float, u: float, t: float, work: Work) 
 
 @kernel
 def touch(contact: Contact, speed: float) -> tuple[Leg, State]:
-    """First touch, and the leg that begins there."""
+    """Leg that begins at first touch, and the state there."""
     leg = legs.up(contact.law, legs.FIRST)
     return leg, start(contact, leg, 0.0, speed, 0.0, losses.NO_WORK)

@@ -1,14 +1,14 @@
-"""The dimensionless numbers of an impact, which tables, solver, stepping and flags ask for here.
+"""The dimensionless numbers of an impact, computed here for tables, solver, stepping and flags.
 
-Of a sphere on a plate, all that speed V, radius R and thickness H change is a product of powers of
-r = V^(1/5) [(m/s)^(1/5)] and R/H; what remains are constants of the pair and its law, at 1 m/s and
-R = H:
+For a sphere on a plate they depend on speed V, radius R and thickness H through powers of
+r = V^(1/5) [(m/s)^(1/5)] and of R/H; the factors are constants of the pair and its law, their
+values at 1 m/s and R = H. For a thin plate
 
-    lambda = c_lam r (R/H)^2,    h = transit r/(R/H),    x = reach r^2,    T_H = (m/K)^(2/5)/r,
+    lambda = c_lam r (R/H)^2,    h = transit r/(R/H),    x = reach r^2,    T_H = (m/K)^(2/5)/r.
 
-each for a thin plate. Its next orders (`contactlaw.equation.waves`) make the contact stiffer by
-exp(eta): T_H is shorter by that, and r longer in lambda and h. x stops to grow where the force
-does, some way beyond yield. A bulk impact, as of two spheres, has R/H = 0 and c_lam = 0.
+Another plate (`contactlaw.equation.waves`) makes the contact stiffer: T_H is divided by exp(eta),
+and r multiplied by it in lambda and h. From a few times the yield speed on x is constant in eta
+(`saturated`). A bulk impact, as of two spheres, has R/H = 0 and c_lam = 0.
 """
 
 from __future__ import annotations
@@ -26,24 +26,24 @@ Array = NDArray[np.float64]
 
 
 class PlateConstants(NamedTuple):
-    """What the plates of a pair bring into impacts, at 1 m/s and R = H."""
+    """Constants of a pair for impacts on its plates, at 1 m/s and R = H."""
 
-    inelasticity: float  # c_lam, of a thin plate
+    inelasticity: float  # c_lam, lambda of a thin plate
     transit: float  # h of a loss-free contact, see `contactlaw.equation.waves`
-    reach: float  # x, of which the stiffening eta is made
-    saturated: float  # V^(1/5) at which x stops to grow; inf: it never does
+    reach: float  # x, from which the stiffening eta follows
+    saturated: float  # V^(1/5) from which on x is constant in eta; inf: nowhere
     waves: Waves
 
 
 class Numbers(NamedTuple):
-    """Impacts on Hertz's scale, and the units of that scale; floats or arrays."""
+    """Dimensionless numbers of impacts, and the units of Hertz's scale; floats or arrays."""
 
     inelasticity: Any  # lambda
     yield_ratio: Any  # y = d_Y/(V0 T_H); inf for a law that never yields
     time: Any  # T_H [s]
     compression: Any  # V0 T_H [m]
     force: Any  # m V0/T_H [N]
-    stiffer: Any  # exp(eta): what the plate shortens the contact by
+    stiffer: Any  # exp(eta), the factor by which the plate shortens the contact
 
 
 @kernel(inline=True)
@@ -95,7 +95,7 @@ def fill(
     ratio: Array,
     out: Numbers,
 ) -> None:
-    """`numbers` of many impacts, of one shape."""
+    """`numbers` of many impacts; all arrays have one length."""
     for n in range(speed.size):
         one = numbers(
             plate, mass[n], stiffness[n], yield_compression[n], speed[n], ratio[n]

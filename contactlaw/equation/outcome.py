@@ -1,4 +1,4 @@
-"""The one list of what is known of an impact, in the units of Hertz's scale.
+"""The fields of an impact's answer, each listed once, in the units of Hertz's scale.
 
 Speeds in V0, time in T_H, compressions in V0 T_H, forces in m V0/T_H, energies as shares of the
 initial kinetic energy. Kernels take these NamedTuples of arrays, one entry per impact, and fill
@@ -16,19 +16,19 @@ Array = NDArray[np.float64]
 
 
 class Outcome(NamedTuple):
-    """Impacts, as solver and table give them; what else there is follows from the law."""
+    """What solver and table give for impacts; the other fields follow from it and the law."""
 
     restitution: Any
     contact_time: Any  # from touch to separation
     wave_rate: Any  # share of the energy in the bending wave, over lambda: it has a limit at 0
-    compression_ratio: Any  # largest compression over the elastic one
+    compression_ratio: Any  # largest compression over that of an elastic impact
     elastic_compression: Any  # w_m, the largest compression of an elastic impact
     inelasticity: Any  # lambda
     yield_ratio: Any  # y, the yield compression; inf for an elastic law
 
 
 class Extremes(NamedTuple):
-    """What the law says of contacts whose largest compressions are known."""
+    """What follows from the law and the largest compression of contacts."""
 
     peak_force: Any
     residual_compression: Any
@@ -42,27 +42,27 @@ class History(NamedTuple):
     time: Any  # since first touch
     force: Any
     compression: Any
-    impulse: Any  # momentum that has passed [m V0]
+    impulse: Any  # integral of the force since first touch [m V0]
 
 
 class Stored(NamedTuple):
-    """A field of `Outcome` that a table keeps: what its file says of it, and what it may be."""
+    """A field of `Outcome` that tables keep: its description in the file, and its limits."""
 
     description: str
     least: float
     largest: float
 
 
-# Limits are ours, far beyond what the laws give for lambda to 10 and chi to 1e6 (2.5 to 443, 0.007
-# to 4.3, 0.7 to 854; of the weakest body, chi to 2e18, a ratio to 3e4): a number outside was not
-# computed.
+# Our limits: a number outside was never computed. For lambda to 10 and chi to 1e6 the laws give
+# contact times of 2.5 to 443, wave rates of 0.007 to 4.3 and compression ratios of 0.7 to 854; the
+# weakest body, with chi to 2e18, has ratios to 3e4.
 STORED = {
     "restitution": Stored("rebound speed over impact speed [-]", 0.0, 1.0),
     "contact_time": Stored("time from touch to separation [T_H]", 0.1, 1e4),
     "wave_rate": Stored("share of the energy in the bending wave, over lambda [-]", 0.0, 100.0),
     "compression_ratio": Stored("largest compression over the elastic one [-]", 0.01, 1e6),
 }
-"""What tables keep, in the order in which their splines are packed."""
+"""Fields that tables keep, in the order in which their splines are packed."""
 
 
 def empty(count: int) -> Outcome:
@@ -79,7 +79,7 @@ def at(inelasticity: Array, yield_ratio: Array) -> Outcome:
 
 
 def part(outcome: Outcome, chosen: Any) -> Outcome:
-    """Those of the impacts that an index chooses."""
+    """Outcomes of the impacts that an index selects."""
     return Outcome(*(values[chosen] for values in outcome))
 
 

@@ -1,6 +1,6 @@
-"""What a plate does under a contact: the paper's is a dashpot, faster the more it is pushed.
+"""The plate under a contact: a dashpot, as in the paper, with a speed in proportion to the force.
 
-What makes real plates differ from it is a factor on its mobility, see `contactlaw.equation.waves`.
+Real plates differ from it by a factor on the mobility, see `contactlaw.equation.waves`.
 
 Legend: f contact force, beta mobility, all in the law's scale.
 """
@@ -13,22 +13,22 @@ from contactlaw._jit import kernel
 
 
 class Plate(NamedTuple):
-    """A plate, as the equation of motion takes it."""
+    """Plate in the equation of motion."""
 
     mobility: float  # beta, lambda y^(1/4)
 
 
 HELD = Plate(0.0)
-"""One that does not move."""
+"""A plate that does not move."""
 
 
 @kernel(inline=True)
 def speed(plate: Plate, f: float) -> float:
-    """Speed at which the plate gives way to a force."""
+    """Speed of the plate at the contact under a force."""
     return plate.mobility * f
 
 
 @kernel(inline=True)
 def moves(plate: Plate) -> bool:
-    """Whether a plate takes energy at all."""
+    """Whether a plate moves, and so takes energy."""
     return plate.mobility > 0.0

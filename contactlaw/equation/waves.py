@@ -1,33 +1,32 @@
-"""How a plate differs from a dashpot: the next orders of what it gives way to a force.
+"""How a real plate differs from a dashpot: in its mobility, and in the stiffness of the contact.
 
-An infinite thin plate is a dashpot. A real one radiates more the faster the force changes: shear
-and rotary inertia first, then waves through the thickness, until in a contact that is over before
-the lower face has answered it is a half-space. Over an impact all of that is a factor Phi on the
-plate's mobility, and so on lambda. It depends on h = H/(c T), the thickness over the way of a shear
-wave in the contact time T:
+An infinite thin plate is a dashpot. A real plate radiates more the faster the force changes: first
+by shear and rotary inertia, then by waves through the thickness. In a contact that ends before the
+lower face has sent an echo it is a half-space. Over an impact this is a factor Phi on the plate's
+mobility, and so on lambda. It depends on h = H/(c T), the thickness over the distance that a shear
+wave covers in the contact time T:
 
-    Phi = 1 + k1 h + ...     h << 1
-    Phi = k2 h^2             h > h_c = c_L/(2 c): no echo comes back in time
+    Phi = 1 + k1 h + ...                      h << 1
+    Phi = k2 h^2 + (1 - h/h_c)^3 P(h/h_c)     h < h_c = c_L/(2 c), with a polynomial P
+    Phi = k2 h^2                              h > h_c: no echo comes back in time
 
-with k2 h^2 + (1 - x)^3 P(x), x = h/h_c < 1 and a polynomial P, from one limit to the other, which
-lets Phi/h^2 never rise: a thicker plate takes no more. And in
-phase with the force a plate gives way less than the half-space of Hertz's law, by F/(E2' H) times a
-number that falls as -ln h: the contact is stiffer, K exp(2.5 eta), T = T_H exp(-eta), with
+P is such that Phi/h^2 never rises: a thicker plate takes no more energy. The part of the plate's
+deflection that is in phase with the force is smaller than that of Hertz's half-space, by F/(E2' H)
+times a number that falls as -ln h. So the contact is stiffer: K grows by the factor exp(2.5 eta),
+T_H shrinks by exp(-eta), with
 
     eta = (R/H) ((b + b_h g) x E1'/(E1' + E2') + b4 x^4),    x = sqrt(d/R)
     g = (h - h_0)/(h + h_0),  which is ln(h/h_0)/2 near h_0 and ends at 1
 
-at the compression d = V0 T_H of an elastic impact, with h over the contact time with losses; beyond
-yield the force grows no faster than d, and x stays at x_s, as it was at a few times the yield
-speed. The last term is empirical: contacts as wide as the plate is thick are stiffer still. Beyond
-yield little of the compression comes back, so that it counts that a plate which gives way less than
-a half-space stores less, too: in proportion to (R/H) x E1'/(E1' + E2'). Since that does not come
-back either, it is in lambda, which grows by b_p (R/H) (x - x_s) E1'/(E1' + E2'). See
-``validation/derivations/mobility.md``.
+at the compression d = V0 T_H of an elastic impact, with h over the contact time with losses. Beyond
+yield the force grows no faster than d, and x stays at x_s, its value at a few times the yield
+speed. The last term is empirical: contacts as wide as the plate is thick are stiffer still. Because
+the plate gives way less than a half-space it stores less energy, in proportion to (R/H) x
+E1'/(E1' + E2'). Beyond yield, where little of the compression comes back, that too is lost: lambda
+grows by b_p (R/H) (x - x_s) E1'/(E1' + E2'). See ``validation/derivations/mobility.md``.
 
-The contact time is that of an elastic impact: 3.2181 T without losses, longer by a factor
-1 + 0.175 lambda + 0.18 lambda^3 as far as the frequencies count that it is made of, and by its
-square in g, where lambda is that of a thin plate.
+The contact time is that of an elastic impact, 3.2181 T_H without losses. With losses it is longer
+by f = 1 + 0.175 lambda + 0.18 lambda^3 in Phi, and by f^2 in g, with lambda of a thin plate in g.
 
 Legend: c, c_L speeds of shear and pressure waves, nu Poisson's ratio.
 """
@@ -45,19 +44,19 @@ from contactlaw._jit import kernel
 Array = NDArray[np.float64]
 
 CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
-SATURATION = 3.0  # V0 T_H over d_Y, by its root, from which on eta stays
-WIDEST = 0.3  # x up to which its fourth power was fitted; it stays from there on
-DEEPEST = 0.317  # x up to which finite elements reach, d = R/10; the first term stays likewise
-# Contact radius over thickness, (R/H) x, from which on the first term of eta stays. Finite elements
-# reach 1. Without a bound exp(eta) overflows for soft beads at high speeds.
+SATURATION = 3.0  # sqrt(V0 T_H/d_Y) from which on x is constant in eta
+WIDEST = 0.3  # x up to which x^4 in eta was fitted; constant beyond
+DEEPEST = 0.317  # x up to which finite elements reach, d = R/10; the first term is constant beyond
+# Contact radius over thickness, (R/H) x, from which on the first term of eta is constant. Finite
+# elements reach 1. Without a bound exp(eta) overflows for soft beads at high speeds.
 BROADEST = 10.0
-LONGER, LONGER_3 = 0.175, 0.18  # with lambda and its third power; the second by finite elements
-# lambda up to which g follows that. From 2 on the third power outgrows contact times, and would let
-# lambda rise with the thickness.
+LONGER, LONGER_3 = 0.175, 0.18  # of lambda and lambda^3 in f; the second from finite elements
+# Largest lambda for which g has its f. From 2 on, f would grow faster than contact times do, and
+# lambda would rise with the thickness.
 LONGEST = 1.25
 USUAL = 0.02  # h_0
-_RANGE = (0.0, 0.45)  # of nu; c_L has no bound towards 0.5
-# p2 to p5, each by powers of 1/h_c - _CENTRE; from ``python -m validation.derivations.mobility``
+_RANGE = (0.0, 0.45)  # range of nu here: c_L grows without bound towards 0.5
+# p2 to p5, each in powers of 1/h_c - _CENTRE; from ``python -m validation.derivations.mobility``
 _CENTRE = 1.07
 _NEAR = np.array(
     [
@@ -70,12 +69,12 @@ _NEAR = np.array(
 
 
 class Waves(NamedTuple):
-    """Next orders of a plate, as kernels take them. All zero: there are none."""
+    """Corrections of a plate to the thin-plate dashpot, for kernels; all zero: none."""
 
     eta: float  # first term of eta at R = H, h = h_0 and x = 1
-    eta_h: float  # what h adds to it
-    eta4: float  # last term
-    beyond: float  # what lambda grows by at R = H and x = x_s + 1
+    eta_h: float  # factor of g in that term
+    eta4: float  # last term of eta
+    beyond: float  # growth of lambda beyond yield at R = H and x = x_s + 1
     steepest: float  # 1/h_c
     bulk_factor: float  # k2
     p1: float  # P = 1 + p1 x + p2 x^2 + p3 x^3 + p4 x^4 + p5 x^5
@@ -96,7 +95,7 @@ def waves(
     eta4: float = 0.0,
     beyond: float = 0.0,
 ) -> Waves:
-    """Next orders of plates with this Poisson's ratio; b, b_h, b_p by E1'/(E1' + E2'), and b4.
+    """Corrections for plates of this Poisson's ratio; b, b_h and b_p times E1'/(E1' + E2'), and b4.
 
     Examples
     --------
@@ -115,21 +114,21 @@ def waves(
 
 @kernel(inline=True)
 def is_thin(waves: Waves) -> bool:
-    """Whether a plate is the paper's."""
+    """Whether a plate is the paper's dashpot, without corrections."""
     return waves.bulk_factor == 0.0
 
 
 @kernel(inline=True)
 def _lengthening(lam: float) -> float:
-    """Contact time over that without losses, as far as the frequencies count."""
+    """Factor f by which losses lengthen the contact in Phi."""
     return 1.0 + LONGER * lam + LONGER_3 * (lam * lam * lam)
 
 
 @kernel(inline=True)
 def stiffening(waves: Waves, ratio: float, x: float, thin: float, h: float) -> float:
-    """Stiffening eta of a contact by its plate, from R/H, x, and lambda and h before it."""
+    """Stiffening eta of a contact by its plate, from R/H, x, and lambda and h without eta."""
     longer = _lengthening(min(thin, LONGEST))
-    usual = USUAL * (longer * longer)  # by finite elements; the end of a long contact counts
+    usual = USUAL * (longer * longer)  # the square fits finite elements: late times matter
     g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, WIDEST * WIDEST)
     w = min(x, DEEPEST, BROADEST / ratio)
@@ -138,7 +137,7 @@ def stiffening(waves: Waves, ratio: float, x: float, thin: float, h: float) -> f
 
 @kernel(inline=True)
 def near_field(waves: Waves, h: float) -> float:
-    """Phi less its half-space part k2 h^2; 0 for an h that is infinite, or no number."""
+    """Phi minus its half-space part k2 h^2; 0 if h is infinite or NaN."""
     x = h * waves.steepest
     powers = 1.0 + x * (waves.p1 + x * (waves.p2 + x * (waves.p3 + x * (waves.p4 + x * waves.p5))))
     left = 1.0 - x
@@ -147,13 +146,12 @@ def near_field(waves: Waves, h: float) -> float:
 
 @kernel(inline=True)
 def with_waves(waves: Waves, thin: float, h: float, bulk: float, plastic: float) -> float:
-    """Inelasticity lambda, all orders in.
+    """Inelasticity lambda with all corrections.
 
-    From lambda of the thin plate, h for a loss-free contact, the product of the first with the
-    square of the second, which stays finite on a half-space, and (R/H) (x - x_s) beyond yield.
-    Only what acts as a dashpot lengthens the contact, near_field's share of lambda. The whole
-    lambda of a thin plate does not: it would shorten the contact, and raise lambda, as a thick
-    plate becomes thicker.
+    `thin` is lambda of the thin plate, `h` that of a loss-free contact, `bulk` is thin h^2, which
+    stays finite on a half-space, and `plastic` is (R/H) (x - x_s) beyond yield. Only the part of
+    lambda that acts as a dashpot, thin near_field, lengthens the contact. With the whole lambda of
+    a thin plate the contact would shorten, and lambda rise, as a thick plate becomes thicker.
     """
     longer = 1.0 / _lengthening(thin * near_field(waves, h))
     far = waves.bulk_factor * bulk * (longer * longer)

@@ -1,10 +1,10 @@
-"""The modified Zener model, solved: what becomes of impacts of a sphere on a plate.
+"""Solutions of the modified Zener model for impacts of a sphere on a plate.
 
 Results are on Hertz's scale: speeds in V0, time in T_H, compressions in V0 T_H, forces in m V0/T_H.
 
-Every integration goes through `_integrate`, which is told how far to go and what to note on the
-way: the integrator takes seconds to compile, and every kernel that Python calls is compiled with
-all that it calls.
+All integrations go through `_integrate`, whose arguments say how far to go and which points to
+note. The integrator takes seconds to compile, and each kernel that Python calls is compiled with
+everything that it calls.
 
 Legend, as in `contactlaw.equation.motion`: lam inelasticity parameter lambda, y yield compression,
 w compression, w_m that of an elastic impact; a law is its data.
@@ -36,7 +36,7 @@ MESSAGES = {
     BAD_INPUT: "lambda must be finite and >= 0, the yield compression finite and > 0",
     NOT_FOUND: "the yield compression of an impact that just yields was not found",
 }
-# How far `_integrate` goes, and what it notes on the way.
+# How far `_integrate` goes, and where it notes points.
 _TO_THE_TOP, _TO_THE_END, _AT_TIMES, _AT_COMPRESSIONS = range(4)
 
 
@@ -58,10 +58,10 @@ class Solution(NamedTuple):
 
 
 class Notes(NamedTuple):
-    """Points on the ways of contacts, a row for each."""
+    """Points on the paths of contacts, a row for each contact."""
 
-    # Rising times [T_H]; or compressions, as many rising ones, of which the last is infinity for
-    # the largest, as falling ones, of which the last is 0 for separation.
+    # Rising times [T_H], or compressions: first rising ones, whose last is infinity for the largest
+    # compression, then as many falling ones, whose last is 0 for separation.
     at: Any
     time: Any
     speed: Any  # of the sphere
@@ -78,7 +78,7 @@ def _integrate(
 ) -> None:
     """Integrate impacts: lam >= 0, y = d_Y/(V0 T_H) > 0, rtol the error allowed per step.
 
-    What becomes of each goes into a column of out, in the order of `Solution`.
+    The solution of each goes into a column of out, in the order of `Solution`.
     """
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
@@ -92,7 +92,7 @@ def _integrate(
 def _impact(
     goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int
 ) -> Solution:
-    """Integrate one impact, and note in row n what is asked for on the way."""
+    """Integrate one impact, and note points of its path in row n."""
     scale, h = integrator.scale_of(y, rtol)
     contact = Contact(law, Plate(lam * scale.t))
     leg, state = motion.touch(contact, scale.u)
@@ -109,7 +109,7 @@ def _impact(
         if until > state.t:
             state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
             total, longest = total + steps, max(longest, steps)
-        # the leg does, where no time or compression was met that is to be noted
+        # the leg ends unless the event was only a time or a compression to note
         ends = event != TIME and (event != LEVEL or level == leg.level)
         if ends:
             turns = loading and (event == integrator.TURN or state.dq <= 0.0)
@@ -132,7 +132,7 @@ def _impact(
     return Solution(
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
         float(total),
-        min(max(-state.u / scale.u, 0.0), 1.0),  # the error of a step may lift it beyond
+        min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
         top.t / scale.t,
         state.t / scale.t,
         top.f * y * math.sqrt(y),
@@ -158,7 +158,7 @@ def _run(
     notes: Notes = _NO_NOTES,
     few: bool = False,
 ) -> Solution:
-    """Integrate impacts, and say what became of each; a law that never yields has any y."""
+    """Integrate impacts, broadcasting lam and y; y is arbitrary for a law that never yields."""
     lams, ys = np.array(lam, np.float64, ndmin=1), np.array(y, np.float64, ndmin=1)
     if lams.size != ys.size:
         lams, ys = (each.copy() for each in np.broadcast_arrays(lams, ys))
@@ -169,13 +169,13 @@ def _run(
 
 
 def failure(status: Array) -> tuple[int, int]:
-    """Status, and index, of the first that has not solved; OK and 0 where all have."""
+    """Status and index of the first impact that has not solved; OK and 0 if all have."""
     failed = np.flatnonzero(status != OK)
     return (int(status[failed[0]]), int(failed[0])) if failed.size else (OK, 0)
 
 
 def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
-    """One impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol the error allowed per step."""
+    """Solve one impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol error per step."""
     return Solution(*(each.item() for each in _run(_TO_THE_END, law, lam, y, rtol)))
 
 
@@ -184,8 +184,8 @@ def history(
 ) -> tuple[Array, Array, Array]:
     """Force, compression and speed of the sphere at rising times [T_H] since first touch.
 
-    For lam and y that `solve` has solved, one for each row of times. After the end of contact the
-    state at its end holds.
+    There is one lam and one y, which `solve` solves, for each row of times. After separation the
+    values stay as they were there.
     """
     at = np.ascontiguousarray(np.atleast_2d(time))
     notes = Notes(at, *np.empty((4, *at.shape)))
@@ -210,8 +210,8 @@ def shape(
 ) -> tuple[Array, Array, Array]:
     """Find when, and how fast, q passes given shares of its largest value.
 
-    Status of each impact, times [T_H] and speeds [V0], 2 n of each: up the rising shares, of which
-    the last is 1, and down to 0, separation.
+    Returns the status of each impact, times [T_H] and speeds [V0]: 2 n of each for n rising shares
+    up to 1, first while loading, then back down to 0, separation.
     """
     top = _run(_TO_THE_TOP, law, lam, y, rtol)
     w, left = top.peak_compression[:, None], top.residual_compression[:, None]
@@ -225,8 +225,8 @@ def shape(
 def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) -> tuple[Any, Any]:
     """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
 
-    Under a law that is Hertz's up to yield that of any elastic impact (Fig. 4 of the paper). Under
-    another it depends a little on the speed: it is the y that is its own largest compression.
+    If the law is Hertz's up to yield, any elastic impact has it (Fig. 4 of the paper). If not, it
+    depends a little on the speed: it is the y whose largest compression is y itself.
     """
     hertz, before = force.is_hertz(law), np.ones(np.size(lam))
     for _ in range(100):
@@ -242,22 +242,21 @@ def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) ->
 
 
 def _scale(y: Array) -> Array:
-    """Yield ratios, of which an elastic law has none: any does for its scale."""
+    """Yield ratios to solve with: 1 in place of inf, which an elastic law has."""
     return np.where(y < math.inf, y, 1.0)
 
 
 def _put(one: Solution, w_m: Array, out: Outcome) -> None:
-    """Put impacts into the outcomes."""
+    """Write solutions into outcomes."""
     out.restitution[:], out.contact_time[:] = one.restitution, one.contact_time
     out.wave_rate[:], out.elastic_compression[:] = one.wave_rate, w_m
     out.compression_ratio[:] = one.peak_compression / w_m
 
 
 def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False) -> tuple[int, int]:
-    """Solve impacts with the inelasticities and yield ratios of `out`.
+    """Solve the impacts with the inelasticities and yield ratios of `out`; see `failure`.
 
-    Status, index of a failure. A few may do without the compiler, if their last digits do not
-    matter.
+    A few impacts need no compiled integrator, if their last digits do not matter.
     """
     y = _scale(out.yield_ratio)
     one = _run(_TO_THE_END, law, out.inelasticity, y, rtol, few=few)
@@ -275,7 +274,7 @@ def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False) -> tuple
 
 
 def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> tuple[int, int]:
-    """`solve_all` at overloads chi = w_m/y; impacts of one lambda share their w_m."""
+    """Solve like `solve_all`, at overloads chi = w_m/y; impacts of one lambda share their w_m."""
     lam, which = np.unique(out.inelasticity, return_inverse=True)
     status, each = elastic_compression(law, lam, rtol)
     if status.any():
@@ -290,7 +289,7 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
 def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float, few: bool = False) -> Any:
     """Overload at which the largest compression is dm; NaN if the equation does not solve.
 
-    By secants, in logarithms, in which dm nearly follows the overload.
+    By the secant method in logarithms, since ln dm is nearly ln chi.
     """
 
     def gap(log_chi: Array) -> Array:
@@ -317,8 +316,8 @@ def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float, few: boo
 def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
     """Peak force, residual compression and shares of the energy of impacts.
 
-    Most laws are Hertz's below yield; y may be inf there. Those that are not are gathered: a choice
-    in the loop would be predicted wrongly for half of them.
+    Most laws are Hertz's below yield; y may be inf there. Impacts beyond that are gathered first,
+    because a branch in the loop would be mispredicted for half of them.
     """
     leaves = force.leaves_hertz(law)
     beyond = np.empty(_CHUNK, dtype=np.int64)
