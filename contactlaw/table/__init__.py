@@ -1,8 +1,8 @@
 """Tables of impacts, without units: swept once, certified, kept on disk, looked up in nanoseconds.
 
-`grid` places the nodes along `axes`, `nodes` holds what the solver says there (`sweep` asks it on
-all cores), `certificate` compares with it at other places, `file` writes and reads, `cache` keeps.
-`splines` fits what `lookup` and `shapes` evaluate: outcomes of impacts, and force over time.
+`grid` places the nodes along `axes`, `nodes` holds the solutions there (`sweep` computes them on
+all cores), `certificate` compares lookups with the solver at other points, `file` and `cache` keep
+tables. `splines` fits what `lookup` and `shapes` evaluate: outcomes, and force over time.
 """
 
 from contactlaw.table.certificate import BOUNDS, Certificate, bounds

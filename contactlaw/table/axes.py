@@ -4,8 +4,8 @@ An axis is cut at the kinks of the law into segments, so that no spline runs acr
 node twice, once as the end of a segment and once as the beginning of the next. Within a segment the
 nodes are spaced evenly, or by the squares of even steps, in the axis' map x of its values.
 
-What is known along the first axis alone is given at the nodes of a Chebyshev series there: the
-largest elastic compression, and kinks of later axes, which may be curves over the first.
+Functions of the first axis alone are given at the nodes of a Chebyshev series along it: the largest
+elastic compression, and the kinks of later axes, which may be curves over the first.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Segment(NamedTuple):
 
     start: Array  # values at the nodes of the series; all equal for a kink that is a straight line
     end: Array
-    shares: Array  # of the way in x from start to end, rising from 0 to 1, one for each node
+    shares: Array  # places of the nodes in x, from 0 at the start to 1 at the end
     graded: bool  # shares are squares of even steps, else even steps
 
 
@@ -49,7 +49,7 @@ class Axis:
 
     @property
     def largest(self) -> float:
-        """Last value, which is the same wherever an impact lies along the first axis."""
+        """Last value; it is the same all along the first axis."""
         return float(self.segments[-1].end[0])
 
     def check(self) -> None:
@@ -78,7 +78,7 @@ class Axis:
             low, high = self.mapped(start), self.mapped(end)
             x = low + (high - low) * segment.shares
             values = x if math.isinf(self.stretch) else self.stretch * x / (1.0 - x)
-            parts.append(np.clip(values, start, end))  # not one rounding error beyond
+            parts.append(np.clip(values, start, end))  # rounding must not go beyond
         return np.concatenate(parts, axis=1)
 
     def segment_of(self, values: Array, along: Array) -> NDArray[np.intp]:

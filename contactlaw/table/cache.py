@@ -1,7 +1,7 @@
 """Tables that do not ship with the package: built once, kept in the user's cache folder.
 
-A table is kept by the data of its law, not by its name: laws that differ in their yield compression
-alone share one. Shapes of force histories are added when the first history is asked for.
+A table is identified by the data of its law, not by the law's name: laws that differ only in their
+yield compression share one. Shapes of force histories are added when a first history is needed.
 """
 
 from __future__ import annotations
@@ -25,13 +25,12 @@ from contactlaw.table import file
 from contactlaw.table.grid import Settings, on_demand
 from contactlaw.table.nodes import Table
 
-_PATIENCE = (
-    60.0  # [s]: a build takes less than one; a lock held for longer belongs to a process that hangs
-)
+# [s]; a build takes less than one second, so a lock held for longer belongs to a process that hangs
+_PATIENCE = 60.0
 
 
 def file_name(law: Law, settings: Settings) -> str:
-    """Name of a table's file: the law's, and a hash of all that its content depends on.
+    """Name of a table's file, with a hash of all that its content depends on.
 
     Examples
     --------
@@ -56,7 +55,7 @@ def file_name(law: Law, settings: Settings) -> str:
 def cached(law: Law, settings: Settings | None = None) -> Table:
     """Table of a law from the cache; built, and kept there, if it is missing or damaged.
 
-    Whatever is wrong with the folder, there is an answer; one warning says that it was not kept.
+    Whatever is wrong with the folder, a table is returned; a warning says that it was not kept.
     """
     settings = settings or on_demand(law)
 
@@ -84,7 +83,7 @@ def _kept(
     make: Callable[[Table | None], Table],
     is_whole: Callable[[Table], bool],
 ) -> Table:
-    """Table in the cache; made of what is there, and kept, if that is not whole."""
+    """Read a table from the cache; if it is missing or not whole, make it and keep it."""
     try:
         place = folder()
     except RuntimeError as error:
@@ -152,7 +151,7 @@ def _usable(path: Path, law: Law, settings: Settings) -> tuple[Table | None, str
 def _locked(path: Path) -> Iterator[None]:
     import filelock
 
-    # the lock is the kernel's: it goes with its process, however that ends
+    # the lock belongs to the operating system, which releases it however the process ends
     with filelock.FileLock(path.with_suffix(".lock"), timeout=_PATIENCE):
         yield
 

@@ -30,29 +30,29 @@ BOUNDS = {
     "other_fraction": 1e-5,
     "force_history": 1e-4,
 }
-"""What contactlaw promises: COR absolutely, a force history by its peak, the others relatively."""
+"""Promised errors: absolute for COR, relative to the peak for force histories, else relative."""
 
 PAIR_BOUNDS = {
     **dict.fromkeys(BOUNDS, 5e-4),
     "restitution": 1e-5,
-    "contact_time": 5e-3,  # where nothing comes back, lambda above 4; 1e-4 elsewhere
+    "contact_time": 5e-3,  # where COR is nearly 0, lambda above 4; 1e-4 elsewhere
     "force_history": 3e-3,
 }
-"""Of tables that are made for a pair when its model is: coarser, in a fifth of a second."""
+"""Promised errors of tables built for one pair: they are coarser, and take a fifth of a second."""
 
 
 def bounds(law: Law) -> dict[str, float]:
-    """Bounds of a table of this law."""
+    """Promised errors of a table of this law."""
     return BOUNDS if math.isinf(law.range[1]) else PAIR_BOUNDS
 
 
-# Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2: no number of digits
-# of chi gives them relatively there. Below this they count absolutely (chi - 1 < 2e-6).
+# Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2: next to it rounding
+# of chi makes any relative error. Smaller values (chi - 1 < 2e-6) have errors relative to this one.
 _SMALLEST = 1e-12
-_RETURNING = 1e-6  # least COR with which contact times count
+_RETURNING = 1e-6  # least COR at which contact times are compared
 _PART = 500  # points that a thread solves at a time
-_SAMPLES = 33  # of a force history that is compared
-_NEAR_KINK = 0.01  # in ln chi; a share of the points lies this near on either side
+_SAMPLES = 33  # samples of a force history that are compared
+_NEAR_KINK = 0.01  # in ln chi; some of the points lie this near to a kink, on either side
 _HALF_SPACE = 0.1  # share of the points with lambda = 0
 
 
@@ -60,9 +60,9 @@ _HALF_SPACE = 0.1  # share of the points with lambda = 0
 class Certificate:
     """How far lookups are from the solver, at random points off the grid.
 
-    Errors of COR are absolute, those of force histories (the largest at any time) in terms of the
-    peak force, those of the other fields relative. Contact times count where the sphere comes back
-    with 1e-6 of its speed; the contact of one that stays has no end.
+    Errors of COR are absolute, those of force histories (the largest at any time) relative to the
+    peak force, those of the other fields relative. Contact times are compared where COR is at least
+    1e-6: the contact of a sphere that stays has no end.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class Certificate:
 
     @classmethod
     def of(cls, errors: dict[str, Array], points: int, seed: int) -> Certificate:
-        """Sum up errors."""
+        """Summarise errors."""
         return cls(
             points=points,
             seed=seed,
@@ -140,11 +140,11 @@ def _finer(settings: Settings) -> float:
 
 
 def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array]:
-    """Lambda and chi of points; kinks that are curves are taken where they begin and end."""
+    """Draw lambda and chi of points; a curved kink counts at its least and its largest chi."""
     inelasticity, overload = grid.axes
     lows = [float(segment.start.min()) for segment in overload.segments]
     highs = [float(segment.start.max()) for segment in overload.segments]
-    hertz = lows[0] == 0.0  # else what is below the table is none of a certificate's business
+    hertz = lows[0] == 0.0  # the table begins at yield; below another one nothing is compared
     strata = [(-2.0, 0.0)] * hertz + [*zip(lows, [*highs[1:], overload.largest], strict=True)]
     strata += [(low - _NEAR_KINK, low) for low in lows[not hertz :]]
     strata += [(high, high + _NEAR_KINK) for high in highs]
@@ -157,7 +157,7 @@ def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tup
 
 
 def _named(law: Law, values: Outcome) -> dict[str, Array]:
-    """Fields of `BOUNDS` from an outcome, as `contactlaw.physical.rebound` has them."""
+    """Fields of `BOUNDS` from an outcome, computed as in `contactlaw.physical.rebound`."""
     compression = values.compression_ratio * values.elastic_compression
     extremes = outcome.extremes(compression.size)
     zener.extremes(law.data, values, extremes)

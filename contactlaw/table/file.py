@@ -39,16 +39,16 @@ from contactlaw.table.nodes import Table, shape_grid
 FORMAT = "contactlaw table"
 SCHEMA = 6
 _BLOCK = 512  # bytes; the smallest user block of HDF5
-LARGEST = 1 << 30  # bytes of a file, ours: 700 times the packaged table, and memory that a PC has
-_LARGEST_LAW = 1_000_000  # numbers
+LARGEST = 1 << 30  # bytes of a file, our choice: 700 times the packaged table, and a PC can hold it
+_LARGEST_LAW = 1_000_000  # numbers in a law's data
 _MOST_KINKS, _MOST_NODES = 1000, 1_000_000
 _SEGMENT = {
     "start": "where it begins along its axis, over series_inelasticity [-]",
     "end": "where it ends [-]",
     "shares": "of the way from start to end in x = v/(v + stretch), v itself if inf, at nodes [-]",
 }
-# Of the numbers beside the fields; w_m is (5/4)^(2/5) at lambda = 0, and falls; more beyond the end
-# of a law.
+# Limits of the stored numbers. w_m is (5/4)^(2/5) at lambda = 0 and falls with lambda; beyond the
+# end of a law's range it may be larger.
 _RANGES = {
     **{name: (stored.least, stored.largest) for name, stored in STORED.items()},
     "elastic_compression": (0.01, 1.3),
@@ -56,7 +56,7 @@ _RANGES = {
     "speeds of shapes/states": (-1.0, 1.0),
 }
 _HEAD = {"format": FORMAT, "schema": SCHEMA, "complete": True}
-_ENERGY = 1e-3  # by which COR and wave may exceed what there is; tables may be coarse
+_ENERGY = 1e-3  # COR^2 and wave share may sum up to 1 and this, since tables may be coarse
 
 
 class DamagedTableError(ValueError):
@@ -71,13 +71,13 @@ def write(table: Table, path: str | os.PathLike[str]) -> None:
     table : Table
         What `contactlaw.table.build` returned.
     path : path-like
-        Where to; an existing file is replaced.
+        File to write; an existing one is replaced.
 
     Raises
     ------
     OSError
-        If the folder does not exist, is not writable or full, or the table larger than what `read`
-        takes; nothing is left behind then.
+        If the folder does not exist, is not writable or full, or the table is larger than `read`
+        accepts; nothing is left behind then.
     """
     content = _serialise(table)
     if len(content) > LARGEST:
@@ -213,7 +213,7 @@ def _from_file(file: h5py.File) -> Table:
     table = dataclasses.replace(table, fields=fields)
     if "shapes" not in file:
         return table
-    # in the last digit numpy's functions differ between its versions, and between processors
+    # numpy's functions differ in the last digit between its versions and between processors
     shares = _values(file, "shapes/shares", shapes.STATES)
     if not np.allclose(shares, shapes.SHARES, rtol=1e-12, atol=1e-12):
         raise ValueError("its shapes/shares are not those of this version")
@@ -227,7 +227,7 @@ def _values(file: h5py.File, name: str, *shape: int, kind: DTypeLike = np.float6
 
 
 def _law(file: h5py.File) -> Law:
-    """Law of a table, in whose data kernels will follow addresses."""
+    """Read the law of a table; its data are checked, since kernels follow addresses in them."""
     numbers = _listed(file, "law/data", _LARGEST_LAW)
     force.check(numbers)
     parameters = guarded.member(file, "law/parameters")
@@ -253,7 +253,7 @@ def _law(file: h5py.File) -> Law:
 
 
 def _listed(file: h5py.File, name: str, most: int) -> NDArray[Any]:
-    """Values of a dataset whose length is not known before."""
+    """Read a dataset whose length is not known beforehand, up to a limit."""
     dataset = guarded.member(file, name)
     count = getattr(dataset, "shape", None)
     if not isinstance(count, tuple) or len(count) != 1 or not count[0] <= most:
@@ -262,7 +262,7 @@ def _listed(file: h5py.File, name: str, most: int) -> NDArray[Any]:
 
 
 def _grid(file: h5py.File, settings: Settings, law: Law) -> Grid:
-    """Nodes, which have to be those of the settings and of the law."""
+    """Read the nodes; refuse those of other settings or of another law."""
     axes = tuple(_axis(file, name) for name in grids.AXES)
     grids.check(axes, law, settings)
     return Grid(axes, _values(file, "elastic_compression", SERIES))
@@ -323,8 +323,8 @@ def _check_ranges(table: Table) -> None:
 def packaged(law: Law) -> Table | None:
     """Read the table of a law that ships with the package; None for a law without one.
 
-    The last digits of a law's data depend on the machine that made them, so that the packaged
-    table serves a law that agrees with its own to 1e-11.
+    The last digits of a law's data depend on the machine that made them: the packaged table serves
+    any law that agrees with its own to 1e-11.
 
     Raises
     ------

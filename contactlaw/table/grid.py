@@ -4,11 +4,11 @@ Along lambda the nodes are uniform in x = lambda/(lambda + c), along ln chi with
 between two kinks.
 
 As long as loading follows Hertz's curve, the largest compression is chi d_Y, and a kink of the law
-is a line of constant chi. A kink that comes later is a curve, chi_k(lambda), along which the
-segments' ends are drawn. An impact that turns beyond a kink of the loading curve by some share p
-has spent a time there that grows as the root of p: its outcome has a term in p^(3/2) where the
-slope of the curve jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are
-uniform in the root of p, in which these are smooth; behind those of a capped law, too.
+is a line of constant chi. A later kink is a curve chi_k(lambda), and segments begin and end along
+that curve. An impact that turns beyond a kink of the loading curve by some share p has spent a time
+there that grows as the root of p: its outcome has a term in p^(3/2) where the slope of the curve
+jumps, in p^(5/2) where its curvature does. Behind such a kink the nodes are uniform in the root of
+p, in which these terms are smooth; so they are behind all kinks of a capped law.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from contactlaw.table.axes import FEWEST, SERIES, Axis, Grid, Segment, series_va
 Array = NDArray[np.float64]
 
 AXES = "inelasticity", "log_overload"
-_FEWEST_GRADED = 24  # our choice: between two kinks of a capped law that are 8 % apart
-_COARSER = 4.0  # steps in ln chi below yield: only the sphere's stiffening is to be seen there
-_BEYOND = 1.5  # of the overload up to which a law was made, for a table of it
-_LARGEST = 6.0  # lambda of a table that is made for a pair: 1 mm of carbide on 0.6 mm at 10 m/s
-# In ln chi, of a table that is made for a pair, as fine as its rows; and of a long one, for a soft
-# body, most of which is complete flow: its largest errors are the same.
+_FEWEST_GRADED = 24  # nodes of a graded segment, our choice: kinks of a capped law are 8 % apart
+_COARSER = 4.0  # factor on steps in ln chi below yield, where only the sphere's stiffening counts
+_BEYOND = 1.5  # largest chi of a pair's table, over the chi up to which its law was made
+_LARGEST = 6.0  # largest lambda of a pair's table: 1 mm of carbide on 0.6 mm at 10 m/s
+# Steps in ln chi of a table that is built on demand: one as fine as its rows, and one for the long
+# tables of soft bodies, which are complete flow for the most part: their largest errors are alike.
 _STEP, _LONG_STEP = 0.03, 0.05
 _ROOM = 0.02  # in ln chi, between the last kink and the end of the table
 
@@ -76,7 +76,7 @@ class Settings:
 
 RANGES = {
     "largest_inelasticity": (1e-3, 10.0),  # 10: COR is 7e-6 there
-    "largest_overload": (1e-3, 1e20),  # above 2e18, of a body of sigma_Y = 1e-12 E, the weakest
+    "largest_overload": (1e-3, 1e20),  # the weakest body, with sigma_Y = 1e-12 E, reaches 2e18
     "inelasticity_nodes": (FEWEST, 100_000),
     "log_overload_step": (1e-4, 1.0),
     "stretch": (1e-3, 1e3),
@@ -92,7 +92,7 @@ def inelasticity_axis(settings: Settings) -> Axis:
 
 
 def coarser(grid: Grid, settings: Settings, steps: float | Array) -> Grid:
-    """Other nodes between the same kinks; one step for all segments of ln chi, or one for each."""
+    """Place other nodes between the same kinks; one step for all segments, or one for each."""
     overload = grid.axes[1]
     each = np.broadcast_to(steps, len(overload.segments))
     segments = tuple(_with_nodes(*one) for one in zip(overload.segments, each, strict=True))
@@ -140,7 +140,7 @@ def check(axes: Sequence[Axis], law: Law, settings: Settings) -> None:
 
 
 def _straight(law: Law) -> float:
-    """Compression up to which kinks are lines of constant chi: Hertz's curve, or yield alone."""
+    """Compression up to which kinks lie at constant chi: the end of Hertz's curve, or yield."""
     if not law.is_hertz:
         return 1.0 if law.yields else 0.0
     return law.loading_kinks[0] if law.loading_kinks else math.inf
@@ -149,7 +149,7 @@ def _straight(law: Law) -> float:
 def _with_nodes(segment: Segment, step: float) -> Segment:
     """Place the nodes of a segment."""
     length = float((segment.end - segment.start).max())
-    # even steps of the root are twice as far apart at the end as on average
+    # steps that are even in the root are twice as long at the end as on average
     least, denser = (_FEWEST_GRADED, 1.25) if segment.graded else (FEWEST, 1.0)
     if not segment.end.max() > 0.0:
         denser = 1.0 / _COARSER
@@ -176,7 +176,7 @@ def grid(law: Law, settings: Settings) -> Grid:
 def _kink_lines(
     law: Law, settings: Settings, lam: Array, elastic: Array
 ) -> tuple[list[Array], list[bool]]:
-    """Ln chi of the kinks along lambda, and of the table's end; behind which nodes are graded."""
+    """Ln chi of the kinks and the table's end along lambda, and which segments are graded."""
     end = math.log(settings.largest_overload)
     leaves = _straight(law)
     lines, graded = [], []

@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-# A pipe without a writer would keep `open` waiting, and a terminal become that of the process.
+# Else `open` waits for a writer of a pipe, and a terminal becomes the controlling one.
 _FLAGS = os.O_RDONLY
 for _name in ("O_NONBLOCK", "O_NOCTTY", "O_BINARY"):
     _FLAGS |= getattr(os, _name, 0)  # not every platform has each
@@ -40,14 +40,14 @@ def content(path: str | os.PathLike[str], limit: int) -> bytes:
             raise ValueError(f"it is no regular file: {error.strerror}") from None
         raise
     try:
-        # asked of what is open, which nobody can put another file in place of
+        # the status of the open file: nobody can put another one in its place any more
         status = os.fstat(handle)
         if not stat.S_ISREG(status.st_mode):
             raise ValueError("it is no regular file")
         if status.st_size > limit:
             raise ValueError(f"it has {status.st_size} bytes, and no table more than {limit}")
         with os.fdopen(handle, "rb", closefd=False) as file:
-            return file.read(status.st_size)  # no more, should it grow
+            return file.read(status.st_size)  # no more, even if the file grows
     finally:
         os.close(handle)
 
@@ -70,7 +70,7 @@ def member(file: h5py.Group, name: str) -> Any:
 def values(dataset: Any, shape: tuple[int, ...], kind: DTypeLike) -> NDArray[Any]:
     """Read a dataset that must have this shape and dtype, and be stored in its file as one block.
 
-    All of that is checked before memory is asked for: a few bytes declare an array of any size.
+    This is checked before memory is allocated: a few bytes can declare an array of any size.
     """
     if not isinstance(dataset, h5py.Dataset):
         raise ValueError(f"its {dataset.name} is no dataset")

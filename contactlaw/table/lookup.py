@@ -3,9 +3,9 @@
 A table holds functions of the inelasticity lambda and of ln chi, the logarithm of the overload, on
 the nodes that `contactlaw.table.grid` places. Splines are kept as coefficients of uniform cubic
 B-splines, two more than there are nodes: they need the least memory, and a table that stays in the
-cache is a fast one. Below the first segment, where the contact is elastic, the values at its
-beginning hold. ln w_m is a polynomial in x, and so is ln chi along each kink that is no line of
-constant chi.
+CPU's cache is a fast one. Below the first segment the values at its beginning hold. With x =
+lambda/(lambda + c), ln w_m is a polynomial in x, and so is ln chi along each curved kink, one that
+is not a line of constant chi.
 
 All of it is packed into one array of float64, because a kernel that takes one array and a few
 numbers is called from Python in a third of a microsecond. The array begins with a header:
@@ -43,27 +43,27 @@ from contactlaw.equation.waves import Waves, is_thin
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
 
-# Input beyond these is a mistake: no continuum below 1 nm, no bead above 1 km [m], no contact that
-# is quasi-static above the speed of every wave in a solid, nor an impact below 1e-30 m/s, where
-# squares begin to underflow [m/s].
+# Input outside these is a mistake. [m]: there is no continuum below 1 nm, and no bead above 1 km.
+# [m/s]: no contact is quasi-static above the speed of every wave in a solid, and below 1e-30 m/s
+# squares begin to underflow.
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = 1e-30
 # Smallest H/R, whatever the law and the speed. A plate thinner than that is a foil, and nothing is
-# known of impacts on it: finite elements reach R/H = 4.5, the flags begin at 1.4. From 0.01 to 100
-# m/s lambda of materials of the catalogue passes 6 before, at R/H = 1.4 to 60.
+# known of impacts on it: finite elements reach R/H = 4.5, the flags begin at 1.4. For materials of
+# the catalogue at 0.01 to 100 m/s lambda exceeds 6 on thicker plates already, from R/H = 1.4 to 60.
 THINNEST = 0.01
 
 STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X, COLUMNS = range(5)
 SEGMENTS, CURVED, COR_AT, OTHERS_AT, TRANSIT, REACH, SATURATED, WAVES = range(5, 13)
 HEADER = WAVES + len(Waves._fields)  # where the series of ln w_m begins
-DEGREE = 20  # of ln w_m in x: within 4e-12 of the nodes
+DEGREE = 20  # degree of ln w_m in x: within 4e-12 at the nodes
 START, END, PER_LOG, CELLS, COLUMN, GRADED, LINE, BLOCK = range(8)
 BLOCKS = HEADER + DEGREE + 1
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 
 
 def with_plate(table: Array, plate: PlateConstants) -> Array:
-    """Copy a table for plates that have next orders; the table itself for others."""
+    """Copy a table and put in the corrections of a plate; the paper's dashpot needs no copy."""
     if is_thin(plate.waves):
         return table
     table = table.copy()
@@ -111,7 +111,7 @@ _ROOTS_OF_TWO = 2.0 ** (np.arange(-1024, 3072) / 5)  # 2^(k/5), for any 12 bits 
 
 @kernel
 def _log_and_root(v: float) -> tuple[float, float]:
-    """Logarithm and fifth root of V_MIN <= v <= V_MAX, to rounding; of others garbage, no crash.
+    """Logarithm and fifth root of V_MIN <= v <= V_MAX, to rounding; garbage for other v, no crash.
 
     v = 2^k m with m within [sqrt(1/2), sqrt(2)) and z = (m - 1)/(m + 1), |z| < 0.172: the series of
     2 artanh z = ln m and of m^(1/5) do not wait for each other, and contain no call, so that loops
@@ -244,7 +244,7 @@ def locate(table: Array, x: float, log_chi: float) -> tuple[int, int, float, flo
         per_log = cells / (high - low)
     along = _along(log_chi, low, per_log, cells, table[block + GRADED])
     across = x * table[NODES_PER_X]
-    # on a curved kink rounding may put it a little into the next segment
+    # rounding may put a point on a curved kink a little into the next segment
     row, cell = int(across), min(int(along), int(cells))
     return row, int(table[block + COLUMN]) + cell, across - row, along - cell
 
@@ -329,7 +329,7 @@ _U = tuple(np.uint64(n) for n in range(12))  # no test for a negative index
 
 
 class _Others(NamedTuple):
-    """What a table has beside COR."""
+    """Fields of a table other than COR."""
 
     contact_time: float
     wave_rate: float
@@ -363,7 +363,7 @@ def _other_fields(table: Array, p: np.uint64, s: float, t: float) -> _Others:
 def _put(
     table: Array, first: int, s: float, t: float, log_chi: float, log_w: float, out: Outcome, n: int
 ) -> None:
-    """Fields from the coefficients whose first, of the 4 x 4, is given."""
+    """Write the fields of impact n, from the 4 x 4 coefficients that begin at `first`."""
     step = int(table[COLUMNS])
     out.restitution[n] = _cor(table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t)
     others = _other_fields(table, np.uint64(int(table[OTHERS_AT]) + 3 * first), s, t)
@@ -376,14 +376,14 @@ def _put(
 
 @kernel
 def _blank(out: Outcome, n: int) -> None:
-    """No answer."""
+    """Write NaN for the fields of impact n."""
     out.restitution[n] = out.contact_time[n] = out.wave_rate[n] = math.nan
     out.compression_ratio[n] = out.elastic_compression[n] = math.nan
 
 
 @kernel(inline=True)
 def _is_valid(speed: float, radius: float, thickness: float) -> bool:
-    """Whether an impact is none that is a mistake; without a branch, so that loops are vectors."""
+    """Whether an impact is in its limits; without a branch, so that loops become vectors."""
     valid = (speed >= V_MIN) & (speed <= V_MAX) & (thickness >= R_MIN)
     return valid & (radius >= R_MIN) & (radius <= R_MAX) & (THINNEST * radius <= thickness)
 
@@ -437,7 +437,7 @@ def _coordinates(
 ) -> bool:
     """Coordinates ln chi and x of impacts, ln w_m, and the fifth root of the speed times exp(eta).
 
-    Whether all of them are valid and in the table.
+    Returns whether all of the impacts are valid and in the table.
     """
     stretch, x_max, scale = table[STRETCH], table[X_MAX], 2.0 / table[X_MAX]
     power_series, log_chi_max = _power_series(table, HEADER), table[LOG_CHI_MAX]
@@ -457,7 +457,7 @@ def _coordinates(
             lam = inelasticity_of(plate, root[i], ratio, more)
             root[i] *= more
             x[i] = lam / (lam + stretch)
-            log_chi[i] -= 1.25 * eta  # of the speed, whose power 4/5 it is
+            log_chi[i] -= 1.25 * eta  # times 0.8 below, as ln V is
     for i in range(x.size):
         log_w[i] = _evaluate(power_series, scale * x[i] - 1.0)
         log_chi[i] = c_chi + 0.8 * log_chi[i] + log_w[i]
@@ -478,7 +478,7 @@ def _move_inside(
     x: Array,
     outside: Array,
 ) -> None:
-    """Move coordinates outside the table, or of no valid impact, to 0; outside is NaN for those."""
+    """Set coordinates of invalid impacts, or outside the table, to 0; `outside` is NaN for them."""
     for i in range(x.size):
         valid = _is_valid(speed[i], radius[i], thickness[i])
         inside = valid and 0.0 <= x[i] <= table[X_MAX] and log_chi[i] <= table[LOG_CHI_MAX]
@@ -494,7 +494,7 @@ def _part(values: Array, start: int, count: int) -> Array:
 
 @kernel(inline=True)
 def _room(scratch: Array, row: int, count: int) -> Array:
-    """Beginning of a row."""
+    """First `count` numbers of a row of scratch memory."""
     return scratch[row, :count]
 
 
@@ -508,7 +508,7 @@ def restitutions(
     thickness: Array,
     out: Array,
 ) -> int:
-    """COR of many spheres on plates into out; how many are NaN."""
+    """Write the COR of many spheres on plates into out; return how many are NaN."""
     scratch, first = np.empty((6, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
     cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
     bad = 0
@@ -542,9 +542,9 @@ def outcomes(
     out: Outcome,
     root: Array,
 ) -> int:
-    """All fields of many spheres on plates, of valid input; how many are outside, and are NaN.
+    """Write all fields of valid impacts on plates; return how many are outside, and NaN.
 
-    Beside them V^(1/5) exp(eta) into root.
+    V^(1/5) exp(eta) goes into root.
     """
     scratch, first = np.empty((7, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
     cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
@@ -571,7 +571,7 @@ def outcomes(
         if not inside:
             _move_inside(table, v, r, h, log_chi, x, outside)
         _locate_all(table, x, log_chi, first[:n], along, a, b)
-        # by name here: a tuple of arrays that is handed on is counted for each impact
+        # no call of `_put`: passing a tuple of arrays on costs reference counts for each impact
         for i in range(n):
             at, s, t = int(first[i]), x[i], along[i]
             out.restitution[start + i] = _cor(table, np.uint64(cor_at + at), step, s, t)
@@ -593,10 +593,10 @@ def outcomes(
 
 @kernel(cache=True)
 def fields(table: Array, clamp: bool, out: Outcome) -> int:
-    """Fields at the inelasticities and yield ratios of `out`; how many of these are outside.
+    """Write fields at the inelasticities and yield ratios of `out`; return how many are outside.
 
     Outside the table fields are NaN, unless `clamp` takes the nearest point of its border, and
-    puts that point's coordinates in place of those asked for.
+    puts that point's coordinates in place of the impact's.
     """
     outside = 0
     for n in range(out.inelasticity.size):
@@ -619,7 +619,7 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
 
 @kernel(cache=True)
 def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Array) -> None:
-    """Speeds at which chi = 1 into out; NaN where lambda leaves the table before.
+    """Write the speeds at which chi = 1 into out; NaN where lambda leaves the table before.
 
     d(ln chi)/d(ln V) lies between 2/3 and 4/5, so a step with slope 3/4 contracts by 0.12 at least.
     """

@@ -27,11 +27,11 @@ from contactlaw.table.sweep import Progress, no_progress
 
 Array = NDArray[np.float64]
 
-POINTS = 1000  # of the certificate of a table that is built on the way to a first answer
+POINTS = 1000  # points of the certificate of a table that is built on demand
 _COMPARED = 20_000  # points at which a coarser table is compared
-_FEWER = 4, 2, 1  # rows of a coarser table are fewer by these
-# Steps along ln chi are wider by these, in each segment by its own: the COR of elastic impacts
-# bends far less than that beyond yield, which kept the whole table fine as long as one step ruled.
+_FEWER = 4, 2, 1  # factors by which a coarser table may have fewer rows
+# Factors by which its steps along ln chi may be wider, one for each segment: the COR of elastic
+# impacts bends far less than that beyond yield, for which a single step would have to be fine.
 _WIDER = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
 
 
@@ -42,18 +42,18 @@ class Table:
     Parameters
     ----------
     law : Law
-        What the impacts follow.
+        Force law of the impacts.
     settings : Settings
         Extent and fineness.
     grid : Grid
         Nodes of the fields.
     fields : dict of str to ndarray
-        Those of `contactlaw.equation.outcome.STORED`, (rows, columns).
+        Fields of `contactlaw.equation.outcome.STORED`, each (rows, columns).
     states : ndarray of float32, optional
-        Shapes of force histories on `shape_grid`, (rows, columns, 2, SIZE); None if they have not
-        been asked for.
+        Shapes of force histories on `shape_grid`, (rows, columns, 2, SIZE); None until they are
+        needed.
     certificate : Certificate, optional
-        How far it is from the solver.
+        How far lookups are from the solver.
     """
 
     law: Law
@@ -65,7 +65,7 @@ class Table:
 
     @property
     def exceeded(self) -> dict[str, float]:
-        """Errors of the certificate above what is promised of such a table."""
+        """Errors of the certificate that are larger than promised."""
         return {} if self.certificate is None else self.certificate.exceeded(bounds(self.law))
 
     @functools.cached_property
@@ -132,7 +132,7 @@ def build(
 
 
 def coarser(table: Table, error: float) -> Table:
-    """Table on as few nodes as it takes for a COR within `error`; else the one that is given."""
+    """Thin out a table's nodes while its COR stays within `error`; else return it as it is."""
     rows, fewest = table.settings.inelasticity_nodes - 1, int(RANGES["inelasticity_nodes"][0])
     lam, chi = random_points(table.grid, _COMPARED, np.random.default_rng(0))
     exact = _looked_up(table, lam, chi).restitution
@@ -199,9 +199,9 @@ def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_p
     Parameters
     ----------
     table : Table
-        As `build` made it.
+        Table from `build`.
     points, progress
-        As of `build`.
+        As in `build`.
 
     Returns
     -------

@@ -4,11 +4,11 @@ A contact is followed through its root compression q: from touch up to the large
 unloading curve, down to separation. A shape is the list of times and speeds at which q passes given
 shares of its largest value. Between two of these states runs the cubic through both (Hermite), with
 the slopes that the equation of motion gives: dd/dt = u - lam f, du/dt = -f. With 24 states on
-either side of the top it holds the force to 3e-5 of its peak, up to lam = 5, and to 6e-5 where the
-loading curve has corners.
+either side of the top the force is within 3e-5 of its peak, up to lam = 5, and within 6e-5 where
+the loading curve has corners.
 
 The unloading curve of a capped law has corners, where the cubics would err by 3e-3: contacts that
-come back along the cap are integrated.
+unload along the cap are integrated.
 
 Times and speeds at given shares are smooth in lam and ln chi. They need fewer nodes than COR does:
 the grid here is coarser than the table's, with the same segments between kinks.
@@ -39,10 +39,10 @@ Singles = NDArray[np.float32]
 STATES = 24  # on either side of the top
 # Sines of even steps: dense at the top, where q hardly changes with time.
 SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
-SIZE = 2 * STATES - 1  # states between touch and separation; at these two they are known
+SIZE = 2 * STATES - 1  # states between touch and separation, which are known themselves
 ROWS = 41  # nodes along lam, uniform in x = lam/(lam + c)
 STEP = 0.08  # largest distance of two nodes in ln chi
-_RTOL = 1e-10  # of contacts that are integrated
+_RTOL = 1e-10  # rtol for contacts that are integrated
 
 
 def pack(grid: Grid, states: Singles) -> Shapes:
@@ -66,7 +66,7 @@ def _states(shapes: Shapes, lam: float, log_chi: float, out: Array) -> None:
     a, b = lookup.weights(s), lookup.weights(t)
     for n in range(out.size):
         out[n] = 0.0
-    for k in range(out.size // SIZE * 8):  # 16, but not to the compiler, which would unroll it all
+    for k in range(out.size // SIZE * 8):  # 16; a constant would be unrolled
         weight = a[k // 4] * b[k % 4] / 36.0
         values = shapes.coefficients[row + k // 4, column + k % 4]
         for n in range(out.size):
@@ -75,7 +75,7 @@ def _states(shapes: Shapes, lam: float, log_chi: float, out: Array) -> None:
 
 @kernel
 def _force(law: Array, curve: Curve, loading: bool, d: float, y: float) -> float:
-    """Force at a compression; a contact that is Hertz's has y = inf."""
+    """Force at a compression; y = inf for a contact that follows Hertz's law."""
     if y == math.inf:
         return d * math.sqrt(d)
     if loading:
@@ -85,7 +85,7 @@ def _force(law: Array, curve: Curve, loading: bool, d: float, y: float) -> float
 
 
 def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
-    """Contacts at even times from touch to separation, for outcomes inside the table."""
+    """Sample contacts at even times from touch to separation, for outcomes inside the table."""
     along_cap = np.zeros(out.time.shape[0], dtype=np.bool_)
     _sample(law, shapes, found, along_cap, out)
     if along_cap.any():
@@ -99,7 +99,7 @@ def sample(law: Array, shapes: Shapes, found: Outcome, out: History) -> None:
 def _sample(
     law: Array, shapes: Shapes, found: Outcome, along_cap: NDArray[np.bool_], out: History
 ) -> None:
-    """`sample`, but for contacts that come back along the cap, which are named instead."""
+    """Sample contacts; mark those in `along_cap` that unload along the cap, and skip them."""
     samples, leaves = out.time.shape[1], force.leaves_hertz(law)
     inner = np.empty(2 * SIZE)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
@@ -112,7 +112,7 @@ def _sample(
         )
         _states(shapes, lam, math.log(w_m / y) if y < math.inf else 0.0, inner)
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
-        for k in range(SIZE):  # a slice on the left takes the compiler a second
+        for k in range(SIZE):  # to assign to a slice takes the compiler a second
             t[k + 1], u[k + 1] = inner[k], inner[SIZE + k]
         top = found.compression_ratio[n] * w_m
         curve = NO_CURVE

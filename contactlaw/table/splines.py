@@ -40,7 +40,7 @@ def spline_coefficients(values: Array) -> Array:
 def surface(values: Array, grid: Grid) -> Array:
     """Coefficients of cubic splines along each axis of the grid, one spline for each segment.
 
-    One more of each at the end: a kernel reads it with the weight 0, and needs no test.
+    One coefficient more follows at each end: kernels read it with the weight 0, without a test.
     """
     for k, axis in enumerate(grid.axes):
         parts = np.split(values.swapaxes(0, k), np.cumsum(axis.sizes)[:-1])
@@ -81,7 +81,7 @@ def _growth(ratio: Array, grid: Grid) -> Array:
     """Logarithm of the largest compression over that of the overload, p in d_m/d_Y = chi^p.
 
     Just above yield, where residual compression and plastic share begin with d_m - d_Y, an error of
-    p is one of that difference; an error of the ratio itself would be any multiple of it.
+    p is a relative error of that difference; an error of the ratio could be any multiple of it.
     """
     log_chi = grid.nodes()[1]
     with np.errstate(invalid="ignore", divide="ignore"):

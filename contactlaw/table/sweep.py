@@ -27,12 +27,12 @@ def no_progress(parts: Iterator[Any], total: int) -> Iterable[Any]:
 def in_parts(
     function: Callable[[slice], _T], count: int, parts: int, progress: Progress
 ) -> Sequence[_T]:
-    """Apply a function that lets other threads run to slices of so many points, on all cores."""
+    """Apply a function that releases the GIL to slices of `count` points, on all cores."""
     edges = np.linspace(0, count, min(parts, count) + 1).astype(int).tolist()
     slices = [slice(low, high) for low, high in zip(edges[:-1], edges[1:], strict=True)]
     pool = ThreadPoolExecutor(os.cpu_count())
     try:
-        # compiled once, before the threads ask for it
+        # compile the function once, before the threads call it
         first = function(slices[0])
         return list(progress(_chain(first, pool.map(function, slices[1:])), len(slices)))
     finally:  # on Ctrl-C, wait for the parts that run and start no others
@@ -52,7 +52,7 @@ def solve_overloads(
     parts: int,
     progress: Progress = no_progress,
 ) -> Outcome:
-    """Outcomes at many points, of which those with one lambda lie side by side.
+    """Solve impacts at many points; those with the same lambda have to lie side by side.
 
     Raises
     ------
