@@ -13,12 +13,12 @@ from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
 
-# Units by argument; of the others, which are dimensionless, pint and astropy make "" a number.
+# Units by argument. The others are dimensionless, for which pint and astropy take the unit "".
 _SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")
 _SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
 _SI |= dict.fromkeys(("speed", "slowest", "fastest"), "m/s") | {"rate": "1/s"}
 
-_BARE = frozenset({float, int, np.float64})  # what long lists hold, not worth a closer look
+_BARE = frozenset({float, int, np.float64})  # types without a unit, which long lists hold
 _LIMITS = {
     "speed": (lookup.V_MIN, lookup.V_MAX, "m/s, the approach speed"),
     "slowest": (lookup.V_MIN, lookup.V_MAX, "m/s"),
@@ -56,7 +56,7 @@ def _unit(value: object) -> object:
         parts = (_unit(one) for one in value if type(one) not in _BARE)
         return next((unit for unit in parts if unit is not None), None)
     unit = getattr(value, "units", getattr(value, "unit", None))
-    return None if isinstance(unit, Real) else unit  # a row of that name in a pandas Series
+    return None if isinstance(unit, Real) else unit  # a number: a pandas Series has a row "unit"
 
 
 def _numbers(
@@ -69,12 +69,12 @@ def _numbers(
         array = np.asarray(None)
     if array.dtype.kind not in "iuf" or isinstance(value, np.ma.MaskedArray):
         raise ValueError(f"{name}: expected {expected}, got {value!r}")
-    with np.errstate(over="ignore"):  # a long double becomes inf, which no range has
+    with np.errstate(over="ignore"):  # a huge long double becomes inf
         return array.astype(np.float64, copy=False)
 
 
 def _flat(array: Array, shape: tuple[int, ...]) -> Array:
-    """Ravel without a copy where there is one writeable value for each; kernels take no others."""
+    """Flatten; copy only arrays of another shape or that kernels refuse, as read-only."""
     # not array.flags.writeable, which warns for what np.broadcast_arrays gives
     read_only = array.__array_interface__["data"][1]
     if array.shape == shape and not read_only:
@@ -83,8 +83,8 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
 
 
 def number(name: str, value: float) -> float:
-    """One number of whatever kind as a float; its range is for the caller to check."""
-    if type(value) is float:  # once per step of an engine, say
+    """Convert one number of any kind to a float; the caller checks its range."""
+    if type(value) is float:  # a short cut for engines, which come here in every step
         return value
     array = _numbers(name, value, "one number")
     if array.ndim > 0:
@@ -125,7 +125,7 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
     """Refuse values that do not lie between two limits; the remark ends the message."""
     if values.size == 1 and low <= values[0] <= high:
         return
-    # of a NaN, least and largest are NaN, too
+    # with a NaN, min and max are NaN and the comparison fails
     if values.size > 1 and low <= values.min() and values.max() <= high:
         return
     wrong = ~((low <= values) & (values <= high))

@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 class ForceHistory(NamedTuple):
     """Contacts at even times from first touch to separation.
 
-    Arrays of one shape: that of the arguments by broadcasting, and the samples along a last axis.
+    Arrays of one shape: the broadcast shape of the arguments, and the samples along a last axis.
 
     Attributes
     ----------
@@ -27,8 +27,8 @@ class ForceHistory(NamedTuple):
     compression
         Relative compression of the bodies [m]; at the end the residual one.
     impulse
-        Integral of the force since first touch [N s]; at the end m V0 (1 + e). It is exact where a
-        rule over the samples is not: above lambda = 3 the force has a long tail behind its peak.
+        Integral of the force since first touch [N s]; at the end m V0 (1 + e). It is exact, unlike
+        a sum over the samples: above lambda = 3 the force has a long tail behind its peak.
     plate_displacement
         Displacement of the plate at the contact point [m]: its mobility times the impulse, with the
         mobility that the law has for this impact. An infinite plate does not come back; a real one
@@ -54,7 +54,7 @@ def with_units(
         values * scale[:, None] for values, scale in zip(contacts, scales, strict=True)
     )
     whole = (*(shape or ()), time.shape[1])
-    # by the mobility that the equation took, which is lambda T_H/m
+    # with the mobility that the equation had, lambda T_H/m
     displacement = (inelasticity * units.compression)[:, None] * contacts.impulse
     return ForceHistory(
         *(values.reshape(whole) for values in (time, force, compression, impulse, displacement))

@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 
 from contactlaw.physical.arguments import refuse_units
 
-# Two of our own bounds that find values in other units, wide enough for the softened beads of DEM.
+# Two bounds of ours that detect values in other units, but allow the softened beads of DEM.
 _SOFTEST = 2e3  # [Pa]: above diamond in GPa (1100), below a hydrogel bead (1e4 Pa)
 _FASTEST = 25e3  # [m/s]: bar wave speed sqrt(E / rho); diamond has 17e3, steel in g/cm3 162e3
-# And two far from any matter, beyond which products of these numbers leave the range of floats.
+# Two bounds far from any matter, beyond which products of these numbers leave the range of floats.
 _DENSITIES = (1e-6, 1e20)  # [kg/m3]: air has 1.2, a neutron star 1e18
 _WEAKEST = 1e-12  # yield strain sigma_Y/E
 # Plastics without fibres have up to 5 GPa, with 30 % of glass 10; PTFE is the densest, with 2200
-# kg/m3. Of metals only the alkalis are as soft and light; porous ceramics say their kind.
+# kg/m3. Of metals only the alkalis are as soft and light; for porous ceramics give the kind.
 _STIFFEST_POLYMER, _DENSEST_POLYMER = 10e9, 2300.0  # [Pa, kg/m3]
 
 KINDS = ("metal", "ceramic", "glass", "polymer")
@@ -257,7 +257,7 @@ def material(name: str) -> Material:
     by_name, canonical = _catalogue()
     key = re.sub(r"[\s_-]+", "-", name.strip().lower())
     if key not in canonical:
-        # "steel" is part of a name rather than like one. Aliases of one material name it once.
+        # Names that contain the word come first ("steel"), then similar ones; each material once.
         near = [known for known in canonical if key and key in known]
         near += difflib.get_close_matches(key, canonical, n=3, cutoff=0.45)
         raise UnknownMaterialError(name, tuple(dict.fromkeys(canonical[match] for match in near)))
@@ -295,7 +295,7 @@ def _from_table(name: str, table: dict[str, Any], references: dict[str, str]) ->
     parts = [table["grade"]]
     for field, (label, unit) in _LABELS.items():
         if field not in table["source"]:
-            continue  # a hardness that nobody needs, since there is a yield strength
+            continue  # as the hardness of a material that has a yield strength
         number = f" {values[field]:g}{unit}" if field in values else ""
         parts.append(f"{label}{number}: {table['source'][field].format_map(references)}")
     return Material(name, **values, source="; ".join(parts), kind=table["kind"])

@@ -15,9 +15,9 @@ from contactlaw.physical.scaling import yield_scales
 
 Array = NDArray[np.float64]
 
-_DEGREE = 3  # of the polynomials in ln d that smooth the points; our choice
-_FEWEST = 4  # points beyond yield
-_WORST = 0.2  # relative distance of a point from the smoothed curve; beyond, it is no such curve
+_DEGREE = 3  # degree of the polynomials in ln d that smooth the points; our choice
+_FEWEST = 4  # least number of points beyond yield
+_WORST = 0.2  # largest relative distance of a point from the smoothed curve; our choice
 
 
 def measured_law(
@@ -30,11 +30,11 @@ def measured_law(
     name: str = "measured",
     source: str = "",
 ) -> Law:
-    """Make a law of the points of a slow indentation, for `ImpactModel(pair, law=...)`.
+    """Make a law from the points of a slow indentation, for `ImpactModel(pair, law=...)`.
 
     Up to yield, d_Y = 0.68 pi^2 sigma_Y^2 R/E*^2, the law is Hertz's. Beyond, ln F is a polynomial
-    in ln d that leaves Hertz's curve along its tangent, by least squares; beyond the last point it
-    goes on along its tangent over d.
+    in ln d that leaves Hertz's curve along its tangent, by least squares; beyond the last point the
+    force continues along the tangent in d.
 
     Parameters
     ----------
@@ -43,12 +43,12 @@ def measured_law(
     radius : float
         Radius of the sphere that was pressed [m].
     compression, force : array_like
-        Points of the loading curve [m], [N], rising; those below yield are left out, and at least
+        Points of the loading curve [m], [N], rising; those below yield are ignored, and at least
         four have to be beyond.
     residual : array_like, optional
-        Compression that was left after unloading from each of them [m]; without, that of MYC.
+        Compression left after unloading from each point [m]; by default as in law ``"myc"``.
     name, source : str, optional
-        Of the law.
+        Name of the law, and where the points come from.
 
     Returns
     -------
@@ -62,12 +62,12 @@ def measured_law(
 
     Notes
     -----
-    Unloading goes as F = Fm ((d - dr)/(dm - dr))^1.5. The last point is a kink of the law; force
+    Unloading follows F = Fm ((d - dr)/(dm - dr))^1.5. The last point is a kink of the law; force
     histories from its table are within 3e-4 of their peak.
 
     Examples
     --------
-    Five points of a bead of gamma-alumina, and what a law of them says of an impact:
+    A law from five points of a bead of gamma-alumina, and the COR of an impact with it:
 
     >>> import contactlaw as cl
     >>> pair = cl.Pair("gamma-alumina", "glass")
@@ -140,7 +140,7 @@ def measured_law(
 
 
 def _smoothed(name: str, s: Array, values: Array, power: float) -> Polynomial:
-    """Polynomial P for which s^power P(s) follows the values."""
+    """Fit the polynomial P for which s^power P(s) follows the values."""
     degree = min(_DEGREE, s.size - 2)
     basis = s[:, None] ** (power + np.arange(degree + 1))
     found = Polynomial(np.linalg.lstsq(basis, values, rcond=None)[0])

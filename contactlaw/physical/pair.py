@@ -14,8 +14,8 @@ class Pair:
     Parameters
     ----------
     sphere, plate : Material or str
-        Materials, or names from the catalogue (see `contactlaw.materials`). A body yields that has
-        a yield strength, if the law lets it: most let the sphere alone.
+        Materials, or names from the catalogue (see `contactlaw.materials`). A body can yield if it
+        has a yield strength and the law provides for it: in most laws only the sphere yields.
 
     Raises
     ------
@@ -90,7 +90,7 @@ class Pair:
         Parameters
         ----------
         coefficient : float, optional
-            Of pi^2 (sigma_Y/E*)^2; by default that of the MYC law (Peng et al. 2021, Eq. 18).
+            Factor of pi^2 (sigma_Y/E*)^2; by default that of law MYC (Peng et al. 2021, Eq. 18).
 
         Examples
         --------

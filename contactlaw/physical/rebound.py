@@ -1,4 +1,4 @@
-"""What comes of an impact, in SI units."""
+"""Outcomes of impacts in SI units."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ class Rebound:
     restitution
         Rebound speed over impact speed [-].
     contact_time
-        Time from first touch to separation [s]; of a sphere that stays (restitution 1e-9), until
-        what is left of its energy could not throw it off any faster.
+        Time from first touch to separation [s]; for a sphere that stays (restitution 1e-9), until
+        the energy that is left in the contact could throw it off no faster.
     peak_force
         Largest contact force [N].
     peak_compression, residual_compression
-        Largest relative compression of the bodies, and what of it is left at separation [m].
+        Largest relative compression of the bodies, and the part left at separation [m].
     plastic_fraction, wave_fraction, other_fraction
         Shares of the initial kinetic energy lost to plastic flow, to the waves in the plate, and to
-        friction, vibration and locked stresses of the bodies, which only the law ``"fem"`` knows
-        [-]. 1 - restitution^2 is their sum.
+        friction, vibration and locked stresses of the bodies, which only the law ``"fem"`` has [-].
+        Their sum is 1 - restitution^2.
     inelasticity
         The dimensionless number lambda of the impact [-].
     overload
         The dimensionless number chi of the impact [-].
     flags
-        `Validity` limits that the impact exceeds; 0 is inside all of them.
+        `Validity` limits that the impact exceeds; 0 if it exceeds none.
     """
 
     restitution: float | Array
@@ -60,7 +60,7 @@ class Rebound:
 
 @dataclass(frozen=True, eq=False)
 class Impacts:
-    """What the user asked for: flat arrays, and the shape of the answer (None: scalars)."""
+    """Impacts that a user gave, as flat arrays, and the shape of the answer (None: scalars)."""
 
     speed: Array  # [m/s]
     radius: Array  # [m], R* of two spheres
@@ -76,7 +76,7 @@ class Impacts:
 
 
 class Units(NamedTuple):
-    """Fields of `Rebound` that take units, or are quotients."""
+    """Fields of `Rebound` that `_with_units` computes."""
 
     contact_time: Array
     peak_compression: Array
@@ -98,7 +98,7 @@ def _with_units(
     out: Units,
     flags: NDArray[np.int64],
 ) -> None:
-    """Give outcomes their units; those of `extremes` in place."""
+    """Convert outcomes to SI units, those of `extremes` in place."""
     for n in range(speed.size):
         v, t = speed[n], time[n]
         contact_time = outcome.contact_time[n] * t
@@ -125,10 +125,10 @@ def rebound(
     outcome: Outcome,
     flags: NDArray[np.int64],
 ) -> Rebound:
-    """Give outcomes their units, with T_H [s] and effective masses [kg], and what the law adds.
+    """Convert outcomes to SI units, with T_H [s] and effective masses [kg], and complete them.
 
-    What was asked are inelasticity and yield ratio: those of the outcomes differ from them where
-    impacts were clamped, as the flags say already.
+    `asked` has inelasticities and yield ratios of the impacts. Those of the outcomes differ where
+    impacts were clamped to the table's border, which the flags say already.
     """
     inelasticity, yield_ratio = asked
     out = Units(*np.empty((len(Units._fields), time.size)))

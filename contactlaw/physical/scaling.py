@@ -1,8 +1,8 @@
-"""The bridge between SI units and the two numbers that rule an impact.
+"""From SI units to the two dimensionless numbers that determine an impact, and back.
 
-A contact is a mass on a Hertzian spring in series with the plate's mobility. The time T_H that
-these three and the speed define turns everything into the dimensionless numbers that the table and
-the solver work with: the inelasticity lambda, and the yield compression y on Hertz's scale.
+A contact is a mass on a Hertzian spring in series with the plate's mobility. With the speed, mass
+and spring define the time T_H, and with it the dimensionless numbers that the table and the solver
+work with: the inelasticity lambda, and the yield compression y on Hertz's scale.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 
 class Contact(NamedTuple):
-    """What the bodies bring into impacts, whatever the speed; arrays, but for the plate's."""
+    """Constants of impacts that do not depend on the speed; arrays, except `plate`."""
 
     mass: Array  # [kg], effective
     stiffness: Array  # K in F = K d^1.5 [N/m^1.5]
@@ -38,7 +38,7 @@ class Contact(NamedTuple):
 
 
 class Factors(NamedTuple):
-    """A pair's constants, with which no power has to be taken for a sphere on a plate."""
+    """Constants of a pair from which impacts on plates are scaled without computing powers."""
 
     plate: PlateConstants
     log_overload: float  # ln(chi/w_m) at 1 m/s; -inf for a law that never yields
@@ -47,14 +47,14 @@ class Factors(NamedTuple):
 
 
 def law_of(pair: Pair, law: str | Law) -> Law:
-    """Resolve a law where the user gives it, with the numbers that it takes from the pair.
+    """Resolve the law that a user gave, with the numbers that it takes from the pair.
 
     Raises
     ------
     ValueError
         If there is no such law, or the sphere has no yield strength where the law needs one.
     TypeError
-        If it is neither a name nor a Law.
+        If `law` is neither a name nor a Law.
     """
     if isinstance(law, Law):
         found = law
@@ -66,14 +66,14 @@ def law_of(pair: Pair, law: str | Law) -> Law:
     else:
         found = laws.law(law)
     if found.from_pair and isinstance(law, Law) and law_of(pair, found.family) != found:
-        found = dataclasses.replace(found, from_pair=())  # those of another pair, held fixed here
+        found = dataclasses.replace(found, from_pair=())  # of another pair: held fixed
     if found.yields and found.scale is None:
         pair.sphere.require_yield_strength(found.name)
     return found
 
 
 def _refuse_auxetic(pair: Pair, law: str) -> None:
-    """Refuse bodies that a law takes Poisson's ratios of, and knows nothing about."""
+    """Refuse negative Poisson's ratios if the law depends on them."""
     for body in (pair.sphere, pair.plate):
         if body.poissons_ratio < 0.0 and "poissons_ratio" in laws.parameters(law):
             raise ValueError(
@@ -84,7 +84,7 @@ def _refuse_auxetic(pair: Pair, law: str) -> None:
 
 
 def following(pair: Pair, law: Law) -> Law:
-    """Law of other bodies: one that takes numbers from a pair has theirs, with all digits."""
+    """Law for another pair: it gets that pair's numbers, unrounded, if it takes any."""
     return laws.exact(law.family, **pair_numbers(pair, law.family)) if law.from_pair else law
 
 
@@ -196,7 +196,7 @@ def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -
 
 
 def plate_constants(pair: Pair, law: Law) -> PlateConstants:
-    """Constants of a pair's plates, at 1 m/s and R = H; all sizes are alike there."""
+    """Constants of a pair's plates, at 1 m/s and R = H; they are the same for all sizes."""
     one = np.ones(())
     mass, time, waves = sphere_mass(pair.sphere.density, one).item(), _unit_time(pair), THIN
     if law.waves is not None:
@@ -224,7 +224,7 @@ def scales(contact: Contact, speed: Array) -> Numbers:
     given = np.broadcast_arrays(
         contact.mass, contact.stiffness, contact.yield_compression, speed, contact.ratio
     )
-    # copies: numba asks whether it may write into its arguments, and those of numpy's are shared
+    # copies: kernels are compiled for writeable arrays, and broadcast ones are not
     mass, stiffness, yielding, v, ratio = (np.array(one, dtype=float).ravel() for one in given)
     out = Numbers(*np.empty((len(Numbers._fields), v.size)))
     fill(contact.plate, mass, stiffness, yielding, v, ratio, out)

@@ -20,11 +20,11 @@ from contactlaw.physical.scaling import yield_share
 Array = NDArray[np.float64]
 
 SLENDER = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
-_SLENDER_YIELDED = 1.4  # R/H for "fem"; the errors of everyday impacts are twice as large beyond
+_SLENDER_YIELDED = 1.4  # R/H for "fem"; beyond, its errors in everyday impacts are twice as large
 _YIELDED = 2.0  # V0/V_Y0; our choice, between 1.5 and 3.5 of our finite elements
 _FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
-_SWIFTEST = 0.0131  # V0/sqrt(E*/rho1), 50 m/s for steel: "fem" is made of impacts up to there
-_AHEAD = 1.5  # way of the fastest waves that matter over that of the contact's own; see below
+_SWIFTEST = 0.0131  # V0/sqrt(E*/rho1), 50 m/s for steel: up to there "fem" was fitted to impacts
+_AHEAD = 1.5  # speed of the fastest waves that matter over c_g, see `edge_distance`
 TRANSITS = 6.0  # contact time over H/c_L; Koller & Kolsky 1987 and Boettcher et al. 2017: 6 to 8
 _BENDING = 0.6  # F/(sigma_Y H^2): 0.35 is within 2 % of our finite elements, 0.85 is not
 # Largest pressure over the hardness at which a brittle body begins to flow: 1.65 H/2.8, since flow
@@ -34,9 +34,9 @@ _HARDNESS = 3.0  # largest mean pressure that a body bears over its yield streng
 
 
 class Validity(enum.IntFlag):
-    """Limits that an impact exceeds; 0 is inside all of them.
+    """Limits that an impact exceeds; 0 if it exceeds none.
 
-    All but `DAMAGE` are limits of the answer's accuracy, `ACCURACY` is all of those. What the model
+    All but `DAMAGE` are limits of the answer's accuracy; `ACCURACY` combines those. What the model
     leaves out altogether (oblique impact, friction, adhesion, strain rate in metals, coatings)
     raises no flag: at 1e4 per second steels are about a third stronger than in the tensile test
     that the catalogue quotes, and so yield at twice the speed. `explain` puts flags into words.
@@ -56,7 +56,7 @@ class Validity(enum.IntFlag):
     """Faster than the impacts that the law was checked for: 7 times the yield speed, for "fem"
     0.0131 sqrt(E*/rho1), 50 m/s for steel."""
     THICK_PLATE = 4
-    """Over within 6 transits of the thickness, before the plate can bend: the law's is thin."""
+    """The contact ends within 6 transits of the thickness, too soon for the law's thin plate."""
     SOFT_PLATE = 8
     """The plate is weaker than the sphere and yields first; in this law only the sphere yields."""
     CLAMPED = 16
@@ -64,23 +64,23 @@ class Validity(enum.IntFlag):
     OTHER_LAW = 32
     """Another law is nearer to finite elements here: "fem" for any pair."""
     DEEP_CONTACT = 64
-    """Compressed further over the radius than the finite elements that the law is made of."""
+    """Compression over radius is above that of the finite elements that the law is made from."""
     BENT_PLATE = 128
-    """The force bends the plate plastically: the law's plate stays elastic but at the contact."""
+    """The force bends the plate plastically; in the law it stays elastic except at the contact."""
     RATE_DEPENDENT = 256
-    """A polymer, or of unknown kind and as soft and light as one: its modulus and strength depend
-    on the rate, and it loses energy by viscosity."""
+    """A body is a polymer, or of unknown kind and as soft and light as one: its modulus and
+    strength depend on the rate, and it loses energy by viscosity."""
     DAMAGE = 512
-    """May break or flow: the pressure is above 0.59 of the hardness of a brittle body."""
+    """A brittle body may break or flow: the pressure is above 0.59 of its hardness."""
     UNTRIED_STRENGTH = 1024
-    """A body yields whose E*/sigma_Y no finite elements of "fem" have: they span 11 to 2000."""
+    """A body yields whose E*/sigma_Y lies outside 11 to 2000, the range of "fem"."""
 
     ACCURACY = 1535
     """All limits of accuracy."""
 
 
 _FEM = "take law fem"
-# What a limit is, and what to do about it.
+# For each flag: which limit is exceeded, and what to do about it.
 _WORDS = {
     Validity.THIN_PLATE: (
         "plate thinner than R/1.8 (law fem: R/1.4 once a body yields), its deflection is not small",
@@ -131,7 +131,7 @@ def explain(flags: int) -> tuple[str, ...]:
 
 
 def limits_in_words(flags: int) -> tuple[str, ...]:
-    """Say which limits some flags stand for, and no more, where room is scarce.
+    """Say which limits some flags stand for, without the advice, where room is scarce.
 
     Examples
     --------
@@ -142,7 +142,7 @@ def limits_in_words(flags: int) -> tuple[str, ...]:
 
 
 def count_flags(flags: NDArray[np.int64]) -> dict[Validity, int]:
-    """Count the impacts that exceed each limit which any of them does.
+    """Count the impacts beyond each limit; limits that none exceeds are left out.
 
     Examples
     --------
@@ -154,19 +154,19 @@ def count_flags(flags: NDArray[np.int64]) -> dict[Validity, int]:
 
 
 class Limits(NamedTuple):
-    """What the limits of a pair and its law are, for kernels."""
+    """Limits of a pair and its law, for kernels."""
 
-    slender: float  # R/H, of THIN_PLATE once a body yields
+    slender: float  # R/H beyond which THIN_PLATE is raised once a body yields
     slowness: float  # of the pressure wave in the plate [s/m]; 0 where no plate is too thick
     always: int  # flags of every impact
-    yielded: int  # flags of an impact beyond `trusted`
-    trusted: float  # d_Y/(V0 T_H) of the weaker body, from which on `yielded` does not count
-    fastest: float  # likewise, of FAST_IMPACT; 0: none is too fast
-    swiftest: float  # V0 T_H over R, of FAST_IMPACT too
+    yielded: int  # flags of an impact below `trusted`
+    trusted: float  # d_Y/(V0 T_H) of the weaker body, below which `yielded` is raised
+    fastest: float  # d_Y/(V0 T_H) below which FAST_IMPACT is raised; 0: none is too fast
+    swiftest: float  # V0 T_H over R beyond which FAST_IMPACT is raised, too
     share: float  # d_Y/R of the weaker body; inf if none yields
-    deepest: float  # compression over R
-    bending: float  # force over H^2 [Pa]
-    damage: float  # force over R^2 [Pa]
+    deepest: float  # compression over R beyond which DEEP_CONTACT is raised
+    bending: float  # force over H^2 beyond which BENT_PLATE is raised [Pa]
+    damage: float  # force over R^2 beyond which DAMAGE is raised [Pa]
     untried: int  # flags of an impact in which a body yields
 
 
@@ -175,7 +175,7 @@ def limits(pair: Pair, law: Law) -> Limits:
     sphere, plate = (body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
     rate = (pair.sphere.is_polymer or pair.plate.is_polymer) * Validity.RATE_DEPENDENT
     common = {
-        # laws that differ in when they yield are held to one measure
+        # one criterion of yield for all thin-plate laws, which differ in theirs
         "share": pair.yield_share() if law.thin_plate else yield_share(pair, law),
         "bending": _BENDING * plate,
         "damage": _damage(pair),
@@ -186,7 +186,7 @@ def limits(pair: Pair, law: Law) -> Limits:
         return Limits(
             slender=_SLENDER_YIELDED, slowness=0.0, always=int(rate), yielded=0, trusted=0.0,
             fastest=0.0,
-            swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H is that of V0/sqrt(E*/rho1), times R
+            swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H/R at V0/sqrt(E*/rho1)
             deepest=law.range[1] * (law.scale or 0.0),
             untried=0 if known else int(Validity.UNTRIED_STRENGTH), **common,
         )  # fmt: skip
@@ -215,7 +215,7 @@ def limits(pair: Pair, law: Law) -> Limits:
 def _damage(pair: Pair) -> float:
     """Least force over R^2 at which Hertz's pressure makes a brittle body flow [Pa].
 
-    p0 = (6 F E*^2/(pi^3 R^2))^(1/3). A body that yields itself limits the pressure.
+    p0 = (6 F E*^2/(pi^3 R^2))^(1/3). If the other body yields, it limits the pressure.
     """
     least = math.inf
     for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
@@ -228,7 +228,7 @@ def _damage(pair: Pair) -> float:
 
 
 def _y_at(ratio: float) -> float:
-    """d_Y/(V0 T_H) at a speed over V_Y0: a half-space impact at V_Y0 has w_m = y = (5/4)^(2/5)."""
+    """d_Y/(V0 T_H) at a ratio V0/V_Y0: at V_Y0 on a half-space w_m = y = (5/4)^(2/5)."""
     return float((math.sqrt(1.25) / ratio) ** 0.8)
 
 
