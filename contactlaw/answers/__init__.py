@@ -1,1 +1,1 @@
-"""Questions about impacts, one a file, and the two ways to an answer: the table and the solver."""
+"""Answers about impacts, by lookup in a table or by the solver, and what is made of them."""

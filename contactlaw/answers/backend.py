@@ -1,7 +1,7 @@
-"""What a way to an answer has to do, and how it says that it has none.
+"""What table and solver have in common: their methods, their constants and their errors.
 
-There are two, interchangeable: `contactlaw.answers.tabulated.Tabulated` looks impacts up,
-`contactlaw.answers.solver.Solver` integrates them. Either begins with a `SphereOnPlate`.
+`contactlaw.answers.tabulated.Tabulated` looks impacts up, `contactlaw.answers.solver.Solver`
+integrates them; either can replace the other. Both are made from a `SphereOnPlate`.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 
 class Backend(Protocol):
-    """A way from impacts of a sphere on plates to what becomes of them."""
+    """Methods that give the outcomes of impacts of a sphere on plates."""
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
@@ -53,7 +53,7 @@ class SphereOnPlate:
 
     @functools.cached_property
     def factors(self) -> Factors:
-        """Constants of the impacts' dimensionless numbers."""
+        """Constants from which the dimensionless numbers of impacts follow."""
         return factors(self.pair, self.law)
 
     def contact(self, impacts: Impacts) -> Contact:
@@ -67,7 +67,7 @@ class OutsideTableError(ValueError):
     Attributes
     ----------
     impact : int
-        Its number among those asked for.
+        Index of the impact in the arguments.
     reason : str
         Which limit of the table it exceeds, and by how much.
     """
@@ -90,7 +90,7 @@ class UnsolvedError(RuntimeError):
     Attributes
     ----------
     impact : int
-        Its number among those asked for.
+        Index of the impact in the arguments.
     where, reason : str
         Its dimensionless numbers, and what happened.
     """
@@ -119,7 +119,7 @@ def too_fast(chi: float, limit: float) -> str:
 def refuse_to_yield(
     radius: Array, thickness: Array, beyond: NDArray[np.bool_], limit: float
 ) -> NoReturn:
-    """Refuse the first plate under whose bead lambda is beyond a table's largest at yield."""
+    """Refuse the first plate on which lambda, at the yield speed, is beyond the table's largest."""
     n = int(np.argmax(beyond))
     raise ValueError(
         f"thickness: at {thickness[n]:g} m under a bead of radius {radius[n]:g} m the inelasticity "

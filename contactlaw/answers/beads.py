@@ -1,4 +1,4 @@
-"""Bead on bead."""
+"""Impacts of one bead on another."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from contactlaw.physical.validity import Limits, limits
 from contactlaw.table import Table
 
 Array = NDArray[np.float64]
-Other = Material | str | None  # material of another bead; without it, that of the first
+Other = Material | str | None  # material of the other bead; None: that of the first
 
 
 class Beads:
@@ -32,14 +32,14 @@ class Beads:
     Parameters
     ----------
     sphere, other : Material or str
-        Of which the weaker one comes first in `pair`: it yields.
+        Materials; the weaker one comes first in `pair`, as the one that yields.
     law : str or Law
         A law that takes numbers from a pair takes those of the two spheres. Numbers that the user
-        gave in its name hold for them as they do for the plate.
+        typed in its name hold here as they do on a plate.
     border : Border
-        What becomes of impacts outside the table.
+        What to do with impacts outside the table.
     table : callable, optional
-        Table that serves a law, in place of the law's own.
+        Function that gives the table for a law; by default it gives the law's own.
     """
 
     def __init__(
@@ -91,14 +91,14 @@ class Beads:
     def integrated(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
     ) -> float | Array:
-        """COR of impacts, as in `rebounds`, but integrated to nine digits: a few need no table."""
+        """COR of impacts, as in `rebounds`, integrated to nine digits: a few impacts need no table."""
         enable_caching()
         v, r, o, shape = _checked(speed, radius, other_radius)
         found = within(self.law, scales(self._contact(r, o), v), RTOL, extent(self.law), few=True)
         return shaped(found.restitution, shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
-        """COR of beads of these radii [m] by speed [m/s]."""
+        """COR of beads of these radii [m] as a function of speed [m/s]."""
         contact = self._contact(*scalars(radius=radius, other_radius=other_radius))
         c_chi = -math.log(scales(contact, np.ones(1)).yield_ratio.item())
         look_up = functools.partial(self._border.look_up, self.law)
@@ -110,7 +110,7 @@ class Beads:
 
 
 def beads_of(tabulated: Tabulated, other: Other) -> Beads:
-    """Let a model's sphere meet another."""
+    """Impacts of a model's sphere on another sphere."""
     sphere, law = tabulated.bodies.pair.sphere, tabulated.bodies.law
     takes = law.family if law.from_pair else law
     return Beads(sphere, other or sphere, takes, tabulated.border, tabulated.table_of)

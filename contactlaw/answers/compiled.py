@@ -19,10 +19,10 @@ from contactlaw.table import lookup
 
 
 class Compiled:
-    """What engines call once per collision; each is made for one model."""
+    """Functions that engines call once per collision, made for one model."""
 
     _tabulated: Tabulated
-    _beads: Callable[[Other], Beads]  # the pair's sphere and another
+    _beads: Callable[[Other], Beads]  # impacts of the pair's sphere on another
 
     def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
         """COR of one bead class on one plate, as a fast function of speed.
@@ -74,13 +74,13 @@ class Compiled:
 
     @functools.cached_property
     def kernel(self) -> Callable[[float, float, float], float]:
-        """COR as a numba-jitted ``f(speed, radius, thickness)`` for loops of one's own [m/s, m, m].
+        """COR as a numba-jitted ``f(speed, radius, thickness)`` for loops of your own [m/s, m, m].
 
-        It belongs to this model's table and does what `restitution` does for three floats, but
-        cannot raise (a raise would make a parallel loop serial): bad input and an impact outside
-        the table give NaN, whatever `outside` says. Test for it with ``e != e``. Numba does not
-        keep a caller of it on disk (``cache=True`` is without effect, with a NumbaWarning): the
-        table is part of the machine code.
+        It reads this model's table as `restitution` does for three floats, but cannot raise (a
+        raise would make a parallel loop serial): bad input and an impact outside the table give
+        NaN, whatever `outside` says. Test for it with ``e != e``. Numba does not keep a caller of
+        it on disk (``cache=True`` has no effect but a NumbaWarning), since the machine code
+        contains the address of the table.
 
         Examples
         --------

@@ -14,8 +14,8 @@ from contactlaw.physical.validity import Validity, count_flags
 Array = NDArray[np.float64]
 Keep = Literal["energy", "momentum"]
 
-_BEADS = 0.95  # of them are within `rebound_error`; our choice
-_ROUNDING = 1e-12  # of the energy: a smaller loss is none
+_BEADS = 0.95  # share of the impacts whose error `rebound_error` bounds; our choice
+_ROUNDING = 1e-12  # share of the energy; a smaller loss counts as none
 
 
 @dataclass(frozen=True)
@@ -28,20 +28,20 @@ class Constant:
     Attributes
     ----------
     restitution
-        The COR that keeps what it was asked to keep [-].
+        The COR that keeps the energy, or the momentum [-].
     spread
         Standard deviation of the CORs of the impacts [-].
     energy_error
-        What the wall dissipates in all with this COR, over what it does with each impact's own,
-        minus 1 [-]; 0 where the energy is kept.
+        Energy that the wall dissipates in total with this COR, over that with each impact's own
+        COR, minus 1 [-]; 0 where the energy is kept.
     rebound_error
-        95 % of the impacts rebound to a height that is within this of their own, relatively [-].
+        Relative error of the rebound height that 95 % of the impacts do not exceed [-].
     mean, mean_energy_error
         The plain mean of the CORs, and the `energy_error` of that [-].
     impacts
-        How many there were.
+        Number of impacts.
     flags
-        How many of them exceed each `Validity` limit that any does.
+        Number of impacts that exceed each `Validity` limit; limits that none exceeds are left out.
 
     Examples
     --------
@@ -65,7 +65,7 @@ class Constant:
 
 
 def constant(speed: Array, radius: Array, weights: Array, rebound: Rebound, keep: Keep) -> Constant:
-    """Put one COR in place of those of some impacts, as `contactlaw.ImpactModel.constant` says."""
+    """Find the COR that replaces those of many impacts, see `contactlaw.ImpactModel.constant`."""
     if keep not in ("energy", "momentum"):
         raise ValueError(f"keep: must be 'energy' or 'momentum', got {keep!r}")
     if speed.size == 0:

@@ -1,4 +1,4 @@
-"""What a plate feels of many impacts: the load over time, as a sensor samples it."""
+"""The load of many impacts on a plate over time, as a sensor samples it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_SAMPLES = 65  # of one contact, with cubics between them
+_SAMPLES = 65  # samples of one contact, with cubics between them
 _CHUNK = 4096  # contacts at a time, so that their histories need no more than 10 MB
 _LONGEST_CONTACT = 10.0  # [s]: of a sphere of 1 km
 _LONGEST = 1_000_000_000  # samples of a signal; beyond, the rate is in the wrong unit
@@ -52,12 +52,12 @@ def load_signal(
     Parameters
     ----------
     times : array_like
-        When each impact begins [s]; not sorted, if need be. What falls before 0 or after
-        `duration` is cut off.
+        When each impact begins [s], in any order. Load before 0 and after `duration` is left
+        out.
     speed, radius, thickness : array_like
         As in `ImpactModel.restitution`, for each impact.
     model : ImpactModel
-        Where the force histories come from.
+        Model that gives the force histories.
     rate : float
         Samples per second [1/s].
     duration : float, optional
@@ -112,7 +112,7 @@ def load_signal(
 
 @kernel(cache=True)
 def _add(start: Array, time: Array, force: Array, impulse: Array, rate: float, out: Array) -> None:
-    """Add the momentum that contacts bring to each interval, over its length."""
+    """Add the mean force of contacts over each interval: their impulse in it over its length."""
     last = time.shape[1] - 1
     for n in range(start.size):
         span, end = time[n, 1], time[n, last]
@@ -127,7 +127,7 @@ def _add(start: Array, time: Array, force: Array, impulse: Array, rate: float, o
 
 @kernel
 def _passed(time: float, span: float, last: int, force: Array, impulse: Array) -> float:
-    """Impulse until some time after first touch: cubics whose slope is the force."""
+    """Impulse up to a time after first touch, by cubics whose slope is the force."""
     if time <= 0.0:
         return 0.0
     time = min(time, last * span)

@@ -10,12 +10,12 @@ sum to 1) the powers are
     r          0      0    0    0      0      w        w              -1
 
 so d ln e/d ln x is a sum of terms, power by derivative. The derivatives are central differences: of
-the table where it keeps its promise, else of the solver, and of the solver for r.
+the table if it is as accurate as promised, else of the solver; those by r are always of the solver.
 
-A law with the next orders of the plate knows more numbers of the pair, and lambda is no product of
-powers: there, inputs are moved one by one, and all that follows from them is computed anew. No
-answer depends on the units of length, time and mass, so three of the eight elasticities follow from
-the others:
+A law with corrections of the plate (`contactlaw.equation.waves`) depends on more numbers of the
+pair, and lambda is no product of powers. There, inputs are changed one by one, and each time the
+impacts are integrated. No answer depends on the units of length, time and mass, so three of the
+eight elasticities follow from the others:
 
     R = -H    E1 + E2 + sigma_Y = -V0/2    rho1 + rho2 = V0/2
 """
@@ -45,15 +45,15 @@ from contactlaw.table.nodes import Table
 
 Array = NDArray[np.float64]
 
-# Of a central difference of ln e: the step errs by 2e-9 times the third derivative, up to 3e4 next
-# to a corner; the solver, good to 1e-12 of ln e, by 1e-8.
+# Step of central differences of ln e. They err by 2e-9 times the third derivative, which is up to
+# 3e4 next to a corner, and by 1e-8 from the solver, which is accurate to 1e-12 in ln e.
 _STEP = 1e-4
 _RTOL = 1e-13
 
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """Elasticities d ln(COR)/d ln(input): by how many per cent the COR rises with one per cent.
+    """Elasticities d ln(COR)/d ln(input): per cent by which COR rises for 1 % more of an input.
 
     Each field is a float, or an array of one shape. An input that is known to 10 % leaves the COR
     uncertain by ten times its elasticity, in per cent.
@@ -61,17 +61,17 @@ class Sensitivity:
     Attributes
     ----------
     speed, radius, thickness
-        Of the impact, the sphere, the plate.
+        Speed of the impact, radius of the sphere, thickness of the plate.
     sphere_density, plate_density
         Mass densities.
     sphere_modulus, plate_modulus
         Young's moduli, at fixed Poisson's ratios.
     yield_strength
-        Of the sphere; with the law ``"fem"`` of all bodies that yield, together.
+        Of the sphere; with the law ``"fem"`` of all bodies that yield, changed together.
 
     Notes
     -----
-    Within 1e-4 for lambda up to 1, 1e-3 up to 2, 2e-2 up to 5, by the table's derivatives; with
+    Errors are within 1e-4 for lambda up to 1, 1e-3 up to 2, 2e-2 up to 5, from the table; with
     ``"myc"`` and ``"hertz"`` within 3e-5, 6e-4 and 5e-3. Impacts that turn nearer than 5e-4
     (relatively) to a kink of the law, where the derivatives may jump, are up to 5e-3 off. Laws
     whose loading curves have corners (``"stronge"``, ``"kogut_etsion"``, ``"jackson_green"``) are
@@ -93,7 +93,7 @@ class Sensitivity:
 
 
 def sensitivity(tabulated: Tabulated, impacts: Impacts) -> Sensitivity:
-    """Differentiate the COR of impacts inside the table, in the way that suits its law."""
+    """Differentiate the COR of impacts inside the table, by the method that suits the law."""
     pair, law = tabulated.bodies.pair, tabulated.bodies.law
     units = scales(tabulated.bodies.contact(impacts), impacts.speed)
     found, _ = Border("raise").look_up(law, tabulated.packed, units)
@@ -108,10 +108,10 @@ def sensitivity(tabulated: Tabulated, impacts: Impacts) -> Sensitivity:
 
 
 def follows(table: Table) -> bool:
-    """Whether a table's derivatives are those of the COR.
+    """Whether a table's derivatives are accurate.
 
-    It has to keep its promise for the COR; and its law's loading curve to have no corners, next to
-    which a spline's derivative is far worse than its value.
+    They are if the table's COR is as accurate as promised, and if the law's loading curve has no
+    corners, next to which a spline's derivative is far worse than its value.
     """
     promised = table.certificate is not None and "restitution" not in table.exceeded
     return promised and not any(map(table.law.has_corner, table.law.loading_kinks))
@@ -179,7 +179,7 @@ def by_modulus_ratio(pair: Pair, law: Law, found: Outcome) -> Array:
 def by_inputs(pair: Pair, law: Law, impacts: Impacts, found: Outcome) -> Sensitivity:
     """Differentiate ln e with respect to the inputs themselves, by integration.
 
-    A law that takes numbers from the pair follows it.
+    If the law takes numbers from the pair, they change with the inputs.
     """
     speed, radius, thickness = impacts.speed, impacts.radius, impacts.thickness
 
@@ -223,7 +223,7 @@ def _changed(pair: Pair, number: str, factor: float, roles: tuple[str, ...]) -> 
 
 
 def _moved(pair: Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Outcome:
-    """Impacts of other bodies, with a law that follows them; by integration."""
+    """Integrate impacts of other bodies, with the law's numbers for those bodies."""
     law = following(pair, law)
     units = scales(sphere_on_plate(pair, law, radius, thickness), speed)
     return solved(law, units.inelasticity, units.yield_ratio, _RTOL)

@@ -1,4 +1,4 @@
-"""The solver as a way to an answer: every impact is integrated, and no table is needed."""
+"""Answers from the solver: every impact is integrated, and no table is needed."""
 
 from __future__ import annotations
 
@@ -26,12 +26,12 @@ from contactlaw.physical.scaling import scales, yield_share
 from contactlaw.table.grid import Settings
 
 Array = NDArray[np.float64]
-Places = NDArray[np.intp]  # of impacts in the flat arrays that the user gave
+Places = NDArray[np.intp]  # indices of impacts in the flat arrays that the user gave
 
-RTOL = 1e-10  # of an integration for which the user names no other
-_CONVERGED = 1e-9  # of a largest compression over d_Y, less 1
+RTOL = 1e-10  # error allowed per step, by default
+_CONVERGED = 1e-9  # of ln(largest compression/d_Y) at the yield speed
 _ROUNDS = 30
-_SLOPES = 0.5, 1.0  # of its logarithm over that of the speed; 2/3 to 4/5 of an elastic impact
+_SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,8 +82,8 @@ class Solver:
     def _yield_speed(self, share: float, radius: Array, thickness: Array) -> tuple[float, float]:
         """Speed at which the largest compression is d_Y = share R, and lambda there.
 
-        By secants in logarithms, in which the compression nearly follows the speed. They begin
-        with a half-space, on which no bead yields later.
+        By the secant method in logarithms, in which the compression is nearly linear in the speed.
+        It starts at the yield speed on a half-space, which is the lowest of all plates.
         """
         contact = self.bodies.contact(Impacts(np.ones(1), radius, thickness, None))
         contact = contact._replace(yield_compression=share * radius)
@@ -138,8 +138,8 @@ def solved(
 ) -> Outcome:
     """Outcomes at inelasticities and yield ratios, by integration.
 
-    Errors name the impact by its number in the user's arrays where these are only some of those.
-    A few impacts need no compiler, if their last digits do not matter.
+    If these are only some of the user's impacts, `places` has their indices, for errors.
+    A few impacts need no compiled integrator, if their last digits do not matter.
     """
     out = outcome.at(lam, y)
     status, n = zener.solve_all(law.data, rtol, out, few)

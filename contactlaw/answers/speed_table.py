@@ -22,8 +22,8 @@ _ROUNDS = 10
 class SpeedTable(NamedTuple):
     """COR over normal approach speed.
 
-    No other choice among 4000 logarithmically spaced speeds has fewer rows and lets straight lines
-    between them err no more than was asked.
+    Its rows are the fewest of 4000 logarithmically spaced speeds between which straight lines keep
+    within the wanted error.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class SpeedTable(NamedTuple):
     error
         Largest error of straight lines between the rows [-].
     flags
-        How many rows exceed each `Validity` limit that any does.
+        Number of rows that exceed each `Validity` limit; limits that none exceeds are left out.
     """
 
     speed: Array
@@ -51,7 +51,7 @@ def speed_table(
     check(slowest=np.array([slowest]), fastest=np.array([fastest]))
     if not slowest < fastest:
         raise ValueError(f"slowest: must be below the fastest speed, {fastest!r}, got {slowest!r}")
-    lookup(np.array([slowest, fastest]))  # what is outside the table is so at an end
+    lookup(np.array([slowest, fastest]))  # refuses a range that leaves the table
     speed = np.geomspace(slowest, fastest, _CHOICE)
     between = np.arange(1, _FINER + 1) / (_FINER + 1)
     probe = np.ravel(speed[:-1, None] + np.diff(speed)[:, None] * between)
@@ -78,7 +78,7 @@ def fewest(x: Array, y: Array, error: float) -> NDArray[np.intp]:
     x, y : ndarray (n,)
         Points, x rising.
     error : float
-        Allowed in y.
+        Largest error of y.
 
     Returns
     -------
@@ -90,7 +90,7 @@ def fewest(x: Array, y: Array, error: float) -> NDArray[np.intp]:
     The shortest path through the graph of all lines that may be drawn (Imai and Iri, Comput.
     Vision Graph. 36 (1986) 31). To take the longest line each time is not enough where the
     curvature changes sign. A line from point i may be drawn if its slope is within those to all
-    points on its way, moved up and down by the error.
+    points up to its end, moved up and down by the error.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The table as a way to an answer: impacts are looked up, and those beyond its border as asked."""
+"""Answers from the table: impacts are looked up, and `Border` handles those outside it."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ from contactlaw.table.nodes import Table
 Array = NDArray[np.float64]
 Flags = NDArray[np.int64]
 Outside = Literal["raise", "solve", "clamp"]
-Given = Table | Settings | str | os.PathLike[str] | None  # as users name a table
+Given = Table | Settings | str | os.PathLike[str] | None  # what users may give as a table
 
-# begin with nothing at yield, where an error relative to them matters least
+# These fields begin at zero at yield, where large relative errors do no harm.
 _NEXT_TO_YIELD = {"residual_compression", "plastic_fraction"}
 
 
 class Border:
-    """What becomes of impacts outside a table, and how many of them got the value at its border."""
+    """What to do with impacts outside a table; counts those that got the value at its border."""
 
     def __init__(self, outside: Outside) -> None:
         if outside not in ("raise", "solve", "clamp"):
@@ -58,9 +58,9 @@ class Border:
         self.lock = threading.Lock()
 
     def look_up(self, law: Law, table: Array, units: Numbers) -> tuple[Outcome, Flags]:
-        """Outcomes by table, and beside them Validity.CLAMPED where its border was taken.
+        """Look outcomes up, and flag with Validity.CLAMPED those that were taken at the border.
 
-        There, inelasticity and yield ratio are those of the border.
+        Inelasticity and yield ratio of these are the border's.
         """
         out = outcome.at(units.inelasticity, units.yield_ratio)
         flags = np.zeros(out.inelasticity.size, dtype=np.int64)
@@ -95,7 +95,7 @@ class Border:
 
 
 class Tabulated:
-    """Looks impacts up; the table, the law's own if none is given, is made when first asked for."""
+    """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
     def __init__(self, bodies: SphereOnPlate, given: Given, border: Border) -> None:
         self.bodies, self.given, self.border = bodies, given, border
@@ -110,12 +110,12 @@ class Tabulated:
 
     @functools.cached_property
     def packed(self) -> Array:
-        """What kernels look up in: the table, with the plates of the pair."""
+        """The table as kernels read it, with the corrections of the pair's plates."""
         return lookup.with_plate(self.table.packed, self.bodies.factors.plate)
 
     @functools.cached_property
     def restitution(self) -> Callable[[float, float, float], float]:
-        """COR of one impact, whose arguments have to be floats; NaN where there is none."""
+        """COR of one impact, whose arguments have to be floats; NaN outside the table."""
         return functools.partial(entries()[0], self.packed, self.c_lam, self.c_chi)
 
     @property
@@ -126,12 +126,12 @@ class Tabulated:
         return lookup.lam_max(self.table.packed)
 
     def table_of(self, law: Law) -> Table:
-        """Find the table of another law, as of two of the pair's spheres; the same if it serves."""
+        """Find the table for another law, as for two spheres; this one if it fits that law."""
         own = self.given is not None and (law == self.bodies.law or self.table.law.follows(law))
         return self.table if own else table_for(law, None)
 
     def restitutions(self, speed: Array, radius: Array, thickness: Array) -> Array:
-        """COR of impacts that are checked here if a kernel has found no answer for one."""
+        """COR of impacts; they are checked only if the kernel has no answer for one of them."""
         out = np.empty(speed.size)
         if lookup.restitutions(self.packed, self.c_lam, self.c_chi, speed, radius, thickness, out):
             check(speed=speed, radius=radius, thickness=thickness)
@@ -167,14 +167,14 @@ class Tabulated:
         return out
 
     def curve(self, radius: Array, thickness: Array) -> Callable[[float], float]:
-        """COR of one sphere on one plate, by speed [m/s]."""
+        """COR of one sphere on one plate, as a function of speed [m/s]."""
         at_one = Impacts(np.ones(1), radius, thickness, None)
         constants = self.packed, self.c_lam, self.c_chi, radius.item() / thickness.item()
         contact = functools.partial(self.bodies.contact, at_one)
         return curve(constants, contact, functools.partial(self.border.look_up, self.bodies.law))
 
     def _outcomes(self, impacts: Impacts) -> tuple[Outcome, Flags, tuple[Array, Array], Array]:
-        """Outcomes, flags of the clamped ones, what was asked, and V^(1/5) exp(eta)."""
+        """Outcomes, their flags, inelasticity and yield ratio before clamping, V^(1/5) exp(eta)."""
         v, r, h = impacts.speed, impacts.radius, impacts.thickness
         found, root = outcome.empty(v.size), np.empty(v.size)
         flags = np.zeros(v.size, dtype=np.int64)
@@ -192,7 +192,7 @@ class Tabulated:
         return found, flags, asked, root
 
     def _shapes(self, found: Outcome, samples: int) -> History:
-        """Contacts over time on Hertz's scale, integrated where they are off the table."""
+        """Contacts over time on Hertz's scale, integrated where they are outside the table."""
         lam, chi = found.inelasticity, found.elastic_compression / found.yield_ratio
         # a clamped impact lies on the border, give or take a rounding error
         inside = (lam <= lookup.lam_max(self.packed) * (1 + 1e-9)) & (
@@ -213,7 +213,7 @@ class Tabulated:
 
 @functools.cache
 def entries() -> tuple[Callable[..., float], Callable[..., float]]:
-    """Entries of the kernels on a plate and at one speed, for Python; each argument a float."""
+    """Python's entries of `restitution_on_plate` and `restitution`; each argument a float."""
     return (
         direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8, f8)"),
         direct(lookup.restitution, "float64(float64[::1], f8, f8, f8, f8)"),
@@ -225,7 +225,7 @@ def curve(
     contact: Callable[[], Contact],
     look_up: Callable[[Array, Numbers], tuple[Outcome, Flags]],
 ) -> Callable[[float], float]:
-    """COR by speed [m/s], from a packed table, the constants of two bodies, and R/H."""
+    """COR as a function of speed [m/s], from a packed table, constants of two bodies, and R/H."""
     (table, c_lam, c_chi, ratio), at = constants, entries()[1]
 
     def restitution(speed: float) -> float:
@@ -252,7 +252,7 @@ def _default(law: Law) -> Table:
 
 
 def _served(law: Law) -> Law:
-    """Law whose table serves: Hertz's is the edge chi = 1 of any; myc's ships."""
+    """Law whose table serves this law: for Hertz's, the edge chi = 1 of the packaged one of MYC."""
     return law if law.yields or not law.is_hertz else laws.law("myc")
 
 
@@ -285,7 +285,7 @@ def table_for(law: Law, table: Given) -> Table:
 
 
 def _stack_level() -> int:
-    """How far up the user's line is, whichever question has asked for the table."""
+    """Count the frames up to the user's line, for a warning."""
     level, frame = 0, inspect.currentframe()
     while frame:
         package = frame.f_globals.get("__name__", "").partition(".")[0]
