@@ -1,4 +1,4 @@
-"""The other way round: strengths, moduli, densities and sizes from measured rebounds."""
+"""The inverse problem: strengths, moduli, densities and sizes from measured rebounds."""
 
 from contactlaw.fitting.fit import Fit, fit
 from contactlaw.fitting.identify import UnidentifiedError

@@ -1,10 +1,10 @@
-"""Standard errors of what a fit has found: from the scatter of the data, and from the model's own.
+"""Standard errors of fitted parameters: from the scatter of the data, and from the model's errors.
 
-Everything is in logarithms of the values. The model's error is no scatter: it is the same for equal
-impacts, and alike for similar ones. Beside finite elements (the paper's matrix, 64 impacts) the COR
-of law fem errs alike at speeds that differ by less than a factor 1.6 (correlation 0.9), little at 2
-(0.3) and hardly beyond; contact times err alike at any thickness. One length for all, a factor e in
-speed and in R/H, is our choice.
+All covariances are of logarithms. The model's error is no scatter: it is the same for equal
+impacts, and alike for similar ones. Compared with finite elements (the paper's matrix, 64 impacts)
+errors of law fem in COR are alike at speeds that differ by less than a factor 1.6 (correlation
+0.9), hardly at a factor 2 (0.3) and not beyond; those in contact time are alike at any thickness.
+One correlation length for all, a factor e in speed and in R/H, is our choice.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from contactlaw.physical.validity import Validity
 
 Array = NDArray[np.float64]
 
-# Rms errors of COR, contact time and peak force beside finite elements that no fit has seen, 160
-# everyday impacts: of those without a flag of accuracy, and of those with one. A COR below 0.3 errs
-# by shares of 0.3. `python -m validation.inverse model` finds them.
+# Relative rms errors of COR, contact time and peak force against finite elements that no fit has
+# seen, 160 everyday impacts: of those without a flag of accuracy, and of those with one. Errors of
+# a COR below 0.3 are relative to 0.3. `python -m validation.inverse model` computes them.
 MODEL_ERRORS = {
     "fem": ((0.0044, 0.0060, 0.0066), (0.0200, 0.0204, 0.0163)),
     "hertz": ((0.0304, 0.0138, 0.0152), (0.853, 0.0572, 0.385)),
@@ -36,14 +36,14 @@ MODEL_ERRORS = {
     "thornton": ((0.249, 0.134, 0.252), (0.443, 0.641, 0.468)),
 }
 _LEAST_COR = 0.3
-_LENGTH = 1.0  # of ln(speed) and ln(R/H), over which the model's errors are alike
-_CELLS = 600  # of them, between which correlations are known one by one
+_LENGTH = 1.0  # correlation length of the model's errors in ln(speed) and ln(R/H)
+_CELLS = 600  # largest number of cells, whose correlations are a matrix
 _NEAREST = 1e-3  # width of a cell in ln(speed) and ln(R/H), doubled until there are few enough
-_RIDGE = 1e-8  # of the information: what is not known at all has an error of 1e4
+_RIDGE = 1e-8  # added to the information: a parameter that nothing determines has an error of 1e4
 
 
 class Errors(NamedTuple):
-    """Covariances of the logarithms of all that was moved, from the two sources."""
+    """Covariances of the logarithms of all parameters, from the two sources."""
 
     statistical: Array
     model: Array
@@ -54,7 +54,7 @@ class Errors(NamedTuple):
         return np.asarray(self.statistical + self.model)
 
     def widened(self, factors: Array) -> Errors:
-        """Take those of the data times factors, to the errors of each parameter."""
+        """Multiply the statistical error of each parameter by a factor."""
         return Errors(self.statistical * np.outer(factors, factors), self.model)
 
 
@@ -62,9 +62,9 @@ class Shared(NamedTuple):
     """Covariance of the model's errors of all values, which rebounds of one cell share.
 
     A cell holds values of one kind at one place, by ln(speed) and ln(R/H). With n values in c
-    cells all that is asked of the covariance takes memory and time of n + c^2, where the matrix
-    itself would take n^2: 10,000 rebounds 800 MB. More places than cells are rounded, by 1e-3 in
-    ln(speed) or more: errors by 0.3 % with one plate, by 5 % with as many plates as rebounds.
+    cells the covariance takes memory and time of n + c^2, where the matrix itself would take n^2,
+    800 MB for 10,000 rebounds. If there are more places than cells, places are rounded, by 1e-3 or
+    more: it changes errors by 0.3 % with one plate, by 5 % with as many plates as rebounds.
     """
 
     size: Array  # rms of the model's error of each value, in its units
@@ -77,7 +77,7 @@ class Shared(NamedTuple):
         return np.asarray(gathered.T @ self.alike @ gathered)
 
     def squares(self, off: Array, error: Array) -> float:
-        """Sum of squares of values that are off, over the covariance of data and model.
+        """Sum of squares of deviations, weighted by the covariance of data and model.
 
         By Woodbury's identity: C = diag(error^2) + U alike U^T, with the sizes in U.
         """
@@ -101,7 +101,7 @@ def covariances(predictor: Predictor, slopes: Array, error: Array, model: Shared
     Parameters
     ----------
     predictor : Predictor
-        Of the fit.
+        Model and parameters of the fit.
     slopes : ndarray (m, p)
         Derivatives of the values with respect to the logarithms of the parameters.
     error : ndarray (m,)
@@ -146,9 +146,9 @@ def freedoms(
 
 
 def told(predictor: Predictor, slopes: Array, error: Array) -> Array:
-    """How many numbers each value tells: its leverage.
+    """Leverage of each value: how many parameters it determines.
 
-    The sum over all values is one for each number that is free, and a share for one with a prior.
+    The sum over all values is one for each free parameter, and a share of one for each prior.
     """
     scaled = slopes / error[:, None]
     solved = np.linalg.solve(scaled.T @ scaled + _held(predictor), scaled.T)
@@ -156,14 +156,14 @@ def told(predictor: Predictor, slopes: Array, error: Array) -> Array:
 
 
 def _held(predictor: Predictor) -> Array:
-    """Information of the priors."""
+    """Fisher information of the priors."""
     priors = [one.prior for one in predictor.moved]
     held = np.diag([0.0 if prior is None else prior**-2 for prior in priors])
     return np.asarray(held + _RIDGE * np.eye(len(priors)))
 
 
 def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> Shared | None:
-    """Covariance of the model's errors of all values; None where they are not known."""
+    """Covariance of the model's errors of all values; None for a law whose errors are not known."""
     known = MODEL_ERRORS.get(predictor.law.family)
     if known is None:
         return None
@@ -185,8 +185,8 @@ def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> Share
 def _cells(kind: NDArray[np.intp], *places: Array) -> tuple[NDArray[np.intp], Array]:
     """Find each value's cell, by number, and the kind and mean place of each cell.
 
-    Values share a cell if they are at one place; where there are more places than cells at most,
-    if they are so near to each other that the model errs alike.
+    Values share a cell if they are at one place or, if there are more than `_CELLS` places, near
+    to each other.
     """
     exact = np.array([kind, *places])
     rounded, width = exact, _NEAREST
@@ -202,9 +202,9 @@ def _cells(kind: NDArray[np.intp], *places: Array) -> tuple[NDArray[np.intp], Ar
 
 
 def student(freedom: float) -> float:
-    """Factor by which an error that was itself found from few data is widened.
+    """Factor that widens an error which was itself estimated from few data.
 
-    So that 68.3 % of the true values lie within it, as within a standard error that is known.
+    With it 68.3 % of the true values lie within the error, as with a known standard error.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""From measured rebounds to what was not known of bead and plate."""
+"""Fit of unknown properties of bead and plate to measured rebounds."""
 
 from __future__ import annotations
 
@@ -24,54 +24,54 @@ from contactlaw.physical.scaling import law_of
 
 Array = NDArray[np.float64]
 
-_ROUNDS = 2  # of finding errors that are not known; the third changes them by less than 1 %
-_LEAST_FREEDOM = 0.5  # of a kind: one whose values are all spent has an error nevertheless
-_SETTLED = 6  # rounds in which errors of the data and what they tell of priors agree
-_LEAST = 1e-6  # of them, relatively: data without any scatter
-_POOLED = 4  # values of a kind, below which its scatter is that of all kinds
-_TRIALS = 40  # strengths, down to the first that the data exclude
-_EXCLUDED = 4.0  # above the least sum of squares: two standard errors
-_CURVED = 0.02  # of a logarithm: smaller errors are too short to be bent
-_HELD = 2.0  # square by which values are off at two standard errors, where 4 is usual
+_ROUNDS = 2  # rounds to estimate errors that were not given; a third changes them by less than 1 %
+_LEAST_FREEDOM = 0.5  # least degrees of freedom of a kind of values, so that it has a finite error
+_SETTLED = 6  # rounds until errors of the data and leverages, which depend on each other, agree
+_LEAST = 1e-6  # smallest relative standard error; data without scatter would get zero
+_POOLED = 4  # a kind with fewer values gets the scatter of all kinds
+_TRIALS = 40  # trial strengths, down to the first that the data exclude
+_EXCLUDED = 4.0  # rise of the sum of squares that excludes values: two standard errors
+_CURVED = 0.02  # standard error of a logarithm; over a smaller one the model is linear
+_HELD = 2.0  # least rise of the sum of squares at two standard errors; a linear model has 4
 
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """What was found, and how well it is known.
+    """Values that `fit` has found, and their errors.
 
     Attributes
     ----------
     unknown : tuple of str
-        What was asked for.
+        Names of the unknowns.
     values : dict of str to float
-        What was found, in SI units.
+        Values found for them, in SI units.
     errors : dict of str to float
         Standard errors, of data and model together.
     statistical_errors, model_errors : dict of str to float
         The two parts: from the errors of the data and of the priors, and from the model's own
-        beside finite elements.
+        errors, which were found by comparison with finite elements.
     correlation : ndarray (k, k)
-        Of the unknowns, in their order.
+        Correlations of the unknowns, in their order.
     alternatives : tuple of dict of str to float
-        Values apart from these, beyond two standard errors, that fit the data as well, within the
-        errors of data and model, the best first; a note says each. The errors stated are those
+        Other values, more than two standard errors away, that fit the data as well within the
+        errors of data and model, the best first; each has a note. The errors stated are those
         around `values`.
     residuals : dict of str to ndarray
-        Of each kind that was measured, measured over fitted values, minus 1 [-].
+        Measured over fitted values, minus 1 [-], for each kind that was measured.
     rows : dict of str to ndarray of int
-        Rebounds that the residuals of a kind are of.
+        Indices of the rebounds that the residuals of each kind belong to.
     scatter : dict of str to float
         Relative root mean square of the residuals [-].
     flags : ndarray of int (n,)
         `Validity` limits of the model that each rebound exceeds.
     notes : tuple of str
-        What should be known beside, in words.
+        Remarks on the fit, in words.
     pair : Pair
         Materials with the values found in place.
     radius, thickness : ndarray (n,)
-        Likewise, of each rebound.
+        Sizes of each rebound [m], with the values found in place.
     data : Measurements
-        As given.
+        Measurements as given.
     law : str
         Name of the law.
     """
@@ -105,14 +105,14 @@ class Fit:
         speed : array_like
             Normal approach speeds [m/s].
         radius, thickness : array_like
-            Of beads and plates [m]; those that were found are moved with their errors.
+            Sizes of beads and plates [m]; a size that was fitted has the error of the fit.
 
         Returns
         -------
         Rebound
             Everything about these impacts, integrated.
         dict of str to ndarray
-            Standard errors of the kinds that were measured, from the errors of all that was moved.
+            Standard errors of the kinds that were measured, from the errors of all parameters.
         """
         state = self._state
         v, r, h, _ = broadcast(speed=speed, radius=radius, thickness=thickness)
@@ -137,13 +137,13 @@ def fit(
     law: str | Law = DEFAULT,
     priors: Mapping[str, float] | None = None,
 ) -> Fit:
-    """Find what is not known of bead and plate from measured rebounds.
+    """Find unknown properties of bead and plate from measured rebounds.
 
     Parameters
     ----------
     pair : Pair
-        Materials of bead and plate; of what is unknown their values do not count, but for moduli
-        and densities, which are sought within a factor of 5 of them.
+        Materials of bead and plate. Their values of unknowns are ignored, except that moduli and
+        densities are sought within a factor of 5 of them.
     data : Measurements or mapping
         What was measured, as `Measurements` or as a mapping with its arguments for names.
     unknown : str or sequence of str
@@ -154,7 +154,7 @@ def fit(
         Normal force law, as in `ImpactModel`.
     priors : mapping of str to float, optional
         Standard errors [SI units] of numbers that are given but not exactly known; they enter the
-        errors of what is found. Of an unknown it says that the given value counts.
+        errors of the result. With a prior, the given value of an unknown counts as a measurement.
 
     Returns
     -------
@@ -165,16 +165,16 @@ def fit(
     ValueError
         Data out of range or incomplete, fewer values than unknowns, names that are not known.
     UnidentifiedError
-        The data do not answer the question: the message says what they do tell.
+        The data do not determine the unknowns; the message says what they do determine.
     ImportError
         Without scipy.
 
     Notes
     -----
-    Least squares of the values over their errors, from the best point of a scan. Standard errors
-    that the data lack are taken for one relative size of each kind of values, found from the
-    scatter; the errors of the result are then widened as Student's distribution has it, so that
-    68 % of the true values lie within them.
+    Least squares of the values over their errors, from the best points of a scan. If no standard
+    errors are given, values of one kind share one relative error, found from the scatter; the
+    errors of the result are then widened by Student's distribution, so that 68 % of the true
+    values lie within them.
 
     Examples
     --------
@@ -201,7 +201,7 @@ def fit(
 
 
 def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
-    """Resolve the law, for a body whose strength is asked for even if it has none."""
+    """Resolve the law; a body whose strength is unknown is given some strength for it."""
     strengths = [one for one in moved if one.is_strength]
     if strengths:
         some = np.array(
@@ -213,7 +213,7 @@ def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
 
 
 class _Found(NamedTuple):
-    """Where least squares have ended."""
+    """Result of least squares."""
 
     basins: list[search.Basin]  # the best first
     error: Array  # of the values
@@ -221,7 +221,7 @@ class _Found(NamedTuple):
 
 
 def _found(predictor: Predictor, descent: search.Descent) -> _Found:
-    """Go down into each basin, and find the errors of the data that are not known."""
+    """Find the minimum of each basin, and estimate the errors that the data lack."""
     values = predictor.values
     free = sum(one.prior is None for one in predictor.moved)
     if values.value.size < free:
@@ -249,8 +249,8 @@ def _found_errors(
 ) -> tuple[Array, float]:
     """Errors of the values, from their scatter where they were not given; degrees of freedom.
 
-    Each number that the data tell costs the kind of values that tell it a degree. One with a prior
-    costs the share that they tell of it. Both depend on the errors, which follow from them.
+    Each free parameter costs one degree of freedom, of the kinds of values that determine it; one
+    with a prior costs the share that they determine. Costs and errors depend on each other.
     """
     values = predictor.values
     fitted, slopes = descent.predicted(np.log(at)), descent.slopes(np.log(at))
@@ -266,9 +266,9 @@ def _found_errors(
 
 
 def _pools(values: Values) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_]]]:
-    """Values that are given one error, and those from whose scatter it is found.
+    """Values that share one unknown error, and the values from whose scatter it is found.
 
-    They are the values of a kind, but of all kinds where it has few.
+    Both are the values of one kind. Kinds with few values take the scatter of all kinds.
     """
     unknown = np.isnan(values.error)
     kinds = [(values.kind == kind) & unknown for kind in np.unique(values.kind[unknown])]
@@ -284,12 +284,12 @@ def _pools(values: Values) -> Iterator[tuple[NDArray[np.bool_], NDArray[np.bool_
 
 @dataclass(frozen=True, eq=False)
 class _State:
-    """Where a fit has ended."""
+    """What `Fit.curve` needs of a fit."""
 
     predictor: Predictor
     at: Array
     error: Array  # of the values
-    covariance: errors.Errors  # of the logarithms of all that was moved
+    covariance: errors.Errors  # of the logarithms of all parameters
 
 
 def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit:
@@ -298,11 +298,11 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit
     fitted = descent.predicted(np.log(at))
     hit = predictor.impacts(at)
     model = errors.model_covariance(predictor, at, hit)
-    slopes = predictor.derivatives(at, fitted)  # those on the way may be from nearby
+    slopes = predictor.derivatives(at, fitted)  # the descent's may be from nearby
     found = errors.covariances(predictor, slopes, error, model)
-    asked = slice(len(names))  # they come first
+    asked = slice(len(names))  # the unknowns come first
     own = None if model is None else model.size
-    # a value that only the model leaves open is given with the error that this makes
+    # with as many values as unknowns there is no scatter: only the model's errors are known
     doubt = error if freedom > 0.0 or own is None else own
     _check_strengths(predictor, at, fitted, doubt)
     widths = np.zeros(at.size)
@@ -366,7 +366,7 @@ def _alternatives(
     """Values in other basins that fit as well, within the errors of data and model."""
     best, *others = ended.basins
     error = ended.error
-    if not ended.freedom > 0.0:  # of a fit through all values only the model's errors are known
+    if not ended.freedom > 0.0:  # a fit through all values has no errors but the model's
         error, model = (error if model is None else model.size), None
 
     def squares(one: search.Basin) -> float:
@@ -392,12 +392,12 @@ def _squares(predictor: Predictor, values: Array, error: Array) -> float:
 def _reach(
     predictor: Predictor, at: Array, fitted: Array, covariance: Array, error: Array
 ) -> Array:
-    """Factors of the standard errors by which a value is held on either side.
+    """Factors that widen standard errors where the model is not linear in a parameter.
 
-    Two standard errors off, with all others where they follow, fitted values and those with priors
-    are off by a square of 4, if they go on as they begin. They do not for thick plates, whose COR
-    tells ever less of a larger thickness: one that was found too small has too small an error. A
-    value that is held on one side only, as a thickness that may be any larger, is refused.
+    Two standard errors off, with the other parameters following, the sum of squares rises by 4 if
+    the model is linear. It does not rise as much for thick plates, whose COR depends ever less on
+    thickness: a thickness that was found too small has too small an error. A value that the data
+    bound on one side only, such as a thickness that may be any larger, is refused.
 
     Raises
     ------
@@ -452,7 +452,7 @@ def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Arra
 def _least_strength(
     predictor: Predictor, strong: Array, n: int, squares: Callable[[Array], float]
 ) -> str:
-    """Say from which strength on the data exclude none."""
+    """Say above which strength the data exclude none."""
     trial, high = strong.copy(), squares(predictor.at_each(strong[None])[0]) + _EXCLUDED
     low = search.limits(predictor)[0][n]
     for factor in np.geomspace(1.0, low / strong[n], _TRIALS):

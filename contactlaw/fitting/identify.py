@@ -1,4 +1,4 @@
-"""Which questions the data answer, and what is known where they do not."""
+"""Whether the data determine the unknowns, and which products of them if they do not."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from contactlaw._readable import percent
 Array = NDArray[np.float64]
 
 _VAGUE = 0.5  # standard error of a logarithm from which on a value is not known; our choice
-_SMALL = 0.05  # exponent that is left out
+_SMALL = 0.05  # smaller exponents are left out of a product
 
 
 class UnidentifiedError(ValueError):
-    """A question that the data do not answer.
+    """Raised if the data do not determine the unknowns of a fit.
 
     Attributes
     ----------
     unknown : tuple of str
-        What was asked for.
+        Names of the unknowns.
     known : tuple of tuple
-        Products that are known nevertheless: exponents by name, value in SI units, and relative
-        standard error.
+        Products of unknowns that the data determine: exponents by name, value in SI units, and
+        relative standard error.
     """
 
     def __init__(
@@ -39,14 +39,14 @@ class UnidentifiedError(ValueError):
 
 
 def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
-    """Refuse values that the data leave open, and say what they do not.
+    """Refuse values that the data do not determine, and say which products they do.
 
     Parameters
     ----------
     names, values : tuple of str, ndarray (k,)
-        What was asked for, and found.
+        Unknowns, and the values found.
     covariance : ndarray (k, k)
-        Of the logarithms.
+        Covariance of the values' logarithms.
 
     Raises
     ------

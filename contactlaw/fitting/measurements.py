@@ -15,17 +15,17 @@ Array = NDArray[np.float64]
 
 
 class Kind(NamedTuple):
-    """A quantity that is measured: what it may be, in SI units."""
+    """A measured quantity and its limits, in SI units."""
 
     title: str
     unit: str
     least: float
     largest: float
-    hint: str  # what a value beyond is, as a rule
+    hint: str  # the usual mistake behind a value beyond the limits
 
 
 KINDS = {
-    # a little above 1, where an error may lift it
+    # a measured COR may be a little above 1, from its error
     "restitution": Kind("COR", "-", 1e-3, 1.2, "in per cent?"),
     "contact_time": Kind("contact time", "s", 1e-9, 10.0, "in microseconds?"),
     "peak_force": Kind("peak force", "N", 1e-12, 1e9, "in another unit?"),
@@ -47,10 +47,10 @@ class Measurements:
     speed : array_like
         Normal approach speeds [m/s].
     radius, thickness : array_like, optional
-        Of beads and plates [m], of each or one for all; ``inf`` is the half-space. One that is
-        left out is what a fit has to find.
+        Sizes of beads and plates [m], one for each or one for all; ``inf`` is the half-space. A
+        size that is left out has to be an unknown of the fit.
     restitution, contact_time, peak_force : array_like, optional
-        What was measured [-, s, N], one at least; NaN where a rebound lacks it.
+        Measured quantities [-, s, N], one at least; NaN where a rebound lacks it.
     restitution_error, contact_time_error, peak_force_error : array_like, optional
         Their standard errors, in the same units, for all rebounds that have the quantity. Without
         them a fit takes errors of one relative size and finds it from the scatter.
@@ -108,14 +108,14 @@ class Measurements:
 
     @classmethod
     def of(cls, data: Measurements | Mapping[str, ArrayLike]) -> Measurements:
-        """Take measurements as they are, or a mapping of names to arrays, a DataFrame as well.
+        """Return measurements as they are, or make them from a mapping of names, as a DataFrame.
 
         Raises
         ------
         ValueError
             A name that is none of the arguments of this class.
         TypeError
-            Neither of the two.
+            If `data` is neither measurements nor a mapping.
         """
         if isinstance(data, Measurements):
             return data
@@ -133,14 +133,14 @@ class Measurements:
 
 
 def _missing(values: ArrayLike) -> ArrayLike:
-    """None in a list, too, is what was not measured."""
+    """Replace None in a list by NaN, which says that a value was not measured."""
     if isinstance(values, list | tuple) and any(value is None for value in values):
         return [np.nan if value is None else value for value in values]
     return values
 
 
 def _check_kind(name: str, kind: Kind, flat: dict[str, Array]) -> None:
-    """Refuse values out of range, and errors that are not those of all values."""
+    """Refuse values out of range, and errors that some values lack."""
     values, errors = flat.get(name), flat.get(f"{name}_error")
     if values is None:
         if errors is not None:

@@ -1,4 +1,4 @@
-"""What should be known beside a fit's numbers, in words."""
+"""Remarks on a fit, in words."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from contactlaw.physical.validity import count_flags, explain
 
 Array = NDArray[np.float64]
 
-_FAR = 4.0  # standard errors: a value that is so far off is named
-_MISFIT = 1.5  # scatter over what was to be expected, from which on that is said
-_AT_BOUND = 1e-3  # of a value
-_LISTED = 8  # rows, before the rest are only counted
+_FAR = 4.0  # standard errors; values that are off by more are named
+_MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
+_AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
+_LISTED = 8  # rows or runs of rows that are listed; more are only counted
 
 
 def notes(
@@ -36,11 +36,11 @@ def notes(
     Parameters
     ----------
     predictor : Predictor
-        Of the fit.
+        Model and parameters of the fit.
     at : ndarray (p,)
         Values found.
     hit : Rebound
-        Of the rebounds with these values.
+        Fitted rebounds.
     standard : ndarray (m,)
         Standard errors of the values, as given or found, relative to the fitted ones: measured over
         fitted value, minus 1, over this is about 1.
@@ -93,7 +93,7 @@ def also(names: tuple[str, ...], values: Array) -> str:
 
 
 def listed(rows: NDArray[np.intp]) -> str:
-    """Numbers of rebounds, those of a run as its ends.
+    """Write indices of rebounds; of three and more in a row only the ends.
 
     Examples
     --------

@@ -1,6 +1,6 @@
-"""What the model says of rebounds with trial values, and how that moves with each of them.
+"""Predictions of the model for rebounds with trial values, and their derivatives.
 
-Every trial is integrated, with the law that follows its bodies: a table for each would take 0.7 s.
+Every trial is integrated, with the law for its bodies: a table for each would take 0.7 s.
 Derivatives are differences, as in `contactlaw.answers.sensitivity`, of contact times and forces
 too.
 """
@@ -25,8 +25,8 @@ from contactlaw.physical.scaling import following
 
 Array = NDArray[np.float64]
 
-_RTOL = 1e-9  # of an integration: 1e-8 of a contact time
-_STEP = 1e-4  # of a logarithm; differences err by half of it times the second derivative
+_RTOL = 1e-9  # error allowed per step: 1e-8 of a contact time
+_STEP = 1e-4  # step of a logarithm; differences err by half of it times the second derivative
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +63,7 @@ class Values:
         return Values(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def part(self, rows: NDArray[np.intp]) -> Values:
-        """Those of some rebounds, whose numbers are new."""
+        """Values of some rebounds, which are numbered anew."""
         place = np.full(int(self.row.max()) + 1, -1)
         place[rows] = np.arange(rows.size)
         kept = place[self.row] >= 0
@@ -100,10 +100,10 @@ class Predictor:
         return np.asarray(columns[self.values.kind, self.values.row])
 
     def at_each(self, trials: Array) -> Array:
-        """Predict the measured values at trials (k, p) of one pair of bodies, sizes differ.
+        """Predict the measured values at trials (k, p) that differ only in sizes, not in materials.
 
-        Where the model has no answer, as for bodies that cannot be or plates far too thin, values
-        are 0: like none that was measured.
+        Where the model has no answer, as for impossible bodies or plates far too thin, predictions
+        are 0, far from any measured value.
         """
         speed = np.array(self.data.speed)
         try:
@@ -125,7 +125,7 @@ class Predictor:
     def derivatives(self, values: Array, here: Array, known: Array | None = None) -> Array:
         """Differentiate with respect to the logarithms of the values; a column for each.
 
-        Where derivatives are known from nearby, those that take another law are not computed anew.
+        Where derivatives are known from nearby, those that need another law are not computed anew.
         """
         columns = np.empty((here.size, values.size)) if known is None else known.copy()
         for n, parameter in enumerate(self.moved):
@@ -136,7 +136,7 @@ class Predictor:
     def _derivative(self, values: Array, here: Array, n: int) -> Array:
         try:
             return self._difference(values, here, n, _STEP)
-        except (UnsolvedError, ValueError):  # at the edge of what the model answers: on one side
+        except (UnsolvedError, ValueError):  # at the model's edge: to the other side
             return self._difference(values, here, n, -_STEP)
 
     def _difference(self, values: Array, here: Array, n: int, step: float) -> Array:

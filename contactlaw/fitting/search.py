@@ -1,9 +1,9 @@
-"""The values that come nearest to the data: a scan of all that is searched, then least squares.
+"""The values that fit the data best: a scan of the whole range, then least squares.
 
-Data of two unknowns are fitted about as well in several regimes: thin and strong, thick and soft.
-Least squares go down into the basin where they start, so they have to start in each. The scan
-predicts a few rebounds on a coarse grid; predictions are smooth, so that splines tell them between
-its points, and the sum of squares on a fine grid shows every basin.
+With two unknowns the data may fit about as well in several regimes: thin and strong, thick and
+soft. Least squares end in the basin where they start, so they have to start in each. The scan
+predicts a few rebounds on a coarse grid. Predictions are smooth, so splines interpolate them to a
+fine grid, on which the sum of squares shows every basin.
 """
 
 from __future__ import annotations
@@ -23,32 +23,32 @@ from contactlaw.fitting.unknowns import Parameter, bounds
 
 Array = NDArray[np.float64]
 
-_ROWS = 8  # rebounds of a kind that a scan looks at, from the slowest to the fastest
-_MANY = 200  # of a kind, with which least squares come near to the end
-_GUESSED = 0.02  # relative error of values whose own is not known, until it is found
-_CONVERGED = 1e-7  # of the sum of squares: 3e-4 of a standard error, and less
-_NEAR = 0.02  # of a logarithm: as near as that, derivatives that need another law are kept
-# Points of an axis that takes a law for each, by how many such axes there are: a law takes 10 ms.
+_ROWS = 8  # rebounds of a kind that a scan predicts, from the slowest to the fastest
+_MANY = 200  # rebounds of a kind for least squares that come close, before all are used
+_GUESSED = 0.02  # relative error of values that have none, until it is estimated
+_CONVERGED = 1e-7  # relative change of the sum of squares: 3e-4 of a standard error, and less
+_NEAR = 0.02  # distance in logarithms at which derivatives that need another law are kept
+# Points of an axis on which each needs its own law, by the number of such axes: a law takes 10 ms.
 _STRENGTHS, _MODULI = (0, 14, 9, 6), (0, 7, 5, 4)
 _DENSITIES = 5
 _SLENDERNESS = 22
 _SLENDEREST, _THICKEST = 6.0, 0.03  # R/H; a plate thinner than R/6 gives no rebound to measure
 _RADII = np.geomspace(1e-5, 0.05, 16)  # [m]
-_FINER = (0, 16, 8, 3)  # points of the fine grid in a step of the coarse, by the unknowns
-_BETWEEN = 0.01  # relative error of what the splines tell between the points
-_CHAIN = 40  # lowest points of the fine grid from which least squares between its points start
-_CLOSE = 0.05  # of a logarithm: two of these that end as near as that are one minimum
-_INSIDE = np.array([[1e-9], [-1e-9]])  # of the grid, where least squares may start
-_MOST = 6  # basins of the scan from which least squares start
-_STEPS = 6  # by which these show whether a basin may be the best: splines lead to 1 % of it
-# Basins with sums of squares above this and 3 times the least cannot become the best one with all
-# rebounds, nor be as good.
+_FINER = (0, 16, 8, 3)  # points of the fine grid per step of the coarse one, by number of unknowns
+_BETWEEN = 0.01  # relative error of the splines between the points
+_CHAIN = 40  # lowest points of the fine grid from which least squares on the splines start
+_CLOSE = 0.05  # distance in logarithms within which results of these are one minimum
+_INSIDE = np.array([[1e-9], [-1e-9]])  # distance of their starts from the ends of the grid
+_MOST = 6  # basins of the scan from which least squares of the model start
+_STEPS = 6  # steps of these that show whether a basin may be the best: splines lead to 1 % of it
+# A basin whose sum of squares is above 3 times the least plus this is neither the best one with all
+# rebounds nor as good.
 _HOPELESS = 25.0
-_SAME = 1e-2  # of a logarithm: two descents that end as near as that have found one basin
+_SAME = 1e-2  # distance in logarithms within which two descents have found one basin
 
 
 def optimizer() -> Any:
-    """scipy.optimize, which is an extra of its own.
+    """Import scipy.optimize, which only the extra ``fit`` installs.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def optimizer() -> Any:
 
 
 def limits(predictor: Predictor) -> tuple[Array, Array]:
-    """Least and largest values."""
+    """Least and largest value of each parameter."""
     low, high = np.array([bounds(one, predictor.pair) for one in predictor.moved]).T
     return low, high
 
@@ -72,17 +72,17 @@ class Basin(NamedTuple):
     """A minimum of the sum of squares."""
 
     at: Array
-    squares: float  # with those of the priors
+    squares: float  # sum of squares of data and priors
 
 
 def basins(predictor: Predictor) -> list[Basin]:
     """Find all minima of the sum of squares that may be the least, the best first.
 
-    They are those of a few rebounds, if there are many.
+    If there are many rebounds, only some of them are used.
     """
     few = _few(predictor, _ROWS)
     found = _descents(few, scan(few), _STEPS)
-    if len(predictor.data) > _MANY:  # nearer, before all of them are predicted at each step
+    if len(predictor.data) > _MANY:  # come close before each step predicts all of them
         found = _descents(_few(predictor, _MANY), [one.at for one in found])
     return found
 
@@ -93,12 +93,12 @@ def _descents(predictor: Predictor, starts: list[Array], *steps: int) -> list[Ba
 
 
 def guessed(values: Values) -> Array:
-    """Errors of the values, a guess where they are not known."""
+    """Errors of the values; a guess where none are given."""
     return np.where(np.isnan(values.error), _GUESSED * values.value, values.error)
 
 
 def distinct(found: list[Basin]) -> list[Basin]:
-    """Each basin once, the best first, without those that are hopeless."""
+    """Keep each basin once, the best first; drop those that cannot be the best."""
     kept: list[Basin] = []
     for one in sorted(found, key=lambda one: one.squares):
         apart = all(np.abs(np.log(one.at / other.at)).max() > _SAME for other in kept)
@@ -122,14 +122,14 @@ def scan(predictor: Predictor) -> list[Array]:
 def _bottoms(axes: list[Array], off: Array) -> list[Array]:
     """Minima of the sum of squares of a grid of residuals, the best first; a row for each.
 
-    A narrow valley across the grid has a chain of lowest points. Least squares between the points
-    go down from each, and what comes out is one minimum, so that no chain hides another valley.
+    A narrow valley across the grid has a chain of lowest points. Least squares on the splines start
+    from each and end in one minimum, so that no chain hides another valley.
     """
     from scipy import interpolate, ndimage
 
     squares = (off**2).sum(axis=-1)
     lowest = squares <= ndimage.minimum_filter(squares, 3, mode="nearest")
-    # where nothing yields, all strengths give one sum: a plateau is one place
+    # where nothing yields, all strengths have the same sum: such a plateau counts as one place
     regions, count = ndimage.label(lowest, np.ones([3] * squares.ndim))
     places = ndimage.minimum_position(squares, regions, range(1, count + 1))
     places = sorted(places, key=lambda place: float(squares[place]))[:_CHAIN]
@@ -155,10 +155,10 @@ def _bottoms(axes: list[Array], off: Array) -> list[Array]:
 
 
 class _Axes(NamedTuple):
-    """A grid of the parameters, by logarithms; a thickness may be there by its R/H."""
+    """Grid of the parameters' logarithms; if a radius is sought, too, R/H replaces thickness."""
 
     points: list[Array]
-    by_radius: tuple[int, int] | None  # numbers of thickness and radius, if both are sought
+    by_radius: tuple[int, int] | None  # indices of thickness and radius, if both are sought
 
     def values(self, coordinates: Array) -> Array:
         """Parameters at a point."""
@@ -173,7 +173,7 @@ def _predicted(predictor: Predictor, axes: _Axes) -> Array:
     """Predict the measured values at all points of the grid, one after the other."""
     count = predictor.values.value.size
     points = np.array(list(itertools.product(*axes.points)))
-    # those of one law come together
+    # sorted, so that points with the same law are next to each other
     laws = [n for n, one in enumerate(predictor.moved) if one.changes(predictor.law)]
     order = np.lexsort(points[:, laws].T) if laws else np.arange(len(points))
     found = np.empty((len(points), count))
@@ -200,7 +200,7 @@ def _finer(axes: _Axes, predicted: Array) -> tuple[list[Array], Array]:
 
 
 def _few(predictor: Predictor, count: int) -> Predictor:
-    """Take only a few of the rebounds, so many of each kind."""
+    """Keep only `count` rebounds of each kind."""
     rows = _some(predictor.values, predictor.data, count)
     return replace(predictor, data=_part(predictor.data, rows), values=predictor.values.part(rows))
 
@@ -227,7 +227,7 @@ def _part(data: Measurements, rows: NDArray[np.intp]) -> Measurements:
 
 
 def _middle(one: Parameter, predictor: Predictor) -> float:
-    """Value of a parameter where it is not scanned itself, by what else is known."""
+    """Value of a parameter that is not scanned: the one given, or a guess."""
     if not math.isnan(one.centre):
         return one.centre
     if one.is_strength:
@@ -277,15 +277,15 @@ def _axes(predictor: Predictor) -> _Axes:
 
 
 def _onset(predictor: Predictor, n: int) -> float:
-    """Strength from which on a body does not yield, nearly; others have their middle values."""
+    """Strength above which a body hardly yields; other parameters have their `_middle` values."""
     trial = np.array([_middle(one, predictor) for one in predictor.moved])
     chi = float(np.max(predictor.impacts(trial).overload))
-    # d_Y goes with the square of the strength
+    # d_Y is in proportion to the square of the strength
     return float(trial[n] * math.sqrt(chi)) if chi > 0.0 else math.inf
 
 
 class Descent:
-    """Least squares, by scipy; what it has computed serves the next one, with other errors."""
+    """Least squares by scipy; keeps predictions and slopes for the next call with other errors."""
 
     def __init__(self, predictor: Predictor) -> None:
         self.predictor = predictor
@@ -298,7 +298,7 @@ class Descent:
         self._steepest: tuple[Array, Array] | None = None
 
     def predicted(self, x: Array) -> Array:
-        """Fitted values, by the logarithms of the parameters."""
+        """Fitted values, from the logarithms of the parameters."""
         if self._last is None or not np.array_equal(self._last[0], x):
             self._last = x.copy(), self.predictor.at(np.exp(x))
         return self._last[1]
@@ -312,7 +312,7 @@ class Descent:
         return self._steepest[1]
 
     def __call__(self, start: Array, error: Array, steps: int = 60) -> Basin:
-        """Go down from a start."""
+        """Find the minimum from a start, in so many steps."""
         pull = np.zeros((len(self._held), start.size))
         pull[np.arange(len(self._held)), self._held] = 1.0 / self._widths
 

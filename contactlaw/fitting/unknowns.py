@@ -1,4 +1,4 @@
-"""What can be unknown: numbers of the two materials, and the sizes of bead and plate."""
+"""What a fit can find: numbers of the two materials, and the sizes of bead and plate."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class Unknown(NamedTuple):
     title: str
     unit: str
     body: str  # "sphere", "plate", or "" for a size
-    field: str  # of that body's material, or of the measurements
+    field: str  # name in the body's Material, or in Measurements
     least: float  # in SI units
     largest: float
 
 
-# Bounds: rubber and diamond, aerogels and osmium; strengths go by the modulus.
+# Bounds are those of rubber and diamond, aerogels and osmium; `bounds` has those of strengths.
 _MATERIAL = {
     "yield_strength": ("yield strength", "Pa", 0.0, math.inf),
     "youngs_modulus": ("Young's modulus", "Pa", 1e5, 2e12),
@@ -46,25 +46,23 @@ UNKNOWNS = {
 }
 UNKNOWNS["thickness"] = Unknown("thickness of the plate", "m", "", "thickness", 1e-7, 10.0)
 UNKNOWNS["radius"] = Unknown("radius of the bead", "m", "", "radius", 1e-7, 1.0)
-_RATIOS = (
-    12.0,
-    1e4,
-)  # E*/sigma_Y: glassy metals, and the softest lead; law fem is made for 11 to 2000
-_GUESS = 5.0  # factor by which moduli and densities may be off what is given
+# E*/sigma_Y of glassy metals and of the softest lead; law fem is made for 11 to 2000.
+_RATIOS = (12.0, 1e4)
+_GUESS = 5.0  # factor by which moduli and densities may differ from the values given
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A number that is moved, by its logarithm."""
+    """A parameter of a fit, which varies its logarithm."""
 
     name: str
-    centre: float  # as given; NaN: it is not
+    centre: float  # value given; NaN: none
     prior: float | None  # standard error of the logarithm
-    wanted: bool  # not only known with an error
+    wanted: bool  # whether it is an unknown; else a given value with a prior
 
     @property
     def unknown(self) -> Unknown:
-        """What it is."""
+        """Its entry in `UNKNOWNS`."""
         return UNKNOWNS[self.name]
 
     @property
@@ -73,7 +71,7 @@ class Parameter:
         return self.unknown.field == "yield_strength"
 
     def changes(self, law: Law) -> bool:
-        """Whether another law has to be made where it moves."""
+        """Whether the law changes with it."""
         return bool(law.from_pair) and self.unknown.field in ("yield_strength", "youngs_modulus")
 
 
@@ -88,13 +86,13 @@ class Setting(NamedTuple):
 def parameters(
     pair: Pair, data: Measurements, unknown: str | Iterable[str], priors: Mapping[str, float]
 ) -> list[Parameter]:
-    """List what is moved: the unknowns first, then what is known with an error.
+    """List the parameters: the unknowns first, then given values with priors.
 
     Raises
     ------
     ValueError
-        A name that is none of `UNKNOWNS`, none or more than three unknowns, a size that is neither
-        given nor unknown, or both; a prior of what has no value, or no positive one.
+        A name that is not in `UNKNOWNS`, none or more than three unknowns, a size that is neither
+        given nor unknown, or both; a prior that is not positive, or of something without a value.
     """
     names = [unknown] if isinstance(unknown, str) else list(unknown)
     for argument, given in (("unknown", names), ("priors", list(priors))):
@@ -150,7 +148,7 @@ def _prior(name: str, centre: float, error: float) -> float:
 
 
 def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
-    """Least and largest value that physics allows."""
+    """Least and largest value of a parameter in a fit."""
     unknown = parameter.unknown
     low, high = unknown.least, unknown.largest
     if parameter.is_strength:
@@ -161,7 +159,7 @@ def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
 
 
 def setting(pair: Pair, data: Measurements, moved: list[Parameter], values: Array) -> Setting:
-    """Put values in their places."""
+    """Put the values of parameters into bodies and sizes."""
     bodies: dict[str, Material] = {"sphere": pair.sphere, "plate": pair.plate}
     sizes = {"radius": data.radius, "thickness": data.thickness}
     for parameter, value in zip(moved, values.tolist(), strict=True):
@@ -172,5 +170,5 @@ def setting(pair: Pair, data: Measurements, moved: list[Parameter], values: Arra
             sizes[field] = np.full(len(data), value)
         else:
             sizes[field] = np.asarray(sizes[field]) * (value / parameter.centre)
-    # copies: kernels are compiled once more for arrays that may not be written to
+    # copies: for read-only arrays kernels would be compiled once more
     return Setting(Pair(**bodies), np.array(sizes["radius"]), np.array(sizes["thickness"]))
