@@ -77,13 +77,13 @@ _MODULES = {
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names.split()}
 
 
-if not TYPE_CHECKING:  # else any name would do for type checkers
+if not TYPE_CHECKING:  # type checkers would accept any name
 
     def __getattr__(name: str) -> Any:
         """Import a public name, or a module of the package, when it is first used (PEP 562).
 
-        A program that uses a part of the package starts faster, and the command line can decide
-        whether kernels are compiled before the first one is defined.
+        A program that uses a part of the package starts faster, and the command line can decide,
+        before the first kernel is defined, whether kernels are compiled.
         """
         if name in _MODULE_OF:
             value = getattr(importlib.import_module(f"{__name__}.{_MODULE_OF[name]}"), name)

@@ -19,7 +19,7 @@ def main() -> int:
 
 
 def asks_for_few(words: Sequence[str]) -> bool:
-    """Whether a command line asks for a few impacts; one that is misread takes longer, no more.
+    """Whether a command line asks for a few impacts; if this is wrong, it only takes longer.
 
     A range is many values, a picture needs hundreds of impacts, and ``--outside clamp`` a table;
     ``--outside solve`` may take 200,000 steps to find that a plate is too thin.

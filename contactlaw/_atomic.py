@@ -13,8 +13,8 @@ from pathlib import Path
 def write(path: str | os.PathLike[str], content: bytes) -> None:
     """Write a file under a temporary name and rename it; an existing one is replaced.
 
-    A link stays, and the file that it leads to is written. What is no regular file, as a device,
-    a terminal or a named pipe, cannot be replaced by one: the content goes into it.
+    A link stays, and the file that it leads to is replaced. A device, a terminal or a named pipe
+    cannot be replaced by a regular file: the content is written into it.
 
     Raises
     ------
@@ -23,7 +23,7 @@ def write(path: str | os.PathLike[str], content: bytes) -> None:
     """
     try:
         replaceable = stat.S_ISREG(os.stat(path).st_mode)
-    except FileNotFoundError:  # a link that leads to nothing, too
+    except FileNotFoundError:  # no file yet, or a link that leads to nothing
         replaceable = True
     if replaceable:
         _replace(Path(os.path.realpath(path)), content)

@@ -1,4 +1,4 @@
-"""Where contactlaw keeps what it need not compute twice: the user's cache folder.
+"""The user's cache folder, where contactlaw keeps tables and compiled code.
 
 The folder is that of the platform (``~/.cache/contactlaw`` on Linux). The environment variable
 ``CONTACTLAW_CACHE_DIR`` names another one; ``CONTACTLAW_NO_CACHE=1`` keeps all in memory.
@@ -17,8 +17,8 @@ def folder() -> Path | None:
     Raises
     ------
     RuntimeError
-        If it is in a home folder and there is none, as of a container's user without an entry in
-        the list of users.
+        If it would be in the user's home folder and there is none, as in a container whose user
+        has no entry in the list of users.
     """
     if os.environ.get("CONTACTLAW_NO_CACHE", "").lower() not in ("", "0", "no", "off", "false"):
         return None
@@ -27,5 +27,5 @@ def folder() -> Path | None:
         return Path(chosen).expanduser()
     import platformdirs
 
-    # early versions leave the ~ of a user without a home: a folder of that name would be made
+    # without a home folder old versions leave the ~, of which a folder would be made: raise instead
     return platformdirs.user_cache_path("contactlaw", appauthor=False).expanduser()

@@ -1,9 +1,9 @@
 """The one place where numba's options are set, and where compiled code is kept.
 
 Machine code goes into a folder whose name is a hash of all sources of the package, numba's version
-and the CPU: numba itself notices an edit in a function's own file only, and would go on with the
-old code of what it calls in another. Laws are data, so no kernel takes a function from outside, and
-each of them is compiled once on a machine.
+and the CPU: numba itself notices an edit only in a function's own file, and would keep the old code
+of functions that it calls in other files. Laws are data, so no kernel takes a function from
+outside, and each of them is compiled once on a machine.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ normalize_signature: Any = numba.core.sigutils.normalize_signature
 carray: Any = numba.carray  # type: ignore[attr-defined]
 _F = TypeVar("_F", bound=Callable[..., Any])
 _cached: list[Any] = []
-_UNUSED = 30 * 86400.0  # [s] after which the code of another version is thrown away
+_UNUSED = 30 * 86400.0  # [s] after which unused code of another version is deleted
 
 
 @overload
@@ -52,11 +52,11 @@ def kernel(
 def kernel(
     function: _F | None = None, *, cache: bool = False, inline: bool = False, entry: bool = False
 ) -> _F | Callable[[_F], _F]:
-    """Compile a function on its first call; to a type checker it stays what it was.
+    """Compile a function on its first call; its type stays the same for type checkers.
 
     `cache` keeps the machine code on disk, for kernels that Python calls: it contains that of the
-    kernels which they call. `entry` is for those that Python calls and that no disk can keep.
-    `inline` copies the machine code into its callers, where LLVM finds it too large to do so.
+    kernels which they call. `entry` is for kernels that Python calls and that cannot be kept.
+    `inline` copies the machine code into its callers, even where LLVM finds it too large for that.
     """
 
     def compiled(python_function: _F) -> _F:
@@ -72,12 +72,12 @@ def kernel(
             return _Inner(  # type: ignore[return-value]
                 python_function, targetoptions=options, pipeline_class=_InnerCompiler
             )
-        # a C function is wanted of those only which users may pass on
+        # only kernels that users may pass to C need a C function
         options["no_cfunc_wrapper"] = cache
         dispatcher: Any = numba.njit(**options)(python_function)
         if cache:
             _cached.append(dispatcher)
-            if enable_caching.cache_info().currsize:  # the module came after the first answer
+            if enable_caching.cache_info().currsize:  # defined after the call of it
                 _keep(dispatcher)
         return dispatcher  # type: ignore[no-any-return]
 
@@ -116,9 +116,9 @@ class _InnerCompiler(Compiler):
 
 
 class _Inner(CPUDispatcher):
-    """A kernel that kernels call; Python, if it ever does, runs it as it was written.
+    """A kernel that only other kernels call; a call from Python runs the Python function.
 
-    The way in from Python takes as long to compile as a small kernel itself. Without it a kernel
+    An entry for Python takes as long to compile as a small kernel itself. Without it a kernel
     cannot print, nor raise an error whose arguments it computes.
     """
 
@@ -126,12 +126,12 @@ class _Inner(CPUDispatcher):
         return self.py_func(*arguments)
 
     def compile(self, signature: Any) -> Any:
-        """Compile for numbers, not for each constant among the arguments anew."""
+        """Compile for the types of arguments, not anew for each constant among them."""
         arguments, _ = normalize_signature(signature)
         return super().compile(tuple(map(numba.types.unliteral, arguments)))
 
     def add_overload(self, result: Any) -> None:
-        # Callers find the code by this object, where other kernels have what Python calls.
+        # Callers find the code by this object; other kernels have their entry for Python here.
         result = result._replace(entry_point=object())
         self.overloads[tuple(result.signature.args)] = result
         target: Any = self.targetctx
@@ -139,11 +139,11 @@ class _Inner(CPUDispatcher):
 
 
 def _tell_apart(function: Callable[..., Any]) -> None:
-    """Name a kernel after the kernels that it was made with, as rates[_cubic].
+    """Add the names of the kernels that a kernel was made with to its own, as rates[_cubic].
 
-    Machine code knows it by its name, the types and a number that counts anew in each process. Two
-    of one name, one of them from another process's disk cache, may so be one to the linker, which
-    takes either for both.
+    In machine code its symbol is its name, the types and a number that every process counts from
+    the start. If another process's disk cache has a kernel of the same name, both may have the same
+    symbol, and the linker uses one for both.
     """
     made_with = (getattr(cell.cell_contents, "__name__", "") for cell in function.__closure__ or ())
     if names := ", ".join(filter(None, made_with)):
@@ -167,10 +167,10 @@ def switched_off() -> bool:
 
 @functools.cache
 def enable_caching() -> None:
-    """Let the kernels that asked for it use the disk cache, from now on.
+    """Let the kernels with ``cache=True`` use the disk cache, from now on.
 
-    Not when they are defined: numba then makes a cache folder, and raises where it finds none that
-    is writable; an import should do neither.
+    This cannot be done where they are defined: numba makes a cache folder, or raises where none is
+    writable, and an import should do neither.
     """
     for dispatcher in _cached:
         _keep(dispatcher)
@@ -199,15 +199,15 @@ def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = Fa
 def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
     """Compile a kernel for one signature and return its bare entry, as numba's dispatcher calls it.
 
-    It skips the dispatcher's look at the types of the arguments, a third of the time of a call
-    that takes half a microsecond: every argument has to be what the signature says.
+    The entry does not check the types of the arguments, which takes a third of the half a
+    microsecond of a call: every argument has to have the type that the signature says.
     """
     if switched_off():
         return function
     enable_caching()
     dispatcher: Any = function
     types, _ = normalize_signature(signature)
-    # By its types, as kernels ask for it: by a string it is another to numba's cache.
+    # by types, as from other kernels: with a string numba's cache would have it twice
     dispatcher.compile(types)
     entry: Callable[..., Any] = dispatcher.overloads[types].entry_point
     return entry
@@ -234,7 +234,7 @@ def at_first_as_python(function: _F, calls: int) -> _F:
 
 
 def _keep(dispatcher: Any) -> None:
-    """Give a kernel the disk cache, in files that tell when they are damaged."""
+    """Give a kernel the disk cache, in files with checksums."""
     if switched_off():
         return
     with _into_folder() as folder:
@@ -272,7 +272,7 @@ class _SealedFiles(IndexDataCacheFile):
     def _load_data(self, name: str) -> Any:
         path = self._data_path(name)  # type: ignore[no-untyped-call]
         if not _is_whole(path):
-            raise OSError(f"{path} is damaged")  # to numba a file that is not there
+            raise OSError(f"{path} is damaged")  # which numba takes for a missing file
         return super()._load_data(name)  # type: ignore[no-untyped-call]
 
 
@@ -290,7 +290,7 @@ def _is_whole(path: str) -> bool:
 
 
 def _save(save: Callable[[Any, Any], None], signature: Any, data: Any) -> None:
-    """Let an answer go before its machine code: numba raises if it cannot keep it."""
+    """Keep machine code, or warn if that fails; numba would raise, and no answer be given."""
     try:
         save(signature, data)
     except OSError as error:
@@ -299,7 +299,7 @@ def _save(save: Callable[[Any, Any], None], signature: Any, data: Any) -> None:
 
 @contextmanager
 def _into_folder() -> Iterator[Path | None]:
-    """Within this block numba's caches are made in our folder; None where there is none."""
+    """Within this block numba makes its caches in our folder; gives None if there is no folder."""
     folder, before = _code_folder(), config.CACHE_DIR
     try:
         if folder is not None:
@@ -311,12 +311,12 @@ def _into_folder() -> Iterator[Path | None]:
 
 @functools.cache
 def _code_folder() -> Path | None:
-    """Folder of the machine code, made if need be: in numba's own if one is named, else in ours."""
+    """Folder of the machine code, made if missing: in NUMBA_CACHE_DIR if set, else in ours."""
     try:
         home = Path(config.CACHE_DIR) if config.CACHE_DIR else _folder.folder()
         if home is None:
             return None
-        # a process may go to another folder, and numba takes ~ for a name
+        # a process may change its working folder, and numba does not expand ~
         home = home.expanduser().absolute()
         folder = home / f"contactlaw-{fingerprint()}"
         if not folder.is_dir():
@@ -328,7 +328,7 @@ def _code_folder() -> Path | None:
                     f"minute; kept in {home}",
                     file=sys.stderr,
                 )
-        os.utime(folder)  # refused where the folder is not ours to write
+        os.utime(folder)  # marks it as used; raises if it is not ours to write
         return folder
     except (OSError, RuntimeError) as error:
         _warn_once(str(error))
@@ -337,7 +337,7 @@ def _code_folder() -> Path | None:
 
 @functools.cache
 def fingerprint() -> str:
-    """Hash of all that machine code, and a table, depend on: every source, numba and the CPU."""
+    """Hash of all that machine code and tables depend on: every source, numba and the CPU."""
     import llvmlite.binding as llvm
 
     digest = hashlib.sha256(f"{VERSION} {numba.__version__} {llvm.get_host_cpu_name()} ".encode())
@@ -365,12 +365,12 @@ def _warn_once(reason: str) -> None:
 
 
 def in_memory(values: NDArray[np.float64]) -> Callable[[], NDArray[np.float64]]:
-    """Make a kernel that gives an array as it lies in memory, for kernels which belong to it.
+    """Make a kernel that returns this array by its address, for kernels that read only this array.
 
-    To numba an array that a kernel holds as a constant is of another type, for which all that it is
-    passed to is compiled anew. Its cache takes no caller of this one: by their sources they look
-    the same whatever the array is, so a user's own ``@njit(cache=True)`` loop would go on with that
-    of an earlier process.
+    An array that a kernel holds as a constant has another type in numba, for which everything that
+    it is passed to is compiled anew. Numba does not cache callers of the kernel made here. Their
+    sources are the same whatever the array is, so a user's own ``@njit(cache=True)`` loop would
+    read the array of an earlier process.
     """
     if switched_off():
         return lambda: values

@@ -1,6 +1,6 @@
 """Numbers as people read them: a value with its error, and a share.
 
-All that is printed for people takes these; files for programs have every digit.
+Everything that is printed for people uses these; files for programs have every digit.
 """
 
 from __future__ import annotations
@@ -8,19 +8,19 @@ from __future__ import annotations
 import math
 import sys
 
-# Smallest size in SI units from which on a prefix is taken, and what it stands for. Strengths of
-# thousands of MPa and plates of tenths of a mm stay in the units that data sheets have.
+# Smallest size in SI units for each unit with a prefix, and what the unit stands for. Strengths of
+# thousands of MPa and plates of tenths of a mm keep the units of data sheets.
 _PREFIXES = {
     "Pa": ((1e10, "GPa", 1e9), (1e5, "MPa", 1e6), (1e2, "kPa", 1e3), (0.0, "Pa", 1.0)),
     "m": ((1.0, "m", 1.0), (1e-4, "mm", 1e-3), (1e-7, "um", 1e-6), (0.0, "nm", 1e-9)),
     "s": ((1.0, "s", 1.0), (1e-3, "ms", 1e-3), (1e-7, "us", 1e-6), (0.0, "ns", 1e-9)),
 }
-_FINEST = 1e-6  # relative error below which digits mean nothing: a material is not so well known
+_FINEST = 1e-6  # smallest relative error that is written: no material is known so well
 _PLAIN = (1e-4, 1e7)  # sizes between which a number needs no exponent
 
 
 def scale_of(size: float, unit: str) -> tuple[str, float]:
-    """Find the unit that suits a size in SI units, and how many of these it is.
+    """Find the unit that suits a size in SI units, and the unit's size in SI units.
 
     Examples
     --------
@@ -55,14 +55,14 @@ def with_error(value: float, error: float, unit: str) -> str:
     ----------
     value, error : float
         In SI units; the error is not negative. One below a millionth of the value is written as
-        that much; none, or one that a double hardly holds, as 0.
+        a millionth; an error of 0, or too small for a normal float, as 0.
     unit : str
-        Of the SI; Pa, m and s get a prefix.
+        SI unit; Pa, m and s get a prefix.
 
     Returns
     -------
     str
-        Without an exponent between 1e-4 and 1e7 of the unit.
+        The text; numbers from 1e-4 to 1e7 have no exponent.
 
     Examples
     --------
@@ -85,7 +85,7 @@ def with_error(value: float, error: float, unit: str) -> str:
 
 
 def percent(share: float, digits: int = 2) -> str:
-    """Write a share in percent; ten and more as a multiple.
+    """Write a share in percent; shares of ten and more as a multiple.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What an engine's damping makes of a COR: Hertz's spring with a dashpot beside it.
+"""The damping of an engine that gives a COR: Hertz's spring with a dashpot beside it.
 
 Legend: x overlap, u its rate, c damping, beta = c / (2 sqrt(m k)) with the tangent stiffness k.
 
@@ -22,7 +22,7 @@ from contactlaw.physical.arguments import checked, shaped
 
 Array = NDArray[np.float64]
 
-_HALVINGS = 60  # of a range of 1.6, or of 350: to the last digit
+_HALVINGS = 60  # bisections of a range of 1.6, or of 350: to the last digit
 _CRITICAL = 2.0  # -ln e at zeta = 1
 
 
@@ -44,7 +44,7 @@ def betan(restitution: ArrayLike) -> float | Array:
     Raises
     ------
     ValueError
-        A COR that is not within these limits.
+        If a COR is outside 1e-300 to 1.
 
     Notes
     -----
@@ -67,7 +67,7 @@ def betan(restitution: ArrayLike) -> float | Array:
 
 
 def _root(rising: Callable[[Array], Array], value: Array, high: float | Array) -> Array:
-    """Where a rising function takes some values, between 0 and high, by halving."""
+    """Find where a rising function has some values, between 0 and high, by bisection."""
     low, high = np.zeros_like(value), np.broadcast_to(high, value.shape)
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

@@ -1,7 +1,7 @@
 """ImpactModel: what a bead's collision with a plate does, in SI units.
 
-Its methods hand what the user gave to the table or to the solver, which are interchangeable, or to
-a question in `contactlaw.answers`. Those that engines call are in `contactlaw.answers.compiled`.
+Its methods pass impacts on to the table or to the solver, which are interchangeable, or to another
+module of `contactlaw.answers`. Those that engines call are in `contactlaw.answers.compiled`.
 """
 
 from __future__ import annotations
@@ -45,11 +45,11 @@ class ImpactModel(Compiled):
         Normal force law: ``"fem"``, read off finite elements, for metals, ceramics and glasses,
         of which either, both or neither body may yield; ``"myc"``, the paper's; another of
         `contactlaw.laws.names`; or a `contactlaw.laws.Law` of your own. A table for it is built
-        when it is first asked, in less than a second, and kept in the user's cache folder;
+        when it is first needed, in less than a second, and kept in the user's cache folder;
         `solve`, soft spheres and LAMMPS need none.
     table : Table, path-like or Settings, optional
-        A table in place of the law's own; that of `contactlaw.table.Settings`, larger or finer, is
-        built when first asked, in less than a second as a rule, and kept in the cache folder.
+        A table in place of the law's own. For `contactlaw.table.Settings` a larger or finer one is
+        built when it is first needed, usually in less than a second, and kept in the cache folder.
     outside : {"raise", "solve", "clamp"}, optional
         What to do outside the table: refuse, integrate the equation, or take the value at the
         border (each such impact is counted in `clamped` and flagged in `Rebound.flags`).
@@ -85,10 +85,10 @@ class ImpactModel(Compiled):
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
         enable_caching()
         if not isinstance(table, Settings | None):
-            self.table  # noqa: B018 - what is wrong with it is said here, not at the first impact
+            self.table  # noqa: B018 - a wrong table is refused here, not at the first impact
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # compiled functions do not travel; the receiving process has its own
+        # compiled functions cannot be pickled; the receiving process makes its own
         return ImpactModel, (self.pair, self.force_law, self._tabulated.given, self.outside)
 
     def __repr__(self) -> str:
@@ -117,17 +117,17 @@ class ImpactModel(Compiled):
 
     @property
     def table(self) -> Table:
-        """The table that answers, made when first asked for; for Hertz's law that of MYC."""
+        """The table of lookups, made when it is first needed; for Hertz's law that of MYC."""
         return self._tabulated.table
 
     @property
     def largest_inelasticity(self) -> float:
-        """Largest lambda that the table answers, known before it is made."""
+        """Largest lambda of the table, known before the table is made."""
         return self._tabulated.largest_inelasticity
 
     @property
     def limits(self) -> Limits:
-        """Limits of the model for this pair, as kernels take them."""
+        """Limits of the model for this pair, for kernels."""
         return self._bodies.limits
 
     @property
@@ -175,7 +175,7 @@ class ImpactModel(Compiled):
         >>> model.restitution([2.0, 10.0], radius=0.9e-3, thickness=0.5e-3).round(4)
         array([0.7156, 0.6211])
         """
-        # per collision, from Python
+        # a short cut for engines that call this once per collision
         if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
             value = self._tabulated.restitution(speed, radius, thickness)
             if value == value:  # not NaN
@@ -195,9 +195,9 @@ class ImpactModel(Compiled):
         -------
         Rebound
             Within 5e-4 of `solve`, relatively, contact times within 5e-3, and within 1e-5 as a
-            rule; its restitution as in `restitution`. Just above yield, where plastic share and
-            residual compression begin as (chi - 1)^2 or faster, that takes a `solve` with an rtol
-            below 1e-5 (chi - 1); with ``"stronge"`` these two are within 1e-3 there.
+            rule; its restitution as in `restitution`. Just above yield plastic share and residual
+            compression begin as (chi - 1)^2 or faster: there `solve` needs an rtol below
+            1e-5 (chi - 1) to be as accurate, and with ``"stronge"`` these two are within 1e-3.
 
         Examples
         --------
@@ -285,13 +285,13 @@ class ImpactModel(Compiled):
         samples : int, optional
             Number of even times from first touch to separation, at least 2.
         method : {"table", "solve"}, optional
-            Shapes of contacts kept in the table, or integration of the equation.
+            Interpolate shapes of contacts in the table, or integrate the equation.
 
         Returns
         -------
         ForceHistory
             Arrays with the samples along the last axis. By ``"table"`` within 1e-4 of the peak
-            force of those by ``"solve"``. Contacts that come back along a capped law's loading
+            force of those by ``"solve"``. Contacts that unload along a capped law's loading
             curve (``"stronge"`` up to 2.15 yield compressions) are integrated either way.
 
         Raises
@@ -353,7 +353,7 @@ class ImpactModel(Compiled):
         Returns
         -------
         Sensitivity
-            By how many per cent the COR rises with one per cent of each input [-].
+            Per cent by which the COR rises for 1 % more of each input [-].
 
         Examples
         --------
@@ -378,11 +378,11 @@ class ImpactModel(Compiled):
         Parameters
         ----------
         speed, radius, thickness : array_like
-            Of the impacts that happen on a wall, as in `restitution`: samples, or values that
-            `weights` belong to.
+            Impacts that happen on a wall, as in `restitution`: samples, or values with their
+            `weights`.
         keep : {"energy", "momentum"}, optional
-            What the wall takes in all with this COR as it does with each impact's own: the
-            dissipated energy, e^2 = sum(w R^3 V^2 e_i^2)/sum(w R^3 V^2), or the momentum,
+            Which total on the wall is the same as with each impact's own COR: the dissipated
+            energy, e^2 = sum(w R^3 V^2 e_i^2)/sum(w R^3 V^2), or the momentum,
             e = sum(w R^3 V e_i)/sum(w R^3 V).
         weights : array_like, optional
             How often each impact happens, in any unit; broadcast with the others.
@@ -390,7 +390,7 @@ class ImpactModel(Compiled):
         Returns
         -------
         Constant
-            The COR, what it gets wrong, and how many impacts exceed which limit.
+            The COR, its errors, and how many impacts exceed each limit.
 
         Raises
         ------

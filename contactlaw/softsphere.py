@@ -54,9 +54,9 @@ _ERROR = 0.9
 def _advance_all(
     law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float
 ) -> int:
-    """`advance` for arrays, in place; index of an overlap that no contact has, else -1.
+    """`advance` for arrays, in place; returns the index of an impossible overlap, else -1.
 
-    The deepest overlap is in the plate where it is; it may have receded by any displacement.
+    The deepest possible overlap is measured from where the plate is: its displacement is added.
     """
     for n in range(overlap.size):
         if not -math.inf < overlap[n] <= deepest[n] + states.plate_displacement[n]:
@@ -105,7 +105,7 @@ class Contacts:
     Notes
     -----
     Normal force of a sphere on a large plate: no friction, adhesion or rolling. Second order in the
-    step; `time_step` tells which step is short enough.
+    step; `time_step` gives a step that is short enough.
 
     Examples
     --------
@@ -133,7 +133,7 @@ class Contacts:
         elastic = contact.yield_compression == math.inf
         enable_caching()
         self._law = law.data
-        self._diameters = 2.0 * r  # a sphere that deep is in the plate altogether
+        self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
         self._springs = Spring(
             mass=contact.mass,
             stiffness=contact.stiffness,
@@ -176,8 +176,8 @@ class Contacts:
         Parameters
         ----------
         overlap : ndarray of float64, shape (N,)
-            How deep each sphere is in the undeformed plate then [m]; 0 or less: apart. At most its
-            diameter and the `plate_displacement`.
+            Depth of each sphere in the undeformed plate at the end of the step [m]; 0 or less:
+            apart. At most its diameter plus the `plate_displacement`.
         step : float
             Length of the step [s]; at most 1e5 contact times of an impact at 1 m/s.
 
@@ -189,10 +189,10 @@ class Contacts:
         Raises
         ------
         ValueError
-            If there is not one finite overlap per contact, or an overlap or the step is beyond any
-            contact's; the contacts are as they were then.
+            If there is not one finite overlap per contact, or an overlap or the step is too large
+            for any contact; the contacts are unchanged then.
         """
-        # numpy's own arrays only: of a subclass, a mask or whatever else it adds would be lost
+        # numpy's own arrays only: what a subclass adds, such as a mask, would be lost
         if type(overlap) is not np.ndarray or overlap.dtype != np.float64:
             refuse_units("overlap", overlap, "m")
             raise ValueError(f"overlap: expected an array of float64, got {overlap!r}")
@@ -238,7 +238,7 @@ def time_step(
     speed, radius, thickness : float
         Of the fastest impact of the smallest bead on the thickest plate [m/s, m, m].
     error : float, optional
-        Largest error of the COR [-], between 2e-5 (what the relaxation of the plate may do) and
+        Largest error of the COR [-], between 2e-5 (to which the plate's relaxation may add up) and
         1e-2.
 
     Returns
@@ -253,7 +253,7 @@ def time_step(
     Raises
     ------
     ValueError
-        As `ImpactModel.lookup` on a plate too thin for the model; an error out of its range.
+        If the plate is too thin, as in `ImpactModel.lookup`, or `error` is out of its range.
 
     Examples
     --------

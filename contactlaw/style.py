@@ -53,7 +53,7 @@ _narrow: ContextVar[bool] = ContextVar("narrow", default=False)
 
 @contextmanager
 def applied(*, narrow: bool = False) -> Iterator[None]:
-    """Within this block figures have the common style, and no screen is needed.
+    """Within this block figures have the common style; they need no screen.
 
     Parameters
     ----------
@@ -78,14 +78,14 @@ def applied(*, narrow: bool = False) -> Iterator[None]:
 
 
 def pick(wide: Choice, narrow: Choice) -> Choice:
-    """Choose what suits a screen, or a phone."""
+    """Choose the value for a screen, or for a phone if figures are narrow."""
     return narrow if _narrow.get() else wide
 
 
 def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
-    """Make an empty figure of a size in inches, with a message and what it shows.
+    """Make an empty figure of a size in inches, with a message and a line on what it shows.
 
-    One for a phone is as high, but no wider than `NARROW`.
+    A figure for a phone has the same height, but is no wider than `NARROW`.
     """
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -107,7 +107,7 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
 
 
 def balanced(text: str, letters: float) -> list[str]:
-    """Break a text into as few lines as fit, about equally long: no word alone on the last.
+    """Break a text into as few lines as fit, about equally long, so that no last word is alone.
 
     Examples
     --------
@@ -123,7 +123,7 @@ def balanced(text: str, letters: float) -> list[str]:
 
 
 def circles(axes: Axes, missing: str, **options: Any) -> EllipseCollection:
-    """Add circles that have yet to get their sizes and places, in the axes' units, and values.
+    """Add circles; sizes, places (both in the axes' units) and values are set later.
 
     Those without a value have the colour `missing`; `options` are those of the collection.
     """
@@ -144,9 +144,9 @@ def png(figure: Figure) -> bytes:
     from PIL import Image
 
     canvas: Any = FigureCanvasAgg(figure)  # its methods are untyped
-    canvas.draw()  # once: savefig lays it out in a drawing of its own
+    canvas.draw()  # savefig would draw twice, once for the layout
     drawn, small = Image.fromarray(np.asarray(canvas.buffer_rgba())), io.BytesIO()
-    # 256 colours take a third of the room, and nobody sees it
+    # 256 colours take a third of the space, without a visible difference
     reduced = drawn.convert("RGB").quantize(256, dither=Image.Dither.NONE)
     reduced.save(small, "PNG", optimize=True)
     return small.getvalue()

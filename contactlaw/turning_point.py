@@ -1,12 +1,12 @@
 """The turning-point form: a closed form of the COR, contactlaw's own.
 
-At its largest compression, where it turns, an impact has forgotten its past but for two numbers:
-the force f and the span s of the unloading to come (in units of F_Y and d_Y). What follows is the
-second half of an elastic impact, of which one function G is all there is to know. So
+At the largest compression, where an impact turns, its unloading depends on two numbers only: the
+force f and the span s of the unloading to come (in units of F_Y and d_Y). What follows is the
+second half of an elastic impact, which one function G describes. So
 
-    chi = v^(4/5) (1 + 0.6 J lambda + 0.0193 lambda^2)^(-2/3)      how far Hertz's loading gets
-    d_m = chi, or beyond P the root of the loading work W          where the impact turns
-    e   = sqrt(f s)/v G(lambda_Y sqrt(f/s))                        what comes back
+    chi = v^(4/5) (1 + 0.6 J lambda + 0.0193 lambda^2)^(-2/3)      largest compression by Hertz
+    d_m = chi, or beyond P the root of the loading work W          largest compression
+    e   = sqrt(f s)/v G(lambda_Y sqrt(f/s))                        COR
     G(x) = exp(-(J/2) x (1 + 0.304 x + 0.190 x^2))
     W   = (2/5) chi^(5/2) (1 + 0.56 lambda (1 - P/chi)^(5/2))
 
@@ -31,11 +31,11 @@ WAVE_SLOPE: float = 0.8 * 1.25**1.6 * math.gamma(1.6) * math.gamma(0.5) / math.g
 """-de/dlambda at lambda = 0, 1.7302: the integral of f^2 dt over a lossless Hertzian contact,
 2 w_m^4 (2/5) B(8/5, 1/2) with w_m = (5/4)^(2/5) and u^2 = 1 - (w/w_m)^(5/2)."""
 
-LARGEST_AT_YIELD = 0.5  # lambda_Y to which the closed forms for plates are compared
-FASTEST = 20.0  # V0/V_Y0 to which they are
+LARGEST_AT_YIELD = 0.5  # largest lambda_Y at which the closed forms for plates are compared
+FASTEST = 20.0  # largest V0/V_Y0 at which they are compared
 INTEGRATE = "(beyond, take contactlaw.ImpactModel)"
 
-_SLOWEST = 1e-100  # V0/V_Y0 at which the COR has become 1, and no quotient is 0/0
+_SLOWEST = 1e-100  # V0/V_Y0 that replaces smaller ones: the COR is 1 there, and nothing is 0/0
 
 
 def loading(inelasticity: ArrayLike) -> float | Array:
@@ -73,7 +73,7 @@ def _release(x: Array) -> Array:
 
 
 def _work(lam: Array, chi: Array) -> Array:
-    """Relate the loading work to that of Hertz's curve, which radiates a little more."""
+    """Compute the loading work over that of Hertz's curve, which radiates a little more."""
     share: Array = 1.0 + 0.56 * lam * np.maximum(1.0 - P / chi, 0.0) ** 2.5
     return share
 
