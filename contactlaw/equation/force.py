@@ -150,7 +150,7 @@ def _unloading_row(law: Array, dm: float) -> int:
 
 @kernel(inline=True)
 def _function(law: Array, row: int, which: int, dm: float) -> float:
-    """One of the functions of dm."""
+    """Evaluate one of the functions of dm that a row holds."""
     t = law[row + SCALE] * dm - law[row + OFFSET]
     entry = row + OFFSET + 1 + which * FUNCTION
     value = polynomial(law, int(law[entry + FUNCTION_AT]), int(law[entry + FUNCTION_DEGREE]), t)
@@ -169,7 +169,7 @@ def residual(law: Array, dm: float) -> float:
 
 @kernel(cache=True)
 def loss(law: Array, dm: float) -> float:
-    """Subtract unloading work from loading work, of a contact that reached dm."""
+    """Loss of a contact that was loaded to dm: loading work minus unloading work."""
     row = _unloading_row(law, dm)
     return _function(law, row, LOSS, dm) if row > 0 else 0.0
 

@@ -7,8 +7,8 @@ values at 1 m/s and R = H. For a thin plate
     lambda = c_lam r (R/H)^2,    h = transit r/(R/H),    x = reach r^2,    T_H = (m/K)^(2/5)/r.
 
 Another plate (`contactlaw.equation.waves`) makes the contact stiffer: T_H is divided by exp(eta),
-and r multiplied by it in lambda and h. From a few times the yield speed on x is constant in eta
-(`saturated`). A bulk impact, as of two spheres, has R/H = 0 and c_lam = 0.
+and r multiplied by it in lambda and h. From about 17 times the yield speed on (`saturated`) x is
+constant in eta. A bulk impact, as of two spheres, has R/H = 0 and c_lam = 0.
 """
 
 from __future__ import annotations

@@ -66,12 +66,12 @@ STORED = {
 
 
 def empty(count: int) -> Outcome:
-    """Room for the outcomes of impacts."""
+    """Allocate the outcomes of impacts."""
     return Outcome(*np.empty((len(Outcome._fields), count)))
 
 
 def at(inelasticity: Array, yield_ratio: Array) -> Outcome:
-    """Room for the outcomes of impacts with these dimensionless numbers."""
+    """Allocate the outcomes of impacts with these dimensionless numbers."""
     out = empty(inelasticity.size)
     out.inelasticity[:] = inelasticity
     out.yield_ratio[:] = yield_ratio
@@ -84,10 +84,10 @@ def part(outcome: Outcome, chosen: Any) -> Outcome:
 
 
 def extremes(count: int) -> Extremes:
-    """Room for the extremes of contacts."""
+    """Allocate the extremes of contacts."""
     return Extremes(*np.empty((len(Extremes._fields), count)))
 
 
 def history(count: int, samples: int) -> History:
-    """Room for contacts over time."""
+    """Allocate contacts over time."""
     return History(*np.empty((len(History._fields), count, samples)))

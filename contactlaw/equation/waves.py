@@ -19,11 +19,12 @@ T_H shrinks by exp(-eta), with
     g = (h - h_0)/(h + h_0),  which is ln(h/h_0)/2 near h_0 and ends at 1
 
 at the compression d = V0 T_H of an elastic impact, with h over the contact time with losses. Beyond
-yield the force grows no faster than d, and x stays at x_s, its value at a few times the yield
-speed. The last term is empirical: contacts as wide as the plate is thick are stiffer still. Because
-the plate gives way less than a half-space it stores less energy, in proportion to (R/H) x
-E1'/(E1' + E2'). Beyond yield, where little of the compression comes back, that too is lost: lambda
-grows by b_p (R/H) (x - x_s) E1'/(E1' + E2'). See ``validation/derivations/mobility.md``.
+yield the force grows no faster than d, and x stays at x_s = 3 sqrt(d_Y/R), its value at about 17
+times the yield speed. The last term is empirical: contacts as wide as the plate is thick are
+stiffer still. Because the plate gives way less than a half-space it stores less energy, in
+proportion to (R/H) x E1'/(E1' + E2'). Where x is above x_s, little of the compression is recovered,
+and that energy is lost too: lambda grows by b_p (R/H) (x - x_s) E1'/(E1' + E2'). See
+``validation/derivations/mobility.md``.
 
 The contact time is that of an elastic impact, 3.2181 T_H without losses. With losses it is longer
 by f = 1 + 0.175 lambda + 0.18 lambda^3 in Phi, and by f^2 in g, with lambda of a thin plate in g.

@@ -68,7 +68,7 @@ class Shared(NamedTuple):
     """
 
     size: Array  # rms of the model's error of each value, in its units
-    cell: NDArray[np.intp]  # of each value
+    cell: NDArray[np.intp]  # cell of each value
     alike: Array  # (c, c) correlation of cells
 
     def propagated(self, gain: Array) -> Array:

@@ -57,7 +57,7 @@ RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by 
 _FLOWN = (20.0, 10.0)  # q at which flow is complete, in indentations and in v
 _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # two E*/sigma_Y, each with its deepest contacts, d/R
 _SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiffening negligible
-_EARLIEST = 0.01  # [d_Y], if less than `_SMALLEST`: a table has to begin before yield
+_EARLIEST = 0.01  # [d_Y]; the law's range begins here at the latest: tables begin before yield
 SHIFT = 2.0  # 2 in t = (q - 1)/(q + 2)
 _LEAST_FRICTION = 5e-4  # phi of bodies that hardly slip
 _SHARES, _RATIOS = 0.45, 0.1  # reach of the fit about modulus share 0.5 and nu 0.3; constant beyond

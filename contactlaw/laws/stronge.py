@@ -15,7 +15,7 @@ d_p: 1 + ln(s)/3.3 = 2.8/1.1, s = exp(5.1), d_p = 82.5; the 84 in print would ju
 At d = 1 the slope jumps from Hertz's 1.5 to 2 + 2/3.3: up to d = 8 this contact is stiffer than an
 elastic one, and up to d = 15 its force is larger. Unloading from just above yield along
 f = fm ((d - dr)/(dm - dr))^1.5 with Stronge's dm - dr = sqrt(2 dm - 1) would therefore lie above
-the loading curve and return more work than loading took (COR above 1). Here the contact goes back
+the loading curve and return more work than loading took (COR above 1). Here the contact unloads
 along the loading curve wherever the printed unloading curve would lie above it; from dm = 2.2 on it
 nowhere does.
 

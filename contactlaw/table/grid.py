@@ -30,7 +30,7 @@ from contactlaw.table.axes import FEWEST, SERIES, Axis, Grid, Segment, series_va
 Array = NDArray[np.float64]
 
 AXES = "inelasticity", "log_overload"
-_FEWEST_GRADED = 24  # nodes of a graded segment, our choice: kinks of a capped law are 8 % apart
+_FEWEST_GRADED = 24  # nodes of a graded segment, our choice: two kinks may be only 8 % apart
 _COARSER = 4.0  # factor on steps in ln chi below yield, where only the sphere's stiffening counts
 _BEYOND = 1.5  # largest chi of a pair's table, over the chi up to which its law was made
 _LARGEST = 6.0  # largest lambda of a pair's table: 1 mm of carbide on 0.6 mm at 10 m/s

@@ -43,9 +43,9 @@ from contactlaw.equation.waves import Waves, is_thin
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
 
-# Input outside these is a mistake. [m]: there is no continuum below 1 nm, and no bead above 1 km.
-# [m/s]: no contact is quasi-static above the speed of every wave in a solid, and below 1e-30 m/s
-# squares begin to underflow.
+# Input outside these is a mistake. Sizes [m]: there is no continuum below 1 nm, and no bead above
+# 1 km. Speeds [m/s]: no contact is quasi-static above the speed of every wave in a solid, and below
+# 1e-30 m/s squares begin to underflow.
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = 1e-30
 # Smallest H/R, whatever the law and the speed. A plate thinner than that is a foil, and nothing is
