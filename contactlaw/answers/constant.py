@@ -69,12 +69,12 @@ def constant(speed: Array, radius: Array, weights: Array, rebound: Rebound, keep
     if keep not in ("energy", "momentum"):
         raise ValueError(f"keep: must be 'energy' or 'momentum', got {keep!r}")
     if speed.size == 0:
-        raise ValueError("speed: got no impact, one at least has to happen")
+        raise ValueError("speed: got no impact, at least one is needed")
     if not (np.isfinite(weights) & (weights >= 0.0)).all():
         wrong = float(weights[~(np.isfinite(weights) & (weights >= 0.0))][0])
         raise ValueError(f"weights: must be finite and not negative, got {wrong!r}")
     if not weights.any():
-        raise ValueError("weights: all of them are 0, one at least has to be positive")
+        raise ValueError("weights: all of them are 0, at least one has to be positive")
     e = np.atleast_1d(np.asarray(rebound.restitution))
     share = weights / weights.max()
     mass = share * (radius / radius.max()) ** 3

@@ -226,8 +226,8 @@ def _found(predictor: Predictor, descent: search.Descent) -> _Found:
     free = sum(one.prior is None for one in predictor.moved)
     if values.value.size < free:
         raise ValueError(
-            f"unknown: {values.value.size} measured values cannot tell {free} unknowns: leave one "
-            "out, give priors, or measure more"
+            f"unknown: {values.value.size} measured values cannot determine {free} unknowns: leave "
+            "one out, give priors, or measure more"
         )
     unknown = np.isnan(values.error)
     error = search.guessed(values)
@@ -420,7 +420,7 @@ def _reach(
             if square < _HELD:
                 end = float(at[n] * math.exp(-sign * way[n]))
                 raise identify.UnidentifiedError(
-                    f"unknown: the data tell {one.name} on one side only: {words} {end:.3g} "
+                    f"unknown: the data bound {one.name} on one side only: {words} {end:.3g} "
                     f"{UNKNOWNS[one.name].unit}. Measure another quantity, or other speeds",
                     (one.name,),
                 )
@@ -445,7 +445,7 @@ def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Arra
             if squares(predictor.at_each(strong[None])[0]) < squares(fitted) + _EXCLUDED:
                 why = _least_strength(predictor, strong, n, squares)
                 raise identify.UnidentifiedError(
-                    f"unknown: the data do not tell {one.name}: {why}", (one.name,)
+                    f"unknown: the data do not determine {one.name}: {why}", (one.name,)
                 )
 
 

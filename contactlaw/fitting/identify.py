@@ -59,7 +59,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
     if len(names) == 1:
         error = min(100.0 * float(np.sqrt(squares[-1])), 999.0)
         raise UnidentifiedError(
-            f"unknown: the data do not tell {names[0]}: its standard error is {error:.0f} %",
+            f"unknown: the data do not determine {names[0]}: its standard error is {error:.0f} %",
             names,
         )
     known = []
@@ -68,7 +68,7 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
             known.append(_product(names, values, direction, float(np.sqrt(square))))
     what = "; ".join(f"{_words(powers)} = {value:.4g} within {percent(error)}"
                      for powers, value, error in known)  # fmt: skip
-    told = f"they tell {what} (in SI units). " if known else ""
+    told = f"they determine {what} (in SI units). " if known else ""
     raise UnidentifiedError(
         f"unknown: the data do not tell {' and '.join(names)} apart: {told}"
         "Fix one of them, give one with its prior standard error, or measure another quantity",

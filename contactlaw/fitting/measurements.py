@@ -50,7 +50,7 @@ class Measurements:
         Sizes of beads and plates [m], one for each or one for all; ``inf`` is the half-space. A
         size that is left out has to be an unknown of the fit.
     restitution, contact_time, peak_force : array_like, optional
-        Measured quantities [-, s, N], one at least; NaN where a rebound lacks it.
+        Measured quantities [-, s, N], at least one; NaN where a rebound lacks it.
     restitution_error, contact_time_error, peak_force_error : array_like, optional
         Their standard errors, in the same units, for all rebounds that have the quantity. Without
         them a fit takes errors of one relative size and finds it from the scatter.
@@ -83,12 +83,12 @@ class Measurements:
         given = {field.name: getattr(self, field.name) for field in fields(self)}
         given = {name: values for name, values in given.items() if values is not None}
         if not given.keys() & KINDS.keys():
-            raise ValueError(f"data: have to hold one at least of {', '.join(KINDS)}, got none")
+            raise ValueError(f"data: have to hold at least one of {', '.join(KINDS)}, got none")
         *arrays, _ = broadcast(**{name: _missing(values) for name, values in given.items()})
         flat: dict[str, Array] = dict(zip(given, arrays, strict=True))
         sizes = {name: flat[name] for name in ("speed", "radius", "thickness") if name in flat}
         if flat["speed"].size == 0:
-            raise ValueError("data: got no rebound, one at least is needed")
+            raise ValueError("data: got no rebound, at least one is needed")
         check(**sizes)
         for name, kind in KINDS.items():
             _check_kind(name, kind, flat)

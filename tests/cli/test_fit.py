@@ -107,7 +107,10 @@ def test_tables_that_are_refused(lines, words, table, capsys):
         ([*FIT, "--thickness", "1mm"], "--thickness: is unknown and given"),
         ([*BODIES, "--radius", "1mm", "--unknown", "thickness,colour"], "--unknown: got 'colour'"),
         ([*FIT, "--prior", "plate_yield_strength=5GPa"], "--prior: the standard error of plate"),
-        ([*FIT[:-1], "yield_strength", "--thickness", "1.2mm"], "--unknown: the data do not tell"),
+        (
+            [*FIT[:-1], "yield_strength", "--thickness", "1.2mm"],
+            "--unknown: the data do not determine",
+        ),
         (["--sphere", "stel", *FIT[2:]], "--sphere: unknown material 'stel'"),
         ([*FIT, "--law", "fme"], "--law: unknown law 'fme'; did you mean 'fem'"),
         ([*FIT, "--plot", "fit.txt"], "--plot: got 'fit.txt', must end in .png"),

@@ -244,7 +244,7 @@ def test_a_product_is_told_where_its_factors_are_not():
     """Below yield a thin plate is its mobility, H^2 sqrt(rho2): 1/4 in the exponent of rho2."""
     pair = cl.Pair("gamma-alumina", "glass")
     data = rebounds(pair, speed=np.geomspace(0.3, 4.0, 10), noise=0.01, without=("thickness",))
-    with pytest.raises(cl.UnidentifiedError, match="apart: they tell") as caught:
+    with pytest.raises(cl.UnidentifiedError, match="apart: they determine") as caught:
         cl.fit(pair, data, ("thickness", "plate_density"))
     ((powers, value, error),) = caught.value.known
     assert powers == {"thickness": 1.0, "plate_density": pytest.approx(0.25, abs=0.02)}
@@ -328,7 +328,7 @@ def test_a_size_of_each_rebound_with_a_prior():
     [
         ({"speed": [1.0, np.nan]}, "thickness", "speed: got nan"),
         ({"restitution": [0.5, 85.0]}, "thickness", r"restitution: got 85.0 .*per cent\?"),
-        ({"restitution": None}, "thickness", "one at least of restitution"),
+        ({"restitution": None}, "thickness", "at least one of restitution"),
         ({"restitution": [np.nan, 0.5]}, "thickness", "rebound 0 has none of"),
         ({"restitution_error": [0.0, 0.1]}, "thickness", "restitution_error: got 0.0"),
         ({"restitution_error": [np.nan, 0.1]}, "thickness", "restitution_error: got nan"),

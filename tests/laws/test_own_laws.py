@@ -211,7 +211,7 @@ def unloading(*arguments, **options):
             loading(Loading(1.0, lambda d: math.sqrt(d))),
             "loading force of 'mine' has to take an array, as numpy's functions do",
         ),
-        (loading(Loading(1.0, lambda d: d[:3])), "give one number for each of its"),
+        (loading(Loading(1.0, lambda d: d[:3])), "return one number for each of its elements"),
         (
             loading(Loading(5.0, CUT_OFF.force), Loading(2.0, CUT_OFF.force)),
             "branches have to begin one after the other, below 100000 d_Y",
