@@ -42,7 +42,7 @@ FILES = {
                 "sensitivity", "speed_table"],
     "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
     "stepping": ["spring", "energy", "friction", "sheet", "contact", "bead"],
-    "cli/parts": ["quantities", "wording", "columns", "hdf5", "records", "measured", "sheet",
+    "cli/parts": ["quantities", "wording", "columns", "records", "measured", "sheet",
                   "options", "curves", "walls", "lines", "plots", "asked", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
                  "rebound"],
@@ -53,6 +53,7 @@ KERNELS = [
 ]
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 VALIDATION = ROOT.parent / "validation"
+DEMO = ROOT.parent / "dem_demo"
 # what is private to users, but not to the finite elements: numba's settings, and the version
 SHARED = {"contactlaw._jit", "contactlaw._jit.kernel"}
 SHARED |= {"contactlaw._version", "contactlaw._version.VERSION"}
@@ -168,6 +169,23 @@ def test_validation_imports_public_names_only(path):
         package, *parts = name.split(".")
         if package in ("contactlaw", "dem_demo"):
             assert name in SHARED or not any(part.startswith("_") for part in parts), name
+
+
+@pytest.mark.parametrize(
+    "path", sorted(DEMO.rglob("*.py")), ids=lambda path: str(path.relative_to(DEMO))
+)
+def test_the_demo_has_layers(path):
+    """The kit knows no scene, a scene no other; of contactlaw they import public modules only."""
+    home = path.relative_to(DEMO).parts[0]
+    scenes = {folder.parent.name for folder in DEMO.glob("*/command.py")}
+    assert {"drum", "rain", "sieve"} <= scenes
+    for name in imported(path):
+        package, *parts = name.split(".")
+        if package == "contactlaw":
+            assert not any(part.startswith("_") for part in parts), name
+            assert parts[:2] != ["cli", "parts"], name
+        elif package == "dem_demo" and parts:
+            assert parts[0] in {"kit", home if home in {"kit", *scenes} else "cli"}, name
 
 
 def test_import_is_light():

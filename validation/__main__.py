@@ -11,8 +11,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from dem_demo.folder import results
-from dem_demo.signals import Interrupted, interruptible
+from dem_demo.kit.place import results
+from dem_demo.kit.signals import Interrupted, interruptible
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -1,7 +1,8 @@
 """Command line: ``contactlaw cor | sweep | constant | fit | history | export | ...``.
 
 Each file of this folder is a subcommand: its function `add` adds the parser and options to
-argparse's subparsers. Code that several subcommands share is in `parts`.
+argparse's subparsers. Code that several subcommands share is in `parts`. Another
+command line may take `joined`, `quantities` and `sentence` from here.
 """
 
 from __future__ import annotations
@@ -15,7 +16,11 @@ import warnings
 from collections.abc import Sequence
 
 from contactlaw._version import VERSION
-from contactlaw.cli.parts import options, wording
+from contactlaw.cli.parts import quantities, wording
+from contactlaw.cli.parts.options import joined
+from contactlaw.cli.parts.wording import sentence
+
+__all__ = ["joined", "main", "parser", "quantities", "sentence"]
 
 _DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage
 
@@ -36,7 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     {
       "restitution": 0.7...
     """
-    arguments = parser().parse_args(options.joined(sys.argv[1:] if argv is None else argv))
+    arguments = parser().parse_args(joined(sys.argv[1:] if argv is None else argv))
     if sys.stdout is None:  # the shell has closed it by >&-
         wording.say("the standard output is closed")
         return _REFUSED
@@ -52,7 +57,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         _drop_output()
         return _DONE
     except (ValueError, RuntimeError, OSError, ImportError) as error:
-        wording.say(wording.sentence(error, vars(arguments)))
+        wording.say(sentence(error, vars(arguments)))
         try:
             sys.stdout.flush()
         except OSError:  # a full disk

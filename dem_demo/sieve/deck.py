@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dem_demo.scene import Floats
+from dem_demo.kit.beads import Floats
 
 FORM = "deck.stl"
 _PITCH = 2.0  # [opening]: 20 % of the sheet are openings
@@ -59,6 +60,7 @@ class Deck:
         """Height of the walls [m]."""
         return _WALL * self.opening
 
+    @functools.cache  # noqa: B019  a deck or two in a process
     def triangles(self) -> Floats:
         """Corners of all triangles, shape (n, 3, 3) [m]: the sheet at z = 0, and the walls."""
         column, row = np.meshgrid(np.arange(self.columns), np.arange(self.rows), indexing="ij")

@@ -14,4 +14,3 @@ FRICTION = 0.3
 DURATION = 0.06  # [s], three periods
 FRAME_RATE = 500.0  # [1/s]
 SEED = 1
-ENGINE = "lammps"  # the one that knows meshes

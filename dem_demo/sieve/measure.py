@@ -3,73 +3,36 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import ImpactModel, edge_distance
-from dem_demo.scene import Floats
+from contactlaw import edge_distance
+from dem_demo.kit.beads import Floats
+from dem_demo.kit.runs import Run
 from dem_demo.sieve.deck import areas
-from dem_demo.sieve.record import Run
+from dem_demo.sieve.scene import Sieve
 
 _SMOOTH = 1.0  # [pitch], standard deviation: single impacts become a density
 _GRID = 0.125  # [pitch]
 _RIM = 1e-6  # [m] from an opening: rounding of the contact point
 
 
-class Account(NamedTuple):
-    """Energy of all beads over time [J]: what came in since the start, and where it went."""
-
-    start: Floats
-    """Kinetic energy at the start."""
-    gravity: Floats
-    deck: Floats
-    """Work of the moving deck."""
-    moving: Floats
-    """Kinetic energy now, that of rotation too."""
-    wave: Floats
-    plastic: Floats
-    vibration: Floats
-    """Lost to friction within the contact and to vibration of the bodies."""
-    others: Floats
-    """The rest: bead on bead, sliding friction, and what contacts hold at that moment."""
-
-
-def account(run: Run) -> Account:
-    """Tell where the energy came from and went until each frame."""
-    rows = run.collisions
-    end = rows["time"] + rows["contact_time"]
-    order = np.argsort(end, kind="stable")
-    until = np.searchsorted(end[order], run.time, side="right")
-
-    def so_far(column: str) -> Floats:
-        sums: Floats = np.r_[0.0, np.cumsum(rows[column][order])][until]
-        return sums
-
-    moving = run.kinetic + run.rotational
-    start, gravity = np.full_like(moving, moving[0]), run.potential[0] - run.potential
-    deck, wave, plastic = (so_far(name) for name in ("wall_work", "wave_energy", "plastic_energy"))
-    vibration = so_far("other_energy")
-    rest = start + gravity + deck - moving - wave - plastic - vibration
-    return Account(start, gravity, deck, moving, wave, plastic, vibration, rest)
-
-
-def on_sheet(run: Run) -> NDArray[np.bool_]:
+def on_sheet(run: Run[Sieve]) -> NDArray[np.bool_]:
     """Whether each triangle belongs to the sheet, not to a wall."""
-    found: NDArray[np.bool_] = np.ptp(run.triangles[:, :, 2], axis=1) == 0.0
+    found: NDArray[np.bool_] = np.ptp(run.scene.deck.triangles()[:, :, 2], axis=1) == 0.0
     return found
 
 
-def density(run: Run) -> Floats:
+def density(run: Run[Sieve]) -> Floats:
     """Dissipated energy per area of the sheet [J/m2], one value per triangle of it.
 
     Averaged over the neighbourhood, with a normal distribution whose standard deviation is the
     distance of two openings: the energy of all triangles there over their area.
     """
     sheet = on_sheet(run)
-    corners = run.triangles[sheet]
-    energy = np.zeros(len(run.triangles))
+    corners = run.scene.deck.triangles()[sheet]
+    energy = np.zeros(len(run.scene.deck.triangles()))
     np.add.at(energy, run.collisions["triangle"], run.dissipated)
     return _averaged(corners, energy[sheet], run.scene.deck.pitch)
 
@@ -93,7 +56,7 @@ def _averaged(corners: Floats, energy: Floats, pitch: float) -> Floats:
     return spread(energy) / spread(areas(corners))
 
 
-def near_edge(run: Run) -> NDArray[np.bool_]:
+def near_edge(run: Run[Sieve]) -> NDArray[np.bool_]:
     """Tell for each impact on the sheet whether an opening answers while it lasts."""
     scene = run.scene
     unit = float(edge_distance(scene.plate_material, scene.thickness, 1.0))
@@ -101,7 +64,7 @@ def near_edge(run: Run) -> NDArray[np.bool_]:
     return near
 
 
-def on_faces(run: Run) -> NDArray[np.bool_]:
+def on_faces(run: Run[Sieve]) -> NDArray[np.bool_]:
     """Tell for each impact whether it was on the flat of the sheet.
 
     At the rim of an opening a bead may have several contacts at once. They share its rebound, and
@@ -111,7 +74,7 @@ def on_faces(run: Run) -> NDArray[np.bool_]:
     return flat & (_away(run) > _RIM)
 
 
-def _away(run: Run) -> Floats:
+def _away(run: Run[Sieve]) -> Floats:
     """Distance of each impact from the nearest opening, inf on a wall [m]."""
     rows, scene = run.collisions, run.scene
     moved = np.sin(2.0 * math.pi * scene.frequency * (rows["time"] + rows["contact_time"]))
@@ -119,27 +82,9 @@ def _away(run: Run) -> Floats:
     return np.where(on_sheet(run)[rows["triangle"]], scene.deck.nearest_edge(x, y), np.inf)
 
 
-def passed(run: Run) -> Floats:
+def passed(run: Run[Sieve]) -> Floats:
     """Share of the undersize beads that is under the deck, for each frame."""
     small = run.scene.small
     under = run.position[:, small, 2] < -run.scene.amplitude - 0.5 * run.scene.deck.opening
     share: Floats = under.sum(axis=1) / max(1, int(small.sum()))
     return share
-
-
-def kept(run: Run) -> float:
-    """Constant COR with which the flat of the sheet would take as much; NaN without impacts there.
-
-    e^2 is the mean of the impacts' own e^2, weighted by their energies.
-    """
-    rows = run.collisions[on_faces(run)]
-    weight = run.scene.mass[rows["bead"]] * rows["approach_speed"] ** 2
-    if not weight.sum() > 0.0:
-        return math.nan
-    return math.sqrt(float((weight * rows["restitution"] ** 2).sum() / weight.sum()))
-
-
-def curve(run: Run, speed: Floats, radius: float) -> Floats:
-    """COR of the law over speed [m/s], for a radius [m]."""
-    model = ImpactModel(run.pair, run.law, outside="clamp")
-    return np.asarray(model.restitution(speed, radius, run.scene.thickness))

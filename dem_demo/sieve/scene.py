@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from dem_demo.scene import GRAVITY, Floats
+from contactlaw.engines import layout
+from dem_demo.kit.beads import GRAVITY, Floats
+from dem_demo.kit.bed import Bed, Corners, check
 from dem_demo.sieve import defaults
-from dem_demo.sieve.deck import Deck
+from dem_demo.sieve.deck import FORM, Deck, write_stl
 
 if TYPE_CHECKING:
-    from contactlaw import Material
+    import h5py
+
+    from contactlaw.walls import Mesh
 
 _COLUMNS, _ROWS, _BEADS = 48, 29, 10_000  # cells, and the beads that cover them 1.5 times
 _FEWEST = 8, 5  # cells
@@ -21,71 +28,44 @@ _SPACING = 2.2  # [largest radius]: sites of the feed, so far apart that no two 
 _LAYERS = 8  # of sites
 _MIDDLE, _SPREAD = 0.3, 0.4  # [length]: where the feed falls, most of it at its middle
 _DRIFT = 0.5  # times its speed: the feed's along the deck
+_AROUND = 0.2  # [m] beside and above the feed, in which beads still fly
+_DECK = "columns", "rows", "opening"
 LIFT = 2.0  # [amplitude] of the feed's lowest beads over the highest deck
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Sieve:
-    """A feed on a deck that vibrates, and how long it is watched.
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Sieve(Bed):
+    """A feed of two sizes on a deck that vibrates about z = 0.
 
-    Parameters
+    Attributes
     ----------
-    radius : ndarray, shape (N,)
-        Radii of the beads [m], each one of two.
-    position : ndarray, shape (N, 3)
-        Of their centres at the start [m]; z points up, the deck vibrates about z = 0.
-    velocity : ndarray, shape (3,)
-        Of the feed [m/s].
     deck : Deck
         The deck.
-    thickness : float
-        Of its sheet [m].
-    sphere_material, plate_material : Material
-        Materials of the beads and of the sheet.
     frequency, amplitude : float
-        Of the deck's vibration [1/s], [m], at 45 degrees to it.
-    friction : float
-        Coulomb's coefficient, of beads on the deck and on each other.
-    duration : float
-        Simulated time [s].
-    seed : int
-        Seed that the feed was drawn with.
+        Of its vibration [1/s], [m], at 45 degrees to it.
     """
 
-    radius: Floats
-    position: Floats
-    velocity: Floats
+    NAME, SCHEMA = "sieve", 1
+    AXES = (
+        "one row per impact on the deck; bead is a row of /beads, triangle one of /deck/triangles; "
+        "z points up"
+    )
+    NUMBERS = "thickness", "frequency", "amplitude", "friction", "duration", "seed"
+    FRAME_RATE = defaults.FRAME_RATE
+
     deck: Deck
-    thickness: float
-    sphere_material: Material
-    plate_material: Material
     frequency: float
     amplitude: float
-    friction: float
-    duration: float
-    seed: int
-
-    @property
-    def frame_rate(self) -> float:
-        """Recorded frames per second [1/s]."""
-        return defaults.FRAME_RATE
-
-    @property
-    def frames(self) -> int:
-        """Frames after the first one, which shows the start."""
-        return round(self.duration * self.frame_rate)
-
-    @property
-    def mass(self) -> Floats:
-        """Masses of the beads [kg]."""
-        from contactlaw.physical.materials import sphere_mass
-
-        return sphere_mass(self.sphere_material.density, self.radius)
 
     @property
     def small(self) -> np.ndarray:
         """Which beads are undersize: they can pass an opening."""
         return 2.0 * self.radius < self.deck.opening
+
+    @property
+    def types(self) -> NDArray[np.int64]:
+        """1: undersize, 2: not."""
+        return np.where(self.small, 1, 2)
 
     @property
     def top_speed(self) -> float:
@@ -100,9 +80,42 @@ class Sieve:
         """Amplitude of the deck's motion [m], along x, y and z."""
         return self.amplitude * math.sqrt(0.5) * np.array([1.0, 0.0, 1.0])
 
+    @property
+    def box(self) -> Corners:
+        """Corners [m] of the space around the deck, as deep as a bead can fall."""
+        bottom = -self.top_speed * self.duration - _AROUND
+        top = float(self.position[:, 2].max()) + _AROUND
+        return (-_AROUND, -_AROUND, bottom), (
+            self.deck.length + _AROUND, self.deck.width + _AROUND, top,
+        )  # fmt: skip
+
     def deck_place(self, time: float) -> Floats:
         """Displacement of the deck at a time [m]."""
         return self.vibration * math.sin(2.0 * math.pi * self.frequency * time)
+
+    def write_files(self, folder: Path) -> None:
+        """Write the deck's STL file."""
+        write_stl(folder / FORM, self.deck.triangles())
+
+    def meshes(self, thickness: float, folder: Path) -> list[Mesh]:
+        """Read the deck from its STL file, as a user would."""
+        from contactlaw.walls import Mesh, Vibration
+
+        motion = Vibration(tuple(self.vibration.tolist()), self.frequency)
+        return [Mesh.read(folder / FORM, thickness, scale=1e-3, motion=motion)]
+
+    def write_walls(self, file: h5py.File) -> None:
+        """Write the deck."""
+        deck = file.create_group("deck")
+        corners = "corners (x, y, z) of each triangle at rest"
+        layout.write(deck, "triangles", self.deck.triangles(), "m", corners)
+        deck.attrs.update({name: getattr(self.deck, name) for name in _DECK})
+
+    @staticmethod
+    def read_walls(file: h5py.File) -> Mapping[str, Any]:
+        """Read the deck."""
+        attributes = file["deck"].attrs
+        return {"deck": Deck(**{name: attributes[name].item() for name in _DECK})}
 
 
 def sieve(
@@ -156,7 +169,18 @@ def sieve(
     """
     from contactlaw import material
 
-    _check(beads, radius, opening, thickness, speed, frequency, amplitude, friction, duration, seed)
+    check(
+        Sieve, beads=beads, seed=seed, duration=duration,
+        positive={"opening": (opening, "m"), "thickness": (thickness, "m"),
+                  "frequency": (frequency, "1/s")},
+        not_negative={"speed": (speed, "m/s"), "amplitude": (amplitude, "m"),
+                      "friction": (friction, "1")},
+    )  # fmt: skip
+    if not 0.0 < radius[0] < 0.5 * opening < radius[1] < 2.0 * opening:
+        raise ValueError(
+            f"radius: needs MIN,MAX [m] of beads that pass the opening of {opening:g} m and of "
+            f"others up to four times as wide, got {radius[0]!r},{radius[1]!r}"
+        )
     share = math.sqrt(beads / _BEADS)
     deck = Deck(
         max(_FEWEST[0], round(_COLUMNS * share)), max(_FEWEST[1], round(_ROWS * share)), opening
@@ -167,8 +191,9 @@ def sieve(
     position[:, 2] += LIFT * amplitude
     velocity = speed * np.array([_DRIFT, 0.0, -1.0])
     return Sieve(
-        size, position, velocity, deck, thickness, material(sphere), material(plate),
-        frequency, amplitude, friction, duration, seed,
+        radius=size, position=position, velocity=velocity, deck=deck, thickness=thickness,
+        sphere_material=material(sphere), plate_material=material(plate), frequency=frequency,
+        amplitude=amplitude, friction=friction, duration=duration, seed=seed,
     )  # fmt: skip
 
 
@@ -186,45 +211,3 @@ def _feed(beads: int, radius: float, deck: Deck, rng: np.random.Generator) -> Fl
     position: Floats = corner + step * site[chosen] + rng.uniform(-spare, spare, (beads, 3))
     position[:, 2] += step * rng.random(columns * rows)[chosen // layers]  # no lattice to be seen
     return position
-
-
-def _check(
-    beads: int,
-    radius: tuple[float, float],
-    opening: float,
-    thickness: float,
-    speed: float,
-    frequency: float,
-    amplitude: float,
-    friction: float,
-    duration: float,
-    seed: int,
-) -> None:
-    if not beads >= 1:
-        raise ValueError(f"beads: at least one is needed, got {beads!r}")
-    if seed < 0:
-        raise ValueError(f"seed: must not be negative, got {seed!r}")
-    for name, value, unit in (
-        ("opening", opening, "m"),
-        ("thickness", thickness, "m"),
-        ("frequency", frequency, "1/s"),
-    ):
-        if not 0.0 < value < math.inf:
-            raise ValueError(f"{name}: must be positive and finite [{unit}], got {value!r}")
-    for name, value, unit in (
-        ("speed", speed, "m/s"),
-        ("amplitude", amplitude, "m"),
-        ("friction", friction, "1"),
-    ):
-        if not 0.0 <= value < math.inf:
-            raise ValueError(f"{name}: must be finite and not negative [{unit}], got {value!r}")
-    if not 0.0 < radius[0] < 0.5 * opening < radius[1] < 2.0 * opening:
-        raise ValueError(
-            f"radius: needs MIN,MAX [m] of beads that pass the opening of {opening:g} m and of "
-            f"others up to four times as wide, got {radius[0]!r},{radius[1]!r}"
-        )
-    frame = 1.0 / defaults.FRAME_RATE
-    if not frame <= duration < math.inf:
-        raise ValueError(
-            f"duration: must be finite and at least one frame, {frame:g} s, got {duration!r}"
-        )

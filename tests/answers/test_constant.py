@@ -12,7 +12,7 @@ import contactlaw as cl
 from contactlaw import laws
 from contactlaw.answers.constant import constant
 from contactlaw.engines.pymunk import attach
-from dem_demo.baseline import ConstantRestitution
+from dem_demo.rain.baseline import ConstantRestitution
 
 R, H = 0.9e-3, 0.5e-3
 RNG = np.random.default_rng(11)

@@ -11,7 +11,8 @@ from rains import write_rain
 from contactlaw import cli as cli_of_contactlaw
 from contactlaw.cli.parts.records import Recorded, _npy, combined, completed, read
 from contactlaw.engines.record import IMPACT
-from dem_demo import cli, reader
+from dem_demo import cli
+from dem_demo.rain import record as reader
 
 SPEED, RADIUS = [0.5, 1.2, 3.0], [0.9e-3, 1.1e-3, 1.0e-3]
 
@@ -105,7 +106,11 @@ def test_a_rain_of_the_demo(tmp_path):
         ("a.csv", b"\xff\xfe\x00\x01speed", "neither text, nor HDF5"),
         ("a.npy", b"speed", "no file of np.save"),
         ("a.h5", b"speed", "no HDF5 file, or a damaged one"),
-        ("a.h5", None, "no record of dem-demo, whose formats are 'contactlaw-rain' and 'contac"),
+        (
+            "a.h5",
+            None,
+            "no record of dem-demo, whose format is 'contactlaw-' and the name of a scene, got ''",
+        ),
     ],
 )
 def test_what_is_refused(name, content, message, tmp_path):

@@ -4,8 +4,9 @@ import re
 
 import pytest
 
-from dem_demo import cli, paths
-from dem_demo.reader import read
+from dem_demo import cli
+from dem_demo.rain import paths
+from dem_demo.rain.record import read
 
 RAIN = ["rain", "--beads", "60", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.4"]
 RAIN += ["--law", "myc"]

@@ -12,10 +12,11 @@ from matplotlib.image import imread
 import contactlaw as cl
 from contactlaw import style
 from contactlaw.engines.record import COLUMNS, IMPACT
-from dem_demo import cli, figures, nozzles
-from dem_demo.measure import limits, model_shares, plate_rows
-from dem_demo.reader import read
-from dem_demo.scene import GRAVITY
+from dem_demo import cli
+from dem_demo.kit.beads import GRAVITY
+from dem_demo.rain import figures, nozzles
+from dem_demo.rain.measure import limits, model_shares, plate_rows
+from dem_demo.rain.record import read
 
 # Numbers are those of the paper's law, whichever is the default.
 SMALL = ["rain", "--beads", "40", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.3"]
@@ -288,7 +289,7 @@ def test_refused_physics_is_one_sentence(flags, message, tmp_path, capsys):
 
 def test_quantities_may_have_units():
     units = ["rain", "--plates", "0.5mm, inf", "--radius", "500um,0.9mm", "--speed", "18km/h,10m/s"]
-    given = cli._parser().parse_args(units)
+    given = cli.parser().parse_args(units)
     assert given.plates == pytest.approx((0.5e-3, math.inf))
     assert given.radius == pytest.approx((0.5e-3, 0.9e-3))
     assert given.speed == pytest.approx((5.0, 10.0))

@@ -26,11 +26,14 @@ from contactlaw.cli.parts import records  # noqa: E402
 from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 from dem_demo import cli  # noqa: E402
-from dem_demo.gathering import Gathering  # noqa: E402
-from dem_demo.sieve import engine, figures, measure, record  # noqa: E402
-from dem_demo.sieve.constant import constant_model  # noqa: E402
+from dem_demo.kit import lammps  # noqa: E402
+from dem_demo.kit.constant import constant_model  # noqa: E402
+from dem_demo.kit.lammps import Gathering  # noqa: E402
+from dem_demo.kit.measure import account, kept  # noqa: E402
+from dem_demo.kit.runs import read, read_one  # noqa: E402
+from dem_demo.sieve import figures, measure  # noqa: E402
 from dem_demo.sieve.deck import FORM, Deck, areas, write_stl  # noqa: E402
-from dem_demo.sieve.scene import sieve  # noqa: E402
+from dem_demo.sieve.scene import Sieve, sieve  # noqa: E402
 
 SMALL = ["sieve", "--beads", "12", "--duration", "0.016", "--speed", "2.5", "--friction", "0"]
 SMALL += ["--plate", "glass", "--law", "myc"]  # its table comes with the package
@@ -50,7 +53,7 @@ def folder(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def runs(folder):
-    return record.read(folder)
+    return read(folder, Sieve)
 
 
 def test_all_files_are_there_and_nothing_else(folder):
@@ -63,7 +66,7 @@ def test_all_files_are_there_and_nothing_else(folder):
 @pytest.mark.parametrize("name", ["sieve.h5", "constant.h5"])
 def test_the_record_gives_a_constant(name, folder, capsys):
     """The same walls as the engine's impacts with the scene's own sizes give."""
-    run = record._read(folder / name)
+    run = read_one(folder / name, Sieve)
     found = records.read(folder / name)
     rows = run.collisions
     assert rows.size > 3
@@ -131,7 +134,7 @@ def test_impacts_lie_on_their_triangles_where_the_deck_is_then(runs):
         moved = np.array([scene.deck_place(t) for t in end])
         assert np.abs(moved[:, 2]).max() > 0.5 * scene.vibration[2]
         point = np.column_stack([rows[name] for name in "xyz"]) - moved
-        corners = run.triangles[rows["triangle"]]
+        corners = run.scene.deck.triangles()[rows["triangle"]]
         nearest = trimesh.triangles.closest_point(corners, point)
         assert np.linalg.norm(point - nearest, axis=1).max() < 5e-6
 
@@ -149,14 +152,14 @@ def test_impacts_on_the_flat_have_the_cor_of_the_law_and_the_constant(runs):
     assert flat["restitution"] == pytest.approx(constant.constant_cor, abs=1e-3)
     thick = model.restitution(2.5, law.scene.radius.mean(), math.inf)
     assert constant.constant_cor == pytest.approx(thick, abs=5e-4)
-    assert measure.kept(constant) == pytest.approx(constant.constant_cor, abs=1e-3)
+    assert kept(constant, flat) == pytest.approx(constant.constant_cor, abs=1e-3)
 
 
 def test_the_account_of_energy_closes_where_beads_meet_only_the_deck(runs):
     """Without friction: what came in, by gravity and the deck, is there or was lost at the deck."""
     for run in runs.every:
-        energy = measure.account(run)
-        assert abs(energy.deck[-1]) > 0.05 * energy.start[0]
+        energy = account(run)
+        assert abs(energy.walls[-1]) > 0.05 * energy.start[0]
         assert np.abs(energy.others).max() < 2e-3 * energy.start[0]
 
 
@@ -177,7 +180,7 @@ def test_the_law_of_a_constant_cor_has_it_at_any_speed(restitution, speed):
 def test_energy_in_proportion_to_area_has_one_density(runs):
     run = runs.law
     sheet = measure.on_sheet(run)
-    area = areas(run.triangles[sheet])
+    area = areas(run.scene.deck.triangles()[sheet])
     rows = np.zeros(area.size, IMPACT)
     rows["triangle"], rows["wave_energy"] = np.flatnonzero(sheet), 7.0 * area
     found = measure.density(dataclasses.replace(run, collisions=rows))
@@ -237,7 +240,7 @@ def test_two_ranks_give_the_same_bits(runs, tmp_path):
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("Written to") == 1
-    two = record.read(tmp_path / "o")
+    two = read(tmp_path / "o", Sieve)
     for one, other in zip(runs.every, two.every, strict=True):
         assert (one.ranks, other.ranks) == (1, 2)
         assert np.array_equal(one.position, other.position)
@@ -322,7 +325,7 @@ def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
     assert errors.splitlines()[-1].endswith("under the law myc: interrupted by SIGINT")
     assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"constant.h5"}
     assert os.listdir(tmp_path) == ["out"]
-    runs = record.read(tmp_path / "out")
+    runs = read(tmp_path / "out", Sieve)
     assert runs.constant is None and runs.reason == "interrupted by SIGINT"
     assert 2 < runs.law.time.size < 4500
     assert "Partial" in (tmp_path / "out" / "summary.txt").read_text()
@@ -330,6 +333,6 @@ def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
 
 def test_the_step_divides_a_frame():
     scene = sieve(beads=100)
-    step = engine.time_step(scene, cl.ImpactModel(PAIR, LAW, outside="clamp"))
-    steps = 1.0 / (scene.frame_rate * step)
+    step = lammps.time_step(scene, cl.ImpactModel(PAIR, LAW, outside="clamp"))
+    steps = 1.0 / (scene.FRAME_RATE * step)
     assert steps == pytest.approx(round(steps)) and 0.2e-6 < step < 1e-6

@@ -12,8 +12,9 @@ import h5py
 import pytest
 
 import contactlaw as cl
-from dem_demo import cli, engines, figures
-from dem_demo.reader import read
+from dem_demo import cli
+from dem_demo.rain import engines, figures
+from dem_demo.rain.record import read
 
 SMALL = ["rain", "--beads", "40", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.3"]
 SMALL += ["--law", "myc"]
@@ -188,7 +189,7 @@ def test_an_impact_outside_the_table_names_what_would_help(tmp_path, capsys):
 def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, tmp_path, monkeypatch, capsys):
     """On glass, at up to 15 m/s."""
     if sphere != "glass":  # figures and page of two bodies that do not yield; the rest is quicker
-        monkeypatch.setattr("dem_demo.products.make", lambda run, folder: {})
+        monkeypatch.setattr("dem_demo.kit.session.make", lambda show, run, folder: {})
     few = ["rain", "--law", "fem", "--beads", "15", "--duration", "0.2", "--plates", "1e-3,3e-3"]
     few += ["--sphere", sphere, "--out", str(tmp_path / "out")]
     assert cli.main(few) == 0, capsys.readouterr().err
@@ -289,7 +290,7 @@ def test_a_partial_rain_does_not_replace_a_complete_one(tmp_path, monkeypatch, c
         real(scene, model, recorder)
         raise RuntimeError("at the end")
 
-    monkeypatch.setattr("dem_demo.engines.pymunk.run", fail)
+    monkeypatch.setattr("dem_demo.rain.engines.pymunk.run", fail)
     capsys.readouterr()
     assert cli.main([*SMALL, "--out", str(out)]) == 1
     assert f"Written to {out / 'partial'}: " in capsys.readouterr().out
@@ -302,7 +303,7 @@ def test_a_partial_rain_does_not_replace_a_complete_one(tmp_path, monkeypatch, c
     assert names(out) == FILES
 
 
-@pytest.mark.parametrize("product", ["dem_demo.figures.draw", "dem_demo.products.gif"])
+@pytest.mark.parametrize("product", ["dem_demo.rain.figures.draw", "dem_demo.rain.film.gif"])
 def test_a_figure_that_fails_does_not_cost_the_rest(product, tmp_path, monkeypatch, capsys):
     def fail(*arguments):
         raise ZeroDivisionError("in a figure")

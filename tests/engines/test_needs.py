@@ -8,7 +8,7 @@ from scene import DT, Full, Stub, drop
 import contactlaw as cl
 from contactlaw.engines.needs import knows_beads, knows_rebounds
 from contactlaw.engines.record import IMPACT
-from dem_demo.baseline import ConstantRestitution
+from dem_demo.rain.baseline import ConstantRestitution
 
 
 @pytest.mark.parametrize(

@@ -4,7 +4,7 @@ import math
 
 import h5py
 
-from dem_demo.recorder import write, write_materials
+from contactlaw.engines.layout import write, write_materials
 
 
 def write_rain(path, pair):

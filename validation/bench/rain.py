@@ -10,10 +10,10 @@ import pymunk
 
 import contactlaw as cl
 from contactlaw.engines import pymunk as adapter
-from dem_demo import nozzles
-from dem_demo.baseline import ConstantRestitution
-from dem_demo.engines.pymunk import Rain
-from dem_demo.scene import Scene
+from dem_demo.rain import nozzles
+from dem_demo.rain.baseline import ConstantRestitution
+from dem_demo.rain.engines.pymunk import Rain
+from dem_demo.rain.scene import Scene
 from validation.bench.row import Row
 
 BEADS, COR, REPEAT = 1000, 0.9, 2

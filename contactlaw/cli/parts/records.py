@@ -12,9 +12,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.cli.parts import columns, hdf5
+from contactlaw.cli.parts import columns
 from contactlaw.cli.parts.columns import Column
 from contactlaw.cli.parts.quantities import LENGTH, SPEED
+from contactlaw.engines import hdf5, layout
 from contactlaw.physical.arguments import check
 from contactlaw.physical.pair import Pair
 
@@ -63,7 +64,6 @@ _COLUMNS = {
     "weights": Column(("weight", "weights"), None),
     "plate": Column(("plate",), None),
 }
-_RAIN, _SIEVE = "contactlaw-rain", "contactlaw-sieve"
 
 
 def read(path: str | os.PathLike[str]) -> Recorded:
@@ -72,11 +72,12 @@ def read(path: str | os.PathLike[str]) -> Recorded:
     Parameters
     ----------
     path : path-like
-        ``rain.h5`` or ``sieve.h5`` of ``dem-demo``; an impact record of an engine, as ``np.save``
-        writes it (``.npy``); or else text: columns between commas, semicolons or tabs, with names
-        and units in the first line, as in ``speed_m/s,radius_mm`` or ``Speed [m/s];Radius [mm]``.
-        Speeds may be called speed, approach speed, normal speed or impact speed; a column without a
-        unit is in that of the SI. Columns called radius, thickness, weight and plate are optional.
+        The record of a scene of ``dem-demo`` (``.h5``); an impact record of an engine, as
+        ``np.save`` writes it (``.npy``); or else text: columns between commas, semicolons or tabs,
+        with names and units in the first line, as in ``speed_m/s,radius_mm`` or ``Speed
+        [m/s];Radius [mm]``. Speeds may be called speed, approach speed, normal speed or impact
+        speed; a column without a unit is in that of the SI. Columns called radius, thickness,
+        weight and plate are optional.
 
     Raises
     ------
@@ -190,33 +191,7 @@ def _sized(
 
 def _hdf5(content: bytes) -> Recorded:
     with hdf5.opened(content) as file:
-        form = hdf5.format_of(file)
-        if form == _RAIN:
-            thickness = hdf5.numbers(hdf5.group(file, "plates"), "thickness")
-        elif form == _SIEVE:  # one deck
-            thickness = np.array([hdf5.attribute(file, "thickness", float)])
-        else:
-            raise ValueError(f"no record of dem-demo, whose formats are {_RAIN!r} and {_SIEVE!r}")
-        radius = hdf5.numbers(hdf5.group(file, "beads"), "radius")
-        hits = hdf5.group(file, "collisions")
-        speed = hdf5.numbers(hits, "approach_speed")
-        plate = hdf5.indices(hits, "plate", thickness.size, speed.size)
-        bead = hdf5.indices(hits, "bead", radius.size, speed.size)
-        on_plates = plate >= 0
-        if (bead[on_plates] < 0).any():  # numpy would take it for the last one
-            raise ValueError(
-                "dataset collisions/bead has -1, no bead, in a row that hits a plate; expected a "
-                f"number from 0 to {radius.size - 1}"
-            )
-        materials = hdf5.group(file, "materials")
-        bodies = (hdf5.group(materials, body) for body in ("sphere", "plate"))
-        return Recorded(
-            speed=speed[on_plates],
-            radius=radius[bead[on_plates]],
-            thickness=thickness[plate[on_plates]],
-            pair=Pair(*(hdf5.material_of(body) for body in bodies)),
-            law=hdf5.attribute(file, "law", str),
-        )
+        return Recorded(**layout.hits(file)._asdict())
 
 
 def _npy(content: bytes) -> Recorded:

@@ -1,8 +1,8 @@
-"""Figures of a sieve, of which `dem_demo.gallery` knows how a file becomes one."""
+"""Figures of a sieve, of which `dem_demo.kit.gallery` knows how a file becomes one."""
 
 from __future__ import annotations
 
-from dem_demo.gallery import Gallery
+from dem_demo.kit.gallery import Gallery
 
 _GALLERY = Gallery(__name__, __path__)
 names, module, draw = _GALLERY.names, _GALLERY.module, _GALLERY.draw

@@ -13,14 +13,15 @@ from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from dem_demo.sieve.figures._labels import MM, panels, source
+from dem_demo.kit.graphs import MM, panels, source
+from dem_demo.kit.runs import Run, Runs
 from dem_demo.sieve.measure import density, on_sheet
-from dem_demo.sieve.record import Run, Runs
+from dem_demo.sieve.scene import Sieve
 
 _COLOURS, _SPAN = "inferno", 100.0
 
 
-def draw(runs: Runs) -> Figure:
+def draw(runs: Runs[Sieve]) -> Figure:
     """Draw the sheet seen from above, under the law and with a constant COR."""
     values = [density(run) for run in runs.every]
     most = max(float(np.quantile(value, 0.999)) for value in values) or 1.0
@@ -42,7 +43,7 @@ def draw(runs: Runs) -> Figure:
     return figure
 
 
-def _title(runs: Runs) -> str:
+def _title(runs: Runs[Sieve]) -> str:
     if runs.constant is None:
         return "Where the deck dissipates energy"
     law, constant = (float(run.dissipated.sum()) for run in runs.every)
@@ -53,8 +54,8 @@ def _title(runs: Runs) -> str:
     return f"The sheet dissipates {times} energy as with a constant COR"
 
 
-def _sheet(axes: Axes, run: Run, value: np.ndarray, scale: Normalize) -> PolyCollection:
-    corners = run.triangles[on_sheet(run)][:, :, :2] * MM
+def _sheet(axes: Axes, run: Run[Sieve], value: np.ndarray, scale: Normalize) -> PolyCollection:
+    corners = run.scene.deck.triangles()[on_sheet(run)][:, :, :2] * MM
     drawn = PolyCollection(
         list(corners), array=value, cmap=_COLOURS, norm=scale, edgecolors="face", linewidths=0.1
     )

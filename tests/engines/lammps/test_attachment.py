@@ -18,9 +18,10 @@ import box  # noqa: E402
 from box import PLATE, R, flat, make, state  # noqa: E402
 
 from contactlaw.engines.lammps import Plate, attach, pair_coeff  # noqa: E402
-from dem_demo import cli, figures, reader  # noqa: E402
-from dem_demo.frame import FLYING  # noqa: E402
-from dem_demo.scene import GRAVITY  # noqa: E402
+from dem_demo import cli  # noqa: E402
+from dem_demo.kit.beads import FLYING, GRAVITY  # noqa: E402
+from dem_demo.rain import figures  # noqa: E402
+from dem_demo.rain import record as reader  # noqa: E402
 
 # thickness [m], speed [m/s]: below and above yield (7.4 m/s on a half-space), lambda to 1.2
 DROPS = [(math.inf, 3.0), (math.inf, 12.0), (3e-3, 5.0), (3e-3, 15.0), (1e-3, 1.0), (1e-3, 5.0)]

@@ -1,0 +1,180 @@
+"""Parts of an HDF5 file that somebody else may have written: each is what is expected, or refused.
+
+h5py answers what a file does not have with KeyError, TypeError, OSError or RuntimeError, and takes
+the memory that a dataset's shape asks for before it looks at what is stored: 15 kB may ask for
+hundreds of gigabytes. Every refusal here is a ValueError with the part's name, what it is and what
+was expected.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hundredth of it
+# What h5py raises where it finds something else than it can read.
+_DAMAGED = (OSError, RuntimeError, TypeError, ValueError, KeyError, OverflowError, MemoryError)
+_LONGEST = 10_000  # bytes of a text of fixed length
+
+
+@contextmanager
+def opened(content: bytes) -> Iterator[h5py.File]:
+    """Open a file that is in memory; what h5py cannot read of it is a ValueError."""
+    try:
+        file = h5py.File(io.BytesIO(content), "r")
+    except _DAMAGED:
+        raise ValueError("no HDF5 file, or a damaged one") from None
+    with file:
+        try:
+            yield file
+        except ValueError:  # one of ours
+            raise
+        except _DAMAGED as error:
+            raise ValueError(f"a damaged HDF5 file: {error}") from None
+
+
+def group(parent: h5py.Group, name: str) -> h5py.Group:
+    """Return a group within another.
+
+    Raises
+    ------
+    ValueError
+        If there is none of that name.
+    """
+    return _member(parent, name, h5py.Group, "a group")
+
+
+def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[Any]:
+    """Read a column of numbers, as many as others have if that is given.
+
+    Raises
+    ------
+    ValueError
+        If there is no such dataset, or it holds something else, more than `LARGEST` rows, another
+        number of rows, or what cannot be read.
+    """
+    dataset = _member(parent, name, h5py.Dataset, "a dataset")
+    where = f"dataset {dataset.name[1:]}"
+    if dataset.shape is None or dataset.ndim != 1:
+        raise ValueError(f"{where} has the shape {dataset.shape}, expected a column of numbers")
+    if dataset.dtype.kind not in "iuf":
+        raise ValueError(f"{where} holds {_kind(dataset.dtype)}, expected numbers")
+    if dataset.size > LARGEST:
+        raise ValueError(f"{where} has {dataset.size} rows, expected {LARGEST} at most")
+    if size is not None and dataset.size != size:
+        raise ValueError(
+            f"{where} has {dataset.size} rows, expected {size} as in the other columns"
+        )
+    try:
+        return np.asarray(dataset[()])
+    except _DAMAGED as error:
+        raise ValueError(f"{where} is damaged: {error}") from None
+
+
+def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> NDArray[np.intp]:
+    """Read a column of numbers that count something from zero, or are -1 for none of it.
+
+    Parameters
+    ----------
+    parent : Group
+        Where the column is.
+    name : str
+        Of the column.
+    count : int
+        How many there are to count.
+    size : int, optional
+        Rows of the column, if that is known.
+
+    Raises
+    ------
+    ValueError
+        As `numbers`; or if a value is no whole number, or beyond what there is.
+    """
+    found = numbers(parent, name, size)
+    # not (...) also for NaN
+    wrong = np.flatnonzero(~((found >= -1) & (found < count) & (found == np.floor(found))))
+    if wrong.size:
+        raise ValueError(
+            f"dataset {parent.name[1:]}/{name} has {found[wrong[0]]} in row {wrong[0]}, expected a "
+            f"whole number from 0 to {count - 1}, or -1 for none"
+        )
+    return found.astype(np.intp)
+
+
+def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
+    """Read an attribute that is a string or a number.
+
+    Raises
+    ------
+    ValueError
+        If there is none of that name, or of another kind.
+    """
+    expected = "text" if kind is str else "a number"
+    value = _attribute(parent, name)
+    if value is None:
+        raise ValueError(f"{_place(parent)} has no attribute {name}, expected {expected}")
+    if not isinstance(value, (int, float) if kind is float else kind):
+        raise ValueError(f"attribute {name} of {_place(parent)} is {value!r}, expected {expected}")
+    return kind(value)
+
+
+def format_of(file: h5py.File) -> str:
+    """Say what a file calls itself; empty if nothing."""
+    return str(_attribute(file, "format") or "")
+
+
+def has(parent: h5py.Group, name: str) -> bool:
+    """Whether there is an attribute of that name."""
+    return _attribute(parent, name) is not None
+
+
+def _attribute(parent: h5py.Group, name: str) -> object:
+    """Read a single value; None if there is none, a description of what is no single value."""
+    try:
+        if name not in parent.attrs:
+            return None
+        there = parent.attrs.get_id(name)
+        if there.shape != () or there.get_type().get_size() > _LONGEST:  # of any size in memory
+            return _Other(f"an array of shape {there.shape} and type {there.dtype}")
+        value = parent.attrs[name]
+    except _DAMAGED as error:
+        raise ValueError(f"attribute {name} of {_place(parent)} is damaged: {error}") from None
+    if isinstance(value, np.generic) and value.dtype.kind in "iuf":
+        return value.item()
+    return value if isinstance(value, str) else _Other(f"of type {type(value).__name__}")
+
+
+class _Other:
+    """What is neither text nor a number."""
+
+    def __init__(self, words: str) -> None:
+        self._words = words
+
+    def __repr__(self) -> str:
+        return self._words
+
+
+def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
+    path = f"{parent.name}/{name}".replace("//", "/")[1:]
+    found = parent.get(name)
+    if found is None:
+        raise ValueError(f"it has no {path}, expected {expected}")
+    if not isinstance(found, kind):
+        raise ValueError(f"{path} is a {type(found).__name__.lower()}, expected {expected}")
+    return found
+
+
+def _kind(dtype: np.dtype[Any]) -> str:
+    if dtype.names:
+        return f"rows of {', '.join(dtype.names)}"
+    return "text or objects" if dtype.kind in "OSU" else f"values of type {dtype}"
+
+
+def _place(parent: h5py.Group) -> str:
+    return f"group {parent.name[1:]}" if parent.name != "/" else "the file"

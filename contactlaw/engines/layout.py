@@ -1,0 +1,184 @@
+"""The file of a run: where beads, plates, materials and impacts are in HDF5.
+
+All that writes or reads such a file does it here. Each dataset names its unit, and says what it is.
+The columns of ``/collisions`` are those of `contactlaw.engines.record`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.engines import hdf5
+from contactlaw.engines.record import COLUMNS, IMPACT
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
+
+FORMAT = "contactlaw-"  # the attribute "format" is this and the name of what has run
+_BODIES = "sphere", "plate"
+_NUMBERS = "youngs_modulus", "poissons_ratio", "density"
+_OPTIONAL = {"yield_strength": float, "kind": str, "hardness": float}  # of a material
+_ROWS = 1024  # numbers of a growing column that are stored together
+
+
+class Hits(NamedTuple):
+    """Impacts on plates in SI units, and the materials and the law of the run."""
+
+    speed: NDArray[np.float64]
+    radius: NDArray[np.float64]
+    thickness: NDArray[np.float64]
+    pair: Pair
+    law: str
+
+
+def write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
+    """Write an array that says what it is."""
+    data = np.asarray(values)
+    dataset = group.create_dataset(name, data=data, compression="gzip" if data.size else None)
+    dataset.attrs.update({"units": units, "description": description})
+
+
+def grow(
+    group: h5py.Group, name: str, kind: str, units: str, description: str, shape: tuple[int, ...]
+) -> None:
+    """Make an empty dataset that grows along its first axis, whose items have a shape."""
+    dataset = group.create_dataset(
+        name, (0, *shape), kind, maxshape=(None, *shape), chunks=(1 if shape else _ROWS, *shape),
+        compression="gzip",
+    )  # fmt: skip
+    dataset.attrs.update({"units": units, "description": description})
+
+
+def write_beads(file: h5py.File, radius: object, mass: object) -> h5py.Group:
+    """Write the radii [m] and the masses [kg] of the beads; returns their group."""
+    beads = file.create_group("beads")
+    write(beads, "radius", radius, "m", "radius")
+    write(beads, "mass", mass, "kg", "mass of the sphere")
+    return beads
+
+
+def write_plates(file: h5py.File, thickness: Iterable[float]) -> h5py.Group:
+    """Write the thickness of each plate [m]; returns their group.
+
+    A file whose plates are all alike may have an attribute ``thickness`` instead.
+    """
+    plates = file.create_group("plates")
+    write(plates, "thickness", list(thickness), "m", "thickness, inf: half-space")
+    return plates
+
+
+def write_materials(file: h5py.File, sphere: Material, plate: Material) -> None:
+    """Write all that is known of the two materials."""
+    for body, material in zip(_BODIES, (sphere, plate), strict=True):
+        values = {
+            name: getattr(material, name)
+            for name in (
+                "name",
+                "youngs_modulus",
+                "poissons_ratio",
+                "density",
+                "source",
+                *_OPTIONAL,
+            )
+        }
+        values["units"] = "Pa (moduli, strength, hardness), kg/m3"
+        group = file.create_group(f"materials/{body}")
+        group.attrs.update({name: value for name, value in values.items() if value is not None})
+
+
+def begin_impacts(file: h5py.File, description: str) -> None:
+    """Make the empty table of impacts; the description says which axes and numbers it is about."""
+    file.create_group("collisions").attrs["description"] = description
+
+
+def append_impacts(file: h5py.File, rows: NDArray[np.void]) -> None:
+    """Append impacts; the first ones decide which columns of the record the file has."""
+    group = file["collisions"]
+    if group.keys() and not rows.size:
+        return
+    for name, kind, unit, description in COLUMNS:
+        if name in (rows.dtype.names or ()):
+            if name not in group:
+                grow(group, name, kind, unit, description, ())
+            column = group[name]
+            before = column.size
+            column.resize(before + rows.size, axis=0)
+            column[before:] = rows[name]
+
+
+def has_impacts(file: h5py.File) -> bool:
+    """Whether the table of impacts has got its columns."""
+    return bool(file["collisions"].keys())
+
+
+def impacts(file: h5py.File) -> NDArray[np.void]:
+    """Read all impacts by time, with the columns of the record that the file has."""
+    group = hdf5.group(file, "collisions")
+    columns = {name: group[name][()] for name in IMPACT.names or () if name in group}
+    table = np.empty(columns["time"].size, [(name, IMPACT[name]) for name in columns])
+    for name, column in columns.items():
+        table[name] = column
+    return table[np.argsort(table["time"], kind="stable")]
+
+
+def materials(file: h5py.File) -> tuple[Material, Material]:
+    """Read the materials of the beads and of the plates."""
+    group = hdf5.group(file, "materials")
+    sphere, plate = (_material(hdf5.group(group, body)) for body in _BODIES)
+    return sphere, plate
+
+
+def hits(file: h5py.File) -> Hits:
+    """Read impacts on plates with the sizes of bead and plate; those of bead on bead are left out.
+
+    Raises
+    ------
+    ValueError
+        A file of another format, or one that lacks a part or has one that cannot be read.
+    """
+    form = hdf5.format_of(file)
+    if not form.startswith(FORMAT):
+        raise ValueError(
+            f"no record of dem-demo, whose format is {FORMAT!r} and the name of a scene, got "
+            f"{form!r}"
+        )
+    if "thickness" in file.attrs:
+        thickness = np.array([hdf5.attribute(file, "thickness", float)])
+    else:
+        thickness = hdf5.numbers(hdf5.group(file, "plates"), "thickness")
+    radius = hdf5.numbers(hdf5.group(file, "beads"), "radius")
+    table = hdf5.group(file, "collisions")
+    speed = hdf5.numbers(table, "approach_speed")
+    plate = hdf5.indices(table, "plate", thickness.size, speed.size)
+    bead = hdf5.indices(table, "bead", radius.size, speed.size)
+    on_plates = plate >= 0
+    if (bead[on_plates] < 0).any():  # numpy would take it for the last one
+        raise ValueError(
+            "dataset collisions/bead has -1, no bead, in a row that hits a plate; expected a "
+            f"number from 0 to {radius.size - 1}"
+        )
+    return Hits(
+        speed[on_plates],
+        radius[bead[on_plates]],
+        thickness[plate[on_plates]],
+        Pair(*materials(file)),
+        hdf5.attribute(file, "law", str),
+    )
+
+
+def _material(group: h5py.Group) -> Material:
+    optional: dict[str, Any] = {
+        name: hdf5.attribute(group, name, kind)
+        for name, kind in _OPTIONAL.items()
+        if hdf5.has(group, name)
+    }
+    return Material(
+        name=hdf5.attribute(group, "name", str),
+        source=hdf5.attribute(group, "source", str),
+        **{name: hdf5.attribute(group, name, float) for name in _NUMBERS},
+        **optional,
+    )

@@ -1,0 +1,1 @@
+"""Beads in a drum of thin sheet that turns: ``dem-demo drum``."""

@@ -1,0 +1,62 @@
+"""``dem-demo drum``: options, and what they start.
+
+What takes long to import is imported inside functions, where Ctrl-C is already heard.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from dem_demo.drum import defaults
+from dem_demo.kit import options
+from dem_demo.kit.bed import EXTRAS
+
+_SCENE = (
+    "beads", "radius", "drum", "length", "thickness", "sphere", "plate", "speed", "turns",
+    "friction", "duration", "seed",
+)  # fmt: skip
+
+
+def add(commands: Any) -> None:
+    """Add the command to those of ``dem-demo``."""
+    drum = commands.add_parser(
+        "drum",
+        help="beads in a drum of thin sheet that turns",
+        description="Beads are lifted and thrown by a drum of thin sheet that turns. It is "
+        "simulated twice: under the law, and with one COR for all impacts on the drum. Writes "
+        "drum.h5 and constant.h5, index.html, figures (PNG), drum.gif, summary.txt, and a dump "
+        "for OVITO. What has been computed is kept if it is stopped. All numbers are in SI units. "
+        "Works under mpirun.",
+        formatter_class=argparse.ArgumentDefaultsHelpFormatter,
+    )
+    add = drum.add_argument
+    add("--beads", type=int, metavar="N", default=defaults.BEADS, help="number of beads")
+    add("--radius", type=options.radii, metavar="MIN,MAX",
+        default=options.text(defaults.RADIUS), help="bead radii [m], or with units")  # fmt: skip
+    add("--drum", type=options.length, metavar="R", default=f"{defaults.DRUM:g}",
+        help="radius of the drum [m], or with a unit")  # fmt: skip
+    add("--length", type=options.length, metavar="L", default=f"{defaults.LENGTH:g}",
+        help="length of the drum [m], or with a unit")  # fmt: skip
+    add("--turns", type=float, metavar="F", default=defaults.TURNS,
+        help="revolutions of the drum per second [1/s]")  # fmt: skip
+    add("--speed", type=options.speed, metavar="V", default=f"{defaults.SPEED:g}",
+        help="speed at which the beads are thrown down [m/s], or with a unit")  # fmt: skip
+    options.add_bed(add, defaults, wall="drum", beads="beads")
+    add("--out", type=Path, metavar="DIR", default=Path("drum"), help="folder for the results")
+    drum.set_defaults(start=_start)
+
+
+def _start(arguments: argparse.Namespace, command: str) -> int:
+    with options.needing(EXTRAS):
+        from dem_demo.drum.drawing import Section
+        from dem_demo.drum.scene import drum
+        from dem_demo.drum.tale import TALE
+        from dem_demo.kit import comparison
+
+        comparison.engine()
+    with options.refusing(arguments):
+        scene = drum(**{name: getattr(arguments, name) for name in _SCENE})
+        plan = comparison.plan(arguments, scene, arguments.speed)
+    return comparison.start(arguments, command, plan, TALE, Section)

@@ -1,0 +1,16 @@
+"""The default drum, our own choice: within the law's limits, and done within a minute.
+
+No imports, so that the command line can show these numbers at once.
+"""
+
+BEADS = 100
+RADIUS = (1.4e-3, 2.1e-3)  # [m]; R/H is at most 1.4
+THICKNESS = 1.5e-3  # [m]
+DRUM, LENGTH = 0.04, 0.04  # [m], radius and length of the drum
+SPHERE, PLATE = "soda-lime-glass", "stainless-steel-304"
+SPEED = 0.5  # [m/s], at which the beads are thrown down
+TURNS = 2.0  # [1/s]; from 2.5 on the beads would stay at the shell
+FRICTION = 0.3
+DURATION = 0.25  # [s], half a turn
+FRAME_RATE = 200.0  # [1/s]
+SEED = 1

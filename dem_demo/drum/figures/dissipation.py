@@ -1,0 +1,59 @@
+"""Where round the drum its shell takes energy from the beads: where it wears, rings and warms.
+
+Energy that the impacts dissipate: bending waves, and losses at the contact. Sliding friction is not
+in it. The drum turns clockwise, and the directions are those of a room in which it turns.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+
+from contactlaw import style
+from dem_demo.drum.scene import Drum
+from dem_demo.kit import graphs
+from dem_demo.kit.beads import Floats
+from dem_demo.kit.runs import Run, Runs
+
+_BINS = 36
+_LOSSES = ("wave", "bending wave in the sheet"), ("plastic", "lost at the contact")
+
+
+def draw(runs: Runs[Drum]) -> Figure:
+    """Draw the shell as a clock, under the law and with a constant COR."""
+    figure = style.figure(
+        12.0, style.pick(7.0, 10.8), "Where round the drum its shell dissipates energy",
+        f"{graphs.source(runs)}; seen along the axis, {360 // _BINS} degrees per bar, "
+        f"energy dissipated in {runs.law.time[-1] * 1e3:.0f} ms",
+    )  # fmt: skip
+    shown: list[tuple[Any, Run[Any]]] = graphs.panels(figure, runs, projection="polar")
+    for axes, run in shown:
+        bottom = np.zeros(_BINS)
+        width = math.tau / _BINS
+        middle = width * (np.arange(_BINS) + 0.5)
+        for (name, text), colour in zip(_LOSSES, (style.BLUE, style.ORANGE), strict=True):
+            share = _round(run, f"{name}_energy") * 1e6
+            axes.bar(middle, share, width, bottom, color=colour, label=text, edgecolor="white",
+                     linewidth=0.6)  # fmt: skip
+            bottom += share
+        axes.set(theta_zero_location="N", theta_direction=-1)
+        axes.set_xticks(np.arange(4) * 0.5 * math.pi, ["top", "right", "bottom", "left"])
+        axes.yaxis.set_major_locator(MaxNLocator(3))
+        axes.yaxis.set_major_formatter("{x:g} µJ")
+        axes.set_rlabel_position(20.0)
+        axes.set_title(axes.get_title("left"), fontweight="bold", pad=16.0)
+        axes.set_title("", loc="left")
+    figure.legend(*shown[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    return figure
+
+
+def _round(run: Run[Drum], column: str) -> Floats:
+    """Sum a column of the impacts on the shell by direction, clockwise from the top."""
+    rows = run.collisions[run.collisions["plate"] == 0]
+    angle = np.arctan2(rows["x"], rows["z"]) % math.tau
+    found: Floats = np.histogram(angle, _BINS, (0.0, math.tau), weights=rows[column])[0]
+    return found

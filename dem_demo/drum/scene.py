@@ -1,0 +1,178 @@
+"""What the drum is made of: beads, a shell and two ends of thin sheet, and how they turn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contactlaw.engines import layout
+from dem_demo.drum import defaults
+from dem_demo.kit.beads import GRAVITY, Floats
+from dem_demo.kit.bed import Bed, Corners, check
+
+if TYPE_CHECKING:
+    import h5py
+
+    from contactlaw.walls import Mesh
+
+_FACETS = 120  # of the shell
+_SPACING = 2.2  # [largest radius]: sites of the beads, so far apart that no two beads touch
+_FULL = 0.4  # [drum's radius] over the axis: the highest sites
+_AROUND = 0.01  # [m] around the drum
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Drum(Bed):
+    """Beads in a drum, which turns about the y axis and begins at y = 0.
+
+    Attributes
+    ----------
+    drum, length : float
+        Radius and length of the drum [m].
+    turns : float
+        Revolutions per second [1/s].
+    """
+
+    NAME, SCHEMA = "drum", 1
+    AXES = (
+        "one row per impact on the drum; bead is a row of /beads, plate one of /plates: 0 the "
+        "shell, 1 and 2 the ends; the drum turns about y, z points up"
+    )
+    NUMBERS = "drum", "length", "turns", "friction", "duration", "seed"
+    FRAME_RATE = defaults.FRAME_RATE
+
+    drum: float
+    length: float
+    turns: float
+
+    @property
+    def spin(self) -> float:
+        """Angular speed of the drum [rad/s]."""
+        return math.tau * self.turns
+
+    @property
+    def top_speed(self) -> float:
+        """Largest speed [m/s] of a bead that falls across the drum, relative to its shell."""
+        start = float(np.linalg.norm(self.velocity))
+        return math.sqrt(start**2 + 4.0 * GRAVITY * self.drum) + self.spin * self.drum
+
+    @property
+    def box(self) -> Corners:
+        """Corners [m] of the space around the drum."""
+        side = self.drum + _AROUND
+        return (-side, -_AROUND, -side), (side, self.length + _AROUND, side)
+
+    def meshes(self, thickness: float, folder: Path) -> list[Mesh]:
+        """Make the shell and the two ends."""
+        from contactlaw.walls import Mesh, Rotation
+
+        motion = Rotation(axis=(0, 1, 0), speed=self.spin)
+        ends = (0.0, 0.0, 0.0), (0.0, self.length, 0.0)
+        shell = Mesh.cylinder(*ends, self.drum, thickness, facets=_FACETS, motion=motion)
+        discs = [Mesh.disc(end, (0, 1, 0), self.drum, thickness, motion=motion) for end in ends]
+        return [shell, *discs]
+
+    def write_walls(self, file: h5py.File) -> None:
+        """Write the sheet of the shell and of the two ends."""
+        layout.write_plates(file, [self.thickness] * 3)
+
+    @staticmethod
+    def read_walls(file: h5py.File) -> Mapping[str, Any]:
+        """Read the sheet."""
+        return {"thickness": float(file["plates/thickness"][0])}
+
+
+def drum(
+    *,
+    beads: int = defaults.BEADS,
+    radius: tuple[float, float] = defaults.RADIUS,
+    drum: float = defaults.DRUM,
+    length: float = defaults.LENGTH,
+    thickness: float = defaults.THICKNESS,
+    sphere: str = defaults.SPHERE,
+    plate: str = defaults.PLATE,
+    speed: float = defaults.SPEED,
+    turns: float = defaults.TURNS,
+    friction: float = defaults.FRICTION,
+    duration: float = defaults.DURATION,
+    seed: int = defaults.SEED,
+) -> Drum:
+    """Make a drum, and put beads into it on a loose lattice.
+
+    Parameters
+    ----------
+    beads : int, optional
+        Number of beads.
+    radius : tuple of float, optional
+        Smallest and largest radius of the beads [m], drawn uniformly.
+    drum, length, thickness : float, optional
+        Radius and length of the drum, and thickness of its sheet [m].
+    sphere, plate : str, optional
+        Materials of beads and sheet.
+    speed : float, optional
+        At which the beads are thrown down [m/s].
+    turns : float, optional
+        Revolutions of the drum per second [1/s].
+    friction : float, optional
+        Coulomb's coefficient.
+    duration : float, optional
+        Simulated time [s].
+    seed : int, optional
+        The same seed gives the same beads.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range; the message begins with its name.
+
+    Examples
+    --------
+    >>> drum(beads=10).position.shape
+    (10, 3)
+    """
+    from contactlaw import material
+
+    check(
+        Drum, beads=beads, seed=seed, duration=duration,
+        positive={"drum": (drum, "m"), "length": (length, "m"), "thickness": (thickness, "m")},
+        not_negative={"speed": (speed, "m/s"), "turns": (turns, "1/s"),
+                      "friction": (friction, "1")},
+    )  # fmt: skip
+    if not 0.0 < radius[0] <= radius[1] < 0.5 * min(drum, length):
+        raise ValueError(
+            f"radius: needs MIN,MAX [m], ascending and below half of the drum's radius and "
+            f"length, {0.5 * min(drum, length):g} m, got {radius[0]!r},{radius[1]!r}"
+        )
+    rng = np.random.default_rng(seed)
+    size: Floats = rng.uniform(*radius, beads)
+    return Drum(
+        radius=size, position=_places(beads, radius[1], drum, length, rng),
+        velocity=np.array([0.0, 0.0, -speed]), thickness=thickness, drum=drum, length=length,
+        turns=turns, sphere_material=material(sphere), plate_material=material(plate),
+        friction=friction, duration=duration, seed=seed,
+    )  # fmt: skip
+
+
+def _places(
+    beads: int, radius: float, drum: float, length: float, rng: np.random.Generator
+) -> Floats:
+    """Places of beads at random sites of a lattice within the drum, not far above its axis."""
+    step, inside = _SPACING * radius, drum - radius
+    along = max(1, int((length - 2.0 * radius) // step))
+    across = np.arange(-inside, inside + 1e-9, step)
+    y = 0.5 * length + step * (np.arange(along) - 0.5 * (along - 1))
+    site = np.stack(np.meshgrid(across, y, across, indexing="ij"), axis=-1).reshape(-1, 3)
+    spare = 0.5 * (_SPACING - 2.0) * radius
+    fits = np.hypot(site[:, 0], site[:, 2]) < inside - 1.5 * spare
+    site = site[fits & (site[:, 2] < _FULL * drum)]
+    if beads > len(site):
+        raise ValueError(f"beads: {beads} do not fit into the drum, {len(site)} do; take a larger "
+                         "--drum or --length, or smaller beads (--radius)")  # fmt: skip
+    chosen = site[rng.choice(len(site), beads, replace=False)]
+    moved: Floats = chosen + rng.uniform(-spare, spare, (beads, 3))
+    return moved

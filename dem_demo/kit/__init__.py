@@ -1,0 +1,1 @@
+"""What the demo's scenes have in common; nothing here knows a scene."""

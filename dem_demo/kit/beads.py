@@ -1,0 +1,11 @@
+"""What is the same of all beads: gravity, and what has become of each."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+GRAVITY = 9.80665  # [m/s2], standard gravity
+WAITING, FLYING, GONE = 0, 1, 2  # a bead's status in a frame

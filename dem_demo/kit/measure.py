@@ -1,0 +1,74 @@
+"""What reports and figures say about any bed, computed from its record."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import ImpactModel
+from dem_demo.kit.beads import Floats
+from dem_demo.kit.runs import Run
+
+
+class Account(NamedTuple):
+    """Energy of all beads over time [J]: what came in since the start, and where it went."""
+
+    start: Floats
+    """Kinetic energy at the start."""
+    gravity: Floats
+    walls: Floats
+    """Work of the moving walls."""
+    moving: Floats
+    """Kinetic energy now, that of rotation too."""
+    wave: Floats
+    plastic: Floats
+    vibration: Floats
+    """Lost to friction within the contact and to vibration of the bodies."""
+    others: Floats
+    """The rest: bead on bead, sliding friction, and what contacts hold at that moment."""
+
+
+def account(run: Run[Any]) -> Account:
+    """Tell where the energy came from and went until each frame."""
+    rows = run.collisions
+    end = rows["time"] + rows["contact_time"]
+    order = np.argsort(end, kind="stable")
+    until = np.searchsorted(end[order], run.time, side="right")
+
+    def so_far(column: str) -> Floats:
+        sums: Floats = np.r_[0.0, np.cumsum(rows[column][order])][until]
+        return sums
+
+    moving = run.kinetic + run.rotational
+    start, gravity = np.full_like(moving, moving[0]), run.potential[0] - run.potential
+    walls, wave, plastic = (so_far(name) for name in ("wall_work", "wave_energy", "plastic_energy"))
+    vibration = so_far("other_energy")
+    rest = start + gravity + walls - moving - wave - plastic - vibration
+    return Account(start, gravity, walls, moving, wave, plastic, vibration, rest)
+
+
+def kept(run: Run[Any], rows: NDArray[np.void]) -> float:
+    """Constant COR with which these impacts would lose as much; NaN without any.
+
+    e^2 is the mean of the impacts' own e^2, weighted by their energies.
+    """
+    weight = run.scene.mass[rows["bead"]] * rows["approach_speed"] ** 2
+    if not weight.sum() > 0.0:
+        return math.nan
+    return math.sqrt(float((weight * rows["restitution"] ** 2).sum() / weight.sum()))
+
+
+def curve(run: Run[Any], speed: Floats, radius: float) -> Floats:
+    """COR of the law over speed [m/s], for a radius [m]."""
+    model = ImpactModel(run.pair, run.law, outside="clamp")
+    return np.asarray(model.restitution(speed, radius, run.scene.thickness))
+
+
+def restitution_range(run: Run[Any]) -> tuple[float, float]:
+    """Range of COR that colours span: from a low one under the law to 1."""
+    found = run.collisions["restitution"]
+    low = float(np.quantile(found, 0.02)) if found.size else 0.9
+    return max(0.0, min(low, 0.9)), 1.0

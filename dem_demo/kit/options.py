@@ -1,0 +1,120 @@
+"""What the commands have in common: refusals, and options with units. No slow imports."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from types import ModuleType
+from typing import Any
+
+from dem_demo.kit.signals import undisturbed
+
+
+class Refused(Exception):
+    """The physics does not allow what was asked for."""
+
+
+@contextmanager
+def needing(extras: str) -> Iterator[None]:
+    """Import within this block; what is missing is refused with the extras that have it.
+
+    An interrupt waits until its end: extension modules of matplotlib drop it, or crash.
+    """
+    try:
+        with undisturbed():
+            yield
+    except ModuleNotFoundError as error:
+        raise Refused(f"{error.name} is missing: pip install contactlaw[{extras}]") from error
+
+
+@contextmanager
+def refusing(arguments: argparse.Namespace) -> Iterator[None]:
+    """Refuse what contactlaw refuses within this block, by the names of the options."""
+    from contactlaw.cli import sentence
+
+    try:
+        yield
+    except ValueError as error:
+        raise Refused(sentence(error, vars(arguments))) from error
+
+
+def text(numbers: Sequence[float]) -> str:
+    """Write numbers as an option takes them.
+
+    Examples
+    --------
+    >>> text((0.5e-3, 1.0))
+    '0.0005,1'
+    """
+    return ",".join(f"{number:g}" for number in numbers)
+
+
+def lengths(words: str) -> tuple[float, ...]:
+    """Read lengths [m], or with units."""
+    return _values(words, "LENGTH")
+
+
+def length(words: str) -> float:
+    """Read one length [m], or with a unit."""
+    return _one(words, lengths(words))
+
+
+def speed(words: str) -> float:
+    """Read one speed [m/s], or with a unit."""
+    return _one(words, _values(words, "SPEED"))
+
+
+def radii(words: str) -> tuple[float, float]:
+    """Read two lengths [m], or with units."""
+    return _two(words, lengths(words))
+
+
+def speeds(words: str) -> tuple[float, float]:
+    """Read two speeds [m/s], or with units."""
+    return _two(words, _values(words, "SPEED"))
+
+
+def _values(words: str, quantity: str) -> tuple[float, ...]:
+    from contactlaw.cli import quantities
+
+    try:
+        return quantities.values(words, getattr(quantities, quantity))
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def _one(words: str, found: tuple[float, ...]) -> float:
+    if len(found) != 1:
+        raise argparse.ArgumentTypeError(f"expected one number, got {words!r}")
+    return found[0]
+
+
+def _two(words: str, found: tuple[float, ...]) -> tuple[float, float]:
+    if len(found) != 2:
+        raise argparse.ArgumentTypeError(f"expected two numbers MIN,MAX, got {words!r}")
+    return found[0], found[1]
+
+
+def add_law(add: Any, cor: str) -> None:
+    """Add the options that say what rules the impacts, and what the constant COR is of."""
+    add("--law", metavar="NAME", default=argparse.SUPPRESS,
+        help="contact law, of those that contactlaw cor --help lists (default: the one there)"
+    )  # fmt: skip
+    add("--constant-cor", type=float, metavar="E", default=argparse.SUPPRESS, help=cor)
+
+
+def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
+    """Add the options that every bed has, with its names for its wall and for its beads."""
+    add("--thickness", type=length, metavar="H", default=f"{defaults.THICKNESS:g}",
+        help="thickness of the sheet [m], or with a unit")  # fmt: skip
+    add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
+    add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the sheet")
+    add("--friction", type=float, metavar="MU", default=defaults.FRICTION,
+        help=f"coefficient of friction, on the {wall} and of beads on each other")  # fmt: skip
+    add("--duration", type=float, metavar="T", default=defaults.DURATION,
+        help="simulated time [s]")  # fmt: skip
+    add("--seed", type=int, metavar="S", default=defaults.SEED,
+        help=f"the same seed gives the same {beads}")  # fmt: skip
+    add_law(add, "COR of the other run (default: the law's for a thick block, at the "
+            f"{beads}'s speed)")  # fmt: skip

@@ -1,0 +1,64 @@
+"""What the pages of all scenes have: each needs no other file and no network."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Callable, Mapping, Sequence
+from importlib import resources
+from string import Template
+from types import ModuleType
+
+from dem_demo.kit.gallery import Picture
+from dem_demo.kit.report import Limit
+
+
+def template(package: str, name: str) -> Template:
+    """Read a file in the folder of a package."""
+    return Template((resources.files(package) / name).read_text(encoding="utf-8"))
+
+
+def partial(progress: str, reason: str) -> str:
+    """Say how far a partial run has come; nothing without a reason."""
+    if not reason:
+        return ""
+    return f"<p class='partial'><b>Partial: {html.escape(progress)}.</b> {html.escape(reason)}</p>"
+
+
+def exceeded(found: Sequence[Limit], marked: str) -> str:
+    """List the limits that impacts exceed, and say how those are marked."""
+    if not found:
+        return "<p>All impacts on plates are inside every limit of the model.</p>"
+    rows = "".join(
+        f"<dt>{limit.impacts} {html.escape(limit.name)}</dt><dd>{html.escape(limit.meaning)}</dd>"
+        for limit in found
+    )
+    return (
+        f"<p>Impacts outside a limit of the model are counted here{marked}. Their numbers deserve "
+        f"less trust.</p><dl>{rows}</dl>"
+    )
+
+
+def shown(module: Callable[[str], ModuleType], pictures: Mapping[str, Picture]) -> str:
+    """Show figures, with the docstrings of their modules for captions."""
+    return "".join(_figure(module(name), name, picture) for name, picture in pictures.items())
+
+
+def _figure(module: ModuleType, name: str, picture: Picture) -> str:
+    caption, _, rest = str(module.__doc__).strip().partition("\n\n")
+    wide, narrow = (f"data:image/png;base64,{_base64(png)}" for png in picture)
+    text, more = (html.escape(" ".join(part.split())) for part in (caption, rest))
+    return (
+        f"<figure id='{name}'><picture><source media='(max-width: 640px)' srcset='{narrow}'>"
+        f"<img alt='{text}' src='{wide}'></picture><figcaption>{text} {more}</figcaption></figure>"
+    )
+
+
+def _base64(content: bytes) -> str:
+    return base64.b64encode(content).decode("ascii")
+
+
+def made(created: str, versions: Mapping[str, str]) -> str:
+    """Say when a run was made, and by which versions."""
+    programs = ", ".join(f"{name} {text}" for name, text in sorted(versions.items()))
+    return html.escape(f"{created}; {programs}")

@@ -1,0 +1,208 @@
+"""Writing a run while it happens: frames and impacts, as an HDF5 file that explains itself.
+
+Where things are in it is what `contactlaw.engines.layout` says, and the scene that is recorded.
+"""
+
+from __future__ import annotations
+
+import datetime
+import io
+import platform
+import traceback
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import ImpactModel
+from contactlaw.engines import layout
+from contactlaw.engines.record import IMPACT, OBSERVED
+from dem_demo.kit.disk import Disk, complaint
+from dem_demo.kit.signals import Interrupted, noted, raise_dropped, undisturbed
+
+COMPLETE, PARTIAL = "complete", "partial"  # what the attribute "state" of a closed file says
+FORESEEN = (Interrupted, OSError, ValueError, RuntimeError)  # they say all that is to be said
+
+
+class Dataset(NamedTuple):
+    """What a file holds of each frame under one name."""
+
+    name: str
+    kind: str
+    shape: tuple[int, ...]
+    unit: str
+    description: str
+
+
+class Recorder:
+    """Writes one run to an HDF5 file.
+
+    Parameters
+    ----------
+    path : Path
+        File to create.
+    attributes : mapping
+        What the file says of itself, beside when and by which versions it was made.
+    write_scene : callable
+        Writes what is known before the run into the open file.
+    trajectories : sequence of Dataset
+        What there is of each frame; its time comes by itself.
+    frame_rate : float
+        Frames per second [1/s].
+    axes : str
+        What the columns of impacts mean in this file.
+    files : iterable of str
+        Names of the files that will be made of it; those of the engine's own join them.
+
+    Attributes
+    ----------
+    folder : Path
+        Where the file is; an engine may put one of its own there.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        *,
+        attributes: Mapping[str, object],
+        write_scene: Callable[[h5py.File], None],
+        trajectories: Sequence[Dataset],
+        frame_rate: float,
+        axes: str,
+        files: Iterable[str],
+    ) -> None:
+        raise_dropped()  # nothing has been written yet
+        self.folder = path.parent
+        self._path, self._disk = path, Disk(path)
+        self._files, self._frame_rate = {*files}, frame_rate
+        self._frames = 0
+        with undisturbed():
+            self._file = h5py.File(self._disk, "w")
+            self._file.attrs.update(_made())
+            self._file.attrs.update(attributes)
+            write_scene(self._file)
+            self._trajectories = self._file.create_group("trajectories")
+            for name, kind, shape, unit, description in (
+                Dataset("time", "f8", (), "s", "time of the frame"), *trajectories,
+            ):  # fmt: skip
+                layout.grow(self._trajectories, name, kind, unit, description, shape)
+            layout.begin_impacts(self._file, axes)
+
+    def record(
+        self, run: Callable[[Recorder], None], sentence: Callable[[BaseException], str]
+    ) -> BaseException | None:
+        """Let an engine run, and close the file, which says whether the run is complete.
+
+        Parameters
+        ----------
+        run : callable
+            Hands frames and impacts over.
+        sentence : callable
+            Puts an error into words.
+
+        Returns
+        -------
+        BaseException or None
+            What stopped it, if anything did.
+        """
+        stop: BaseException | None = None
+        reason = ""
+        try:
+            run(self)
+        except (Exception, Interrupted) as error:
+            if not isinstance(error, FORESEEN):
+                traceback.print_exc()
+            stop, reason = error, sentence(error)
+        with noted():
+            self._close(reason)
+        return stop or self._disk.error
+
+    def frame(self, frame: NamedTuple) -> None:
+        """Append one frame, whose fields have the names of the datasets.
+
+        Raises
+        ------
+        OSError
+            If the disk is full; what has been recorded is safe.
+        """
+        with undisturbed():
+            values = {"time": self._frames / self._frame_rate, **frame._asdict()}
+            for name, value in values.items():
+                if value is not None:
+                    dataset = self._trajectories[name]
+                    dataset.resize(self._frames + 1, axis=0)
+                    dataset[self._frames] = value
+            self._frames += 1
+        raise_dropped()
+        if self._disk.error is not None:
+            raise self._disk.error
+
+    def collisions(self, table: NDArray[np.void]) -> None:
+        """Append collisions, in the columns that their table has."""
+        with undisturbed():
+            layout.append_impacts(self._file, table)
+
+    def _close(self, reason: str) -> None:
+        if not layout.has_impacts(self._file):
+            layout.append_impacts(self._file, np.empty(0, IMPACT[list(OBSERVED)]))
+        if not reason and self._disk.error is not None:
+            reason = complaint(self._disk.error)
+        own = {file.name for file in self.folder.iterdir() if not file.name.startswith(".")}
+        self._file.attrs["state"] = PARTIAL if reason else COMPLETE
+        self._file.attrs["reason"] = reason
+        self._file.attrs["files"] = sorted(self._files | own)
+        self._file.close()
+        if self._disk.error is not None:
+            _write_shorter(self._path, self._disk.content(), self._frames)
+        self._disk.close()
+
+
+def made_by(name: str, engine: tuple[str, str], command: str, model: ImpactModel) -> dict[str, Any]:
+    """Attributes that tell what made a run: scene, engine and its version, command line, law."""
+    law = model.force_law
+    return {
+        "format": layout.FORMAT + name,
+        "command": command,
+        "engine": engine[0],
+        f"version_{engine[0]}": engine[1],
+        # the name by which the pair gets the law again: without the numbers that are its own
+        "law": law.family if law.from_pair else law.name,
+        "outside": model.outside,
+    }
+
+
+def _made() -> dict[str, object]:
+    return {
+        "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        "version_contactlaw": version("contactlaw"),
+        "version_numba": version("numba"),
+        "version_numpy": np.__version__,
+        "version_python": platform.python_version(),
+        "units": "SI: metres, seconds, kilograms, newtons, joules; each dataset names its own",
+    }
+
+
+def _write_shorter(path: Path, content: bytes, frames: int) -> None:
+    """Write a record that the disk had no room for, with every collision but fewer frames.
+
+    Half of the room is left to what else there is to write.
+    """
+    while frames > 0:
+        frames //= 2
+        short = io.BytesIO()
+        with h5py.File(io.BytesIO(content), "r+") as whole, h5py.File(short, "w") as part:
+            for dataset in whole["trajectories"].values():
+                dataset.resize(frames, axis=0)
+            part.attrs.update(whole.attrs)
+            for name in whole:
+                whole.copy(name, part)
+        try:
+            path.write_bytes(short.getvalue())
+        except OSError:
+            continue
+        return
+    path.unlink()

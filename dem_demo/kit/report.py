@@ -1,0 +1,56 @@
+"""Words that the reports of all scenes have: plates, and limits of the model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import Validity, explain
+
+_EDGE = "so close to the plate's edge that the bending wave comes back while the contact lasts"
+
+
+def label(thickness: float) -> str:
+    """Name a plate by its thickness [m].
+
+    Examples
+    --------
+    >>> label(0.5e-3), label(float("inf"))
+    ('0.5 mm', 'half-space')
+    """
+    return "half-space" if thickness == math.inf else f"{thickness * 1e3:.4g} mm"
+
+
+class Limit(NamedTuple):
+    """A limit of the model, what it means, and the number of impacts that exceed it."""
+
+    name: str
+    meaning: str
+    impacts: int
+
+
+def exceeded(flags: NDArray[np.int64], near: NDArray[np.bool_]) -> list[Limit]:
+    """List the limits that impacts exceed, from their flags, and whether they are near an edge."""
+    found = [
+        Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity
+    ]
+    found.append(Limit("near an edge", _EDGE, int(near.sum())))
+    return [limit for limit in found if limit.impacts]
+
+
+def _words(flag: Validity) -> str:
+    return str(flag.name).lower().replace("_", " ")
+
+
+def limits_lines(found: Sequence[Limit]) -> list[str]:
+    """Say which limits of the model impacts exceed, and what that means."""
+    if not found:
+        return ["Limits of the model: all impacts on plates are inside"]
+    width = max(len(f"{limit.impacts} {limit.name}") for limit in found)
+    return ["Limits of the model: impacts outside, and what that means"] + [
+        f"  {f'{limit.impacts} {limit.name}':{width}}  {limit.meaning}" for limit in found
+    ]

@@ -1,0 +1,172 @@
+"""What a bed's scene tells of its runs, and the summary and the page that are made of it."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Callable, Mapping
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import ImpactModel
+from dem_demo.kit import page as common
+from dem_demo.kit.gallery import Picture
+from dem_demo.kit.measure import account, kept
+from dem_demo.kit.report import Limit, exceeded, limits_lines
+from dem_demo.kit.runs import Run, Runs
+
+_WIDTH = 42
+
+Facts = list[tuple[str, str]]
+Marks = NDArray[np.bool_]
+
+
+class Tale(NamedTuple):
+    """What a scene tells beside its figures."""
+
+    wall: str
+    """What beads hit: a deck."""
+    flat: tuple[str, Callable[[Run[Any]], Marks]]
+    """Which impacts the law's COR holds for, in words, and each of them."""
+    near_edge: Callable[[Run[Any]], Marks]
+    """Whether an edge of the sheet answers while the contact lasts, for each impact."""
+    own: Callable[[Run[Any]], Facts]
+    """Facts that no other scene has."""
+    title: Callable[[Run[Any]], tuple[str, str]]
+    """What fell on what, and how, in two lines without what computed it."""
+    figures: ModuleType
+    page: Mapping[str, str]
+    """The words of the page: heading, lede, alt (of the film), others (files beside it)."""
+
+
+def summary(tale: Tale, runs: Runs[Any]) -> str:
+    """Write the summary.
+
+    Returns
+    -------
+    str
+        Title, one line per number with a column for each run, and limits of the model that were
+        exceeded under the law.
+    """
+    columns = [dict(facts(tale, run)) for run in runs.every]
+    lines = [*title(tale, runs), ""]
+    lines += [
+        "".join([f"{name:{_WIDTH}}", *(f"{column.get(name, '-'):>18}" for column in columns)])
+        for name in columns[0]
+    ]
+    lines += ["", "Friction and bead on bead are the engine's own, not recorded impact by impact"]
+    lines += limits_lines(limits(tale, runs.law))
+    if runs.reason:
+        lines += ["", f"Partial, {progress(runs)}: {runs.reason}"]
+    return "\n".join(lines)
+
+
+def title(tale: Tale, runs: Runs[Any]) -> tuple[str, str]:
+    """Say in two lines what fell on what, and what computed it."""
+    run = runs.law
+    what, how = tale.title(run)
+    ranks = f"{run.ranks} {'rank' if run.ranks == 1 else 'ranks'}"
+    friction = f"friction {run.scene.friction:g}"
+    return what, f"{how}, {friction}, in {run.engine} on {ranks}, seed {run.scene.seed}"
+
+
+def facts(tale: Tale, run: Run[Any]) -> Facts:
+    """Name what was measured, and what it was."""
+    words, flat = tale.flat[0], run.collisions[tale.flat[1](run)]
+    energy = account(run)
+    found = [("", run.name), (f"impacts on the {tale.wall}", f"{run.collisions.size}")]
+    if flat.size:
+        low, middle, high = np.quantile(flat["restitution"], [0.05, 0.5, 0.95])
+        found += [
+            (f"  {words}", f"{flat.size}"),
+            ("  mean approach speed there", f"{flat['approach_speed'].mean():.3f} m/s"),
+            ("  median COR there", f"{middle:.3f}"),
+            ("  COR of nine in ten of them", f"{low:.3f} - {high:.3f}"),
+            ("  one COR that dissipates as much", f"{kept(run, flat):.3f}"),
+        ]
+    return [
+        *found,
+        (f"dissipated at the {tale.wall}", _energy(float(run.dissipated.sum()))),
+        ("  bending wave in the sheet", _energy(energy.wave[-1])),
+        ("  lost at the contact", _energy(energy.plastic[-1])),
+        (f"work of the {tale.wall} on the beads", _energy(energy.walls[-1])),
+        ("beads on beads, sliding friction", _energy(energy.others[-1])),
+        ("kinetic energy at the start", _energy(energy.start[-1])),
+        ("kinetic energy at the end", _energy(energy.moving[-1])),
+        *tale.own(run),
+        ("simulated", f"{run.time[-1] * 1e3:.0f} ms"),
+        ("computed in", f"{run.elapsed[-1]:.0f} s"),
+    ]
+
+
+def _energy(energy: float) -> str:
+    return f"{energy * 1e3:.1f} mJ" if abs(energy) >= 10e-3 else f"{energy * 1e6:.0f} µJ"
+
+
+def limits(tale: Tale, run: Run[Any]) -> list[Limit]:
+    """List the limits of the model that impacts exceed."""
+    return exceeded(run.collisions["flags"], tale.near_edge(run))
+
+
+def progress(runs: Runs[Any]) -> str:
+    """Say how far a partial run has come."""
+    last = runs.every[-1]
+    reached = last.time[-1] if last.time.size else 0.0
+    return f"{reached:.4g} of {last.scene.duration:g} s under the {last.name}"
+
+
+def page(
+    tale: Tale, runs: Runs[Any], pictures: Mapping[str, Picture], film: Callable[[], bytes]
+) -> str:
+    """Write index.html, one file that needs no other and no network.
+
+    Parameters
+    ----------
+    tale : Tale
+        Of the scene.
+    runs : Runs
+        As read from their files.
+    pictures : mapping of Picture
+        Figures by name; those that are missing are left out.
+    film : callable
+        Makes a GIF of the bed.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    run = runs.law
+    what, how = title(tale, runs)
+    columns = [dict(facts(tale, one)) for one in runs.every]
+    head, *names = columns[0]
+    frame = common.template("dem_demo.kit", "bed.html")
+    return frame.substitute(
+        tale.page,
+        name=run.scene.NAME,
+        style=common.template("dem_demo.kit", "page.css").template,
+        what=html.escape(what),
+        how=html.escape(how),
+        partial=common.partial(progress(runs), runs.reason),
+        film=f"data:image/gif;base64,{base64.b64encode(film()).decode('ascii')}",
+        head="".join(f"<th>{html.escape(text)}</th>" for text in ["", *(c[head] for c in columns)]),
+        rows="".join(_row(name, columns) for name in names),
+        limits=common.exceeded(limits(tale, run), ""),
+        figures=common.shown(tale.figures.module, pictures),
+        command=html.escape(run.command),
+        law=html.escape(run.law),
+        source=html.escape(ImpactModel(run.pair, run.law).force_law.source),
+        made=common.made(run.created, run.versions),
+    )
+
+
+def _row(name: str, columns: list[dict[str, str]]) -> str:
+    cells = [f"<td>{html.escape(name.strip())}</td>"]
+    cells += [
+        f"<td data-name='{html.escape(column[''])}'>{html.escape(column.get(name, ''))}</td>"
+        for column in columns
+    ]
+    return f"<tr>{''.join(cells)}</tr>"

@@ -1,0 +1,1 @@
+"""A rain of beads on plates of different thickness: ``dem-demo rain``."""

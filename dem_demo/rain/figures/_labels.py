@@ -1,0 +1,41 @@
+"""What the figures of a run have in common: words for the run, columns for plates, rings."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import NDArray
+
+from contactlaw import style
+from dem_demo.kit.beads import Floats
+from dem_demo.rain.record import Run
+from dem_demo.rain.report import progress
+
+
+def source(run: Run) -> str:
+    """Say in a few words what ran."""
+    scene = run.scene
+    law = f"COR {run.constant_cor:g} everywhere" if run.baseline else f"law {run.law}"
+    part = f", partial: {progress(run)}" if run.reason else ""
+    return f"{scene.sphere_material.name} on {scene.plate_material.name}, {run.engine}, {law}{part}"
+
+
+def thickness_axis(axes: Axes, labels: list[str]) -> None:
+    """Give every plate a column, with its thickness below."""
+    crowded = len(labels) > style.pick(10, 6)
+    axes.set_xticks(range(len(labels)), labels, rotation=60 if crowded else 0)
+    axes.set_xlim(-0.55, len(labels) - 0.45)
+    axes.set_xlabel("plate thickness")
+    axes.grid(visible=False, axis="x")
+
+
+def ring(axes: Axes, x: Floats, y: Floats, far: NDArray[np.bool_]) -> None:
+    """Mark the points of impacts that are outside a limit of the model."""
+    axes.scatter(
+        x[far], y[far], s=46, facecolors="none", edgecolors=style.VERMILION, linewidths=1.1
+    )
+
+
+def ringed(far: NDArray[np.bool_]) -> str:
+    """Say what the rings are, where there are any."""
+    return "; ringed: outside a limit of the model" if far.any() else ""

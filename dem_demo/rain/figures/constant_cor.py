@@ -1,0 +1,74 @@
+"""What a constant COR would do instead: error of the energy with which each bead rebounds.
+
+One number cannot be right on thin plates and on thick ones, for slow beads and for fast ones; that
+it is their mean helps none of them. The comparison is per impact: nothing but the COR differs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
+
+from contactlaw import style
+from dem_demo.kit.beads import Floats
+from dem_demo.kit.report import label
+from dem_demo.rain.figures._labels import ring, ringed, source, thickness_axis
+from dem_demo.rain.measure import constant_beside_model, outside
+from dem_demo.rain.record import Run
+
+_HALO = withStroke(linewidth=3.0, foreground="white")
+
+
+def draw(run: Run) -> Figure:
+    """Draw a column per plate; within it beads are sorted from slow to fast."""
+    constant, model = constant_beside_model(run)
+    error = 100.0 * (constant**2 - model**2)  # of the impact energy: a COR may be nearly 0
+    figure = style.figure(10.5, 6.2, _title(run, constant, error), _subtitle(run))
+    axes = figure.add_subplot()
+    for n in range(len(run.scene.plates)):
+        _column(axes, run, n, error)
+    axes.axhline(0.0, color=style.INK, linewidth=1.4)
+    thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
+    of_what = style.pick("% of impact energy", "%")  # a phone's figure is not higher than that
+    axes.set_ylabel(f"error of rebound energy [{of_what}]")
+    return figure
+
+
+def _title(run: Run, constant: Floats, error: Floats) -> str:
+    if not error.size:
+        return "What a constant COR would do instead"
+    return (
+        f"One COR for all, {constant[0]:.2f}, gets the rebound energy wrong by "
+        f"{_signed(error.min())} to {_signed(error.max())} of the impact's"
+    )
+
+
+def _signed(percent: float) -> str:
+    return f"{percent:+.0f} %".replace("-", "\N{MINUS SIGN}")
+
+
+def _subtitle(run: Run) -> str:
+    which = "the run" if run.baseline else "the mean of all impacts"
+    return (
+        f"{source(run)}; {which} against the model for the same impacts, in each column from slow "
+        f"(left) to fast (right); bar: median{ringed(outside(run))}"
+    )
+
+
+def _column(axes: Axes, run: Run, plate: int, error: Floats) -> None:
+    here = run.modelled["plate"] == plate
+    if not here.any():
+        return
+    speed = run.modelled["approach_speed"]
+    x = plate + 0.8 * (speed[here] / speed.max() - 0.5)
+    colour = np.where(error[here] > 0.0, style.VERMILION, style.BLUE)
+    axes.scatter(x, error[here], s=16, c=list(colour), alpha=0.6, linewidths=0)
+    ring(axes, x, error[here], outside(run)[here])
+    middle = float(np.median(error[here]))
+    axes.hlines(middle, plate - 0.42, plate + 0.42, color=style.INK, linewidth=2.5)
+    axes.annotate(
+        _signed(middle), (plate + 0.42, middle), xytext=(0, 3), textcoords="offset points",
+        ha="right", va="bottom", fontweight="bold", path_effects=[_HALO],
+    )  # fmt: skip

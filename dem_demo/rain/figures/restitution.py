@@ -1,0 +1,91 @@
+"""COR against impact speed, one panel per plate: impacts of the run on the model's curves."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+from contactlaw import style
+from dem_demo.kit.report import label
+from dem_demo.rain.figures._labels import ring, ringed, source
+from dem_demo.rain.measure import outside
+from dem_demo.rain.record import Run
+
+_COLOURS = "cividis"
+
+
+def draw(run: Run) -> Figure:
+    """Draw a panel per plate with a common scale."""
+    plates = run.scene.plates
+    columns = min(style.pick(5, 2), len(plates))
+    rows = math.ceil(len(plates) / columns)
+    constant = run.baseline
+    figure = style.figure(
+        13.0,
+        1.6 + style.pick(3.8, 2.6) * rows,
+        f"One constant COR, {run.constant_cor:g}, misses every plate's curve"
+        if constant
+        else "The COR depends on thickness, bead size and speed",
+        f"{source(run)}; points: impacts of the run, lines: model for the smallest, middle "
+        f"and largest bead, triangle: yield speed{ringed(outside(run))}",
+    )
+    grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
+    panels = list(grid.flat)
+    radius = run.scene.beads.radius * 1e3
+    colours = ScalarMappable(
+        Normalize(radius.min(), max(radius.max(), radius.min() + 1e-6)), _COLOURS
+    )
+    for n, axes in enumerate(panels):
+        if n < len(plates):
+            _panel(axes, run, n, colours)
+        else:
+            axes.set_visible(False)
+    for axes in grid[:, 0]:
+        axes.set_ylabel("coefficient of restitution")
+    figure.supxlabel("normal impact speed [m/s]", fontsize=13, color=style.INK)
+    figure.colorbar(colours, ax=panels, pad=0.01, fraction=0.02).set_label("bead radius [mm]")
+    return figure
+
+
+def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
+    thickness = run.scene.plates[plate].thickness
+    axes.set_title(label(thickness), fontweight="bold")
+    radius = run.scene.beads.radius
+    speed = np.linspace(0.2, 1.05 * _fastest(run), 200)
+    ends = radius.min(), 0.5 * (radius.min() + radius.max()), radius.max()
+    for r in ends:
+        colour = colours.to_rgba(r * 1e3)
+        axes.plot(speed, run.model.restitution(speed, r, thickness), color=colour, linewidth=1.6)
+        yields = _yield_speed(run, r, thickness)
+        if yields <= speed[-1]:
+            at = run.model.restitution(yields, r, thickness)
+            axes.plot(yields, at, marker="v", color=colour, markersize=9, markeredgecolor="white")
+    here = run.modelled["plate"] == plate
+    rows = run.modelled[here]
+    ring(axes, rows["approach_speed"], rows["restitution"], outside(run)[here])
+    axes.scatter(
+        rows["approach_speed"],
+        rows["restitution"],
+        c=list(colours.to_rgba(radius[rows["bead"]] * 1e3)),
+        s=12,
+        linewidths=0,
+        alpha=0.8,
+    )
+    axes.set_xlim(0.0, 1.05 * _fastest(run))
+
+
+def _yield_speed(run: Run, radius: float, thickness: float) -> float:
+    try:
+        return float(run.model.yield_speed(radius, thickness))
+    except ValueError:  # so thin a plate that it is beyond the table; impacts need not be
+        return math.inf
+
+
+def _fastest(run: Run) -> float:
+    rows = run.collisions[run.collisions["plate"] >= 0]
+    return float(rows["approach_speed"].max(initial=1.0))

@@ -1,0 +1,186 @@
+"""What the report and the figures say about a run, computed from its record."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import edge_distance
+from dem_demo.kit.beads import FLYING, GRAVITY, Floats
+from dem_demo.kit.report import Limit, exceeded
+from dem_demo.rain.record import Run
+
+_NOTHING = math.nan, math.nan, math.nan, math.nan
+
+
+class Shares(NamedTuple):
+    """Where energy went: shares that sum to 1.
+
+    All but `kept` are NaN in the baseline: a constant COR does not say where the energy went.
+    """
+
+    kept: float
+    wave: float
+    plastic: float
+    other: float
+
+
+@dataclass(frozen=True)
+class PlateRow:
+    """What happened on one plate.
+
+    Attributes
+    ----------
+    thickness : float
+        Thickness [m].
+    impacts : int
+        Number of impacts; the other numbers are NaN if it is 0.
+    speed, restitution, lowest, highest : float
+        Mean normal speed [m/s]; mean, smallest and largest COR.
+    shares : Shares
+        Of the impacts' total kinetic energy (normal part).
+    outside : int
+        Number of impacts that exceed a limit of the model.
+    """
+
+    thickness: float
+    impacts: int
+    speed: float
+    restitution: float
+    lowest: float
+    highest: float
+    shares: Shares
+    outside: int
+
+
+def on_plate(run: Run, plate: int) -> NDArray[np.void]:
+    """Collisions on one plate."""
+    rows: NDArray[np.void] = run.collisions[run.collisions["plate"] == plate]
+    return rows
+
+
+def bead_on_bead(run: Run) -> NDArray[np.void]:
+    """Collisions of two beads."""
+    rows: NDArray[np.void] = run.collisions[run.collisions["other"] >= 0]
+    return rows
+
+
+def plate_rows(run: Run) -> list[PlateRow]:
+    """Measure every plate of a run."""
+    return [_plate_row(run, n) for n in range(len(run.scene.plates))]
+
+
+def _plate_row(run: Run, plate: int) -> PlateRow:
+    rows = on_plate(run, plate)
+    thickness = run.scene.plates[plate].thickness
+    if not rows.size:
+        return PlateRow(thickness, 0, *_NOTHING, Shares(*_NOTHING), 0)
+    energy, cor = run.energy(rows), rows["restitution"]
+    kept = float((cor**2 * energy).sum() / energy.sum())
+    return PlateRow(
+        thickness=thickness,
+        impacts=rows.size,
+        speed=float(rows["approach_speed"].mean()),
+        restitution=float(cor.mean()),
+        lowest=float(cor.min()),
+        highest=float(cor.max()),
+        shares=Shares(kept, *[math.nan] * 3) if run.baseline else model_shares(run, plate),
+        outside=int(outside(run)[run.modelled["plate"] == plate].sum()),
+    )
+
+
+def model_shares(run: Run, plate: int) -> Shares:
+    """Where the energy went, or would have gone had the model ruled the baseline's impacts."""
+    rows = run.modelled[run.modelled["plate"] == plate]
+    total = run.energy(rows).sum()
+    wave, plastic, other = (
+        float(rows[f"{name}_energy"].sum() / total) for name in ("wave", "plastic", "other")
+    )
+    return Shares(1.0 - wave - plastic - other, wave, plastic, other)
+
+
+def constant_beside_model(run: Run) -> tuple[Floats, Floats]:
+    """Give two CORs for each impact in `Run.modelled`: one for all, and the model's.
+
+    The constant is that of the baseline, or else the mean over all impacts of the run, which nobody
+    would know beforehand.
+    """
+    rows = run.modelled
+    own = rows["restitution"].astype(float)
+    if run.constant_cor is None:
+        return np.full(own.size, own.mean() if own.size else math.nan), own
+    thickness = np.array([plate.thickness for plate in run.scene.plates])[rows["plate"]]
+    radius = run.scene.beads.radius[rows["bead"]]
+    return own, np.asarray(run.model.restitution(rows["approach_speed"], radius, thickness))
+
+
+def restitution_range(run: Run) -> tuple[float, float]:
+    """Range of COR that colours span: from the lowest on a plate, not too narrow, to 1."""
+    on = run.collisions["plate"] >= 0
+    return float(run.collisions["restitution"][on].min(initial=0.99)), 1.0
+
+
+def limits(run: Run) -> list[Limit]:
+    """List the limits of the model that impacts on plates exceed."""
+    return exceeded(run.modelled["flags"], near_edge(run))
+
+
+def outside(run: Run) -> NDArray[np.bool_]:
+    """Tell for each impact in `Run.modelled` whether it exceeds a limit of the model."""
+    found: NDArray[np.bool_] = (run.modelled["flags"] != 0) | near_edge(run)
+    return found
+
+
+def near_edge(run: Run) -> NDArray[np.bool_]:
+    """Tell for each impact in `Run.modelled` whether the plate's edge answers while it lasts."""
+    rows, near = run.modelled, np.zeros(run.modelled.size, dtype=bool)
+    for n, plate in enumerate(run.scene.plates):
+        here = rows["plate"] == n
+        if plate.thickness == math.inf or not here.any():
+            continue
+        edge = np.minimum(rows["x"] - plate.x0, plate.x1 - rows["x"])
+        # It grows with the square root of contact time, so one call serves for all.
+        unit = edge_distance(run.scene.plate_material, plate.thickness, 1.0)
+        near |= here & (edge < unit * np.sqrt(rows["contact_time"]))
+    return near
+
+
+class Rebounds(NamedTuple):
+    """Impact speed [m/s], measured rebound height over impact height, whether outside a limit."""
+
+    speed: Floats
+    ratio: Floats
+    outside: NDArray[np.bool_]
+
+
+def first_rebounds(run: Run, plate: int) -> Rebounds:
+    """Measure the first impacts of beads.
+
+    A bead counts if its first collision is on this plate and it meets nothing until the next frame.
+    There its height and vertical speed give the apex it is going to reach, y + v^2/2g, from what
+    the engine did rather than from the COR it was told.
+    """
+    rows = run.collisions
+    bead, time = np.r_[rows["bead"], rows["other"]], np.r_[rows["time"], rows["time"]]
+    order = np.lexsort((time, bead))
+    index = np.tile(np.arange(rows.size), 2)[order]
+    bead, time = bead[order], time[order]
+    first = np.flatnonzero(np.r_[True, bead[1:] != bead[:-1]] & (bead >= 0))
+    first = first[rows["plate"][index[first]] == plate]
+    after = np.r_[np.where(bead[1:] == bead[:-1], time[1:], math.inf), math.inf][first]
+    frame = np.searchsorted(run.time, time[first], side="right")
+    ok = (frame < run.time.size) & (run.time[np.minimum(frame, run.time.size - 1)] < after)
+    n, frame, row = bead[first][ok], frame[ok], index[first][ok]
+    flying = run.status[frame, n] == FLYING
+    n, frame, row = n[flying], frame[flying], row[flying]
+    far = np.zeros(rows.size, dtype=bool)
+    far[rows["plate"] >= 0] = outside(run)
+    speed = rows["approach_speed"][row]
+    surface = run.scene.plates[plate].y + run.scene.beads.radius[n]
+    upwards = run.velocity[frame, n, 1].astype(float)
+    apex = run.position[frame, n, 1] - surface + upwards * np.abs(upwards) / (2.0 * GRAVITY)
+    return Rebounds(speed, apex * 2.0 * GRAVITY / speed**2, far[row])

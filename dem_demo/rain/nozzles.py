@@ -1,0 +1,157 @@
+"""The default scene: a row of nozzles above a row of plates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from contactlaw import Material, material
+from dem_demo.kit.beads import GRAVITY, Floats
+from dem_demo.rain import defaults
+from dem_demo.rain.scene import Beads, Plate, Scene
+
+# Our own choices, made so that the figures show something.
+WIDTH, GAP = 0.060, 0.020  # [m], of a plate and between two
+DEPTH = 0.060  # [m], of a plate in three dimensions
+_LARGEST = 0.05  # [m], radius of a bead that suits plates of this size
+MARGIN = 0.012  # [m]: nozzles keep off the edges, whose reflected waves the model leaves out
+HEIGHT = 0.2  # [m], of the nozzles above the plates
+SIDEWAYS = 0.05  # [m/s], largest sideways speed: beads wander over to the next plate or the gap
+EMISSION = 0.75  # of the duration: few meet in the air; the rest is for further bounces
+
+GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
+# Of n successive multiples of GOLDEN modulo 1, no two are closer than SPACING / n (Hurwitz).
+SPACING = GOLDEN**2
+
+
+def rain(
+    *,
+    beads: int = defaults.BEADS,
+    thicknesses: Sequence[float] = defaults.THICKNESSES,
+    radius: tuple[float, float] = defaults.RADIUS,
+    speed: tuple[float, float] = defaults.SPEED,
+    duration: float = defaults.DURATION,
+    seed: int = defaults.SEED,
+    sphere: Material | str = defaults.SPHERE,
+    plate: Material | str = defaults.PLATE,
+    dimensions: int = 2,
+    frame_rate: float = defaults.FRAME_RATE,
+) -> Scene:
+    """Draw a rain of beads on a row of plates.
+
+    Parameters
+    ----------
+    beads : int, optional
+        Number of beads.
+    thicknesses : sequence of float, optional
+        Thickness of each plate [m]; ``inf`` is a half-space.
+    radius, speed : tuple of float, optional
+        Smallest and largest radius [m] and downward emission speed [m/s], drawn uniformly.
+    duration : float, optional
+        Simulated time [s]; beads are emitted during its first three quarters.
+    seed : int, optional
+        The same seed gives the same rain.
+    sphere, plate : Material or str, optional
+        Materials of beads and plates.
+    dimensions : int, optional
+        Of the engine; in 3 there are as many rows of nozzles, one behind the other, as fit.
+    frame_rate : float, optional
+        Recorded frames per second [1/s].
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    ValueError
+        If a value is out of its range, or the beads are so many that they would overlap.
+
+    Examples
+    --------
+    >>> scene = rain(beads=10, seed=3)
+    >>> scene.beads.radius.shape, len(scene.plates)
+    ((10,), 5)
+    """
+    if beads < 1:
+        raise ValueError(f"beads: at least one is needed, got {beads!r}")
+    if seed < 0:
+        raise ValueError(f"seed: must not be negative, got {seed!r}")
+    _check_range("radius", radius, "m", positive=True)
+    if radius[1] > _LARGEST:
+        raise ValueError(f"radius: {radius[1]:g} m is above {_LARGEST} m; with units: 1mm,2mm")
+    _check_range("speed", speed, "m/s", positive=False)
+    pitch = WIDTH + GAP
+    plates = tuple(Plate(h, i * pitch, i * pitch + WIDTH) for i, h in enumerate(thicknesses))
+    sphere_material = sphere if isinstance(sphere, Material) else material(sphere)
+    plate_material = plate if isinstance(plate, Material) else material(plate)
+    if not 0.0 < duration < math.inf:
+        raise ValueError(f"duration: must be positive and finite [s], got {duration!r}")
+    rows = max(1, int((DEPTH - 2.0 * MARGIN) / (2.2 * radius[1]))) if dimensions == 3 else 1
+    drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed, rows)
+    return Scene(drops, plates, sphere_material, plate_material, duration, seed, frame_rate, rows)
+
+
+def depths(scene: Scene) -> Floats:
+    """Third coordinate of each bead at its emission [m], from the middle of the plates.
+
+    The rows take turns.
+
+    Examples
+    --------
+    >>> scene = rain(beads=40, dimensions=3)
+    >>> scene.rows, depths(scene).round(4)[[0, 1, 18]]
+    (18, array([-0.017, -0.015, -0.017]))
+    """
+    row = np.arange(scene.beads.radius.size) % scene.rows
+    depth: Floats = (DEPTH - 2.0 * MARGIN) * ((row + 0.5) / scene.rows - 0.5)
+    return depth
+
+
+def _check_range(name: str, limits: tuple[float, float], unit: str, *, positive: bool) -> None:
+    low, high = limits
+    if not ((0.0 < low if positive else 0.0 <= low) and low <= high < math.inf):
+        least = "positive" if positive else "not negative"
+        raise ValueError(
+            f"{name}: needs MIN,MAX [{unit}], {least}, finite and ascending, got {low!r},{high!r}"
+        )
+
+
+def _draw(
+    n: int,
+    plates: int,
+    radius: tuple[float, float],
+    speed: tuple[float, float],
+    period: float,
+    seed: int,
+    rows: int,
+) -> Beads:
+    """Beads at seeded times, places, sizes and speeds, none emitted into another."""
+    _check_crowd(n, plates, radius[1], speed[0], period, rows)
+    rng = np.random.default_rng(seed)
+    time = (np.arange(n) + rng.random(n)) * (period / n)
+    # Multiples of the golden ratio: beads that are close in time are far apart in space.
+    place = (rng.random() + GOLDEN * (np.arange(n) // rows)) % 1.0 * plates
+    plate = np.minimum(np.floor(place), plates - 1)
+    x = plate * (WIDTH + GAP) + MARGIN + (place - plate) * (WIDTH - 2.0 * MARGIN)
+    down = rng.uniform(*speed, n)
+    velocity = np.column_stack((rng.uniform(-SIDEWAYS, SIDEWAYS, n), -down))
+    size: Floats = rng.uniform(*radius, n)
+    return Beads(size, time, np.column_stack((x, np.full(n, HEIGHT))), velocity)
+
+
+def _check_crowd(
+    n: int, plates: int, radius: float, speed: float, period: float, rows: int
+) -> None:
+    """Refuse more beads than the nozzles can let go without overlap."""
+    fall = 2.0 * radius
+    clear = (math.sqrt(speed**2 + 2.0 * GRAVITY * fall) - speed) / GRAVITY
+    together = SPACING * plates * (WIDTH - 2.0 * MARGIN) / fall
+    most = rows * max(0, math.floor((together - 2.0) * period / clear))
+    if n > most:
+        raise ValueError(
+            f"beads: {n} within {period:g} s would be emitted into each other; at most {most} of "
+            f"this size and speed fit, more with a longer duration"
+        )

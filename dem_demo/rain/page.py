@@ -1,0 +1,164 @@
+"""index.html: one page with all that a rain has to show, which needs no other file and no network.
+
+``page.html`` is its frame, ``page.css`` of the kit its look, and ``player.js`` moves the beads.
+"""
+
+from __future__ import annotations
+
+import base64
+import html
+import json
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.colors import to_hex
+from numpy.typing import NDArray
+
+from dem_demo.kit import page as common
+from dem_demo.kit.gallery import Picture
+from dem_demo.kit.report import label
+from dem_demo.rain import figures, paths
+from dem_demo.rain.figures import _rain
+from dem_demo.rain.measure import (
+    PlateRow,
+    constant_beside_model,
+    limits,
+    plate_rows,
+    restitution_range,
+)
+from dem_demo.rain.record import Run
+from dem_demo.rain.report import progress, title
+
+_SAMPLES = 96  # of a contact's force
+_FIELDS = ("start", "end", "x", "y", "u", "v", "fall", "restitution", "other_v", "outside")
+
+
+def page(run: Run, pictures: Mapping[str, Picture]) -> str:
+    """Write the page of a run.
+
+    Parameters
+    ----------
+    run : Run
+        The run, as read from its file.
+    pictures : mapping of Picture
+        Figures by name; those that are missing are left out.
+
+    Returns
+    -------
+    str
+        HTML.
+    """
+    first, second = title(run)
+    return common.template(__package__, "page.html").substitute(
+        style=common.template(common.__package__, "page.css").template,
+        script=common.template(__package__, "player.js").template,
+        data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
+        what=html.escape(first),
+        how=html.escape(second),
+        partial=common.partial(progress(run), run.reason),
+        sample=_sample(run),
+        other=_other(run),
+        rows="".join(_row(row) for row in plate_rows(run)),
+        limits=common.exceeded(limits(run), ", and ringed in the animation and in the figures"),
+        figures=common.shown(figures.module, pictures),
+        command=html.escape(run.command),
+        law=html.escape(run.law),
+        source=html.escape(run.model.force_law.source),
+        made=common.made(run.created, run.versions),
+    )
+
+
+def _sample(run: Run) -> str:
+    every, shown = run.scene.beads.radius.size, paths.drawn(run).size
+    return f" {shown} of the {every} beads are shown." if shown < every else ""
+
+
+def _data(run: Run) -> dict[str, object]:
+    """Collect what the player draws, in metres and seconds."""
+    made = paths.pieces(run)
+    columns = [run.scene.beads.radius[made["bead"]], *(made[name] for name in _FIELDS)]
+    low, high = restitution_range(run)
+    map_ = colormaps["viridis"]
+    return {
+        "fields": ["radius", *_FIELDS],
+        "pieces": base64.b64encode(np.column_stack(columns).astype("<f4").tobytes()).decode(),
+        "window": _rain.window(run.scene),
+        "duration": float(run.time[-1]) if run.time.size else 0.0,
+        "magnified": _rain.MAGNIFIED,
+        "exposure": _rain.EXPOSURE,
+        "plates": [
+            {
+                "x0": plate.x0,
+                "x1": plate.x1,
+                "y": plate.y,
+                "depth": _rain.drawn_depth(plate.thickness),
+                "label": label(plate.thickness),
+            }
+            for plate in run.scene.plates
+        ],
+        "range": [low, high],
+        "colours": [to_hex(map_(x)) for x in np.linspace(0.0, 1.0, 33)],
+        "hits": [hit for n in range(len(run.scene.plates)) if (hit := _hardest(run, n))],
+    }
+
+
+def _hardest(run: Run, plate: int) -> dict[str, object] | None:
+    """Describe the hardest contact on a plate, and how its bending wave spreads."""
+    rows = run.modelled
+    here = np.flatnonzero(rows["plate"] == plate)
+    if not here.size:
+        return None
+    n = here[np.argmax(rows["peak_force"][here])]
+    row, thickness = rows[n], run.scene.plates[plate].thickness
+    radius, speed = float(run.scene.beads.radius[row["bead"]]), float(row["approach_speed"])
+    contact = run.model.force_history(speed, radius, thickness, samples=_SAMPLES)
+    constant, model = (float(cor[n]) for cor in constant_beside_model(run))
+    material = run.scene.plate_material
+    # Kirchhoff's plate: it spreads by sqrt(D/(rho H)), with D/(rho H) = E H^2/(12 rho (1 - nu^2))
+    stiffness = material.youngs_modulus / (12.0 * material.density)
+    spread = math.sqrt(stiffness / (1.0 - material.poissons_ratio**2)) * min(thickness, 1.0)
+    return {
+        "label": label(thickness),
+        "thickness": min(thickness, 1.0),
+        "speed": speed,
+        "radius": radius,
+        "duration": float(contact.time[-1]),
+        "force": _rounded(contact.force),
+        "compression": _rounded(contact.compression),
+        "displacement": _rounded(contact.plate_displacement),
+        "spread": spread,
+        "model": model,
+        "constant": constant,
+    }
+
+
+def _rounded(values: NDArray[np.float64]) -> list[float]:
+    return [float(f"{value:.4g}") for value in values]
+
+
+def _other(run: Run) -> str:
+    """Name the COR that the rings follow."""
+    if run.baseline:
+        return "where contactlaw would send them"
+    constant = constant_beside_model(run)[0]
+    return f"where one constant COR, {constant[0]:.2f}, would send them" if constant.size else ""
+
+
+def _row(row: PlateRow) -> str:
+    cells = [("plate", label(row.thickness)), ("impacts", f"{row.impacts}")]
+    if row.impacts:
+        cells += [
+            ("mean speed", f"{row.speed:.2f} m/s"),
+            ("mean COR", f"{row.restitution:.3f}"),
+            ("COR range", f"{row.lowest:.3f} &ndash; {row.highest:.3f}"),
+            *(
+                (name, "&ndash;" if math.isnan(share) else f"{share:.1%}")
+                for name, share in zip(
+                    ("kept", "wave", "plastic", "other"), row.shares, strict=True
+                )
+            ),
+            ("outside limits", f"{row.outside}"),
+        ]
+    return "<tr>" + "".join(f"<td data-name='{name}'>{text}</td>" for name, text in cells) + "</tr>"

@@ -1,0 +1,165 @@
+"""The flight of every bead in pieces, from impact to impact: what animations need, and small."""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dem_demo.kit.beads import FLYING, GRAVITY, Floats
+from dem_demo.rain.measure import constant_beside_model, outside
+from dem_demo.rain.record import Run
+
+# One piece: from `start` to `end` [s] at x + u t, y + v t - fall t^2/2 with t since its start.
+PIECE = np.dtype(
+    [
+        ("bead", "i4"),
+        *[(name, "f8") for name in ("start", "end", "x", "y", "u", "v", "fall")],
+        ("restitution", "f8"),  # of the last impact on a plate so far, NaN before the first
+        ("other_v", "f8"),  # as v, had the COR been the other one; NaN if no plate began the piece
+        ("outside", "i4"),  # 1: that last impact exceeds a limit of the model
+    ]
+)
+
+_MOST = 3000  # beads: some 0.2 MB of the page per thousand
+_PLACE = 5e-5  # [m]: nobody sees less
+# Where a bead lies still it falls within every frame as far as this many times what gravity gives.
+_STILL = 2.0
+_UNMARKED = math.nan, math.nan, 0
+
+
+@functools.lru_cache(maxsize=1)  # snapshot, film and page ask for the same
+def pieces(run: Run) -> NDArray[np.void]:
+    """Cut the flights of beads into parabolas, and rest into what stands still.
+
+    Parameters
+    ----------
+    run : Run
+        The run, whose frames and impacts are used.
+
+    Returns
+    -------
+    structured ndarray
+        Pieces of dtype `PIECE` of the beads that are `drawn`, by bead and by time. Recorded impacts
+        end a piece at their time, others (which an engine does not record) between two frames.
+    """
+    found: list[tuple[float, ...]] = []
+    hits = _hits(run)
+    for bead in drawn(run).tolist():
+        found += _flight(run, bead, hits[bead])
+    made = np.array(found, dtype=PIECE) if found else np.empty(0, PIECE)
+    _mark(made, run)
+    return made
+
+
+def drawn(run: Run) -> NDArray[np.int64]:
+    """Numbers of the beads that are drawn: all, or as many as a page has room for."""
+    every = run.scene.beads.radius.size
+    return np.unique(np.linspace(0, every - 1, min(every, _MOST)).round().astype(int))
+
+
+def at(made: NDArray[np.void], time: float) -> NDArray[np.void]:
+    """Pieces that are under way at a time [s], one for each bead that flies."""
+    now: NDArray[np.void] = made[(made["start"] <= time) & (time < made["end"])]
+    return now
+
+
+def places(made: NDArray[np.void], time: float | Floats) -> Floats:
+    """Places (N, 2) of the beads on pieces at a time [s], the same for all or one for each [m]."""
+    t = time - made["start"]
+    height = made["y"] + made["v"] * t - 0.5 * made["fall"] * t**2
+    return np.column_stack((made["x"] + made["u"] * t, height))
+
+
+def _hits(run: Run) -> list[Floats]:
+    """Find the times of each bead's recorded collisions, in order."""
+    rows = run.collisions
+    bead = np.r_[rows["bead"], rows["other"]]
+    time = np.r_[rows["time"], rows["time"]]
+    order = np.lexsort((time, bead))
+    bead, time = bead[order], time[order]
+    ends = np.searchsorted(bead, np.arange(run.scene.beads.radius.size + 1))
+    return [time[a:b] for a, b in zip(ends[:-1], ends[1:], strict=True)]
+
+
+class _Free(NamedTuple):
+    """Free flight, or rest, as it is at one instant."""
+
+    time: float
+    x: float
+    y: float
+    u: float
+    v: float
+    fall: float
+
+    def later(self, time: float) -> _Free:
+        """Go on to another time."""
+        t = time - self.time
+        y = self.y + self.v * t - 0.5 * self.fall * t * t
+        return _Free(time, self.x + self.u * t, y, self.u, self.v - self.fall * t, self.fall)
+
+    def meets(self, other: _Free, slow: float) -> bool:
+        """Whether another state of the same time is the same."""
+        return (
+            math.hypot(self.x - other.x, self.y - other.y) < _PLACE
+            and math.hypot(self.u - other.u, self.v - other.v) < slow
+        )
+
+
+def _flight(run: Run, bead: int, hits: Floats) -> list[tuple[float, ...]]:
+    states = _states(run, bead)
+    if not states:
+        return []
+    begin, now, found = float(run.scene.beads.emission_time[bead]), states[0], []
+    slow = _STILL * GRAVITY / run.scene.frame_rate
+    for before, new in itertools.pairwise(states):
+        if now.later(new.time).meets(new, slow):
+            continue
+        between = hits[(hits > before.time) & (hits <= new.time)].tolist()
+        between = between or [0.5 * (before.time + new.time)]
+        found.append((begin, between[0], now))
+        if len(between) > 1:  # nothing is known of what was between them: straight on
+            found.append((between[0], between[-1], _straight(now, new, between)))
+        lies = math.hypot(new.u, new.v) < slow
+        begin, now = between[-1], new._replace(fall=0.0) if lies else new
+    found.append((begin, states[-1].time + 1.0 / run.scene.frame_rate, now))
+    return [(bead, a, b, *free.later(a)[1:], *_UNMARKED) for a, b, free in found]
+
+
+def _states(run: Run, bead: int) -> list[_Free]:
+    frames = np.flatnonzero(run.status[:, bead] == FLYING)
+    columns = run.time[frames], run.position[frames, bead], run.velocity[frames, bead]
+    return [
+        _Free(time, x, y, u, v, GRAVITY)
+        for time, (x, y), (u, v) in zip(*(column.tolist() for column in columns), strict=True)
+    ]
+
+
+def _straight(old: _Free, new: _Free, between: list[float]) -> _Free:
+    a, b = old.later(between[0]), new.later(between[-1])
+    t = max(b.time - a.time, 1e-9)
+    return _Free(a.time, a.x, a.y, (b.x - a.x) / t, (b.y - a.y) / t, 0.0)
+
+
+def _mark(made: NDArray[np.void], run: Run) -> None:
+    """Say what the impacts on plates have to do with the pieces."""
+    rows = run.modelled
+    constant, model = constant_beside_model(run)
+    other = model if run.baseline else constant
+    far = outside(run)
+    order = np.lexsort((rows["time"], rows["bead"]))
+    key = rows["bead"][order], rows["time"][order]
+    for piece in made:
+        first, last = np.searchsorted(key[0], [piece["bead"], piece["bead"] + 1])
+        n = first + int(np.searchsorted(key[1][first:last], piece["start"], side="right")) - 1
+        if n < first:
+            continue
+        hit = order[n]
+        piece["restitution"] = rows["restitution"][hit]
+        piece["outside"] = far[hit]
+        if rows["time"][hit] == piece["start"]:
+            piece["other_v"] = other[hit] * rows["approach_speed"][hit]

@@ -1,0 +1,265 @@
+"""The record of a rain, rain.h5, written and read: all that figures and report need is in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import ImpactModel, Pair
+from contactlaw.engines import layout
+from contactlaw.engines.record import IMPACT, fill
+from dem_demo.kit.beads import Floats
+from dem_demo.kit.reader import closed, common
+from dem_demo.kit.recorder import Dataset, Recorder, made_by
+from dem_demo.rain.scene import Beads, Plate, Scene
+
+NAME, SCHEMA = "rain", 3
+
+# The columns' own descriptions are those of any engine; this is what they mean in this file.
+_AXES = (
+    "one row per impact; bead and other are rows of /beads, plate of /plates; x is horizontal, y "
+    "points up, z is the depth"
+)
+
+
+def rain_recorder(
+    path: Path,
+    scene: Scene,
+    model: ImpactModel,
+    *,
+    engine: tuple[str, str],
+    command: str,
+    files: Iterable[str],
+    time_step: float,
+    dimensions: int,
+    constant_cor: float | None = None,
+    bead_on_bead: str | None = None,
+) -> Recorder:
+    """Begin the record of a rain.
+
+    Parameters
+    ----------
+    path : Path
+        File to create.
+    scene : Scene
+        What is recorded.
+    model : ImpactModel
+        What rules the impacts; in the baseline what to compare them with.
+    engine : tuple of str
+        Name and version of the engine.
+    command : str
+        Command line that made the file.
+    files : iterable of str
+        Names of the files that will be made of it.
+    time_step : float
+        The engine's step [s].
+    dimensions : int
+        Of the engine, 2 or 3.
+    constant_cor : float, optional
+        The COR of every contact, in the baseline.
+    bead_on_bead : str, optional
+        What is to be said of beads that hit beads, where the engine does not record them.
+    """
+    attributes: dict[str, object] = {
+        **made_by(NAME, engine, command, model),
+        "schema": SCHEMA,
+        "seed": scene.seed,
+        "duration": scene.duration,
+        "frame_rate": scene.frame_rate,
+        "time_step": time_step,
+    }
+    if constant_cor is not None:
+        attributes["constant_cor"] = constant_cor
+    if bead_on_bead is not None:
+        attributes["bead_on_bead"] = bead_on_bead
+    return Recorder(
+        path,
+        attributes=attributes,
+        write_scene=lambda file: _write_scene(file, scene),
+        trajectories=_trajectories(scene, dimensions),
+        frame_rate=scene.frame_rate,
+        axes=_AXES,
+        files=files,
+    )
+
+
+def _write_scene(file: h5py.File, scene: Scene) -> None:
+    layout.write_materials(file, scene.sphere_material, scene.plate_material)
+    plates = layout.write_plates(file, (plate.thickness for plate in scene.plates))
+    for name, description in (
+        ("x0", "left end"),
+        ("x1", "right end"),
+        ("y", "height of the upper face"),
+    ):
+        values = [getattr(plate, name) for plate in scene.plates]
+        layout.write(plates, name, values, "m", description)
+    mass = scene.beads.mass(scene.sphere_material.density)
+    beads = layout.write_beads(file, scene.beads.radius, mass)
+    for name, units, description in (
+        ("emission_time", "s", "time at which the bead leaves its nozzle"),
+        ("position", "m", "centre (x, y) at emission"),
+        ("velocity", "m/s", "velocity (x, y) at emission"),
+    ):
+        layout.write(beads, name, getattr(scene.beads, name), units, description)
+
+
+def _trajectories(scene: Scene, dimensions: int) -> list[Dataset]:
+    beads = scene.beads.radius.size
+    return [
+        Dataset("position", "f4", (beads, 2), "m", "centre (x, y); of a bead that is gone: where "
+                "it left"),
+        Dataset("velocity", "f4", (beads, 2), "m/s", "velocity (x, y); of a bead that is gone: 0"),
+        Dataset("status", "u1", (beads,), "1", "0 waiting for its emission, 1 flying, 2 gone"),
+        *[Dataset("depth", "f4", (beads,), "m", "third coordinate of the centre")]
+        [: dimensions - 2],
+    ]  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One recorded rain.
+
+    Attributes
+    ----------
+    scene : Scene
+        What fell on what.
+    law : str
+        Contact law; in the baseline the one that it is to be compared with.
+    outside : str
+        What the model does outside its table.
+    constant_cor : float or None
+        The COR of every contact, in the baseline.
+    engine : str
+        Engine that ran it.
+    bead_on_bead : str or None
+        What is to be said of beads that hit beads, where the engine does not record them.
+    command, created : str
+        Command line that made it, and when.
+    versions : dict of str
+        Of the programs that made it, by name.
+    reason : str
+        Why it is partial; empty if it is complete.
+    collisions : structured ndarray
+        One row per collision: the impact record of `contactlaw.engines.record`. In the baseline it
+        ends with the COR.
+    time, position, velocity, status : ndarray
+        Frames (T,) [s], (T, N, 2) [m], (T, N, 2) [m/s], (T, N).
+    depth : ndarray or None
+        Third coordinate (T, N) [m], if the engine has one.
+    """
+
+    scene: Scene
+    law: str
+    outside: Literal["raise", "solve", "clamp"]
+    constant_cor: float | None
+    engine: str
+    bead_on_bead: str | None
+    command: str
+    created: str
+    versions: dict[str, str]
+    reason: str
+    collisions: NDArray[np.void]
+    time: Floats
+    position: NDArray[np.float32]
+    velocity: NDArray[np.float32]
+    status: NDArray[np.uint8]
+    depth: NDArray[np.float32] | None = None
+
+    @cached_property
+    def model(self) -> ImpactModel:
+        """The impact model; for the baseline the one that it is to be compared with.
+
+        Curves and the baseline's impacts may leave the table where no recorded impact has: there it
+        takes the value at the border, and flags it.
+        """
+        pair = Pair(self.scene.sphere_material, self.scene.plate_material)
+        outside = "clamp" if self.outside == "raise" else self.outside
+        return ImpactModel(pair, self.law, outside=outside)
+
+    @cached_property
+    def modelled(self) -> NDArray[np.void]:
+        """Impacts on plates with all that the model says of them: every column of the record.
+
+        As recorded; only where the record has no flags, as in the baseline, is the model asked
+        about the same impacts. Their COR is that of the run all the same.
+        """
+        recorded = self.collisions[self.collisions["plate"] >= 0]
+        names = recorded.dtype.names or ()
+        if "flags" in names:
+            return recorded
+        rows = np.zeros(recorded.size, IMPACT)
+        for name in names:
+            rows[name] = recorded[name]
+        thickness = np.array([plate.thickness for plate in self.scene.plates])[rows["plate"]]
+        radius = self.scene.beads.radius[rows["bead"]]
+        rebound = self.model.lookup(rows["approach_speed"], radius, thickness)
+        fill(rows, rebound, self.energy(rows))
+        return rows
+
+    @property
+    def baseline(self) -> bool:
+        """Whether every contact had the same COR."""
+        return self.constant_cor is not None
+
+    def energy(self, rows: NDArray[np.void]) -> Floats:
+        """Kinetic energy of the normal motion before impacts on plates [J]."""
+        mass = self.scene.beads.mass(self.scene.sphere_material.density)[rows["bead"]]
+        energy: Floats = 0.5 * mass * rows["approach_speed"] ** 2
+        return energy
+
+
+def read(path: Path) -> Run:
+    """Read a file that `dem-demo rain` has written.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+
+    Returns
+    -------
+    Run
+
+    Raises
+    ------
+    ValueError
+        If the file is something else, of another schema, or was never closed.
+    """
+    with h5py.File(path, "r") as file:
+        attributes = closed(file, path, NAME, SCHEMA)
+        frames = {name: dataset[()] for name, dataset in file["trajectories"].items()}
+        return Run(
+            scene=_scene(file),
+            outside=attributes["outside"],
+            bead_on_bead=attributes.get("bead_on_bead"),
+            collisions=layout.impacts(file),
+            **common(attributes),
+            **frames,
+        )
+
+
+def read_folder(folder: Path) -> Run:
+    """Read the record in a folder."""
+    return read(folder / f"{NAME}.h5")
+
+
+def _scene(file: h5py.File) -> Scene:
+    plates = [file[f"plates/{name}"][()].tolist() for name in ("thickness", "x0", "x1", "y")]
+    sphere, plate = layout.materials(file)
+    fields = ("radius", "emission_time", "position", "velocity")
+    return Scene(
+        beads=Beads(**{name: file[f"beads/{name}"][()] for name in fields}),
+        plates=[Plate(*values) for values in zip(*plates, strict=True)],
+        sphere_material=sphere,
+        plate_material=plate,
+        duration=float(file.attrs["duration"]),
+        seed=int(file.attrs["seed"]),
+        frame_rate=float(file.attrs["frame_rate"]),
+    )

@@ -1,0 +1,79 @@
+"""The summary that a run prints."""
+
+from __future__ import annotations
+
+import math
+
+from dem_demo.kit.report import label, limits_lines
+from dem_demo.rain.measure import PlateRow, bead_on_bead, limits, plate_rows
+from dem_demo.rain.record import Run
+
+_HEAD = (
+    "                         speed        COR                  energy of the impacts"
+    "             outside\n"
+    "   plate     impacts      mean       mean    range         kept    wave  plastic   other"
+    "   limits"
+)
+
+
+def summary(run: Run) -> str:
+    """Write the summary of a run.
+
+    Parameters
+    ----------
+    run : Run
+        The run, as read from its file.
+
+    Returns
+    -------
+    str
+        Title, one line per plate, beads on beads, and limits of the model that were exceeded.
+        Speeds are normal speeds [m/s]; energy shares are weighted by energy.
+    """
+    lines = [*title(run), "", _HEAD]
+    lines += [_plate_line(row) for row in plate_rows(run)]
+    lines += ["", _bead_line(run), *limits_lines(limits(run))]
+    if run.reason:
+        lines += ["", f"Partial, {progress(run)}: {run.reason}"]
+    return "\n".join(lines)
+
+
+def progress(run: Run) -> str:
+    """Say how far a partial rain has come."""
+    reached = max([*run.time[-1:].tolist(), *run.collisions["time"][-1:].tolist()], default=0.0)
+    return f"{reached:.4g} of {run.scene.duration:g} s"
+
+
+def title(run: Run) -> tuple[str, str]:
+    """Say in two lines what fell on what, and what computed it."""
+    scene, radius = run.scene, run.scene.beads.radius * 1e3
+    law = f"law {run.law}"
+    if run.baseline:
+        law = f"COR {run.constant_cor:g} everywhere, limits by {law}"
+    return (
+        f"{radius.size} beads of {scene.sphere_material.name}, radius {radius.min():.2f} to "
+        f"{radius.max():.2f} mm, on {scene.plate_material.name}",
+        f"{scene.duration:g} s in {run.engine}, {law}, seed {scene.seed}",
+    )
+
+
+def _plate_line(row: PlateRow) -> str:
+    head = f"{label(row.thickness):>10} {row.impacts:9d}"
+    if not row.impacts:
+        return head
+    cor = f"{row.restitution:.3f}   {row.lowest:.3f} - {row.highest:.3f}"
+    shares = "".join("       -" if math.isnan(s) else f"{s:8.1%}" for s in row.shares)
+    return f"{head} {row.speed:6.2f} m/s      {cor}  {shares} {row.outside:8d}"
+
+
+def _bead_line(run: Run) -> str:
+    if run.bead_on_bead is not None:
+        return f"Bead on bead: {run.bead_on_bead}"
+    rows = bead_on_bead(run)
+    if not rows.size:
+        return "Bead on bead: no impacts"
+    speed, cor = rows["approach_speed"], rows["restitution"]
+    return (
+        f"Bead on bead: {rows.size} impacts, {speed.mean():.2f} m/s on average, "
+        f"COR {cor.min():.3f} - {cor.max():.3f}"
+    )

@@ -1,0 +1,167 @@
+"""What the rain is made of: beads, plates, materials and the time they are given."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from dem_demo.kit.beads import GRAVITY, Floats
+from dem_demo.rain import defaults
+
+if TYPE_CHECKING:
+    from contactlaw import Material
+
+# Steps in which the fastest falling bead crosses the smallest radius. Beads that strike each other
+# get faster than that; up to three times as fast, no bead can jump through a plate.
+STEPS_PER_RADIUS = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """A horizontal plate, seen from its edge.
+
+    Parameters
+    ----------
+    thickness : float
+        Thickness [m]; ``inf`` is a half-space.
+    x0, x1 : float
+        Where it begins and ends [m].
+    y : float, optional
+        Height of its upper face [m].
+
+    Examples
+    --------
+    >>> Plate(thickness=1e-3, x0=0.0, x1=0.06).x1
+    0.06
+    """
+
+    thickness: float
+    x0: float
+    x1: float
+    y: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Refuse what is no plate."""
+        if not self.thickness > 0.0:
+            raise ValueError(
+                f"plates: thickness must be positive [m], or inf, got {self.thickness!r}"
+            )
+        if not (math.isfinite(self.y) and -math.inf < self.x0 < self.x1 < math.inf):
+            raise ValueError(
+                f"plate: needs finite x0 < x1 and y [m], got {self.x0!r}, {self.x1!r}, {self.y!r}"
+            )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Beads:
+    """Beads in the order of their emission; every field has one row per bead.
+
+    Parameters
+    ----------
+    radius : ndarray, shape (N,)
+        Radii [m].
+    emission_time : ndarray, shape (N,)
+        When each bead leaves the nozzle row [s], ascending.
+    position, velocity : ndarray, shape (N, 2)
+        Of the centre at that time, (x, y) [m] and [m/s].
+    """
+
+    radius: Floats
+    emission_time: Floats
+    position: Floats
+    velocity: Floats
+
+    def __post_init__(self) -> None:
+        """Refuse arrays that do not fit together or hold impossible values."""
+        n = self.radius.size
+        shapes = [a.shape for a in (self.radius, self.emission_time, self.position, self.velocity)]
+        if n == 0 or shapes != [(n,), (n,), (n, 2), (n, 2)]:
+            raise ValueError(
+                f"beads: need arrays of shape (N,), (N,), (N, 2), (N, 2), got {shapes}"
+            )
+        everything = np.column_stack((self.emission_time, self.position, self.velocity))
+        if not (np.isfinite(everything).all() and (np.diff(self.emission_time) >= 0.0).all()):
+            raise ValueError("beads: values must be finite, and emission times ascending")
+        if not ((self.radius > 0.0) & (self.radius < math.inf)).all():
+            raise ValueError(f"radius: must be positive and finite [m], got {self.radius.min()!r}")
+
+    def mass(self, density: float) -> Floats:
+        """Masses of the beads as spheres [kg], from their density [kg/m3]."""
+        from contactlaw.physical.materials import sphere_mass
+
+        return sphere_mass(density, self.radius)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """Beads that fall on plates, and how long they are watched.
+
+    Parameters
+    ----------
+    beads : Beads
+        What falls.
+    plates : sequence of Plate
+        What it falls on.
+    sphere_material, plate_material : Material
+        Materials of the beads and of the plates.
+    duration : float
+        Simulated time [s].
+    seed : int
+        Seed that the beads were drawn with.
+    frame_rate : float, optional
+        Recorded frames per second [1/s].
+    rows : int, optional
+        Rows of nozzles, one behind the other.
+    """
+
+    beads: Beads
+    plates: Sequence[Plate]
+    sphere_material: Material
+    plate_material: Material
+    duration: float
+    seed: int
+    frame_rate: float = defaults.FRAME_RATE
+    rows: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse a scene without plates or time."""
+        if not self.plates:
+            raise ValueError("plates: at least one thickness is needed [m]")
+        if not 1.0 / self.frame_rate <= self.duration < math.inf:
+            raise ValueError(
+                f"duration: must be finite and at least one frame, {1.0 / self.frame_rate:g} s, "
+                f"got {self.duration!r}"
+            )
+
+    @property
+    def frames(self) -> int:
+        """Frames after the first one, which shows the start."""
+        return round(self.duration * self.frame_rate)
+
+    @property
+    def floor(self) -> float:
+        """Height [m] below which a bead is gone: it has missed the plates for good."""
+        thick = max((p.thickness for p in self.plates if p.thickness < math.inf), default=0.0)
+        return min(p.y for p in self.plates) - thick - 0.02
+
+    @property
+    def top_speed(self) -> float:
+        """Largest speed [m/s] of a bead that falls from the nozzles to the floor."""
+        fall = self.beads.position[:, 1] - self.floor
+        speed = np.sqrt((self.beads.velocity**2).sum(axis=1) + 2.0 * GRAVITY * fall)
+        return float(speed.max())
+
+    @property
+    def steps_per_frame(self) -> int:
+        """Engine steps from frame to frame, so many that no bead jumps through a plate."""
+        safe = float(self.beads.radius.min()) / (STEPS_PER_RADIUS * self.top_speed)
+        return math.ceil(1.0 / (self.frame_rate * safe))
+
+    @property
+    def time_step(self) -> float:
+        """Engine step [s]."""
+        return 1.0 / (self.frame_rate * self.steps_per_frame)

