@@ -13,11 +13,6 @@ from dem_demo.drum import defaults
 from dem_demo.kit import options
 from dem_demo.kit.bed import EXTRAS
 
-_SCENE = (
-    "beads", "radius", "drum", "length", "thickness", "sphere", "plate", "speed", "turns",
-    "friction", "duration", "seed",
-)  # fmt: skip
-
 
 def add(commands: Any) -> None:
     """Add the command to those of ``dem-demo``."""
@@ -57,6 +52,6 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
 
         comparison.engine()
     with options.refusing(arguments):
-        scene = drum(**{name: getattr(arguments, name) for name in _SCENE})
+        scene = drum(**options.of(drum, arguments))
         plan = comparison.plan(arguments, scene, arguments.speed)
     return comparison.start(arguments, command, plan, TALE, Section)

@@ -1,4 +1,4 @@
-"""The default drum, our own choice: within the law's limits, and done within a minute.
+"""The default drum, our own choice: done within a minute of computing.
 
 No imports, so that the command line can show these numbers at once.
 """
@@ -10,7 +10,6 @@ DRUM, LENGTH = 0.04, 0.04  # [m], radius and length of the drum
 SPHERE, PLATE = "soda-lime-glass", "stainless-steel-304"
 SPEED = 0.5  # [m/s], at which the beads are thrown down
 TURNS = 2.0  # [1/s]; from 2.5 on the beads would stay at the shell
-FRICTION = 0.3
-DURATION = 0.25  # [s], half a turn
+FRICTION, DURATION = 0.5, 0.25  # [-]; [s], half a turn
 FRAME_RATE = 200.0  # [1/s]
 SEED = 1

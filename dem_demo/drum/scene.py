@@ -58,8 +58,8 @@ class Drum(Bed):
     @property
     def top_speed(self) -> float:
         """Largest speed [m/s] of a bead that falls across the drum, relative to its shell."""
-        start = float(np.linalg.norm(self.velocity))
-        return math.sqrt(start**2 + 4.0 * GRAVITY * self.drum) + self.spin * self.drum
+        start = float(self.velocity @ self.velocity)
+        return math.sqrt(start + 4.0 * GRAVITY * self.drum) + self.spin * self.drum
 
     @property
     def box(self) -> Corners:
@@ -106,24 +106,13 @@ def drum(
 
     Parameters
     ----------
-    beads : int, optional
-        Number of beads.
-    radius : tuple of float, optional
-        Smallest and largest radius of the beads [m], drawn uniformly.
-    drum, length, thickness : float, optional
-        Radius and length of the drum, and thickness of its sheet [m].
+    beads, radius, speed : optional
+        Number of beads, their smallest and largest radius [m], which are drawn uniformly, and the
+        speed at which they are thrown down [m/s].
     sphere, plate : str, optional
         Materials of beads and sheet.
-    speed : float, optional
-        At which the beads are thrown down [m/s].
-    turns : float, optional
-        Revolutions of the drum per second [1/s].
-    friction : float, optional
-        Coulomb's coefficient.
-    duration : float, optional
-        Simulated time [s].
-    seed : int, optional
-        The same seed gives the same beads.
+    drum, length, thickness, turns, friction, duration, seed : optional
+        As of `Drum`, in its units.
 
     Raises
     ------
@@ -174,5 +163,4 @@ def _places(
         raise ValueError(f"beads: {beads} do not fit into the drum, {len(site)} do; take a larger "
                          "--drum or --length, or smaller beads (--radius)")  # fmt: skip
     chosen = site[rng.choice(len(site), beads, replace=False)]
-    moved: Floats = chosen + rng.uniform(-spare, spare, (beads, 3))
-    return moved
+    return np.asarray(chosen + rng.uniform(-spare, spare, (beads, 3)))

@@ -21,15 +21,13 @@ def on_faces(run: Run[Drum]) -> NDArray[np.bool_]:
 
     At a seam both walls share its rebound, and neither contact has a COR of its own.
     """
-    alone: NDArray[np.bool_] = _away(run) > _SEAM * run.scene.radius[run.collisions["bead"]]
-    return alone
+    return np.asarray(_away(run) > _SEAM * run.scene.radius[run.collisions["bead"]])
 
 
 def near_edge(run: Run[Drum]) -> NDArray[np.bool_]:
     """Tell for each impact whether a seam of shell and end answers while it lasts."""
     unit = float(edge_distance(run.scene.plate_material, run.scene.thickness, 1.0))
-    near: NDArray[np.bool_] = _away(run) < unit * np.sqrt(run.collisions["contact_time"])
-    return near
+    return np.asarray(_away(run) < unit * np.sqrt(run.collisions["contact_time"]))
 
 
 def _away(run: Run[Drum]) -> Floats:
@@ -37,8 +35,7 @@ def _away(run: Run[Drum]) -> Floats:
     rows, scene = run.collisions, run.scene
     on_shell = np.minimum(rows["y"], scene.length - rows["y"])
     on_end = scene.drum - np.hypot(rows["x"], rows["z"])
-    away: Floats = np.where(rows["plate"] == 0, on_shell, on_end)
-    return away
+    return np.asarray(np.where(rows["plate"] == 0, on_shell, on_end))
 
 
 def _title(run: Run[Drum]) -> tuple[str, str]:

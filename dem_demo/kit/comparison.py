@@ -12,7 +12,7 @@ from contactlaw import ImpactModel, Pair, laws
 from dem_demo.kit import disk, drawing, lammps, session, tale
 from dem_demo.kit.bed import ENGINE, Bed
 from dem_demo.kit.constant import LEAST, constant_model
-from dem_demo.kit.recorder import Recorder
+from dem_demo.kit.recorder import Making, Recorder
 from dem_demo.kit.runs import CONSTANT, bed_recorder, read
 from dem_demo.kit.tale import Tale
 
@@ -116,11 +116,10 @@ def _simulate(chosen: Plan, show: session.Show, command: str, folder: Path) -> B
 
     chosen.scene.write_files(folder)
     for name, cor in ((show.record, None), (CONSTANT, chosen.constant_cor)):
-        recorder = bed_recorder(
-            folder / name, chosen.scene, chosen.law, engine=(ENGINE, lammps.version()),
-            command=command, files=show.files, ranks=MPI.COMM_WORLD.size, time_step=chosen.step,
-            constant_cor=cor,
-        )  # fmt: skip
+        making = Making(
+            chosen.law, (ENGINE, lammps.version()), command, show.files, chosen.step, cor
+        )
+        recorder = bed_recorder(folder / name, chosen.scene, making, MPI.COMM_WORLD.size)
         stop = recorder.record(partial(_run, chosen, constant=cor is not None), _sentence)
         if stop is not None:
             return stop

@@ -23,7 +23,7 @@ MM = 1e3
 
 _SHOWN = 6000  # points of each kind
 _SLOWEST = 0.03  # [m/s]
-_MARGIN = 0.12  # of the COR above and below the curves
+_MARGIN = 0.12  # of the COR below the curves, and half of it above them
 _PARTS = (
     ("moving", "kinetic energy of the beads", style.PALE),
     ("wave", "bending wave in the sheet", style.BLUE),
@@ -120,7 +120,7 @@ def restitution(
     rng = np.random.default_rng(0)
     speeds = np.geomspace(_SLOWEST, max(2.0, float(rows["approach_speed"].max(initial=0.0))), 200)
     _scatter(axes, rows[~flat], rng, style.PALE)
-    lowest = 1.0
+    lowest, highest = 1.0, float(np.quantile(rows["restitution"], 0.98)) if rows.size else 1.0
     for (name, which), colour in zip(kinds, (style.ORANGE, style.BLUE), strict=True):
         _scatter(axes, rows[flat & which[rows["bead"]]], rng, colour)
         sizes = sorted({radius[which].min(initial=np.inf), radius[which].max(initial=0.0)})
@@ -128,7 +128,7 @@ def restitution(
         for size in sizes if which.any() else ():
             cor = curve(run, speeds, size)
             axes.plot(speeds, cor, color=style.INK, linewidth=1.0, alpha=0.8)
-            lowest = min(lowest, float(cor.min()))
+            lowest, highest = min(lowest, float(cor.min())), max(highest, float(cor.max()))
     axes.scatter([], [], s=30, color=style.PALE, label=others)
     if runs.constant is not None and runs.constant.constant_cor is not None:
         axes.axhline(
@@ -137,7 +137,7 @@ def restitution(
         )  # fmt: skip
     axes.set_xscale("log")
     axes.set_xlim(speeds[0], speeds[-1])
-    axes.set_ylim(max(0.0, lowest - _MARGIN), 1.0 + _MARGIN)
+    axes.set_ylim(max(0.0, lowest - _MARGIN), min(1.0, highest) + 0.5 * _MARGIN)
     axes.set(xlabel="normal approach speed [m/s]", ylabel="coefficient of restitution")
     axes.legend(loc="lower left")
     return figure

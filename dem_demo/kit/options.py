@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+import inspect
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
@@ -37,6 +38,11 @@ def refusing(arguments: argparse.Namespace) -> Iterator[None]:
         yield
     except ValueError as error:
         raise Refused(sentence(error, vars(arguments))) from error
+
+
+def of(make: Callable[..., Any], arguments: argparse.Namespace) -> dict[str, Any]:
+    """Pick those arguments that a function takes."""
+    return {name: getattr(arguments, name) for name in inspect.signature(make).parameters}
 
 
 def text(numbers: Sequence[float]) -> str:

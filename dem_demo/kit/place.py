@@ -10,13 +10,17 @@ import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import h5py
 from filelock import FileLock, Timeout
 
+from contactlaw.engines.layout import FORMAT
 from dem_demo.kit.recorder import COMPLETE
 from dem_demo.kit.signals import noted
+
+if TYPE_CHECKING:
+    from dem_demo.kit.session import Show
 
 LOCK = ".lock"
 _UNFINISHED = ".unfinished-"
@@ -74,20 +78,7 @@ def entries(folder: Path) -> list[str]:
 
 
 class Place:
-    """The folder for the results of a run.
-
-    Parameters
-    ----------
-    path : Path
-        The folder, which need not exist.
-    name : str
-        Of the scene.
-    record : str
-        Name of the file that says which files belong to a run.
-    form : str
-        Its attribute ``format``.
-    files : set of str
-        Names of all files that the run will leave, but for those of an engine's own.
+    """The folder for the results of a run, which need not exist.
 
     Attributes
     ----------
@@ -100,14 +91,14 @@ class Place:
         If it holds a file that this run would replace, and none of its kind has left it there.
     """
 
-    def __init__(self, path: Path, name: str, record: str, form: str, files: set[str]) -> None:
-        self.path, self._record, self._format, self._files = path, record, form, files
+    def __init__(self, path: Path, show: Show) -> None:
+        self.path, self._show = path, show
         attributes = self._attributes(path)
         self.earlier, self._complete = bool(attributes), attributes.get("state") == COMPLETE
-        others = sorted(files & {*entries(path)} - self._owned(path))
+        others = sorted(show.files & {*entries(path)} - self._owned(path))
         if others:
             raise FileExistsError(
-                f"out: {path} holds {', '.join(others)}, which no {name} has left there; name "
+                f"out: {path} holds {', '.join(others)}, which no {show.name} has left there; name "
                 "another folder"
             )
 
@@ -129,13 +120,17 @@ class Place:
     def _attributes(self, path: Path) -> Mapping[str, Any]:
         """Read what the record in a folder says of its run; nothing if there is none."""
         try:
-            with h5py.File(path / self._record, "r") as file:
+            with h5py.File(path / self._show.record, "r") as file:
                 found = dict(file.attrs)
         except OSError:
             return {}
-        return found if found.get("format") == self._format else {}
+        return found if found.get("format") == FORMAT + self._show.name else {}
 
     def _owned(self, path: Path) -> set[str]:
         """Names of the files in a folder that a run of this kind has left there."""
         attributes = self._attributes(path)
-        return set(attributes.get("files", self._files)) & {*entries(path)} if attributes else set()
+        return (
+            set(attributes.get("files", self._show.files)) & {*entries(path)}
+            if attributes
+            else set()
+        )

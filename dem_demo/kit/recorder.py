@@ -12,7 +12,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import h5py
 import numpy as np
@@ -38,6 +38,23 @@ class Dataset(NamedTuple):
     description: str
 
 
+class Making(NamedTuple):
+    """What makes a run."""
+
+    model: ImpactModel
+    """What rules the impacts; with a constant COR what to compare them with."""
+    engine: tuple[str, str]
+    """Name and version."""
+    command: str
+    """Command line."""
+    files: Iterable[str]
+    """Names of the files that will be made of the record; those of the engine's own join them."""
+    time_step: float
+    """Of the engine [s]."""
+    constant_cor: float | None = None
+    """The COR of every impact, where there is one."""
+
+
 class Recorder:
     """Writes one run to an HDF5 file.
 
@@ -45,8 +62,12 @@ class Recorder:
     ----------
     path : Path
         File to create.
+    scene : str
+        Name of the scene.
+    making : Making
+        What makes the run.
     attributes : mapping
-        What the file says of itself, beside when and by which versions it was made.
+        What else the file says of itself.
     write_scene : callable
         Writes what is known before the run into the open file.
     trajectories : sequence of Dataset
@@ -55,8 +76,6 @@ class Recorder:
         Frames per second [1/s].
     axes : str
         What the columns of impacts mean in this file.
-    files : iterable of str
-        Names of the files that will be made of it; those of the engine's own join them.
 
     Attributes
     ----------
@@ -67,22 +86,23 @@ class Recorder:
     def __init__(
         self,
         path: Path,
+        scene: str,
+        making: Making,
         *,
         attributes: Mapping[str, object],
         write_scene: Callable[[h5py.File], None],
         trajectories: Sequence[Dataset],
         frame_rate: float,
         axes: str,
-        files: Iterable[str],
     ) -> None:
         raise_dropped()  # nothing has been written yet
         self.folder = path.parent
         self._path, self._disk = path, Disk(path)
-        self._files, self._frame_rate = {*files}, frame_rate
+        self._files, self._frame_rate = {*making.files}, frame_rate
         self._frames = 0
         with undisturbed():
             self._file = h5py.File(self._disk, "w")
-            self._file.attrs.update(_made())
+            self._file.attrs.update(_made(scene, making))
             self._file.attrs.update(attributes)
             write_scene(self._file)
             self._trajectories = self._file.create_group("trajectories")
@@ -117,8 +137,9 @@ class Recorder:
             if not isinstance(error, FORESEEN):
                 traceback.print_exc()
             stop, reason = error, sentence(error)
-        with noted():
-            self._close(reason)
+        finally:
+            with noted():
+                self._close(reason)
         return stop or self._disk.error
 
     def frame(self, frame: NamedTuple) -> None:
@@ -161,22 +182,19 @@ class Recorder:
         self._disk.close()
 
 
-def made_by(name: str, engine: tuple[str, str], command: str, model: ImpactModel) -> dict[str, Any]:
-    """Attributes that tell what made a run: scene, engine and its version, command line, law."""
-    law = model.force_law
+def _made(scene: str, making: Making) -> dict[str, object]:
+    engine, version_of_engine = making.engine
+    law, cor = making.model.force_law, making.constant_cor
     return {
-        "format": layout.FORMAT + name,
-        "command": command,
-        "engine": engine[0],
-        f"version_{engine[0]}": engine[1],
+        "format": layout.FORMAT + scene,
+        "command": making.command,
+        "engine": engine,
+        f"version_{engine}": version_of_engine,
         # the name by which the pair gets the law again: without the numbers that are its own
         "law": law.family if law.from_pair else law.name,
-        "outside": model.outside,
-    }
-
-
-def _made() -> dict[str, object]:
-    return {
+        "outside": making.model.outside,
+        "time_step": making.time_step,
+        **({} if cor is None else {"constant_cor": cor}),
         "created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "version_contactlaw": version("contactlaw"),
         "version_numba": version("numba"),

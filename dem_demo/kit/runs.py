@@ -5,71 +5,40 @@ NAME.h5 is that of the law, constant.h5 the other one.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Generic, TypeVar
 
 import h5py
-import numpy as np
-from numpy.typing import NDArray
 
-from contactlaw import ImpactModel, Pair
+from contactlaw import Pair
 from contactlaw.engines import layout
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.bed import Bed
-from dem_demo.kit.reader import closed, common
-from dem_demo.kit.recorder import Dataset, Recorder, made_by
+from dem_demo.kit.reader import Recorded, closed, common
+from dem_demo.kit.recorder import Dataset, Making, Recorder
 
 CONSTANT = "constant.h5"
 
 S = TypeVar("S", bound=Bed)
 
 
-@dataclass(frozen=True, eq=False)
-class Run(Generic[S]):
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Run(Recorded, Generic[S]):
     """One recorded run of a bed.
 
     Attributes
     ----------
     scene : Bed
         What fell on what.
-    law : str
-        Contact law; with a constant COR the one that it is to be compared with.
-    constant_cor : float or None
-        The COR of every impact, where there is one.
     ranks : int
         Processes that shared the work.
-    engine, command, created : str
-        What made it, the command line, and when.
-    versions : dict of str
-        Of the programs that made it, by name.
-    reason : str
-        Why it is partial; empty if it is complete.
-    collisions : structured ndarray
-        One row per impact on a wall, as in `contactlaw.engines.record`.
-    time : ndarray, shape (T,)
-        Of the frames [s].
-    position, velocity, status : ndarray
-        Frames (T, N, 3) [m], (T, N, 3) [m/s], (T, N).
     kinetic, rotational, potential, elapsed : ndarray, shape (T,)
         Energies of all beads [J], and computing time [s].
     """
 
     scene: S
-    law: str
-    constant_cor: float | None
     ranks: int
-    engine: str
-    command: str
-    created: str
-    versions: dict[str, str]
-    reason: str
-    collisions: NDArray[np.void]
-    time: Floats
-    position: NDArray[np.float32]
-    velocity: NDArray[np.float32]
-    status: NDArray[np.uint8]
     kinetic: Floats
     rotational: Floats
     potential: Floats
@@ -111,55 +80,16 @@ class Runs(Generic[S]):
         return next((run.reason for run in self.every if run.reason), "")
 
 
-def bed_recorder(
-    path: Path,
-    scene: Bed,
-    model: ImpactModel,
-    *,
-    engine: tuple[str, str],
-    command: str,
-    files: Iterable[str],
-    ranks: int,
-    time_step: float,
-    constant_cor: float | None = None,
-) -> Recorder:
-    """Begin the record of a bed.
-
-    Parameters
-    ----------
-    path : Path
-        File to create.
-    scene : Bed
-        What is recorded.
-    model : ImpactModel
-        What rules the impacts; with a constant COR what to compare them with.
-    engine : tuple of str
-        Name and version of the engine.
-    command : str
-        Command line that made the file.
-    files : iterable of str
-        Names of the files that will be made of it.
-    ranks : int
-        Processes that share the work.
-    time_step : float
-        The engine's step [s].
-    constant_cor : float, optional
-        The COR of every impact, where there is one.
-    """
-    attributes = {
-        **made_by(scene.NAME, engine, command, model),
-        "schema": scene.SCHEMA,
-        **{name: getattr(scene, name) for name in scene.NUMBERS},
-        "ranks": ranks,
-        "time_step": time_step,
-    }
-    if constant_cor is not None:
-        attributes["constant_cor"] = constant_cor
+def bed_recorder(path: Path, scene: Bed, making: Making, ranks: int) -> Recorder:
+    """Begin the record of a bed in a file, on so many processes that share the work."""
+    attributes = {name: getattr(scene, name) for name in scene.NUMBERS}
     n = scene.radius.size
     energy = "kinetic", "rotational", "potential"
     return Recorder(
         path,
-        attributes=attributes,
+        scene.NAME,
+        making,
+        attributes={**attributes, "schema": scene.SCHEMA, "ranks": ranks},
         write_scene=lambda file: _write(file, scene),
         trajectories=[
             Dataset("position", "f4", (n, 3), "m", "centre; of a bead that is gone: where it was"),
@@ -170,7 +100,6 @@ def bed_recorder(
         ],
         frame_rate=scene.FRAME_RATE,
         axes=scene.AXES,
-        files=files,
     )
 
 
@@ -210,7 +139,5 @@ def read_one(path: Path, scene: type[S]) -> Run[S]:
                 plate_material=plate,
             ),
             ranks=int(attributes["ranks"]),
-            collisions=layout.impacts(file),
-            **common(attributes),
-            **{name: dataset[()] for name, dataset in file["trajectories"].items()},
+            **common(file),
         )

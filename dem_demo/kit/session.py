@@ -10,7 +10,6 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from contactlaw.engines.layout import FORMAT
 from dem_demo.kit.gallery import Picture
 from dem_demo.kit.options import Refused
 from dem_demo.kit.place import Place, entries, workplace
@@ -68,7 +67,7 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
     int
         Exit status of the command.
     """
-    target = Place(out, show.name, show.record, FORMAT + show.name, show.files)
+    target = Place(out, show)
     with workplace(out) as folder:
         stop = simulate(folder)
         if not (folder / show.record).exists():

@@ -64,6 +64,7 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
     engine = engines.load(arguments.engine)
     with options.needing(engine.EXTRAS):
         from dem_demo.kit import session
+        from dem_demo.kit.recorder import Making
         from dem_demo.rain import complaint, figures, film, page, record, report
 
         named, rank = (arguments.engine, engine.version()), engine.rank()
@@ -88,12 +89,14 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
     )
 
     def simulate(folder: Path) -> BaseException | None:
+        step, cor = engine.time_step(scene, ruling), getattr(arguments, "constant_cor", None)
         recorder = record.rain_recorder(
-            folder / show.record, scene, model, engine=named, command=command, files=show.files,
-            time_step=engine.time_step(scene, ruling), dimensions=engine.DIMENSIONS,
-            constant_cor=getattr(arguments, "constant_cor", None),
+            folder / show.record,
+            scene,
+            Making(model, named, command, show.files, step, cor),
+            dimensions=engine.DIMENSIONS,
             bead_on_bead=engine.BEAD_ON_BEAD,
-        )  # fmt: skip
+        )
         return recorder.record(lambda it: engine.run(scene, ruling, it), sentence)
 
     return session.deliver(arguments.out, show, simulate)

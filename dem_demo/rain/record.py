@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
 
 import h5py
 import numpy as np
@@ -16,8 +14,8 @@ from contactlaw import ImpactModel, Pair
 from contactlaw.engines import layout
 from contactlaw.engines.record import IMPACT, fill
 from dem_demo.kit.beads import Floats
-from dem_demo.kit.reader import closed, common
-from dem_demo.kit.recorder import Dataset, Recorder, made_by
+from dem_demo.kit.reader import Recorded, closed, common
+from dem_demo.kit.recorder import Dataset, Making, Recorder
 from dem_demo.rain.scene import Beads, Plate, Scene
 
 NAME, SCHEMA = "rain", 3
@@ -30,17 +28,7 @@ _AXES = (
 
 
 def rain_recorder(
-    path: Path,
-    scene: Scene,
-    model: ImpactModel,
-    *,
-    engine: tuple[str, str],
-    command: str,
-    files: Iterable[str],
-    time_step: float,
-    dimensions: int,
-    constant_cor: float | None = None,
-    bead_on_bead: str | None = None,
+    path: Path, scene: Scene, making: Making, *, dimensions: int, bead_on_bead: str | None = None
 ) -> Recorder:
     """Begin the record of a rain.
 
@@ -50,43 +38,26 @@ def rain_recorder(
         File to create.
     scene : Scene
         What is recorded.
-    model : ImpactModel
-        What rules the impacts; in the baseline what to compare them with.
-    engine : tuple of str
-        Name and version of the engine.
-    command : str
-        Command line that made the file.
-    files : iterable of str
-        Names of the files that will be made of it.
-    time_step : float
-        The engine's step [s].
+    making : Making
+        What makes the run.
     dimensions : int
         Of the engine, 2 or 3.
-    constant_cor : float, optional
-        The COR of every contact, in the baseline.
     bead_on_bead : str, optional
         What is to be said of beads that hit beads, where the engine does not record them.
     """
-    attributes: dict[str, object] = {
-        **made_by(NAME, engine, command, model),
-        "schema": SCHEMA,
-        "seed": scene.seed,
-        "duration": scene.duration,
-        "frame_rate": scene.frame_rate,
-        "time_step": time_step,
-    }
-    if constant_cor is not None:
-        attributes["constant_cor"] = constant_cor
+    attributes = {name: getattr(scene, name) for name in ("seed", "duration", "frame_rate")}
+    attributes["schema"] = SCHEMA
     if bead_on_bead is not None:
         attributes["bead_on_bead"] = bead_on_bead
     return Recorder(
         path,
+        NAME,
+        making,
         attributes=attributes,
         write_scene=lambda file: _write_scene(file, scene),
         trajectories=_trajectories(scene, dimensions),
         frame_rate=scene.frame_rate,
         axes=_AXES,
-        files=files,
     )
 
 
@@ -122,54 +93,22 @@ def _trajectories(scene: Scene, dimensions: int) -> list[Dataset]:
     ]  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class Run:
-    """One recorded rain.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Run(Recorded):
+    """One recorded rain; in the baseline every contact has the same COR.
 
     Attributes
     ----------
     scene : Scene
         What fell on what.
-    law : str
-        Contact law; in the baseline the one that it is to be compared with.
-    outside : str
-        What the model does outside its table.
-    constant_cor : float or None
-        The COR of every contact, in the baseline.
-    engine : str
-        Engine that ran it.
     bead_on_bead : str or None
         What is to be said of beads that hit beads, where the engine does not record them.
-    command, created : str
-        Command line that made it, and when.
-    versions : dict of str
-        Of the programs that made it, by name.
-    reason : str
-        Why it is partial; empty if it is complete.
-    collisions : structured ndarray
-        One row per collision: the impact record of `contactlaw.engines.record`. In the baseline it
-        ends with the COR.
-    time, position, velocity, status : ndarray
-        Frames (T,) [s], (T, N, 2) [m], (T, N, 2) [m/s], (T, N).
     depth : ndarray or None
         Third coordinate (T, N) [m], if the engine has one.
     """
 
     scene: Scene
-    law: str
-    outside: Literal["raise", "solve", "clamp"]
-    constant_cor: float | None
-    engine: str
     bead_on_bead: str | None
-    command: str
-    created: str
-    versions: dict[str, str]
-    reason: str
-    collisions: NDArray[np.void]
-    time: Floats
-    position: NDArray[np.float32]
-    velocity: NDArray[np.float32]
-    status: NDArray[np.uint8]
     depth: NDArray[np.float32] | None = None
 
     @cached_property
@@ -234,14 +173,10 @@ def read(path: Path) -> Run:
     """
     with h5py.File(path, "r") as file:
         attributes = closed(file, path, NAME, SCHEMA)
-        frames = {name: dataset[()] for name, dataset in file["trajectories"].items()}
         return Run(
             scene=_scene(file),
-            outside=attributes["outside"],
             bead_on_bead=attributes.get("bead_on_bead"),
-            collisions=layout.impacts(file),
-            **common(attributes),
-            **frames,
+            **common(file),
         )
 
 

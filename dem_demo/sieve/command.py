@@ -13,11 +13,6 @@ from dem_demo.kit import options
 from dem_demo.kit.bed import EXTRAS
 from dem_demo.sieve import defaults
 
-_SCENE = (
-    "beads", "radius", "opening", "thickness", "sphere", "plate", "speed", "frequency",
-    "amplitude", "friction", "duration", "seed",
-)  # fmt: skip
-
 
 def add(commands: Any) -> None:
     """Add the command to those of ``dem-demo``."""
@@ -60,6 +55,6 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
 
         comparison.engine()
     with options.refusing(arguments):
-        scene = sieve(**{name: getattr(arguments, name) for name in _SCENE})
+        scene = sieve(**options.of(sieve, arguments))
         plan = comparison.plan(arguments, scene, abs(float(scene.velocity[2])))
     return comparison.start(arguments, command, plan, TALE, Sheet, frozenset({FORM}))

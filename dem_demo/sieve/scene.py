@@ -137,24 +137,15 @@ def sieve(
 
     Parameters
     ----------
-    beads : int, optional
-        Number of beads, of either size by chance.
-    radius : tuple of float, optional
-        Of the beads that pass the openings, and of those that do not [m].
-    opening, thickness : float, optional
-        Diameter of the openings, and thickness of the sheet [m].
+    beads, radius, speed : optional
+        Number of beads, of either size by chance, radius of those that pass the openings and of
+        those that do not [m], and the speed at which the feed comes down [m/s].
+    opening : float, optional
+        Diameter of the openings [m].
     sphere, plate : str, optional
         Materials of beads and sheet.
-    speed : float, optional
-        At which the feed comes down [m/s].
-    frequency, amplitude : float, optional
-        Of the deck's vibration [1/s], [m].
-    friction : float, optional
-        Coulomb's coefficient.
-    duration : float, optional
-        Simulated time [s].
-    seed : int, optional
-        The same seed gives the same feed.
+    thickness, frequency, amplitude, friction, duration, seed : optional
+        As of `Sieve`, in its units.
 
     Raises
     ------

@@ -1,5 +1,6 @@
 """`dem-demo drum`: its walls, its record, its energy, and what it leaves when it is stopped."""
 
+import argparse
 import csv
 import io
 import os
@@ -24,13 +25,14 @@ from dem_demo import cli  # noqa: E402
 from dem_demo.drum import figures  # noqa: E402
 from dem_demo.drum.scene import Drum, drum  # noqa: E402
 from dem_demo.drum.tale import near_edge, on_faces  # noqa: E402
-from dem_demo.kit import lammps  # noqa: E402
+from dem_demo.kit import comparison, lammps  # noqa: E402
 from dem_demo.kit.measure import account  # noqa: E402
 from dem_demo.kit.runs import read  # noqa: E402
 
 # Few beads that never meet; the law's table comes with the package.
-SMALL = ["drum", "--beads", "5", "--duration", "0.08", "--friction", "0", "--speed", "1.5"]
-SMALL += ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc", "--seed", "3"]
+SMALL = ["drum", "--beads", "4", "--duration", "0.16", "--friction", "0", "--speed", "1.5"]
+SMALL += ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc", "--seed", "6"]
+SMALL += ["--constant-cor", "0.8"]
 PICTURES = {f"{name}.png" for name in figures.names()}
 SIMULATED = {"drum.h5", "constant.h5", "drum.lammpstrj"}
 FILES = {*SIMULATED, "summary.txt", "index.html", "drum.gif", *PICTURES}
@@ -67,11 +69,11 @@ def test_the_record_explains_itself(folder):
     for name in ("drum.h5", "constant.h5"):
         with h5py.File(folder / name) as file:
             assert file.attrs["format"] == "contactlaw-drum"
-            assert "--beads 5" in file.attrs["command"]
+            assert "--beads 4" in file.attrs["command"]
             assert set(file["collisions"]) == set(IMPACT.names)
             for column in COLUMNS:
                 assert file["collisions"][column.name].attrs["units"] == column.unit
-            assert file["trajectories/position"].shape == (17, 5, 3)
+            assert file["trajectories/position"].shape == (33, 4, 3)
             assert file["plates/thickness"].shape == (3,)
             for group in ("beads", "plates", "trajectories"):
                 for dataset in file[group].values():
@@ -116,8 +118,14 @@ def test_impacts_have_the_cor_of_the_law_and_the_constant(runs):
     assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
     rows = constant.collisions[on_faces(constant)]
     assert rows["restitution"] == pytest.approx(constant.constant_cor, abs=1e-3)
-    thick = model.restitution(1.5, law.scene.radius.mean(), np.inf)
-    assert constant.constant_cor == pytest.approx(thick, abs=5e-4)
+    assert constant.constant_cor == 0.8
+
+
+def test_the_default_of_the_constant_is_the_law_on_a_thick_block():
+    scene = drum()
+    plan = comparison.plan(argparse.Namespace(law="hertz"), scene, 0.5)
+    thick = plan.law.restitution(0.5, scene.radius.mean(), np.inf)
+    assert plan.constant_cor == pytest.approx(float(thick), abs=5e-4)
 
 
 def test_the_account_of_energy_closes_where_beads_meet_only_the_drum(runs):

