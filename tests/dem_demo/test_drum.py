@@ -65,6 +65,15 @@ def test_the_page_needs_nothing_else(folder):
     assert text.count("<figure") == len(PICTURES) and "$" not in text.partition("<section>")[2]
 
 
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_page_fits_the_screen(folder, page, width):
+    page.complaints.clear()
+    page.open(folder / "index.html", width)
+    assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
+    assert page.value("document.documentElement.scrollWidth") <= width
+    assert page.complaints == []
+
+
 def test_the_record_explains_itself(folder):
     for name in ("drum.h5", "constant.h5"):
         with h5py.File(folder / name) as file:
