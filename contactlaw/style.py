@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 # Okabe and Ito (2008), Color Universal Design.
 BLUE, ORANGE, GREEN, VERMILION = "#0072B2", "#E69F00", "#009E73", "#D55E00"
+SKY, PURPLE = "#56B4E9", "#CC79A7"
 INK, MUTED, PALE = "#222222", "#6E6E6E", "#D9D9D9"
 
 _SETTINGS: dict[Any, Any] = {
@@ -30,7 +31,10 @@ _SETTINGS: dict[Any, Any] = {
     "figure.facecolor": "white",
     "font.size": 12,
     "axes.titlesize": 12,
+    "axes.titlelocation": "left",
+    "axes.titleweight": "bold",
     "axes.labelsize": 13,
+    "figure.labelsize": 13,
     "axes.labelcolor": INK,
     "axes.edgecolor": MUTED,
     "axes.spines.top": False,
@@ -40,6 +44,7 @@ _SETTINGS: dict[Any, Any] = {
     "grid.color": "#EBEBEB",
     "xtick.color": INK,
     "ytick.color": INK,
+    "lines.linewidth": 1.8,
     "legend.frameon": False,
     "legend.fontsize": 11,
 }
@@ -48,6 +53,7 @@ _SETTINGS: dict[Any, Any] = {
 Choice = TypeVar("Choice")
 
 NARROW = 6.0  # inches: the width of a figure that is read on a phone
+_MARGIN = 0.1  # inches of white on either side of the axes and below them
 _narrow: ContextVar[bool] = ContextVar("narrow", default=False)
 
 
@@ -95,7 +101,14 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
     # The axes leave room for the lines above them.
     below = 0.22 + 0.28 * len(head)
     room = below + 0.02 + 0.2 * len(lines)
-    layout = ConstrainedLayoutEngine(rect=(0.0, 0.0, 1.0, 1.0 - room / height))
+    layout = ConstrainedLayoutEngine(
+        rect=(
+            _MARGIN / width,
+            _MARGIN / height,
+            1.0 - 2.0 * _MARGIN / width,
+            1.0 - (room + _MARGIN) / height,
+        )
+    )
     made = Figure(figsize=(width, height), layout=layout)
     left = 0.15 / width
     made.text(

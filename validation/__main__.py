@@ -58,18 +58,18 @@ def _write(folder: Path) -> collections.Counter[str]:
     """Draw, judge and write; count the verdicts."""
     from tqdm import tqdm
 
-    from contactlaw.style import png
+    from contactlaw import style
     from validation import figures
     from validation.claims import SECTIONS, of_section
-    from validation.figures import _style
     from validation.report import Picture, page
 
     drawn = []
-    with _style.applied():
+    with style.applied():
         for name in tqdm(figures.names(), "validation: figures", disable=None):
             module = figures.module(name)
             figure, numbers = module.draw()
-            one = Picture(name, module.PART, str(module.__doc__), numbers, png(figure))
+            numbers = {key: float(number) for key, number in numbers.items()}
+            one = Picture(name, module.PART, str(module.__doc__), numbers, style.png(figure))
             (folder / one.file).write_bytes(one.png)
             drawn.append(one)
     sections = tqdm(SECTIONS, "validation: claims", disable=None)

@@ -44,6 +44,28 @@ def impacts(speed_ratio: ArrayLike, thickness_ratio: ArrayLike, law: str = "myc"
     return model(law).lookup(np.asarray(speed_ratio) * SPEED, RADIUS, thickness)
 
 
+def largest(values: ArrayLike) -> float:
+    """Find the largest magnitude.
+
+    Examples
+    --------
+    >>> largest([-3.0, 2.0])
+    3.0
+    """
+    return float(np.abs(values).max())
+
+
+def extreme(values: ArrayLike) -> float:
+    """Find the value of the largest magnitude, with its sign.
+
+    Examples
+    --------
+    >>> extreme([-3.0, 2.0])
+    -3.0
+    """
+    return float(max(np.ravel(values), key=abs))
+
+
 def all_laws(pair: cl.Pair = PAIR) -> dict[str, laws.Law]:
     """Laws of the literature by their names, with the numbers that they take from the pair.
 

@@ -8,57 +8,48 @@ tends to 1 only for very thin plates. One quadratic term makes the curve exact t
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from contactlaw import turning_point
+from contactlaw.style import BLUE, GREEN, VERMILION
 from validation import figures
 from validation.closed_form import elastic_compression
-from validation.figures import _style
+from validation.figures import chart
+from validation.figures.chart import INELASTICITY, Axis, Panel
 from validation.formulas import eq_6
+from validation.paper import largest
 
 PART = figures.PAPER
 
 INTERCEPT = 1.25**-0.6
 
 
-def draw() -> tuple[Figure, dict[str, float]]:
+def draw() -> chart.Drawn:
     """Draw the solver's points, Eq. 6 and the quadratic."""
-    figure = _style.figure(
-        11.0,
-        5.6,
+    figure, (left, right) = chart.sheet(
+        (11.0, 5.6),
         "The slope of Eq. 6 is 0.91 to 0.93, not 1.00",
         "largest compression of an elastic impact on Hertz's scale; right: error of the two "
         "formulas for $w_m$",
+        Panel(INELASTICITY.between(0, 2), Axis(r"largest compression  $w_m^{-1.5}$")),
+        Panel(INELASTICITY.between(0, 2), Axis(r"error of $w_m$  [%]")),
     )
-    left, right = figure.subplots(1, 2)
     lam = np.linspace(0.0, 2.0, 81)
     exact = np.asarray(elastic_compression(lam))
     quadratic = INTERCEPT * turning_point.loading(lam) ** -1.5
+    printed, mended = eq_6(lam) / exact - 1, quadratic ** (-2 / 3) / exact - 1
+    some = slice(None, None, 5)
     left.plot(
-        lam[::5],
-        exact[::5] ** -1.5,
-        "s",
-        color=_style.BLUE,
-        markersize=7,
-        label="solver",
-        clip_on=False,
+        lam[some], exact[some] ** -1.5, "s", color=BLUE, markersize=7, label="solver", clip_on=False
     )
-    left.plot(lam, lam + INTERCEPT, color=_style.VERMILION, linewidth=2, label="Eq. 6, slope 1.00")
-    left.plot(lam, quadratic, color=_style.GREEN, linewidth=2, label="derived slope + quadratic")
-    left.set(xlabel=_style.INELASTICITY, ylabel=r"largest compression  $w_m^{-1.5}$", xlim=(0, 2))
+    left.plot(lam, lam + INTERCEPT, color=VERMILION, label="Eq. 6, slope 1.00")
+    left.plot(lam, quadratic, color=GREEN, label="derived slope + quadratic")
     left.legend(loc="upper left")
-    printed = eq_6(lam)
-    right.plot(lam, 100 * (printed / exact - 1), color=_style.VERMILION, linewidth=2)
-    right.plot(lam, 100 * (quadratic ** (-2 / 3) / exact - 1), color=_style.GREEN, linewidth=2)
-    right.set(xlabel=_style.INELASTICITY, ylabel=r"error of $w_m$  [%]", xlim=(0, 2))
-    slope = float((lam * (exact**-1.5 - INTERCEPT)).sum() / (lam**2).sum())
-    near = lam <= 0.6
-    start = float(elastic_compression(1e-4)) ** -1.5 - INTERCEPT
+    right.plot(lam, 100 * printed, color=VERMILION)
+    right.plot(lam, 100 * mended, color=GREEN)
+    start = elastic_compression(1e-4) ** -1.5 - INTERCEPT
     return figure, {
-        "least-squares slope over 0 to 2": slope,
+        "least-squares slope over 0 to 2": (lam * (exact**-1.5 - INTERCEPT)).sum() / (lam**2).sum(),
         "slope at 0": start / 1e-4,
-        "largest error of Eq. 6 in w_m": float(np.abs(printed / exact - 1).max()),
-        "largest error of the quadratic up to 0.6": float(
-            np.abs(quadratic ** (-2 / 3) / exact - 1)[near].max()
-        ),
+        "largest error of Eq. 6 in w_m": largest(printed),
+        "largest error of the quadratic up to 0.6": largest(mended[lam <= 0.6]),
     }

@@ -11,42 +11,38 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from contactlaw import laws, turning_point
 from contactlaw.laws.myc import P
+from contactlaw.style import INK
 from validation import closed_form, figures
-from validation.figures import _style
-from validation.paper import ETA, restitution
+from validation.figures import chart
+from validation.figures.chart import SLENDERNESS, SPEED, Axis, Panel
+from validation.paper import ETA, largest, restitution
 
 PART = figures.PAPER
 
 
-def draw() -> tuple[Figure, dict[str, float]]:
+def draw() -> chart.Drawn:
     """Draw the relative error, with the axes of the paper's pair on the right."""
-    figure = _style.figure(
-        10.0,
-        6.2,
+    figure, (axes,) = chart.sheet(
+        (10.0, 6.2),
         "The turning-point form: within 0.05 % up to 10 times the yield speed",
         "relative error of the COR against the solver; any pair of materials (R/H on the right: "
         "gamma-alumina on glass)",
+        Panel(SPEED, Axis(r"inelasticity at yield  $\lambda_Y$")),
     )
-    axes = figure.subplots()
     v, lam_y = np.linspace(0.05, 20.0, 200), np.linspace(0.0, 0.3, 61)
     myc = laws.law("myc")
     exact = np.array([[restitution(x, lam, myc) for x in v] for lam in lam_y])
     error = turning_point.restitution(v, lam_y[:, None]) / exact - 1.0
-    levels = np.linspace(-0.15, 0.15, 13)
-    filled = axes.contourf(v, lam_y, 100 * error, levels=levels, cmap="PuOr", extend="both")
-    figure.colorbar(filled, ax=axes, label="error of the COR  [%]", pad=0.03)
-    axes.axhline(ETA * 1.8**2, color=_style.INK, linestyle=":", linewidth=1.2)
+    look = {"cmap": "PuOr", "extend": "both", "levels": np.linspace(-0.15, 0.15, 13)}
+    chart.contours(axes, v, lam_y, 100 * error, "error of the COR  [%]", **look)
+    axes.axhline(ETA * 1.8**2, color=INK, linestyle=":", linewidth=1.2)
     overload = v**0.8 * turning_point.loading(lam_y[:, None] * v**0.2)
-    axes.contour(v, lam_y, overload, levels=[P], colors=_style.INK, linewidths=1.2)
-    for x, text, side in (
-        (4.1, "loads along\nHertz's curve", "right"),
-        (4.7, "and\nbeyond it", "left"),
-    ):
-        axes.text(x, 0.02, text, fontsize=10.5, ha=side, color=_style.INK)
+    axes.contour(v, lam_y, overload, levels=[P], colors=INK, linewidths=1.2)
+    chart.note(axes, 4.1, 0.02, "loads along\nHertz's curve", ha="right")
+    chart.note(axes, 4.7, 0.02, "and\nbeyond it", ha="left")
     other = axes.secondary_yaxis(
         "right",
         functions=(
@@ -54,18 +50,14 @@ def draw() -> tuple[Figure, dict[str, float]]:
             lambda ratio: ETA * np.square(ratio),
         ),
     )
-    other.set_ylabel(_style.SLENDERNESS)
+    other.set_ylabel(SLENDERNESS.label)
     other.set_yticks([0.5, 1.0, 1.4, 1.8])
     axes.set_xticks([0, 5, 10, 15, 20])
-    axes.set(xlabel=_style.SPEED, ylabel=r"inelasticity at yield  $\lambda_Y$")
-    axes.grid(visible=False)
     slow = error[:, v <= 10.0]
     peng = closed_form.peng(v, np.sqrt(lam_y / ETA)[:, None], ETA) / exact - 1.0
     return figure, {
-        "largest error up to 10 V_Y0": float(np.abs(slow).max()),
-        "root mean square error up to 10 V_Y0": math.sqrt(float((slow**2).mean())),
-        "largest error up to 20 V_Y0": float(np.abs(error).max()),
-        "largest error of Eq. 22, continuous, up to 10 V_Y0": float(
-            np.abs(peng[:, v <= 10.0]).max()
-        ),
+        "largest error up to 10 V_Y0": largest(slow),
+        "root mean square error up to 10 V_Y0": math.sqrt((slow**2).mean()),
+        "largest error up to 20 V_Y0": largest(error),
+        "largest error of Eq. 22, continuous, up to 10 V_Y0": largest(peng[:, v <= 10.0]),
     }

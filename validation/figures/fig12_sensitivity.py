@@ -11,62 +11,60 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from matplotlib.figure import Figure
 
-from validation import figures
-from validation.figures import _style
-from validation.paper import FASTEST, RADIUS, SPEED, model
+from contactlaw.style import BLUE, GREEN, INK, ORANGE, VERMILION
+from validation import figures, paper
+from validation.figures import chart
+from validation.figures.chart import SPEED, Axis
+from validation.paper import FASTEST, RADIUS, largest, model
 
 PART = figures.PRACTICE
 
 _RATIOS = (0.3, 0.9, 1.8)
 _LINES = {
-    "speed": (_style.INK, "-"),
-    "radius": (_style.BLUE, "-"),
-    "thickness": (_style.BLUE, "--"),
-    "sphere_density": (_style.GREEN, "-"),
-    "plate_density": (_style.GREEN, "--"),
-    "sphere_modulus": (_style.ORANGE, "-"),
-    "plate_modulus": (_style.ORANGE, "--"),
-    "yield_strength": (_style.VERMILION, "-"),
+    "speed": (INK, "-"),
+    "radius": (BLUE, "-"),
+    "thickness": (BLUE, "--"),
+    "sphere_density": (GREEN, "-"),
+    "plate_density": (GREEN, "--"),
+    "sphere_modulus": (ORANGE, "-"),
+    "plate_modulus": (ORANGE, "--"),
+    "yield_strength": (VERMILION, "-"),
 }
 
 
-def draw() -> tuple[Figure, dict[str, float]]:
+def draw() -> chart.Drawn:
     """Draw one panel per thickness with a line per input."""
-    figure = _style.figure(
-        13.0,
-        5.8,
+    figure, panels = chart.by_thickness(
+        (13.0, 5.8),
         "Which input has to be known well? Thickness, where the plate is thin",
-        "what one per cent more of an input does to the COR; gamma-alumina on glass; "
-        f"{_style.RATIO}",
+        "what one per cent more of an input does to the COR; gamma-alumina on glass",
+        _RATIOS,
+        SPEED.between(0, FASTEST),
+        Axis("change of the COR  [% per %]"),
     )
-    panels = figure.subplots(1, len(_RATIOS), sharey=True)
-    v = np.linspace(0.1, FASTEST, 300)
+    v, at = np.linspace(0.1, FASTEST, 300), np.linspace(0.5, 6.7, 9)
     worst = 0.0
-    for axes, ratio in zip(panels, _RATIOS, strict=True):
-        moved = model().sensitivity(v * SPEED, RADIUS, RADIUS / ratio)
+    for ratio, axes in panels:
+        moved = model().sensitivity(v * paper.SPEED, RADIUS, RADIUS / ratio)
         for field in dataclasses.fields(moved):
             colour, line = _LINES[field.name]
             label = field.name.replace("_", " ")
-            axes.plot(v, getattr(moved, field.name), line, color=colour, label=label, linewidth=2)
-        at = np.linspace(0.5, 6.7, 9)
+            axes.plot(v, getattr(moved, field.name), line, color=colour, label=label)
         dots = _quotient(at, ratio)
-        axes.plot(at, dots, "o", color=_style.INK, markersize=5)
-        table = np.asarray(model().sensitivity(at * SPEED, RADIUS, RADIUS / ratio).speed)
-        worst = max(worst, float(np.abs(dots - table).max()))
-        axes.set(title=f"R/H = {ratio:g}", xlim=(0, FASTEST))
-    panels[1].set_xlabel(_style.SPEED)
-    panels[0].set_ylabel("change of the COR  [% per %]")
-    _style.key(panels[0], "speed, by the solver", "o", markersize=5)
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=5)
-    thin = model().sensitivity(2.0 * SPEED, RADIUS, RADIUS / 1.8)
-    thick = model().sensitivity(5.0 * SPEED, RADIUS, RADIUS / 0.3)
+        axes.plot(at, dots, "o", color=INK, markersize=5)
+        table = model().sensitivity(at * paper.SPEED, RADIUS, RADIUS / ratio).speed
+        worst = max(worst, largest(dots - table))
+    first = figure.axes[0]
+    chart.key(first, "speed, by the solver", "o", markersize=5)
+    figure.legend(*first.get_legend_handles_labels(), loc="outside lower center", ncols=5)
+    thin = model().sensitivity(2.0 * paper.SPEED, RADIUS, RADIUS / 1.8)
+    thick = model().sensitivity(5.0 * paper.SPEED, RADIUS, RADIUS / 0.3)
     return figure, {
-        "thickness, R/H = 1.8, 2 yield speeds": float(thin.thickness),
-        "radius, R/H = 1.8, 2 yield speeds": float(thin.radius),
-        "yield strength, R/H = 0.3, 5 yield speeds": float(thick.yield_strength),
-        "speed, R/H = 0.3, 5 yield speeds": float(thick.speed),
+        "thickness, R/H = 1.8, 2 yield speeds": thin.thickness,
+        "radius, R/H = 1.8, 2 yield speeds": thin.radius,
+        "yield strength, R/H = 0.3, 5 yield speeds": thick.yield_strength,
+        "speed, R/H = 0.3, 5 yield speeds": thick.speed,
         "largest difference to the solver, speed": worst,
     }
 
@@ -75,7 +73,7 @@ def _quotient(v: np.ndarray, ratio: float) -> np.ndarray:
     """Central difference of ln e with respect to ln V0, by integration."""
     step = 1e-4
     up, down = (
-        model().solve(v * SPEED * np.exp(h), RADIUS, RADIUS / ratio, rtol=1e-13).restitution
+        model().solve(v * paper.SPEED * np.exp(h), RADIUS, RADIUS / ratio, rtol=1e-13).restitution
         for h in (step, -step)
     )
     return np.log(up / down) / (2.0 * step)

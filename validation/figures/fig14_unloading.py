@@ -10,12 +10,13 @@ hemisphere is 47 % above Hertz there: its contact is no longer narrow.
 from __future__ import annotations
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from contactlaw.laws import Law
+from contactlaw.style import INK
 from validation import figures
 from validation.fem import compare
-from validation.figures import _style
+from validation.figures import chart
+from validation.figures.chart import COMPRESSION, FORCE, Axis, Panel
 from validation.paper import all_laws, force, unloading
 
 PART = figures.FINITE_ELEMENTS
@@ -24,55 +25,48 @@ _DEEPEST = 30.0  # d_Y
 _DEPTHS = ("2", "5", "10", "30")
 
 
-def draw() -> tuple[Figure, dict[str, float]]:
+def draw() -> chart.Drawn:
     """Draw the deep indentation with all laws, and the returned work against depth."""
-    figure = _style.figure(
-        13.0,
-        6.4,
+    deepest = Axis("largest compression  d$_m$ / d$_Y$").log(1, 2, 5, 10, 30)
+    figure, (left, right) = chart.sheet(
+        (13.0, 6.4),
         "No law unloads quite as finite elements do; MYC and Stronge come nearest",
         "gamma-alumina hemisphere pressed slowly into glass and drawn back; compression and force "
         "in units of the yield of MYC",
+        Panel(COMPRESSION.between(0, _DEEPEST), FORCE.between(0, 95)),
+        Panel(deepest, Axis("work of unloading over work of loading").between(0, 1.02)),
+        width_ratios=(1.25, 1.0),
     )
-    left, right = figure.subplots(1, 2, width_ratios=(1.25, 1.0))
     numbers = {}
     grid, depth = np.linspace(0.0, _DEEPEST, 400), np.geomspace(0.8, _DEEPEST, 60)
     for name, law in all_laws().items():
-        colour, line, title = _style.law(name)
-        left.plot(grid, force(law, grid), line, color=colour, linewidth=2, label=title)
+        chart.of_law(left, name, grid, force(law, grid))
         if law.yield_coefficient is None:
             continue
-        left.plot(*unloading(law, _DEEPEST), line, color=colour, linewidth=1.2)
-        curve_share = np.array([_returned(law, one) for one in depth])
-        right.plot(depth, curve_share, line, color=colour, linewidth=2)
+        chart.of_law(left, name, *unloading(law, _DEEPEST), named=False)
+        chart.of_law(right, name, depth, [_returned(law, one) for one in depth])
+        title = chart.law(name)[-1]
         numbers[f"returned from 5 d_Y, {title}"] = _returned(law, 5.0)
         numbers[f"returned from 30 d_Y, {title}"] = _returned(law, 30.0)
     for name in _DEPTHS:
         curve = compare.indentation(name)
-        share = compare.returned(*curve)
-        numbers[f"returned from {name} d_Y, finite elements"] = share
-        right.plot(float(name), share, "o", color=_style.INK, markersize=9)
+        share = numbers[f"returned from {name} d_Y, finite elements"] = compare.returned(*curve)
+        right.plot(float(name), share, "o", color=INK, markersize=9)
         if name in ("10", "30"):
             label = "finite elements" if name == "30" else None
-            left.plot(*_points(curve, 9), "o", color=_style.INK, markersize=4, label=label)
+            left.plot(*_points(curve, 9), "o", color=INK, markersize=4, label=label)
     way, load, top = compare.indentation("30_elastic")
+    numbers["elastic finite elements over Hertz at 30 d_Y"] = load[top] / way[top] ** 1.5
     left.plot(
-        way[:top:8], load[:top:8], "o", color=_style.INK, markersize=4, markerfacecolor="white",
+        way[:top:8], load[:top:8], "o", color=INK, markersize=4, markerfacecolor="white",
         label="finite elements, elastic",
     )  # fmt: skip
-    numbers["elastic finite elements over Hertz at 30 d_Y"] = float(load[top] / way[top] ** 1.5)
     curve = compare.indentation("calculix")
-    square = {"color": _style.INK, "markerfacecolor": "none"}
+    square: chart.Look = {"color": INK, "markerfacecolor": "none"}
     left.plot(*_points(curve, 4), "s", markersize=7, label="CalculiX", **square)
     right.plot(10.0, compare.returned(*curve), "s", markersize=13, **square)
-    left.set(xlim=(0, _DEEPEST), ylim=(0, 95), xlabel="compression  d / d$_Y$")
-    left.set_ylabel("force  F / F$_Y$")
-    _style.key(left, "thin: unloading", "-", 1.2)
+    chart.key(left, "thin: unloading", "-", linewidth=1.2)
     left.legend(loc="upper left")
-    right.set_xscale("log")
-    right.set_xticks([1, 2, 5, 10, 30], ["1", "2", "5", "10", "30"])
-    right.minorticks_off()
-    right.set(xlabel="largest compression  d$_m$ / d$_Y$", ylim=(0, 1.02))
-    right.set_ylabel("work of unloading over work of loading")
     return figure, numbers
 
 

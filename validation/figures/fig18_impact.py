@@ -11,95 +11,67 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.collections import PolyCollection
-from matplotlib.figure import Figure
 
+from contactlaw.style import BLUE, GREEN, INK, ORANGE, VERMILION
 from validation import figures
 from validation.fem import store
-from validation.figures import _style
+from validation.figures import chart
+from validation.figures.chart import Axis, Panel
 from validation.paper import RADIUS, model
 
 PART = figures.FINITE_ELEMENTS
 
+_DISTANCE, _HEIGHT = Axis("distance from the axis  [mm]"), Axis("height  [mm]")
 
-def draw() -> tuple[Figure, dict[str, float]]:
+
+def draw() -> chart.Drawn:
     """Draw force, deflection, mesh and plastic strain."""
     data, made = store.read("paper")
-    strain = float(data["largest_plastic_strain"])
-    figure = _style.figure(
-        13.0,
-        9.0,
+    strain = data["largest_plastic_strain"]
+    figure, (a, b, c, d) = chart.sheet(
+        (13.0, 9.0),
         "One impact in full: 26 m/s on 0.5 mm of glass",
         f"gamma-alumina sphere, R = 0.9 mm; largest plastic strain {strain:.4f} (paper: about "
         "0.039)",
-    )
-    (a, b), (c, d) = figure.subplots(2, 2)
+        Panel(Axis("time  [µs]"), Axis("contact force  [N]")),
+        Panel(_DISTANCE.between(0.0, 6.0), Axis("deflection of the plate  [µm]")),
+        Panel(_DISTANCE.between(0.0, 1.4), _HEIGHT.between(-0.02, 1.82), "mesh of the sphere"),
+        Panel(
+            _DISTANCE.between(0.0, 0.45), _HEIGHT.between(0.0, 0.3),
+            "plastic strain after separation",
+        ),
+        rows=2,
+    )  # fmt: skip
     contact = model().force_history(made["speed"], RADIUS, made["thickness"])
-    a.plot(
-        data["time"] * 1e6, data["force"], color=_style.INK, linewidth=2, label="finite elements"
-    )
-    a.plot(
-        contact.time * 1e6, contact.force, "--", color=_style.BLUE, linewidth=2,
-        label="modified Zener model",
-    )  # fmt: skip
     other = store.read("calculix_impact").data
-    a.plot(
-        other["time"][::8] * 1e6, other["force"][::8], "s", color=_style.INK, markersize=6,
-        markerfacecolor="none", label="CalculiX",
-    )  # fmt: skip
-    a.set(xlabel="time  [µs]", ylabel="contact force  [N]")
+    at, load = other["time"][::8] * 1e6, other["force"][::8]
+    a.plot(data["time"] * 1e6, data["force"], color=INK, label="finite elements")
+    a.plot(contact.time * 1e6, contact.force, "--", color=BLUE, label="modified Zener model")
+    a.plot(at, load, "s", color=INK, markersize=6, markerfacecolor="none", label="CalculiX")
     a.legend(loc="lower center")
-    colours = _style.ORANGE, _style.GREEN, _style.VERMILION
     sunk = np.interp(data["snapshot_time"], contact.time, contact.plate_displacement)
-    for at, way, deep, colour in zip(
-        data["snapshot_time"], data["deflection"], sunk, colours, strict=True
-    ):
-        b.plot(data["r"] * 1e3, -way * 1e6, color=colour, linewidth=2, label=f"{at * 1e6:.0f} µs")
-        b.plot(
-            0.0,
-            deep * 1e6,
-            "X",
-            color=colour,
-            markersize=10,
-            markeredgecolor=_style.INK,
-            clip_on=False,
-            zorder=3,
-        )
-    b.set_xlim(0.0, 6.0)
+    for n, colour in enumerate((ORANGE, GREEN, VERMILION)):
+        way, words = -data["deflection"][n] * 1e6, f"{data['snapshot_time'][n] * 1e6:.0f} µs"
+        b.plot(data["r"] * 1e3, way, color=colour, label=words)
+        chart.cross(b, 0.0, sunk[n] * 1e6, colour)
     b.invert_yaxis()
-    b.set(xlabel="distance from the axis  [mm]", ylabel="deflection of the plate  [µm]")
-    _style.key(
-        b, "model, on the axis", "X", color=_style.PALE, markersize=10, markeredgecolor=_style.INK
-    )
+    chart.cross(b, [], [], label="model, on the axis")
     b.legend(loc="lower right")
     corners = data["corners"] * 1e3
     corners[..., 1] -= corners[..., 1].min()
-    mesh = PolyCollection(list(corners), linewidth=0.3, facecolor="white", edgecolor=_style.INK)
+    mesh = PolyCollection(list(corners), linewidth=0.3, facecolor="white", edgecolor=INK)
     quads = PolyCollection(list(corners), linewidth=0.3, cmap="cividis", edgecolor="face")
     quads.set_array(data["plastic_strain"])
     figure.colorbar(quads, ax=d, pad=0.01).set_label("equivalent plastic strain")
-    for axes, drawn, title in (
-        (c, mesh, "mesh of the sphere"),
-        (d, quads, "plastic strain after separation"),
-    ):
+    for axes, drawn in ((c, mesh), (d, quads)):
         axes.add_collection(drawn)
         axes.set_aspect("equal")
         axes.grid(visible=False)
-        axes.set_title(title)
-        axes.set(xlabel="distance from the axis  [mm]", ylabel="height  [mm]")
-    c.set(xlim=(0.0, 1.4), ylim=(-0.02, 1.82))
-    d.set(xlim=(0.0, 0.45), ylim=(0.0, 0.3))
+    peak, deepest = data["force"].max(), -data["deflection"][:, 0]
     return figure, {
         "largest plastic strain": strain,
-        "peak force, model over finite elements, less 1": float(
-            contact.force.max() / data["force"].max() - 1.0
-        ),
-        "peak force, CalculiX over finite elements, less 1": float(
-            other["force"].max() / data["force"].max() - 1.0
-        ),
-        **{
-            f"deflection at {us} us, model over finite elements, less 1": float(
-                sunk[n] / -data["deflection"][n, 0] - 1.0
-            )
-            for n, us in ((0, 1), (2, 3))
-        },
+        "peak force, model over finite elements, less 1": contact.force.max() / peak - 1.0,
+        "peak force, CalculiX over finite elements, less 1": other["force"].max() / peak - 1.0,
+        "deflection at 1 us, model over finite elements, less 1": sunk[0] / deepest[0] - 1.0,
+        "deflection at 3 us, model over finite elements, less 1": sunk[2] / deepest[2] - 1.0,
     }

@@ -9,35 +9,27 @@ above about 120; this pair has 23.
 
 from __future__ import annotations
 
-import math
-
-from matplotlib.figure import Figure
-
 from validation import figures
 from validation.fem import compare
-from validation.figures import _style
-from validation.figures.fig16_errors import error_map
+from validation.figures import chart
 
 PART = figures.FINITE_ELEMENTS
 
 
-def draw() -> tuple[Figure, dict[str, float]]:
+def draw() -> chart.Drawn:
     """Draw a map of the error per law."""
-    case, cor = compare.comparison("matrix"), compare.by_law()
-    figure = _style.figure(
-        15.0,
-        9.0,
+    case = compare.comparison("matrix")
+    cors = {chart.law(name)[-1]: cor for name, cor in compare.by_law().items()}
+    figure = chart.error_maps(
+        (15.0, 9.0),
         "By their COR, MYC and Stronge's law are right; by its force, MYC alone",
         "COR of the modified Zener equation with each law less that of finite elements, in percent "
         "of it; gamma-alumina on glass",
+        {title: cor / case.fem["restitution"] - 1.0 for title, cor in cors.items()},
+        widest=20.0,
     )
-    numbers = {}
-    panels = figure.subplots(2, math.ceil(len(cor) / 2))
-    for n, (name, values) in enumerate(cor.items()):
-        axes = panels.flat[n]
-        title = _style.law(name)[2]
-        error_map(axes, title, values / case.fem["restitution"] - 1.0, widest=20.0)
-        largest, rms = compare.deviation(values, case)
-        numbers[f"{title}: largest error"] = float(largest)
-        numbers[f"{title}: rms error"] = float(rms)
-    return figure, numbers
+    return figure, {
+        f"{title}: {kind} error": error
+        for title, cor in cors.items()
+        for kind, error in zip(("largest", "rms"), compare.deviation(cor, case), strict=True)
+    }

@@ -11,61 +11,58 @@ Whether the sphere or the plate is the stiffer body hardly matters.
 
 from __future__ import annotations
 
-import numpy as np
-from matplotlib.figure import Figure
-
+from contactlaw.style import INK
 from validation import figures
 from validation.fem import compare
-from validation.figures import _style
+from validation.figures import chart
+from validation.figures.chart import RESTITUTION, Axis, Panel
+from validation.paper import extreme
 
 PART = figures.FINITE_ELEMENTS
 
 _LAWS = "myc", "stronge", "kogut_etsion", "jackson_green", "fem"
 _SPEEDS = 3.5, 7.0  # V0/V_Y0
 _KINDS = {"13": (0, 20), "26": (20, 40), "52": (40, 60), "100 and more": (60, 1e6)}  # E/sigma_Y
-_MARKERS = {"glass": "o", "soda-lime-glass": "s", "aluminium-6061-t6": "^"}  # by plate
+_LOOKS: dict[str, chart.Look] = {  # of the pairs, by plate, which lie on each other
+    "glass": {"marker": "o", "markersize": 9, "label": "alumina on glass"},
+    "soda-lime-glass": {
+        "marker": "s", "markersize": 12, "markerfacecolor": "none",
+        "label": "steel on soda-lime-glass",
+    },
+    "aluminium-6061-t6": {
+        "marker": "^", "markersize": 7, "markerfacecolor": "white",
+        "label": "steel on aluminium-6061-t6",
+    },
+}  # fmt: skip
 
 
-def draw() -> tuple[Figure, dict[str, float]]:
+def draw() -> chart.Drawn:
     """Draw finite elements and laws against E/sigma_Y, at two speeds."""
-    figure = _style.figure(
-        13.0,
-        6.2,
+    across = Axis(r"modulus over yield strength of the sphere  E / $\sigma_Y$")
+    across = across.log(13, 26, 52, 100, 200)
+    figure, panels = chart.sheet(
+        (13.0, 6.2),
         "The paper's bead follows MYC, metals Jackson & Green, softer beads no law",
         "COR at equal inelasticity, that of gamma-alumina on glass as thick as the radius; marks: "
         "finite elements, alumina with 2 to 1/8 of its strength (its own: 26); lines: laws",
+        *(Panel(across, RESTITUTION, f"at {speed:g} yield speeds") for speed in _SPEEDS),
+        sharey=True,
     )
     numbers: dict[str, float] = {}
-    for axes, speed in zip(figure.subplots(1, 2, sharey=True), _SPEEDS, strict=True):
+    for axes, speed in zip(panels, _SPEEDS, strict=True):
         rows = compare.by_strain(speed)
+        alumina = [row for row in rows if row.plate == "glass"]
         for name in _LAWS:
-            colour, line, title = _style.law(name)
-            alumina = [row for row in rows if row.plate == "glass"]
-            axes.plot(
-                [row.ratio for row in alumina], [row.laws[name] for row in alumina], line,
-                color=colour, linewidth=2.2, label=title,
-            )  # fmt: skip
+            cor = [row.laws[name] for row in alumina]
+            chart.of_law(axes, name, [row.ratio for row in alumina], cor)
             for kind, (low, high) in _KINDS.items():
-                some = [row for row in rows if low < row.ratio < high]
-                off = np.array([row.laws[name] / row.fem - 1.0 for row in some])
-                numbers[f"{title}, {speed:g} V_Y0, E/sigma_Y {kind}: largest error"] = float(
-                    off[np.abs(off).argmax()]
-                )
-        for plate, marker in _MARKERS.items():
+                off = [row.laws[name] / row.fem - 1.0 for row in rows if low < row.ratio < high]
+                words = f"{chart.law(name)[-1]}, {speed:g} V_Y0, E/sigma_Y {kind}: largest error"
+                numbers[words] = extreme(off)
+        for plate, look in _LOOKS.items():
             some = [row for row in rows if row.plate == plate]
-            axes.plot(
-                [row.ratio for row in some], [row.fem for row in some], marker, markersize=9,
-                color=_style.INK, markerfacecolor=_style.INK if plate == "glass" else "white",
-                label=f"{'alumina' if plate == 'glass' else 'steel'} on {plate}",
-            )  # fmt: skip
-        axes.set_xscale("log")
-        axes.set_xticks([13, 26, 52, 100, 200], ["13", "26", "52", "100", "200"])
-        axes.minorticks_off()
-        axes.set(
-            xlabel=r"modulus over yield strength of the sphere  E / $\sigma_Y$",
-            title=f"at {speed:g} yield speeds",
-        )
-    figure.axes[0].set_ylabel(_style.RESTITUTION)
-    named = figure.axes[0].get_legend_handles_labels()
-    figure.legend(*named, loc="outside lower center", ncols=4)
+            at, cor = [row.ratio for row in some], [row.fem for row in some]
+            axes.plot(at, cor, linestyle="none", color=INK, zorder=3, **look)
+        axes.label_outer()
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure, numbers

@@ -13,34 +13,36 @@ from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from contactlaw import style
+from contactlaw.style import BLUE, GREEN, INK, MUTED, PALE, SKY, VERMILION
 from validation import figures
 from validation.fem import acceptance
 from validation.fem.acceptance import Member, Row
-from validation.figures import _style
+from validation.figures import chart
+from validation.figures.chart import Axis, Panel
 
 PART = figures.PRACTICE
 
 _LOOK = {  # by the body that yields: marker, colour and words
-    "none": ("D", _style.SKY, "neither yields"),
-    "sphere": ("o", _style.BLUE, "the sphere yields"),
-    "plate": ("s", _style.VERMILION, "the plate yields"),
-    "both": ("^", _style.GREEN, "both yield"),
+    "none": ("D", SKY, "neither yields"),
+    "sphere": ("o", BLUE, "the sphere yields"),
+    "plate": ("s", VERMILION, "the plate yields"),
+    "both": ("^", GREEN, "both yield"),
 }
 _TITLES = {
     "paper": "impacts of the paper's kind",
     "kept out": "everyday impacts, kept out of the fit",
 }
-_RANGE = 0.0, 1.005  # of the COR
-_WIDEST = 5.0  # [%], errors beyond are written at the edge
+_FEM = Axis("COR by finite elements").between(0.0, 1.005)
+_WIDEST = 5.0  # [%], errors beyond are written beside it
 
 
-def draw() -> tuple[Figure, dict[str, float]]:
+def draw() -> chart.Drawn:
     """Draw COR over COR, and the errors of both rows."""
     rows = acceptance.rows()
     others = {name: acceptance.members(row.target, "myc") for name, row in rows.items()}
-    figure = _style.figure(
+    figure = style.figure(
         14.0,
         7.4,
         "Law fem has the COR of finite elements, whichever body yields",
@@ -50,27 +52,27 @@ def draw() -> tuple[Figure, dict[str, float]]:
     panels = figure.subplot_mosaic(
         [["cor", "paper"], ["cor", "kept out"]], width_ratios=(1.0, 1.15)
     )
+    Panel(_FEM, _FEM._replace(label="COR by law")).set_up(panels["cor"])
     _parity(panels["cor"], rows, others)
     for name, row in rows.items():
         _errors(panels[name], _TITLES[name], row)
+    panels["paper"].set_xlabel("")
     panels["paper"].tick_params(labelbottom=False)
-    panels["kept out"].set_xlabel("COR by finite elements")
     return figure, _numbers(rows, others)
 
 
 def _parity(axes: Axes, rows: dict[str, Row], others: dict[str, tuple[Member, ...]]) -> None:
-    axes.plot([0.0, 1.0], [0.0, 1.0], color=_style.INK, linewidth=1)
+    axes.plot([0.0, 1.0], [0.0, 1.0], color=INK, linewidth=1)
     every = [one for listed in others.values() for one in listed]
     axes.plot(
-        [one.fem for one in every], [one.law for one in every], "x", color=_style.MUTED,
+        [one.fem for one in every], [one.law for one in every], "x", color=MUTED,
         markersize=6, alpha=0.7, label="law myc", zorder=1,
     )  # fmt: skip
     for row in rows.values():
         _marks(axes, row, lambda one: one.law, 8.0)
-    _style.key(axes, "open: with a flag", "o", markerfacecolor="white", color=_style.BLUE)
+    chart.key(axes, "open: with a flag", "o", markerfacecolor="white", color=BLUE)
     named = dict(zip(*axes.get_legend_handles_labels()[::-1], strict=True))
     axes.legend(named.values(), named.keys(), loc="upper left", fontsize=12)
-    axes.set(xlabel="COR by finite elements", ylabel="COR by law", xlim=_RANGE, ylim=_RANGE)
 
 
 def _marks(axes: Axes, row: Row, value: Callable[[Member], float], size: float) -> None:
@@ -93,8 +95,11 @@ def _marks(axes: Axes, row: Row, value: Callable[[Member], float], size: float) 
 def _errors(axes: Axes, title: str, row: Row) -> None:
     """Draw errors of law fem in COR, and the band that is asked for."""
     bound = 100.0 * row.target.bounds.restitution
-    axes.axhspan(-bound, bound, color=_style.PALE, alpha=0.6, linewidth=0)
-    axes.axhline(0.0, color=_style.INK, linewidth=1)
+    right = sum(abs(one.errors.restitution) <= 0.01 * bound for one in row.members)
+    title = f"{title}: {right} of {len(row.members)} within {bound:g} %"
+    Panel(_FEM, Axis("error of the COR  [%]").between(-5.6, 5.6), title).set_up(axes)
+    axes.axhspan(-bound, bound, color=PALE, alpha=0.6, linewidth=0)
+    axes.axhline(0.0, color=INK, linewidth=1)
 
     def error(one: Member) -> float:
         return float(np.clip(100.0 * one.errors.restitution, -_WIDEST, _WIDEST))
@@ -108,9 +113,6 @@ def _errors(axes: Axes, title: str, row: Row) -> None:
             f"{percent:+.1f}", (one.fem, error(one)), (0, -lift if percent > 0.0 else lift),
             textcoords="offset points", ha="center", va="center_baseline", fontsize=10,
         )  # fmt: skip
-    right = sum(abs(one.errors.restitution) <= 0.01 * bound for one in row.members)
-    axes.set_title(f"{title}: {right} of {len(row.members)} within {bound:g} %")
-    axes.set(xlim=_RANGE, ylim=(-_WIDEST, _WIDEST), ylabel="error of the COR  [%]")
 
 
 def _numbers(rows: dict[str, Row], others: dict[str, tuple[Member, ...]]) -> dict[str, float]:
