@@ -60,7 +60,7 @@ def _write(folder: Path) -> collections.Counter[str]:
 
     from contactlaw import style
     from validation import figures
-    from validation.claims import SECTIONS, of_section
+    from validation.paper.claims import SECTIONS, of_section
     from validation.report import Picture, page
 
     drawn = []

@@ -18,13 +18,13 @@ import markdown
 
 import contactlaw as cl
 from contactlaw import Validity
-from validation import figures, trust
+from validation import figures
+from validation.accuracy import compare, trust
+from validation.accuracy.trust import Score
 from validation.bench import census
-from validation.fem import compare
 from validation.fem.census import pairs
-from validation.trust import Score
+from validation.paper.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 from validation.typeset import typeset
-from validation.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 
 _MANY = 20  # numbers of a figure, from which on they are folded away
 _EACH = 100  # impacts of a pair in the census
@@ -67,7 +67,7 @@ def page(claims: tuple[Claim, ...], pictures: Iterable[Picture]) -> str:
     Parameters
     ----------
     claims : tuple of Claim
-        What `validation.claims.claims` returned.
+        What `validation.paper.claims.claims` returned.
     pictures : iterable of Picture
         Figures, which are files beside the page.
 

@@ -31,7 +31,7 @@ from contactlaw.laws._law import Law
 __all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Unloading", "exact", "law", "names", "parameters"]
 
 DEFAULT = "fem"
-"""The law if none is named; it meets the targets of ``validation.fem.acceptance``."""
+"""The law if none is named; it meets the targets of ``validation.accuracy.acceptance``."""
 
 _RANGES = {  # lowest and highest value of each parameter that a law may have
     "modulus_ratio": (2.0, 1e6),

@@ -10,7 +10,7 @@ import pytest
 import contactlaw as cl
 from contactlaw import turning_point
 from contactlaw.softsphere import Contacts, time_step
-from validation import closed_form
+from validation.paper import closed_form
 
 R, H = 0.9e-3, 1e-3
 

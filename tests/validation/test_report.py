@@ -9,11 +9,13 @@ from pathlib import Path
 import pytest
 from places import ROOT
 
-from validation import closed_form, evidence, figures, report, trust
+from validation import figures, report
 from validation.__main__ import main
-from validation.claims import SECTIONS, claims, of_section
-from validation.paper import PAIR
-from validation.verdicts import (
+from validation.accuracy import trust
+from validation.paper import closed_form, evidence
+from validation.paper.claims import SECTIONS, claims, of_section
+from validation.paper.setting import PAIR
+from validation.paper.verdicts import (
     FAILS,
     HOLDS,
     LIMITED,
@@ -311,7 +313,7 @@ def test_a_thin_run_is_a_report(tmp_path, monkeypatch, capsys):
     """A figure of each part and the first claims: all of the page, in seconds."""
     few = ["fig09b_energy", "fig12_sensitivity", "fig20_limits"]
     monkeypatch.setattr(figures, "names", lambda: few)
-    monkeypatch.setattr("validation.claims.SECTIONS", SECTIONS[:1])
+    monkeypatch.setattr("validation.paper.claims.SECTIONS", SECTIONS[:1])
     assert main(["--out", str(tmp_path)]) == 0
     text = (tmp_path / "index.html").read_text()
     assert sorted(re.findall(r"<figure id='(\w*)'", text)) == few

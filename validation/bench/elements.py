@@ -11,7 +11,7 @@ from contactlaw._jit import kernel
 from validation.bench.row import Row, seconds
 from validation.fem.elements import Body, add_forces
 from validation.fem.impact import Impact, impact
-from validation.paper import PAIR, RADIUS
+from validation.paper.setting import PAIR, RADIUS
 
 Array = NDArray[np.float64]
 

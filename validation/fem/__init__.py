@@ -3,5 +3,5 @@
 An explicit axisymmetric solver (`mesh`, `elements`, `contact`, `solver`) lets an elastic-plastic
 sphere fall on an elastic plate (`impact`) or presses it into a block (`indentation`). The studies
 (`studies`, run by ``python -m validation.fem``) leave their results in ``validation/data``, and
-`compare` puts the model beside them.
+`validation.accuracy` puts the laws beside them.
 """

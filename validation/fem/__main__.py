@@ -16,7 +16,8 @@ from concurrent.futures.process import BrokenProcessPool
 
 from tqdm import tqdm
 
-from validation.fem import acceptance, compare, fit, store
+from validation.accuracy import acceptance, compare
+from validation.fem import fit, store
 from validation.fem.studies import STUDIES
 
 

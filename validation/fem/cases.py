@@ -19,7 +19,7 @@ import contactlaw as cl
 from validation.fem import store
 from validation.fem.impact import impact
 from validation.fem.solver import SETTINGS
-from validation.paper import PAIR, RADIUS
+from validation.paper.setting import PAIR, RADIUS
 
 _UNITS = {
     "speed": "m/s", "radius": "m", "thickness": "m", "width": "m", "size": "sphere radius",

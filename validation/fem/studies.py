@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import contactlaw as cl
-from validation.closed_form import eta
 from validation.fem import calculix, campaign, cases, census, store
 from validation.fem.cases import Case
 from validation.fem.impact import expect, free_width, impact
 from validation.fem.indentation import BLOCK, Indentation, indent
 from validation.fem.solver import SETTINGS
 from validation.fem.yielding import BOTH, BOTH_DEPTH, BOTH_SIZE, JOBS, SOFT, press
-from validation.paper import ETA, PAIR, RADIUS, YIELD_COMPRESSION
+from validation.paper.closed_form import eta
+from validation.paper.setting import ETA, PAIR, RADIUS, YIELD_COMPRESSION
 
 Pressed = dict[str, tuple[NDArray[Any], str]]  # of one indentation: values and unit by name
 

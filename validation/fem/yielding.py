@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 import contactlaw as cl
 from validation.fem.indentation import Indentation, indent
-from validation.paper import PAIR, RADIUS, YIELD_COMPRESSION
+from validation.paper.setting import PAIR, RADIUS, YIELD_COMPRESSION
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from contactlaw import style
 from contactlaw.style import BLUE, GREEN, INK, MUTED, ORANGE, PALE, PURPLE, SKY, VERMILION
-from validation.fem import compare
+from validation.accuracy import compare
 
 Colour = str | tuple[float, ...]
 Look = dict[str, Any]  # of a line or marks, as of matplotlib's ``plot``

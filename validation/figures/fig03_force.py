@@ -13,11 +13,11 @@ import numpy as np
 
 from contactlaw.style import INK, MUTED, PALE
 from validation import figures
-from validation.evidence import FASTEST_COMPRESSION
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
 from validation.figures.chart import COMPRESSION, FORCE, Axis, Panel
-from validation.paper import PAIR, all_laws, force, largest, unloading
+from validation.paper.evidence import FASTEST_COMPRESSION
+from validation.paper.setting import PAIR, all_laws, force, largest, unloading
 
 PART = figures.PAPER
 

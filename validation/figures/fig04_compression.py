@@ -12,11 +12,11 @@ import numpy as np
 from contactlaw import turning_point
 from contactlaw.style import BLUE, GREEN, VERMILION
 from validation import figures
-from validation.closed_form import elastic_compression
 from validation.figures import chart
 from validation.figures.chart import INELASTICITY, Axis, Panel
-from validation.formulas import eq_6
-from validation.paper import largest
+from validation.paper.closed_form import elastic_compression
+from validation.paper.formulas import eq_6
+from validation.paper.setting import largest
 
 PART = figures.PAPER
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from contactlaw.style import BLUE, GREEN, INK, ORANGE, SKY, VERMILION
 from validation import figures
-from validation.closed_form import mueller, yield_speed_ratio
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SLENDERNESS, SPEED, Panel
-from validation.paper import ETA, FASTEST, THINNEST, impacts
+from validation.paper.closed_form import mueller, yield_speed_ratio
+from validation.paper.setting import ETA, FASTEST, THINNEST, impacts
 
 PART = figures.PAPER
 

@@ -11,12 +11,12 @@ import numpy as np
 
 from contactlaw.style import BLUE, INK, MUTED, VERMILION
 from validation import figures
-from validation.closed_form import yield_speed_ratio
-from validation.evidence import eq_10
 from validation.figures import chart
 from validation.figures.chart import SLENDERNESS, Axis, Panel
-from validation.formulas import eq_14
-from validation.paper import ETA, SHARE, THINNEST, largest
+from validation.paper.closed_form import yield_speed_ratio
+from validation.paper.evidence import eq_10
+from validation.paper.formulas import eq_14
+from validation.paper.setting import ETA, SHARE, THINNEST, largest
 
 PART = figures.PAPER
 

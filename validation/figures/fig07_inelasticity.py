@@ -11,11 +11,11 @@ import numpy as np
 
 from contactlaw.style import INK, ORANGE, VERMILION
 from validation import figures
-from validation.closed_form import mueller, zener
 from validation.figures import chart
 from validation.figures.chart import INELASTICITY, RESTITUTION, SPEEDS, Panel
-from validation.formulas import raman
-from validation.paper import FASTEST, impacts, largest
+from validation.paper.closed_form import mueller, zener
+from validation.paper.formulas import raman
+from validation.paper.setting import FASTEST, impacts, largest
 
 PART = figures.PAPER
 

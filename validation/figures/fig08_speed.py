@@ -11,12 +11,12 @@ import numpy as np
 from contactlaw import turning_point
 from contactlaw.style import BLUE, GREEN, INK, MUTED, VERMILION
 from validation import figures
-from validation.closed_form import peng
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SPEED
-from validation.formulas import eq_22
-from validation.paper import ETA, FASTEST, impacts, largest
+from validation.paper.closed_form import peng
+from validation.paper.formulas import eq_22
+from validation.paper.setting import ETA, FASTEST, impacts, largest
 
 PART = figures.PAPER
 

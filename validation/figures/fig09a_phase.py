@@ -12,12 +12,12 @@ from __future__ import annotations
 import numpy as np
 
 from validation import figures
-from validation.closed_form import yield_speed_ratio
-from validation.evidence import fitted_border
 from validation.figures import chart
 from validation.figures.chart import SLENDERNESS, SPEED, Panel
-from validation.formulas import border
-from validation.paper import ETA, borderline, impacts
+from validation.paper.closed_form import yield_speed_ratio
+from validation.paper.evidence import fitted_border
+from validation.paper.formulas import border
+from validation.paper.setting import ETA, borderline, impacts
 
 PART = figures.PAPER
 

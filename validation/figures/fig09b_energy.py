@@ -12,7 +12,7 @@ from contactlaw.style import BLUE, INK, ORANGE, PALE
 from validation import figures
 from validation.figures import chart
 from validation.figures.chart import SPEED, Axis
-from validation.paper import FASTEST, borderline, impacts, largest
+from validation.paper.setting import FASTEST, borderline, impacts, largest
 
 PART = figures.PAPER
 

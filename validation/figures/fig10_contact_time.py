@@ -13,10 +13,10 @@ import math
 import numpy as np
 
 from validation import figures
-from validation.evidence import contact_time_errors
 from validation.figures import chart
 from validation.figures.chart import INELASTICITY, SPEEDS, Axis, Panel
-from validation.paper import impacts
+from validation.paper.evidence import contact_time_errors
+from validation.paper.setting import impacts
 
 PART = figures.PAPER
 

@@ -15,10 +15,11 @@ import numpy as np
 from contactlaw import laws, turning_point
 from contactlaw.laws.myc import P
 from contactlaw.style import INK
-from validation import closed_form, figures
+from validation import figures
 from validation.figures import chart
 from validation.figures.chart import SLENDERNESS, SPEED, Axis, Panel
-from validation.paper import ETA, largest, restitution
+from validation.paper import closed_form
+from validation.paper.setting import ETA, largest, restitution
 
 PART = figures.PAPER
 

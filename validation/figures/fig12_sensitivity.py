@@ -13,10 +13,11 @@ import dataclasses
 import numpy as np
 
 from contactlaw.style import BLUE, GREEN, INK, ORANGE, VERMILION
-from validation import figures, paper
+from validation import figures
 from validation.figures import chart
 from validation.figures.chart import SPEED, Axis
-from validation.paper import FASTEST, RADIUS, largest, model
+from validation.paper import setting
+from validation.paper.setting import FASTEST, RADIUS, largest, model
 
 PART = figures.PRACTICE
 
@@ -46,20 +47,20 @@ def draw() -> chart.Drawn:
     v, at = np.linspace(0.1, FASTEST, 300), np.linspace(0.5, 6.7, 9)
     worst = 0.0
     for ratio, axes in panels:
-        moved = model().sensitivity(v * paper.SPEED, RADIUS, RADIUS / ratio)
+        moved = model().sensitivity(v * setting.SPEED, RADIUS, RADIUS / ratio)
         for field in dataclasses.fields(moved):
             colour, line = _LINES[field.name]
             label = field.name.replace("_", " ")
             axes.plot(v, getattr(moved, field.name), line, color=colour, label=label)
         dots = _quotient(at, ratio)
         axes.plot(at, dots, "o", color=INK, markersize=5)
-        table = model().sensitivity(at * paper.SPEED, RADIUS, RADIUS / ratio).speed
+        table = model().sensitivity(at * setting.SPEED, RADIUS, RADIUS / ratio).speed
         worst = max(worst, largest(dots - table))
     first = figure.axes[0]
     chart.key(first, "speed, by the solver", "o", markersize=5)
     figure.legend(*first.get_legend_handles_labels(), loc="outside lower center", ncols=5)
-    thin = model().sensitivity(2.0 * paper.SPEED, RADIUS, RADIUS / 1.8)
-    thick = model().sensitivity(5.0 * paper.SPEED, RADIUS, RADIUS / 0.3)
+    thin = model().sensitivity(2.0 * setting.SPEED, RADIUS, RADIUS / 1.8)
+    thick = model().sensitivity(5.0 * setting.SPEED, RADIUS, RADIUS / 0.3)
     return figure, {
         "thickness, R/H = 1.8, 2 yield speeds": thin.thickness,
         "radius, R/H = 1.8, 2 yield speeds": thin.radius,
@@ -73,7 +74,7 @@ def _quotient(v: np.ndarray, ratio: float) -> np.ndarray:
     """Central difference of ln e with respect to ln V0, by integration."""
     step = 1e-4
     up, down = (
-        model().solve(v * paper.SPEED * np.exp(h), RADIUS, RADIUS / ratio, rtol=1e-13).restitution
+        model().solve(v * setting.SPEED * np.exp(h), RADIUS, RADIUS / ratio, rtol=1e-13).restitution
         for h in (step, -step)
     )
     return np.log(up / down) / (2.0 * step)

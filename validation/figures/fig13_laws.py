@@ -15,12 +15,13 @@ import numpy as np
 
 from contactlaw import laws
 from contactlaw.style import INK
-from validation import figures, paper
-from validation.evidence import slope
+from validation import figures
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SPEED, Panel
-from validation.formulas import thornton_asymptote
-from validation.paper import ETA, Array, all_laws, restitution, yield_unit
+from validation.paper import setting
+from validation.paper.evidence import slope
+from validation.paper.formulas import thornton_asymptote
+from validation.paper.setting import ETA, Array, all_laws, restitution, yield_unit
 
 PART = figures.PAPER
 
@@ -64,7 +65,7 @@ def draw() -> chart.Drawn:
     stronge, end = laws.law("stronge"), cor["thornton", 0.0][-1]
     return figure, {
         **numbers,
-        "yield speed of Thornton's law [m/s]": _SLOWER * paper.SPEED,
+        "yield speed of Thornton's law [m/s]": _SLOWER * setting.SPEED,
         "Thornton over its asymptote at 30 V_Y0, half-space": end / asymptote[-1],
         "d ln e/d ln v of Stronge's law at 2.35 V_Y0, half-space": _slope(stronge, 2.35),
         "d ln e/d ln v of Stronge's law at 3.05 V_Y0, half-space": _slope(stronge, 3.05),

@@ -14,10 +14,10 @@ import numpy as np
 from contactlaw.laws import Law
 from contactlaw.style import INK
 from validation import figures
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
 from validation.figures.chart import COMPRESSION, FORCE, Axis, Panel
-from validation.paper import all_laws, force, unloading
+from validation.paper.setting import all_laws, force, unloading
 
 PART = figures.FINITE_ELEMENTS
 

@@ -10,12 +10,12 @@ import numpy as np
 
 from contactlaw.style import INK
 from validation import figures
-from validation.closed_form import zener
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.fem.studies import SLENDERNESS
 from validation.figures import chart
 from validation.figures.chart import INELASTICITY, RATIO, RESTITUTION, SPEED, Panel
-from validation.paper import impacts
+from validation.paper.closed_form import zener
+from validation.paper.setting import impacts
 
 PART = figures.FINITE_ELEMENTS
 

@@ -9,9 +9,9 @@ model has up to 9 % of the energy too much in plastic flow on thick plates at 7 
 from __future__ import annotations
 
 from validation import figures
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
-from validation.paper import extreme
+from validation.paper.setting import extreme
 
 PART = figures.FINITE_ELEMENTS
 

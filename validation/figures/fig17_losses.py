@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlaw.style import BLUE, GREEN, INK, ORANGE, VERMILION
 from validation import figures
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
 from validation.figures.chart import SPEED, Axis
 

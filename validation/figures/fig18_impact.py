@@ -17,7 +17,7 @@ from validation import figures
 from validation.fem import store
 from validation.figures import chart
 from validation.figures.chart import Axis, Panel
-from validation.paper import RADIUS, model
+from validation.paper.setting import RADIUS, model
 
 PART = figures.FINITE_ELEMENTS
 

@@ -11,10 +11,10 @@ import numpy as np
 
 from contactlaw.style import BLUE, INK, VERMILION
 from validation import figures
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
 from validation.figures.chart import RATIO, RESTITUTION, SPEED, Panel
-from validation.paper import impacts
+from validation.paper.setting import impacts
 
 PART = figures.FINITE_ELEMENTS
 

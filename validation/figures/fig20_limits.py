@@ -12,10 +12,11 @@ import numpy as np
 import contactlaw as cl
 from contactlaw.style import BLUE, INK, MUTED
 from validation import figures
-from validation.fem import compare, store
+from validation.accuracy import compare
+from validation.fem import store
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SPEED, Axis, Panel
-from validation.paper import PAIR, RADIUS, largest, model
+from validation.paper.setting import PAIR, RADIUS, largest, model
 
 PART = figures.FINITE_ELEMENTS
 

@@ -16,10 +16,11 @@ import numpy as np
 
 from contactlaw.style import BLUE, GREEN, INK, ORANGE, PALE, PURPLE, VERMILION
 from validation import figures
-from validation.fem import compare, store
+from validation.accuracy import compare
+from validation.fem import store
 from validation.figures import chart
 from validation.figures.chart import Axis, Panel
-from validation.paper import RADIUS, model
+from validation.paper.setting import RADIUS, model
 
 PART = figures.FINITE_ELEMENTS
 

@@ -10,7 +10,7 @@ above about 120; this pair has 23.
 from __future__ import annotations
 
 from validation import figures
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
 
 PART = figures.FINITE_ELEMENTS

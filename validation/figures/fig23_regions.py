@@ -14,7 +14,7 @@ from matplotlib.colors import LogNorm
 from contactlaw import style
 from contactlaw.style import INK
 from validation import figures
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
 
 PART = figures.FINITE_ELEMENTS

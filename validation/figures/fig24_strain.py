@@ -13,10 +13,10 @@ from __future__ import annotations
 
 from contactlaw.style import INK
 from validation import figures
-from validation.fem import compare
+from validation.accuracy import compare
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, Axis, Panel
-from validation.paper import extreme
+from validation.paper.setting import extreme
 
 PART = figures.FINITE_ELEMENTS
 

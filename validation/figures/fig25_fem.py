@@ -17,8 +17,8 @@ from matplotlib.axes import Axes
 from contactlaw import style
 from contactlaw.style import BLUE, GREEN, INK, MUTED, PALE, SKY, VERMILION
 from validation import figures
-from validation.fem import acceptance
-from validation.fem.acceptance import Member, Row
+from validation.accuracy import acceptance
+from validation.accuracy.acceptance import Member, Row
 from validation.figures import chart
 from validation.figures.chart import Axis, Panel
 

@@ -11,8 +11,8 @@ from validation.fem import calculix, mesh, solver, store
 from validation.fem.impact import impact
 from validation.fem.indentation import core, indent
 from validation.fem.studies import CALCULIX_DEPTH, CALCULIX_SIZE
-from validation.paper import PAIR, YIELD_COMPRESSION
-from validation.paper import RADIUS as R
+from validation.paper.setting import PAIR, YIELD_COMPRESSION
+from validation.paper.setting import RADIUS as R
 
 
 @pytest.fixture(scope="module")

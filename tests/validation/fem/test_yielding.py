@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
+from validation.accuracy.compare import returned
 from validation.fem import calculix, store
-from validation.fem.compare import returned
 from validation.fem.yielding import (
     BOTH,
     BOTH_DEPTH,
@@ -20,7 +20,7 @@ from validation.fem.yielding import (
     press,
     pressures,
 )
-from validation.paper import RADIUS
+from validation.paper.setting import RADIUS
 
 KEYS = "compression", "force", "contact_radius", "kinetic", "work_sphere", "work_block"
 APPROACH = 1e-3 * RADIUS * np.array([0.5, 1.0, 1.5, 1.9])  # of the small contacts

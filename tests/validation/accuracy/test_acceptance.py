@@ -7,10 +7,11 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import Validity
+from validation.accuracy import acceptance
+from validation.accuracy.acceptance import TARGETS, Errors, Member, Row
 from validation.bench import census as bench
-from validation.fem import acceptance, census
+from validation.fem import census
 from validation.fem.__main__ import main as command
-from validation.fem.acceptance import TARGETS, Errors, Member, Row
 
 # What was measured, one line a row: how many impacts there are, how many carry a flag of accuracy,
 # how many are beyond a bound without one, the shares within each bound, and the rms error in COR.

@@ -14,7 +14,7 @@ from contactlaw import laws
 from contactlaw.equation import zener
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import law_of, sphere_on_plate
-from validation import closed_form
+from validation.paper import closed_form
 
 Array = NDArray[np.float64]
 

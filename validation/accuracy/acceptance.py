@@ -24,8 +24,8 @@ import contactlaw as cl
 from contactlaw import Validity
 from contactlaw.laws.fem import ALONE
 from contactlaw.physical.rebound import Rebound
-from validation import closed_form
 from validation.fem import fit, store
+from validation.paper import closed_form
 
 Array = NDArray[np.float64]
 

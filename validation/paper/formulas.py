@@ -1,7 +1,7 @@
 """Formulas of the literature that only the report needs: as printed, fitted, or for a limit.
 
-`validation.closed_form` has what is correct, and says what arguments and errors mean; `eq_N` is an
-equation of the paper as it is printed.
+`closed_form` has what is correct, and says what arguments and errors mean; `eq_N` is an equation
+of the paper as it is printed.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from contactlaw.physical.arguments import checked, shaped
 from contactlaw.turning_point import INTEGRATE, WAVE_SLOPE
-from validation.closed_form import (
+from validation.paper.closed_form import (
     TOO_THIN,
     Array,
     approximate_yield_speed_ratio,
@@ -27,7 +27,7 @@ def raman(inelasticity: ArrayLike) -> float | Array:
 
     Raman (Phys. Rev. 15 (1920) 277) takes the wave's energy to be k lambda times what the sphere
     brings and what it takes away. Here k = `contactlaw.turning_point.WAVE_SLOPE`/2 = 0.8651, which
-    makes the slope at lambda = 0 exact. 0.3 % below `validation.closed_form.zener` at lambda = 0.1,
+    makes the slope at lambda = 0 exact. 0.3 % below `closed_form.zener` at lambda = 0.1,
     2.0 % at 0.25.
 
     Parameters
@@ -41,7 +41,7 @@ def raman(inelasticity: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.formulas import raman
+    >>> from validation.paper.formulas import raman
     >>> raman([0.1, 0.25]).round(4)
     array([0.8408, 0.6444])
     """
@@ -53,7 +53,7 @@ def raman(inelasticity: ArrayLike) -> float | Array:
 
 
 def thornton_asymptote(speed_ratio: ArrayLike) -> float | Array:
-    """COR of `validation.closed_form.thornton` far above yield, 1.185 v^(-1/4).
+    """COR of `closed_form.thornton` far above yield, 1.185 v^(-1/4).
 
     Wu, Li, Thornton (Int. J. Impact Eng. 28 (2003) 929) find v^(-1/2) in place of v^(-1/4) once the
     deformation is finite, which no law here is made for.
@@ -71,7 +71,7 @@ def thornton_asymptote(speed_ratio: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.formulas import thornton_asymptote
+    >>> from validation.paper.formulas import thornton_asymptote
     >>> round(thornton_asymptote(100.0), 4)
     0.3747
     """
@@ -91,11 +91,11 @@ def eq_6(inelasticity: ArrayLike) -> float | Array:
     Returns
     -------
     float or ndarray of float64
-        Up to 3.1 % below `validation.closed_form.elastic_compression`.
+        Up to 3.1 % below `closed_form.elastic_compression`.
 
     Examples
     --------
-    >>> from validation.formulas import eq_6
+    >>> from validation.paper.formulas import eq_6
     >>> eq_6([0.0, 0.5]).round(4)
     array([1.0934, 0.8088])
     """
@@ -114,11 +114,11 @@ def eq_14(inelasticity_at_yield: ArrayLike) -> float | Array:
     Returns
     -------
     float or ndarray of float64
-        Above `validation.closed_form.yield_speed_ratio` by 1.2 % at lambda_Y = 0.243, 4.3 % at 2.3.
+        Above `closed_form.yield_speed_ratio` by 1.2 % at lambda_Y = 0.243, 4.3 % at 2.3.
 
     Examples
     --------
-    >>> from validation.formulas import eq_14
+    >>> from validation.paper.formulas import eq_14
     >>> eq_14([0.0, 0.2434]).round(4)
     array([1.    , 1.2304])
     """
@@ -138,11 +138,11 @@ def eq_21(speed_ratio: ArrayLike) -> float | Array:
     -------
     float or ndarray of float64
         Exact up to v = (d_P/d_Y)^(5/4) = 4.19, where loading leaves Hertz's curve; above
-        `validation.closed_form.half_space` by 2.0 % at v = 7, 4.4 % at 10.
+        `closed_form.half_space` by 2.0 % at v = 7, 4.4 % at 10.
 
     Examples
     --------
-    >>> from validation.formulas import eq_21
+    >>> from validation.paper.formulas import eq_21
     >>> eq_21([2.0, 10.0]).round(4)
     array([0.9513, 0.735 ])
     """
@@ -158,7 +158,7 @@ def eq_22(
     Parameters
     ----------
     speed_ratio, thickness_ratio, eta, c : array_like
-        As of `validation.closed_form.peng`, which has the factor that is missing here.
+        As of `closed_form.peng`, which has the factor that is missing here.
 
     Returns
     -------
@@ -168,7 +168,7 @@ def eq_22(
 
     Examples
     --------
-    >>> from validation.formulas import eq_22
+    >>> from validation.paper.formulas import eq_22
     >>> eq_22(3.0, [0.9, 1.8], eta=0.0751).round(4)
     array([0.8817, 0.8466])
     """
@@ -196,7 +196,7 @@ def border(thickness_ratio: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.formulas import border
+    >>> from validation.paper.formulas import border
     >>> round(border(0.5), 3)
     1.748
     """

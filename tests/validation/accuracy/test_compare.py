@@ -12,12 +12,13 @@ from places import ROOT
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.physical.scaling import law_of
-from validation import paper
-from validation.fem import calculix, compare, solver, store
+from validation.accuracy import compare
+from validation.accuracy.compare import force_at
+from validation.fem import calculix, solver, store
 from validation.fem.__main__ import main as command
-from validation.fem.compare import force_at
 from validation.fem.impact import impact
 from validation.fem.studies import STUDIES
+from validation.paper import setting
 
 SAID = " ".join((ROOT / "docs/laws.md").read_text().split())
 
@@ -139,8 +140,10 @@ def test_hertz_is_the_limit_of_narrow_contacts():
     """The difference from Hertz goes to nothing with the contact's radius over the sphere's."""
     data = store.read("verification").data
     rows = data["check"] == "hertz"
-    hertz = cl.ImpactModel(paper.PAIR, law="hertz").solve(data["speed"][rows], paper.RADIUS, np.inf)
-    width = np.sqrt(hertz.peak_compression / paper.RADIUS)
+    hertz = cl.ImpactModel(setting.PAIR, law="hertz").solve(
+        data["speed"][rows], setting.RADIUS, np.inf
+    )
+    width = np.sqrt(hertz.peak_compression / setting.RADIUS)
     for name in ("peak_force", "contact_time"):
         off = data[name][rows] / getattr(hertz, name) - 1.0
         slope, limit = np.polyfit(width, off, 1)
@@ -180,7 +183,7 @@ def test_impact_agrees_with_calculix():
     apart = {}
     for n, size in enumerate(theirs["size"]):
         ours = impact(
-            paper.PAIR, made["speed"], made["radius"], made["thickness"], size=size,
+            setting.PAIR, made["speed"], made["radius"], made["thickness"], size=size,
             friction=made["friction"],
         )  # fmt: skip
         sphere, plate = ours.system.sphere.elements, ours.system.plate.elements
@@ -228,18 +231,18 @@ def test_which_law_is_right():
 def test_the_law_fem_has_the_force_that_it_was_made_of():
     """A sphere of the paper's on another mesh, to 10 d_Y; as near as MYC's law, by nobody's fit."""
     way = np.linspace(0.5, 10.0, 200)
-    off = paper.force(law_of(paper.PAIR, "fem"), way) / force_at("30", way) - 1.0
+    off = setting.force(law_of(setting.PAIR, "fem"), way) / force_at("30", way) - 1.0
     assert np.abs(off).max() < 0.08
 
 
 def test_laws_are_compared_in_common_units():
     """Below its own yield every law is Hertz's, whatever its d_Y."""
     way = np.array([0.1, 0.3])
-    for law in paper.all_laws().values():
-        assert paper.force(law, way) == pytest.approx(way**1.5, rel=1e-12), law.name
-        back, load = paper.unloading(law, 5.0)
+    for law in setting.all_laws().values():
+        assert setting.force(law, way) == pytest.approx(way**1.5, rel=1e-12), law.name
+        back, load = setting.unloading(law, 5.0)
         assert back[-1] == pytest.approx(5.0)
-        assert load[-1] == pytest.approx(paper.force(law, np.array([5.0]))[0])
+        assert load[-1] == pytest.approx(setting.force(law, np.array([5.0]))[0])
 
 
 def test_unloading():
@@ -249,9 +252,9 @@ def test_unloading():
     assert share["calculix"] == pytest.approx(share["10"], abs=0.002)
     myc = laws.law("myc")
     for name in ("2", "5", "10"):
-        back, load = paper.unloading(myc, float(name))
+        back, load = setting.unloading(myc, float(name))
         d = np.linspace(0.0, float(name), 2001)
-        ours = np.trapezoid(load, back) / np.trapezoid(paper.force(myc, d), d)
+        ours = np.trapezoid(load, back) / np.trapezoid(setting.force(myc, d), d)
         assert 0.01 < share[name] - ours < 0.065
 
 
@@ -305,7 +308,7 @@ def test_laws_of_metals_suit_steel():
         for n in np.flatnonzero(fast & steel):
             law = law_of(cl.Pair(case.fem["sphere"][n], case.fem["plate"][n]), name)
             lam_y = case.inelasticity[n] * 7.0**-0.2
-            off.append(paper.restitution(7.0, lam_y, law) / case.fem["restitution"][n] - 1.0)
+            off.append(setting.restitution(7.0, lam_y, law) / case.fem["restitution"][n] - 1.0)
         assert -0.01 < min(off) < 0.01 < 0.05 < max(off) < 0.065, name
 
 
@@ -335,10 +338,10 @@ def test_the_law_has_to_suit_the_yield_strain():
 def test_an_edge_beyond_the_edge_distance_is_not_felt():
     data = store.read("edge").data
     thickness = data["thickness"][0]
-    free = cl.ImpactModel(paper.PAIR, law="myc").lookup(
+    free = cl.ImpactModel(setting.PAIR, law="myc").lookup(
         data["speed"][0], data["radius"][0], thickness
     )
-    distance = cl.edge_distance(paper.PAIR.plate, thickness, free.contact_time)
+    distance = cl.edge_distance(setting.PAIR.plate, thickness, free.contact_time)
     ratio, cor = data["width"] / distance, data["restitution"]
     assert cor[ratio > 0.99] == pytest.approx(cor[-1], rel=0.002)
     assert (ratio > 0.99).sum() >= 3

@@ -11,9 +11,10 @@ from scipy.optimize import brentq, newton
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.physical.scaling import Contact, scales, sphere_on_plate
-from validation import closed_form, formulas
-from validation.fem import compare, store
-from validation.paper import (
+from validation.accuracy import compare
+from validation.fem import store
+from validation.paper import closed_form, formulas
+from validation.paper.setting import (
     ETA,
     FASTEST,
     PAIR,
@@ -61,7 +62,7 @@ def eq_10(power_of_pi: float, exponent: float) -> float:
 
     Examples
     --------
-    >>> from validation.evidence import eq_10
+    >>> from validation.paper.evidence import eq_10
     >>> round(eq_10(3.0, 0.8), 3), round(eq_10(0.6, 0.4), 4)
     (0.539, 0.0751)
     """

@@ -6,8 +6,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import contactlaw as cl
-from validation.fem import acceptance, census
-from validation.fem.acceptance import TARGETS, Errors, Member, Row, Target, within
+from validation.accuracy import acceptance
+from validation.accuracy.acceptance import TARGETS, Errors, Member, Row, Target, within
+from validation.fem import census
 
 LAWS = "fem", "myc"
 PAPER = TARGETS["paper"]

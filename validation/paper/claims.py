@@ -1,6 +1,6 @@
 """Every quantitative claim of the paper, with our number and a verdict.
 
-`claims` computes them all, in the order of the paper; `validation.verdicts` judges.
+`claims` computes them all, in the order of the paper; `validation.paper.verdicts` judges.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from contactlaw import laws
 from contactlaw.laws.myc import P
 from contactlaw.physical.scaling import plate_mobility, scales
 from contactlaw.turning_point import WAVE_SLOPE
-from validation import closed_form, evidence, formulas
-from validation.closed_form import elastic_compression, yield_speed_ratio
-from validation.fem import compare, store
-from validation.paper import (
+from validation.accuracy import compare
+from validation.fem import store
+from validation.paper import closed_form, evidence, formulas
+from validation.paper.closed_form import elastic_compression, yield_speed_ratio
+from validation.paper.setting import (
     ETA,
     FASTEST,
     PAIR,
@@ -31,7 +32,16 @@ from validation.paper import (
     borderline,
     impacts,
 )
-from validation.verdicts import FAILS, LIMITED, MISPRINT, Claim, at_most, more_than, near, undecided
+from validation.paper.verdicts import (
+    FAILS,
+    LIMITED,
+    MISPRINT,
+    Claim,
+    at_most,
+    more_than,
+    near,
+    undecided,
+)
 
 
 def claims() -> tuple[Claim, ...]:

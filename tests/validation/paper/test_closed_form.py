@@ -13,7 +13,7 @@ from contactlaw import laws, turning_point
 from contactlaw.equation import zener
 from contactlaw.equation.force import HERTZ
 from contactlaw.physical.scaling import scales, sphere_on_plate
-from validation import closed_form, formulas
+from validation.paper import closed_form, formulas
 
 SPEEDS = np.concatenate([np.linspace(0.03, 2.0, 24), np.linspace(2.2, 20.0, 72)])
 INELASTICITIES = np.linspace(0.0, 0.5, 31)

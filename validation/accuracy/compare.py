@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from contactlaw import turning_point
-from validation import closed_form, formulas, paper
 from validation.fem import store
 from validation.fem.cases import elastic_plate
+from validation.paper import closed_form, formulas, setting
 
 Array = NDArray[np.float64]
 
@@ -55,12 +55,12 @@ def comparison(name: str) -> Comparison:
     lam = model["inelasticity"]
     at_yield = eta * slenderness**2
     # Eq. 22 knows a pair by its eta only: (R/H)^2 of the paper's pair
-    like = np.sqrt(at_yield / paper.ETA)
+    like = np.sqrt(at_yield / setting.ETA)
     restitution = {
         "modified Zener": model["restitution"],
         "turning point": np.asarray(turning_point.restitution(ratio, at_yield)),
-        "Eq. 22, continuous": np.asarray(closed_form.peng(ratio, like, paper.ETA)),
-        "Eq. 22, printed": np.asarray(formulas.eq_22(ratio, like, paper.ETA)),
+        "Eq. 22, continuous": np.asarray(closed_form.peng(ratio, like, setting.ETA)),
+        "Eq. 22, printed": np.asarray(formulas.eq_22(ratio, like, setting.ETA)),
         "Zener": np.asarray(closed_form.zener(lam)),
         "Mueller, Eq. 3": np.asarray(closed_form.mueller(lam)),
     }
@@ -69,13 +69,13 @@ def comparison(name: str) -> Comparison:
 
 @functools.cache
 def by_law() -> dict[str, Array]:
-    """COR of every impact of the matrix by each of `paper.all_laws`; each has its own d_Y."""
+    """COR of every impact of the matrix by each of `setting.all_laws`; each has its own d_Y."""
     case = comparison("matrix")
-    at_yield = paper.ETA * case.slenderness**2
+    at_yield = setting.ETA * case.slenderness**2
     impacts = list(zip(case.speed_ratio, at_yield, strict=True))
     return {
-        name: np.array([paper.restitution(*one, law) for one in impacts])
-        for name, law in paper.all_laws().items()
+        name: np.array([setting.restitution(*one, law) for one in impacts])
+        for name, law in setting.all_laws().items()
     }
 
 
@@ -120,13 +120,14 @@ def by_strain(speed_ratio: float) -> list[Yielded]:
     for study in ("pairs", "strengths"):
         case = comparison(study)
         lam_y = case.inelasticity * case.speed_ratio**-0.2
-        chosen = np.isclose(case.speed_ratio, speed_ratio) & np.isclose(lam_y, paper.ETA, rtol=1e-3)
+        chosen = np.isclose(lam_y, setting.ETA, rtol=1e-3)
+        chosen &= np.isclose(case.speed_ratio, speed_ratio)
         for n in np.flatnonzero(chosen):
             pair = elastic_plate(case.fem["sphere"][n], case.fem["plate"][n])
             ratio = pair.sphere.youngs_modulus / pair.sphere.require_yield_strength("by_strain")
             cor = {
-                name: paper.restitution(speed_ratio, paper.ETA, law)
-                for name, law in paper.all_laws(pair).items()
+                name: setting.restitution(speed_ratio, setting.ETA, law)
+                for name, law in setting.all_laws(pair).items()
             }
             cor["fem"] = float(by_fem(study)[n])
             found.append(Yielded(ratio, pair.plate.name, float(case.fem["restitution"][n]), cor))
@@ -184,7 +185,7 @@ def indentation(name: str) -> tuple[Array, Array, int]:
     else:
         data = store.read("indentation").data
         way, force = data[f"compression_{name}"], data[f"force_{name}"]
-    return way / paper.YIELD_COMPRESSION, force / paper.FORCE, int(way.argmax())
+    return way / setting.YIELD_COMPRESSION, force / setting.FORCE, int(way.argmax())
 
 
 def force_at(name: str, way: Array, *, loading: bool = True) -> Array:
@@ -195,7 +196,7 @@ def force_at(name: str, way: Array, *, loading: bool = True) -> Array:
 
 
 def loading_errors(way: Array) -> dict[str, Array]:
-    """Error of the loading force of `paper.all_laws`, relative to the indentation to 30 d_Y [-].
+    """Error of the loading force of `setting.all_laws`, relative to the indentation to 30 d_Y [-].
 
     Parameters
     ----------
@@ -208,7 +209,7 @@ def loading_errors(way: Array) -> dict[str, Array]:
     True
     """
     fem = force_at("30", way)
-    return {name: paper.force(law, way) / fem - 1.0 for name, law in paper.all_laws().items()}
+    return {name: setting.force(law, way) / fem - 1.0 for name, law in setting.all_laws().items()}
 
 
 def returned(way: Array, force: Array, top: int) -> float:

@@ -63,7 +63,7 @@ def eta(pair: Pair) -> float:
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from validation.closed_form import eta
+    >>> from validation.paper.closed_form import eta
     >>> round(eta(cl.Pair("gamma-alumina", "glass")), 4)
     0.0751
     """
@@ -92,7 +92,7 @@ def mueller(inelasticity: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.closed_form import mueller
+    >>> from validation.paper.closed_form import mueller
     >>> mueller([0.1, 0.25]).round(4)
     array([0.8545, 0.6731])
     """
@@ -118,7 +118,7 @@ def zener(inelasticity: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.closed_form import zener
+    >>> from validation.paper.closed_form import zener
     >>> zener([0.1, 0.25]).round(4)
     array([0.8433, 0.6577])
     """
@@ -143,7 +143,7 @@ def elastic_compression(inelasticity: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.closed_form import elastic_compression
+    >>> from validation.paper.closed_form import elastic_compression
     >>> elastic_compression([0.0, 0.5]).round(4)
     array([1.0934, 0.8257])
     """
@@ -170,7 +170,7 @@ def yield_speed_ratio(inelasticity_at_yield: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.closed_form import yield_speed_ratio
+    >>> from validation.paper.closed_form import yield_speed_ratio
     >>> yield_speed_ratio([0.0, 0.2434]).round(4)
     array([1.    , 1.2156])
     """
@@ -208,7 +208,7 @@ def thornton(speed_ratio: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.closed_form import thornton
+    >>> from validation.paper.closed_form import thornton
     >>> thornton([1.0, 5.0]).round(4)
     array([1.    , 0.7733])
     """
@@ -234,7 +234,7 @@ def half_space(speed_ratio: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from validation.closed_form import half_space
+    >>> from validation.paper.closed_form import half_space
     >>> half_space([2.0, 10.0]).round(4)
     array([0.9513, 0.7042])
     """
@@ -277,7 +277,7 @@ def peng(
 
     Examples
     --------
-    >>> from validation.closed_form import peng
+    >>> from validation.paper.closed_form import peng
     >>> peng(3.0, [0.9, 1.8], eta=0.0751).round(4)
     array([0.8005, 0.5666])
     """

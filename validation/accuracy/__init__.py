@@ -1,0 +1,1 @@
+"""How right the laws are: beside finite elements, by what is asked of them, by kinds of impacts."""
