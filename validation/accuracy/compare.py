@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -43,14 +44,10 @@ def comparison(name: str) -> Comparison:
     model = {field: np.empty(fem["speed"].size) for field in fields}
     ratio, eta = np.empty(fem["speed"].size), np.empty(fem["speed"].size)
     slenderness = fem["radius"] / fem["thickness"]
-    for sphere, plate in set(zip(fem["sphere"], fem["plate"], strict=True)):
-        rows = (fem["sphere"] == sphere) & (fem["plate"] == plate)
-        pair = elastic_plate(sphere, plate)
-        impacts = fem["speed"][rows], fem["radius"][rows], fem["thickness"][rows]
-        found = cl.ImpactModel(pair, law="myc").solve(*impacts)
+    for pair, rows, found in _solved(fem, "myc"):
         for field in fields:
             model[field][rows] = getattr(found, field)
-        ratio[rows] = impacts[0] / pair.yield_speed
+        ratio[rows] = fem["speed"][rows] / pair.yield_speed
         eta[rows] = closed_form.eta(pair)
     lam = model["inelasticity"]
     at_yield = eta * slenderness**2
@@ -90,12 +87,20 @@ def by_fem(name: str) -> Array:
     """
     fem = store.read(name).data
     cor = np.empty(fem["speed"].size)
+    for _, rows, found in _solved(fem, "fem"):
+        cor[rows] = found.restitution
+    return cor
+
+
+def _solved(
+    fem: dict[str, Array], law: str
+) -> Iterator[tuple[cl.Pair, NDArray[np.bool_], cl.Rebound]]:
+    """Let a law integrate the impacts of each pair of a study, which are these rows of it."""
     for sphere, plate in set(zip(fem["sphere"], fem["plate"], strict=True)):
         rows = (fem["sphere"] == sphere) & (fem["plate"] == plate)
-        model = cl.ImpactModel(elastic_plate(sphere, plate), law="fem", outside="solve")
-        impacts = fem["speed"][rows], fem["radius"][rows], fem["thickness"][rows]
-        cor[rows] = model.solve(*impacts).restitution
-    return cor
+        pair = elastic_plate(sphere, plate)
+        impacts = (fem[name][rows] for name in ("speed", "radius", "thickness"))
+        yield pair, rows, cl.ImpactModel(pair, law).solve(*impacts)
 
 
 class Yielded(NamedTuple):

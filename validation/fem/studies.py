@@ -153,33 +153,27 @@ def _where_installed(study: Callable[[int], None]) -> Callable[[int], None]:
 def calculix_indentation(_: int) -> None:
     """Repeat one indentation with CalculiX."""
     depth = CALCULIX_DEPTH * YIELD_COMPRESSION
-    compression, force = calculix.run(PAIR, RADIUS, depth, CALCULIX_SIZE)
-    store.write(
-        "calculix",
-        "the indentation to 10 d_Y by CalculiX: CAX4 elements, surface-to-surface contact",
-        {"compression": compression, "force": force},
-        {"compression": "m", "force": "N"},
-        mesh=f"element size {CALCULIX_SIZE:g} R, block of {BLOCK:g} R",
-        elements=calculix.elements(calculix.deck(PAIR, RADIUS, depth, CALCULIX_SIZE)),
-        **calculix.SETTINGS,
-        **calculix.facts(PAIR),
-    )
+    _by_calculix("calculix", "the indentation to 10 d_Y", PAIR, depth, CALCULIX_SIZE)
 
 
 @_where_installed
 def calculix_block(_: int) -> None:
     """Press into a block that yields, as the sphere does, with CalculiX."""
-    compression, force = calculix.run(BOTH, RADIUS, BOTH_DEPTH, BOTH_SIZE)
+    what = "an indentation in which both bodies yield"
+    _by_calculix("calculix_block", what, BOTH, BOTH_DEPTH, BOTH_SIZE)
+
+
+def _by_calculix(name: str, what: str, pair: cl.Pair, depth: float, size: float) -> None:
+    compression, force = calculix.run(pair, RADIUS, depth, size)
     store.write(
-        "calculix_block",
-        "an indentation in which both bodies yield by CalculiX: CAX4 elements, surface-to-surface "
-        "contact",
+        name,
+        f"{what} by CalculiX: CAX4 elements, surface-to-surface contact",
         {"compression": compression, "force": force},
         {"compression": "m", "force": "N"},
-        mesh=f"element size {BOTH_SIZE:g} R, block of {BLOCK:g} R",
-        elements=calculix.elements(calculix.deck(BOTH, RADIUS, BOTH_DEPTH, BOTH_SIZE)),
+        mesh=f"element size {size:g} R, block of {BLOCK:g} R",
+        elements=calculix.elements(calculix.deck(pair, RADIUS, depth, size)),
         **calculix.SETTINGS,
-        **calculix.facts(BOTH),
+        **calculix.facts(pair),
     )
 
 
@@ -227,8 +221,8 @@ def calculix_impact(_: int) -> None:
 def matrix(processes: int) -> None:
     """Eight thicknesses by eight speeds (Figs 7, 8, 10)."""
     listed = [Case(v * PAIR.yield_speed, RADIUS / s) for s in SLENDERNESS for v in SPEED_RATIO]
-    data = cases.solve_all(listed, "matrix", processes)
-    cases.save("matrix", "gamma-alumina on glass, R/H 0.1 to 1.8, V0/V_Y0 0.3 to 7", data)
+    about = "gamma-alumina on glass, R/H 0.1 to 1.8, V0/V_Y0 0.3 to 7"
+    cases.compute("matrix", about, listed, processes)
 
 
 def paper(_: int) -> None:
@@ -290,9 +284,8 @@ def pairs(processes: int) -> None:
             thickness = RADIUS / slenderness * math.sqrt(eta(pair) / ETA)
             for v in (0.5, 1.5, 3.5, 7.0):
                 listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere, plate=plate))
-    data = cases.solve_all(listed, "pairs", processes)
     about = "three pairs at the same inelasticity lambda and speed over yield speed; plates elastic"
-    cases.save("pairs", about, data)
+    cases.compute("pairs", about, listed, processes)
 
 
 def strengths(processes: int) -> None:
@@ -304,9 +297,8 @@ def strengths(processes: int) -> None:
         thickness = RADIUS * math.sqrt(eta(pair) / ETA)  # so lambda_Y is that of R/H = 1
         for v in (1.5, 3.5, 7.0):
             listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere))
-    data = cases.solve_all(listed, "strengths", processes)
     about = "the paper's pair with 2 to 1/8 of its yield strength, at the lambda_Y of R/H = 1"
-    cases.save("strengths", about, data)
+    cases.compute("strengths", about, listed, processes)
 
 
 def limits(processes: int) -> None:
@@ -316,8 +308,8 @@ def limits(processes: int) -> None:
         for s in (0.5, 1.0, 1.8, 2.5)
         for v in (0.5, 1.5, 3.5, 7.0, 10.0, 14.0)
     ]
-    data = cases.solve_all(listed, "limits", processes)
-    cases.save("limits", "gamma-alumina on glass, R/H to 2.5, V0/V_Y0 to 14", data)
+    about = "gamma-alumina on glass, R/H to 2.5, V0/V_Y0 to 14"
+    cases.compute("limits", about, listed, processes)
 
 
 def edge(processes: int) -> None:
@@ -328,9 +320,8 @@ def edge(processes: int) -> None:
     way = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5  # c_g time/2
     factors = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 4.0)
     listed = [Case(speed, thickness, width=factor * way, meshes=1) for factor in factors]
-    data = cases.solve_all(listed, "edge", processes)
     about = "free edge at 0.5 to 4 times the way of the contact's own bending wave, there and back"
-    cases.save("edge", about, data)
+    cases.compute("edge", about, listed, processes)
 
 
 STUDIES: dict[str, Callable[[int], None]] = {

@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from contactlaw.fitting.measurements import KINDS
-from contactlaw.fitting.predictions import impacts
-from contactlaw.fitting.unknowns import UNKNOWNS, Setting
-from contactlaw.physical.scaling import law_of
+from contactlaw.fitting.unknowns import UNKNOWNS
+from validation.inverse.model import rebounds, true
 
 Array = NDArray[np.float64]
 
@@ -41,9 +40,7 @@ class Case(NamedTuple):
 
     def data(self) -> dict[str, Array | float]:
         """Compute the rebounds, and leave out what is asked for."""
-        size = np.ones_like(self.speed)
-        at = Setting(self.pair, self.radius * size, self.thickness * size)
-        hit = impacts(at, law_of(self.pair, "fem"), self.speed)
+        hit = rebounds(self, "fem")
         found: dict[str, Array | float] = {"speed": self.speed}
         sizes = {"radius": self.radius, "thickness": self.thickness}
         found |= {name: size for name, size in sizes.items() if name not in self.unknown}
@@ -51,12 +48,6 @@ class Case(NamedTuple):
             found[kind] = np.asarray(getattr(hit, kind))
             found[f"{kind}_error"] = _ERROR * found[kind]
         return found
-
-    def true(self, name: str) -> float:
-        """Value of an unknown."""
-        unknown = UNKNOWNS[name]
-        of = getattr(self.pair, unknown.body) if unknown.body else self
-        return float(getattr(of, unknown.field))
 
     def words(self) -> str:
         """Say all of it."""
@@ -85,9 +76,7 @@ def draw(random: np.random.Generator) -> Case:
         speed = np.geomspace(slowest, min(fastest, 30.0), int(random.integers(6, 17)))
         kinds = tuple(random.permutation(list(KINDS))[: random.integers(1, 4)].tolist())
         case = Case(pair, radius, thickness, speed, kinds, unknown)
-        size = np.ones_like(speed)
-        hit = impacts(Setting(pair, radius * size, thickness * size), law_of(pair, "fem"), speed)
-        if np.min(hit.restitution) > _LEAST_COR:
+        if np.min(rebounds(case, "fem").restitution) > _LEAST_COR:
             return case
 
 
@@ -107,12 +96,12 @@ def fault_of(case: Case) -> str:
     except cl.UnidentifiedError:
         return ""
     off = {
-        name: (found.values[name] - case.true(name)) / found.errors[name] for name in case.unknown
+        name: (found.values[name] - true(case, name)) / found.errors[name] for name in case.unknown
     }
     if found.alternatives or max(map(abs, off.values())) <= _LARGEST:
         return ""
     answers = "; ".join(
-        f"{name} {found.values[name]:.6g} +- {found.errors[name]:.3g}, true {case.true(name):.6g}"
+        f"{name} {found.values[name]:.6g} +- {found.errors[name]:.3g}, true {true(case, name):.6g}"
         for name in case.unknown
     )
     return f"{case.words()}: {answers}"

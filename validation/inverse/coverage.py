@@ -22,10 +22,10 @@ from tqdm import tqdm
 import contactlaw as cl
 from contactlaw.fitting import errors
 from contactlaw.fitting.measurements import KINDS
-from contactlaw.fitting.predictions import Predictor, Values, impacts
-from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
-from contactlaw.physical.rebound import Rebound
+from contactlaw.fitting.predictions import Predictor, Values
+from contactlaw.fitting.unknowns import UNKNOWNS, parameters
 from contactlaw.physical.scaling import law_of
+from validation.inverse.model import rebounds, true
 
 Array = NDArray[np.float64]
 
@@ -94,7 +94,7 @@ def draw(random: np.random.Generator, question: tuple[str, ...], law: str) -> Co
         one = Configuration(
             pair, radius, thickness, speed, kinds, noise, bool(random.integers(2)), regime
         )
-        if np.min(truth(one, law).restitution) > _LEAST:
+        if np.min(rebounds(one, law).restitution) > _LEAST:
             return one
 
 
@@ -105,21 +105,14 @@ def _of_other_strength(random: np.random.Generator, body: cl.Material) -> cl.Mat
     return dataclasses.replace(body, yield_strength=factor * body.yield_strength)
 
 
-def truth(one: Configuration, law: str) -> Rebound:
-    """Predict its rebounds."""
-    size = np.ones_like(one.speed)
-    at = Setting(one.pair, one.radius * size, one.thickness * size)
-    return impacts(at, law_of(one.pair, law), one.speed)
-
-
 def measured(
     random: np.random.Generator, one: Configuration, question: tuple[str, ...], law: str, errs: bool
 ) -> dict[str, Array | float]:
     """Draw the data of a configuration, without what is asked for."""
-    true = truth(one, law)
+    hit = rebounds(one, law)
     data: dict[str, Array | float] = {"speed": one.speed}
     data |= {name: getattr(one, name) for name in ("radius", "thickness") if name not in question}
-    exact = {kind: np.asarray(getattr(true, kind)) for kind in one.kinds}
+    exact = {kind: np.asarray(getattr(hit, kind)) for kind in one.kinds}
     shift = _model_error(random, one, exact, law) if errs else {}
     for kind, noise in zip(one.kinds, one.noise, strict=True):
         scatter = noise * exact[kind] * random.standard_normal(one.speed.size)
@@ -152,13 +145,6 @@ def _model_error(
     return {name: drawn[values.kind == names.index(name)] for name in exact}
 
 
-def _true(one: Configuration, name: str) -> float:
-    unknown = UNKNOWNS[name]
-    if unknown.body:
-        return float(getattr(getattr(one.pair, unknown.body), unknown.field))
-    return float(getattr(one, name))
-
-
 def outcomes(
     question: tuple[str, ...], sets: int, seed: int, law: str = "fem"
 ) -> Iterator[list[Outcome]]:
@@ -175,8 +161,8 @@ def outcomes(
             continue
         stated = found.errors if errs else found.statistical_errors
         yield [
-            Outcome(name, one.regime, errs, found.values[name] / _true(one, name) - 1.0,
-                    stated[name] / _true(one, name))
+            Outcome(name, one.regime, errs, found.values[name] / true(one, name) - 1.0,
+                    stated[name] / true(one, name))
             for name in question
         ]  # fmt: skip
 

@@ -11,8 +11,9 @@ import contactlaw as cl
 from contactlaw import Validity, laws
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.predictions import impacts
-from contactlaw.fitting.unknowns import Setting
+from contactlaw.fitting.unknowns import UNKNOWNS, Setting
 from contactlaw.physical.materials import NoYieldStrengthError
+from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import law_of
 from validation.fem import fit, store
 
@@ -20,6 +21,24 @@ Array = NDArray[np.float64]
 
 STUDIES = "everyday_5", "kept_out"  # all that no fit has seen
 _LEAST = {"restitution": 0.3}  # the error of a lower one is over this
+
+
+def rebounds(one: Any, law: str) -> Rebound:
+    """Predict the rebounds of a measurement as `contactlaw.fit` does.
+
+    It has a pair, a radius, a thickness [m], and a speed or several [m/s].
+    """
+    speed = np.atleast_1d(one.speed)
+    size = np.ones_like(speed)
+    at = Setting(one.pair, one.radius * size, one.thickness * size)
+    return impacts(at, law_of(one.pair, law), speed)
+
+
+def true(one: Any, name: str) -> float:
+    """Value of an unknown of `contactlaw.fit` in a measurement, as of `rebounds`."""
+    unknown = UNKNOWNS[name]
+    of = getattr(one.pair, unknown.body) if unknown.body else one
+    return float(getattr(of, unknown.field))
 
 
 class Impact(NamedTuple):
@@ -77,12 +96,9 @@ def rms(law: str) -> tuple[Array, Array]:
     off, flagged = [], []
     for one in unseen():
         try:
-            made = law_of(one.pair, law)
+            hit = rebounds(one, law)
         except NoYieldStrengthError:
             continue
-        size = np.ones(1)
-        hit = impacts(Setting(one.pair, one.radius * size, one.thickness * size), made,
-                      one.speed * size)  # fmt: skip
         off.append(
             [
                 (float(np.asarray(getattr(hit, kind))[0]) - value)
