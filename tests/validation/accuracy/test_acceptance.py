@@ -7,7 +7,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import Validity
-from validation.accuracy import acceptance
+from validation.accuracy import acceptance, halfspace
 from validation.accuracy.acceptance import TARGETS, Errors, Member, Row
 from validation.bench import census as bench
 from validation.fem import census
@@ -119,16 +119,16 @@ def test_friction_matters_in_deep_contacts_only():
 
 def test_half_spaces_go_the_way_of_the_closed_forms():
     """The slope steepens to Johnson's -1/4; flattened spheres, whose pressure falls, go beyond."""
-    falls = acceptance.halfspace()
+    falls = halfspace.falls()
     for yielding in acceptance.YIELDING[1:]:
         for ratio in (400.0, 2000.0):
             some = [one for one in falls if (one.yielding, one.ratio) == (yielding, ratio)]
             slopes = [one.slope for one in some]
             assert [one.speed_ratio for one in some] == [3.0, 10.0, 30.0, 100.0, 300.0, 1000.0]
             assert slopes == sorted(slopes, reverse=True)
-            assert slopes[-1] == pytest.approx(acceptance.JOHNSON, abs=0.05)
+            assert slopes[-1] == pytest.approx(halfspace.JOHNSON, abs=0.05)
             # a pressure that stays that of first yield is too low: so is the COR
-            capped = acceptance.thornton(1.65)
+            capped = halfspace.thornton(1.65)
             assert all(one.restitution > e for one, e in zip(some, capped, strict=True))
 
 
