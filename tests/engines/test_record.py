@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from scene import Full, R, Stub
+from pymunk_room import Full, R, Stub
 
 import contactlaw as cl
 from contactlaw.engines.pymunk import PymunkImpacts

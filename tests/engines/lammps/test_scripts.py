@@ -1,27 +1,20 @@
 """The LAMMPS adapter under the commands of users' scripts: each does right, or says why not."""
 
 import gc
-import os
-import subprocess
 import sys
 import warnings
 import weakref
 from pathlib import Path
 
+import lammps_box as box
 import numpy as np
 import pytest
+from lammps_box import PLATE, R, above, attach, dropped, flat, make, state
 
-pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-
-import box  # noqa: E402
-from box import PLATE, R, flat, make, state  # noqa: E402
-
-import contactlaw as cl  # noqa: E402
-from contactlaw.engines.lammps import attach  # noqa: E402
+import contactlaw as cl
 
 IN_CONTACT = "run 230"  # of 200 to 301
-STARTS = [(0.01, 0, R + 1e-4), (-0.01, 0, R + 1e-4), (0, 0.02, R + 1e-4)]
+STARTS = [above(x=0.01), above(x=-0.01), above(y=0.02)]
 WALL = (
     "fix floor all wall/gran granular hertz/material 7e10 0.9 0.2 tangential mindlin NULL 1.0 0.3 "
     "damping tsuji zplane 0 NULL"
@@ -39,26 +32,18 @@ PARTS = [
 @pytest.fixture
 def scene(model):
     """Three beads that fall on a plate, and the plates."""
-    made = []
-
-    def start(**options):
-        lmp = make(STARTS, (0, 0, -5), **options)
-        made.append(lmp)
-        return lmp, attach(lmp, model, [flat(1e-3)])
-
-    yield start
-    for lmp in made:
-        lmp.close()
+    return lambda: box.scene(model, None, STARTS)
 
 
 @pytest.fixture(scope="module")
-def undisturbed():
+def undisturbed(model):
     """Restitution of the three, and their speeds afterwards."""
-    lmp = make(STARTS, (0, 0, -5))
-    walls = attach(lmp, cl.ImpactModel(box.PAIR, law="myc"), [flat(1e-3)])
-    lmp.command("run 630")
-    yield walls.collisions()["restitution"], state(lmp)["v"]
-    lmp.close()
+    rows, now = dropped(model, None, STARTS, steps=630)
+    return rows["restitution"], now["v"]
+
+
+def assert_undisturbed(walls, undisturbed):
+    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
 
 
 def in_a_file(lmp, tmp_path, commands):
@@ -160,7 +145,7 @@ def test_the_adapters_own_parts_are_not_taken_out_by_hand(scene, undisturbed, ki
             way(given)
     assert lmp.extract_global("ntimestep") == 0
     lmp.command("run 630")
-    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+    assert_undisturbed(walls, undisturbed)
 
 
 @pytest.mark.parametrize(
@@ -256,7 +241,7 @@ def test_what_plates_cannot_follow_is_refused(scene, undisturbed, command, words
     with pytest.raises(RuntimeError, match=f"{command}.*{words}"):
         lmp.commands_string(f"run 10\n{command}")
     lmp.command("run 400")
-    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+    assert_undisturbed(walls, undisturbed)
     walls.detach()
     if command.startswith(("minimize", "run_style")):
         lmp.command(command)
@@ -310,7 +295,7 @@ def test_replicate_is_refused_by_lammps_itself(scene, undisturbed):
     with pytest.raises(Exception, match="Cannot replicate with fixes that store per-atom"):
         lmp.command("replicate 2 1 1")
     lmp.command("run 630")
-    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+    assert_undisturbed(walls, undisturbed)
 
 
 def test_two_simulations_beside_each_other(scene, undisturbed):
@@ -319,7 +304,7 @@ def test_two_simulations_beside_each_other(scene, undisturbed):
         one.command("run 90")
         other.command("run 90")
     for walls in (first, second):
-        assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+        assert_undisturbed(walls, undisturbed)
     first.detach()
     with pytest.raises(RuntimeError, match="belongs to the plates"):
         other.command("unfix contactlaw")
@@ -327,7 +312,7 @@ def test_two_simulations_beside_each_other(scene, undisturbed):
 
 def test_plates_that_nobody_holds_act_all_the_same(model, undisturbed):
     """Their memory lives as long as the LAMMPS object, and no longer."""
-    lmp = make(STARTS, (0, 0, -5))
+    lmp = make(STARTS)
     attach(lmp, model, [flat(1e-3)])
     gc.collect()
     lmp.command("run 630")
@@ -357,7 +342,7 @@ def test_methods_take_what_lammps_takes(scene, undisturbed):
     lmp.commands_string('print """\nunfix contactlaw\n"""\nrun 330 # minimize')
     with pytest.raises(TypeError, match="argument"):
         lmp.command()
-    assert walls.collisions()["restitution"].tolist() == undisturbed[0].tolist()
+    assert_undisturbed(walls, undisturbed)
 
 
 def test_both_walls_act(scene):
@@ -390,12 +375,11 @@ def test_a_granular_wall_of_lammps_is_warned_of_once(scene, tmp_path, way, style
 
 
 def test_a_granular_wall_that_is_there_already(model):
-    lmp = make(STARTS, (0, 0, -5))
+    lmp = make(STARTS)
     lmp.command(WALL)
     with pytest.warns(UserWarning, match="fix floor has the style wall/gran:") as caught:
         attach(lmp, model, [flat(1e-3)])
     assert len(caught) == 1 and caught[0].filename == __file__
-    lmp.close()
 
 
 def test_other_walls_are_nobodys_business(scene):
@@ -407,18 +391,7 @@ def test_other_walls_are_nobodys_business(scene):
 @pytest.fixture(scope="module")
 def two_ranks(tmp_path_factory):
     """What `main` printed on two ranks; it ends, so no rank waits for another."""
-    mpirun = Path(sys.executable).with_name("mpirun")
-    command = [mpirun, "-np", "2", sys.executable, __file__, tmp_path_factory.mktemp("ranks")]
-    shared = {"PYTHONPATH": str(Path(box.__file__).parent)}
-    done = subprocess.run(
-        list(map(str, command)),
-        capture_output=True,
-        text=True,
-        timeout=300,
-        env=os.environ | shared,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
+    return box.on_two_ranks(__file__, tmp_path_factory.mktemp("ranks"))
 
 
 @pytest.mark.parametrize(
@@ -456,8 +429,7 @@ def main(folder):
             print(f"warned: {warning.message}\n", end="", flush=True)
 
     def fresh():
-        lmp = make(STARTS, (0, 0, -5), processors="2 1 1")
-        return lmp, attach(lmp, model, [flat(1e-3)])
+        return box.scene(model, None, STARTS, processors="2 1 1")
 
     script = Path(folder) / "in.script"
     if rank == 0:

@@ -2,7 +2,7 @@
 
 import pymunk
 import pytest
-from scene import DT, EXACT, R, Stub, drop, make_bead, make_space
+from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space, meet, steps
 
 from contactlaw.engines.pymunk import attach
 
@@ -51,22 +51,17 @@ def test_other_phases_are_as_they_were(key, phase):
     seen = []
     handler = {phase: lambda arbiter, space, data: seen.append(data)}
     space.on_collision(*key(impacts), data="mine", **handler)
-    for _ in range(20):
-        space.step(DT)
+    steps(space, 20)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert len(impacts.collisions()) == 1
     assert seen[0] == "mine"
 
 
 def test_two_beads_too():
-    space = make_space(0.0)
-    impacts = attach(space, Stub(0.8))
-    for x, v in ((-1, 1), (1, -1)):
-        impacts.add_bead(make_bead(space, (1.01 * x * R, 0), (v, 0)))
+    space, _, impacts = meet(Stub(0.8))
     seen = []
     space.on_collision(impacts.bead_type, impacts.bead_type, pre_solve=lambda *a: seen.append(a[2]))
-    for _ in range(3):
-        space.step(DT)
+    steps(space, 3)
     assert impacts.collisions()["restitution"].tolist() == [0.8]
     assert seen
 
@@ -85,8 +80,7 @@ def test_a_handler_for_any_type_that_was_there_before():
     circle = make_bead(space, (0, 1.01 * R), (0, -2))
     impacts = attach(space, Stub(0.6))
     impacts.add_bead(circle)
-    impacts.add_plate(pymunk.Segment(space.static_body, (-1, 0), (1, 0), 0), 1e-3)
-    space.add(*space.static_body.shapes)
+    impacts.add_plate(make_plate(space), 1e-3)
     space.step(DT)
     assert circle.body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert seen == [7]
@@ -124,22 +118,17 @@ def test_a_contact_that_the_user_switches_off_in_pre_solve_is_no_impact(key):
     assert body.velocity.y == -2 and body.position.y < 0
 
 
-def test_a_contact_of_beads_that_is_switched_off_is_no_impact():
-    for pair in ("own", "bead and any", "any"):
-        space = make_space(0.0)
-        impacts = attach(space, Stub(0.8))
-        for x, v in ((-1, 1), (1, -1)):
-            impacts.add_bead(make_bead(space, (1.01 * x * R, 0), (v, 0)))
+@pytest.mark.parametrize("pair", ["own", "bead and any", "any"])
+def test_a_contact_of_beads_that_is_switched_off_is_no_impact(pair):
+    space, _, impacts = meet(Stub(0.8))
 
-        def pre_solve(arbiter, space, data):
-            arbiter.process_collision = False
+    def pre_solve(arbiter, space, data):
+        arbiter.process_collision = False
 
-        own = (impacts.bead_type, impacts.bead_type)
-        key = own if pair == "own" else KEYS[pair](impacts)
-        space.on_collision(*key, pre_solve=pre_solve)
-        for _ in range(5):
-            space.step(DT)
-        assert len(impacts.collisions()) == 0
+    own = (impacts.bead_type, impacts.bead_type)
+    space.on_collision(*(own if pair == "own" else KEYS[pair](impacts)), pre_solve=pre_solve)
+    steps(space, 5)
+    assert len(impacts.collisions()) == 0
 
 
 def test_a_restitution_of_the_users_is_refused(key):

@@ -5,7 +5,21 @@ import math
 import numpy as np
 import pymunk
 import pytest
-from scene import DT, EXACT, G, R, Stub, drop, make_bead, make_plate, make_space, step_to_impact
+from pymunk_room import (
+    DT,
+    EXACT,
+    G,
+    R,
+    Stub,
+    drop,
+    make_bead,
+    make_plate,
+    make_space,
+    meet,
+    moving_body,
+    step_to_impact,
+    steps,
+)
 
 import contactlaw as cl
 from contactlaw.engines.pymunk import attach
@@ -51,8 +65,7 @@ def test_threaded_space():
 
 def test_row_of_a_plate_impact():
     space, body, impacts = drop(Stub(0.5), speed=2.0, gravity=0.0)
-    for _ in range(20):
-        space.step(DT)
+    steps(space, 20)
     (row,) = impacts.collisions()
     # 0.02 R = 18 um at 2 m/s: the first step of 100 us overlaps.
     assert row["time"] == pytest.approx(DT, abs=1e-18)
@@ -90,9 +103,7 @@ def test_every_bead_and_plate_has_its_own_curve_made_once():
 
 def test_moving_plate_counts_relative_speed_at_the_contact():
     space = make_space(0.0)
-    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    body.velocity, body.angular_velocity = (0.3, 1.0), 2.0
-    space.add(body)
+    body = moving_body(space, (0.3, 1.0), 2.0)
     circle = make_bead(space, (0.5, 1.02 * R), (0.2, -1))
     impacts = attach(space, Stub(0.6))
     impacts.add_bead(circle)
@@ -164,8 +175,7 @@ def test_separation_is_left_alone():
 def test_bouncing_ends_in_rest(restitution):
     model = Stub(restitution)
     space, body, impacts = drop(model, speed=0.1)
-    for _ in range(6000):
-        space.step(DT)
+    steps(space, 6000)
     rows = impacts.collisions()
     assert 0 < len(rows) < 100
     assert rows["time"].max() < 0.5  # of 0.6 s
@@ -183,8 +193,7 @@ def test_a_pile_comes_to_rest():
     for k in range(24):
         place = ((-2.7 + 1.8 * (k % 4) + 0.01 * k) * R, (1.5 + 2.2 * (k // 4)) * R)
         impacts.add_bead(make_bead(space, place, (0, -0.2), radius=(0.8 + 0.004 * k) * R))
-    for _ in range(6000):
-        space.step(DT)
+    steps(space, 6000)
     times = impacts.collisions()["time"]
     assert len(times) > 100
     assert times.max() < 0.5  # of 0.6 s; without a threshold 100000 impacts in the last 0.1 s
@@ -195,8 +204,7 @@ def test_rest_without_gravity_is_no_row_of_roundings():
     space, body, impacts = drop(Stub(0.0), speed=1 / 3, gravity=0.0)
     other = make_bead(space, (1.9 * R, 1.3 * R), (-0.7, -0.1))
     impacts.add_bead(other)
-    for _ in range(200):
-        space.step(DT)
+    steps(space, 200)
     rows = impacts.collisions()
     assert len(rows) > 0 and rows["approach_speed"].min() > 1e-6
 
@@ -204,8 +212,7 @@ def test_rest_without_gravity_is_no_row_of_roundings():
 def shaken(steps, velocity, dt=1e-5):
     """A bead on a plate that moves up and down with the given velocity."""
     space = make_space()
-    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    space.add(body)
+    body = moving_body(space)
     circle = make_bead(space, (0, R))
     impacts = attach(space, Stub(0.3))
     impacts.add_bead(circle)
@@ -238,16 +245,12 @@ def test_a_plate_that_strikes_is_an_impact():
 @pytest.mark.parametrize("thickness", [0.5e-3, 1e-3, 3e-3, math.inf])
 def test_bead_rebounds_as_the_solver_says(model, thickness, speed):
     """The pair of the paper; 1e-4 is what issue and table promise, pymunk adds roundings."""
-    space = make_space()
-    circle = make_bead(space, (0, 1.2 * R), (0, -speed))
-    impacts = attach(space, model)
-    impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space), thickness)
-    before, after = step_to_impact(space, impacts, circle.body, dt=1e-5)
+    space, body, impacts = drop(model, speed, gap=0.2 * R, thickness=thickness)
+    before, after = step_to_impact(space, impacts, body, dt=1e-5)
     solved = model.solve(speed=-before.y, radius=R, thickness=thickness)
     assert after.y / -before.y == pytest.approx(solved.restitution, abs=1e-4)
     (row,) = impacts.collisions()
-    energy = 0.5 * circle.body.mass * before.y**2
+    energy = 0.5 * body.mass * before.y**2
     assert row["contact_time"] == pytest.approx(solved.contact_time, rel=1e-4)
     assert row["peak_force"] == pytest.approx(solved.peak_force, rel=1e-4)
     # Energy lost by the bead in pymunk = what the model says went to plasticity and waves.
@@ -260,12 +263,7 @@ def test_bead_rebounds_as_the_solver_says(model, thickness, speed):
 
 
 def test_beads_rebound_from_each_other_with_the_bulk_law(model):
-    space = make_space(0.0)
-    impacts = attach(space, model)
-    left = make_bead(space, (-1.01 * R, 0), (15, 0))
-    right = make_bead(space, (2.02 * R, 0), (-15, 0), radius=2 * R)
-    for circle in (left, right):
-        impacts.add_bead(circle)
+    space, (left, right), impacts = meet(model, 15, (R, 2 * R))
     step_to_impact(space, impacts, left.body, dt=1e-5)
     bead = model.pair.sphere
     expected = cl.restitution_sphere_sphere(bead, bead, 30.0, R, 2 * R, law="myc")
@@ -330,10 +328,7 @@ def test_the_model_is_asked_about_an_impact_once(model):
 
 
 def test_an_impact_outside_the_table_says_which(model):
-    space = make_space(0.0)
-    impacts = attach(space, model)
-    impacts.add_bead(make_bead(space, (0, 1.01 * R), (0, -2)))
-    impacts.add_plate(make_plate(space), 0.05e-3)  # foil: lambda of about 20
+    space, _, _ = drop(model, gravity=0.0, thickness=0.05e-3)  # foil: lambda of about 20
     with pytest.raises(ValueError) as caught:
         space.step(DT)
     assert "bead 0 on plate 0 at 2 m/s" in caught.value.__notes__[0]

@@ -6,7 +6,18 @@ import pickle
 import numpy as np
 import pymunk
 import pytest
-from scene import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space, step_to_impact
+from pymunk_room import (
+    DT,
+    EXACT,
+    R,
+    Stub,
+    drop,
+    make_bead,
+    make_plate,
+    make_space,
+    moving_body,
+    step_to_impact,
+)
 
 from contactlaw.engines.pymunk import TunnellingError, attach
 from contactlaw.engines.pymunk.lookahead import Line, approach
@@ -51,9 +62,7 @@ def test_safe_step_of_a_bead_that_overlaps_already():
 
 def test_a_fast_plate_is_reported():
     space = make_space(0.0)
-    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    body.position, body.angular_velocity = (-1, 0), 100.0
-    space.add(body)
+    body = moving_body(space, spin=100.0, position=(-1, 0))
     impacts = attach(space, Stub())
     impacts.add_plate(make_plate(space, (0, 0), (1.5, 0), body=body), 1e-3)
     impacts.add_bead(make_bead(space, (0, 0.003)))
@@ -160,8 +169,7 @@ def test_numbers_that_are_not_finite_are_found_before_the_step(name, value):
 
 def test_a_plate_that_is_not_finite():
     space = make_space()
-    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    space.add(body)
+    body = moving_body(space)
     impacts = attach(space, Stub())
     impacts.add_plate(make_plate(space, body=body), 1e-3)
     impacts.add_bead(make_bead(space, (0, 1)))

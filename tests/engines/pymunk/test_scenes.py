@@ -8,7 +8,20 @@ from types import SimpleNamespace
 
 import pymunk
 import pytest
-from scene import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space, step_to_impact
+from pymunk_room import (
+    DT,
+    EXACT,
+    R,
+    Stub,
+    drop,
+    make_bead,
+    make_plate,
+    make_space,
+    meet,
+    moving_body,
+    step_to_impact,
+    steps,
+)
 
 import contactlaw as cl
 from contactlaw.engines.pymunk import TunnellingError, attach
@@ -32,16 +45,12 @@ def test_another_radius_than_the_registered_one_is_refused(model):
     assert after.y / -before.y == pytest.approx(expected, abs=1e-9)
 
 
-def test_another_radius_of_the_other_bead_is_refused():
-    for changed in (0, 1):
-        space = make_space(0.0)
-        impacts = attach(space, Stub(0.8))
-        both = [make_bead(space, (1.01 * x * R, 0), (-x, 0)) for x in (-1, 1)]
-        for circle in both:
-            impacts.add_bead(circle)
-        both[changed].unsafe_set_radius(1.1 * R)
-        with pytest.raises(ValueError, match=f"radius: bead {changed}"):
-            space.step(DT)
+@pytest.mark.parametrize("changed", [0, 1])
+def test_another_radius_of_the_other_bead_is_refused(changed):
+    space, both, _ = meet(Stub(0.8))
+    both[changed].unsafe_set_radius(1.1 * R)
+    with pytest.raises(ValueError, match=f"radius: bead {changed}"):
+        space.step(DT)
 
 
 # --- shapes that go -------------------------------------------------------------------------------
@@ -85,8 +94,7 @@ def test_a_bead_may_go_in_the_middle_of_a_step():
     space.on_collision(
         impacts.bead_type, impacts.plate_type, post_solve=lambda *_: impacts.remove_bead(circle)
     )
-    for _ in range(3):
-        space.step(DT)
+    steps(space, 3)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert len(impacts.collisions()) == 1
 
@@ -192,10 +200,9 @@ def test_every_side_of_a_box_is_a_plate(model, side, corner, speed):
 
 def test_a_sloping_side_of_a_turning_polygon():
     space = make_space(0.0)
-    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    body.angular_velocity = 20.0
+    body = moving_body(space, spin=20.0)
     triangle = pymunk.Poly(body, [(-0.03, -0.02), (0.03, -0.02), (0.0, 0.03)])
-    space.add(body, triangle)
+    space.add(triangle)
     normal = pymunk.Vec2d(5, 3).normalized()
     middle = pymunk.Vec2d(0.02, -0.01 / 3)
     circle = make_bead(space, middle + normal * 1.05 * R, normal * -1)
@@ -222,8 +229,7 @@ def test_a_bead_rests_on_a_box():
     impacts = attach(space, Stub(0.5))
     impacts.add_bead(circle)
     impacts.add_plate(box, 1e-3)
-    for _ in range(3000):
-        space.step(DT)
+    steps(space, 3000)
     assert circle.body.position.y == pytest.approx(0.01 + R, abs=0.1 * R)
     assert 1 < len(impacts.collisions()) < 20 and impacts.resting > 0
 
@@ -262,8 +268,7 @@ def test_a_static_plate_may_have_a_speed():
 
 def test_a_plate_that_stops_does_not_shake():
     space = make_space(0.0)
-    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
-    space.add(body)
+    body = moving_body(space)
     circle = make_bead(space, (0, 1.5 * R))
     impacts = attach(space, Stub(0.5))
     impacts.add_bead(circle)
@@ -273,8 +278,7 @@ def test_a_plate_that_stops_does_not_shake():
         space.step(1e-6)
     body.body_type, body.velocity = pymunk.Body.STATIC, (0, 0)
     circle.body.velocity = (0, -0.3)  # slower than twice the change
-    for _ in range(200):
-        space.step(1e-5)
+    steps(space, 200, 1e-5)
     assert impacts.collisions()["approach_speed"] == pytest.approx([0.3], abs=EXACT)
 
 
@@ -319,8 +323,7 @@ def shower(models, speed=1.0):
 def test_every_bead_and_plate_has_the_model_of_its_pair(models):
     speed = 1.0
     space, impacts, bodies = shower(models, speed)
-    for _ in range(5):
-        space.step(1e-5)
+    steps(space, 5, 1e-5)
     rows = impacts.collisions()
     rows = rows[rows["other"] < 0]
     assert len(rows) == 4
@@ -344,8 +347,7 @@ def test_beads_of_two_materials_meet(models):
     light, heavy = bodies[-2:]
     momentum = light.mass * light.velocity.x + heavy.mass * heavy.velocity.x
     energy = 0.5 * (light.mass * light.velocity.x**2 + heavy.mass * heavy.velocity.x**2)
-    for _ in range(20):
-        space.step(1e-5)
+    steps(space, 20, 1e-5)
     rows = impacts.collisions()
     (row,) = rows[rows["other"] >= 0]
     cor = cl.restitution_sphere_sphere(*BEADS, 2.0, R, 2 * R, law="jackson_green")
@@ -521,26 +523,18 @@ def test_a_ridge_is_hit_once():
     assert circle.body.velocity == pytest.approx((0, 1), abs=1e-9)
 
 
-def test_a_neighbour_that_is_not_there_has_no_part():
-    for gone in ("removed", "unregistered", "filtered"):
-        space, body, impacts = floor(2)
-        first, second = sorted(space.static_body.shapes, key=lambda shape: shape.a.x)
-        if gone == "removed":
-            space.remove(first)
-        elif gone == "unregistered":
-            impacts.remove_plate(first)
-            space.remove(first)
-        else:
-            first.filter = pymunk.ShapeFilter(mask=0)
-        space.step(DT)
-        rows = impacts.collisions()
-        assert rows["plate"].tolist() == [1], gone
-
-
-def test_a_neighbour_that_is_a_sensor_has_no_part():
-    space, body, impacts = floor(2)
+@pytest.mark.parametrize("gone", ["removed", "unregistered", "filtered", "a sensor"])
+def test_a_neighbour_that_is_not_there_has_no_part(gone):
+    space, _, impacts = floor(2)
     first, _ = sorted(space.static_body.shapes, key=lambda shape: shape.a.x)
-    first.sensor = True
+    if gone == "unregistered":
+        impacts.remove_plate(first)
+    if gone in ("removed", "unregistered"):
+        space.remove(first)
+    elif gone == "filtered":
+        first.filter = pymunk.ShapeFilter(mask=0)
+    else:
+        first.sensor = True
     space.step(DT)
     assert impacts.collisions()["plate"].tolist() == [1]
 
@@ -556,8 +550,7 @@ def test_a_sensor_lets_pass_and_hits_nothing(which, dt):
     (circle,), (plate,) = body.shapes, space.static_body.shapes
     shape = circle if which == "bead" else plate
     shape.sensor = True
-    for _ in range(round(40 * DT / dt)):
-        space.step(dt)
+    steps(space, round(40 * DT / dt), dt)
     assert body.position.y < -R and body.velocity == (0, -2)
     assert len(impacts.collisions()) == 0
     shape.sensor = False
@@ -568,14 +561,9 @@ def test_a_sensor_lets_pass_and_hits_nothing(which, dt):
 
 @pytest.mark.parametrize("which", [0, 1])
 def test_a_bead_that_is_a_sensor_hits_no_bead(which):
-    space = make_space(0.0)
-    impacts = attach(space, Stub(0.8))
-    both = [make_bead(space, (1.01 * x * R, 0), (-x, 0)) for x in (-1, 1)]
-    for circle in both:
-        impacts.add_bead(circle)
+    space, both, impacts = meet(Stub(0.8))
     both[which].sensor = True
-    for _ in range(40):
-        space.step(DT)
+    steps(space, 40)
     assert both[0].body.position.x > R and len(impacts.collisions()) == 0
 
 

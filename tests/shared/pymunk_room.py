@@ -1,4 +1,4 @@
-"""Spaces with beads and plates for the tests of the pymunk adapter, and models to go with them."""
+"""pymunk for the tests: spaces with beads and plates, and models to go with them."""
 
 import math
 from types import SimpleNamespace
@@ -78,14 +78,41 @@ def make_plate(space, a=(-1, 0), b=(1, 0), body=None, radius=0.0):
     return segment
 
 
-def drop(model, speed=2.0, gravity=G, gap=0.02 * R, **plate):
+def drop(
+    model, speed=2.0, gravity=G, gap=0.02 * R, position=None, velocity=None, thickness=1e-3, **plate
+):
     """One bead just above one plate, on its way down."""
     space = make_space(gravity)
-    circle = make_bead(space, (0, R + gap), (0, -speed))
+    circle = make_bead(space, position or (0, R + gap), velocity or (0, -speed))
     impacts = attach(space, model)
     impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space, **plate), 1e-3)
+    impacts.add_plate(make_plate(space, **plate), thickness)
     return space, circle.body, impacts
+
+
+def meet(model, speed=1.0, radii=(R, R)):
+    """Two beads that fly at each other, the left one first."""
+    space = make_space(0.0)
+    impacts = attach(space, model)
+    left, right = (
+        make_bead(space, (1.01 * side * radius, 0), (-side * speed, 0), radius=radius)
+        for side, radius in zip((-1, 1), radii, strict=True)
+    )
+    assert [impacts.add_bead(circle) for circle in (left, right)] == [0, 1]
+    return space, (left, right), impacts
+
+
+def moving_body(space, velocity=(0, 0), spin=0.0, position=(0, 0)):
+    """A body that moves as it is told, for plates."""
+    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    body.position, body.velocity, body.angular_velocity = position, velocity, spin
+    space.add(body)
+    return body
+
+
+def steps(space, count, dt=DT):
+    for _ in range(count):
+        space.step(dt)
 
 
 def step_to_impact(space, impacts, body, dt=DT, steps=1000):

