@@ -414,12 +414,8 @@ def test_lammps_drops():
     import lammps_box as box
 
     model = model_of("gamma-alumina", "glass")
-    plates = [box.flat(h, x=-0.05 + 0.006 * n, width=0.005) for n, (h, _) in enumerate(PAPER)]
-    centres = [(plate.corner[0] + 0.0025, 0, R + 0.1e-3) for plate in plates]
     dt = min(time_step(model, v, R, h) for h, v in PAPER)
-    options = {"radius": R, "dt": dt, "steps": int(2e-4 / dt)}
-    rows, _ = box.dropped(model, plates, centres, [(0, 0, -v) for _, v in PAPER], **options)
-    rows.sort(order="plate")
+    rows, _ = box.dropped_apart(model, PAPER, R, dt=dt, time=2e-4)
     thickness, speed = np.array(PAPER).T
     hit = model.solve(speed, R, thickness)
     assert rows["restitution"] == pytest.approx(hit.restitution, abs=1e-3)

@@ -78,15 +78,21 @@ def make_plate(space, a=(-1, 0), b=(1, 0), body=None, radius=0.0):
     return segment
 
 
-def drop(
-    model, speed=2.0, gravity=G, gap=0.02 * R, position=None, velocity=None, thickness=1e-3, **plate
-):
+def registered(space, model, beads, plates, thickness=1e-3):
+    """Impacts of these beads with these plates, as the model says."""
+    impacts = attach(space, model)
+    for circle in beads:
+        impacts.add_bead(circle)
+    for shape in plates:
+        impacts.add_plate(shape, thickness)
+    return impacts
+
+
+def drop(model, speed=2.0, gravity=G, gap=0.02 * R, thickness=1e-3, **plate):
     """One bead just above one plate, on its way down."""
     space = make_space(gravity)
-    circle = make_bead(space, position or (0, R + gap), velocity or (0, -speed))
-    impacts = attach(space, model)
-    impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space, **plate), thickness)
+    circle = make_bead(space, (0, R + gap), (0, -speed))
+    impacts = registered(space, model, [circle], [make_plate(space, **plate)], thickness)
     return space, circle.body, impacts
 
 

@@ -23,13 +23,8 @@ DROPS += [(0.35e-3, 2.0), (0.35e-3, 12.0), (0.25e-3, 3.0)]
 
 @pytest.mark.parametrize("radius", [0.5e-3, 0.9e-3])
 def test_drops_have_the_restitution_of_the_solver(model, radius):
-    plates = [flat(h, x=-0.05 + 0.006 * n, width=0.005) for n, (h, _) in enumerate(DROPS)]
-    centres = [(plate.corner[0] + 0.0025, 0, radius + 0.1e-3) for plate in plates]
-    step = min(softsphere.time_step(model, v, radius, h) for h, v in DROPS)
-    falling = [(0, 0, -v) for _, v in DROPS]
-    steps = int(4e-4 / step)
-    rows, now = dropped(model, plates, centres, falling, radius=radius, dt=step, steps=steps)
-    rows.sort(order="plate")
+    dt = min(softsphere.time_step(model, v, radius, h) for h, v in DROPS)
+    rows, now = box.dropped_apart(model, DROPS, radius, dt=dt, time=4e-4)
     assert rows["plate"].tolist() == list(range(len(DROPS)))
     thickness, speed = np.array(DROPS).T
     hit = model.solve(rows["approach_speed"], radius, thickness)

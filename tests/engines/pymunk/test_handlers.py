@@ -2,7 +2,19 @@
 
 import pymunk
 import pytest
-from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space, meet, steps
+from pymunk_room import (
+    DT,
+    EXACT,
+    R,
+    Stub,
+    drop,
+    make_bead,
+    make_plate,
+    make_space,
+    meet,
+    registered,
+    steps,
+)
 
 from contactlaw.engines.pymunk import attach
 
@@ -78,9 +90,7 @@ def test_a_handler_for_any_type_that_was_there_before():
 
     space.on_collision(None, None, pre_solve=pre_solve, data=7)
     circle = make_bead(space, (0, 1.01 * R), (0, -2))
-    impacts = attach(space, Stub(0.6))
-    impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space), 1e-3)
+    registered(space, Stub(0.6), [circle], [make_plate(space)])
     space.step(DT)
     assert circle.body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert seen == [7]

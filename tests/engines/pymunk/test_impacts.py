@@ -17,6 +17,7 @@ from pymunk_room import (
     make_space,
     meet,
     moving_body,
+    registered,
     step_to_impact,
     steps,
 )
@@ -41,9 +42,7 @@ def test_normal_velocity_is_reversed_by_the_restitution(gravity, angle, slop, bi
     circle.body.angular_velocity = 50
     plate = make_plate(space, along, -along)
     plate.friction = 0.9
-    impacts = attach(space, Stub(lambda speed: 0.9 - 0.1 * speed))
-    impacts.add_bead(circle)
-    impacts.add_plate(plate, 1e-3)
+    impacts = registered(space, Stub(lambda speed: 0.9 - 0.1 * speed), [circle], [plate])
     before, after = step_to_impact(space, impacts, circle.body)
     speed = -before.dot(normal)
     assert after.dot(normal) == pytest.approx((0.9 - 0.1 * speed) * speed, abs=EXACT)
@@ -56,9 +55,7 @@ def test_threaded_space():
     space = pymunk.Space(threaded=True)
     space.threads = 2
     circle = make_bead(space, (0, R * 1.01), (0, -2))
-    impacts = attach(space, Stub(0.3))
-    impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space), 1e-3)
+    impacts = registered(space, Stub(0.3), [circle], [make_plate(space)])
     _, after = step_to_impact(space, impacts, circle.body)
     assert after.y == pytest.approx(0.6, abs=EXACT)
 
@@ -105,9 +102,7 @@ def test_moving_plate_counts_relative_speed_at_the_contact():
     space = make_space(0.0)
     body = moving_body(space, (0.3, 1.0), 2.0)
     circle = make_bead(space, (0.5, 1.02 * R), (0.2, -1))
-    impacts = attach(space, Stub(0.6))
-    impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space, body=body), 1e-3)
+    impacts = registered(space, Stub(0.6), [circle], [make_plate(space, body=body)])
     step_to_impact(space, impacts, circle.body, dt=1e-5)
     (row,) = impacts.collisions()
     normal = pymunk.Vec2d(0, 1).rotated(body.angle)
@@ -123,9 +118,7 @@ def test_dynamic_plate_keeps_momentum():
     body = pymunk.Body(1e-5, 1e-6)
     space.add(body)
     circle = make_bead(space, (0, 1.02 * R), (0, -1))
-    impacts = attach(space, Stub(0.6))
-    impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space, body=body), 1e-3)
+    impacts = registered(space, Stub(0.6), [circle], [make_plate(space, body=body)])
     step_to_impact(space, impacts, circle.body)
     assert circle.body.velocity.y - body.velocity.y == pytest.approx(0.6, abs=EXACT)
     momentum = circle.body.mass * circle.body.velocity.y + body.mass * body.velocity.y
@@ -214,9 +207,7 @@ def shaken(steps, velocity, dt=1e-5):
     space = make_space()
     body = moving_body(space)
     circle = make_bead(space, (0, R))
-    impacts = attach(space, Stub(0.3))
-    impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space, body=body), 1e-3)
+    impacts = registered(space, Stub(0.3), [circle], [make_plate(space, body=body)])
     for n in range(steps):
         body.velocity = (0, velocity(n * dt))
         space.step(dt)

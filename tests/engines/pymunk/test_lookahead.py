@@ -16,6 +16,7 @@ from pymunk_room import (
     make_plate,
     make_space,
     moving_body,
+    registered,
     step_to_impact,
 )
 
@@ -63,9 +64,12 @@ def test_safe_step_of_a_bead_that_overlaps_already():
 def test_a_fast_plate_is_reported():
     space = make_space(0.0)
     body = moving_body(space, spin=100.0, position=(-1, 0))
-    impacts = attach(space, Stub())
-    impacts.add_plate(make_plate(space, (0, 0), (1.5, 0), body=body), 1e-3)
-    impacts.add_bead(make_bead(space, (0, 0.003)))
+    registered(
+        space,
+        Stub(),
+        [make_bead(space, (0, 0.003))],
+        [make_plate(space, (0, 0), (1.5, 0), body=body)],
+    )
     # At a distance of 1 m the plate sweeps over 10 mm a step.
     with pytest.raises(TunnellingError) as caught:
         space.step(DT)
@@ -170,9 +174,7 @@ def test_numbers_that_are_not_finite_are_found_before_the_step(name, value):
 def test_a_plate_that_is_not_finite():
     space = make_space()
     body = moving_body(space)
-    impacts = attach(space, Stub())
-    impacts.add_plate(make_plate(space, body=body), 1e-3)
-    impacts.add_bead(make_bead(space, (0, 1)))
+    registered(space, Stub(), [make_bead(space, (0, 1))], [make_plate(space, body=body)])
     body.velocity = (0, math.nan)
     with pytest.raises(ValueError, match="plate 0: not finite"):
         space.step(DT)

@@ -19,6 +19,7 @@ from pymunk_room import (
     make_space,
     meet,
     moving_body,
+    registered,
     step_to_impact,
     steps,
 )
@@ -206,9 +207,7 @@ def test_a_sloping_side_of_a_turning_polygon():
     normal = pymunk.Vec2d(5, 3).normalized()
     middle = pymunk.Vec2d(0.02, -0.01 / 3)
     circle = make_bead(space, middle + normal * 1.05 * R, normal * -1)
-    impacts = attach(space, Stub(0.6))
-    impacts.add_bead(circle)
-    impacts.add_plate(triangle, 1e-3)
+    impacts = registered(space, Stub(0.6), [circle], [triangle])
     step_to_impact(space, impacts, circle.body, dt=1e-5)
     (row,) = impacts.collisions()
     turned = normal.rotated(body.angle)
@@ -226,9 +225,7 @@ def test_a_bead_rests_on_a_box():
     box = pymunk.Poly.create_box(space.static_body, (0.04, 0.02))
     circle = make_bead(space, (0, 0.01 + 1.5 * R))
     space.add(box)
-    impacts = attach(space, Stub(0.5))
-    impacts.add_bead(circle)
-    impacts.add_plate(box, 1e-3)
+    impacts = registered(space, Stub(0.5), [circle], [box])
     steps(space, 3000)
     assert circle.body.position.y == pytest.approx(0.01 + R, abs=0.1 * R)
     assert 1 < len(impacts.collisions()) < 20 and impacts.resting > 0
@@ -241,9 +238,7 @@ def test_a_bead_never_jumps_into_or_over_a_box(ratio):
     speed = ratio * R / DT
     circle = make_bead(space, (0, 2.01 * R), (0, -speed))
     space.add(box)
-    impacts = attach(space, Stub(0.6))
-    impacts.add_bead(circle)
-    impacts.add_plate(box, 1e-3)
+    impacts = registered(space, Stub(0.6), [circle], [box])
     with pytest.raises(TunnellingError) as caught:
         space.step(DT)
     assert caught.value.safe_step == pytest.approx(R / speed, rel=EXACT)
@@ -270,9 +265,7 @@ def test_a_plate_that_stops_does_not_shake():
     space = make_space(0.0)
     body = moving_body(space)
     circle = make_bead(space, (0, 1.5 * R))
-    impacts = attach(space, Stub(0.5))
-    impacts.add_bead(circle)
-    impacts.add_plate(make_plate(space, body=body), 1e-3)
+    impacts = registered(space, Stub(0.5), [circle], [make_plate(space, body=body)])
     for velocity in (0.1, -0.1, 0.1, -0.1):  # changes by 0.2 m/s a step
         body.velocity = (0, velocity)
         space.step(1e-6)
@@ -486,11 +479,9 @@ def test_a_bead_that_rolls_over_seams_is_not_lost():
     """Every contact is on one plate, whoever has it; ghosts would brake or lift the bead."""
     space = make_space()
     circle = make_bead(space, (-0.015, 0.999 * R), (0.2, 0))
-    impacts = attach(space, Stub(0.4))
-    impacts.add_bead(circle)
-    for n in range(10):
-        x = -0.02 + 0.004 * n
-        impacts.add_plate(make_plate(space, (x, 0), (x + 0.004, 0)), 1e-3)
+    places = [-0.02 + 0.004 * n for n in range(10)]
+    plates = [make_plate(space, (x, 0), (x + 0.004, 0)) for x in places]
+    impacts = registered(space, Stub(0.4), [circle], plates)
     for _ in range(1500):
         space.step(DT)
         assert circle.body.position.y > 0.9 * R
@@ -502,10 +493,8 @@ def test_a_bead_that_rolls_over_seams_is_not_lost():
 def test_a_corner_between_two_plates_is_still_hit_on_both_sides():
     space = make_space(0.0)
     circle = make_bead(space, (1.01 * R, 1.01 * R), (-2, -2))
-    impacts = attach(space, Stub(0.5))
-    impacts.add_bead(circle)
-    for end in ((0.05, 0), (0, 0.05)):
-        impacts.add_plate(make_plate(space, (0, 0), end), 1e-3)
+    plates = [make_plate(space, (0, 0), end) for end in ((0.05, 0), (0, 0.05))]
+    impacts = registered(space, Stub(0.5), [circle], plates)
     space.step(DT)
     assert sorted(impacts.collisions()["plate"].tolist()) == [0, 1]
     assert circle.body.velocity == pytest.approx((1, 1), abs=EXACT)
@@ -514,10 +503,8 @@ def test_a_corner_between_two_plates_is_still_hit_on_both_sides():
 def test_a_ridge_is_hit_once():
     space = make_space(0.0)
     circle = make_bead(space, (0, 1.01 * R), (0, -2))
-    impacts = attach(space, Stub(0.5))
-    impacts.add_bead(circle)
-    for side in (-1, 1):
-        impacts.add_plate(make_plate(space, (0, 0), (0.05 * side, -0.02)), 1e-3)
+    plates = [make_plate(space, (0, 0), (0.05 * side, -0.02)) for side in (-1, 1)]
+    impacts = registered(space, Stub(0.5), [circle], plates)
     space.step(DT)
     (row,) = impacts.collisions()
     assert circle.body.velocity == pytest.approx((0, 1), abs=1e-9)
