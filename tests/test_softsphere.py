@@ -216,15 +216,15 @@ def test_bad_input_is_named(model, call, words):
 @pytest.mark.parametrize(
     ("overlap", "step", "message"),
     [
-        (
-            1e300,
-            1e-7,
-            r"overlap: must be at most the diameter 0.0018 m .* got 1e\+300 \(element 1\)",
-        ),
+        (1e300, 1e-7, r"overlap: must be at most the diameter 0.0018 m .* got 1e\+300 \(element 1"),
         (2.1 * R, 1e-7, r"overlap: must be at most the diameter .*blown up.*time_step"),
         (1e-6, 1e300, r"step: must be positive and at most 0.\d+ s.* got 1e\+300; .*time_step"),
         (1e300, 1e300, "step: must be positive and at most"),
         (1e-6, 1.0, "step: must be positive and at most"),
+        *(
+            (value, 1e-7, r"overlap: must be finite \[m\], got .*element 1")
+            for value in (math.nan, math.inf, -math.inf)
+        ),
     ],
 )
 def test_a_simulation_that_has_blown_up_is_refused(model, overlap, step, message):
@@ -259,13 +259,3 @@ def test_no_step_that_is_taken_gives_what_is_not_finite(model, radius, thickness
         contacts.advance(overlap, share * contacts._longest)
         for values in (contacts.force, contacts.plate_displacement, contacts.largest_compression):
             assert np.isfinite(values).all() and (values >= 0.0).all()
-
-
-@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_an_overlap_that_is_not_finite_is_refused(model, value):
-    contacts = Contacts(model, [R, R], 1e-3)
-    contacts.advance(np.array([1e-6, 1e-6]), 1e-7)
-    before = contacts.force.copy()
-    with pytest.raises(ValueError, match=r"overlap: must be finite \[m\], got .*element 1"):
-        contacts.advance(np.array([2e-6, value]), 1e-7)
-    assert np.array_equal(contacts.force, before)

