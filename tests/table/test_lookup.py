@@ -1,4 +1,4 @@
-"""The arithmetic below the lookup; what it looks up is tested in test_table and test_provider."""
+"""The arithmetic below the lookup; what it looks up is tested in test_table."""
 
 import math
 

@@ -6,8 +6,9 @@ import sys
 import threading
 from types import SimpleNamespace
 
+import pymunk_room as room
 import pytest
-from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space, meet, steps
+from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space
 
 from contactlaw.engines.pymunk import attach
 
@@ -25,7 +26,7 @@ def test_exception_in_the_model_reaches_the_caller(error):
     for shape in space.shapes:
         shape.elasticity = 0.9  # what pymunk would use on its own
     with pytest.raises(type(error)) as caught:
-        steps(space, 10)
+        room.steps(space, 10)
     assert caught.value is error and "answer" in [entry.name for entry in caught.traceback]
     # The engine has finished the step: no rebound in the failed contact, the other one is right.
     assert impacts.time == DT
@@ -74,13 +75,13 @@ def test_bad_restitution_never_reaches_the_engine(answer):
 
 
 def test_bad_restitution_between_beads():
-    space, _, _ = meet(Stub(math.nan))
+    space, _, _ = room.meet(Stub(math.nan))
     with pytest.raises(ValueError, match=r"bead \d on bead \d at 2 m/s"):
         space.step(DT)
 
 
 def test_beads_meet_without_a_law_for_them():
-    space, _, _ = meet(SimpleNamespace(curve=lambda radius, thickness: lambda speed: 0.5))
+    space, _, _ = room.meet(SimpleNamespace(curve=lambda radius, thickness: lambda speed: 0.5))
     with pytest.raises(TypeError, match="sphere_sphere_curve"):
         space.step(DT)
 
@@ -153,7 +154,7 @@ def test_interrupt_is_never_lost():
         for k in range(40):
             with pytest.raises(KeyboardInterrupt):
                 signal.setitimer(signal.ITIMER_REAL, 1e-3 + 5e-5 * k)
-                steps(space, 1000, 1e-6)  # 2 ms each
+                room.steps(space, 1000, 1e-6)  # 2 ms each
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, old)

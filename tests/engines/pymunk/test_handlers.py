@@ -1,20 +1,9 @@
 """Handlers of the user on the adapter's collision types: nobody's pushes out the other's."""
 
 import pymunk
+import pymunk_room as room
 import pytest
-from pymunk_room import (
-    DT,
-    EXACT,
-    R,
-    Stub,
-    drop,
-    make_bead,
-    make_plate,
-    make_space,
-    meet,
-    registered,
-    steps,
-)
+from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space
 
 from contactlaw.engines.pymunk import attach
 
@@ -63,17 +52,17 @@ def test_other_phases_are_as_they_were(key, phase):
     seen = []
     handler = {phase: lambda arbiter, space, data: seen.append(data)}
     space.on_collision(*key(impacts), data="mine", **handler)
-    steps(space, 20)
+    room.steps(space, 20)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert len(impacts.collisions()) == 1
     assert seen[0] == "mine"
 
 
 def test_two_beads_too():
-    space, _, impacts = meet(Stub(0.8))
+    space, _, impacts = room.meet(Stub(0.8))
     seen = []
     space.on_collision(impacts.bead_type, impacts.bead_type, pre_solve=lambda *a: seen.append(a[2]))
-    steps(space, 3)
+    room.steps(space, 3)
     assert impacts.collisions()["restitution"].tolist() == [0.8]
     assert seen
 
@@ -90,7 +79,7 @@ def test_a_handler_for_any_type_that_was_there_before():
 
     space.on_collision(None, None, pre_solve=pre_solve, data=7)
     circle = make_bead(space, (0, 1.01 * R), (0, -2))
-    registered(space, Stub(0.6), [circle], [make_plate(space)])
+    room.registered(space, Stub(0.6), [circle], [make_plate(space)])
     space.step(DT)
     assert circle.body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert seen == [7]
@@ -130,14 +119,14 @@ def test_a_contact_that_the_user_switches_off_in_pre_solve_is_no_impact(key):
 
 @pytest.mark.parametrize("pair", ["own", "bead and any", "any"])
 def test_a_contact_of_beads_that_is_switched_off_is_no_impact(pair):
-    space, _, impacts = meet(Stub(0.8))
+    space, _, impacts = room.meet(Stub(0.8))
 
     def pre_solve(arbiter, space, data):
         arbiter.process_collision = False
 
     own = (impacts.bead_type, impacts.bead_type)
     space.on_collision(*(own if pair == "own" else KEYS[pair](impacts)), pre_solve=pre_solve)
-    steps(space, 5)
+    room.steps(space, 5)
     assert len(impacts.collisions()) == 0
 
 

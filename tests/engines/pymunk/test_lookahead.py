@@ -5,20 +5,9 @@ import pickle
 
 import numpy as np
 import pymunk
+import pymunk_room as room
 import pytest
-from pymunk_room import (
-    DT,
-    EXACT,
-    R,
-    Stub,
-    drop,
-    make_bead,
-    make_plate,
-    make_space,
-    moving_body,
-    registered,
-    step_to_impact,
-)
+from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space
 
 from contactlaw.engines.pymunk import TunnellingError, attach
 from contactlaw.engines.pymunk.lookahead import Line, approach
@@ -35,7 +24,7 @@ def test_a_fast_bead_rebounds_or_is_reported(ratio, side, offset):
     body.velocity = (0.1, -side * speed)
     depth = (1 - offset) * ratio  # how far the first overlapping step goes in, in radii
     if depth < 1:
-        before, after = step_to_impact(space, impacts, body)
+        before, after = room.step_to_impact(space, impacts, body)
         assert after.y == pytest.approx(-0.7 * before.y, abs=EXACT * speed)
         return
     state = body.position, body.velocity
@@ -49,7 +38,7 @@ def test_a_fast_bead_rebounds_or_is_reported(ratio, side, offset):
     # The space is as it was: the same bead rebounds with a step below the safe one. (At 0.99999
     # of it the centre ends at 1e-8 m from the line, where roundings tilt the normal.)
     assert (body.position, body.velocity) == state and impacts.time == 0.0
-    before, after = step_to_impact(space, impacts, body, dt=0.99 * error.safe_step)
+    before, after = room.step_to_impact(space, impacts, body, dt=0.99 * error.safe_step)
     assert after.y == pytest.approx(-0.7 * before.y, abs=EXACT * speed)
     assert pickle.loads(pickle.dumps(error)).safe_step == error.safe_step
 
@@ -63,8 +52,8 @@ def test_safe_step_of_a_bead_that_overlaps_already():
 
 def test_a_fast_plate_is_reported():
     space = make_space(0.0)
-    body = moving_body(space, spin=100.0, position=(-1, 0))
-    registered(
+    body = room.moving_body(space, spin=100.0, position=(-1, 0))
+    room.registered(
         space,
         Stub(),
         [make_bead(space, (0, 0.003))],
@@ -173,8 +162,8 @@ def test_numbers_that_are_not_finite_are_found_before_the_step(name, value):
 
 def test_a_plate_that_is_not_finite():
     space = make_space()
-    body = moving_body(space)
-    registered(space, Stub(), [make_bead(space, (0, 1))], [make_plate(space, body=body)])
+    body = room.moving_body(space)
+    room.registered(space, Stub(), [make_bead(space, (0, 1))], [make_plate(space, body=body)])
     body.velocity = (0, math.nan)
     with pytest.raises(ValueError, match="plate 0: not finite"):
         space.step(DT)

@@ -7,8 +7,9 @@ import sys
 from types import SimpleNamespace
 
 import pymunk
+import pymunk_room as room
 import pytest
-from pymunk_room import DT, EXACT, Full, R, Stub, drop, make_bead, make_plate, make_space, steps
+from pymunk_room import DT, EXACT, Full, R, Stub, drop, make_bead, make_plate, make_space
 
 from contactlaw.engines.pymunk import attach
 
@@ -88,7 +89,7 @@ def test_other_contacts_and_handlers_are_untouched():
     assert stranger.body.velocity.y == pytest.approx(2 * 0.9 * 0.8, abs=EXACT)
     assert body.velocity.y == pytest.approx(2 * 0.5, abs=EXACT)
     assert calls == ["any", "any"]
-    steps(space, 50)
+    room.steps(space, 50)
     assert "goal" in calls
     assert body.velocity.y == pytest.approx(-1 * 0.9 * 0.8, abs=EXACT)
     assert len(impacts.collisions()) == 1
@@ -101,7 +102,7 @@ def test_a_contact_that_the_user_switches_off_is_no_impact():
         arbiter.process_collision = False
 
     space.on_collision(impacts.bead_type, impacts.plate_type, begin=begin)
-    steps(space, 30)
+    room.steps(space, 30)
     assert body.velocity.y == -2 and body.position.y < 0
     assert len(impacts.collisions()) == 0
 
@@ -114,7 +115,7 @@ def test_beads_and_plates_come_and_go():
     )
     space.step(DT)
     assert body not in space.bodies
-    steps(space, 3)
+    room.steps(space, 3)
     late = make_bead(space, (0, R), (0, -2))
     assert impacts.add_bead(late) == 1
     space.add(body, bead)
@@ -124,7 +125,7 @@ def test_beads_and_plates_come_and_go():
     for circle in (late, bead):
         if circle.body in space.bodies:
             circle.body.velocity = (0, -1)
-    steps(space, 50)
+    room.steps(space, 50)
     rows = impacts.collisions()
     assert rows["bead"].tolist().count(0) == 2 and rows["bead"].tolist().count(1) == 1
 
@@ -133,7 +134,7 @@ def test_slop_is_lowered_so_that_resting_beads_do_not_stay_in_the_plate():
     space, body, impacts = drop(Stub(0.0), speed=0.8 * R / DT, gap=0.0)
     space.step(DT)
     assert body.position.y < 0.3 * R
-    steps(space, 5000)
+    room.steps(space, 5000)
     assert body.position.y == pytest.approx(0.9 * R, rel=0.05)  # pymunk's bias: 10 % in 1/60 s
     space.collision_slop = 0.05 * R
     impacts.add_bead(make_bead(space, (1, 1)))

@@ -7,22 +7,9 @@ import warnings
 from types import SimpleNamespace
 
 import pymunk
+import pymunk_room as room
 import pytest
-from pymunk_room import (
-    DT,
-    EXACT,
-    R,
-    Stub,
-    drop,
-    make_bead,
-    make_plate,
-    make_space,
-    meet,
-    moving_body,
-    registered,
-    step_to_impact,
-    steps,
-)
+from pymunk_room import DT, EXACT, R, Stub, drop, make_bead, make_plate, make_space
 
 import contactlaw as cl
 from contactlaw.engines.pymunk import TunnellingError, attach
@@ -40,7 +27,7 @@ def test_another_radius_than_the_registered_one_is_refused(model):
     body.mass *= 8
     body.position, body.velocity = (0, 2.01 * R), (0, -5)
     assert impacts.add_bead(circle) == 1
-    before, after = step_to_impact(space, impacts, body, dt=1e-5)
+    before, after = room.step_to_impact(space, impacts, body, dt=1e-5)
     expected = model.restitution(5.0, 2 * R, 1e-3)
     assert expected < 0.7 < 0.9 < model.restitution(5.0, R, 1e-3)
     assert after.y / -before.y == pytest.approx(expected, abs=1e-9)
@@ -48,7 +35,7 @@ def test_another_radius_than_the_registered_one_is_refused(model):
 
 @pytest.mark.parametrize("changed", [0, 1])
 def test_another_radius_of_the_other_bead_is_refused(changed):
-    space, both, _ = meet(Stub(0.8))
+    space, both, _ = room.meet(Stub(0.8))
     both[changed].unsafe_set_radius(1.1 * R)
     with pytest.raises(ValueError, match=f"radius: bead {changed}"):
         space.step(DT)
@@ -95,7 +82,7 @@ def test_a_bead_may_go_in_the_middle_of_a_step():
     space.on_collision(
         impacts.bead_type, impacts.plate_type, post_solve=lambda *_: impacts.remove_bead(circle)
     )
-    steps(space, 3)
+    room.steps(space, 3)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert len(impacts.collisions()) == 1
 
@@ -190,7 +177,7 @@ def test_every_side_of_a_box_is_a_plate(model, side, corner, speed):
     impacts = attach(space, model)
     impacts.add_bead(circle)
     assert impacts.add_plate(box, 1e-3) == 0
-    before, after = step_to_impact(space, impacts, circle.body, dt=1e-5)
+    before, after = room.step_to_impact(space, impacts, circle.body, dt=1e-5)
     expected = model.restitution(speed, R, 1e-3)
     assert after.dot(normal) / speed == pytest.approx(expected, abs=1e-9)
     assert after.cross(normal) == pytest.approx(0.0, abs=1e-9)
@@ -201,14 +188,14 @@ def test_every_side_of_a_box_is_a_plate(model, side, corner, speed):
 
 def test_a_sloping_side_of_a_turning_polygon():
     space = make_space(0.0)
-    body = moving_body(space, spin=20.0)
+    body = room.moving_body(space, spin=20.0)
     triangle = pymunk.Poly(body, [(-0.03, -0.02), (0.03, -0.02), (0.0, 0.03)])
     space.add(triangle)
     normal = pymunk.Vec2d(5, 3).normalized()
     middle = pymunk.Vec2d(0.02, -0.01 / 3)
     circle = make_bead(space, middle + normal * 1.05 * R, normal * -1)
-    impacts = registered(space, Stub(0.6), [circle], [triangle])
-    step_to_impact(space, impacts, circle.body, dt=1e-5)
+    impacts = room.registered(space, Stub(0.6), [circle], [triangle])
+    room.step_to_impact(space, impacts, circle.body, dt=1e-5)
     (row,) = impacts.collisions()
     turned = normal.rotated(body.angle)
     point = pymunk.Vec2d(row["x"], row["y"])
@@ -225,8 +212,8 @@ def test_a_bead_rests_on_a_box():
     box = pymunk.Poly.create_box(space.static_body, (0.04, 0.02))
     circle = make_bead(space, (0, 0.01 + 1.5 * R))
     space.add(box)
-    impacts = registered(space, Stub(0.5), [circle], [box])
-    steps(space, 3000)
+    impacts = room.registered(space, Stub(0.5), [circle], [box])
+    room.steps(space, 3000)
     assert circle.body.position.y == pytest.approx(0.01 + R, abs=0.1 * R)
     assert 1 < len(impacts.collisions()) < 20 and impacts.resting > 0
 
@@ -238,11 +225,11 @@ def test_a_bead_never_jumps_into_or_over_a_box(ratio):
     speed = ratio * R / DT
     circle = make_bead(space, (0, 2.01 * R), (0, -speed))
     space.add(box)
-    impacts = registered(space, Stub(0.6), [circle], [box])
+    impacts = room.registered(space, Stub(0.6), [circle], [box])
     with pytest.raises(TunnellingError) as caught:
         space.step(DT)
     assert caught.value.safe_step == pytest.approx(R / speed, rel=EXACT)
-    before, after = step_to_impact(space, impacts, circle.body, dt=0.99 * R / speed)
+    before, after = room.step_to_impact(space, impacts, circle.body, dt=0.99 * R / speed)
     assert after.y == pytest.approx(0.6 * speed, rel=1e-9)
 
 
@@ -263,15 +250,15 @@ def test_a_static_plate_may_have_a_speed():
 
 def test_a_plate_that_stops_does_not_shake():
     space = make_space(0.0)
-    body = moving_body(space)
+    body = room.moving_body(space)
     circle = make_bead(space, (0, 1.5 * R))
-    impacts = registered(space, Stub(0.5), [circle], [make_plate(space, body=body)])
+    impacts = room.registered(space, Stub(0.5), [circle], [make_plate(space, body=body)])
     for velocity in (0.1, -0.1, 0.1, -0.1):  # changes by 0.2 m/s a step
         body.velocity = (0, velocity)
         space.step(1e-6)
     body.body_type, body.velocity = pymunk.Body.STATIC, (0, 0)
     circle.body.velocity = (0, -0.3)  # slower than twice the change
-    steps(space, 200, 1e-5)
+    room.steps(space, 200, 1e-5)
     assert impacts.collisions()["approach_speed"] == pytest.approx([0.3], abs=EXACT)
 
 
@@ -316,7 +303,7 @@ def shower(models, speed=1.0):
 def test_every_bead_and_plate_has_the_model_of_its_pair(models):
     speed = 1.0
     space, impacts, bodies = shower(models, speed)
-    steps(space, 5, 1e-5)
+    room.steps(space, 5, 1e-5)
     rows = impacts.collisions()
     rows = rows[rows["other"] < 0]
     assert len(rows) == 4
@@ -340,7 +327,7 @@ def test_beads_of_two_materials_meet(models):
     light, heavy = bodies[-2:]
     momentum = light.mass * light.velocity.x + heavy.mass * heavy.velocity.x
     energy = 0.5 * (light.mass * light.velocity.x**2 + heavy.mass * heavy.velocity.x**2)
-    steps(space, 20, 1e-5)
+    room.steps(space, 20, 1e-5)
     rows = impacts.collisions()
     (row,) = rows[rows["other"] >= 0]
     cor = cl.restitution_sphere_sphere(*BEADS, 2.0, R, 2 * R, law="jackson_green")
@@ -481,7 +468,7 @@ def test_a_bead_that_rolls_over_seams_is_not_lost():
     circle = make_bead(space, (-0.015, 0.999 * R), (0.2, 0))
     places = [-0.02 + 0.004 * n for n in range(10)]
     plates = [make_plate(space, (x, 0), (x + 0.004, 0)) for x in places]
-    impacts = registered(space, Stub(0.4), [circle], plates)
+    impacts = room.registered(space, Stub(0.4), [circle], plates)
     for _ in range(1500):
         space.step(DT)
         assert circle.body.position.y > 0.9 * R
@@ -494,7 +481,7 @@ def test_a_corner_between_two_plates_is_still_hit_on_both_sides():
     space = make_space(0.0)
     circle = make_bead(space, (1.01 * R, 1.01 * R), (-2, -2))
     plates = [make_plate(space, (0, 0), end) for end in ((0.05, 0), (0, 0.05))]
-    impacts = registered(space, Stub(0.5), [circle], plates)
+    impacts = room.registered(space, Stub(0.5), [circle], plates)
     space.step(DT)
     assert sorted(impacts.collisions()["plate"].tolist()) == [0, 1]
     assert circle.body.velocity == pytest.approx((1, 1), abs=EXACT)
@@ -504,7 +491,7 @@ def test_a_ridge_is_hit_once():
     space = make_space(0.0)
     circle = make_bead(space, (0, 1.01 * R), (0, -2))
     plates = [make_plate(space, (0, 0), (0.05 * side, -0.02)) for side in (-1, 1)]
-    impacts = registered(space, Stub(0.5), [circle], plates)
+    impacts = room.registered(space, Stub(0.5), [circle], plates)
     space.step(DT)
     (row,) = impacts.collisions()
     assert circle.body.velocity == pytest.approx((0, 1), abs=1e-9)
@@ -537,20 +524,20 @@ def test_a_sensor_lets_pass_and_hits_nothing(which, dt):
     (circle,), (plate,) = body.shapes, space.static_body.shapes
     shape = circle if which == "bead" else plate
     shape.sensor = True
-    steps(space, round(40 * DT / dt), dt)
+    room.steps(space, round(40 * DT / dt), dt)
     assert body.position.y < -R and body.velocity == (0, -2)
     assert len(impacts.collisions()) == 0
     shape.sensor = False
     body.velocity = (0, 2)
-    before, after = step_to_impact(space, impacts, body)
+    before, after = room.step_to_impact(space, impacts, body)
     assert (before.y, after.y) == pytest.approx((2, -1), abs=EXACT)
 
 
 @pytest.mark.parametrize("which", [0, 1])
 def test_a_bead_that_is_a_sensor_hits_no_bead(which):
-    space, both, impacts = meet(Stub(0.8))
+    space, both, impacts = room.meet(Stub(0.8))
     both[which].sensor = True
-    steps(space, 40)
+    room.steps(space, 40)
     assert both[0].body.position.x > R and len(impacts.collisions()) == 0
 
 
