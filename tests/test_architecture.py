@@ -42,6 +42,13 @@ FILES = {
                 "sensitivity", "speed_table"],
     "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
     "stepping": ["spring", "energy", "friction", "sheet", "contact", "bead"],
+    "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
+                "fit"],
+    "export": ["c_header", "liggghts_wall"],
+    "engines": ["record", "hdf5", "layout", "needs"],
+    "engines/lammps": ["beads", "commands", "memory", "errors", "callback", "attachment"],
+    "engines/pymunk": ["handlers", "models", "record", "registry", "seams", "lookahead",
+                       "contacts", "impacts", "attachment"],
     "cli/parts": ["quantities", "wording", "columns", "records", "measured", "sheet",
                   "options", "curves", "walls", "lines", "plots", "asked", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
@@ -127,6 +134,13 @@ def test_imports_run_upwards_only(path):
         if order and name[: len(inside)] == inside and stem != "__init__" and name > inside:
             later = order[order.index(stem) :]
             assert name[len(inside)] not in later, f"{path} imports {'.'.join(name)}"
+
+
+@pytest.mark.parametrize("engine", ["lammps", "pymunk"])
+def test_an_engine_knows_no_other(engine):
+    for path in (ROOT / "engines" / engine).glob("*.py"):
+        used = {name[1] for name in own(path) if name[0] == "engines" and len(name) > 1}
+        assert used <= {engine, *FILES["engines"]}, path
 
 
 def test_a_subcommand_knows_no_other():
