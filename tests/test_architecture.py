@@ -37,7 +37,7 @@ FILES = {
     "equation": ["force", "outcome", "waves", "numbers", "plate", "legs", "losses", "motion",
                  "creep", "integrator", "zener"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
-              "guarded", "file", "cache"],
+              "file", "cache"],
     "answers": ["backend", "solver", "tabulated", "beads", "compiled", "constant", "loads",
                 "sensitivity", "speed_table"],
     "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],

@@ -2,7 +2,8 @@
 
 The file begins with a user block, which HDF5 leaves to applications: one line with the SHA-256 of
 all that follows. A reader checks it before HDF5 sees a byte, so a file that was cut short or
-altered is refused with a sentence, whatever HDF5 would have made of it.
+altered is refused with a sentence, whatever HDF5 would have made of it. The checksum tells damage,
+not intent: what fits it is compared with the datasets below and with what kernels rely on, no more.
 """
 
 from __future__ import annotations
@@ -15,14 +16,15 @@ import io
 import json
 import math
 import os
+from collections.abc import Mapping
 from dataclasses import asdict
 from importlib import resources
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import NDArray
 
 from contactlaw import _atomic
 from contactlaw._version import VERSION
@@ -30,9 +32,9 @@ from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
-from contactlaw.table import guarded, shapes
+from contactlaw.table import shapes
 from contactlaw.table.axes import SERIES, Axis, Grid, Segment, series_values
-from contactlaw.table.certificate import BOUNDS, Certificate
+from contactlaw.table.certificate import Certificate
 from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table, shape_grid
 
@@ -40,23 +42,59 @@ FORMAT = "contactlaw table"
 SCHEMA = 6
 _BLOCK = 512  # bytes; the smallest user block of HDF5
 LARGEST = 1 << 30  # bytes of a file, our choice: 700 times the packaged table, and a PC can hold it
-_LARGEST_LAW = 1_000_000  # numbers in a law's data
-_MOST_KINKS, _MOST_NODES = 1000, 1_000_000
+_HEAD = {"format": FORMAT, "schema": f"{SCHEMA}", "complete": "True"}
+
+
+class _Part(NamedTuple):
+    """A dataset of numbers. They lie between two limits, so that none is NaN."""
+
+    description: str
+    shape: tuple[int, ...] = ()  # without one it is a row of any length
+    least: float = -math.inf
+    largest: float = math.inf
+    kind: type = np.float64
+
+
+# The datasets of each group by name, in the order in which they are written.
+_LAW = {
+    "data": _Part("force law, see contactlaw.equation.force [d_Y, F_Y]"),
+    "loading_kinks": _Part("of the loading curve [d_Y]"),
+    "outcome_kinks": _Part("of the outcomes [d_Y]"),
+    "waves": _Part("of plates, see contactlaw.equation.waves; none: thin [-]"),
+}
+_SERIES = {
+    "series_inelasticity": _Part("lambda of what follows [-]", (SERIES,)),
+    # (5/4)^(2/5) at lambda = 0, it falls with lambda; beyond a law's range it may be larger
+    "elastic_compression": _Part("w_m, of an elastic impact [V0 T_H]", (SERIES,), 0.01, 1.3),
+}
 _SEGMENT = {
-    "start": "where it begins along its axis, over series_inelasticity [-]",
-    "end": "where it ends [-]",
-    "shares": "of the way from start to end in x = v/(v + stretch), v itself if inf, at nodes [-]",
+    "start": _Part("where it begins along its axis, over series_inelasticity [-]", (SERIES,)),
+    "end": _Part("where it ends [-]", (SERIES,)),
+    "shares": _Part(
+        "of the way from start to end in x = v/(v + stretch), v itself if inf, at nodes [-]"
+    ),
 }
-# Limits of the stored numbers. w_m is (5/4)^(2/5) at lambda = 0 and falls with lambda; beyond the
-# end of a law's range it may be larger.
-_RANGES = {
-    **{name: (stored.least, stored.largest) for name, stored in STORED.items()},
-    "elastic_compression": (0.01, 1.3),
-    "times of shapes/states": (0.0, 1e4),
-    "speeds of shapes/states": (-1.0, 1.0),
-}
-_HEAD = {"format": FORMAT, "schema": SCHEMA, "complete": True}
-_ENERGY = 1e-3  # COR^2 and wave share may sum up to 1 and this, since tables may be coarse
+
+
+def _fields(grid: Grid) -> dict[str, _Part]:
+    return {
+        name: _Part(one.description, grid.shape, one.least, one.largest)
+        for name, one in STORED.items()
+    }
+
+
+def _shapes(grid: Grid) -> dict[str, _Part]:
+    return {
+        **{name: _Part("of the states [-]", grid.shape) for name in grids.AXES},
+        "shares": _Part("of the largest root compression, up and down [-]", (shapes.STATES,)),
+        "states": _Part(
+            "when it passes them: times [T_H], speeds [V0]",
+            shape=(*grid.shape, 2, shapes.SIZE),
+            least=-1.0,
+            largest=1e4,
+            kind=np.float32,
+        ),
+    }
 
 
 class DamagedTableError(ValueError):
@@ -115,31 +153,18 @@ def _fill(file: h5py.File, table: Table) -> None:
         contactlaw_version=VERSION,
         **asdict(table.settings),
     )
-    datasets: dict[str, tuple[ArrayLike, str]] = {
-        "law/data": (law.data, "force law, see contactlaw.equation.force [d_Y, F_Y]"),
-        "law/loading_kinks": (law.loading_kinks, "of the loading curve [d_Y]"),
-        "law/outcome_kinks": (law.outcome_kinks, "of the outcomes [d_Y]"),
-        "law/waves": (law.waves or (), "of plates, see contactlaw.equation.waves; none: thin [-]"),
-        "series_inelasticity": (series_values(grid.axes[0]), "lambda of what follows [-]"),
-        "elastic_compression": (grid.elastic_compression, "w_m, of an elastic impact [V0 T_H]"),
-        **{
-            f"axes/{axis.name}/{k}/{name}": (getattr(segment, name), description)
-            for axis in grid.axes
-            for k, segment in enumerate(axis.segments)
-            for name, description in _SEGMENT.items()
-        },
-        **{f"fields/{name}": (table.fields[name], STORED[name].description) for name in STORED},
-    }
+    _put(file, "law", _LAW, {**vars(law), "waves": law.waves or ()})
+    series = series_values(grid.axes[0])
+    _put(file, "", _SERIES, {**vars(grid), "series_inelasticity": series})
+    for axis in grid.axes:
+        for k, segment in enumerate(axis.segments):
+            _put(file, f"axes/{axis.name}/{k}", _SEGMENT, segment._asdict())
+    _put(file, "fields", _fields(grid), table.fields)
     if table.states is not None:
-        nodes = dict(zip(grids.AXES, shape_grid(table).nodes(), strict=True))
-        datasets |= {
-            **{f"shapes/{name}": (values, "of the states [-]") for name, values in nodes.items()},
-            "shapes/shares": (shapes.SHARES, "of the largest root compression, up and down [-]"),
-            "shapes/states": (table.states, "when it passes them: times [T_H], speeds [V0]"),
-        }
-    for name, (values, description) in datasets.items():
-        file[name] = np.asarray(values, dtype=getattr(values, "dtype", np.float64))
-        file[name].attrs["description"] = description
+        coarser = shape_grid(table)
+        nodes = dict(zip(grids.AXES, coarser.nodes(), strict=True))
+        states = {"shares": shapes.SHARES, "states": table.states}
+        _put(file, "shapes", _shapes(coarser), nodes | states)
     file.create_group("law/parameters", track_order=True).attrs.update(law.parameters)
     for axis in grid.axes:
         file[f"axes/{axis.name}"].attrs["stretch"] = axis.stretch
@@ -148,6 +173,12 @@ def _fill(file: h5py.File, table: Table) -> None:
     if table.certificate is not None:
         file.attrs["certificate"] = json.dumps(asdict(table.certificate))
     file.attrs["complete"] = True  # last: a file cut short opens without complaint
+
+
+def _put(file: h5py.File, group: str, parts: dict[str, _Part], values: Mapping[str, Any]) -> None:
+    for name, part in parts.items():
+        file[f"{group}/{name}"] = np.asarray(values[name], dtype=part.kind)
+        file[f"{group}/{name}"].attrs["description"] = part.description
 
 
 def read(path: str | os.PathLike[str]) -> Table:
@@ -174,7 +205,7 @@ def read(path: str | os.PathLike[str]) -> Table:
     path = Path(path)
     remedy = "Build it again with: contactlaw table build --law LAW --out FILE"
     try:
-        content = guarded.content(path, LARGEST)
+        content = _content(path)
     except FileNotFoundError:
         raise FileNotFoundError(f"table: there is no file {path}. {remedy}") from None
     except ValueError as error:
@@ -185,6 +216,16 @@ def read(path: str | os.PathLike[str]) -> Table:
         raise DamagedTableError(f"table: cannot use {path}: {error}. {remedy}") from error
 
 
+def _content(path: Path) -> bytes:
+    """Bytes of a file; a pipe would make the reader wait, and a device may have no end."""
+    if not path.is_file() and (path.exists() or path.is_symlink()):
+        raise ValueError("it is no regular file, nor a link to one")
+    size = path.stat().st_size
+    if size > LARGEST:
+        raise ValueError(f"it has {size} bytes, and no table more than {LARGEST}")
+    return path.read_bytes()
+
+
 def _parse(content: bytes) -> Table:
     head = content[:_BLOCK].rstrip(b"\0").decode("ascii", "replace").split()
     if head[:-1] != [*FORMAT.split(), "sha256"]:
@@ -192,131 +233,81 @@ def _parse(content: bytes) -> Table:
     if head[-1] != hashlib.sha256(memoryview(content)[_BLOCK:]).hexdigest():
         raise ValueError("its checksum does not fit: it was cut short or altered")
     with h5py.File(io.BytesIO(content), "r") as file:
-        found = {
-            key: guarded.attribute(file, key, type(value)) if key in file.attrs else None
-            for key, value in _HEAD.items()
-        }
+        found = {key: str(file.attrs.get(key)) for key in _HEAD}
         if found != _HEAD:
             raise ValueError(f"it is not a complete table of schema {SCHEMA}, but {found}")
-        table = _from_file(file)
-    _check_ranges(table)
-    return table
+        return _from_file(file)
 
 
 def _from_file(file: h5py.File) -> Table:
-    settings = Settings(
-        **{k: guarded.attribute(file, k, type(v)) for k, v in asdict(Settings()).items()}
-    )
+    settings = Settings(**{k: type(v)(file.attrs[k]) for k, v in asdict(Settings()).items()})
     law = _law(file)
-    table = Table(law, settings, _grid(file, settings, law), {}, certificate=_certificate(file))
-    fields = {name: _values(file, f"fields/{name}", *table.grid.shape) for name in STORED}
-    table = dataclasses.replace(table, fields=fields)
+    axes = tuple(_axis(file, name) for name in grids.AXES)
+    grids.check(axes, law, settings)
+    grid = Grid(axes, _take(file, "", _SERIES)["elastic_compression"])
+    errors = file.attrs.get("certificate")
+    certificate = None if errors is None else Certificate(**json.loads(errors))
+    fields = _take(file, "fields", _fields(grid))
+    table = Table(law, settings, grid, fields, certificate=certificate)
     if "shapes" not in file:
         return table
+    found = _take(file, "shapes", _shapes(shape_grid(table)))
     # numpy's functions differ in the last digit between its versions and between processors
-    shares = _values(file, "shapes/shares", shapes.STATES)
-    if not np.allclose(shares, shapes.SHARES, rtol=1e-12, atol=1e-12):
+    if not np.allclose(found["shares"], shapes.SHARES, rtol=1e-12, atol=1e-12):
         raise ValueError("its shapes/shares are not those of this version")
-    shape = *shape_grid(table).shape, 2, shapes.SIZE
-    states = _values(file, "shapes/states", *shape, kind=np.float32)
-    return dataclasses.replace(table, states=states)
+    if not (np.diff(found["states"][:, :, 0]) > 0.0).all():
+        raise ValueError("its shapes/states hold times that do not grow")
+    return dataclasses.replace(table, states=found["states"])
 
 
-def _values(file: h5py.File, name: str, *shape: int, kind: DTypeLike = np.float64) -> NDArray[Any]:
-    return guarded.values(guarded.member(file, name), shape, kind)
+def _take(file: h5py.Group, group: str, parts: dict[str, _Part]) -> dict[str, NDArray[Any]]:
+    """Read the datasets of a group; refuse other shapes and types, and what no table holds."""
+    found = {}
+    for name, part in parts.items():
+        dataset = file[f"{group}/{name}"]
+        where = dataset.name.lstrip("/")
+        shape, kind = part.shape or (dataset.size,), np.dtype(part.kind)
+        if (dataset.shape, dataset.dtype.newbyteorder("=")) != (shape, kind):
+            what = f"{dataset.dtype} of shape {dataset.shape}"
+            raise ValueError(f"its {where} holds {what}, not {kind} of shape {shape}")
+        values = dataset[()].astype(kind, copy=False)
+        outside = values[~((values >= part.least) & (values <= part.largest))]
+        if outside.size:
+            limits = f"{part.least:g} to {part.largest:g}"
+            raise ValueError(f"its {where} holds {outside[0]:.6g}, outside {limits}")
+        found[name] = values
+    return found
 
 
 def _law(file: h5py.File) -> Law:
     """Read the law of a table; its data are checked, since kernels follow addresses in them."""
-    numbers = _listed(file, "law/data", _LARGEST_LAW)
-    force.check(numbers)
-    parameters = guarded.member(file, "law/parameters")
-    waves = _listed(file, "law/waves", 4).tolist()
-    if len(waves) not in (0, 4):
-        raise ValueError(f"its law/waves are {len(waves)} numbers, not 4 or none")
+    found = _take(file, "law", _LAW)
+    force.check(found["data"])
     coefficient, scale, smallest, largest = (
-        guarded.attribute(file, name, float)
+        float(file.attrs[name])
         for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
     )
     return Law(
-        family=guarded.attribute(file, "law", str),
-        parameters={name: guarded.attribute(parameters, name, float) for name in parameters.attrs},
-        source=guarded.attribute(file, "law_source", str),
+        family=file.attrs["law"],
+        parameters={name: float(value) for name, value in file["law/parameters"].attrs.items()},
+        source=file.attrs["law_source"],
         yield_coefficient=None if math.isnan(coefficient) else coefficient,
-        loading_kinks=tuple(_listed(file, "law/loading_kinks", _MOST_KINKS).tolist()),
-        outcome_kinks=tuple(_listed(file, "law/outcome_kinks", _MOST_KINKS).tolist()),
-        data=numbers,
+        loading_kinks=tuple(found["loading_kinks"].tolist()),
+        outcome_kinks=tuple(found["outcome_kinks"].tolist()),
+        data=found["data"],
         scale=None if math.isnan(scale) else scale,
         range=(smallest, largest),
-        waves=tuple(waves) or None,
+        waves=tuple(found["waves"].tolist()) or None,
     )
 
 
-def _listed(file: h5py.File, name: str, most: int) -> NDArray[Any]:
-    """Read a dataset whose length is not known beforehand, up to a limit."""
-    dataset = guarded.member(file, name)
-    count = getattr(dataset, "shape", None)
-    if not isinstance(count, tuple) or len(count) != 1 or not count[0] <= most:
-        raise ValueError(f"its {name} has the shape {count}")
-    return guarded.values(dataset, count, np.float64)
-
-
-def _grid(file: h5py.File, settings: Settings, law: Law) -> Grid:
-    """Read the nodes; refuse those of other settings or of another law."""
-    axes = tuple(_axis(file, name) for name in grids.AXES)
-    grids.check(axes, law, settings)
-    return Grid(axes, _values(file, "elastic_compression", SERIES))
-
-
 def _axis(file: h5py.File, name: str) -> Axis:
-    group = guarded.member(file, f"axes/{name}")
-    segments = []
-    for k in range(len(group)):
-        start, end = (_values(file, f"axes/{name}/{k}/{end}", SERIES) for end in ("start", "end"))
-        shares = _listed(file, f"axes/{name}/{k}/shares", _MOST_NODES)
-        graded = guarded.attribute(guarded.member(group, str(k)), "graded", bool)
-        segments.append(Segment(start, end, shares, graded))
-    return Axis(name, tuple(segments), guarded.attribute(group, "stretch", float))
-
-
-def _certificate(file: h5py.File) -> Certificate | None:
-    if "certificate" not in file.attrs:
-        return None
-    found = Certificate(**json.loads(guarded.attribute(file, "certificate", str)))
-    numbers: list[float] = [found.points, found.seed]
-    names = BOUNDS.keys() - (set() if "shapes" in file else {"force_history"})
-    for errors in (found.median, found.percentile_99, found.largest):
-        if not isinstance(errors, dict) or errors.keys() != names:
-            raise ValueError("its certificate does not name the errors of each field")
-        numbers += errors.values()
-    if not all(type(number) in (int, float) and 0 <= number < math.inf for number in numbers):
-        raise ValueError("its certificate holds what is no error")
-    return found
-
-
-def _check_ranges(table: Table) -> None:
-    """Refuse numbers that no solver gave; NaN is outside of any range."""
-    arrays: dict[str, NDArray[Any]] = {
-        **table.fields,
-        "elastic_compression": table.grid.elastic_compression,
-    }
-    if table.states is not None:
-        arrays["times of shapes/states"] = table.states[:, :, 0]
-        arrays["speeds of shapes/states"] = table.states[:, :, 1]
-    for name, values in arrays.items():
-        low, high = _RANGES[name]
-        least, largest = values.min(), values.max()
-        if not np.isfinite(least + largest):
-            raise ValueError(f"its {name} has values that are not finite")
-        if not low <= least <= largest <= high:
-            raise ValueError(
-                f"its {name} reach from {least:.6g} to {largest:.6g}, outside {low:g} to {high:g}"
-            )
-    waves = table.grid.rows[:, None] * table.fields["wave_rate"]
-    if not (table.fields["restitution"] ** 2 + waves <= 1.0 + _ENERGY).all():
-        raise ValueError("it holds impacts that gain energy")
-    if table.states is not None and not (np.diff(table.states[:, :, 0]) > 0.0).all():
-        raise ValueError("its shapes/states hold times that do not grow")
+    group = file[f"axes/{name}"]
+    segments = (
+        Segment(**_take(group, k, _SEGMENT), graded=bool(group[k].attrs["graded"]))
+        for k in map(str, range(len(group)))
+    )
+    return Axis(name, tuple(segments), float(group.attrs["stretch"]))
 
 
 @functools.cache

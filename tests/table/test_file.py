@@ -16,7 +16,6 @@ from contactlaw.physical.scaling import law_of
 from contactlaw.table import file as store
 
 MYC = laws.law("myc")
-CERTIFICATE = '{"points": 100, "seed": 0, "median": {}, "percentile_99": {}, "largest": %s}'
 SMALL = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
 
 
@@ -93,13 +92,6 @@ def put(name, value, *place):
     return change
 
 
-def fill(name, value):
-    def change(file):
-        file[name][...] = value
-
-    return change
-
-
 def store_anew(name, **options):
     """Change that stores a dataset in another way."""
 
@@ -116,21 +108,6 @@ def declare_huge(file):
     file.create_dataset("fields/restitution", (10**6, 10**6), "f8")
 
 
-def declare_huge_with_fitting_axes(file):
-    """Nodes for an array of 1.1 TB; nothing else is to tell that it is not there."""
-    rows, columns = 100_000, 1_000_000
-    file.attrs.modify("inelasticity_nodes", rows)
-    sizes = {"axes/inelasticity/0/shares": np.linspace(0.0, 1.0, rows)}
-    sizes["axes/log_overload/0/shares"] = np.linspace(0.0, 1.0, columns)
-    count = columns + file["axes/log_overload/1/shares"].size
-    for name, values in sizes.items():
-        del file[name]
-        file[name] = values
-    for name in STORED:
-        del file[f"fields/{name}"]
-        file.create_dataset(f"fields/{name}", (rows, count), "f8")
-
-
 def other_law(place, value):
     """Change of the law's data that would lead a kernel astray."""
 
@@ -140,37 +117,6 @@ def other_law(place, value):
     return change
 
 
-def store_elsewhere(file):
-    del file["fields/wave_rate"]
-    shape = file["fields/contact_time"].shape
-    file.create_dataset("fields/wave_rate", shape, "f8", external=[("/dev/zero", 0, 9**6)])
-
-
-def store_virtually(file):
-    shape = file["fields/contact_time"].shape
-    layout = h5py.VirtualLayout(shape, "f8")
-    layout[:] = h5py.VirtualSource("elsewhere.h5", "x", shape)
-    del file["fields/wave_rate"]
-    file.create_virtual_dataset("fields/wave_rate", layout)
-
-
-def link(name, target):
-    def change(file):
-        del file[name]
-        file[name] = target
-
-    return change
-
-
-def put_group(file):
-    del file["law/data"]
-    file.create_group("law/data")
-
-
-def gain_energy(file):
-    file["fields/restitution"][-1, 0] = 0.9
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -178,7 +124,7 @@ def gain_energy(file):
         (lambda f: f.attrs.modify("schema", 99), "schema"),
         (lambda f: f.attrs.modify("format", "something"), "format"),
         (lambda f: f.pop("fields/contact_time"), "contact_time"),
-        (put("fields/restitution", np.nan), "not finite"),
+        (put("fields/restitution", np.nan), "restitution holds nan, outside 0 to 1"),
         (lambda f: f.attrs.modify("inelasticity_nodes", 10), "axes are not those of its settings"),
         (
             lambda f: f["fields/restitution"].write_direct(
@@ -196,48 +142,32 @@ def gain_energy(file):
         (lambda f: f["axes/inelasticity"].pop("0"), "along inelasticity do not meet"),
         (lambda f: f["axes/log_overload"].attrs.modify("stretch", 9.0), "axes are not those"),
         (lambda f: f.attrs.modify("stretch", 3.0), "axes"),
-        (put("fields/wave_rate", -0.5), "wave_rate reach from -0.5"),
-        (put("fields/contact_time", 1e300), r"contact_time reach from .* to 1e\+300"),
-        (put("fields/contact_time", 0.0), "contact_time reach from 0"),
-        (put("fields/compression_ratio", -1.0), "compression_ratio reach from -1"),
-        (put("elastic_compression", 2.0), "elastic_compression reach from .* to 2"),
-        (put("elastic_compression", np.inf), "elastic_compression has .* not finite"),
-        (put("shapes/states", -1.0, 0, 0, 0, 5), "times of shapes/states reach from -1"),
+        (put("fields/wave_rate", -0.5), "wave_rate holds -0.5"),
+        (put("fields/contact_time", 1e300), r"contact_time holds 1e\+300"),
+        (put("fields/contact_time", 0.0), "contact_time holds 0"),
+        (put("fields/compression_ratio", -1.0), "compression_ratio holds -1"),
+        (put("elastic_compression", 2.0), "elastic_compression holds 2"),
+        (put("elastic_compression", np.inf), "elastic_compression holds inf"),
+        (put("shapes/states", -1.0, 0, 0, 0, 5), "times that do not grow"),
+        (put("shapes/states", np.nan, 0, 0, 1, 5), "shapes/states holds nan"),
+        (put("shapes/states", np.inf, 0, 0, 1, 5), "shapes/states holds inf"),
         (put("shapes/states", 9e3, 0, 0, 0, 5), "times that do not grow"),
-        (put("shapes/states", 1.5, 0, 0, 1, 5), "speeds of shapes/states reach from .* to 1.5"),
-        (gain_energy, "gain energy"),
-        (declare_huge, r"shape \(1000000, 1000000\), not \(9, "),
-        (declare_huge_with_fitting_axes, "one block"),
-        (store_anew("fields/restitution", dtype="c16"), "holds complex128, not float64"),
-        (store_anew("fields/restitution", dtype="i1"), "holds int8, not float64"),
-        (store_anew("shapes/states", dtype="f8"), "holds float64, not float32"),
-        (store_anew("fields/wave_rate", chunks=(3, 3), compression="gzip"), "one block"),
-        (store_elsewhere, "wave_rate is not stored as one block of this file"),
-        (store_virtually, "wave_rate is not stored as one block of this file"),
-        (link("fields/wave_rate", h5py.ExternalLink("elsewhere.h5", "x")), "or a link"),
-        (link("fields", h5py.ExternalLink("elsewhere.h5", "x")), "or a link"),
-        (link("law/data", h5py.SoftLink("/law/data")), "or a link"),
-        (put_group, "law/data has the shape None"),
+        (declare_huge, r"shape \(1000000, 1000000\), not float64 of shape \(9, "),
+        (store_anew("fields/restitution", dtype="c16"), "holds complex128 .* not float64"),
+        (store_anew("fields/restitution", dtype="i1"), "holds int8 .* not float64"),
+        (store_anew("shapes/states", dtype="f8"), "holds float64 .* not float32"),
         (store_anew("law/waves", dtype="f4"), "law/waves holds float32"),
-        (lambda f: f["law/parameters"].attrs.create("x", "y"), "attribute x is no single float"),
-        (lambda f: f.attrs.create("law", 5.0), "attribute law is no single str"),
-        (lambda f: f.attrs.create("law", ["myc"]), "attribute law is no single str"),
-        (lambda f: f.attrs.create("rtol", [1e-9, 1e-9]), "rtol is no single float"),
-        (lambda f: f.attrs.create("rtol", 1e-9 + 1j), "rtol is no single float"),
-        (lambda f: f.attrs.create("rtol", "1e-12"), "rtol is no single float"),
         (lambda f: f.attrs.create("stretch", np.nan), "stretch"),
-        (lambda f: f.attrs.create("inelasticity_nodes", 48.5), "nodes is no single int"),
-        (lambda f: f.attrs.create("inelasticity_nodes", h5py.Empty("i8")), "is no single int"),
+        (lambda f: f.attrs.create("inelasticity_nodes", 48.5), "axes are not those"),
         (other_law(0, 1e6), "there is a whole number up to"),
         (other_law(0, 2.5), "there is a whole number up to"),
         (other_law(1, 500), "ends within its"),
         (other_law(force.HEADER + 3 + force.AT, 1e5), "whole number up to"),
         (other_law(force.HEADER + 1, -1.0), "do not follow each other"),
-        (lambda f: f.attrs.create("certificate", 3), "certificate is no single str"),
+        (other_law(force.HEADER + 4, np.nan), "law/data holds nan"),
+        (lambda f: f.attrs.create("certificate", 3), "JSON"),
         (lambda f: f.attrs.create("certificate", "[]"), "argument"),
         (lambda f: f.attrs.create("certificate", "[" * 60_000), "recursion"),
-        (lambda f: f.attrs.create("certificate", CERTIFICATE % '"many"'), "names? the errors"),
-        (lambda f: f.attrs.create("certificate", CERTIFICATE % "{}"), "name the errors"),
     ],
 )
 def test_a_wrong_file_is_refused(path, change, message):
@@ -263,12 +193,13 @@ def make_sparse(path):
         (os.mkfifo, "no regular file"),  # to open it as a file waits for a writer
         (lambda path: path.symlink_to("/dev/zero"), "no regular file"),  # without an end
         (lambda path: path.symlink_to(path), "no regular file"),
+        (lambda path: path.symlink_to("nowhere"), "no regular file"),
         (lambda path: path.symlink_to(path.parent), "no regular file"),
         (lambda path: path.mkdir(), "no regular file"),
         (make_socket, "no regular file"),
         (make_sparse, "1099511627776 bytes, and no table more than"),
     ],
-    ids=["pipe", "device", "cyclic link", "link to a folder", "folder", "socket", "sparse"],
+    ids=["pipe", "device", "cycle", "lost link", "link to a folder", "folder", "socket", "sparse"],
 )
 def test_what_is_no_file_of_bounded_size_is_refused(tmp_path, monkeypatch, make, message):
     monkeypatch.chdir(tmp_path)
