@@ -212,7 +212,7 @@ def read(path: str | os.PathLike[str]) -> Table:
         raise DamagedTableError(f"table: cannot use {path}: {error}. {remedy}") from error
     try:
         return _parse(content)
-    except (OSError, KeyError, ValueError, TypeError, RuntimeError) as error:
+    except (OSError, LookupError, ValueError, TypeError, RuntimeError, AttributeError) as error:
         raise DamagedTableError(f"table: cannot use {path}: {error}. {remedy}") from error
 
 

@@ -117,6 +117,11 @@ def other_law(place, value):
     return change
 
 
+def put_group(file):
+    del file["law/data"]
+    file.create_group("law/data")
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -156,6 +161,7 @@ def other_law(place, value):
         (store_anew("fields/restitution", dtype="c16"), "holds complex128 .* not float64"),
         (store_anew("fields/restitution", dtype="i1"), "holds int8 .* not float64"),
         (store_anew("shapes/states", dtype="f8"), "holds float64 .* not float32"),
+        (put_group, "'Group' object has no attribute"),
         (store_anew("law/waves", dtype="f4"), "law/waves holds float32"),
         (lambda f: f.attrs.create("stretch", np.nan), "stretch"),
         (lambda f: f.attrs.create("inelasticity_nodes", 48.5), "axes are not those"),
