@@ -55,7 +55,7 @@ def panels(
     for axes, run in found:
         cor = run.constant_cor
         name = f"contactlaw, {run.name}" if cor is None else f"constant {run.name}"
-        axes.set_title(name, fontweight="bold", loc="left")
+        axes.set_title(name)
     return found
 
 

@@ -41,9 +41,7 @@ def gif(run: Run) -> bytes:
         canvas: Any = FigureCanvasAgg(figure)  # its methods are untyped
         axes = figure.add_subplot()
         what = title(run)[0].split(", ")
-        axes.set_title(
-            f"{what[0]}{what[-1].partition(' mm')[2]}, {SLOWER} times slower", loc="left"
-        )
+        axes.set_title(f"{what[0]}{what[-1].partition(' mm')[2]}, {SLOWER} times slower")
         picture = Picture(axes, run, made)
         bar = figure.colorbar(picture.circles, ax=axes, pad=0.01, fraction=0.03)
         bar.set_label("COR of its last impact")

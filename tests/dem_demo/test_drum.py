@@ -19,6 +19,7 @@ pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import cli as cli_of_contactlaw  # noqa: E402
+from contactlaw import style  # noqa: E402
 from contactlaw.cli.parts import records  # noqa: E402
 from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
 from dem_demo import cli  # noqa: E402
@@ -72,6 +73,15 @@ def test_the_page_fits_the_screen(folder, page, width):
     assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
     assert page.value("document.documentElement.scrollWidth") <= width
     assert page.complaints == []
+
+
+@pytest.mark.parametrize("name", ["snapshot", "dissipation", "energy"])
+def test_each_panel_names_its_run(name, runs):
+    with style.applied():
+        figure = figures.module(name).draw(runs)
+    titles = [axes.get_title("left") + axes.get_title() for axes in figure.axes]
+    named = [title for title in titles if title]
+    assert len(named) == 2 and named[0].startswith("contactlaw") and named[1].startswith("constant")
 
 
 def test_the_record_explains_itself(folder):

@@ -134,9 +134,7 @@ def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) 
         for n, curve in enumerate(curves):
             _draw(axes, curve, colour_of(n, len(curves)))
         if len(panels) > 1:
-            axes.set_title(
-                f"bead radius {length_of(curves[0].radius)}", fontweight="bold", fontsize=12
-            )
+            axes.set_title(f"bead radius {length_of(curves[0].radius)}")
     for axes in grid.flat[len(panels) :]:
         axes.set_visible(False)
     _axes(grid, panels)

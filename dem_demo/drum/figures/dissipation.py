@@ -45,7 +45,7 @@ def draw(runs: Runs[Drum]) -> Figure:
         axes.yaxis.set_major_locator(MaxNLocator(3))
         axes.yaxis.set_major_formatter("{x:g} µJ")
         axes.set_rlabel_position(20.0)
-        axes.set_title(axes.get_title("left"), fontweight="bold", pad=10.0)
+        axes.set_title(axes.get_title("left"), loc="center", pad=10.0)
         axes.set_title("", loc="left")
     figure.legend(*shown[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure

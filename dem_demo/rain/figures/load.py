@@ -58,7 +58,7 @@ def _plate(left: Axes, right: Axes, run: Run, plate: int, rate: float) -> None:
         model=run.model, rate=rate, duration=run.scene.duration,
     )  # fmt: skip
     left.fill_between(load.time, load.force, step="mid", color=style.BLUE, linewidth=0.6)
-    left.set_title(label(thickness), loc="left", fontweight="bold", pad=3.0)
+    left.set_title(label(thickness), pad=3.0)
     if rows.size:
         n = int(np.argmax(rows["peak_force"]))
         contact = run.model.force_history(speed[n], radius[n], thickness)

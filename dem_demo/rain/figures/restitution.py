@@ -54,7 +54,7 @@ def draw(run: Run) -> Figure:
 
 def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
     thickness = run.scene.plates[plate].thickness
-    axes.set_title(label(thickness), fontweight="bold")
+    axes.set_title(label(thickness))
     radius = run.scene.beads.radius
     speed = np.linspace(0.2, 1.05 * _fastest(run), 200)
     ends = radius.min(), 0.5 * (radius.min() + radius.max()), radius.max()
