@@ -63,7 +63,7 @@ def kernel(
         # error_model "numpy": a division by zero gives inf, which the callers' range tests refuse;
         # the default raises, and a raise in nogil code is costly. Of fastmath only "contract",
         # which fuses a product with a sum: under all of it isnan(nan) is False.
-        _tell_apart(python_function)
+        _name_uniquely(python_function)
         options: dict[str, Any] = {
             "error_model": "numpy", "nogil": True, "fastmath": {"contract"}, "forceinline": inline,
         }  # fmt: skip
@@ -78,7 +78,7 @@ def kernel(
         if cache:
             _cached.append(dispatcher)
             if enable_caching.cache_info().currsize:  # defined after the call of it
-                _keep(dispatcher)
+                _cache_on_disk(dispatcher)
         return dispatcher  # type: ignore[no-any-return]
 
     return compiled if function is None else compiled(function)
@@ -138,7 +138,7 @@ class _Inner(CPUDispatcher):
         target.insert_user_function(result.entry_point, result.fndesc, [result.library])
 
 
-def _tell_apart(function: Callable[..., Any]) -> None:
+def _name_uniquely(function: Callable[..., Any]) -> None:
     """Add the names of the kernels that a kernel was made with to its own, as rates[_cubic].
 
     In machine code its symbol is its name, the types and a number that every process counts from
@@ -173,7 +173,7 @@ def enable_caching() -> None:
     writable, and an import should do neither.
     """
     for dispatcher in _cached:
-        _keep(dispatcher)
+        _cache_on_disk(dispatcher)
 
 
 def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = False) -> Any:
@@ -191,7 +191,7 @@ def c_function(signature: Any, function: Callable[..., Any], *, cache: bool = Fa
     types = normalize_signature(signature)
     made: Any = CFunc(function, types, {}, {"error_model": "numpy"})
     if cache:
-        _keep(made)
+        _cache_on_disk(made)
     made.compile()
     return made
 
@@ -233,7 +233,7 @@ def at_first_as_python(function: _F, calls: int) -> _F:
     return called  # type: ignore[return-value]
 
 
-def _keep(dispatcher: Any) -> None:
+def _cache_on_disk(dispatcher: Any) -> None:
     """Give a kernel the disk cache, in files with checksums."""
     if switched_off():
         return

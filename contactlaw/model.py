@@ -20,7 +20,7 @@ from contactlaw.answers.constant import Constant, Keep, constant
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
-from contactlaw.answers.tabulated import Border, Given, Outside, Tabulated
+from contactlaw.answers.tabulated import Border, Outside, TableArgument, Tabulated
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.history import ForceHistory
@@ -75,8 +75,9 @@ class ImpactModel(Compiled):
     """
 
     def __init__(
-        self, pair: Pair, law: str | Law = DEFAULT, table: Given = None, outside: Outside = "raise"
-    ) -> None:
+        self, pair: Pair, law: str | Law = DEFAULT, table: TableArgument = None,
+        outside: Outside = "raise",
+    ) -> None:  # fmt: skip
         if not isinstance(pair, Pair):
             raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
         self._border = Border(outside)

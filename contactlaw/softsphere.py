@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._jit import enable_caching, kernel
 from contactlaw.answers.backend import OutsideTableError, too_thin
 from contactlaw.answers.solver import RTOL, solved
-from contactlaw.equation.waves import CONTACT_TIME
+from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate

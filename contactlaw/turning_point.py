@@ -72,7 +72,7 @@ def _release(x: Array) -> Array:
     return share
 
 
-def _work(lam: Array, chi: Array) -> Array:
+def _work_ratio(lam: Array, chi: Array) -> Array:
     """Compute the loading work over that of Hertz's curve, which radiates a little more."""
     share: Array = 1.0 + 0.56 * lam * np.maximum(1.0 - P / chi, 0.0) ** 2.5
     return share
@@ -130,6 +130,6 @@ def restitution(speed_ratio: ArrayLike, inelasticity_at_yield: ArrayLike) -> flo
     v = np.maximum(v, _SLOWEST)
     lam = lam_y * v**0.2
     chi = v**0.8 * _loading(lam)
-    force, span = at_turning_point(chi * _work(lam, chi) ** 0.4)
+    force, span = at_turning_point(chi * _work_ratio(lam, chi) ** 0.4)
     released = _release(lam_y * np.sqrt(force / span))
     return shaped(np.sqrt(force * span) / v * released, shape)

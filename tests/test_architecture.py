@@ -34,14 +34,14 @@ LAYERS = [
 ]
 # Within a folder without units, the same: the order of its files.
 FILES = {
-    "equation": ["force", "outcome", "waves", "numbers", "plate", "legs", "losses", "motion",
+    "equation": ["force", "outcome", "corrections", "numbers", "plate", "legs", "losses", "motion",
                  "creep", "integrator", "zener"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "file", "cache"],
     "answers": ["backend", "solver", "tabulated", "beads", "compiled", "constant", "loads",
                 "sensitivity", "speed_table"],
     "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
-    "stepping": ["spring", "energy", "friction", "sheet", "contact", "bead"],
+    "stepping": ["spring", "energy", "friction", "plate_rows", "contact", "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
                 "fit"],
     "export": ["c_header", "liggghts_wall"],
@@ -49,8 +49,8 @@ FILES = {
     "engines/lammps": ["beads", "commands", "memory", "errors", "callback", "attachment"],
     "engines/pymunk": ["handlers", "models", "record", "registry", "seams", "lookahead",
                        "contacts", "impacts", "attachment"],
-    "cli/parts": ["quantities", "wording", "columns", "records", "measured", "sheet",
-                  "options", "curves", "walls", "lines", "plots", "asked", "fits", "fitplot"],
+    "cli/parts": ["quantities", "wording", "columns", "records", "measured", "impacts",
+                  "options", "curves", "walls", "lines", "plots", "chosen", "fits", "fitplot"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
                  "rebound"],
 }  # fmt: skip

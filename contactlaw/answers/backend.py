@@ -17,7 +17,7 @@ from contactlaw.laws import Law
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
-from contactlaw.physical.scaling import Contact, Factors, factors, sphere_on_plate
+from contactlaw.physical.scaling import ContactConstants, PairConstants, factors, sphere_on_plate
 from contactlaw.physical.validity import Limits, limits
 
 Array = NDArray[np.float64]
@@ -52,11 +52,11 @@ class SphereOnPlate:
         return limits(self.pair, self.law)
 
     @functools.cached_property
-    def factors(self) -> Factors:
+    def factors(self) -> PairConstants:
         """Constants from which the dimensionless numbers of impacts follow."""
         return factors(self.pair, self.law)
 
-    def contact(self, impacts: Impacts) -> Contact:
+    def contact(self, impacts: Impacts) -> ContactConstants:
         """Contact of each sphere with its plate."""
         return sphere_on_plate(self.pair, self.law, impacts.radius, impacts.thickness)
 

@@ -18,7 +18,7 @@ from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import Contact, law_of, scales, sphere_on_sphere
+from contactlaw.physical.scaling import ContactConstants, law_of, scales, sphere_on_sphere
 from contactlaw.physical.validity import Limits, limits
 from contactlaw.table import Table
 
@@ -74,9 +74,9 @@ class Beads:
         units = scales(contact, v)
         found, flags = self._border.look_up(self.law, self.table.packed, units)
         impacts = Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape)
-        asked = units.inelasticity, units.yield_ratio
+        unclamped = units.inelasticity, units.yield_ratio
         return rebound(
-            self.law.data, self.limits, impacts, units.time, contact.mass, asked, found, flags
+            self.law.data, self.limits, impacts, units.time, contact.mass, unclamped, found, flags
         )
 
     def restitutions(
@@ -104,7 +104,7 @@ class Beads:
         look_up = functools.partial(self._border.look_up, self.law)
         return curve((self.table.packed, 0.0, c_chi, 0.0), lambda: contact, look_up)
 
-    def _contact(self, radius: Array, other_radius: Array) -> Contact:
+    def _contact(self, radius: Array, other_radius: Array) -> ContactConstants:
         radii = (other_radius, radius) if self._swapped else (radius, other_radius)
         return sphere_on_sphere(self.pair, self.law, *radii)
 

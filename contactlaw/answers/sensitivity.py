@@ -12,10 +12,10 @@ sum to 1) the powers are
 so d ln e/d ln x is a sum of terms, power by derivative. The derivatives are central differences: of
 the table if it is as accurate as promised, else of the solver; those by r are always of the solver.
 
-A law with corrections of the plate (`contactlaw.equation.waves`) depends on more numbers of the
-pair, and lambda is no product of powers. There, inputs are changed one by one, and each time the
-impacts are integrated. No answer depends on the units of length, time and mass, so three of the
-eight elasticities follow from the others:
+A law with corrections of the plate (`contactlaw.equation.corrections`) depends on more numbers of
+the pair, and lambda is no product of powers. There, inputs are changed one by one, and each time
+the impacts are integrated. No answer depends on the units of length, time and mass, so three of
+the eight elasticities follow from the others:
 
     R = -H    E1 + E2 + sigma_Y = -V0/2    rho1 + rho2 = V0/2
 """
@@ -39,7 +39,7 @@ from contactlaw.laws import Law
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts
-from contactlaw.physical.scaling import following, scales, sphere_on_plate
+from contactlaw.physical.scaling import law_for_pair, scales, sphere_on_plate
 from contactlaw.table import lookup
 from contactlaw.table.nodes import Table
 
@@ -224,7 +224,7 @@ def _changed(pair: Pair, number: str, factor: float, roles: tuple[str, ...]) -> 
 
 def _moved(pair: Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Outcome:
     """Integrate impacts of other bodies, with the law's numbers for those bodies."""
-    law = following(pair, law)
+    law = law_for_pair(pair, law)
     units = scales(sphere_on_plate(pair, law, radius, thickness), speed)
     return solved(law, units.inelasticity, units.yield_ratio, _RTOL)
 

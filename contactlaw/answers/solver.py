@@ -48,9 +48,9 @@ class Solver:
         units = scales(contact, impacts.speed)
         found = within(self.bodies.law, units, self.rtol, self.extent)
         flags = np.zeros(impacts.speed.size, dtype=np.int64)
-        asked = units.inelasticity, units.yield_ratio
+        unclamped = units.inelasticity, units.yield_ratio
         return rebound(
-            self.bodies.law.data, self.bodies.limits, impacts, units.time, contact.mass, asked,
+            self.bodies.law.data, self.bodies.limits, impacts, units.time, contact.mass, unclamped,
             found, flags,
         )  # fmt: skip
 

@@ -31,7 +31,7 @@ from contactlaw.laws import Law
 from contactlaw.physical.arguments import check, scalars
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import Contact, log_overload, scales, yield_share
+from contactlaw.physical.scaling import ContactConstants, log_overload, scales, yield_share
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, grid, lookup, shapes
 from contactlaw.table.certificate import bounds
@@ -41,7 +41,7 @@ from contactlaw.table.nodes import Table
 Array = NDArray[np.float64]
 Flags = NDArray[np.int64]
 Outside = Literal["raise", "solve", "clamp"]
-Given = Table | Settings | str | os.PathLike[str] | None  # what users may give as a table
+TableArgument = Table | Settings | str | os.PathLike[str] | None  # what users may give as a table
 
 # These fields begin at zero at yield, where large relative errors do no harm.
 _NEXT_TO_YIELD = {"residual_compression", "plastic_fraction"}
@@ -97,7 +97,7 @@ class Border:
 class Tabulated:
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
-    def __init__(self, bodies: SphereOnPlate, given: Given, border: Border) -> None:
+    def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
         self.bodies, self.given, self.border = bodies, given, border
         # the constants of the pair that kernels take
         self.c_lam = bodies.factors.plate.inelasticity
@@ -116,13 +116,13 @@ class Tabulated:
     @functools.cached_property
     def restitution(self) -> Callable[[float, float, float], float]:
         """COR of one impact, whose arguments have to be floats; NaN outside the table."""
-        return functools.partial(entries()[0], self.packed, self.c_lam, self.c_chi)
+        return functools.partial(python_entries()[0], self.packed, self.c_lam, self.c_chi)
 
     @property
     def largest_inelasticity(self) -> float:
         """Largest lambda of the table, known before the table is made."""
         if self.given is None:
-            return grid.largest_inelasticity(_served(self.bodies.law))
+            return grid.largest_inelasticity(_law_with_table(self.bodies.law))
         return lookup.lam_max(self.table.packed)
 
     def table_of(self, law: Law) -> Table:
@@ -140,11 +140,11 @@ class Tabulated:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
-        found, flags, asked, root = self._outcomes(impacts)
+        found, flags, unclamped, root = self._outcomes(impacts)
         r, made = impacts.radius, self.bodies.factors
         return rebound(
             self.bodies.law.data, self.bodies.limits, impacts, made.time * r / root,
-            made.mass * (r * r * r), asked, found, flags,
+            made.mass * (r * r * r), unclamped, found, flags,
         )  # fmt: skip
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
@@ -179,17 +179,17 @@ class Tabulated:
         found, root = outcome.empty(v.size), np.empty(v.size)
         flags = np.zeros(v.size, dtype=np.int64)
         beyond = lookup.outcomes(self.packed, self.c_lam, self.c_chi, v, r, h, found, root)
-        asked = found.inelasticity, found.yield_ratio
+        unclamped = found.inelasticity, found.yield_ratio
         if beyond:
             outside = np.isnan(found.restitution)
             part = Impacts(v[outside], r[outside], h[outside], None)
             units = scales(self.bodies.contact(part), part.speed)
             found.inelasticity[outside] = units.inelasticity
             found.yield_ratio[outside] = units.yield_ratio
-            asked = asked[0].copy(), asked[1].copy()
+            unclamped = unclamped[0].copy(), unclamped[1].copy()
             law = self.bodies.law
             flags[outside] = self.border.complete(law, self.packed, found, outside)
-        return found, flags, asked, root
+        return found, flags, unclamped, root
 
     def _shapes(self, found: Outcome, samples: int) -> History:
         """Contacts over time on Hertz's scale, integrated where they are outside the table."""
@@ -212,7 +212,7 @@ class Tabulated:
 
 
 @functools.cache
-def entries() -> tuple[Callable[..., float], Callable[..., float]]:
+def python_entries() -> tuple[Callable[..., float], Callable[..., float]]:
     """Python's entries of `restitution_on_plate` and `restitution`; each argument a float."""
     return (
         direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8, f8)"),
@@ -222,11 +222,11 @@ def entries() -> tuple[Callable[..., float], Callable[..., float]]:
 
 def curve(
     constants: tuple[Array, float, float, float],
-    contact: Callable[[], Contact],
+    contact: Callable[[], ContactConstants],
     look_up: Callable[[Array, Numbers], tuple[Outcome, Flags]],
 ) -> Callable[[float], float]:
     """COR as a function of speed [m/s], from a packed table, constants of two bodies, and R/H."""
-    (table, c_lam, c_chi, ratio), at = constants, entries()[1]
+    (table, c_lam, c_chi, ratio), at = constants, python_entries()[1]
 
     def restitution(speed: float) -> float:
         if not isinstance(speed, float):  # the entry would take "5" and True for numbers
@@ -242,7 +242,7 @@ def curve(
 
 def extent(law: Law) -> Settings:
     """Extent of a law's own table, which is known before the table is made."""
-    return grid.on_demand(_served(law))
+    return grid.on_demand(_law_with_table(law))
 
 
 @functools.cache
@@ -251,15 +251,15 @@ def _default(law: Law) -> Table:
     return file.packaged(law) or cache.cached(law)
 
 
-def _served(law: Law) -> Law:
+def _law_with_table(law: Law) -> Law:
     """Law whose table serves this law: for Hertz's, the edge chi = 1 of the packaged one of MYC."""
     return law if law.yields or not law.is_hertz else laws.law("myc")
 
 
-def table_for(law: Law, table: Given) -> Table:
+def table_for(law: Law, table: TableArgument) -> Table:
     """Table that serves a law: the user's, or the packaged one."""
     enable_caching()
-    served = _served(law)
+    served = _law_with_table(law)
     if table is None:
         table = _default(served)
     elif isinstance(table, Settings):

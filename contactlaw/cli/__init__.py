@@ -43,21 +43,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     arguments = parser().parse_args(joined(sys.argv[1:] if argv is None else argv))
     if sys.stdout is None:  # the shell has closed it by >&-
-        wording.say("the standard output is closed")
+        wording.print_message("the standard output is closed")
         return _REFUSED
     try:
         with warnings.catch_warnings():
-            warnings.showwarning = wording.say_warning  # type: ignore[assignment]
+            warnings.showwarning = wording.print_warning  # type: ignore[assignment]
             arguments.run(arguments)
         sys.stdout.flush()  # here, so that a closed pipe is caught below
     except KeyboardInterrupt:
-        wording.say("interrupted")
+        wording.print_message("interrupted")
         return _INTERRUPTED
     except BrokenPipeError:  # the reader has closed the pipe, as `head` does
         _drop_output()
         return _DONE
     except (ValueError, RuntimeError, OSError, ImportError) as error:
-        wording.say(sentence(error, vars(arguments)))
+        wording.print_message(sentence(error, vars(arguments)))
         try:
             sys.stdout.flush()
         except OSError:  # a full disk

@@ -7,7 +7,7 @@ import sys
 from typing import Any
 
 from contactlaw import laws
-from contactlaw.cli.parts import asked, lines, options, quantities, records, walls
+from contactlaw.cli.parts import chosen, lines, options, quantities, records, walls
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import SPEED
 from contactlaw.model import ImpactModel
@@ -51,11 +51,11 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    happened = _happened(arguments)
-    pair = asked.pair(arguments, happened.pair)
-    law = arguments.law or happened.law or laws.DEFAULT
+    recorded = _recorded(arguments)
+    pair = chosen.pair(arguments, recorded.pair)
+    law = arguments.law or recorded.law or laws.DEFAULT
     model = ImpactModel(pair, law=law, outside=arguments.outside)
-    found = walls.walls(model, happened, arguments.keep)
+    found = walls.walls(model, recorded, arguments.keep)
     formats = {"lammps": lines.lammps, "liggghts": lines.liggghts, "yade": lines.yade}
     write = next((write for name, write in formats.items() if getattr(arguments, name)), None)
     if write is not None:
@@ -66,9 +66,9 @@ def _run(arguments: argparse.Namespace) -> None:
         print(*walls.text(found, arguments.keep), sep="\n")
 
 
-def _happened(arguments: argparse.Namespace) -> records.Impacts:
+def _recorded(arguments: argparse.Namespace) -> records.PlannedImpacts:
     """Impacts of the record, or every combination of the given speeds, radii and thicknesses."""
-    asked.check_quantities(arguments)
+    chosen.check_quantities(arguments)
     sizes = (arguments.radius, arguments.thickness)
     if arguments.record is None:
         return records.combined(arguments.speed, *sizes)

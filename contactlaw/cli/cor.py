@@ -8,7 +8,7 @@ import math
 import sys
 from typing import Any
 
-from contactlaw.cli.parts import asked, curves, options, plots, quantities, sheet
+from contactlaw.cli.parts import chosen, curves, impacts, options, plots, quantities
 from contactlaw.physical.validity import explain
 
 
@@ -28,19 +28,19 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    asked.check_quantities(arguments)
+    chosen.check_quantities(arguments)
     if arguments.plot is not None:
-        with asked.picture(arguments):
+        with chosen.plot_file(arguments):
             _plot_cor(arguments)
         return
     values = (arguments.speed, arguments.radius, arguments.thickness)
-    found = sheet.impacts(asked.model(arguments), *values, solve=arguments.solve)
+    found = impacts.tabulate(chosen.model(arguments), *values, solve=arguments.solve)
     if arguments.csv:
-        sheet.write_csv(found, sys.stdout)
+        impacts.write_csv(found, sys.stdout)
     elif arguments.json:
-        print(json.dumps(_as_json(sheet.records(found)), indent=2))
+        print(json.dumps(_as_json(impacts.records(found)), indent=2))
     elif len(found) > 1:
-        print(*sheet.text(found), sep="\n")
+        print(*impacts.text(found), sep="\n")
     else:
         _print_one(found)
 
@@ -53,21 +53,21 @@ def _as_json(rows: list[dict[str, object]]) -> object:
     return {name: value for name, value in rows[0].items() if name not in known}
 
 
-def _print_one(found: sheet.Sheet) -> None:
-    units = sheet.units()
+def _print_one(found: impacts.ImpactTable) -> None:
+    units = impacts.units()
     for name, (value,) in found.columns.items():
         if name == "yield_speed" and value == math.inf:
             print(f"{name:21s} none within the table")
         elif name not in ("speed", "radius", "thickness"):
             print(f"{name:21s} {value:.6g} {units[name]}".rstrip())
     flags = int(found.flags[0])
-    print(f"{'flags':21s} {', '.join(sheet.flag_names(flags)) or 'none: inside every limit'}")
+    print(f"{'flags':21s} {', '.join(impacts.flag_names(flags)) or 'none: inside every limit'}")
     for words in explain(flags):
         print(f"{'':21s} {words}")
 
 
 def _plot_cor(arguments: argparse.Namespace) -> None:
-    model = asked.model(arguments)
+    model = chosen.model(arguments)
     drawn = curves.restitution_curves(
         model, arguments.speed, arguments.radius, arguments.thickness, solve=arguments.solve
     )

@@ -6,7 +6,7 @@ import argparse
 from typing import Any
 
 from contactlaw import export
-from contactlaw.cli.parts import asked, options, wording
+from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.model import ImpactModel
 
 
@@ -37,13 +37,13 @@ def add(commands: Any) -> None:
 
 def _header(arguments: argparse.Namespace) -> None:
     with wording.file_of("out", arguments.out):
-        model = ImpactModel(asked.pair(arguments), law=arguments.law)
+        model = ImpactModel(chosen.pair(arguments), law=arguments.law)
         export.header(arguments.out, model, arguments.table)
     print(arguments.out)
 
 
 def _liggghts(arguments: argparse.Namespace) -> None:
     with wording.folder_of("out", arguments.out):
-        model = ImpactModel(asked.pair(arguments), law=arguments.law)
+        model = ImpactModel(chosen.pair(arguments), law=arguments.law)
         export.liggghts(arguments.out, model)
     print(arguments.out)

@@ -7,7 +7,7 @@ import json
 from contextlib import nullcontext
 from typing import Any
 
-from contactlaw.cli.parts import asked, fitplot, fits, measured, options, quantities, wording
+from contactlaw.cli.parts import chosen, fitplot, fits, measured, options, quantities, wording
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import LENGTH
 from contactlaw.fitting import fit
@@ -75,18 +75,18 @@ def _prior(text: str) -> tuple[str, float]:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    asked.check_quantities(arguments)
-    pair = asked.pair(arguments)
+    chosen.check_quantities(arguments)
+    pair = chosen.pair(arguments)
     read = measured.read(arguments.data)
     if read.unused:
-        wording.say_warning(
+        wording.print_warning(
             f"{arguments.data}: columns that are not used: {', '.join(read.unused)}"
         )
     data = measured.completed(
         read, arguments.data, radius=arguments.radius, thickness=arguments.thickness
     )
     priors = dict(arguments.prior)
-    with nullcontext() if arguments.plot is None else asked.picture(arguments):
+    with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = fit(pair, data, arguments.unknown, arguments.law, priors)
         if arguments.plot is not None:
             title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"

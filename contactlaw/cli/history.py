@@ -8,8 +8,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from contactlaw.cli.parts import asked, options, plots, quantities, sheet, wording
-from contactlaw.cli.parts.quantities import LENGTH, written
+from contactlaw.cli.parts import chosen, impacts, options, plots, quantities, wording
+from contactlaw.cli.parts.quantities import LENGTH, formatted
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import explain
 
@@ -26,9 +26,9 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    asked.check_quantities(arguments)
+    chosen.check_quantities(arguments)
     if arguments.plot is not None:
-        with asked.picture(arguments):
+        with chosen.plot_file(arguments):
             _plot_history(arguments)
         return
     contact = np.column_stack(_contact(arguments))
@@ -40,19 +40,21 @@ def _contact(arguments: argparse.Namespace) -> ForceHistory:
     """Force over time; flags are warnings on stderr, because the output is CSV alone."""
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
-    model = asked.model(arguments)
-    with wording.impacts(*impact):
+    model = chosen.model(arguments)
+    with wording.naming_impact(*impact):
         found = model.force_history(*impact, arguments.samples, method)
         rebound = model.solve(*impact) if arguments.solve else model.lookup(*impact)
     flags = int(rebound.flags)
-    for name, words in zip(sheet.flag_names(flags), explain(flags), strict=True):
-        wording.say_warning(f"{name}: {words}")
+    for name, words in zip(impacts.flag_names(flags), explain(flags), strict=True):
+        wording.print_warning(f"{name}: {words}")
     return found
 
 
 def _plot_history(arguments: argparse.Namespace) -> None:
     contact = _contact(arguments)
-    radius, thickness = (written(size, LENGTH) for size in (arguments.radius, arguments.thickness))
+    radius, thickness = (
+        formatted(size, LENGTH) for size in (arguments.radius, arguments.thickness)
+    )
     title = (
         f"{arguments.sphere} on {arguments.plate}: radius {radius}, plate {thickness}, "
         f"{arguments.speed:g} m/s"

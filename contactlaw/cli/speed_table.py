@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from contactlaw.answers.speed_table import SpeedTable
-from contactlaw.cli.parts import asked, options, quantities, wording
+from contactlaw.cli.parts import chosen, options, quantities, wording
+from contactlaw.cli.parts.impacts import aligned, explained
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import SPEED
-from contactlaw.cli.parts.sheet import aligned, explained
 
 
 def add(commands: Any) -> None:
@@ -41,10 +41,10 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    asked.check_quantities(arguments)
+    chosen.check_quantities(arguments)
     ends = (arguments.slowest, arguments.fastest)
-    with wording.impacts(ends, arguments.radius, arguments.thickness):
-        found = asked.model(arguments).speed_table(
+    with wording.naming_impact(ends, arguments.radius, arguments.thickness):
+        found = chosen.model(arguments).speed_table(
             arguments.radius, arguments.thickness, arguments.error, *ends
         )
     if arguments.csv:

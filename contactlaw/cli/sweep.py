@@ -13,8 +13,8 @@ import h5py
 
 from contactlaw import _atomic
 from contactlaw._version import VERSION
-from contactlaw.cli.parts import asked, options, quantities, wording
-from contactlaw.cli.parts.sheet import Sheet, explained, impacts, units, write_csv
+from contactlaw.cli.parts import chosen, options, quantities, wording
+from contactlaw.cli.parts.impacts import ImpactTable, explained, tabulate, units, write_csv
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity, count_flags
 
@@ -34,12 +34,12 @@ def add(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    asked.check_quantities(arguments)
+    chosen.check_quantities(arguments)
     with wording.file_of("out", arguments.out):
         check_suffix(arguments.out)
         axes = (arguments.speed, arguments.radius, arguments.thickness)
-        model = asked.model(arguments)
-        found = impacts(model, *axes, solve=arguments.solve)
+        model = chosen.model(arguments)
+        found = tabulate(model, *axes, solve=arguments.solve)
         save(found, model, axes, arguments.out)
     flags = explained(count_flags(found.flags), len(found))
     print(f"{arguments.out}: {len(found)} impacts", *flags, sep="\n")
@@ -59,14 +59,17 @@ def check_suffix(path: str | os.PathLike[str]) -> None:
 
 
 def save(
-    sheet: Sheet, model: ImpactModel, axes: Sequence[Sequence[float]], path: str | os.PathLike[str]
+    table: ImpactTable,
+    model: ImpactModel,
+    axes: Sequence[Sequence[float]],
+    path: str | os.PathLike[str],
 ) -> None:
     """Write a grid of impacts; the file appears complete or not at all.
 
     Parameters
     ----------
-    sheet : Sheet
-        Impacts of every combination, from `contactlaw.cli.parts.sheet.impacts`.
+    table : ImpactTable
+        Impacts of every combination, from `contactlaw.cli.parts.impacts.tabulate`.
     model : ImpactModel
         Model of these impacts.
     axes : sequence of sequence of float
@@ -87,17 +90,17 @@ def save(
     check_suffix(path)
     if Path(path).suffix.lower() == ".csv":
         text = io.StringIO()
-        write_csv(sheet, text)
+        write_csv(table, text)
         _atomic.write(path, text.getvalue().encode())
         return
     image = io.BytesIO()
     with h5py.File(image, "w") as file:
-        _fill(file, sheet, model, dict(zip(("speed", "radius", "thickness"), axes, strict=True)))
+        _fill(file, table, model, dict(zip(("speed", "radius", "thickness"), axes, strict=True)))
     _atomic.write(path, image.getvalue())
 
 
 def _fill(
-    file: h5py.File, sheet: Sheet, model: ImpactModel, axes: dict[str, Sequence[float]]
+    file: h5py.File, table: ImpactTable, model: ImpactModel, axes: dict[str, Sequence[float]]
 ) -> None:
     file.attrs.update(
         format=_FORMAT,
@@ -113,7 +116,7 @@ def _fill(
         file[name].attrs["units"] = units()[name]
         file[name].make_scale(name)
     shape = tuple(len(axes[name]) for name in _AXES)
-    for name, values in {**sheet.columns, "flags": sheet.flags}.items():
+    for name, values in {**table.columns, "flags": table.flags}.items():
         if name not in _AXES:
             field = file.create_dataset(name, data=values.reshape(shape))
             field.attrs["units"] = units().get(name) or "1"

@@ -10,7 +10,7 @@ from typing import Any
 
 from contactlaw import laws, table
 from contactlaw._jit import enable_caching
-from contactlaw.cli.parts import asked, options, wording
+from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.physical.scaling import law_of
 from contactlaw.table import cache, file
 
@@ -93,7 +93,7 @@ def _law(arguments: argparse.Namespace) -> laws.Law:
         raise wording.Refused(
             f"--law: {arguments.law!r} takes numbers from a pair: give --sphere and --plate too"
         )
-    return law_of(asked.pair(arguments), arguments.law)
+    return law_of(chosen.pair(arguments), arguments.law)
 
 
 def _print_certificate(certificate: table.Certificate | None, limits: dict[str, float]) -> None:

@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from contactlaw import Pair, Rebound
 
 Array = NDArray[np.float64]
-Curve = Callable[[float], float]  # COR [-] by normal speed of approach [m/s]
+CorBySpeed = Callable[[float], float]  # COR [-] by normal speed of approach [m/s]
 
 
 class RestitutionModel(Protocol):
     """A model of the COR of beads on plates, the least that an adapter needs."""
 
-    def curve(self, radius: float, thickness: float, /) -> Curve:
+    def curve(self, radius: float, thickness: float, /) -> CorBySpeed:
         """COR by speed, by radius [m] and plate thickness [m]; ``inf`` is the half-space."""
         ...
 
@@ -29,7 +29,7 @@ class BeadModel(RestitutionModel, Protocol):
     For beads of two materials, an adapter passes that of the other bead as one more argument.
     """
 
-    def sphere_sphere_curve(self, radius: float, other_radius: float, /) -> Curve:
+    def sphere_sphere_curve(self, radius: float, other_radius: float, /) -> CorBySpeed:
         """COR by speed of two beads of these radii [m]."""
         ...
 

@@ -21,13 +21,13 @@ import math
 from contactlaw._jit import kernel
 from contactlaw.equation import force, losses, motion
 from contactlaw.equation.legs import Leg
-from contactlaw.equation.motion import Contact, State
+from contactlaw.equation.motion import ScaledContact, ScaledState
 
 SLOW = 1e-4  # delta, below which the series is used
 
 
 @kernel
-def left(leg: Leg, state: State) -> float:
+def rebound_speed_squared(leg: Leg, state: ScaledState) -> float:
     """Square of the speed with which the sphere would rebound if the plate were held from now on.
 
     The work of a force that falls as q^b is 2 f q^2/(b + 2).
@@ -37,9 +37,12 @@ def left(leg: Leg, state: State) -> float:
 
 @kernel
 def creep(
-    contact: Contact, leg: Leg, state: State, level: float, until: float, least: float
-) -> State:
-    """Follow the series while it holds, until `left` is `least` or just before a level or time."""
+    contact: ScaledContact, leg: Leg, state: ScaledState, level: float, until: float, least: float
+) -> ScaledState:
+    """Follow the series while it holds.
+
+    It ends when `rebound_speed_squared` is `least`, or just before a level or a time.
+    """
     beta, b, q, u = contact.plate.mobility, leg.exponent, state.q, state.u
     delta = 2.0 * q * q / (b * beta * beta * state.f)
     if not (delta < SLOW and abs(state.dq) < SLOW * u):
@@ -60,5 +63,6 @@ def creep(
     q *= math.pow(u / ((1.0 - last) * beta * state.f), 1.0 / b)
     time = x - delta * (math.expm1(p * x) / p if p != 0.0 else x)
     there = motion.start(contact, leg, q, u, state.t + beta * time, state.work)
-    wave = state.work.wave + (left(leg, state) - left(leg, there)) / (2.0 * beta)
-    return State(q, u, there.t, losses.Work(wave), there.dq, there.du, there.f)
+    spent = rebound_speed_squared(leg, state) - rebound_speed_squared(leg, there)
+    wave = state.work.wave + spent / (2.0 * beta)
+    return ScaledState(q, u, there.t, losses.Work(wave), there.dq, there.du, there.f)

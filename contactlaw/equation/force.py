@@ -63,7 +63,7 @@ HERTZ: Array = np.array(
 """The elastic law, F = q^3, to which the scales of every impact refer."""
 
 
-class Curve(NamedTuple):
+class UnloadingCurve(NamedTuple):
     """The unloading curve from a largest compression dm."""
 
     residual: float  # dr
@@ -213,11 +213,11 @@ def leaves_hertz(law: Array) -> float:
 
 
 @kernel
-def unloading(law: Array, dm: float) -> Curve:
+def unloading(law: Array, dm: float) -> UnloadingCurve:
     """Find the unloading curve from dm."""
     row = _unloading_row(law, dm)
     if row == 0:
-        return Curve(0.0, 0.0, 3.0, 0.0, 0.0)
+        return UnloadingCurve(0.0, 0.0, 3.0, 0.0, 0.0)
     left = _function(law, row, RESIDUAL, dm)
     exponent = _function(law, row, EXPONENT, dm)
     span = dm - left
@@ -230,7 +230,7 @@ def unloading(law: Array, dm: float) -> Curve:
         # next to yield, the rounding error of the lower cap is larger than the cap itself
         low = max(_function(law, row, CAP_LOW, dm), left)
         high = _function(law, row, CAP_HIGH, dm)
-    return Curve(left, loading(law, math.sqrt(dm)) / reach, exponent, low, high)
+    return UnloadingCurve(left, loading(law, math.sqrt(dm)) / reach, exponent, low, high)
 
 
 @kernel(inline=True)
@@ -242,7 +242,7 @@ def power_force(stiffness: float, exponent: float, q: float) -> float:
 
 
 @kernel(cache=True)
-def unloading_force(law: Array, curve: Curve, q: float) -> float:
+def unloading_force(law: Array, curve: UnloadingCurve, q: float) -> float:
     """Force at the compression residual + q^2 on an unloading curve."""
     if curve.stiffness == 0.0:
         return loading(law, q)

@@ -3,10 +3,10 @@
 A sphere that has flattened far on a compliant plate need not rebound. Where the force falls more
 slowly than the elastic compression that is left, with an exponent below 2, the contact becomes ever
 stiffer beside the plate: the energy that is left goes into the plate, and the sphere stays. Once
-that energy could throw the sphere off with no more than `SPENT` of its impact speed, the plate is
-held and the sphere is thrown off so. A restitution below `SPENT` is thus rounded up to it. The less
-energy is left, the finer are the steps, so that they resolve it. Where the steps would be too many,
-a series takes their place (`contactlaw.equation.creep`).
+that energy could throw the sphere off with no more than `LEAST_RESTITUTION` of its impact speed,
+the plate is held and the sphere is thrown off so. A restitution below `LEAST_RESTITUTION` is thus
+rounded up to it. The less energy is left, the finer are the steps, so that they resolve it. Where
+the steps would be too many, a series takes their place (`contactlaw.equation.creep`).
 
 Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q root compression,
 u speed, t time, s the variable of integration, y yield compression.
@@ -22,10 +22,10 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force, legs, losses, motion, plate
-from contactlaw.equation.creep import creep, left
-from contactlaw.equation.force import Curve
+from contactlaw.equation.creep import creep, rebound_speed_squared
+from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
-from contactlaw.equation.motion import Contact, State
+from contactlaw.equation.motion import ScaledContact, ScaledState
 
 Array = NDArray[np.float64]
 
@@ -33,10 +33,11 @@ MAX_STEPS = 200_000
 # Events are met to this share of their scale. The compression at the end of loading and the time at
 # separation are stationary, so they err only by its square.
 _LANDED = 1e-9
-SPENT = 1e-9  # smallest restitution; smaller ones are rounded up to it
-LATE = 1e-2  # steps get finer each time the largest possible restitution falls by this factor
+LEAST_RESTITUTION = 1e-9  # smallest restitution; smaller ones are rounded up to it
+# Steps get finer each time the largest possible restitution falls by this factor.
+FINER_EVERY = 1e-2
 # no event; end of loading; a root compression is reached; a time is reached; little energy is left
-NONE, TURN, LEVEL, TIME, _OVER = range(5)
+NONE, TURN, LEVEL, TIME, _ENERGY_LOW = range(5)
 
 
 class Scale(NamedTuple):
@@ -47,21 +48,25 @@ class Scale(NamedTuple):
     t: float
     per_q: float  # 1/(q tolerance)
     per_u: float  # 1/(u tolerance)
-    over: float  # event _OVER: the square of the possible rebound speed has fallen to this
+    energy_low: float  # square of the possible rebound speed at the event _ENERGY_LOW
 
 
 @kernel
-def _gap(event: int, leg: Leg, state: State, level: float, until: float, scale: Scale) -> float:
+def _gap(
+    event: int, leg: Leg, state: ScaledState, level: float, until: float, scale: Scale
+) -> float:
     """Distance to an event in units of its scale; its sign changes at the event."""
     if event == TURN:
         return state.dq / scale.u
-    if event == _OVER:
-        return 1.0 - left(leg, state) / scale.over
+    if event == _ENERGY_LOW:
+        return 1.0 - rebound_speed_squared(leg, state) / scale.energy_low
     return (level - state.q) / scale.q if event == LEVEL else (until - state.t) / scale.t
 
 
 @kernel
-def _guess(event: int, state: State, trial: State, h: float, level: float, until: float) -> float:
+def _guess(
+    event: int, state: ScaledState, trial: ScaledState, h: float, level: float, until: float
+) -> float:
     """Step to an event between two points, from the cubic through q or t and its rates there."""
     value, rise, rate, last = state.q, trial.q - state.q, state.dq, trial.dq
     if event == TIME:  # dt/ds = 2 q
@@ -79,8 +84,8 @@ def _guess(event: int, state: State, trial: State, h: float, level: float, until
 
 @kernel(inline=True)
 def _step(
-    contact: Contact, leg: Leg, kind: int, state: State, h: float, scale: Scale
-) -> tuple[State, float]:
+    contact: ScaledContact, leg: Leg, kind: int, state: ScaledState, h: float, scale: Scale
+) -> tuple[ScaledState, float]:
     """One step of the 5(4) pair of Dormand & Prince, J. Comput. Appl. Math. 6 (1980) 19.
 
     The rates at its end are the first ones of the next step. The error is in tolerances.
@@ -128,14 +133,14 @@ def _step(
         71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6
     ) - 1 / 40 * b7
     error = h * max(abs(error_q) * scale.per_q, abs(error_u) * scale.per_u)
-    return State(q7, u7, t, work, a7, b7, f7), error
+    return ScaledState(q7, u7, t, work, a7, b7, f7), error
 
 
 @kernel(inline=True)
 def _follow(
-    contact: Contact, leg: Leg, kind: int, state: State, h: float, scale: Scale, level: float,
-    until: float,
-) -> tuple[State, int, float, int]:  # fmt: skip
+    contact: ScaledContact, leg: Leg, kind: int, state: ScaledState, h: float, scale: Scale,
+    level: float, until: float,
+) -> tuple[ScaledState, int, float, int]:  # fmt: skip
     """Follow a leg of one kind up to an event; the compiler makes a separate loop for each kind.
 
     Choosing the kind within the step would make a step 50 % slower.
@@ -158,10 +163,10 @@ def _follow(
             elif (
                 legs.unloads(leg)
                 and plate.moves(contact.plate)
-                and trial.u * trial.u < scale.over
-                and left(leg, trial) < scale.over
+                and trial.u * trial.u < scale.energy_low
+                and rebound_speed_squared(leg, trial) < scale.energy_low
             ):
-                event = _OVER
+                event = _ENERGY_LOW
             else:
                 state = trial
                 h *= min(5.0, 0.9 / math.sqrt(math.sqrt(max(error, 1e-30))))
@@ -185,7 +190,7 @@ def _follow(
                 return trial, event, following, steps
         a, gap_a = 0.0, _gap(event, leg, state, level, until, scale)
         b, gap_b = h, _gap(event, leg, trial, level, until, scale)
-        if event == _OVER:
+        if event == _ENERGY_LOW:
             h *= gap_a / (gap_a - gap_b)
         else:
             h = _guess(event, state, trial, h, level, until)
@@ -194,31 +199,35 @@ def _follow(
 
 @kernel
 def _finer(scale: Scale, spent: float) -> Scale:
-    """Scale after event _OVER: its next limit is lower, its tolerances tighter by that factor."""
-    over = max(LATE * LATE * scale.over, spent)
-    return Scale(scale.q, scale.u, scale.t, scale.per_q / LATE, scale.per_u / LATE, over)
+    """Scale after event _ENERGY_LOW, with the next, lower limit and tighter tolerances."""
+    energy_low = max(FINER_EVERY * FINER_EVERY * scale.energy_low, spent)
+    return Scale(
+        scale.q, scale.u, scale.t, scale.per_q / FINER_EVERY, scale.per_u / FINER_EVERY, energy_low
+    )
 
 
 @kernel
 def follow(
-    contact: Contact, leg: Leg, state: State, h: float, scale: Scale, level: float, until: float
-) -> tuple[State, int, float, int]:
+    contact: ScaledContact, leg: Leg, state: ScaledState, h: float, scale: Scale, level: float,
+    until: float,
+) -> tuple[ScaledState, int, float, int]:  # fmt: skip
     """Integrate a leg to a level, the end of loading or the time `until`, whichever comes first.
 
     Returns the point reached, the event, the next step length and the number of steps. An event is
     met by shortening the step that passes it: regula falsi with Illinois' weights.
     """
-    spent = (SPENT * scale.u) ** 2
+    spent = (LEAST_RESTITUTION * scale.u) ** 2
     steps = 0
     while True:
         if legs.unloads(leg):
             if plate.moves(contact.plate):
                 state = creep(contact, leg, state, level, until, spent)
-            over = (1.0 - 1e-6) * left(leg, state)  # less: the last _OVER was met only to 1e-9
-            while over < scale.over and scale.over > spent:
+            # less than the square: the last _ENERGY_LOW was met only to 1e-9
+            energy_low = (1.0 - 1e-6) * rebound_speed_squared(leg, state)
+            while energy_low < scale.energy_low and scale.energy_low > spent:
                 scale = _finer(scale, spent)
-            if over < spent:
-                contact = Contact(contact.law, plate.HELD)
+            if energy_low < spent:
+                contact = ScaledContact(contact.law, plate.HELD)
                 state = motion.start(contact, leg, state.q, -abs(state.u), state.t, state.work)
         if leg.kind == CUBIC:
             state, event, h, more = _follow(contact, leg, CUBIC, state, h, scale, level, until)
@@ -227,12 +236,12 @@ def follow(
         else:
             state, event, h, more = _follow(contact, leg, PIECES, state, h, scale, level, until)
         steps += more
-        if event != _OVER or more == MAX_STEPS:
+        if event != _ENERGY_LOW or more == MAX_STEPS:
             return state, event, h, steps
 
 
 @kernel
-def _onto(contact: Contact, leg: Leg, residual: float, state: State) -> State:
+def _to_leg(contact: ScaledContact, leg: Leg, residual: float, state: ScaledState) -> ScaledState:
     """Convert a state from the root compression over `residual` to that of a leg."""
     q = state.q
     if leg.residual != residual:
@@ -242,8 +251,8 @@ def _onto(contact: Contact, leg: Leg, residual: float, state: State) -> State:
 
 @kernel
 def after(
-    contact: Contact, curve: Curve, leg: Leg, event: int, state: State
-) -> tuple[Curve, Leg, State]:
+    contact: ScaledContact, curve: UnloadingCurve, leg: Leg, event: int, state: ScaledState
+) -> tuple[UnloadingCurve, Leg, ScaledState]:
     """Next leg, and the state on it, after a leg that ended at its level or with loading."""
     residual = leg.residual
     if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
@@ -252,7 +261,7 @@ def after(
         leg = legs.first_down(contact.law, curve, dm)
     else:
         leg = legs.following(contact.law, curve, leg)
-    return curve, leg, _onto(contact, leg, residual, state)
+    return curve, leg, _to_leg(contact, leg, residual, state)
 
 
 @kernel
@@ -260,5 +269,5 @@ def scale_of(y: float, rtol: float) -> tuple[Scale, float]:
     """Scales of an impact in the law's units, and a first step that the error control accepts."""
     y4 = math.sqrt(math.sqrt(y))
     q, u = 1.0 / (y4 * y4), 1.0 / (y * y4)
-    scale = Scale(q, u, y4, 1.0 / (q * rtol), 1.0 / (u * rtol), (LATE * u) ** 2)
+    scale = Scale(q, u, y4, 1.0 / (q * rtol), 1.0 / (u * rtol), (FINER_EVERY * u) ** 2)
     return scale, 0.7 * rtol**0.2 * y4**3

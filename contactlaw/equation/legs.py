@@ -18,14 +18,15 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.equation.force import Curve
+from contactlaw.equation.force import UnloadingCurve
 
 Array = NDArray[np.float64]
 
 CUBIC, PIECES, POWER = range(3)  # how a leg's force is given
-_UP, _ABOVE, _ALONG, _BELOW = range(4)  # loading; unloading above, along and below the cap
+# loading; unloading above, along and below the cap
+_LOADING, _ABOVE_CAP, _ALONG_CAP, _BELOW_CAP = range(4)
 FIRST = 0  # index of the first piece of a loading curve
-NO_CURVE = Curve(0.0, 0.0, 3.0, 0.0, 0.0)
+NO_CURVE = UnloadingCurve(0.0, 0.0, 3.0, 0.0, 0.0)
 """Placeholder of the unloading curve while a contact loads."""
 
 
@@ -48,19 +49,19 @@ class Leg(NamedTuple):
 @kernel(inline=True)
 def is_loading(leg: Leg) -> bool:
     """Whether the contact loads on a leg."""
-    return leg.part == _UP
+    return leg.part == _LOADING
 
 
 @kernel(inline=True)
 def is_last(leg: Leg) -> bool:
     """Whether a contact ends with a leg."""
-    return leg.part != _UP and leg.level == 0.0
+    return leg.part != _LOADING and leg.level == 0.0
 
 
 @kernel(inline=True)
 def unloads(leg: Leg) -> bool:
     """Whether a leg is the part of the unloading curve that a contact ends with."""
-    return leg.part == _BELOW
+    return leg.part == _BELOW_CAP
 
 
 @kernel(inline=True)
@@ -72,7 +73,7 @@ def force_on(leg: Leg, kind: int, law: Array, q: float) -> float:
         return force.power_force(leg.c3, leg.exponent, q)
     k = leg.first
     # a trial step may pass the end of a loading leg: the next piece of the law goes on there
-    while q >= force.start_of(law, k + 1) and (k < leg.last or leg.part == _UP):
+    while q >= force.start_of(law, k + 1) and (k < leg.last or leg.part == _LOADING):
         k += 1
     return force.piece_force(law, k, q)
 
@@ -96,7 +97,7 @@ def _along_loading(law: Array, part: int, first: int, last: int, level: float) -
 
 
 @kernel
-def _on_unloading_curve(part: int, curve: Curve, level: float) -> Leg:
+def _on_unloading_curve(part: int, curve: UnloadingCurve, level: float) -> Leg:
     """Leg on the unloading curve."""
     kind = CUBIC if curve.exponent == 3.0 else POWER
     return Leg(
@@ -109,11 +110,11 @@ def up(law: Array, first: int) -> Leg:
     """Leg of loading from a kink to the next; `first` is the piece that begins at the kink."""
     following = int(law[force.row_of(law, first) + force.NEXT])
     level = force.start_of(law, following)
-    return _along_loading(law, _UP, first, following - 1, level)
+    return _along_loading(law, _LOADING, first, following - 1, level)
 
 
 @kernel
-def _down(law: Array, curve: Curve, below: float) -> Leg:
+def _down(law: Array, curve: UnloadingCurve, below: float) -> Leg:
     """Leg of unloading along the loading curve, from below a root compression to a kink or cap."""
     k = 0
     while force.start_of(law, k + 1) < below:
@@ -121,27 +122,27 @@ def _down(law: Array, curve: Curve, below: float) -> Leg:
     first = int(law[force.row_of(law, k) + force.FIRST])
     low = 0.0 if curve.stiffness == 0.0 else math.sqrt(curve.cap_low)
     level = max(low, force.start_of(law, first))
-    return _along_loading(law, _ALONG, first, k, level)
+    return _along_loading(law, _ALONG_CAP, first, k, level)
 
 
 @kernel
-def first_down(law: Array, curve: Curve, dm: float) -> Leg:
+def first_down(law: Array, curve: UnloadingCurve, dm: float) -> Leg:
     """Leg on which unloading from dm begins."""
     if curve.stiffness > 0.0 and curve.cap_low >= curve.cap_high:
-        return _on_unloading_curve(_BELOW, curve, 0.0)
+        return _on_unloading_curve(_BELOW_CAP, curve, 0.0)
     if curve.stiffness > 0.0 and curve.cap_high < dm:
         level = math.sqrt(curve.cap_high - curve.residual)
-        return _on_unloading_curve(_ABOVE, curve, level)
+        return _on_unloading_curve(_ABOVE_CAP, curve, level)
     return _down(law, curve, math.sqrt(dm))
 
 
 @kernel
-def following(law: Array, curve: Curve, leg: Leg) -> Leg:
+def following(law: Array, curve: UnloadingCurve, leg: Leg) -> Leg:
     """Leg after one that has ended at its level; the last leg of a contact ends at level 0."""
-    if leg.part == _UP:
+    if leg.part == _LOADING:
         return up(law, leg.last + 1)
-    if leg.part == _ABOVE:
+    if leg.part == _ABOVE_CAP:
         return _down(law, curve, math.sqrt(curve.cap_high))
     if curve.stiffness > 0.0 and leg.level <= math.sqrt(curve.cap_low):
-        return _on_unloading_curve(_BELOW, curve, 0.0)
+        return _on_unloading_curve(_BELOW_CAP, curve, 0.0)
     return _down(law, curve, leg.level)

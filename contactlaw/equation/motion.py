@@ -29,19 +29,19 @@ from contactlaw._jit import kernel
 from contactlaw.equation import legs, losses, plate
 from contactlaw.equation.legs import Leg
 from contactlaw.equation.losses import Work
-from contactlaw.equation.plate import Plate
+from contactlaw.equation.plate import PlateMobility
 
 Array = NDArray[np.float64]
 
 
-class Contact(NamedTuple):
+class ScaledContact(NamedTuple):
     """The bodies of a contact."""
 
     law: Array  # data of the force law
-    plate: Plate
+    plate: PlateMobility
 
 
-class State(NamedTuple):
+class ScaledState(NamedTuple):
     """A point of the trajectory, with the rates there."""
 
     q: float
@@ -54,21 +54,25 @@ class State(NamedTuple):
 
 
 @kernel(inline=True)
-def rates(contact: Contact, leg: Leg, kind: int, q: float, u: float) -> tuple[float, float, float]:
+def rates(
+    contact: ScaledContact, leg: Leg, kind: int, q: float, u: float
+) -> tuple[float, float, float]:
     """dq/ds, du/ds and the force."""
     f = legs.force_on(leg, kind, contact.law, q)
     return u - plate.speed(contact.plate, f), -2.0 * q * f, f
 
 
 @kernel
-def start(contact: Contact, leg: Leg, q: float, u: float, t: float, work: Work) -> State:
+def start(
+    contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: Work
+) -> ScaledState:
     """State on a leg, with the rates there."""
     dq, du, f = rates(contact, leg, leg.kind, q, u)
-    return State(q, u, t, work, dq, du, f)
+    return ScaledState(q, u, t, work, dq, du, f)
 
 
 @kernel
-def touch(contact: Contact, speed: float) -> tuple[Leg, State]:
+def touch(contact: ScaledContact, speed: float) -> tuple[Leg, ScaledState]:
     """Leg that begins at first touch, and the state there."""
     leg = legs.up(contact.law, legs.FIRST)
     return leg, start(contact, leg, 0.0, speed, 0.0, losses.NO_WORK)

@@ -4,11 +4,11 @@ For a sphere on a plate they depend on speed V, radius R and thickness H through
 r = V^(1/5) [(m/s)^(1/5)] and of R/H; the factors are constants of the pair and its law, their
 values at 1 m/s and R = H. For a thin plate
 
-    lambda = c_lam r (R/H)^2,    h = transit r/(R/H),    x = reach r^2,    T_H = (m/K)^(2/5)/r.
+    lambda = c_lam r (R/H)^2,   h = transit r/(R/H),   x = x_at_one r^2,   T_H = (m/K)^(2/5)/r.
 
-Another plate (`contactlaw.equation.waves`) makes the contact stiffer: T_H is divided by exp(eta),
-and r multiplied by it in lambda and h. From about 17 times the yield speed on (`saturated`) x is
-constant in eta. A bulk impact, as of two spheres, has R/H = 0 and c_lam = 0.
+Another plate (`contactlaw.equation.corrections`) makes the contact stiffer: T_H is divided by
+exp(eta), and r multiplied by it in lambda and h. From about 17 times the yield speed on
+(`saturated`) x is constant in eta. A bulk impact, as of two spheres, has R/H = 0 and c_lam = 0.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation.waves import Waves, is_thin, stiffening, with_waves
+from contactlaw.equation.corrections import PlateCorrections, eta_of, is_thin, with_corrections
 
 Array = NDArray[np.float64]
 
@@ -29,10 +29,10 @@ class PlateConstants(NamedTuple):
     """Constants of a pair for impacts on its plates, at 1 m/s and R = H."""
 
     inelasticity: float  # c_lam, lambda of a thin plate
-    transit: float  # h of a loss-free contact, see `contactlaw.equation.waves`
-    reach: float  # x, from which the stiffening eta follows
+    transit: float  # h of a loss-free contact, see `contactlaw.equation.corrections`
+    x_at_one: float  # x, from which the stiffening eta follows
     saturated: float  # V^(1/5) from which on x is constant in eta; inf: nowhere
-    waves: Waves
+    corrections: PlateCorrections
 
 
 class Numbers(NamedTuple):
@@ -47,24 +47,24 @@ class Numbers(NamedTuple):
 
 
 @kernel(inline=True)
-def stiffening_of(plate: PlateConstants, root: float, ratio: float) -> float:
+def plate_stiffening(plate: PlateConstants, root: float, ratio: float) -> float:
     """Stiffening eta of a contact by its plate, from V^(1/5) and R/H."""
     slow = min(root, plate.saturated)
     thin, h = plate.inelasticity * root * (ratio * ratio), plate.transit * root / ratio
-    return stiffening(plate.waves, ratio, plate.reach * (slow * slow), thin, h)
+    return eta_of(plate.corrections, ratio, plate.x_at_one * (slow * slow), thin, h)
 
 
 @kernel(inline=True)
-def inelasticity_of(plate: PlateConstants, root: float, ratio: float, more: float) -> float:
+def inelasticity_of(plate: PlateConstants, root: float, ratio: float, stiffer: float) -> float:
     """Inelasticity lambda of an impact, from V^(1/5), R/H and exp(eta)."""
-    if is_thin(plate.waves):
+    if is_thin(plate.corrections):
         return plate.inelasticity * root * (ratio * ratio)
     slow = min(root, plate.saturated)
-    plastic = ratio * plate.reach * (root * root - slow * slow)
-    root *= more
+    plastic = ratio * plate.x_at_one * (root * root - slow * slow)
+    root *= stiffer
     thin, h = plate.inelasticity * root * (ratio * ratio), plate.transit * root
     bulk = plate.inelasticity * root * (h * h)
-    return with_waves(plate.waves, thin, h / ratio, bulk, plastic)
+    return with_corrections(plate.corrections, thin, h / ratio, bulk, plastic)
 
 
 @kernel(entry=True)
@@ -78,11 +78,11 @@ def numbers(
 ) -> Numbers:
     """Numbers of an impact, from m [kg], K [N/m^1.5], d_Y [m], V [m/s] and R/H."""
     root, time = speed**0.2, (mass / stiffness) ** 0.4
-    more = 1.0 if is_thin(plate.waves) else math.exp(stiffening_of(plate, root, ratio))
-    unit = time / (root * more)
-    way = speed * unit
-    lam = inelasticity_of(plate, root, ratio, more)
-    return Numbers(lam, yield_compression / way, unit, way, mass * speed / unit, more)
+    stiffer = 1.0 if is_thin(plate.corrections) else math.exp(plate_stiffening(plate, root, ratio))
+    unit = time / (root * stiffer)
+    length = speed * unit
+    lam = inelasticity_of(plate, root, ratio, stiffer)
+    return Numbers(lam, yield_compression / length, unit, length, mass * speed / unit, stiffer)
 
 
 @kernel(cache=True)

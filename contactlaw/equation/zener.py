@@ -23,9 +23,9 @@ from contactlaw.equation import force, integrator, legs, losses, motion
 from contactlaw.equation.force import HERTZ
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
 from contactlaw.equation.legs import NO_CURVE
-from contactlaw.equation.motion import Contact
+from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
-from contactlaw.equation.plate import Plate
+from contactlaw.equation.plate import PlateMobility
 
 Array = NDArray[np.float64]
 
@@ -94,7 +94,7 @@ def _impact(
 ) -> Solution:
     """Integrate one impact, and note points of its path in row n."""
     scale, h = integrator.scale_of(y, rtol)
-    contact = Contact(law, Plate(lam * scale.t))
+    contact = ScaledContact(law, PlateMobility(lam * scale.t))
     leg, state = motion.touch(contact, scale.u)
     curve, top, total, longest = NO_CURVE, state, 0, 0
     marks, noted, going = notes.at.shape[1], 0, True

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
-from contactlaw.equation import creep, force, integrator, waves
+from contactlaw.equation import corrections, creep, force, integrator
 from contactlaw.model import ImpactModel
 from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
@@ -37,7 +37,7 @@ from contactlaw.physical.validity import Limits, Validity
 from contactlaw.softsphere import unit_spring
 from contactlaw.stepping import spring as stepping_spring
 from contactlaw.table import Table, lookup
-from contactlaw.table.nodes import coarser
+from contactlaw.table.nodes import thinned
 
 Array = NDArray[np.float64]
 
@@ -46,12 +46,13 @@ ERROR = 4e-6  # of COR against the model's table, so that it is within 1e-5 of t
 _WIDTH = 96
 # Constants that have the same names in the template as in their modules.
 _CONSTANTS: dict[ModuleType, str] = {
-    waves: "LONGER LONGER_3 LONGEST USUAL WIDEST DEEPEST BROADEST SATURATION CONTACT_TIME",
+    corrections: "LENGTHENING LENGTHENING_3 LONGEST H_0 WIDEST DEEPEST BROADEST SATURATION "
+    "CONTACT_TIME",
     lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
-    integrator: "MAX_STEPS SPENT LATE",
+    integrator: "MAX_STEPS LEAST_RESTITUTION FINER_EVERY",
     creep: "SLOW",
     solver: "RTOL",
-    stepping_spring: "TOP MOST_ITERATIONS CONVERGED",
+    stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED",
     validity: "TRANSITS",
 }
 # Offsets into the arrays, which become enumerators of C.
@@ -113,7 +114,7 @@ def header(
         raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
     if table not in ("cor", "none"):
         raise ValueError(f"table: must be 'cor' or 'none', got {table!r}")
-    content = _text(model, coarser(model.table, ERROR) if table == "cor" else None).encode()
+    content = _text(model, thinned(model.table, ERROR) if table == "cor" else None).encode()
     if len(content) > LARGEST:
         raise ValueError(
             f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
@@ -147,8 +148,8 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         "transit": _number(transit),
         "plate": ", ".join(plate._fields[:-1]),
         "plate_values": _array(plate[:-1]),
-        "waves": ", ".join(plate.waves._fields),
-        "waves_values": _array(plate.waves),
+        "waves": ", ".join(plate.corrections._fields),
+        "waves_values": _array(plate.corrections),
         "law": _array(model.force_law.data),
         "c_chi": _number(made.log_overload),
         "table": "" if table is None else _array(packed(model, table)),

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from contactlaw import _atomic
 from contactlaw._version import VERSION
-from contactlaw.equation.waves import CONTACT_TIME
+from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.export import c_header
 from contactlaw.model import ImpactModel
 from contactlaw.stepping.spring import FEWEST_STEPS

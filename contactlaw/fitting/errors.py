@@ -58,7 +58,7 @@ class Errors(NamedTuple):
         return Errors(self.statistical * np.outer(factors, factors), self.model)
 
 
-class Shared(NamedTuple):
+class ModelCovariance(NamedTuple):
     """Covariance of the model's errors of all values, which rebounds of one cell share.
 
     A cell holds values of one kind at one place, by ln(speed) and ln(R/H). With n values in c
@@ -69,33 +69,35 @@ class Shared(NamedTuple):
 
     size: Array  # rms of the model's error of each value, in its units
     cell: NDArray[np.intp]  # cell of each value
-    alike: Array  # (c, c) correlation of cells
+    correlation: Array  # (c, c) correlation of cells
 
     def propagated(self, gain: Array) -> Array:
         """Covariance of what follows from the values by a gain (p, n)."""
         gathered = self._gathered((gain * self.size).T)
-        return np.asarray(gathered.T @ self.alike @ gathered)
+        return np.asarray(gathered.T @ self.correlation @ gathered)
 
     def squares(self, off: Array, error: Array) -> float:
         """Sum of squares of deviations, weighted by the covariance of data and model.
 
-        By Woodbury's identity: C = diag(error^2) + U alike U^T, with the sizes in U.
+        By Woodbury's identity: C = diag(error^2) + U correlation U^T, with the sizes in U.
         """
         scaled = self.size / error
         own = float(((off / error) ** 2).sum())
         weight = self._gathered((scaled**2)[:, None])[:, 0]
         pull = self._gathered((scaled * off / error)[:, None])[:, 0]
-        inner = np.eye(weight.size) + self.alike * weight
-        return own - float(pull @ np.linalg.solve(inner, self.alike @ pull))
+        inner = np.eye(weight.size) + self.correlation * weight
+        return own - float(pull @ np.linalg.solve(inner, self.correlation @ pull))
 
     def _gathered(self, columns: Array) -> Array:
         """Sum over the values of each cell."""
-        found = np.zeros((len(self.alike), columns.shape[1]))
+        found = np.zeros((len(self.correlation), columns.shape[1]))
         np.add.at(found, self.cell, columns)
         return found
 
 
-def covariances(predictor: Predictor, slopes: Array, error: Array, model: Shared | None) -> Errors:
+def covariances(
+    predictor: Predictor, slopes: Array, error: Array, model: ModelCovariance | None
+) -> Errors:
     """Propagate errors of the values, the priors and the model.
 
     Parameters
@@ -106,11 +108,11 @@ def covariances(predictor: Predictor, slopes: Array, error: Array, model: Shared
         Derivatives of the values with respect to the logarithms of the parameters.
     error : ndarray (m,)
         Standard errors of the values.
-    model : Shared or None
+    model : ModelCovariance or None
         Covariance of the model's errors; None where they are not known.
     """
     scaled = slopes / error[:, None]
-    statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + _held(predictor)))
+    statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + _prior_information(predictor)))
     gain = statistical @ (scaled / error[:, None]).T
     own = np.zeros_like(statistical) if model is None else model.propagated(gain)
     return Errors(statistical, own)
@@ -136,7 +138,7 @@ def freedoms(
         Values whose errors were found together, and from how many degrees of freedom.
     """
     scaled = slopes / error[:, None]
-    statistical = np.linalg.inv(scaled.T @ scaled + _held(predictor))
+    statistical = np.linalg.inv(scaled.T @ scaled + _prior_information(predictor))
     parts = (statistical @ scaled.T) ** 2
     doubt = np.zeros(len(statistical))
     for these, freedom in found:
@@ -145,24 +147,24 @@ def freedoms(
         return np.asarray(np.diag(statistical) ** 2 / doubt)
 
 
-def told(predictor: Predictor, slopes: Array, error: Array) -> Array:
+def leverages(predictor: Predictor, slopes: Array, error: Array) -> Array:
     """Leverage of each value: how many parameters it determines.
 
     The sum over all values is one for each free parameter, and a share of one for each prior.
     """
     scaled = slopes / error[:, None]
-    solved = np.linalg.solve(scaled.T @ scaled + _held(predictor), scaled.T)
+    solved = np.linalg.solve(scaled.T @ scaled + _prior_information(predictor), scaled.T)
     return np.asarray(np.einsum("ij,ji->i", scaled, solved))
 
 
-def _held(predictor: Predictor) -> Array:
+def _prior_information(predictor: Predictor) -> Array:
     """Fisher information of the priors."""
-    priors = [one.prior for one in predictor.moved]
+    priors = [one.prior for one in predictor.parameters]
     held = np.diag([0.0 if prior is None else prior**-2 for prior in priors])
     return np.asarray(held + _RIDGE * np.eye(len(priors)))
 
 
-def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> Shared | None:
+def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> ModelCovariance | None:
     """Covariance of the model's errors of all values; None for a law whose errors are not known."""
     known = MODEL_ERRORS.get(predictor.law.family)
     if known is None:
@@ -178,8 +180,8 @@ def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> Share
     slenderness = np.log(np.maximum(at.radius / at.thickness, 1e-3))[row]  # 0: a half-space
     cell, (kinds, *places) = _cells(kind, speed, slenderness)
     apart = np.hypot(*(place[:, None] - place for place in places))
-    alike = np.exp(-apart / _LENGTH) * (kinds[:, None] == kinds)
-    return Shared((rms * fitted)[kind, row], cell, alike)
+    correlation = np.exp(-apart / _LENGTH) * (kinds[:, None] == kinds)
+    return ModelCovariance((rms * fitted)[kind, row], cell, correlation)
 
 
 def _cells(kind: NDArray[np.intp], *places: Array) -> tuple[NDArray[np.intp], Array]:

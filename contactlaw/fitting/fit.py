@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, Measurements
-from contactlaw.fitting.notes import also, notes
+from contactlaw.fitting.notes import alternative_note, notes
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import UNKNOWNS, Parameter, parameters, setting
 from contactlaw.laws import DEFAULT, Law
@@ -32,7 +32,7 @@ _POOLED = 4  # a kind with fewer values gets the scatter of all kinds
 _TRIALS = 40  # trial strengths, down to the first that the data exclude
 _EXCLUDED = 4.0  # rise of the sum of squares that excludes values: two standard errors
 _CURVED = 0.02  # standard error of a logarithm; over a smaller one the model is linear
-_HELD = 2.0  # least rise of the sum of squares at two standard errors; a linear model has 4
+_LEAST_RISE = 2.0  # least rise of the sum of squares at two standard errors; a linear model has 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,9 +120,11 @@ class Fit:
         one = np.full(v.size, 0.5)
         kinds = {name: one for name in self.residuals}
         data = Measurements(speed=v, radius=r, thickness=h, **kinds)
-        moved = [replace(p, centre=x) for p, x in zip(state.predictor.moved, state.at, strict=True)]
-        along = Predictor(self.pair, state.predictor.law, data, moved, Values.of(data))
-        here = along.at(state.at)
+        varied = [
+            replace(p, centre=x) for p, x in zip(state.predictor.parameters, state.at, strict=True)
+        ]
+        along = Predictor(self.pair, state.predictor.law, data, varied, Values.of(data))
+        here = along.predicted(state.at)
         slopes = along.derivatives(state.at, here)
         spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance.total, slopes))
         parts = np.split(spread, len(kinds))
@@ -194,15 +196,15 @@ def fit(
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     search.optimizer()
     data = Measurements.of(data)
-    moved = parameters(pair, data, unknown, priors or {})
-    predictor = Predictor(pair, _law(pair, law, moved), data, moved, Values.of(data))
+    varied = parameters(pair, data, unknown, priors or {})
+    predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))
     descent = search.Descent(predictor)
-    return _result(predictor, descent, _found(predictor, descent))
+    return _result(predictor, descent, _least_squares(predictor, descent))
 
 
-def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
+def _law(pair: Pair, law: str | Law, parameters: list[Parameter]) -> Law:
     """Resolve the law; a body whose strength is unknown is given some strength for it."""
-    strengths = [one for one in moved if one.is_strength]
+    strengths = [one for one in parameters if one.is_strength]
     if strengths:
         some = np.array(
             [1e-2 * getattr(pair, one.unknown.body).youngs_modulus for one in strengths]
@@ -212,7 +214,7 @@ def _law(pair: Pair, law: str | Law, moved: list[Parameter]) -> Law:
     return law_of(pair, law)
 
 
-class _Found(NamedTuple):
+class _LeastSquares(NamedTuple):
     """Result of least squares."""
 
     basins: list[search.Basin]  # the best first
@@ -220,10 +222,10 @@ class _Found(NamedTuple):
     freedom: float  # degrees of freedom; inf where all errors were given
 
 
-def _found(predictor: Predictor, descent: search.Descent) -> _Found:
+def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquares:
     """Find the minimum of each basin, and estimate the errors that the data lack."""
     values = predictor.values
-    free = sum(one.prior is None for one in predictor.moved)
+    free = sum(one.prior is None for one in predictor.parameters)
     if values.value.size < free:
         raise ValueError(
             f"unknown: {values.value.size} measured values cannot determine {free} unknowns: leave "
@@ -233,15 +235,15 @@ def _found(predictor: Predictor, descent: search.Descent) -> _Found:
     error = search.guessed(values)
     basins = [descent(one.at, error) for one in search.basins(predictor)]
     if not unknown.any():
-        return _Found(search.distinct(basins), error, math.inf)
+        return _LeastSquares(search.distinct(basins), error, math.inf)
     if values.value.size == free:
-        return _Found(search.distinct(basins), error, 0.0)
+        return _LeastSquares(search.distinct(basins), error, 0.0)
     freedom = math.nan
     for _ in range(_ROUNDS):
         at = search.distinct(basins)[0].at
         error, freedom = _found_errors(predictor, descent, at, error)
         basins = [descent(one.at, error) for one in search.distinct(basins)]
-    return _Found(search.distinct(basins), error, freedom)
+    return _LeastSquares(search.distinct(basins), error, freedom)
 
 
 def _found_errors(
@@ -257,7 +259,7 @@ def _found_errors(
     off = values.value / fitted - 1.0
     left = np.ones_like(off)
     for _ in range(_SETTLED):
-        left = 1.0 - errors.told(predictor, slopes, error)
+        left = 1.0 - errors.leverages(predictor, slopes, error)
         error = error.copy()
         for part, of in _pools(values):
             square = float(np.sum(off[of] ** 2)) / max(float(left[of].sum()), _LEAST_FREEDOM)
@@ -292,31 +294,34 @@ class _State:
     covariance: errors.Errors  # of the logarithms of all parameters
 
 
-def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit:
+def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares) -> Fit:
     at, error, freedom = ended.basins[0].at, ended.error, ended.freedom
-    values, names = predictor.values, tuple(one.name for one in predictor.moved if one.wanted)
+    values = predictor.values
+    names = tuple(one.name for one in predictor.parameters if one.is_unknown)
     fitted = descent.predicted(np.log(at))
     hit = predictor.impacts(at)
     model = errors.model_covariance(predictor, at, hit)
     slopes = predictor.derivatives(at, fitted)  # the descent's may be from nearby
     found = errors.covariances(predictor, slopes, error, model)
-    asked = slice(len(names))  # the unknowns come first
+    unknowns = slice(len(names))  # the unknowns come first
     own = None if model is None else model.size
     # with as many values as unknowns there is no scatter: only the model's errors are known
     doubt = error if freedom > 0.0 or own is None else own
     _check_strengths(predictor, at, fitted, doubt)
     widths = np.zeros(at.size)
     if freedom > 0.0:
-        left = 1.0 - errors.told(predictor, slopes, error)
+        left = 1.0 - errors.leverages(predictor, slopes, error)
         pools = [(part, max(float(left[of].sum()), _LEAST_FREEDOM)) for part, of in _pools(values)]
         each = errors.freedoms(predictor, slopes, error, pools)
         widths = np.array([errors.student(one) for one in each.tolist()])
     found = found.widened(widths)
-    total = found.total[asked, asked]
-    identify.check(names, at[asked], (found.statistical if freedom > 0.0 else total)[asked, asked])
+    total = found.total[unknowns, unknowns]
+    identify.check(
+        names, at[unknowns], (found.statistical if freedom > 0.0 else total)[unknowns, unknowns]
+    )
     both = found.statistical if freedom > 0.0 else found.total
-    found = found.widened(_reach(predictor, at, fitted, both, doubt))
-    total = found.total[asked, asked]
+    found = found.widened(_nonlinearity_factors(predictor, at, fitted, both, doubt))
+    total = found.total[unknowns, unknowns]
     spread = np.sqrt(np.diag(total))
     others = _alternatives(predictor, ended, np.sqrt(np.diag(found.total)), model)
     off = values.value / fitted - 1.0
@@ -324,7 +329,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit
     bodies = predictor.setting(at)
 
     def named(sizes: Array) -> dict[str, float]:
-        return dict(zip(names, sizes[asked].tolist(), strict=True))
+        return dict(zip(names, sizes[unknowns].tolist(), strict=True))
 
     return Fit(
         unknown=names,
@@ -348,7 +353,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit
                     freedom,
                     None if own is None else own / fitted,
                 ),
-                *(also(names, other) for other in others),
+                *(alternative_note(names, other) for other in others),
             ]
         ),
         pair=bodies.pair,
@@ -361,7 +366,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _Found) -> Fit
 
 
 def _alternatives(
-    predictor: Predictor, ended: _Found, spread: Array, model: errors.Shared | None
+    predictor: Predictor, ended: _LeastSquares, spread: Array, model: errors.ModelCovariance | None
 ) -> list[Array]:
     """Values in other basins that fit as well, within the errors of data and model."""
     best, *others = ended.basins
@@ -370,8 +375,8 @@ def _alternatives(
         error, model = (error if model is None else model.size), None
 
     def squares(one: search.Basin) -> float:
-        own = _squares(predictor, predictor.at(one.at), ended.error)
-        off = predictor.at(one.at) - predictor.values.value
+        own = _squares(predictor, predictor.predicted(one.at), ended.error)
+        off = predictor.predicted(one.at) - predictor.values.value
         whole = float(((off / error) ** 2).sum()) if model is None else model.squares(off, error)
         return one.squares - own + whole
 
@@ -389,7 +394,7 @@ def _squares(predictor: Predictor, values: Array, error: Array) -> float:
     return float(off @ off)
 
 
-def _reach(
+def _nonlinearity_factors(
     predictor: Predictor, at: Array, fitted: Array, covariance: Array, error: Array
 ) -> Array:
     """Factors that widen standard errors where the model is not linear in a parameter.
@@ -405,20 +410,20 @@ def _reach(
     """
     low, high = search.limits(predictor)
     factors = np.ones(at.size)
-    priors = np.array([one.prior or math.inf for one in predictor.moved])
-    for n, one in enumerate(predictor.moved):
-        if not one.wanted or one.prior is not None:
+    priors = np.array([one.prior or math.inf for one in predictor.parameters])
+    for n, one in enumerate(predictor.parameters):
+        if not one.is_unknown or one.prior is not None:
             continue
-        way = 2.0 * covariance[n] / math.sqrt(covariance[n, n])
+        shift = 2.0 * covariance[n] / math.sqrt(covariance[n, n])
         for sign, words in ((1.0, "above"), (-1.0, "below")):
-            there = np.clip(at * np.exp(sign * way), low, high)
-            off = (predictor.at_each(there[None])[0] - fitted) / error
+            there = np.clip(at * np.exp(sign * shift), low, high)
+            off = (predictor.at_trials(there[None])[0] - fitted) / error
             pulled = np.log(there / at) / priors
             square = float(off @ off + pulled @ pulled)
-            if way[n] > 2.0 * _CURVED:
-                factors[n] = max(factors[n], math.sqrt(4.0 / max(square, _HELD)))
-            if square < _HELD:
-                end = float(at[n] * math.exp(-sign * way[n]))
+            if shift[n] > 2.0 * _CURVED:
+                factors[n] = max(factors[n], math.sqrt(4.0 / max(square, _LEAST_RISE)))
+            if square < _LEAST_RISE:
+                end = float(at[n] * math.exp(-sign * shift[n]))
                 raise identify.UnidentifiedError(
                     f"unknown: the data bound {one.name} on one side only: {words} {end:.3g} "
                     f"{UNKNOWNS[one.name].unit}. Measure another quantity, or other speeds",
@@ -438,11 +443,11 @@ def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Arra
     def squares(values: Array) -> float:
         return _squares(predictor, values, error)
 
-    for n, one in enumerate(predictor.moved):
-        if one.is_strength and one.wanted and one.prior is None:
+    for n, one in enumerate(predictor.parameters):
+        if one.is_strength and one.is_unknown and one.prior is None:
             strong = at.copy()
             strong[n] = search.limits(predictor)[1][n]
-            if squares(predictor.at_each(strong[None])[0]) < squares(fitted) + _EXCLUDED:
+            if squares(predictor.at_trials(strong[None])[0]) < squares(fitted) + _EXCLUDED:
                 why = _least_strength(predictor, strong, n, squares)
                 raise identify.UnidentifiedError(
                     f"unknown: the data do not determine {one.name}: {why}", (one.name,)
@@ -453,11 +458,11 @@ def _least_strength(
     predictor: Predictor, strong: Array, n: int, squares: Callable[[Array], float]
 ) -> str:
     """Say above which strength the data exclude none."""
-    trial, high = strong.copy(), squares(predictor.at_each(strong[None])[0]) + _EXCLUDED
+    trial, high = strong.copy(), squares(predictor.at_trials(strong[None])[0]) + _EXCLUDED
     low = search.limits(predictor)[0][n]
     for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
         trial[n] = strong[n] * factor
-        if squares(predictor.at_each(trial[None])[0]) > high:
+        if squares(predictor.at_trials(trial[None])[0]) > high:
             return (
                 f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
                 "yield enough. Measure faster impacts"

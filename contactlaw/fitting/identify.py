@@ -68,9 +68,9 @@ def check(names: tuple[str, ...], values: Array, covariance: Array) -> None:
             known.append(_product(names, values, direction, float(np.sqrt(square))))
     what = "; ".join(f"{_words(powers)} = {value:.4g} within {percent(error)}"
                      for powers, value, error in known)  # fmt: skip
-    told = f"they determine {what} (in SI units). " if known else ""
+    products = f"they determine {what} (in SI units). " if known else ""
     raise UnidentifiedError(
-        f"unknown: the data do not tell {' and '.join(names)} apart: {told}"
+        f"unknown: the data do not tell {' and '.join(names)} apart: {products}"
         "Fix one of them, give one with its prior standard error, or measure another quantity",
         names,
         tuple(known),

@@ -68,10 +68,10 @@ def notes(
             "errors stated are those of the data alone"
         )
     low, high = search.limits(predictor)
-    for one, value, least, largest in zip(predictor.moved, at, low, high, strict=True):
+    for one, value, least, largest in zip(predictor.parameters, at, low, high, strict=True):
         if not least * (1.0 + _AT_BOUND) < value < largest * (1.0 - _AT_BOUND):
             yield f"{one.name} is at an end of what is searched, {least:.3g} to {largest:.3g}"
-    if any(one.is_strength for one in predictor.moved):
+    if any(one.is_strength for one in predictor.parameters):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
         yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and tell the strength"
     flags = np.asarray(hit.flags)
@@ -80,7 +80,7 @@ def notes(
         yield f"{flag.name}, rebounds {listed(np.flatnonzero(flags & flag))}: {words}"
 
 
-def also(names: tuple[str, ...], values: Array) -> str:
+def alternative_note(names: tuple[str, ...], values: Array) -> str:
     """Say that other values fit as well."""
     what = ", ".join(
         f"{name} {value:.4g} {UNKNOWNS[name].unit}"
@@ -123,7 +123,7 @@ def _found_errors(predictor: Predictor, standard: Array) -> Iterator[str]:
 def _misfits(predictor: Predictor, off: Array, expected: Array, freedom: float) -> Iterator[str]:
     values = predictor.values
     given = np.isfinite(values.error)
-    free = max(1, sum(one.prior is None for one in predictor.moved))
+    free = max(1, sum(one.prior is None for one in predictor.parameters))
     if np.count_nonzero(given) > free:
         ratio = float(np.sqrt(((off / expected)[given] ** 2).sum() / (given.sum() - free)))
         if ratio > _MISFIT:

@@ -21,7 +21,7 @@ from contactlaw.fitting.unknowns import Parameter, Setting, setting
 from contactlaw.laws import Law
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
-from contactlaw.physical.scaling import following
+from contactlaw.physical.scaling import law_for_pair
 
 Array = NDArray[np.float64]
 
@@ -77,12 +77,12 @@ class Predictor:
     pair: Pair
     law: Law
     data: Measurements
-    moved: list[Parameter]
+    parameters: list[Parameter]
     values: Values
 
     def setting(self, values: Array) -> Setting:
         """Bodies and sizes with these values."""
-        return setting(self.pair, self.data, self.moved, values)
+        return setting(self.pair, self.data, self.parameters, values)
 
     def slenderness(self, values: Array) -> float:
         """Largest R/H."""
@@ -93,13 +93,13 @@ class Predictor:
         """Everything about the rebounds."""
         return impacts(self.setting(values), self.law, np.array(self.data.speed))
 
-    def at(self, values: Array) -> Array:
+    def predicted(self, values: Array) -> Array:
         """Predict the measured values."""
         found = self.impacts(values)
         columns = np.array([getattr(found, name) for name in KINDS])
         return np.asarray(columns[self.values.kind, self.values.row])
 
-    def at_each(self, trials: Array) -> Array:
+    def at_trials(self, trials: Array) -> Array:
         """Predict the measured values at trials (k, p) that differ only in sizes, not in materials.
 
         Where the model has no answer, as for impossible bodies or plates far too thin, predictions
@@ -117,7 +117,7 @@ class Predictor:
         except (UnsolvedError, ValueError):
             if len(trials) == 1:
                 return np.zeros((1, self.values.value.size))
-            return np.concatenate([self.at_each(one[None]) for one in trials])
+            return np.concatenate([self.at_trials(one[None]) for one in trials])
         columns = np.array([getattr(found, name) for name in KINDS])
         columns = columns.reshape(len(KINDS), len(settings), speed.size)
         return np.asarray(columns[self.values.kind, :, self.values.row].T)
@@ -128,7 +128,7 @@ class Predictor:
         Where derivatives are known from nearby, those that need another law are not computed anew.
         """
         columns = np.empty((here.size, values.size)) if known is None else known.copy()
-        for n, parameter in enumerate(self.moved):
+        for n, parameter in enumerate(self.parameters):
             if known is None or not parameter.changes(self.law):
                 columns[:, n] = self._derivative(values, here, n)
         return columns
@@ -142,10 +142,10 @@ class Predictor:
     def _difference(self, values: Array, here: Array, n: int, step: float) -> Array:
         moved = values.copy()
         moved[n] *= math.exp(step)
-        return (self.at(moved) - here) / step
+        return (self.predicted(moved) - here) / step
 
 
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
     """Integrate rebounds of any bodies, without a table."""
-    bodies = SphereOnPlate(at.pair, following(at.pair, law))
+    bodies = SphereOnPlate(at.pair, law_for_pair(at.pair, law))
     return Solver(bodies, _RTOL).rebounds(Impacts(speed, at.radius, at.thickness, speed.shape))

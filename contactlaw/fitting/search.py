@@ -24,10 +24,10 @@ from contactlaw.fitting.unknowns import Parameter, bounds
 Array = NDArray[np.float64]
 
 _ROWS = 8  # rebounds of a kind that a scan predicts, from the slowest to the fastest
-_MANY = 200  # rebounds of a kind for least squares that come close, before all are used
+_SUBSET = 200  # rebounds of a kind for least squares that come close, before all are used
 _GUESSED = 0.02  # relative error of values that have none, until it is estimated
 _CONVERGED = 1e-7  # relative change of the sum of squares: 3e-4 of a standard error, and less
-_NEAR = 0.02  # distance in logarithms at which derivatives that need another law are kept
+_KEEP_SLOPES = 0.02  # distance in logarithms at which derivatives that need another law are kept
 # Points of an axis on which each needs its own law, by the number of such axes: a law takes 10 ms.
 _STRENGTHS, _MODULI = (0, 14, 9, 6), (0, 7, 5, 4)
 _DENSITIES = 5
@@ -37,14 +37,14 @@ _RADII = np.geomspace(1e-5, 0.05, 16)  # [m]
 _FINER = (0, 16, 8, 3)  # points of the fine grid per step of the coarse one, by number of unknowns
 _BETWEEN = 0.01  # relative error of the splines between the points
 _CHAIN = 40  # lowest points of the fine grid from which least squares on the splines start
-_CLOSE = 0.05  # distance in logarithms within which results of these are one minimum
+_SAME_MINIMUM = 0.05  # distance in logarithms within which results of these are one minimum
 _INSIDE = np.array([[1e-9], [-1e-9]])  # distance of their starts from the ends of the grid
 _MOST = 6  # basins of the scan from which least squares of the model start
 _STEPS = 6  # steps of these that show whether a basin may be the best: splines lead to 1 % of it
 # A basin whose sum of squares is above 3 times the least plus this is neither the best one with all
 # rebounds nor as good.
 _HOPELESS = 25.0
-_SAME = 1e-2  # distance in logarithms within which two descents have found one basin
+_SAME_BASIN = 1e-2  # distance in logarithms within which two descents have found one basin
 
 
 def optimizer() -> Any:
@@ -64,7 +64,7 @@ def optimizer() -> Any:
 
 def limits(predictor: Predictor) -> tuple[Array, Array]:
     """Least and largest value of each parameter."""
-    low, high = np.array([bounds(one, predictor.pair) for one in predictor.moved]).T
+    low, high = np.array([bounds(one, predictor.pair) for one in predictor.parameters]).T
     return low, high
 
 
@@ -82,8 +82,8 @@ def basins(predictor: Predictor) -> list[Basin]:
     """
     few = _few(predictor, _ROWS)
     found = _descents(few, scan(few), _STEPS)
-    if len(predictor.data) > _MANY:  # come close before each step predicts all of them
-        found = _descents(_few(predictor, _MANY), [one.at for one in found])
+    if len(predictor.data) > _SUBSET:  # come close before each step predicts all of them
+        found = _descents(_few(predictor, _SUBSET), [one.at for one in found])
     return found
 
 
@@ -101,7 +101,7 @@ def distinct(found: list[Basin]) -> list[Basin]:
     """Keep each basin once, the best first; drop those that cannot be the best."""
     kept: list[Basin] = []
     for one in sorted(found, key=lambda one: one.squares):
-        apart = all(np.abs(np.log(one.at / other.at)).max() > _SAME for other in kept)
+        apart = all(np.abs(np.log(one.at / other.at)).max() > _SAME_BASIN for other in kept)
         if apart and one.squares <= 3.0 * (kept or [one])[0].squares + _HOPELESS:
             kept.append(one)
     return kept
@@ -147,7 +147,7 @@ def _bottoms(axes: list[Array], off: Array) -> list[Array]:
         bottoms.append((float(done.cost), done.x))
     kept: list[Array] = []
     for _, x in sorted(bottoms, key=lambda one: one[0]):
-        if all(np.abs(x - other).max() > _CLOSE for other in kept):
+        if all(np.abs(x - other).max() > _SAME_MINIMUM for other in kept):
             kept.append(x)
     found = np.array([[axis[0] for axis in axes]] * len(kept))
     found[:, free] = kept
@@ -174,13 +174,13 @@ def _predicted(predictor: Predictor, axes: _Axes) -> Array:
     count = predictor.values.value.size
     points = np.array(list(itertools.product(*axes.points)))
     # sorted, so that points with the same law are next to each other
-    laws = [n for n, one in enumerate(predictor.moved) if one.changes(predictor.law)]
+    laws = [n for n, one in enumerate(predictor.parameters) if one.changes(predictor.law)]
     order = np.lexsort(points[:, laws].T) if laws else np.arange(len(points))
     found = np.empty((len(points), count))
-    bodies = [n for n, one in enumerate(predictor.moved) if one.unknown.body]
+    bodies = [n for n, one in enumerate(predictor.parameters) if one.unknown.body]
     ends = np.flatnonzero(np.any(np.diff(points[order][:, bodies], axis=0), axis=1)) + 1
     for part in np.split(order, ends) if bodies else [order]:
-        found[part] = predictor.at_each(np.array([axes.values(points[n]) for n in part]))
+        found[part] = predictor.at_trials(np.array([axes.values(points[n]) for n in part]))
     return found
 
 
@@ -239,17 +239,17 @@ def _middle(one: Parameter, predictor: Predictor) -> float:
 
 
 def _scanned(one: Parameter) -> bool:
-    return one.wanted and one.prior is None
+    return one.is_unknown and one.prior is None
 
 
 def _axes(predictor: Predictor) -> _Axes:
     """Trial values of each parameter; one value where it is not scanned."""
-    moved, data = predictor.moved, predictor.data
-    scanned = {one.name for one in moved if _scanned(one)}
-    laws = min(3, sum(_scanned(one) and one.changes(predictor.law) for one in moved))
+    parameters, data = predictor.parameters, predictor.data
+    scanned = {one.name for one in parameters if _scanned(one)}
+    laws = min(3, sum(_scanned(one) and one.changes(predictor.law) for one in parameters))
     low, high = limits(predictor)
     points = []
-    for n, one in enumerate(moved):
+    for n, one in enumerate(parameters):
         if one.name not in scanned:
             axis = np.array([_middle(one, predictor)])
         elif one.is_strength:
@@ -271,14 +271,14 @@ def _axes(predictor: Predictor) -> _Axes:
                 ends = _THICKEST * thickness.max(), _SLENDEREST * thickness.min()
                 axis = np.geomspace(*ends, _SLENDERNESS)
         points.append(np.log(np.sort(axis)))
-    names = [one.name for one in moved]
+    names = [one.name for one in parameters]
     both = {"thickness", "radius"} <= scanned
     return _Axes(points, (names.index("thickness"), names.index("radius")) if both else None)
 
 
 def _onset(predictor: Predictor, n: int) -> float:
     """Strength above which a body hardly yields; other parameters have their `_middle` values."""
-    trial = np.array([_middle(one, predictor) for one in predictor.moved])
+    trial = np.array([_middle(one, predictor) for one in predictor.parameters])
     chi = float(np.max(predictor.impacts(trial).overload))
     # d_Y is in proportion to the square of the strength
     return float(trial[n] * math.sqrt(chi)) if chi > 0.0 else math.inf
@@ -289,24 +289,24 @@ class Descent:
 
     def __init__(self, predictor: Predictor) -> None:
         self.predictor = predictor
-        moved = predictor.moved
+        parameters = predictor.parameters
         self._low, self._high = np.log(np.array(limits(predictor)))
-        self._held = [n for n, one in enumerate(moved) if one.prior is not None]
-        self._centres = np.log([moved[n].centre for n in self._held])
-        self._widths = np.array([moved[n].prior for n in self._held], dtype=np.float64)
+        self._held = [n for n, one in enumerate(parameters) if one.prior is not None]
+        self._centres = np.log([parameters[n].centre for n in self._held])
+        self._widths = np.array([parameters[n].prior for n in self._held], dtype=np.float64)
         self._last: tuple[Array, Array] | None = None
         self._steepest: tuple[Array, Array] | None = None
 
     def predicted(self, x: Array) -> Array:
         """Fitted values, from the logarithms of the parameters."""
         if self._last is None or not np.array_equal(self._last[0], x):
-            self._last = x.copy(), self.predictor.at(np.exp(x))
+            self._last = x.copy(), self.predictor.predicted(np.exp(x))
         return self._last[1]
 
     def slopes(self, x: Array) -> Array:
         """Differentiate the fitted values."""
         here = self.predicted(x)
-        if self._steepest and float(np.abs(x - self._steepest[0]).max()) < _NEAR:
+        if self._steepest and float(np.abs(x - self._steepest[0]).max()) < _KEEP_SLOPES:
             return self.predictor.derivatives(np.exp(x), here, self._steepest[1])
         self._steepest = x.copy(), self.predictor.derivatives(np.exp(x), here)
         return self._steepest[1]

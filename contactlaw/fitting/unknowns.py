@@ -48,7 +48,7 @@ UNKNOWNS["thickness"] = Unknown("thickness of the plate", "m", "", "thickness", 
 UNKNOWNS["radius"] = Unknown("radius of the bead", "m", "", "radius", 1e-7, 1.0)
 # E*/sigma_Y of glassy metals and of the softest lead; law fem is made for 11 to 2000.
 _RATIOS = (12.0, 1e4)
-_GUESS = 5.0  # factor by which moduli and densities may differ from the values given
+_SEARCH_FACTOR = 5.0  # factor by which moduli and densities may differ from the values given
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Parameter:
     name: str
     centre: float  # value given; NaN: none
     prior: float | None  # standard error of the logarithm
-    wanted: bool  # whether it is an unknown; else a given value with a prior
+    is_unknown: bool  # whether it is an unknown; else a given value with a prior
 
     @property
     def unknown(self) -> Unknown:
@@ -154,15 +154,16 @@ def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
     if parameter.is_strength:
         low, high = (pair.effective_modulus / ratio for ratio in reversed(_RATIOS))
     elif unknown.body:
-        low, high = max(low, parameter.centre / _GUESS), min(high, parameter.centre * _GUESS)
+        low = max(low, parameter.centre / _SEARCH_FACTOR)
+        high = min(high, parameter.centre * _SEARCH_FACTOR)
     return low, high
 
 
-def setting(pair: Pair, data: Measurements, moved: list[Parameter], values: Array) -> Setting:
+def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values: Array) -> Setting:
     """Put the values of parameters into bodies and sizes."""
     bodies: dict[str, Material] = {"sphere": pair.sphere, "plate": pair.plate}
     sizes = {"radius": data.radius, "thickness": data.thickness}
-    for parameter, value in zip(moved, values.tolist(), strict=True):
+    for parameter, value in zip(parameters, values.tolist(), strict=True):
         body, field = parameter.unknown.body, parameter.unknown.field
         if body:
             bodies[body] = dataclasses.replace(bodies[body], **{field: value})

@@ -46,7 +46,7 @@ class _Piece:
 
 
 @dataclass(frozen=True)
-class _Part:
+class _Function:
     """A function to expand, its name in messages, and the size of the numbers it comes from."""
 
     what: str
@@ -54,7 +54,7 @@ class _Part:
     size: Formula | None = None
 
 
-def _expand(name: str, parts: Sequence[_Part | float], low: float, high: float) -> list[_Piece]:
+def _expand(name: str, parts: Sequence[_Function | float], low: float, high: float) -> list[_Piece]:
     """Expand functions on [low, high], all on the same pieces; a constant stays exact."""
     count = max(1, math.ceil(math.log(high / low) / math.log(_WIDEST)))
     edges = np.geomspace(low, high, count + 1)
@@ -89,7 +89,7 @@ def _lengths(rows: Array) -> list[int]:
     return [int(size) for size in sizes]
 
 
-def _powers(name: str, part: _Part | float, at: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _powers(name: str, part: _Function | float, at: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Coefficients of powers of t for rows of values, and which rows have converged."""
     if isinstance(part, float):
         return np.full((len(at), 1), part), np.ones(len(at), dtype=bool)
@@ -142,7 +142,7 @@ class LoadingCurve:
         self.stiffer = branches[0].force != HERTZ
         self.kinks = tuple(float(branch.start) for branch in branches[1:])
         self.pieces: list[_Piece] = []
-        self.first: list[int] = []  # for each piece, the first piece of its branch
+        self.first_of_branch: list[int] = []  # for each piece, the first piece of its branch
         for branch, end in _ends(branches, self.end):
             first = len(self.pieces)
             force = branch.force
@@ -151,12 +151,12 @@ class LoadingCurve:
                 self.pieces.append(_Piece(math.sqrt(branch.start), 1.0, 0.0, [coefficients]))
             else:
                 _check_rise(name, force, branch.start, end, 200)
-                part = _Part("loading force", _over_root(force))
+                part = _Function("loading force", _over_root(force))
                 self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end))
-            self.first += [first] * (len(self.pieces) - first)
+            self.first_of_branch += [first] * (len(self.pieces) - first)
         self._tabulate()
         if yields:
-            self._go_on()
+            self._extend_by_tangent()
         for kink in self.kinks:
             before, after = self.force(np.array([kink * (1.0 - 1e-12), kink]))
             if not abs(after - before) <= 1e-9 * before:
@@ -166,7 +166,7 @@ class LoadingCurve:
                 )
         _check_rise(name, self.force, 1e-3, self.end, 2000)
 
-    def _go_on(self) -> None:
+    def _extend_by_tangent(self) -> None:
         """Continue beyond the end along the tangent in d, as a polynomial in q."""
         end = np.array([self.end, self.end * (1.0 + 1e-6)])
         force, work = self.force(end), self.work(end)
@@ -180,7 +180,7 @@ class LoadingCurve:
         constant = float(force[0] - slope * self.end)
         tail = np.array([constant, 0.0, float(slope)])
         self.pieces.append(_Piece(root, 1.0, 0.0, [tail]))
-        self.first.append(self.first[-1])
+        self.first_of_branch.append(self.first_of_branch[-1])
         self._tabulate()
 
     def _tabulate(self) -> None:
@@ -347,24 +347,26 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
         work = curve.work(dm)
         return np.clip(loss(dm), 0.05 * work, 0.2 * work)
 
-    parts: list[_Part | float] = [
-        _Part("residual compression", branch.residual, smaller if branch.order else np.positive)
+    parts: list[_Function | float] = [
+        _Function("residual compression", branch.residual, smaller if branch.order else np.positive)
     ]
     parts.append(
-        _Part("exponent", lambda dm: 2.0 * exponent(dm)) if callable(exponent) else 2.0 * exponent
+        _Function("exponent", lambda dm: 2.0 * exponent(dm))
+        if callable(exponent)
+        else 2.0 * exponent
     )
     if branch.loss is None:
-        parts.append(_Part("loss", loss, lost))
+        parts.append(_Function("loss", loss, lost))
     else:
         # divided by its power of dm - 1, a loss does not vanish and is its own size
-        parts.append(_Part("loss", branch.loss, None if branch.loss_order else lost))
+        parts.append(_Function("loss", branch.loss, None if branch.loss_order else lost))
     low, high = branch.cap or (None, None)
-    parts.append(0.0 if low is None else _Part("cap", low, np.positive))
+    parts.append(0.0 if low is None else _Function("cap", low, np.positive))
     if high is None:
         parts.append(0.0 if low is None else math.inf)
     else:
-        parts.append(_Part("cap", high, np.positive))
-    parts.append(0.0 if branch.other is None else _Part("other loss", branch.other, lost))
+        parts.append(_Function("cap", high, np.positive))
+    parts.append(0.0 if branch.other is None else _Function("other loss", branch.other, lost))
     powers = (branch.order, 0.0, branch.loss_order, 0.0, 0.0, 0.0)
     # the loss has kinks where the loading curve has them
     inner = [kink for kink in curve.kinks if branch.start < kink < end]
@@ -430,8 +432,8 @@ def _packed(curve: LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
         return [length - 1, at - room.size]
 
     curve_rows: list[float] = []
-    for piece, first in zip(pieces, curve.first, strict=True):
-        following = next((k for k in curve.first if k > first), len(pieces))
+    for piece, first in zip(pieces, curve.first_of_branch, strict=True):
+        following = next((k for k in curve.first_of_branch if k > first), len(pieces))
         entries = put(piece.parts[0], piece.parts[0].size)
         curve_rows += [piece.scale, piece.offset, *entries, first, following]
     # A function has one length on all pieces: the processor predicts loops of constant length.

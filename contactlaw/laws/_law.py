@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contactlaw.equation import force as _force
-from contactlaw.equation.force import Curve
+from contactlaw.equation.force import UnloadingCurve
 from contactlaw.laws._branches import END, Array, Loading, Unloading
 from contactlaw.laws._expansion import LoadingCurve, check_yield, horner, law_data
 
@@ -53,7 +53,7 @@ class Law:
         Compressions [d_Y] from which on the law differs from Hertz's, and up to which it holds.
     waves : tuple of float, optional
         b, b_h, b4 and b_p, the plate's corrections beyond a thin-plate dashpot, see
-        `contactlaw.equation.waves`. None: the plate is that dashpot.
+        `contactlaw.equation.corrections`. None: the plate is that dashpot.
     """
 
     family: str
@@ -217,11 +217,11 @@ class Law:
         """Compression [d_Y] left after unloading from the largest one, dm."""
         return _force.residual(self.data, dm)
 
-    def unloading_curve(self, dm: float) -> Curve:
+    def unloading_curve(self, dm: float) -> UnloadingCurve:
         """Find the unloading curve from dm."""
         return _force.unloading(self.data, dm)
 
-    def unloading(self, q: float, curve: Curve) -> float:
+    def unloading(self, q: float, curve: UnloadingCurve) -> float:
         """Force [F_Y] at d = residual(dm) + q^2 below dm; reloading follows the same curve."""
         return _force.unloading_force(self.data, curve, q)
 

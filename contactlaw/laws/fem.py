@@ -60,10 +60,11 @@ _SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiff
 _EARLIEST = 0.01  # [d_Y]; the law's range begins here at the latest: tables begin before yield
 SHIFT = 2.0  # 2 in t = (q - 1)/(q + 2)
 _LEAST_FRICTION = 5e-4  # phi of bodies that hardly slip
-_SHARES, _RATIOS = 0.45, 0.1  # reach of the fit about modulus share 0.5 and nu 0.3; constant beyond
+# reach of the fit about modulus share 0.5 and nu 0.3; constant beyond
+_REACH_OF_SHARE, _REACH_OF_POISSON = 0.45, 0.1
 # A body that yields only beyond this share of the deepest compression is taken as elastic: it would
 # lose less than 1e-5 of the energy, and a law needs some room between its kinks.
-_LATE = 0.98
+_ELASTIC_BEYOND = 0.98
 ALONE = 0.36  # z, ratio of the strengths, below which the stronger body does not yield
 _POWERS = (5, 4)  # number of powers of t and of w
 _GAUSS = np.polynomial.legendre.leggauss(40)
@@ -135,7 +136,7 @@ class Given(NamedTuple):
         """Body that yields first; "sphere" where both are alike, or neither yields."""
         return "plate" if self.plate_ratio > self.sphere_ratio else "sphere"
 
-    def both(self, blend: float) -> float:
+    def share_both(self, blend: float) -> float:
         """Share of the case that both yield alike: 1 at equal strengths, 0 if one yields alone.
 
         In between, it is the power `blend` of a line in the ratio of the strengths.
@@ -149,7 +150,7 @@ class Given(NamedTuple):
         Poisson's ratios are weighted by these shares. With the weaker body's alone, the law would
         jump where the other body becomes the weaker one.
         """
-        other = 0.5 * self.both(blend)
+        other = 0.5 * self.share_both(blend)
         plate = 1.0 - other if self.weaker == "plate" else other
         return {"sphere": 1.0 - plate, "plate": plate}
 
@@ -164,15 +165,15 @@ class Given(NamedTuple):
 
         If both yield alike they share the flow, so their moduli have no term.
         """
-        both, flow = self.both(blend), self.flow(blend)
+        share_both, flow = self.share_both(blend), self.flow(blend)
         own = self.modulus_share if self.weaker == "sphere" else 1.0 - self.modulus_share
         ratios = {"sphere": self.poissons_ratio, "plate": self.plate_poissons_ratio}
         return {
-            ("both", "usual"): both,
-            (self.weaker, "usual"): 1.0 - both,
-            (self.weaker, "share"): (1.0 - both) * _within(own - 0.5, _SHARES),
+            ("both", "usual"): share_both,
+            (self.weaker, "usual"): 1.0 - share_both,
+            (self.weaker, "share"): (1.0 - share_both) * _within(own - 0.5, _REACH_OF_SHARE),
             **{
-                (body, "poissons_ratio"): flow[body] * _within(nu - 0.3, _RATIOS)
+                (body, "poissons_ratio"): flow[body] * _within(nu - 0.3, _REACH_OF_POISSON)
                 for body, nu in ratios.items()
             },
             # time of a wave through the sphere over the contact time is as sqrt(E*/E1')
@@ -231,11 +232,11 @@ class Curves:
 
     def _sum(self, name: str, q: Array) -> Array:
         """Sum of the powers of t and w of one of the functions."""
-        known, w = self._known(q, _FLOWN[name == "impact"]), self._width * q
+        known, w = self._similar_q(q, _FLOWN[name == "impact"]), self._width * q
         t = (known - 1.0) / (known + SHIFT)
         return np.asarray(np.polynomial.polynomial.polyval2d(t, w, self._terms[name]))
 
-    def _known(self, q: Array, flown: float) -> Array:
+    def _similar_q(self, q: Array, flown: float) -> Array:
         """Map q of a body softer than the campaign's to the q at which its sums are known.
 
         Up to q = `flown` small-strain similarity makes the sums functions of q alone. Beyond, flow
@@ -310,7 +311,7 @@ def law(*given: float) -> Law:
 def law_of(given: Given, found: dict[str, Any]) -> Law:
     """Law of a pair from the numbers of a fit."""
     curves = Curves(given, found)
-    if curves.ratio and curves.scale > _LATE * deepest(curves.ratio):
+    if curves.ratio and curves.scale > _ELASTIC_BEYOND * deepest(curves.ratio):
         # the bodies are so strong that they would yield only where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 

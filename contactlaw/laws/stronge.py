@@ -89,15 +89,15 @@ def _loss_between(dm: Array) -> Array:
     return _loss_below(dm) + (_work(dm) - _work(high) - back)
 
 
-def _steeper(dm: Array) -> NDArray[np.bool_]:
+def _unloading_is_flatter(dm: Array) -> NDArray[np.bool_]:
     """Whether the printed unloading curve is flatter than the loading curve at dm."""
     s = 2.0 * dm - 1.0
     return 1.5 * _elastic_plastic(dm) / np.sqrt(s) < 2.0 * (1.0 + np.log(s) / 3.3) + 2.0 / 3.3
 
 
-PARTS = float(bisect(_steeper, 1.01, 2.2))
+LEAVES_AT_ONCE = float(bisect(_unloading_is_flatter, 1.01, 2.2))
 """From this dm on unloading leaves the loading curve at once, and meets it again."""
-FREE = float(bisect(lambda dm: _cap_low(dm) < 1.0, 1.01, 3.0))
+UNCAPPED = float(bisect(lambda dm: _cap_low(dm) < 1.0, 1.01, 3.0))
 """From this dm on the printed unloading curve nowhere lies above the loading curve."""
 
 
@@ -115,7 +115,9 @@ LAW = Law.of(
             1.0, residual, loss=_loss_next_to_yield, order=2.0, loss_order=3.5,
             cap=(_cap_low, None),
         ),
-        Unloading(PARTS, residual, loss=_loss_between, order=2.0, cap=(_cap_low, _cap_high)),
-        Unloading(FREE, residual, order=2.0),
+        Unloading(
+            LEAVES_AT_ONCE, residual, loss=_loss_between, order=2.0, cap=(_cap_low, _cap_high),
+        ),
+        Unloading(UNCAPPED, residual, order=2.0),
     ],
 )  # fmt: skip

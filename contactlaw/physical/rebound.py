@@ -92,7 +92,7 @@ def _with_units(
     thickness: Array,
     time: Array,
     mass: Array,
-    asked_y: Array,
+    unclamped_y: Array,
     outcome: Outcome,
     extremes: Extremes,
     out: Units,
@@ -107,7 +107,7 @@ def _with_units(
         unit = v * t
         out.peak_compression[n] = w * unit
         out.wave_fraction[n] = outcome.inelasticity[n] * outcome.wave_rate[n]
-        out.overload[n] = outcome.elastic_compression[n] / asked_y[n]
+        out.overload[n] = outcome.elastic_compression[n] / unclamped_y[n]
         extremes.peak_force[n] *= mass[n] * v / t
         extremes.residual_compression[n] *= unit
         flags[n] |= flags_of(
@@ -121,16 +121,16 @@ def rebound(
     impacts: Impacts,
     time: Array,
     mass: Array,
-    asked: tuple[Array, Array],
+    unclamped: tuple[Array, Array],
     outcome: Outcome,
     flags: NDArray[np.int64],
 ) -> Rebound:
     """Convert outcomes to SI units, with T_H [s] and effective masses [kg], and complete them.
 
-    `asked` has inelasticities and yield ratios of the impacts. Those of the outcomes differ where
-    impacts were clamped to the table's border, which the flags say already.
+    `unclamped` has inelasticities and yield ratios of the impacts. Those of the outcomes differ
+    where impacts were clamped to the table's border, which the flags say already.
     """
-    inelasticity, yield_ratio = asked
+    inelasticity, yield_ratio = unclamped
     out = Units(*np.empty((len(Units._fields), time.size)))
     found = outcomes.extremes(time.size)
     zener.extremes(law, outcome, found)

@@ -15,9 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
+from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, THIN, plate_corrections
 from contactlaw.equation.numbers import Numbers, PlateConstants, fill
-from contactlaw.equation.waves import CONTACT_TIME, SATURATION, THIN
-from contactlaw.equation.waves import waves as next_orders
 from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.materials import Material, sphere_mass
@@ -26,7 +25,7 @@ from contactlaw.physical.pair import Pair
 Array = NDArray[np.float64]
 
 
-class Contact(NamedTuple):
+class ContactConstants(NamedTuple):
     """Constants of impacts that do not depend on the speed; arrays, except `plate`."""
 
     mass: Array  # [kg], effective
@@ -37,7 +36,7 @@ class Contact(NamedTuple):
     plate: PlateConstants
 
 
-class Factors(NamedTuple):
+class PairConstants(NamedTuple):
     """Constants of a pair from which impacts on plates are scaled without computing powers."""
 
     plate: PlateConstants
@@ -83,7 +82,7 @@ def _refuse_auxetic(pair: Pair, law: str) -> None:
             )
 
 
-def following(pair: Pair, law: Law) -> Law:
+def law_for_pair(pair: Pair, law: Law) -> Law:
     """Law for another pair: it gets that pair's numbers, unrounded, if it takes any."""
     return laws.exact(law.family, **pair_numbers(pair, law.family)) if law.from_pair else law
 
@@ -151,7 +150,7 @@ def yield_share(pair: Pair, law: Law) -> float:
     return pair.yield_share(law.yield_coefficient or C_YIELD)
 
 
-def log_overload(factors: Factors, share: float) -> float:
+def log_overload(factors: PairConstants, share: float) -> float:
     """ln(chi/w_m) at 1 m/s, of a body that yields at this share d_Y/R: d_Y = share R."""
     return math.log(factors.time / share)
 
@@ -168,9 +167,9 @@ def _stiffness(pair: Pair, radius: Array) -> Array:
     return stiffness
 
 
-def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Contact:
+def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> ContactConstants:
     """Contact of a sphere with a large plate: R* = R, m* = m."""
-    return Contact(
+    return ContactConstants(
         mass=sphere_mass(pair.sphere.density, radius),
         stiffness=_stiffness(pair, radius),
         mobility=plate_mobility(pair.plate, thickness),
@@ -180,12 +179,12 @@ def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Co
     )
 
 
-def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -> Contact:
+def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -> ContactConstants:
     """Bulk limit of two spheres: R* = R1 R2/(R1 + R2), m* = m1 m2/(m1 + m2); the first yields."""
     reduced = radius * other_radius / (radius + other_radius)
     mass = sphere_mass(pair.sphere.density, radius)
     other_mass = sphere_mass(pair.plate.density, other_radius)
-    return Contact(
+    return ContactConstants(
         mass=mass * other_mass / (mass + other_mass),
         stiffness=_stiffness(pair, reduced),
         mobility=np.zeros_like(reduced),
@@ -198,19 +197,22 @@ def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -
 def plate_constants(pair: Pair, law: Law) -> PlateConstants:
     """Constants of a pair's plates, at 1 m/s and R = H; they are the same for all sizes."""
     one = np.ones(())
-    mass, time, waves = sphere_mass(pair.sphere.density, one).item(), _unit_time(pair), THIN
+    mass, time = sphere_mass(pair.sphere.density, one).item(), _unit_time(pair)
+    corrections = THIN
     if law.waves is not None:
         share = pair.effective_modulus / pair.plate.plane_modulus
         b, b_h, b4, b_p = law.waves
-        waves = next_orders(pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share)
+        corrections = plate_corrections(
+            pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share
+        )
     # beyond yield the force grows no faster than the compression
     most = SATURATION * SATURATION * _yield_compression(pair, one, law).item() / time
     return PlateConstants(
         inelasticity=plate_mobility(pair.plate, one).item() * mass / time,
         transit=_transit(pair.plate, one).item() / time,
-        reach=math.sqrt(time),
+        x_at_one=math.sqrt(time),
         saturated=most**0.25,
-        waves=waves,
+        corrections=corrections,
     )
 
 
@@ -219,7 +221,7 @@ def _unit_time(pair: Pair) -> float:
     return float((math.pi * pair.sphere.density / pair.effective_modulus) ** 0.4)
 
 
-def scales(contact: Contact, speed: Array) -> Numbers:
+def scales(contact: ContactConstants, speed: Array) -> Numbers:
     """Dimensionless numbers and units of impacts at the given speeds [m/s]."""
     given = np.broadcast_arrays(
         contact.mass, contact.stiffness, contact.yield_compression, speed, contact.ratio
@@ -231,11 +233,11 @@ def scales(contact: Contact, speed: Array) -> Numbers:
     return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 
-def factors(pair: Pair, law: Law) -> Factors:
+def factors(pair: Pair, law: Law) -> PairConstants:
     """Constants of spheres on plates."""
     one = np.ones(())
     time = _unit_time(pair)
-    return Factors(
+    return PairConstants(
         plate=plate_constants(pair, law),
         log_overload=-math.log(_yield_compression(pair, one, law).item() / time),
         time=time,

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 SLENDER = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
 _SLENDER_YIELDED = 1.4  # R/H for "fem"; beyond, its errors in everyday impacts are twice as large
-_YIELDED = 2.0  # V0/V_Y0 from which on yield matters; our choice: our studies have 1.5 and 3.5
+_WELL_YIELDED = 2.0  # V0/V_Y0 from which on yield matters; our choice: our studies have 1.5 and 3.5
 _FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
 _SWIFTEST = 0.0131  # V0/sqrt(E*/rho1), 50 m/s for steel: up to there "fem" was fitted to impacts
 _AHEAD = 1.5  # speed of the fastest waves that matter over c_g, see `edge_distance`
@@ -159,8 +159,8 @@ class Limits(NamedTuple):
     slender: float  # R/H beyond which THIN_PLATE is raised once a body yields
     slowness: float  # of the pressure wave in the plate [s/m]; 0 where no plate is too thick
     always: int  # flags of every impact
-    yielded: int  # flags of an impact below `trusted`
-    trusted: float  # d_Y/(V0 T_H) of the weaker body, below which `yielded` is raised
+    flags_when_yielded: int  # flags of an impact below `least_yield_ratio`
+    least_yield_ratio: float  # d_Y/(V0 T_H) of the weaker body, below which they are raised
     fastest: float  # d_Y/(V0 T_H) below which FAST_IMPACT is raised; 0: none is too fast
     swiftest: float  # V0 T_H over R beyond which FAST_IMPACT is raised, too
     share: float  # d_Y/R of the weaker body; inf if none yields
@@ -184,8 +184,8 @@ def limits(pair: Pair, law: Law) -> Limits:
         flowing = [one for one in (sphere, plate) if min(sphere, plate) > ALONE * one]
         known = all(RATIOS[0] <= pair.effective_modulus / one <= RATIOS[1] for one in flowing)
         return Limits(
-            slender=_SLENDER_YIELDED, slowness=0.0, always=int(rate), yielded=0, trusted=0.0,
-            fastest=0.0,
+            slender=_SLENDER_YIELDED, slowness=0.0, always=int(rate), flags_when_yielded=0,
+            least_yield_ratio=0.0, fastest=0.0,
             swiftest=(math.pi * _SWIFTEST**2) ** 0.4,  # V0 T_H/R at V0/sqrt(E*/rho1)
             deepest=law.range[1] * (law.scale or 0.0),
             untried=0 if known else int(Validity.UNTRIED_STRENGTH), **common,
@@ -202,8 +202,8 @@ def limits(pair: Pair, law: Law) -> Limits:
         slender=SLENDER,
         slowness=slowness,
         always=int(rate | soft * Validity.SOFT_PLATE),
-        yielded=int((other or soft) * Validity.OTHER_LAW),
-        trusted=_y_at(_YIELDED if law.yields else 1.0),
+        flags_when_yielded=int((other or soft) * Validity.OTHER_LAW),
+        least_yield_ratio=_y_at(_WELL_YIELDED if law.yields else 1.0),
         fastest=_y_at(_FASTEST),
         swiftest=math.inf,
         deepest=math.inf,
@@ -253,8 +253,8 @@ def flags_of(
     if thickness < math.inf and contact_time < TRANSITS * thickness * limits.slowness:
         flags |= _THICK_PLATE
     yield_ratio = limits.share * radius / scale
-    if yield_ratio < limits.trusted:
-        flags |= limits.yielded
+    if yield_ratio < limits.least_yield_ratio:
+        flags |= limits.flags_when_yielded
     if yield_ratio < limits.fastest or scale > limits.swiftest * radius:
         flags |= _FAST_IMPACT
     if compression > limits.deepest * radius:

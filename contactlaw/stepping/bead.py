@@ -20,25 +20,35 @@ from contactlaw.stepping.contact import (
     Bead,
     Clock,
     Contact,
-    Scene,
     Trouble,
-    complain,
+    WallScene,
+    apply_contact,
+    clear_contact,
     contact_of,
-    forget,
-    press,
+    report_trouble,
 )
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import FRICTION, check_friction
-from contactlaw.stepping.sheet import sheets
-from contactlaw.walls.facet import Touch, nearest, seen
+from contactlaw.stepping.plate_rows import plate_rows
+from contactlaw.walls.facet import Touch, nearest, touch_in_space
 from contactlaw.walls.frame import Wall, framed
 from contactlaw.walls.plate import Models, by_type, check_models
-from contactlaw.walls.surface import OVERLAP, ROOM, join, on_it, overlaps, slope, touch_of
+from contactlaw.walls.surface import (
+    OVERLAP,
+    ROOM,
+    group_surfaces,
+    on_listed_facet,
+    overlaps,
+    pass_gradient,
+    touch_of,
+)
 
 Rows = NDArray[np.void]
 
-_PLACES = 8  # most contacts of a bead at once: three in a corner, in a hole one for each edge
-_RIGHT = 1e-6  # two forces count as perpendicular if the cosine of their angle is at most this
+# Most contacts of a bead at once: three in a corner, in a hole one for each edge.
+_MOST_CONTACTS = 8
+# Two forces count as perpendicular if the cosine of their angle is at most this.
+_PERPENDICULAR = 1e-6
 
 
 class WallContacts:
@@ -65,7 +75,7 @@ class WallContacts:
 
     Attributes
     ----------
-    scene : Scene
+    scene : WallScene
         Argument of the kernel `interact`, valid as long as this object lives.
     places : int
         Most contacts that a bead may have at once.
@@ -91,10 +101,10 @@ class WallContacts:
         kinds = sorted(by_type(models, types))
         if kinds and not 1 <= kinds[0] <= kinds[-1] <= types:
             raise ValueError(f"models: the types of beads are 1 to {types}, got {kinds}")
-        rows, numbers, self._models = sheets(walls, by_type(models, types), types)
+        rows, numbers, self._models = plate_rows(walls, by_type(models, types), types)
         facets, frames, self._held = framed(walls, numbers, largest)
-        self.places = min(len(facets), _PLACES)
-        self.scene = Scene(
+        self.places = min(len(facets), _MOST_CONTACTS)
+        self.scene = WallScene(
             rows, frames, facets, np.zeros(ROOM, OVERLAP), impacts, np.zeros(1, STATUS), friction
         )
 
@@ -146,7 +156,7 @@ def _row_of(bead: Bead, facet: int) -> int:
 
 
 @kernel
-def _place_of(found: Any, count: int, facet: int) -> int:
+def _index_in_list(found: Any, count: int, facet: int) -> int:
     """Position of a facet in the list of those that a bead overlaps, else -1."""
     for n in range(count):
         if found[n].facet == facet:
@@ -155,7 +165,7 @@ def _place_of(found: Any, count: int, facet: int) -> int:
 
 
 @kernel
-def _place_in(scene: Scene, bead: Bead, n: int, touching: bool) -> Contact:
+def _contact_with(scene: WallScene, bead: Bead, n: int, touching: bool) -> Contact:
     """Contact with facet n of the list, without the force that it shares with another one.
 
     Hertz's force is proportional to the overlap to the power 1.5, so the shared part is
@@ -166,7 +176,9 @@ def _place_in(scene: Scene, bead: Bead, n: int, touching: bool) -> Contact:
     if row.shared > 0.0:
         share = row.shared / row.x
         share *= math.sqrt(share)
-        less = slope(scene.frames, scene.facets, bead.x, bead.r, found[row.one], found[row.other])
+        less = pass_gradient(
+            scene.frames, scene.facets, bead.x, bead.r, found[row.one], found[row.other]
+        )
         along = (
             along[0] - share * less[0], along[1] - share * less[1], along[2] - share * less[2]
         )  # fmt: skip
@@ -181,64 +193,64 @@ def _path(clock: Clock, bead: Bead) -> float:
 
 
 @kernel
-def _home(scene: Scene, bead: Bead, row: Any, count: int, path: float) -> int:
+def _continuing_facet(scene: WallScene, bead: Bead, row: Any, count: int, path: float) -> int:
     """Position in the list of the facet on which a contact goes on, else -1.
 
     A facet that is suddenly far away was left across a periodic boundary. The contact then goes on
     where the overlap differs the least and by no more than `path`; if there is no such facet: -2.
     """
     found, facet = scene.found, _facet_of(row)
-    at = _place_of(found, count, facet)
+    at = _index_in_list(found, count, facet)
     if at >= 0:
-        return int(found[at].surface)
+        return int(found[at].representative)
     one = scene.facets[facet]
-    touch = seen(scene.frames[one.frame], one, bead.x, bead.r)
+    touch = touch_in_space(scene.frames[one.frame], one, bead.x, bead.r)
     if touch.x > -bead.r:
         point = nearest(touch, bead.x, bead.r)
         for n in range(count):
-            if on_it(scene.frames, scene.facets, found[n], point, bead.r):
-                return int(found[n].surface)
+            if on_listed_facet(scene.frames, scene.facets, found[n], point, bead.r):
+                return int(found[n].representative)
         return -1
     best = -2
     for n in range(count):
         apart = abs(found[n].x - row.overlap)
-        if found[n].surface == n and apart <= path:
+        if found[n].representative == n and apart <= path:
             best, path = n, apart
     return best
 
 
 @kernel
-def _hand_over(scene: Scene, clock: Clock, bead: Bead, count: int) -> None:
+def _move_contacts(scene: WallScene, clock: Clock, bead: Bead, count: int) -> None:
     """Move the contacts of a bead to the facets that it has crossed to."""
     found, path = scene.found, _path(clock, bead)
     for k in range(len(bead.contacts)):
         row = bead.contacts[k]
         if row.facet == 0.0:
             continue
-        home = _home(scene, bead, row, count, path)
-        if home == -2:
-            forget(bead, k)
-        elif home >= 0 and _row_of(bead, found[home].facet) < 0:
-            row.facet = math.copysign(found[home].facet + 1.0, found[home].s)
+        next_facet = _continuing_facet(scene, bead, row, count, path)
+        if next_facet == -2:
+            clear_contact(bead, k)
+        elif next_facet >= 0 and _row_of(bead, found[next_facet].facet) < 0:
+            row.facet = math.copysign(found[next_facet].facet + 1.0, found[next_facet].s)
 
 
 @kernel
-def _part(scene: Scene, clock: Clock, bead: Bead, k: int, count: int) -> None:
+def _end_contact(scene: WallScene, clock: Clock, bead: Bead, k: int, count: int) -> None:
     """End a contact whose facet the bead has left, or whose surface has another contact now."""
     facet = _facet_of(bead.contacts[k])
-    one, n, heir = scene.facets[facet], _place_of(scene.found, count, facet), -1
+    one, n, merged_into = scene.facets[facet], _index_in_list(scene.found, count, facet), -1
     if n >= 0:
-        heir = _row_of(bead, scene.found[scene.found[n].surface].facet)
-        heir = -1 if heir == k else heir
-    if heir >= 0:
-        bead.contacts[heir].company = SHARING
-    t = seen(scene.frames[one.frame], one, bead.x, bead.r)
+        merged_into = _row_of(bead, scene.found[scene.found[n].representative].facet)
+        merged_into = -1 if merged_into == k else merged_into
+    if merged_into >= 0:
+        bead.contacts[merged_into].disturbance = SHARING
+    t = touch_in_space(scene.frames[one.frame], one, bead.x, bead.r)
     if t.x > -bead.r:  # else something has moved the bead far away between two steps
         t = Touch(min(t.x, 0.0), t.s, t.nx, t.ny, t.nz, t.face)
-        contact = contact_of(scene, bead, facet, t, (t.nx, t.ny, t.nz), True, heir)
-        press(scene, clock, bead, contact, k)
+        contact = contact_of(scene, bead, facet, t, (t.nx, t.ny, t.nz), True, merged_into)
+        apply_contact(scene, clock, bead, contact, k)
     else:
-        forget(bead, k)
+        clear_contact(bead, k)
 
 
 @kernel
@@ -246,14 +258,14 @@ def _deepest_new(found: Any, count: int, bead: Bead) -> int:
     """Position in the list of the deepest facet that has no contact yet, else -1."""
     new = -1
     for n in range(count):
-        if found[n].surface == n and (new < 0 or found[n].x > found[new].x):
+        if found[n].representative == n and (new < 0 or found[n].x > found[new].x):
             if _row_of(bead, found[n].facet) < 0:
                 new = n
     return new
 
 
 @kernel
-def _begin_all(scene: Scene, clock: Clock, bead: Bead, count: int, touching: bool) -> None:
+def _begin_all(scene: WallScene, clock: Clock, bead: Bead, count: int, touching: bool) -> None:
     """Begin contacts, the deepest first; if no row is empty, a shallower contact is replaced.
 
     The two overlaps are nearly equal when one replaces the other, so the force does not jump.
@@ -267,22 +279,22 @@ def _begin_all(scene: Scene, clock: Clock, bead: Bead, count: int, touching: boo
         if at < 0:
             least = math.inf
             for k in range(len(bead.contacts)):
-                n = _place_of(found, count, _facet_of(bead.contacts[k]))
+                n = _index_in_list(found, count, _facet_of(bead.contacts[k]))
                 x = found[n].x if n >= 0 else 0.0  # 0: this contact has ended in this step
                 if x < least:
                     least, at = x, k
             if not found[new].x > least:
                 scene.status[0].left_out += 1
                 return
-            _part(scene, clock, bead, at, count)
-            forget(bead, at)
-        press(scene, clock, bead, _place_in(scene, bead, new, touching), at)
+            _end_contact(scene, clock, bead, at, count)
+            clear_contact(bead, at)
+        apply_contact(scene, clock, bead, _contact_with(scene, bead, new, touching), at)
         if found[new].shared > 0.0:
-            bead.contacts[at].company = SHARING
+            bead.contacts[at].disturbance = SHARING
 
 
 @kernel
-def _company(bead: Bead) -> float:
+def _disturbance_of(bead: Bead) -> float:
     """UNEVEN if two contacts press the bead and are not at right angles, else ALONE.
 
     The energy account of a contact assumes that no other force acts along its normal.
@@ -296,37 +308,37 @@ def _company(bead: Bead) -> float:
             other = bead.contacts[j]
             if other.force > 0.0:
                 pushes = other.push[0], other.push[1], other.push[2]
-                if abs(dot(push, pushes)) > _RIGHT * one.force * other.force:
+                if abs(dot(push, pushes)) > _PERPENDICULAR * one.force * other.force:
                     return UNEVEN
     return ALONE
 
 
 # Inlined, because a call would write its arguments, some 70 numbers, to memory for each bead.
 @kernel(cache=True, inline=True)
-def interact(scene: Scene, clock: Clock, bead: Bead) -> None:
+def interact(scene: WallScene, clock: Clock, bead: Bead) -> None:
     """Add the walls' force [N] and torque [N m] to a bead's; errors go to ``scene.status``."""
-    if not 0 <= bead.kind < len(scene.sheets):
-        complain(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
+    if not 0 <= bead.kind < len(scene.plate_rows):
+        report_trouble(scene, Trouble.NO_MODEL, -1, bead.kind + 1.0, 0.0)
         return
     found = scene.found
     count = overlaps(scene.frames, scene.facets, bead.x, bead.r, found)
     if count == 0 and not touches(bead):
         return
-    sharing = join(bead.r, found, count)
+    sharing = group_surfaces(bead.r, found, count)
     if clock.advancing:
-        _hand_over(scene, clock, bead, count)
-    touching, company = touches(bead), ALONE
+        _move_contacts(scene, clock, bead, count)
+    touching, disturbance = touches(bead), ALONE
     if count > 1:  # most beads have one contact: they need no search, which is slow in memory
-        company = SHARING if sharing else _company(bead)
+        disturbance = SHARING if sharing else _disturbance_of(bead)
     for k in range(len(bead.contacts)):
         row = bead.contacts[k]
         if row.facet == 0.0:
             continue
-        n = _place_of(found, count, _facet_of(row))
-        if n >= 0 and found[n].surface == n:
-            row.company = max(row.company, company)
-            press(scene, clock, bead, _place_in(scene, bead, n, touching), k)
+        n = _index_in_list(found, count, _facet_of(row))
+        if n >= 0 and found[n].representative == n:
+            row.disturbance = max(row.disturbance, disturbance)
+            apply_contact(scene, clock, bead, _contact_with(scene, bead, n, touching), k)
         elif clock.advancing or row.extra_force != 0.0:
-            _part(scene, clock, bead, k, count)
+            _end_contact(scene, clock, bead, k, count)
     if clock.advancing:
         _begin_all(scene, clock, bead, count, touching)

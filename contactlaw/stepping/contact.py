@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.equation.waves import CONTACT_TIME
+from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.physical.validity import flags_of
 from contactlaw.stepping import energy
 from contactlaw.stepping.energy import dot
-from contactlaw.stepping.friction import pull, surface_velocity
-from contactlaw.stepping.sheet import limits_of, spring_of
+from contactlaw.stepping.friction import surface_velocity, tangential_force
+from contactlaw.stepping.plate_rows import limits_of, spring_of
 from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, impact
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.facet import Point, Touch, nearest, velocity
@@ -49,7 +49,7 @@ CONTACT = np.dtype(
         ("work", "f8"),  # work of the normal force on the bead, in the frame of the wall [J]
         ("wall_work", "f8"),  # work that the wall's motion does on the bead [J]
         ("extra_force", "f8"),  # correction added to `force` in this step alone [N]
-        ("company", "f8"),  # ALONE, UNEVEN or SHARING
+        ("disturbance", "f8"),  # ALONE, UNEVEN or SHARING
         ("wall_power", "f8"),  # power of the normal force at the wall's velocity [W]
         ("push", "f8", 3),  # force on the bead without friction [N]
     ]
@@ -97,10 +97,10 @@ class Clock(NamedTuple):
     advancing: bool  # False if an engine asks for the last step's forces again, as at a set-up
 
 
-class Scene(NamedTuple):
+class WallScene(NamedTuple):
     """Walls that beads may touch, as `contactlaw.stepping.WallContacts` makes them."""
 
-    sheets: Any
+    plate_rows: Any
     frames: Any
     facets: Any
     found: Any  # room for the list of facets that a bead overlaps
@@ -129,7 +129,7 @@ class Contact(NamedTuple):
     """A bead's contact with a facet."""
 
     facet: int
-    sheet: int
+    plate_row: int
     wall: int  # number of the plate or mesh
     triangle: int
     touch: Touch
@@ -138,12 +138,18 @@ class Contact(NamedTuple):
     w: Point  # velocity of the wall [m/s]
     along: Point  # force on the bead over the law's; the normal, if no force is shared
     touching: bool  # whether the bead was on a wall before this step
-    heir: int  # row of the contact that this one has merged into, else -1
+    merged_into: int  # row of the contact that this one has merged into, else -1
 
 
 @kernel
 def contact_of(
-    scene: Scene, bead: Bead, facet: int, touch: Touch, along: Point, touching: bool, heir: int
+    scene: WallScene,
+    bead: Bead,
+    facet: int,
+    touch: Touch,
+    along: Point,
+    touching: bool,
+    merged_into: int,
 ) -> Contact:
     """Contact of a bead with a facet, with the velocities at the point of touch."""
     row, point = scene.facets[facet], nearest(touch, bead.x, bead.r)
@@ -152,12 +158,15 @@ def contact_of(
     u = (v[0] - before[0], v[1] - before[1], v[2] - before[2])
     w = velocity(frame, frame.rate, point)
     return Contact(
-        facet, row.sheet, row.wall, row.triangle, touch, point, u, w, along, touching, heir
+        facet, row.plate_row, row.wall, row.triangle, touch, point, u, w, along, touching,
+        merged_into,
     )  # fmt: skip
 
 
 @kernel
-def complain(scene: Scene, trouble: Trouble, wall: int, value: float, limit: float) -> None:
+def report_trouble(
+    scene: WallScene, trouble: Trouble, wall: int, value: float, limit: float
+) -> None:
     """Record a trouble if it is the first, and the largest trouble number so far."""
     status, code = scene.status[0], trouble.value
     if status.trouble == 0:
@@ -166,40 +175,41 @@ def complain(scene: Scene, trouble: Trouble, wall: int, value: float, limit: flo
 
 
 @kernel
-def _check_step(scene: Scene, clock: Clock, wall: int, spring: Spring, u: float) -> None:
+def _check_step(scene: WallScene, clock: Clock, wall: int, spring: Spring, u: float) -> None:
     """Refuse a step that is too long for an impact at this speed."""
     limit = CONTACT_TIME * impact(spring, u).time / FEWEST_STEPS
     if clock.dt > limit:
-        complain(scene, Trouble.STEP_TOO_LARGE, wall, u, limit)
+        report_trouble(scene, Trouble.STEP_TOO_LARGE, wall, u, limit)
 
 
 @kernel
 def _begin(
-    scene: Scene, clock: Clock, bead: Bead, contact: Contact, row: Any, spring: Spring, u: float
+    scene: WallScene, clock: Clock, bead: Bead, contact: Contact, row: Any, spring: Spring, u: float
 ) -> None:
     """Start an impact: of a new contact, or of a bead that returns before it has left the wall."""
-    wall, sheet, x = contact.wall, scene.sheets[bead.kind, contact.sheet], contact.touch.x
+    wall, x = contact.wall, contact.touch.x
+    plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     first = u > 0.0 and row.largest_compression == 0.0
     row.duration = min(x / u, clock.dt) if first else 0.0
     row.approach_speed, row.wave_energy, row.work, row.wall_work = u, 0.0, 0.0, 0.0
     if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
-        complain(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
+        report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
         _check_step(scene, clock, wall, spring, u)
         lam = impact(spring, u).inelasticity
-        if not THINNEST * bead.r <= sheet.thickness:
-            complain(scene, Trouble.FOIL, wall, bead.r / sheet.thickness, 1.0 / THINNEST)
-        elif lam > sheet.largest:
-            complain(scene, Trouble.TOO_THIN, wall, lam, sheet.largest)
+        if not THINNEST * bead.r <= plate_row.thickness:
+            report_trouble(scene, Trouble.FOIL, wall, bead.r / plate_row.thickness, 1.0 / THINNEST)
+        elif lam > plate_row.largest:
+            report_trouble(scene, Trouble.TOO_THIN, wall, lam, plate_row.largest)
 
 
 @kernel
-def _partner(bead: Bead, k: int) -> int:
+def _sharing_row(bead: Bead, k: int) -> int:
     """Row of another contact that shares its force, if contact k does so too, else -1."""
-    if bead.contacts[k].company == SHARING:
+    if bead.contacts[k].disturbance == SHARING:
         for j in range(len(bead.contacts)):
             other = bead.contacts[j]
-            if j != k and other.force > 0.0 and other.company == SHARING:
+            if j != k and other.force > 0.0 and other.disturbance == SHARING:
                 return j
     return -1
 
@@ -216,7 +226,7 @@ def _power(bead: Bead, k: int, v: Point) -> float:
 
 
 @kernel
-def _kinked(held: Point, n: Point, v: Point, dt: float, distance: float) -> bool:
+def _normal_jumped(held: Point, n: Point, v: Point, dt: float, distance: float) -> bool:
     """Whether the normal has turned by more than the bead's motion in the step explains."""
     size = math.sqrt(dot(held, held))
     turn = 0.0
@@ -228,7 +238,7 @@ def _kinked(held: Point, n: Point, v: Point, dt: float, distance: float) -> bool
 @kernel
 def _end(
     law: Array,
-    scene: Scene,
+    scene: WallScene,
     clock: Clock,
     bead: Bead,
     contact: Contact,
@@ -247,8 +257,8 @@ def _end(
         unit *= last.stiffening
     dm = last.largest_compression / scale
     lost, other = force.loss(law, dm) * unit * scale, force.other_loss(law, dm) * unit * scale
-    if contact.heir >= 0:
-        to = bead.contacts[contact.heir]
+    if contact.merged_into >= 0:
+        to = bead.contacts[contact.merged_into]
         to.reported_loss += row.reported_loss - lost
         to.wave_energy += row.wave_energy
         to.work += row.work
@@ -258,31 +268,31 @@ def _end(
     if not row.approach_speed > 0.0:  # the bead did not arrive: it was put down in contact
         return 0.0, 0.0, 0.0
     missing = reported - lost - row.wave_energy - row.work
-    steps, partner = row.duration / clock.dt, _partner(bead, k)
+    steps, sharing = row.duration / clock.dt, _sharing_row(bead, k)
     extra, leaves = (0.0, 0.0, 0.0), -u
-    if partner >= 0:  # the other contact has the energy that this one lacks
-        bead.contacts[partner].work -= missing
-    elif row.company != ALONE:
-        more = energy.scaled(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
+    if sharing >= 0:  # the other contact has the energy that this one lacks
+        bead.contacts[sharing].work -= missing
+    elif row.disturbance != ALONE:
+        more = energy.settling_share(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
         size = more * bead.mass / clock.dt
         extra, leaves = (size * v[0], size * v[1], size * v[2]), -u * (1.0 + more)
     else:
-        size = energy.settle(missing, bead.mass, u, row.approach_speed, clock.dt, steps)
+        size = energy.settling_force(missing, bead.mass, u, row.approach_speed, clock.dt, steps)
         extra = size * touch.nx, size * touch.ny, size * touch.nz
         leaves = size * clock.dt / bead.mass - u
-    if not touch.face and u < 0.0 and row.company == ALONE:
-        around = energy.turning(bead.r, row.overlap, touch.x, u, clock.dt)
+    if not touch.face and u < 0.0 and row.disturbance == ALONE:
+        around = energy.tangential_square(bead.r, row.overlap, touch.x, u, clock.dt)
         leaves = energy.free_speed(leaves, around, bead.r, touch.x)
     n = scene.status[0].impacts
     if n == len(scene.impacts):
-        complain(scene, Trouble.TOO_MANY_IMPACTS, contact.wall, 0.0, n)
+        report_trouble(scene, Trouble.TOO_MANY_IMPACTS, contact.wall, 0.0, n)
         return extra
     scene.status[0].impacts = n + 1
     since = 0.0
     if u < 0.0:  # time since the compression fell to the residual one, within this step
         gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
         since = min(max(gap / -u, 0.0), clock.dt)
-    record, sheet = scene.impacts[n], scene.sheets[bead.kind, contact.sheet]
+    record, plate_row = scene.impacts[n], scene.plate_rows[bead.kind, contact.plate_row]
     record.time = clock.now - row.duration
     record.bead, record.other = bead.number, -1
     record.plate, record.triangle = contact.wall, contact.triangle
@@ -294,9 +304,9 @@ def _end(
     share = 1.0 - other / lost if lost > 0.0 else 0.0
     record.plastic_energy, record.wave_energy = share * (lost - reported), row.wave_energy
     record.other_energy = (1.0 - share) * (lost - reported)
-    record.wall_work = row.wall_work  # `press` adds the work of this step
+    record.wall_work = row.wall_work  # `apply_contact` adds the work of this step
     record.flags = flags_of(
-        limits_of(sheet), bead.r, sheet.thickness,
+        limits_of(plate_row), bead.r, plate_row.thickness,
         impact(spring, record.approach_speed).compression, record.contact_time,
         last.largest_compression, record.peak_force,
     )  # fmt: skip
@@ -304,7 +314,7 @@ def _end(
 
 
 @kernel
-def forget(bead: Bead, k: int) -> None:
+def clear_contact(bead: Bead, k: int) -> None:
     """Empty the row of a contact."""
     bead.contacts[k] = NO_CONTACT[0]
     if len(bead.friction) > 0:
@@ -312,7 +322,7 @@ def forget(bead: Bead, k: int) -> None:
 
 
 @kernel
-def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
+def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
     """Advance a contact by a step; its row is empty afterwards if the bodies have parted."""
     row, v, touch = bead.contacts[k], contact.v, contact.touch
     n, along = (touch.nx, touch.ny, touch.nz), contact.along
@@ -323,11 +333,12 @@ def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -
         deepest = math.sqrt(v[0] ** 2 + v[1] ** 2 + v[2] ** 2) * clock.dt + AT_REST * bead.r
         # A bead that was on a wall already may begin deep in the next surface.
         if touch.x > deepest and not contact.touching:
-            complain(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)
+            report_trouble(scene, Trouble.STARTS_INSIDE, contact.wall, touch.x, deepest)
     elif touch.face and side != row.facet:
-        complain(scene, Trouble.CROSSED, contact.wall, u, 0.0)
-    sheet = scene.sheets[bead.kind, contact.sheet]
-    law, spring = array_at(sheet.law, sheet.law_size, np.float64), spring_of(sheet, bead.r)
+        report_trouble(scene, Trouble.CROSSED, contact.wall, u, 0.0)
+    plate_row = scene.plate_rows[bead.kind, contact.plate_row]
+    law = array_at(plate_row.law, plate_row.law_size, np.float64)
+    spring = spring_of(plate_row, bead.r)
     last = State(
         row.plate_displacement, row.largest_compression, row.force, row.mobility, row.stiffening
     )
@@ -335,15 +346,15 @@ def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
         held, power_0 = (row.push[0], row.push[1], row.push[2]), row.wall_power
-        if row.extra_force == 0.0 and _kinked(held, n, v, clock.dt, bead.r - touch.x):
-            row.company = max(row.company, UNEVEN)
+        if row.extra_force == 0.0 and _normal_jumped(held, n, v, clock.dt, bead.r - touch.x):
+            row.disturbance = max(row.disturbance, UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
         _begin(scene, clock, bead, contact, row, spring, u)
     else:
         first = 0.0 < row.duration < clock.before
-        if not touch.face and last.force > 0.0 and first and row.company == ALONE:
+        if not touch.face and last.force > 0.0 and first and row.disturbance == ALONE:
             # How fast the normal turns is first known in the second step.
-            around = energy.turning(bead.r, row.overlap, touch.x, u, clock.dt)
+            around = energy.tangential_square(bead.r, row.overlap, touch.x, u, clock.dt)
             row.approach_speed = energy.free_speed(
                 row.approach_speed, around, bead.r, row.overlap
             )  # fmt: skip
@@ -370,7 +381,7 @@ def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -
     if touch.x <= 0.0:
         bead.contacts[k] = NO_CONTACT[0]
         if extra == 0.0:
-            forget(bead, k)
+            clear_contact(bead, k)
     if extra != 0.0:
         row.facet = side  # kept after parting too, because a set-up asks for this force again
     row.extra_force, row.wall_power = extra, power
@@ -378,11 +389,12 @@ def _advance(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -
 
 
 @kernel
-def press(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
+def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int) -> None:
     """Add the force of one contact to a bead, and update the row of the contact."""
-    row, touch, sheet = bead.contacts[k], contact.touch, scene.sheets[bead.kind, contact.sheet]
-    if sheet.law == 0:
-        complain(scene, Trouble.NO_MODEL, contact.wall, bead.kind + 1.0, 0.0)
+    row, touch = bead.contacts[k], contact.touch
+    plate_row = scene.plate_rows[bead.kind, contact.plate_row]
+    if plate_row.law == 0:
+        report_trouble(scene, Trouble.NO_MODEL, contact.wall, bead.kind + 1.0, 0.0)
         return
     recorded = scene.status[0].impacts
     if clock.advancing:
@@ -391,11 +403,11 @@ def press(scene: Scene, clock: Clock, bead: Bead, contact: Contact, k: int) -> N
         return
     n, sliding = (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0)
     if len(bead.friction) > 0:
-        stiffness = sheet.tangential * math.sqrt(
+        stiffness = plate_row.tangential * math.sqrt(
             bead.r * max(touch.x - row.plate_displacement, 0.0)
         )
         slip = surface_velocity(contact.v, bead.omega, bead.r, n)
-        sliding = pull(
+        sliding = tangential_force(
             bead.friction[k], scene.friction, stiffness, n, slip,
             clock.dt if clock.advancing else 0.0, row.force, row.extra_force,
         )  # fmt: skip

@@ -33,13 +33,13 @@ _ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 
 # (`contactlaw.softsphere.time_step`). If more energy is missing, another bead struck this one in
 # between: it is left as it is. The correction is relative to the larger of the rebound and the
 # approach speed, because a bead that rolls over a corner may leave slowly.
-_MOST = 1.8
+_LARGEST_CORRECTION = 1.8
 # Largest relative correction of the speed of a bead that crossed kinks, times steps per contact. At
 # the peak of Hertz's force the impulse of a step is 3.7/steps of the momentum of the approach.
-_KINKS = 3.0
+_LARGEST_KINK_CORRECTION = 3.0
 # Largest overlap after the first step of a contact over the path in that step; on an edge it may
 # be a little above 1, because the normal turns.
-_ONE = 1.01
+_FIRST_OVERLAP = 1.01
 
 
 @kernel
@@ -63,18 +63,19 @@ def step(
         u2 = new.plate_displacement + shift * (f1 - f0)
         new = State(u2, new.largest_compression, f1, new.mobility, new.stiffening)
         return new, spring.mass * shift * (f1 - f0) / (h * h)
-    if f1 > 0.0 and state.largest_compression == 0.0 and x <= _ONE * u * h and force.is_hertz(law):
-        return new, _before_the_first(spring, x, u * h)
+    first = f1 > 0.0 and state.largest_compression == 0.0
+    if first and x <= _FIRST_OVERLAP * u * h and force.is_hertz(law):
+        return new, _first_step_correction(spring, x, u * h)
     return new, 0.0
 
 
 @kernel
-def _before_the_first(spring: Spring, x: float, way: float) -> Any:
+def _first_step_correction(spring: Spring, x: float, path: float) -> Any:
     """Correction of the force in the first step, because a contact begins inside that [N]."""
-    t, zeta = x / way, 0.0
+    t, zeta = x / path, 0.0
     for coefficient in _ZETA[::-1]:
         zeta = zeta * t + coefficient
-    return -(t * math.sqrt(t) + zeta) * spring.stiffness * way * math.sqrt(way)
+    return -(t * math.sqrt(t) + zeta) * spring.stiffness * path * math.sqrt(path)
 
 
 @kernel
@@ -108,19 +109,24 @@ def work(
 
 
 @kernel
-def settle(missing: float, m: float, u: float, approach: float, h: float, steps: float) -> float:
+def settling_force(
+    missing: float, m: float, u: float, approach: float, h: float, steps: float
+) -> float:
     """Force in the last step that gives a rebounding bead its missing energy [N]."""
     square = u * u + 2.0 * missing / m
     if not (u < 0.0 and square > 0.0):
         return 0.0
     change, steps = math.sqrt(square) + u, max(steps, FEWEST_STEPS)
-    if not abs(change) <= max(-u, approach) * _MOST / (steps * steps * math.sqrt(steps)):
+    largest = max(-u, approach) * _LARGEST_CORRECTION / (steps * steps * math.sqrt(steps))
+    if not abs(change) <= largest:
         return 0.0
     return m * change / h
 
 
 @kernel
-def scaled(missing: float, m: float, v: Point, power: float, h: float, steps: float) -> float:
+def settling_share(
+    missing: float, m: float, v: Point, power: float, h: float, steps: float
+) -> float:
     """Relative change of the velocity that gives a bead of an UNEVEN contact its missing energy.
 
     A force that jumps within a step errs by up to half of its impulse in that step, along the jump,
@@ -133,22 +139,22 @@ def scaled(missing: float, m: float, v: Point, power: float, h: float, steps: fl
     if not (one > 0.0 and square > 0.0):
         return 0.0
     share = math.sqrt(square) - one
-    return share if abs(share) <= _KINKS / max(steps, FEWEST_STEPS) else 0.0
+    return share if abs(share) <= _LARGEST_KINK_CORRECTION / max(steps, FEWEST_STEPS) else 0.0
 
 
 @kernel
-def turning(r: float, x0: float, x1: float, u: float, h: float) -> float:
+def tangential_square(r: float, x0: float, x1: float, u: float, h: float) -> float:
     """Square of the tangential speed around an edge or a corner [m^2/s^2]."""
-    way = 2.0 * r - x0 - x1 + u * h
-    return max((x1 - x0 - u * h) * way, 0.0) / (h * h)
+    path = 2.0 * r - x0 - x1 + u * h
+    return max((x1 - x0 - u * h) * path, 0.0) / (h * h)
 
 
 @kernel
-def free_speed(u: float, turning: float, r: float, x: float) -> float:
+def free_speed(u: float, tangential_square: float, r: float, x: float) -> float:
     """Speed along the normal at overlap 0, in free flight, of a bead with u at overlap x.
 
     Around an edge the normal turns during the contact. Approach and rebound are compared at the
     same distance from the edge, so that an elastic bead has a COR of 1.
     """
     s = 1.0 - x / r
-    return math.sqrt(u * u + turning * (1.0 - s * s))
+    return math.sqrt(u * u + tangential_square * (1.0 - s * s))

@@ -26,7 +26,7 @@ def check_friction(friction: Any) -> None:
 
 
 @kernel
-def pull(
+def tangential_force(
     row: Any, friction: float, stiffness: float, n: Point, slip: Point, dt: float, force: float,
     extra: float,
 ) -> Point:  # fmt: skip

@@ -22,8 +22,8 @@ Legend, as in `contactlaw.equation`: scaled by d_Y and F_Y inside the kernels,
     dm  largest compression so far     b   (5/12) alpha dt + dt^2/(12 m)
     dr  residual compression           f   contact force
 
-Where a law corrects the mobility of a thin plate (`contactlaw.equation.waves`), it depends on the
-contact time, and so on the approach speed, which is first known in the second step.
+Where a law corrects the mobility of a thin plate (`contactlaw.equation.corrections`), it depends on
+the contact time, and so on the approach speed, which is first known in the second step.
 
 An infinite plate recedes for ever under a lasting force such as a bead's weight. A real one has
 edges: here u2 relaxes within 1e5 contact times, too slowly to change an impact, and a bead at rest
@@ -40,10 +40,10 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
-from contactlaw.equation.force import Curve
+from contactlaw.equation.corrections import CONTACT_TIME, is_thin
+from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
-from contactlaw.equation.waves import CONTACT_TIME, is_thin
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import sphere_on_plate
 
@@ -52,7 +52,8 @@ Array = NDArray[np.float64]
 RELAXATION = 1e5  # [contact times]; u2 then moves by 1e-5 of itself within an impact
 FEWEST_STEPS = 20  # per contact; with fewer the error no longer follows the order of the method
 
-TOP = 1.0 - 1e-12  # a force of at least this share of the loading curve's is on that curve
+# A force of at least this share of the loading curve's is on that curve.
+ON_LOADING_CURVE = 1.0 - 1e-12
 MOST_ITERATIONS = 60
 CONVERGED = 1e-8  # last relative change of q; the error of the secant method is almost its square
 
@@ -127,7 +128,9 @@ def impact(spring: Spring, speed: float) -> Numbers:
 
 
 @kernel
-def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> tuple[float, float]:
+def _plate_corrections(
+    spring: Spring, state: State, overlap: float, step: float
+) -> tuple[float, float]:
     """Mobility and stiffening of a contact in its second step, when the speed is first known."""
     if not state.largest_compression > 0.0 or state.stiffening > 0.0:
         return state.mobility, state.stiffening
@@ -135,17 +138,19 @@ def _next_orders(spring: Spring, state: State, overlap: float, step: float) -> t
     if not speed > 0.0:
         return spring.mobility, 1.0
     found = impact(spring, speed)
-    more = found.stiffer
-    return found.inelasticity * found.time / spring.mass, more * more * math.sqrt(more)
+    stiffer = found.stiffer
+    return found.inelasticity * found.time / spring.mass, stiffer * stiffer * math.sqrt(stiffer)
 
 
 @kernel
-def _force(law: Array, loading: bool, q: float, curve: Curve) -> float:
+def _force(law: Array, loading: bool, q: float, curve: UnloadingCurve) -> float:
     return forces.loading(law, q) if loading else forces.unloading_force(law, curve, q)
 
 
 @kernel
-def _balance(law: Array, loading: bool, curve: Curve, b: float, r: float) -> tuple[float, float]:
+def _balance(
+    law: Array, loading: bool, curve: UnloadingCurve, b: float, r: float
+) -> tuple[float, float]:
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
     The left side is convex, so the secant method comes down to the root from the right and cannot
@@ -186,17 +191,18 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     leak = 0.5 * step / spring.relaxation
     before = unit * state.stiffening if state.stiffening > 0.0 else unit
     own, stiffening, mobility = 0.0, 0.0, spring.mobility
-    if not is_thin(spring.plate.waves):
-        own, stiffening = _next_orders(spring, state, overlap, step)
+    if not is_thin(spring.plate.corrections):
+        own, stiffening = _plate_corrections(spring, state, overlap, step)
         if stiffening > 0.0:
             mobility, unit = own, unit * stiffening
     moved = 0.5 * step * mobility / (1.0 + leak)  # motion of the plate per force at either end
     known = state.plate_displacement * (1.0 - leak) / (1.0 + leak) + moved * state.force
-    ahead = moved / 6.0  # the trapezoidal rule's error in it
-    b = (moved - ahead + step * step / (12.0 * spring.mass)) * unit / scale
-    r = (overlap - known - ahead * state.force) / scale
+    rule_error = moved / 6.0  # the trapezoidal rule's error in it
+    b = (moved - rule_error + step * step / (12.0 * spring.mass)) * unit / scale
+    r = (overlap - known - rule_error * state.force) / scale
     dm = state.largest_compression / scale
-    top = state.force >= TOP * forces.loading(law, math.sqrt(dm)) * before  # at compression dm
+    # Whether the contact is at compression dm, on the loading curve.
+    top = state.force >= ON_LOADING_CURVE * forces.loading(law, math.sqrt(dm)) * before
     loading, q, f = True, 0.0, 0.0
     least = forces.lossless(law)
     if dm > least and not top:
@@ -208,9 +214,9 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
         d = q * q
         fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
         if top and fall > 0.0:
-            turn = 0.5 + (d - dm) / fall  # time of the parabola's vertex, in steps
-            if turn < 1.0:
-                dm = max(d, dm + 0.5 * fall * max(turn, 0.0) ** 2)
+            vertex = 0.5 + (d - dm) / fall  # time of the parabola's vertex, in steps
+            if vertex < 1.0:
+                dm = max(d, dm + 0.5 * fall * max(vertex, 0.0) ** 2)
                 if dm > least:
                     curve = forces.unloading(law, dm)
                     q, f = _balance(law, False, curve, b, r - curve.residual)

@@ -88,7 +88,7 @@ class Axis:
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class TableGrid:
     """Nodes of a table."""
 
     axes: tuple[Axis, ...]  # the inelasticity lambda, then ln chi

@@ -12,7 +12,7 @@ from contactlaw.equation import outcome, zener
 from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, shapes, sweep
-from contactlaw.table.axes import Grid
+from contactlaw.table.axes import TableGrid
 from contactlaw.table.grid import RANGES, Settings
 from contactlaw.table.shapes import Shapes
 from contactlaw.table.sweep import Progress
@@ -97,7 +97,7 @@ class Certificate:
 def compare_outcomes(
     law: Law,
     settings: Settings,
-    grid: Grid,
+    grid: TableGrid,
     packed: Array,
     points: int,
     seed: int,
@@ -139,7 +139,9 @@ def _finer(settings: Settings) -> float:
     return max(settings.rtol / 10, RANGES["rtol"][0])
 
 
-def random_points(grid: Grid, count: int, generator: np.random.Generator) -> tuple[Array, Array]:
+def random_points(
+    grid: TableGrid, count: int, generator: np.random.Generator
+) -> tuple[Array, Array]:
     """Draw lambda and chi of points; a curved kink counts at its least and its largest chi."""
     inelasticity, overload = grid.axes
     lows = [float(segment.start.min()) for segment in overload.segments]

@@ -33,7 +33,7 @@ from contactlaw.equation.outcome import STORED
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import shapes
-from contactlaw.table.axes import SERIES, Axis, Grid, Segment, series_values
+from contactlaw.table.axes import SERIES, Axis, Segment, TableGrid, series_values
 from contactlaw.table.certificate import Certificate
 from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table, shape_grid
@@ -60,7 +60,7 @@ _LAW = {
     "data": _Part("force law, see contactlaw.equation.force [d_Y, F_Y]"),
     "loading_kinks": _Part("of the loading curve [d_Y]"),
     "outcome_kinks": _Part("of the outcomes [d_Y]"),
-    "waves": _Part("of plates, see contactlaw.equation.waves; none: thin [-]"),
+    "waves": _Part("of plates, see contactlaw.equation.corrections; none: thin [-]"),
 }
 _SERIES = {
     "series_inelasticity": _Part("lambda of what follows [-]", (SERIES,)),
@@ -76,14 +76,14 @@ _SEGMENT = {
 }
 
 
-def _fields(grid: Grid) -> dict[str, _Part]:
+def _fields(grid: TableGrid) -> dict[str, _Part]:
     return {
         name: _Part(one.description, grid.shape, one.least, one.largest)
         for name, one in STORED.items()
     }
 
 
-def _shapes(grid: Grid) -> dict[str, _Part]:
+def _shapes(grid: TableGrid) -> dict[str, _Part]:
     return {
         **{name: _Part("of the states [-]", grid.shape) for name in grids.AXES},
         "shares": _Part("of the largest root compression, up and down [-]", (shapes.STATES,)),
@@ -244,7 +244,7 @@ def _from_file(file: h5py.File) -> Table:
     law = _law(file)
     axes = tuple(_axis(file, name) for name in grids.AXES)
     grids.check(axes, law, settings)
-    grid = Grid(axes, _take(file, "", _SERIES)["elastic_compression"])
+    grid = TableGrid(axes, _take(file, "", _SERIES)["elastic_compression"])
     errors = file.attrs.get("certificate")
     certificate = None if errors is None else Certificate(**json.loads(errors))
     fields = _take(file, "fields", _fields(grid))

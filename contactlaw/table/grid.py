@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from contactlaw.equation import zener
 from contactlaw.laws import Law
 from contactlaw.laws._branches import END
-from contactlaw.table.axes import FEWEST, SERIES, Axis, Grid, Segment, series_values
+from contactlaw.table.axes import FEWEST, SERIES, Axis, Segment, TableGrid, series_values
 
 Array = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ def inelasticity_axis(settings: Settings) -> Axis:
     return Axis(AXES[0], (Segment(*ends, shares, graded=False),), settings.stretch)
 
 
-def coarser(grid: Grid, settings: Settings, steps: float | Array) -> Grid:
+def with_steps(grid: TableGrid, settings: Settings, steps: float | Array) -> TableGrid:
     """Place other nodes between the same kinks; one step for all segments, or one for each."""
     overload = grid.axes[1]
     each = np.broadcast_to(steps, len(overload.segments))
@@ -158,7 +158,7 @@ def _with_nodes(segment: Segment, step: float) -> Segment:
     return segment._replace(shares=shares**2 if segment.graded else shares)
 
 
-def grid(law: Law, settings: Settings) -> Grid:
+def grid(law: Law, settings: Settings) -> TableGrid:
     """Place the nodes for a law that yields; its kinks are found by the solver."""
     if not law.yields and law.is_hertz:
         raise ValueError(f"law: {law.name!r} never yields; the edge chi = 1 of any table serves it")
@@ -170,7 +170,7 @@ def grid(law: Law, settings: Settings) -> Grid:
         _with_nodes(Segment(start, end, np.empty(0), root), settings.log_overload_step)
         for (start, end), root in zip(itertools.pairwise(lines), graded, strict=True)
     )
-    return Grid((inelasticity, Axis(AXES[1], segments)), elastic)
+    return TableGrid((inelasticity, Axis(AXES[1], segments)), elastic)
 
 
 def _kink_lines(

@@ -36,9 +36,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation.numbers import PlateConstants, inelasticity_of, stiffening_of
+from contactlaw.equation.corrections import PlateCorrections, is_thin
+from contactlaw.equation.numbers import PlateConstants, inelasticity_of, plate_stiffening
 from contactlaw.equation.outcome import Outcome
-from contactlaw.equation.waves import Waves, is_thin
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
@@ -55,7 +55,7 @@ THINNEST = 0.01
 
 STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X, COLUMNS = range(5)
 SEGMENTS, CURVED, COR_AT, OTHERS_AT, TRANSIT, REACH, SATURATED, WAVES = range(5, 13)
-HEADER = WAVES + len(Waves._fields)  # where the series of ln w_m begins
+HEADER = WAVES + len(PlateCorrections._fields)  # where the series of ln w_m begins
 DEGREE = 20  # degree of ln w_m in x: within 4e-12 at the nodes
 START, END, PER_LOG, CELLS, COLUMN, GRADED, LINE, BLOCK = range(8)
 BLOCKS = HEADER + DEGREE + 1
@@ -64,11 +64,11 @@ _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level ca
 
 def with_plate(table: Array, plate: PlateConstants) -> Array:
     """Copy a table and put in the corrections of a plate; the paper's dashpot needs no copy."""
-    if is_thin(plate.waves):
+    if is_thin(plate.corrections):
         return table
     table = table.copy()
-    table[TRANSIT:WAVES] = plate.transit, plate.reach, plate.saturated
-    table[WAVES:HEADER] = plate.waves
+    table[TRANSIT:WAVES] = plate.transit, plate.x_at_one, plate.saturated
+    table[WAVES:HEADER] = plate.corrections
     return table
 
 
@@ -76,11 +76,11 @@ def with_plate(table: Array, plate: PlateConstants) -> Array:
 def _plate(table: Array, c_lam: float) -> PlateConstants:
     """Read the constants of the plate."""
     w, k = table, WAVES
-    waves = Waves(
+    corrections = PlateCorrections(
         w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5],
         w[k + 6], w[k + 7], w[k + 8], w[k + 9], w[k + 10],
     )  # fmt: skip
-    return PlateConstants(c_lam, w[TRANSIT], w[REACH], w[SATURATED], waves)
+    return PlateConstants(c_lam, w[TRANSIT], w[REACH], w[SATURATED], corrections)
 
 
 def lam_max(table: Array) -> float:
@@ -360,7 +360,7 @@ def _other_fields(table: Array, p: np.uint64, s: float, t: float) -> _Others:
 
 
 @kernel
-def _put(
+def _write_fields(
     table: Array, first: int, s: float, t: float, log_chi: float, log_w: float, out: Outcome, n: int
 ) -> None:
     """Write the fields of impact n, from the 4 x 4 coefficients that begin at `first`."""
@@ -375,7 +375,7 @@ def _put(
 
 
 @kernel
-def _blank(out: Outcome, n: int) -> None:
+def _write_nan(out: Outcome, n: int) -> None:
     """Write NaN for the fields of impact n."""
     out.restitution[n] = out.contact_time[n] = out.wave_rate[n] = math.nan
     out.compression_ratio[n] = out.elastic_compression[n] = math.nan
@@ -394,12 +394,12 @@ def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: f
     if not V_MIN <= speed <= V_MAX:
         return math.nan
     log_speed, root = _log_and_root(speed)
-    plate, more = _plate(table, c_lam), 1.0
-    if not is_thin(plate.waves):
-        eta = stiffening_of(plate, root, ratio)
-        more = _exp(eta)
+    plate, stiffer = _plate(table, c_lam), 1.0
+    if not is_thin(plate.corrections):
+        eta = plate_stiffening(plate, root, ratio)
+        stiffer = _exp(eta)
         c_chi -= eta
-    lam = inelasticity_of(plate, root, ratio, more)
+    lam = inelasticity_of(plate, root, ratio, stiffer)
     x = lam / (lam + table[STRETCH])
     if not 0.0 <= x <= table[X_MAX]:
         return math.nan
@@ -444,7 +444,7 @@ def _coordinates(
     for i in range(x.size):
         log_chi[i], root[i] = _log_and_root(speed[i])
     plate = _plate(table, c_lam)
-    if is_thin(plate.waves):
+    if is_thin(plate.corrections):
         for i in range(x.size):
             # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
             above = c_lam * root[i] * radius[i] * radius[i]
@@ -452,10 +452,10 @@ def _coordinates(
     else:
         for i in range(x.size):
             ratio = radius[i] / thickness[i]
-            eta = stiffening_of(plate, root[i], ratio)
-            more = _exp(eta)
-            lam = inelasticity_of(plate, root[i], ratio, more)
-            root[i] *= more
+            eta = plate_stiffening(plate, root[i], ratio)
+            stiffer = _exp(eta)
+            lam = inelasticity_of(plate, root[i], ratio, stiffer)
+            root[i] *= stiffer
             x[i] = lam / (lam + stretch)
             log_chi[i] -= 1.25 * eta  # times 0.8 below, as ln V is
     for i in range(x.size):
@@ -487,13 +487,13 @@ def _move_inside(
 
 
 @kernel(inline=True)
-def _part(values: Array, start: int, count: int) -> Array:
+def _slice(values: Array, start: int, count: int) -> Array:
     """Part of an array; one kernel for all slices, since each is slow to compile."""
     return values[start : start + count]
 
 
 @kernel(inline=True)
-def _room(scratch: Array, row: int, count: int) -> Array:
+def _row(scratch: Array, row: int, count: int) -> Array:
     """First `count` numbers of a row of scratch memory."""
     return scratch[row, :count]
 
@@ -514,10 +514,10 @@ def restitutions(
     bad = 0
     for start in range(0, out.size, _CHUNK):
         n = min(_CHUNK, out.size - start)
-        v, r, h = _part(speed, start, n), _part(radius, start, n), _part(thickness, start, n)
-        values = _part(out, start, n)
-        x, log_chi, along = _room(scratch, 0, n), _room(scratch, 1, n), _room(scratch, 2, n)
-        a, b, outside = _room(scratch, 3, n), _room(scratch, 4, n), _room(scratch, 5, n)
+        v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
+        values = _slice(out, start, n)
+        x, log_chi, along = _row(scratch, 0, n), _row(scratch, 1, n), _row(scratch, 2, n)
+        a, b, outside = _row(scratch, 3, n), _row(scratch, 4, n), _row(scratch, 5, n)
         inside = _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, a, b)
         if not inside:
             _move_inside(table, v, r, h, log_chi, x, outside)
@@ -553,12 +553,12 @@ def outcomes(
     bad = 0
     for start in range(0, speed.size, _CHUNK):
         n = min(_CHUNK, speed.size - start)
-        v, r, h = _part(speed, start, n), _part(radius, start, n), _part(thickness, start, n)
-        roots = _part(root, start, n)
-        x, log_chi, along = _room(scratch, 0, n), _room(scratch, 1, n), _room(scratch, 2, n)
-        log_w, a, b = _room(scratch, 3, n), _room(scratch, 4, n), _room(scratch, 5, n)
+        v, r, h = _slice(speed, start, n), _slice(radius, start, n), _slice(thickness, start, n)
+        roots = _slice(root, start, n)
+        x, log_chi, along = _row(scratch, 0, n), _row(scratch, 1, n), _row(scratch, 2, n)
+        log_w, a, b = _row(scratch, 3, n), _row(scratch, 4, n), _row(scratch, 5, n)
         inside = _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, log_w, roots)
-        if not is_thin(plate.waves):
+        if not is_thin(plate.corrections):
             for i in range(n):  # x = lam/(lam + stretch), chi = w_m/y
                 out.inelasticity[start + i] = table[STRETCH] * x[i] / (1.0 - x[i])
                 out.yield_ratio[start + i] = _exp(log_w[i] - log_chi[i])
@@ -567,11 +567,11 @@ def outcomes(
                 out.inelasticity[start + i] = inelasticity_of(plate, roots[i], r[i] / h[i], 1.0)
                 square = roots[i] * roots[i]
                 out.yield_ratio[start + i] = y_1 / (square * square)
-        outside = _room(scratch, 6, n)
+        outside = _row(scratch, 6, n)
         if not inside:
             _move_inside(table, v, r, h, log_chi, x, outside)
         _locate_all(table, x, log_chi, first[:n], along, a, b)
-        # no call of `_put`: passing a tuple of arrays on costs reference counts for each impact
+        # no call of `_write_fields`: passing a tuple of arrays on costs reference counts each time
         for i in range(n):
             at, s, t = int(first[i]), x[i], along[i]
             out.restitution[start + i] = _cor(table, np.uint64(cor_at + at), step, s, t)
@@ -586,7 +586,7 @@ def outcomes(
         if not inside:
             for i in range(n):
                 if outside[i] != 0.0:
-                    _blank(out, start + i)
+                    _write_nan(out, start + i)
                     bad += 1
     return bad
 
@@ -608,12 +608,12 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
         if not (inside_x == x and inside_chi == log_chi):
             outside += 1
             if not clamp:
-                _blank(out, n)
+                _write_nan(out, n)
                 continue
             out.inelasticity[n] = inside_x * table[STRETCH] / (1.0 - inside_x)
             out.yield_ratio[n] = math.exp(log_w - inside_chi)
         row, column, s, t = locate(table, inside_x, inside_chi)
-        _put(table, row * int(table[COLUMNS]) + column, s, t, inside_chi, log_w, out, n)
+        _write_fields(table, row * int(table[COLUMNS]) + column, s, t, inside_chi, log_w, out, n)
     return outside
 
 
@@ -628,7 +628,7 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
         log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
             root = math.exp(0.2 * log_speed)
-            eta = 0.0 if is_thin(plate.waves) else stiffening_of(plate, root, ratio[n])
+            eta = 0.0 if is_thin(plate.corrections) else plate_stiffening(plate, root, ratio[n])
             lam = inelasticity_of(plate, root, ratio[n], math.exp(eta))
             x = lam / (lam + table[STRETCH])
             if not 0.0 <= x <= table[X_MAX]:

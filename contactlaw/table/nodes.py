@@ -14,7 +14,7 @@ from contactlaw.equation.outcome import STORED, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import lookup, shapes, splines, sweep
-from contactlaw.table.axes import Grid
+from contactlaw.table.axes import TableGrid
 from contactlaw.table.certificate import (
     Certificate,
     bounds,
@@ -29,10 +29,10 @@ Array = NDArray[np.float64]
 
 POINTS = 1000  # points of the certificate of a table that is built on demand
 _COMPARED = 20_000  # points at which a coarser table is compared
-_FEWER = 4, 2, 1  # factors by which a coarser table may have fewer rows
+_ROW_FACTORS = 4, 2, 1  # factors by which a coarser table may have fewer rows
 # Factors by which its steps along ln chi may be wider, one for each segment: the COR of elastic
 # impacts bends far less than that beyond yield, for which a single step would have to be fine.
-_WIDER = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
+_STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ class Table:
         Force law of the impacts.
     settings : Settings
         Extent and fineness.
-    grid : Grid
+    grid : TableGrid
         Nodes of the fields.
     fields : dict of str to ndarray
         Fields of `contactlaw.equation.outcome.STORED`, each (rows, columns).
@@ -58,7 +58,7 @@ class Table:
 
     law: Law
     settings: Settings
-    grid: Grid
+    grid: TableGrid
     fields: dict[str, Array]
     states: NDArray[np.float32] | None = None
     certificate: Certificate | None = None
@@ -83,10 +83,10 @@ class Table:
         return shapes.pack(shape_grid(self), self.states)
 
 
-def shape_grid(table: Table) -> Grid:
+def shape_grid(table: Table) -> TableGrid:
     """Nodes of the shapes: coarser, with the same segments."""
     settings = dataclasses.replace(table.settings, inelasticity_nodes=shapes.ROWS)
-    return grids.coarser(table.grid, settings, shapes.STEP)
+    return grids.with_steps(table.grid, settings, shapes.STEP)
 
 
 def build(
@@ -131,13 +131,13 @@ def build(
     return dataclasses.replace(table, certificate=certify(table, points))
 
 
-def coarser(table: Table, error: float) -> Table:
+def thinned(table: Table, error: float) -> Table:
     """Thin out a table's nodes while its COR stays within `error`; else return it as it is."""
     rows, fewest = table.settings.inelasticity_nodes - 1, int(RANGES["inelasticity_nodes"][0])
     lam, chi = random_points(table.grid, _COMPARED, np.random.default_rng(0))
     exact = _looked_up(table, lam, chi).restitution
     found = table
-    for fewer in _FEWER:
+    for fewer in _ROW_FACTORS:
         count = max(rows // fewer + 1, fewest)
         steps = _widest_steps(table, count, error, (lam, chi, exact))
         if steps is not None:
@@ -162,7 +162,7 @@ def _widest_steps(
     step, widest = table.settings.log_overload_step, RANGES["log_overload_step"][1]
     steps = np.full(len(overload.segments), step)
     passing = np.ones(steps.size, dtype=bool)
-    for wider in (1.0, *_WIDER):
+    for wider in (1.0, *_STEP_FACTORS):
         one = min(step * wider, widest)
         off = np.abs(_looked_up(_resampled(table, rows, one), lam, chi).restitution - exact)
         passing &= [off[segment == n].max(initial=0.0) <= error for n in range(steps.size)]
@@ -186,7 +186,7 @@ def _resampled(table: Table, rows: int, steps: float | Array) -> Table:
     settings = dataclasses.replace(
         table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps))
     )
-    grid = grids.coarser(table.grid, settings, steps)
+    grid = grids.with_steps(table.grid, settings, steps)
     lam, log_chi = (values.ravel() for values in grid.nodes())
     found = _looked_up(table, lam, np.exp(log_chi))
     fields = {name: getattr(found, name).reshape(grid.shape) for name in STORED}

@@ -27,11 +27,11 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force, outcome, zener
-from contactlaw.equation.force import Curve
+from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.table import lookup, splines
-from contactlaw.table.axes import Grid
+from contactlaw.table.axes import TableGrid
 
 Array = NDArray[np.float64]
 Singles = NDArray[np.float32]
@@ -45,7 +45,7 @@ STEP = 0.08  # largest distance of two nodes in ln chi
 _RTOL = 1e-10  # rtol for contacts that are integrated
 
 
-def pack(grid: Grid, states: Singles) -> Shapes:
+def pack(grid: TableGrid, states: Singles) -> Shapes:
     """Fit splines through shapes (rows, columns, 2, SIZE)."""
     flat = states.reshape(*states.shape[:2], 2 * SIZE).astype(np.float64)
     return Shapes(splines.header(grid), splines.surface(flat, grid).astype(np.float32))
@@ -74,7 +74,7 @@ def _states(shapes: Shapes, lam: float, log_chi: float, out: Array) -> None:
 
 
 @kernel
-def _force(law: Array, curve: Curve, loading: bool, d: float, y: float) -> float:
+def _force(law: Array, curve: UnloadingCurve, loading: bool, d: float, y: float) -> float:
     """Force at a compression; y = inf for a contact that follows Hertz's law."""
     if y == math.inf:
         return d * math.sqrt(d)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.table import lookup
-from contactlaw.table.axes import Grid, power_series
+from contactlaw.table.axes import TableGrid, power_series
 from contactlaw.table.lookup import BLOCK, DEGREE, HEADER
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ def spline_coefficients(values: Array) -> Array:
     return c
 
 
-def surface(values: Array, grid: Grid) -> Array:
+def surface(values: Array, grid: TableGrid) -> Array:
     """Coefficients of cubic splines along each axis of the grid, one spline for each segment.
 
     One coefficient more follows at each end: kernels read it with the weight 0, without a test.
@@ -49,7 +49,7 @@ def surface(values: Array, grid: Grid) -> Array:
     return np.pad(values, beyond, mode="edge")
 
 
-def header(grid: Grid) -> Array:
+def header(grid: TableGrid) -> Array:
     """Begin an array with what `lookup.locate` reads."""
     inelasticity, overload = grid.axes
     x_max = float(inelasticity.mapped(inelasticity.largest))
@@ -77,7 +77,7 @@ def header(grid: Grid) -> Array:
     return np.concatenate((head, series[0], blocks.ravel(), *series[1:]))
 
 
-def _growth(ratio: Array, grid: Grid) -> Array:
+def _growth(ratio: Array, grid: TableGrid) -> Array:
     """Logarithm of the largest compression over that of the overload, p in d_m/d_Y = chi^p.
 
     Just above yield, where residual compression and plastic share begin with d_m - d_Y, an error of
@@ -106,7 +106,7 @@ def _lagrange(x: Array, values: Array) -> Array:
     return np.asarray(values @ (ahead / gaps).prod(axis=1))
 
 
-def pack(grid: Grid, fields: dict[str, Array]) -> Array:
+def pack(grid: TableGrid, fields: dict[str, Array]) -> Array:
     """Fit splines through the values of a table's nodes and pack them into one array."""
     packed = {**fields, "compression_ratio": _growth(fields["compression_ratio"], grid)}
     cor, *others = (surface(values, grid) for values in packed.values())

@@ -74,14 +74,14 @@ def velocity(frame: Any, rate: Any, x: Point) -> Point:
 
 
 @kernel
-def _away(r: float, s: float, dx: float, dy: float, dz: float) -> Touch:
+def _on_edge(r: float, s: float, dx: float, dy: float, dz: float) -> Touch:
     """Touch on an edge; dx, dy and dz lead from the nearest point to the sphere's centre."""
     distance = math.sqrt(dx * dx + dy * dy + dz * dz)
     return Touch(r - distance, s, dx / distance, dy / distance, dz / distance, False)
 
 
 @kernel
-def _over(facet: Any, r: float, s: float) -> Touch:
+def _on_face(facet: Any, r: float, s: float) -> Touch:
     """Touch on the face."""
     sign, n = math.copysign(1.0, s), facet.normal
     return Touch(r - abs(s), s, sign * n[0], sign * n[1], sign * n[2], True)
@@ -107,8 +107,8 @@ def on_facet(facet: Any, p: Point, r: float) -> Touch:
         at_a = min(max(along_a, 0.0), facet.length_a)
         at_b = min(max(along_b, 0.0), facet.length_b)
         if at_a == along_a and at_b == along_b:
-            return _over(facet, r, s)
-        return _away(
+            return _on_face(facet, r, s)
+        return _on_edge(
             r, s, px - at_a * a[0] - at_b * b[0], py - at_a * a[1] - at_b * b[1],
             pz - at_a * a[2] - at_b * b[2],
         )  # fmt: skip
@@ -116,7 +116,7 @@ def on_facet(facet: Any, p: Point, r: float) -> Touch:
     size = aa * bb - ab * ab
     v, w = (bb * along_a - ab * along_b) / size, (aa * along_b - ab * along_a) / size
     if v >= 0.0 and w >= 0.0 and v + w <= 1.0:
-        return _over(facet, r, s)
+        return _on_face(facet, r, s)
     best, best_v, best_w = math.inf, 0.0, 0.0
     for edge in range(3):
         if edge == 0:
@@ -135,11 +135,13 @@ def on_facet(facet: Any, p: Point, r: float) -> Touch:
         if square < best:
             best, best_v, best_w = square, v, w
     v, w = best_v, best_w
-    return _away(r, s, px - v * a[0] - w * b[0], py - v * a[1] - w * b[1], pz - v * a[2] - w * b[2])
+    return _on_edge(
+        r, s, px - v * a[0] - w * b[0], py - v * a[1] - w * b[1], pz - v * a[2] - w * b[2]
+    )
 
 
 @kernel
-def has(facet: Any, p: Point, margin: float) -> bool:
+def contains(facet: Any, p: Point, margin: float) -> bool:
     """Whether a point is on a facet, in the coordinates of the facet."""
     corner, a, b, normal = facet.corner, facet.a, facet.b, facet.normal
     px, py, pz = p[0] - corner[0], p[1] - corner[1], p[2] - corner[2]
@@ -156,7 +158,7 @@ def has(facet: Any, p: Point, margin: float) -> bool:
 
 
 @kernel
-def seen(frame: Any, facet: Any, x: Point, r: float) -> Touch:
+def touch_in_space(frame: Any, facet: Any, x: Point, r: float) -> Touch:
     """Touch of a sphere and a facet of a frame, in space."""
     return turned(frame, on_facet(facet, to_frame(frame, x), r))
 

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.walls.grid import GRID, Grid
+from contactlaw.walls.grid import GRID, FacetGrid
 from contactlaw.walls.mesh import Mesh
 from contactlaw.walls.motion import MOTION, POSE
 from contactlaw.walls.plate import Plate
@@ -25,7 +25,7 @@ FACET = np.dtype(
     # a and b: along a rectangle's edges as unit vectors, or a triangle's edges themselves [m]
     [("corner", "f8", 3), ("normal", "f8", 3), ("a", "f8", 3), ("b", "f8", 3)]
     + [("length_a", "f8"), ("length_b", "f8"), ("between", "f8")]  # between: a . b
-    + [(name, "i8") for name in ("kind", "sheet", "frame", "wall", "triangle")],
+    + [(name, "i8") for name in ("kind", "plate_row", "frame", "wall", "triangle")],
     align=True,
 )
 FRAME = np.dtype(
@@ -42,16 +42,16 @@ class Framed(NamedTuple):
     held: list[Any]
 
 
-def framed(walls: Sequence[Wall], sheets: Sequence[Any], largest: float) -> Framed:
+def framed(walls: Sequence[Wall], plate_rows: Sequence[Any], largest: float) -> Framed:
     """Facets and frames of walls.
 
-    `sheets` has for each wall the number of its sheet, or one number for each of its triangles;
-    `largest` is the radius of the largest sphere [m], 0 if that is not known yet.
+    `plate_rows` has for each wall the number of its plate row, or one number for each of its
+    triangles; `largest` is the radius of the largest sphere [m], 0 if that is not known yet.
     """
     groups: dict[Any, list[Rows]] = {}
-    for number, (wall, sheet) in enumerate(zip(walls, sheets, strict=True)):
+    for number, (wall, plate_row) in enumerate(zip(walls, plate_rows, strict=True)):
         rows = _rectangle(wall) if isinstance(wall, Plate) else _triangles(wall)
-        rows["sheet"], rows["wall"] = sheet, number
+        rows["plate_row"], rows["wall"] = plate_row, number
         groups.setdefault(wall.motion, []).append(rows)
     facets = np.concatenate([rows for parts in groups.values() for rows in parts])
     frames, held, first = np.zeros(len(groups), FRAME), [], 0
@@ -61,7 +61,7 @@ def framed(walls: Sequence[Wall], sheets: Sequence[Any], largest: float) -> Fram
         corners = _corners(facets[first : first + count])
         if motion is not None:
             motion.fill(frame)
-        grid = Grid(corners, first, largest)
+        grid = FacetGrid(corners, first, largest)
         grid.fill(frame)
         frame["fastest"] = 0.0 if motion is None else _fastest(motion, corners)
         held += [motion, grid]

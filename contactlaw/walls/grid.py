@@ -29,7 +29,7 @@ _DEEPEST = 64  # room for blocks; halving the largest grid, of 2^21 cells, takes
 MARGIN = 1.1  # so that a facet is still in the list in the step after a bead has left it
 
 
-class Grid:
+class FacetGrid:
     """Lists of facets by cell.
 
     Parameters
@@ -58,12 +58,12 @@ class Grid:
         corners = np.ascontiguousarray(corners)
         counts = np.zeros(int(cells.prod()) + 1, np.int64)
         nothing = np.empty(0, np.int32)
-        _list(corners, low, cell, cells, self.reach, counts, nothing)
+        _fill_lists(corners, low, cell, cells, self.reach, counts, nothing)
         self.starts = np.cumsum(counts)
         self.busy = np.packbits(counts[1:] > 0, bitorder="little")
         self.entries = np.empty(int(self.starts[-1]), np.int32)
         ends = self.starts[:-1].copy()
-        _list(corners, low, cell, cells, self.reach, ends, self.entries)
+        _fill_lists(corners, low, cell, cells, self.reach, ends, self.entries)
         self.entries += first
 
     def fill(self, row: Any) -> None:
@@ -90,7 +90,7 @@ def _segment(p: Any, a: Any, b: Any) -> float:
 
 
 @kernel
-def _near(p: Any, corners: Any, most: float) -> bool:
+def _within(p: Any, corners: Any, most: float) -> bool:
     """Whether a point is no farther than `most` from a flat, convex facet of four corners."""
     a, b, d = corners[0], corners[1], corners[3]
     for n in range(4):
@@ -114,7 +114,7 @@ def _near(p: Any, corners: Any, most: float) -> bool:
 
 
 @kernel
-def _parted(block: Any, other: Any) -> None:
+def _halve(block: Any, other: Any) -> None:
     """Halve a block of cells along its longest side; the other half is written into `other`."""
     axis = 0
     for k in range(3):
@@ -126,7 +126,7 @@ def _parted(block: Any, other: Any) -> None:
 
 
 @kernel(cache=True)
-def _list(
+def _fill_lists(
     corners: Floats, low: Floats, cell: float, cells: Any, reach: float, ends: Any, entries: Any
 ) -> None:
     """Count the facets of each cell in `ends`, one index on, or write them if `entries` has room.
@@ -154,8 +154,8 @@ def _list(
                 count *= block[k, 1] - block[k, 0] + 1
                 square += (block[k, 1] - block[k, 0] + 1) ** 2
             if count > _FEW:
-                if _near(middle, corners[n], reach + 0.5 * math.sqrt(square) * cell):
-                    _parted(block, blocks[left])
+                if _within(middle, corners[n], reach + 0.5 * math.sqrt(square) * cell):
+                    _halve(block, blocks[left])
                     left += 1
                 else:
                     left -= 1
@@ -169,7 +169,7 @@ def _list(
                             low[1] + (j + 0.5) * cell,
                             low[2] + (k + 0.5) * cell,
                         )
-                        if not _near(middle, corners[n], reach + half):
+                        if not _within(middle, corners[n], reach + half):
                             continue
                         at = (i * cells[1] + j) * cells[2] + k
                         if writing:

@@ -82,7 +82,7 @@ class Mesh:
         thickness = _thickness(self.thickness, len(triangles))
         check_models(self.model)
         check_motion(self.motion)
-        good = _sound(vertices, triangles)
+        good = _valid_triangles(vertices, triangles)
         lost = len(triangles) - len(good)
         if not good.size:
             raise ValueError(f"triangles: none of {len(triangles)} has an area [m2]")
@@ -350,7 +350,7 @@ def _thickness(given: Any, triangles: int) -> Floats:
     return np.broadcast_to(found, triangles).copy()
 
 
-def _sound(vertices: Floats, triangles: Integers) -> Integers:
+def _valid_triangles(vertices: Floats, triangles: Integers) -> Integers:
     """Numbers of the triangles that have an area, without duplicates."""
     corners = vertices[triangles]
     sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)

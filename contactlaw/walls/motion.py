@@ -267,7 +267,7 @@ def _interval(times: Any, time: float) -> int:
 
 
 @kernel
-def _swing(row: Any, time: float) -> tuple[float, float, float]:
+def _displacement(row: Any, time: float) -> tuple[float, float, float]:
     """Displacement of a wall by its vibration and its table at a time [m]."""
     out, a = math.sin(row.frequency * time + row.phase), row.amplitude
     x, y, z = a[0] * out, a[1] * out, a[2] * out
@@ -291,7 +291,11 @@ def _swing(row: Any, time: float) -> tuple[float, float, float]:
 @kernel(entry=True)
 def place(row: Any, time: float, dt: float) -> None:
     """Set a wall's position and velocity at a time, the end of a step of length dt [s]."""
-    last, here, then = _swing(row, time - dt), _swing(row, time), _swing(row, time + dt)
+    last, here, then = (
+        _displacement(row, time - dt),
+        _displacement(row, time),
+        _displacement(row, time + dt),
+    )
     for k in range(3):
         row.shift[k] = row.velocity[k] * time + here[k]
         row.half_rate[k] = row.velocity[k] + (here[k] - last[k]) / dt

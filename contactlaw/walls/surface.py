@@ -32,8 +32,8 @@ from contactlaw.walls.facet import (
     Point,
     Touch,
     cell_of,
+    contains,
     entries_of,
-    has,
     height,
     on_facet,
     to_frame,
@@ -46,18 +46,22 @@ _TIE = 1e-10  # [r] difference of overlaps that is rounding
 _SMOOTH = math.cos(math.radians(20.0))  # least cosine between facets of one smooth surface
 # Factor on the distance of a pass from the bead's centre, so that there is no pass between faces
 # that lean towards each other by 20 degrees.
-_LOWER = math.cos(math.radians(10.0))
-_NUDGE = 1e-6  # [r] step of the finite differences in `slope`
+_PASS_FACTOR = math.cos(math.radians(10.0))
+_NUDGE = 1e-6  # [r] step of the finite differences in `pass_gradient`
 # A bead's list holds so many facets, and one more while the shallowest is sought, to be left out.
 # Where facets are that small, a deeper one beside it is in contact in its place.
 _MOST = 64
 ROOM = _MOST + 1
 
-# A facet that a bead overlaps. `surface` is the list position of the facet with which the bead is
-# in contact on this surface. If that is the facet itself, `shared` is the overlap of its pass, 0 if
-# it has none, and the pass lies between list positions `one` and `other`. The search uses the rest.
+# A facet that a bead overlaps. `representative` is the list position of the facet with which the
+# bead is in contact on this surface. If that is the facet itself, `shared` is the overlap of its
+# pass, 0 if it has none, and the pass lies between list positions `one` and `other`. The search
+# uses the rest.
 OVERLAP = np.dtype(
-    [(name, "i8") for name in ("facet", "face", "surface", "one", "other", "done", "near", "far")]
+    [
+        (name, "i8")
+        for name in ("facet", "face", "representative", "one", "other", "done", "near", "far")
+    ]
     + [(name, "f8") for name in ("x", "s", "nx", "ny", "nz", "shared", "level")],
     align=True,
 )
@@ -81,7 +85,7 @@ def _has_deeper(found: Any, count: int, one: Any) -> bool:
 
 
 @kernel
-def _spare(found: Any, count: int) -> int:
+def _facet_to_drop(found: Any, count: int) -> int:
     """Find the facet to drop when the list is full.
 
     It is the shallowest one that lies beside a deeper one in nearly the same direction, else the
@@ -112,7 +116,7 @@ def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
     row.x, row.s, row.nx, row.ny, row.nz = touch.x, touch.s, touch.nx, touch.ny, touch.nz
     if count < _MOST:
         return count + 1
-    for n in range(_spare(found, count + 1), count):
+    for n in range(_facet_to_drop(found, count + 1), count):
         found[n] = found[n + 1]
     return count
 
@@ -187,7 +191,7 @@ def _rank(row: Any, r: float) -> tuple[int, int, int]:
 
 
 @kernel
-def _farthest(a: Touch, b: Touch, r: float) -> float:
+def _path_distance(a: Touch, b: Touch, r: float) -> float:
     """Largest distance from the centre on the path from one nearest point to the other [m].
 
     The path follows the tangent planes of the ball at the two points to the line where they meet,
@@ -207,11 +211,11 @@ def _farthest(a: Touch, b: Touch, r: float) -> float:
 @kernel
 def _pass(a: Touch, b: Touch, r: float) -> float:
     """Overlap of the pass between two facets' nearest points, at most that of the shallower one."""
-    return min(a.x, b.x, r - _LOWER * _farthest(a, b, r))
+    return min(a.x, b.x, r - _PASS_FACTOR * _path_distance(a, b, r))
 
 
 @kernel
-def slope(frames: Any, facets: Any, x: Point, r: float, one: Any, other: Any) -> Point:
+def pass_gradient(frames: Any, facets: Any, x: Point, r: float, one: Any, other: Any) -> Point:
     """Negative gradient of the overlap at a pass between two facets with the bead's position."""
     a, b = touch_of(one), touch_of(other)
     low = a if a.x < b.x else b
@@ -231,8 +235,8 @@ def slope(frames: Any, facets: Any, x: Point, r: float, one: Any, other: Any) ->
             )
             a = turned(here, on_facet(first, to_frame(here, p), r))
             b = turned(there, on_facet(second, to_frame(there, p), r))
-            change += sign * _farthest(a, b, r)
-        change *= 0.5 * _LOWER / step
+            change += sign * _path_distance(a, b, r)
+        change *= 0.5 * _PASS_FACTOR / step
         if k == 0:
             dx = change
         elif k == 1:
@@ -243,10 +247,10 @@ def slope(frames: Any, facets: Any, x: Point, r: float, one: Any, other: Any) ->
 
 
 @kernel
-def on_it(frames: Any, facets: Any, row: Any, point: Point, r: float) -> bool:
+def on_listed_facet(frames: Any, facets: Any, row: Any, point: Point, r: float) -> bool:
     """Whether a point of space is on a facet of the list."""
     facet = facets[row.facet]
-    return has(facet, to_frame(frames[facet.frame], point), _SEAM * r)
+    return contains(facet, to_frame(frames[facet.frame], point), _SEAM * r)
 
 
 @kernel
@@ -255,12 +259,12 @@ def _search(found: Any, count: int, start: int, r: float) -> None:
     for n in range(count):
         found[n].level, found[n].done = 0.0, 0
     mine, row, at = _rank(found[start], r), found[start], start
-    row.level, row.surface, row.shared, row.near, row.far = row.x, start, 0.0, start, start
+    row.level, row.representative, row.shared, row.near, row.far = row.x, start, 0.0, start, start
     while True:
         here, touch = found[at], touch_of(found[at])
         if _rank(here, r) < mine:
             if here.level >= row.x - _TIE * r:
-                row.surface = at
+                row.representative = at
             else:
                 row.shared, row.one, row.other = here.level, here.near, here.far
             return
@@ -283,11 +287,11 @@ def _search(found: Any, count: int, start: int, r: float) -> None:
 
 
 @kernel
-def join(r: float, found: Any, count: int) -> bool:
-    """Give facets that form one surface the same `surface`; return whether contacts share force."""
+def group_surfaces(r: float, found: Any, count: int) -> bool:
+    """Give facets of one surface the same `representative`; return whether contacts share force."""
     first, single, sharing = 0, True, False
     if count == 1:
-        found[0].surface, found[0].shared = 0, 0.0
+        found[0].representative, found[0].shared = 0, 0.0
         return False
     for n in range(1, count):
         if _rank(found[n], r) < _rank(found[first], r):
@@ -295,18 +299,18 @@ def join(r: float, found: Any, count: int) -> bool:
     deepest = touch_of(found[first])
     for n in range(count):
         row = found[n]
-        row.surface, row.shared = first, 0.0
+        row.representative, row.shared = first, 0.0
         if n != first and _pass(deepest, touch_of(row), r) < row.x - _TIE * r:
-            row.surface, single = -1, False
+            row.representative, single = -1, False
     if single:
         return False
     for n in range(count):
-        if found[n].surface < 0:
+        if found[n].representative < 0:
             _search(found, count, n, r)
     for n in range(count):
-        home = found[n].surface
-        while found[home].surface != home:
-            home = found[home].surface
-        found[n].surface = home
-        sharing = sharing or (home == n and found[n].shared > 0.0)
+        representative = found[n].representative
+        while found[representative].representative != representative:
+            representative = found[representative].representative
+        found[n].representative = representative
+        sharing = sharing or (representative == n and found[n].shared > 0.0)
     return sharing

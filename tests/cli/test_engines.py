@@ -10,7 +10,7 @@ import pytest
 import contactlaw as cl
 from contactlaw import _atomic
 from contactlaw.cli import main
-from contactlaw.cli.parts.sheet import units
+from contactlaw.cli.parts.impacts import units
 from dem_demo import cli as demo
 
 PAIR = ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]

@@ -32,7 +32,7 @@ def test_the_number_of_an_impact_is_that_of_the_arrays(model):
         model.lookup([1.0, 2.0, 1e4], 0.9e-3, 1e-3)
     assert refused.value.impact == 2
     with pytest.raises(wording.Refused, match="10000 m/s, radius 0.9 mm, thickness 2 mm: outside"):
-        with wording.impacts([[1.0], [1e4]], 0.9e-3, [1e-3, 2e-3]):
+        with wording.naming_impact([[1.0], [1e4]], 0.9e-3, [1e-3, 2e-3]):
             raise OutsideTableError(3, "too fast")
 
 

@@ -10,18 +10,18 @@ from pymunk_room import Full, R, Stub
 import contactlaw as cl
 from contactlaw.engines.pymunk import PymunkImpacts
 from contactlaw.engines.pymunk.models import Models
-from contactlaw.engines.pymunk.record import Record, Roll
+from contactlaw.engines.pymunk.record import Record, Register
 from contactlaw.engines.record import COLUMNS, IMPACT
 
 
-def roll_of(model, radii, plates):
+def register_of(model, radii, plates):
     """Beads and plates by index, as if they had been registered."""
-    roll = Roll(Models(model))
+    register = Register(Models(model))
     for radius in radii:
-        roll.bead(0, radius)
+        register.bead(0, radius)
     for own, thickness in plates:
-        roll.plate(roll.models.own(own), thickness)
-    return roll
+        register.plate(register.models.own_models(own), thickness)
+    return register
 
 
 def test_every_column_has_a_unit_and_a_description():
@@ -50,19 +50,19 @@ def test_the_docstring_of_pymunks_record_names_every_column():
 
 
 def test_record_without_lookup_has_no_derived_columns():
-    assert Record().read(roll_of(Stub(), [], [])).shape == (0,)
+    assert Record().read(register_of(Stub(), [], [])).shape == (0,)
     half = Stub()
     half.lookup = Full().lookup
     for main, own in ((Stub(), Full()), (Full(), Stub()), (half, Full())):
         record = Record()
         record.add((0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6))
-        rows = record.read(roll_of(main, [R], [(own, 1e-3)]))
+        rows = record.read(register_of(main, [R], [(own, 1e-3)]))
         assert rows.dtype.names[-1] == "restitution"
         assert rows[0].tolist() == (0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6)
         assert all(rows.dtype[name] == IMPACT[name] for name in rows.dtype.names)
     record = Record()
     record.add((0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6))
-    rows = record.read(roll_of(Full(), [R], [(Full(), 1e-3)]))
+    rows = record.read(register_of(Full(), [R], [(Full(), 1e-3)]))
     assert rows.dtype.names[-2:] == ("triangle", "flags")
     assert rows.dtype == IMPACT
 
@@ -74,7 +74,7 @@ def test_record_asks_each_model_for_its_own_rows():
     record.add((1.0, 1, 0, -1, 0, 0, 0, 2.0, 0.6))
     record.add((2.0, 0, 1, -1, 0, 0, 0, 3.0, 0.6))
     record.add((3.0, 0, -1, 1, 0, 0, 0, 4.0, 0.6))
-    rows = record.read(roll_of(main, [R, 2 * R], [(main, 1e-3), (other, math.inf)]))
+    rows = record.read(register_of(main, [R, 2 * R], [(main, 1e-3), (other, math.inf)]))
     mass = 4 / 3 * math.pi * R**3 * 1000
     kinetic = 0.5 * mass * np.array([8 * 2.0**2, 3.0**2, 8 / 9 * 4.0**2])
     assert rows["contact_time"].tolist() == [2 * R, R, R]
@@ -92,7 +92,7 @@ def test_an_impact_is_looked_up_once():
         record.add((n, 0, 0, -1, 0, 0, 0, 10.0 + n, 0.6))
         record.add((n, 0, -1, 0, 0, 0, 0, 20.0 + n, 0.6))
         for _ in range(2):
-            seen.append(record.read(roll_of(model, [R], [(model, 1e-3)])))
+            seen.append(record.read(register_of(model, [R], [(model, 1e-3)])))
     assert sum(model.speeds, []) == [11.0, 21.0, 12.0, 22.0, 13.0, 23.0]
     assert seen[-1]["approach_speed"].tolist() == sum(model.speeds, [])
     assert [len(rows) for rows in seen] == [2, 2, 4, 4, 6, 6]
@@ -102,8 +102,8 @@ def test_an_impact_is_looked_up_once():
 def test_rows_that_were_given_away_are_not_the_record():
     model, record = Full(), Record()
     record.add((1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6))
-    record.read(roll_of(model, [R], [(model, 1e-3)]))["bead"] = 7
-    assert record.read(roll_of(model, [R], [(model, 1e-3)]))["bead"].tolist() == [0]
+    record.read(register_of(model, [R], [(model, 1e-3)]))["bead"] = 7
+    assert record.read(register_of(model, [R], [(model, 1e-3)]))["bead"].tolist() == [0]
 
 
 def test_a_lookup_that_fails_is_asked_again():
@@ -116,17 +116,17 @@ def test_a_lookup_that_fails_is_asked_again():
     model.lookup = fail
     for _ in range(2):
         with pytest.raises(ValueError, match="outside"):
-            record.read(roll_of(model, [R], [(model, 1e-3)]))
+            record.read(register_of(model, [R], [(model, 1e-3)]))
     del model.lookup
-    assert record.read(roll_of(model, [R], [(model, 1e-3)]))["contact_time"].tolist() == [R]
+    assert record.read(register_of(model, [R], [(model, 1e-3)]))["contact_time"].tolist() == [R]
 
 
 def test_a_plate_without_lookup_that_comes_later_takes_the_columns_away():
     model, record = Full(), Record()
     record.add((1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6))
-    assert record.read(roll_of(model, [R], [(model, 1e-3)])).dtype == IMPACT
+    assert record.read(register_of(model, [R], [(model, 1e-3)])).dtype == IMPACT
     plates = [(model, 1e-3), (Stub(), 1e-3)]
     record.add((2.0, 0, 1, -1, 0, 0, 0, 3.0, 0.6))
-    rows = record.read(roll_of(model, [R], plates))
+    rows = record.read(register_of(model, [R], plates))
     assert rows.dtype.names[-1] == "restitution"
     assert rows["approach_speed"].tolist() == [2.0, 3.0]

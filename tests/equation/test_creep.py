@@ -8,7 +8,7 @@ from scipy.integrate import quad, solve_ivp
 
 from contactlaw import laws
 from contactlaw.equation import creep, force, legs, losses, motion, zener
-from contactlaw.equation.plate import Plate
+from contactlaw.equation.plate import PlateMobility
 from contactlaw.laws import fem
 
 SOFT = fem.law(486795.0, 0.0, 0.999419, 0.0786415, 0.28555)  # a sphere of no strength
@@ -118,8 +118,10 @@ def test_the_series_errs_as_the_square_of_its_number():
     """Beside the closed form of an exponent of 2, two decays, the slower of which remains."""
     law, errors = laws.law("myc").data, []
     for delta in (8e-5, 4e-5, 2e-5):
-        leg = legs._on_unloading_curve(legs._BELOW, force.Curve(0.0, 1.0, 2.0, 0.0, 0.0), 0.0)
-        contact = motion.Contact(law, Plate(delta**-0.5))
+        leg = legs._on_unloading_curve(
+            legs._BELOW_CAP, force.UnloadingCurve(0.0, 1.0, 2.0, 0.0, 0.0), 0.0
+        )
+        contact = motion.ScaledContact(law, PlateMobility(delta**-0.5))
         beta = contact.plate.mobility
         fast = 0.5 * (beta + math.sqrt(beta**2 - 4.0))  # s^2 - beta s + 1 = 0
         slow = 1.0 / fast

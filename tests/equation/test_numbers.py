@@ -7,7 +7,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw import Validity
-from contactlaw.equation.waves import CONTACT_TIME, SATURATION, stiffening, with_waves
+from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, eta_of, with_corrections
 from contactlaw.physical.scaling import plate_mobility, scales, sphere_on_plate
 from contactlaw.physical.validity import SLENDER, flags_of
 from contactlaw.softsphere import resized, unit_spring
@@ -72,10 +72,12 @@ def test_they_are_those_of_the_paper_with_the_next_orders(pair, law):
         if law == "fem":
             x = math.sqrt(v * time / r)
             least = min(x, SATURATION * math.sqrt(float(contact.yield_compression) / r))
-            more = math.exp(stiffening(plate.waves, r / h, least, lam, transit / time))
+            more = math.exp(eta_of(plate.corrections, r / h, least, lam, transit / time))
             time /= more
             thin, echo = lam * more, transit / time
-            lam = with_waves(plate.waves, thin, echo, thin * echo**2, r / h * (x - least))
+            lam = with_corrections(
+                plate.corrections, thin, echo, thin * echo**2, r / h * (x - least)
+            )
         units = scales(contact, np.array(v))
         ours = units.inelasticity, units.time, units.compression, units.force, units.stiffer
         assert ours == pytest.approx((lam, time, v * time, mass * v / time, more), rel=1e-13)

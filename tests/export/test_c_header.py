@@ -25,7 +25,7 @@ from contactlaw import table as tables
 from contactlaw._jit import kernel
 from contactlaw._version import VERSION
 from contactlaw.equation import force, zener
-from contactlaw.equation.waves import CONTACT_TIME
+from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.export import c_header
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
@@ -36,7 +36,7 @@ from contactlaw.physical.validity import flags_of
 from contactlaw.softsphere import Contacts, State, resized, unit_spring
 from contactlaw.stepping.spring import RELAXATION
 from contactlaw.table import Settings, lookup
-from contactlaw.table.nodes import POINTS, coarser
+from contactlaw.table.nodes import POINTS, thinned
 from validation.hostile import headers
 
 COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
@@ -194,7 +194,7 @@ def lookups(table, c_lam, c_chi, v, r, h, out):
 def test_a_lookup_is_that_of_numba_in_the_same_table(compiled):
     """1e5 random impacts, some of them outside."""
     model, library, _ = compiled
-    table = coarser(model.table, c_header.ERROR)
+    table = thinned(model.table, c_header.ERROR)
     bare = dataclasses.replace(table, certificate=None)  # which a model would warn of
     peer = cl.ImpactModel(model.pair, model.force_law, table=bare)
     v, r, h = impacts(100_000, seed=1)
@@ -521,7 +521,7 @@ def test_the_first_lines_say_what_it_is(tmp_path):
     assert f"law fem: {model.force_law.source}" in first
     assert "sphere bearing-steel-52100: E 2.034e+11 Pa, nu 0.296, rho 7833 kg/m3" in first
     assert "plate aluminium-6061-t6: E 6.89e+10 Pa" in first
-    error = coarser(model.table, c_header.ERROR).certificate.largest["restitution"]
+    error = thinned(model.table, c_header.ERROR).certificate.largest["restitution"]
     assert f"within {error:.1e} of the integrated equation" in first
     assert "SPDX-License-Identifier: BSD-3-Clause" in first
     licence = [line.removeprefix(" *").strip() for line in text.splitlines()[-40:]]
@@ -532,7 +532,7 @@ def test_the_first_lines_say_what_it_is(tmp_path):
 def test_the_data_are_those_that_python_reads(compiled):
     model, _, folder = compiled
     text = (folder / "contactlaw.h").read_text()
-    table = coarser(model.table, c_header.ERROR).packed.copy()
+    table = thinned(model.table, c_header.ERROR).packed.copy()
     plate = slice(lookup.TRANSIT, lookup.HEADER)
     table[plate] = model._tabulated.packed[plate]  # which the pair adds
     for array, values in (("law", model.force_law.data), ("table", table)):
@@ -728,7 +728,7 @@ def test_the_event_driven_example_is_pythons(tmp_path):
     model = cl.ImpactModel(PAIR)
     peer = cl.ImpactModel(
         model.pair,
-        table=dataclasses.replace(coarser(model.table, c_header.ERROR), certificate=None),
+        table=dataclasses.replace(thinned(model.table, c_header.ERROR), certificate=None),
     )  # fmt: skip
     found = example(tmp_path, "event_driven")
     for row, thickness in zip(found, (0.5e-3, 1e-3, 3e-3, math.inf), strict=True):

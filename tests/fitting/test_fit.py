@@ -107,7 +107,7 @@ def test_derivatives_are_those_of_the_models_own_sensitivity(name):
     moved = parameters(STEEL, data, "plate_yield_strength", {name: 1e-3 * true(STEEL, name)})
     predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
     at = np.array([true(STEEL, "plate_yield_strength"), true(STEEL, name)])
-    slopes = predictor.derivatives(at, predictor.at(at)) / predictor.at(at)[:, None]
+    slopes = predictor.derivatives(at, predictor.predicted(at)) / predictor.predicted(at)[:, None]
     theirs = cl.ImpactModel(STEEL).sensitivity(data.speed, RADIUS, THICKNESS)
     field = {"density": "sphere_density", "youngs_modulus": "sphere_modulus"}.get(name, name)
     assert slopes[:, 1] == pytest.approx(getattr(theirs, field), abs=3e-4)
@@ -189,9 +189,9 @@ def test_a_prior_costs_the_share_of_a_value_that_the_data_tell_of_it():
         moved = parameters(STEEL, data, "thickness", priors)
         predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
         at = np.array([THICKNESS, STEEL.sphere.density])
-        values = predictor.at(at)
+        values = predictor.predicted(at)
         slopes = predictor.derivatives(at, values)
-        found = errors.told(predictor, slopes, 1e-4 * values)
+        found = errors.leverages(predictor, slopes, 1e-4 * values)
         assert found.sum() == pytest.approx(told, abs=1e-3)
 
 

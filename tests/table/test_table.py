@@ -294,7 +294,7 @@ def test_a_table_may_have_one_axis_more():
     kink = 1.0 + 0.1 * first.place(axes.series_values(first))
     low = axes.Segment(np.full(axes.SERIES, 0.5), kink, np.linspace(0, 1, 5) ** 2, True)
     high = axes.Segment(kink, np.full(axes.SERIES, 3.0), np.linspace(0, 1, 7), False)
-    grid = axes.Grid((first, second, axes.Axis("c", (low, high), 1.0)), np.ones(axes.SERIES))
+    grid = axes.TableGrid((first, second, axes.Axis("c", (low, high), 1.0)), np.ones(axes.SERIES))
     assert grid.shape == (9, 6, 12)
     a, b, c = grid.nodes()
     assert a.shape == b.shape == c.shape == grid.shape

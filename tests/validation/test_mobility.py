@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import jv
 
-from contactlaw.equation import waves
+from contactlaw.equation import corrections
 from validation.derivations.mobility import (
     MEAN,
     SQUARE,
@@ -149,15 +149,15 @@ def test_energy_of_an_impact(poisson: float) -> None:
 RATIOS = np.linspace(0.0, 0.45, 10)
 
 
-def phi(one: waves.Waves, h: float) -> float:
+def phi(one: corrections.PlateCorrections, h: float) -> float:
     """Factor on the mobility of a thin plate."""
-    return one.bulk_factor * h * h + waves.near_field(one, h)
+    return one.bulk_factor * h * h + corrections.near_field(one, h)
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.1, 0.25, 0.3, 0.45])
 def test_the_model_has_the_energy_of_an_impact(poisson: float) -> None:
     """Within 1.2 % of the integral, on plates of any thickness."""
-    one = waves.waves(poisson)
+    one = corrections.plate_corrections(poisson)
     for x in (0.1, 0.3, 0.5, 0.65, 0.8, 1.0):
         h = x * 0.5 / math.sqrt(ratio(poisson))
         assert phi(one, h) == pytest.approx(energy(h, poisson), rel=1.2e-2)
@@ -166,7 +166,7 @@ def test_the_model_has_the_energy_of_an_impact(poisson: float) -> None:
 @pytest.mark.parametrize("poisson", RATIOS)
 def test_a_thicker_plate_never_takes_more(poisson: float) -> None:
     """The factor over h^2 falls to that of the half-space, and never below it."""
-    one = waves.waves(poisson)
+    one = corrections.plate_corrections(poisson)
     h = np.linspace(1e-3, 1.5, 1500)
     over = np.array([phi(one, each) / each**2 for each in h])
     assert (np.diff(over) <= 1e-12 * over[1:]).all()
@@ -177,10 +177,11 @@ def test_a_thicker_plate_never_takes_more(poisson: float) -> None:
 @pytest.mark.parametrize("far", [0.01, 0.1, 0.5, 2.0])  # lambda of a half-space
 def test_lambda_falls_with_the_thickness(poisson: float, far: float) -> None:
     """Of any sphere, though losses lengthen contacts with thin plates only."""
-    one = waves.waves(poisson)
+    one = corrections.plate_corrections(poisson)
     h = np.geomspace(0.02, 30.0, 1000)
     thin = far / one.bulk_factor / h**2
     lam = [
-        waves.with_waves(one, t, each, t * each**2, 0.0) for t, each in zip(thin, h, strict=True)
+        corrections.with_corrections(one, t, each, t * each**2, 0.0)
+        for t, each in zip(thin, h, strict=True)
     ]
     assert (np.diff(lam) <= 1e-12 * np.array(lam[1:])).all()

@@ -21,7 +21,7 @@ import contactlaw as cl
 from contactlaw import style
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, attach
 from contactlaw.engines.lammps.memory import FIRST
-from contactlaw.walls.grid import Grid
+from contactlaw.walls.grid import FacetGrid
 from validation.bench.row import Row, on_ranks
 
 from lammps import lammps  # isort: skip
@@ -218,7 +218,7 @@ def main(beads: int, parts: Sequence[str]) -> dict[str, Any]:
     found["drum"] = _drums(model, beads)
     found["plates"] = _plates(model)
     fine = square(CELLS[-1], width)
-    grid = Grid(fine.vertices[fine.triangles[:, [0, 1, 2, 2]]], 0, RADIUS)
+    grid = FacetGrid(fine.vertices[fine.triangles[:, [0, 1, 2, 2]]], 0, RADIUS)
     lists = (grid.starts, grid.entries, grid.busy)
     found["memory"] = sum(array.nbytes for array in lists) / len(fine.triangles)
     return found

@@ -1,8 +1,9 @@
 """Energy that a Hertz pulse leaves in an elastic plate, and the fit of it that the model takes.
 
-``python -m validation.derivations.mobility`` prints the numbers of `contactlaw.equation.waves`, in
-two minutes. See mobility.md; nothing here comes from contactlaw. Units: thickness, density and
-shear modulus of the plate are 1, so the frequency is omega H/c.
+``python -m validation.derivations.mobility`` prints the numbers of
+`contactlaw.equation.corrections`, in two minutes. See mobility.md; nothing here comes from
+contactlaw. Units: thickness, density and shear modulus of the plate are 1, so the frequency is
+omega H/c.
 """
 
 from __future__ import annotations

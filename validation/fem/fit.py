@@ -22,8 +22,8 @@ from scipy.optimize import minimize_scalar
 
 import contactlaw as cl
 from contactlaw.equation import zener
+from contactlaw.equation.corrections import SATURATION
 from contactlaw.equation.numbers import Numbers
-from contactlaw.equation.waves import SATURATION
 from contactlaw.equation.zener import Solution
 from contactlaw.laws import Law, fem
 from contactlaw.physical.scaling import pair_numbers, scales, sphere_on_plate

@@ -137,9 +137,9 @@ def _model_error(
     covariance = errors.model_covariance(predictor, at, predictor.impacts(at))
     if covariance is None:
         return {}
-    alike = covariance.alike[np.ix_(covariance.cell, covariance.cell)]
+    correlation = covariance.correlation[np.ix_(covariance.cell, covariance.cell)]
     drawn = covariance.size * random.multivariate_normal(
-        np.zeros(len(alike)), alike, method="cholesky"
+        np.zeros(len(correlation)), correlation, method="cholesky"
     )
     names = list(KINDS)
     return {name: drawn[values.kind == names.index(name)] for name in exact}

@@ -10,7 +10,7 @@ from scipy.optimize import brentq, newton
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.physical.scaling import Contact, scales, sphere_on_plate
+from contactlaw.physical.scaling import ContactConstants, scales, sphere_on_plate
 from validation.accuracy import compare
 from validation.fem import store
 from validation.paper import closed_form, formulas
@@ -32,7 +32,7 @@ from validation.paper.setting import (
 FASTEST_COMPRESSION = 4.77  # d_Y, where 7 V_Y0 leads to on a half-space
 
 
-def contact(pair: cl.Pair, law: str, thickness_ratio: float) -> Contact:
+def contact(pair: cl.Pair, law: str, thickness_ratio: float) -> ContactConstants:
     """Contact of the paper's bead, of any materials, with a plate of R/H (0: half-space)."""
     thickness = RADIUS / thickness_ratio if thickness_ratio > 0.0 else math.inf
     return sphere_on_plate(pair, laws.law(law), np.array(RADIUS), np.array(thickness))

@@ -19,21 +19,21 @@ _BRACKET = re.compile(r"(?P<name>.*?)[_ ]*[\[(](?P<unit>[^])]*)[\])]")
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 
 
-class Column(NamedTuple):
+class TextColumn(NamedTuple):
     """Possible names of a column, in lower case with underscores, and its quantity."""
 
     names: tuple[str, ...]
     quantity: Quantity | None  # None for bare numbers
 
 
-class Found(NamedTuple):
+class Located(NamedTuple):
     """Index of a column, and the number of its units in one SI unit."""
 
     place: int
     per_unit: float  # values are divided by this, which rounds only once
 
 
-def heads(content: bytes) -> tuple[list[str], list[str], str]:
+def split_table(content: bytes) -> tuple[list[str], list[str], str]:
     r"""Split a table into the names in its first line, its rows, and the delimiter of columns.
 
     Rows are the lines after the first; those that hold no data are empty.
@@ -45,7 +45,7 @@ def heads(content: bytes) -> tuple[list[str], list[str], str]:
 
     Examples
     --------
-    >>> heads(b"Speed [m/s];COR\n0.5;0.9\n")
+    >>> split_table(b"Speed [m/s];COR\n0.5;0.9\n")
     (['Speed [m/s]', 'COR'], ['0.5;0.9'], ';')
     """
     try:
@@ -60,7 +60,7 @@ def heads(content: bytes) -> tuple[list[str], list[str], str]:
     return names, rows, delimiter
 
 
-def locate(names: Sequence[str], columns: dict[str, Column]) -> dict[str, Found]:
+def locate(names: Sequence[str], columns: dict[str, TextColumn]) -> dict[str, Located]:
     """Find columns by their names; others are ignored.
 
     A unit follows in brackets, or after a space or an underscore; a column without a unit is in SI
@@ -74,10 +74,10 @@ def locate(names: Sequence[str], columns: dict[str, Column]) -> dict[str, Found]
     Examples
     --------
     >>> from contactlaw.cli.parts.quantities import SPEED
-    >>> locate(["No", "Speed [cm/s]"], {"speed": Column(("speed",), SPEED)})
-    {'speed': Found(place=1, per_unit=100.0)}
+    >>> locate(["No", "Speed [cm/s]"], {"speed": TextColumn(("speed",), SPEED)})
+    {'speed': Located(place=1, per_unit=100.0)}
     """
-    found: dict[str, Found] = {}
+    found: dict[str, Located] = {}
     for n, head in enumerate(names):
         for field, column in columns.items():
             unit = _unit(head, column)
@@ -87,11 +87,11 @@ def locate(names: Sequence[str], columns: dict[str, Column]) -> dict[str, Found]
                 raise ValueError(
                     f"two columns of {field}, {names[found[field].place]!r} and {head!r}"
                 )
-            found[field] = Found(n, _per_unit(head, unit, column.quantity))
+            found[field] = Located(n, _per_unit(head, unit, column.quantity))
     return found
 
 
-def _unit(head: str, column: Column) -> str | None:
+def _unit(head: str, column: TextColumn) -> str | None:
     """Take the unit of a column's head, "" if it has none; None for another column's head."""
     bare = head.strip().lower().translate(_MICRO)
     match = _BRACKET.fullmatch(bare)
@@ -127,7 +127,7 @@ def numbers(
     Parameters
     ----------
     rows : sequence of str
-        Rows that `heads` returned.
+        Rows that `split_table` returned.
     delimiter : str
         Delimiter of columns.
     count : int

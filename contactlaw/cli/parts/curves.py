@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.sheet import yield_speeds
+from contactlaw.cli.parts.impacts import yield_speeds
 from contactlaw.model import ImpactModel
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ _SAMPLES = 400  # speeds per curve: steps of half a millimetre on a slide
 _MOST_CURVES, _MOST_PANELS = 8, 6  # more could not be distinguished in one figure
 
 
-class Curve(NamedTuple):
+class CorCurve(NamedTuple):
     """COR over speed of one bead on one plate, in SI units."""
 
     radius: float
@@ -37,7 +37,7 @@ def restitution_curves(
     radii: Sequence[float],
     thicknesses: Sequence[float],
     solve: bool = False,
-) -> list[Curve]:
+) -> list[CorCurve]:
     """COR from the least to the largest of some speeds, for each bead on each plate.
 
     Parameters
@@ -52,7 +52,7 @@ def restitution_curves(
 
     Returns
     -------
-    list of Curve
+    list of CorCurve
         Sorted by radius, and by thickness for each radius.
 
     Raises
@@ -99,13 +99,13 @@ def is_logarithmic(least: float, largest: float) -> bool:
     return largest >= 20.0 * least
 
 
-def _curve(model: ImpactModel, v: Array, r: float, h: float, solve: bool) -> Curve:
+def _curve(model: ImpactModel, v: Array, r: float, h: float, solve: bool) -> CorCurve:
     yields = float(yield_speeds(model, np.array([r]), np.array([h]))[0])
     reached = v[0] <= yields <= v[-1]
     if reached:
         v = np.sort(np.append(v, yields))
-    with wording.impacts(v, r, h):
+    with wording.naming_impact(v, r, h):
         rebound = (model.solve if solve else model.lookup)(v, r, h)
     e = np.asarray(rebound.restitution)
     at_yield = float(e[np.searchsorted(v, yields)]) if reached else math.nan
-    return Curve(r, h, v, e, np.asarray(rebound.flags), yields, at_yield)
+    return CorCurve(r, h, v, e, np.asarray(rebound.flags), yields, at_yield)

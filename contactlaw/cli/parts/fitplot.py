@@ -48,7 +48,7 @@ class Group(NamedTuple):
     rows: NDArray[np.intp]
 
 
-class Curve(NamedTuple):
+class FitCurve(NamedTuple):
     """Fitted quantities over speed, of one bead on one plate."""
 
     speed: Array
@@ -112,7 +112,7 @@ def _speeds(found: Fit) -> Array:
     return np.asarray(found.data.speed)
 
 
-def curve_of(found: Fit, group: Group) -> Curve:
+def curve_of(found: Fit, group: Group) -> FitCurve:
     """Predict rebounds over a range a little wider than the measured speeds, with their errors."""
     speed = _speeds(found)
     v = np.geomspace(speed.min() / _WIDER, speed.max() * _WIDER, _SAMPLES)
@@ -125,10 +125,10 @@ def curve_of(found: Fit, group: Group) -> Curve:
         ends = np.log(overload[n - 1 : n + 1])
         begins = float(np.exp(np.interp(0.0, ends, np.log(v[n - 1 : n + 1]))))
     values = {kind: np.asarray(getattr(hit, kind)) for kind in errors}
-    return Curve(v, values, errors, begins, bool(beyond.size))
+    return FitCurve(v, values, errors, begins, bool(beyond.size))
 
 
-def _draw_curve(above: Axes, below: Axes, curve: Curve, kind: str, colour: Any) -> None:
+def _draw_curve(above: Axes, below: Axes, curve: FitCurve, kind: str, colour: Any) -> None:
     scale = _KINDS[kind].scale
     values, errors = curve.values[kind], curve.errors[kind]
     low, high = (values + sign * errors for sign in (-1.0, 1.0))
@@ -204,7 +204,7 @@ def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:
     below.minorticks_off()
 
 
-def _caption(found: Fit, groups: list[Group], curves: list[Curve]) -> str:
+def _caption(found: Fit, groups: list[Group], curves: list[FitCurve]) -> str:
     parts = [", ".join(values_in_words(found)).replace("+-", "±")]
     parts.append("band: one standard error of the fit")
     if not curves:

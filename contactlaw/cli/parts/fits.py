@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from contactlaw._readable import percent, rounded, scale_of, with_error
-from contactlaw.cli.parts.sheet import aligned, flag_names
+from contactlaw.cli.parts.impacts import aligned, flag_names
 from contactlaw.fitting import Fit
 from contactlaw.fitting.unknowns import UNKNOWNS
 

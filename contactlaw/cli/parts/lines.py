@@ -10,7 +10,7 @@ import numpy as np
 from contactlaw._version import VERSION
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.constant import Constant, Keep, constant
-from contactlaw.cli.parts.quantities import LENGTH, written
+from contactlaw.cli.parts.quantities import LENGTH, formatted
 from contactlaw.cli.parts.walls import Wall, meaning
 from contactlaw.dashpot import betan
 from contactlaw.engines.lammps.beads import hertz_material
@@ -19,7 +19,7 @@ from contactlaw.physical.validity import explain
 
 Lines = Callable[[ImpactModel, list[Wall], Keep], Iterator[str]]
 
-_LEAST = 0.05  # LIGGGHTS 3.8.0: "0.05 < coefficientRestitution <= 1 required"
+_LIGGGHTS_LEAST = 0.05  # LIGGGHTS 3.8.0: "0.05 < coefficientRestitution <= 1 required"
 
 
 def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
@@ -78,10 +78,10 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
     yield from _head("#", model, found, keep)
     beads = _bead_on_bead(model, found, keep)
     for where, best in [("bead on bead", beads), *((_name(wall), wall.best) for wall in found)]:
-        if not best.restitution > _LEAST:
+        if not best.restitution > _LIGGGHTS_LEAST:
             raise ValueError(
                 f"{where}: the COR is {best.restitution:.3g}, and LIGGGHTS takes none below "
-                f"{_LEAST}"
+                f"{_LIGGGHTS_LEAST}"
             )
     types = (f"{n} {_name(wall)}" for n, wall in enumerate(found, start=2))
     yield f"# Atom types: 1 beads, {', '.join(types)}. Wall on wall never happens: 1."
@@ -120,7 +120,7 @@ def yade(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
 def _name(wall: Wall) -> str:
     if math.isinf(wall.thickness):
         return "half-space"
-    return f"plate of {written(wall.thickness, LENGTH)}"
+    return f"plate of {formatted(wall.thickness, LENGTH)}"
 
 
 def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:

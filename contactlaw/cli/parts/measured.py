@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactlaw.cli.parts import columns
-from contactlaw.cli.parts.columns import Column
+from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import FORCE, LENGTH, SHARE, SPEED, TIME
 from contactlaw.fitting import Measurements
 
@@ -20,12 +20,14 @@ _KINDS = {
 }
 _ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
 _COLUMNS = {
-    "speed": Column(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
-    "radius": Column(("radius", "bead_radius"), LENGTH),
-    "thickness": Column(("thickness", "plate_thickness"), LENGTH),
-    **{field: Column(names, quantity) for field, (names, quantity) in _KINDS.items()},
+    "speed": TextColumn(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
+    "radius": TextColumn(("radius", "bead_radius"), LENGTH),
+    "thickness": TextColumn(("thickness", "plate_thickness"), LENGTH),
+    **{field: TextColumn(names, quantity) for field, (names, quantity) in _KINDS.items()},
     **{
-        f"{field}_error": Column(tuple(f"{n}_{word}" for n in names for word in _ERRORS), quantity)
+        f"{field}_error": TextColumn(
+            tuple(f"{n}_{word}" for n in names for word in _ERRORS), quantity
+        )
         for field, (names, quantity) in _KINDS.items()
     },
 }
@@ -81,7 +83,7 @@ def read(path: str | os.PathLike[str]) -> Read:
 
 def _read(content: bytes) -> Read:
     try:
-        names, rows, delimiter = columns.heads(content)
+        names, rows, delimiter = columns.split_table(content)
     except ValueError:
         raise ValueError("no text; take columns with names in the first line") from None
     found = columns.locate(names, _COLUMNS)

@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import style
-from contactlaw.cli.parts.curves import Curve, is_logarithmic
-from contactlaw.cli.parts.quantities import LENGTH, written
+from contactlaw.cli.parts.curves import CorCurve, is_logarithmic
+from contactlaw.cli.parts.quantities import LENGTH, formatted
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import Validity, limits_in_words
 
@@ -95,7 +95,7 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
         figure.savefig(path)
 
 
-def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLike[str]) -> None:
+def save_restitution(curves: Sequence[CorCurve], title: str, path: str | os.PathLike[str]) -> None:
     """Draw the COR over speed into a file: a curve per plate or bead, first yield marked.
 
     A curve is dashed where impacts have a flag of `Validity.ACCURACY`. Several beads on several
@@ -103,7 +103,7 @@ def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLik
 
     Parameters
     ----------
-    curves : sequence of Curve
+    curves : sequence of CorCurve
         Result of `contactlaw.cli.parts.curves.restitution_curves`.
     title : str
         Title of the figure.
@@ -124,7 +124,7 @@ def save_restitution(curves: Sequence[Curve], title: str, path: str | os.PathLik
         figure.savefig(path)
 
 
-def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) -> Figure:
+def _restitution_figure(panels: list[list[CorCurve]], title: str, by_radius: bool) -> Figure:
     columns = len(panels) if len(panels) < 4 else -(-len(panels) // 2)
     rows = -(-len(panels) // columns)
     width = 9.0 if columns == 1 else 2.0 + 4.4 * columns
@@ -145,7 +145,7 @@ def _restitution_figure(panels: list[list[Curve]], title: str, by_radius: bool) 
     return figure
 
 
-def _caption(panels: list[list[Curve]], by_radius: bool) -> str:
+def _caption(panels: list[list[CorCurve]], by_radius: bool) -> str:
     curves = [curve for panel in panels for curve in panel]
     least, largest = curves[0].speed[[0, -1]]
     parts = [f"bead radius {length_of(curves[0].radius)}"]
@@ -165,7 +165,7 @@ def _caption(panels: list[list[Curve]], by_radius: bool) -> str:
     return ". ".join(part[0].upper() + part[1:] for part in parts)
 
 
-def _names(curves: list[Curve], by_radius: bool, short: bool) -> list[str]:
+def _names(curves: list[CorCurve], by_radius: bool, short: bool) -> list[str]:
     if by_radius:
         return [f"radius {length_of(curve.radius)}" for curve in curves]
     return [(length_of if short else plate_of)(curve.thickness) for curve in curves]
@@ -184,10 +184,10 @@ def plate_of(thickness: float) -> str:
 
 def length_of(length: float) -> str:
     """Write a length [m] in a suitable unit; an infinite one is that of a half-space."""
-    return _HALF_SPACE if length == math.inf else written(length, LENGTH).replace("um", "µm")
+    return _HALF_SPACE if length == math.inf else formatted(length, LENGTH).replace("um", "µm")
 
 
-def _draw(axes: Axes, curve: Curve, colour: Any) -> None:
+def _draw(axes: Axes, curve: CorCurve, colour: Any) -> None:
     """Draw a curve: dashed where it has flags of `Validity.ACCURACY`, otherwise solid."""
     flagged = (curve.flags & Validity.ACCURACY) != 0
     changes = np.flatnonzero(np.diff(flagged)) + 1
@@ -206,7 +206,7 @@ def _draw(axes: Axes, curve: Curve, colour: Any) -> None:
         )  # fmt: skip
 
 
-def _axes(grid: NDArray[Any], panels: list[list[Curve]]) -> None:
+def _axes(grid: NDArray[Any], panels: list[list[CorCurve]]) -> None:
     curves = [curve for panel in panels for curve in panel]
     least, largest = curves[0].speed[[0, -1]]
     first = grid[0, 0]
@@ -231,7 +231,7 @@ def _axes(grid: NDArray[Any], panels: list[list[Curve]]) -> None:
         axes.set_ylabel("coefficient of restitution [-]")
 
 
-def _label(axes: Axes, curves: list[Curve], names: list[str]) -> None:
+def _label(axes: Axes, curves: list[CorCurve], names: list[str]) -> None:
     """Write the name of each curve at its end, without overlap."""
     ends = [axes.transData.transform((curve.speed[-1], curve.restitution[-1])) for curve in curves]
     heights = axes.transAxes.inverted().transform(ends)[:, 1]

@@ -115,12 +115,12 @@ def value(text: str, quantity: Quantity) -> float:
     return found[0]
 
 
-def written(size: float, quantity: Quantity) -> str:
+def formatted(size: float, quantity: Quantity) -> str:
     """Write a value with six digits, a length in a suitable unit.
 
     Examples
     --------
-    >>> written(0.9e-3, LENGTH), written(5.0, SPEED)
+    >>> formatted(0.9e-3, LENGTH), formatted(5.0, SPEED)
     ('0.9 mm', '5 m/s')
     """
     if not math.isfinite(size):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.cli.parts import columns
-from contactlaw.cli.parts.columns import Column
+from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import LENGTH, SPEED
 from contactlaw.engines import hdf5, layout
 from contactlaw.physical.arguments import check
@@ -46,7 +46,7 @@ class Recorded(NamedTuple):
     law: str | None = None
 
 
-class Impacts(NamedTuple):
+class PlannedImpacts(NamedTuple):
     """Impacts on plates in SI units, and which materials and law a run had; None where unknown."""
 
     speed: Array
@@ -58,11 +58,11 @@ class Impacts(NamedTuple):
 
 
 _COLUMNS = {
-    "speed": Column(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
-    "radius": Column(("radius",), LENGTH),
-    "thickness": Column(("thickness",), LENGTH),
-    "weights": Column(("weight", "weights"), None),
-    "plate": Column(("plate",), None),
+    "speed": TextColumn(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
+    "radius": TextColumn(("radius",), LENGTH),
+    "thickness": TextColumn(("thickness",), LENGTH),
+    "weights": TextColumn(("weight", "weights"), None),
+    "plate": TextColumn(("plate",), None),
 }
 
 
@@ -117,7 +117,7 @@ def _check(found: Recorded) -> None:
 
 def combined(
     speeds: Sequence[float], radii: Sequence[float] | None, thicknesses: Sequence[float] | None
-) -> Impacts:
+) -> PlannedImpacts:
     """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once.
 
     Examples
@@ -128,12 +128,12 @@ def combined(
     sizes = {"radius": radii, "thickness": thicknesses}
     grid = np.meshgrid(*(_given(*size) for size in sizes.items()), speeds, indexing="ij")
     r, h, v = (part.ravel() for part in grid)
-    return Impacts(v, r, h, np.ones(v.size))
+    return PlannedImpacts(v, r, h, np.ones(v.size))
 
 
 def completed(
     found: Recorded, radii: Sequence[float] | None, thicknesses: Sequence[float] | None
-) -> Impacts:
+) -> PlannedImpacts:
     """Add what a record does not say: the radius of its beads, and the thickness of its plates.
 
     Parameters
@@ -156,7 +156,7 @@ def completed(
     """
     one = np.zeros(found.speed.size, dtype=np.int64)
     plate = one if found.plate is None or len(thicknesses or ()) == 1 else found.plate
-    return Impacts(
+    return PlannedImpacts(
         found.speed,
         _sized("radius", found.radius, radii, one),
         _sized("thickness", found.thickness, thicknesses, plate),
@@ -222,7 +222,7 @@ def _npy(content: bytes) -> Recorded:
 
 def _text(content: bytes) -> Recorded:
     try:
-        names, rows, delimiter = columns.heads(content)
+        names, rows, delimiter = columns.split_table(content)
     except ValueError as error:
         raise ValueError(f"{error}, nor HDF5 (.h5), nor of np.save (.npy)") from None
     return _columns(names, lambda wanted: columns.numbers(rows, delimiter, len(names), wanted))

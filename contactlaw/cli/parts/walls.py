@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from contactlaw._readable import rounded
 from contactlaw.answers.constant import Constant, Keep
 from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.records import Impacts
-from contactlaw.cli.parts.sheet import aligned, explained
+from contactlaw.cli.parts.impacts import aligned, explained
+from contactlaw.cli.parts.records import PlannedImpacts
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity
 
@@ -32,14 +32,14 @@ class Wall(NamedTuple):
     best: Constant
 
 
-def walls(model: ImpactModel, happened: Impacts, keep: Keep) -> list[Wall]:
+def walls(model: ImpactModel, recorded: PlannedImpacts, keep: Keep) -> list[Wall]:
     """Find one COR for all impacts on plates of one thickness.
 
     Parameters
     ----------
     model : ImpactModel
         Model of beads and plates.
-    happened : Impacts
+    recorded : PlannedImpacts
         Impacts on all plates.
     keep : {"energy", "momentum"}
         As in `ImpactModel.constant`.
@@ -63,7 +63,7 @@ def walls(model: ImpactModel, happened: Impacts, keep: Keep) -> list[Wall]:
     >>> [(wall.thickness, round(wall.best.restitution, 3)) for wall in found]
     [(0.0005, 0.649), (0.003, 0.977)]
     """
-    plates = np.unique(happened.thickness)
+    plates = np.unique(recorded.thickness)
     if plates.size > _MOST:
         raise ValueError(
             f"thickness: {plates.size} different ones, {_MOST} is the most: round them to those of "
@@ -71,9 +71,9 @@ def walls(model: ImpactModel, happened: Impacts, keep: Keep) -> list[Wall]:
         )
     found = []
     for plate in plates:
-        on_it = happened.thickness == plate
-        v, r, _, w = (column[on_it] for column in happened[:4])
-        with wording.impacts(v, r, plate):
+        on_it = recorded.thickness == plate
+        v, r, _, w = (column[on_it] for column in recorded[:4])
+        with wording.naming_impact(v, r, plate):
             found.append(Wall(float(plate), v, r, w, model.constant(v, r, plate, keep, w)))
     return found
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
-from contactlaw.cli.parts.quantities import LENGTH, SPEED, written
+from contactlaw.cli.parts.quantities import LENGTH, SPEED, formatted
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
 
 _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
@@ -100,7 +100,7 @@ def file_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     path = os.fspath(path)
     if os.path.isdir(path):
         raise Refused(f"--{option}: {path} is a folder")
-    with _written(option, path):
+    with _writing(option, path):
         yield
 
 
@@ -118,12 +118,12 @@ def folder_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     path = os.path.normpath(path)
     if os.path.lexists(path) and not os.path.isdir(path):
         raise Refused(f"--{option}: {path} is no folder")
-    with _written(option, path):
+    with _writing(option, path):
         yield
 
 
 @contextmanager
-def _written(option: str, path: str) -> Iterator[None]:
+def _writing(option: str, path: str) -> Iterator[None]:
     folder = os.path.dirname(path)
     if folder and not os.path.isdir(folder):
         raise Refused(f"--{option}: there is no folder {folder}")
@@ -134,12 +134,12 @@ def _written(option: str, path: str) -> Iterator[None]:
 
 
 @contextmanager
-def impacts(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Iterator[None]:
+def naming_impact(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Iterator[None]:
     """Name the impact that an error within is about by its speed, radius and thickness.
 
     Examples
     --------
-    >>> with impacts(1e4, 0.9e-3, [1e-3, 2e-3]):
+    >>> with naming_impact(1e4, 0.9e-3, [1e-3, 2e-3]):
     ...     raise UnsolvedError(1, "lambda = 120", "too many steps")
     Traceback (most recent call last):
     contactlaw.cli.parts.wording.Refused: 10000 m/s, radius 0.9 mm, thickness 2 mm: the equation \
@@ -151,7 +151,10 @@ did not solve at lambda = 120: too many steps
         v, r, h = (
             values.flat[error.impact] for values in np.broadcast_arrays(speed, radius, thickness)
         )
-        impact = f"{written(v, SPEED)}, radius {written(r, LENGTH)}, thickness {written(h, LENGTH)}"
+        impact = (
+            f"{formatted(v, SPEED)}, radius {formatted(r, LENGTH)}, "
+            f"thickness {formatted(h, LENGTH)}"
+        )
         if isinstance(error, UnsolvedError):
             what = f"the equation did not solve at {error.where}: {error.reason}"
         else:
@@ -162,12 +165,12 @@ did not solve at lambda = 120: too many steps
         raise Refused(f"{impact}: {what}") from error
 
 
-def say(message: str) -> None:
+def print_message(message: str) -> None:
     """Write a message to stderr."""
     if sys.stderr is not None:  # None if the shell has closed it by 2>&-; print would take stdout
         print(f"contactlaw: {message}", file=sys.stderr)
 
 
-def say_warning(message: Warning | str, *_: object) -> None:
+def print_warning(message: Warning | str, *_: object) -> None:
     """Write a warning to stderr; also takes the arguments of `warnings.showwarning`."""
-    say(f"warning: {message}")
+    print_message(f"warning: {message}")

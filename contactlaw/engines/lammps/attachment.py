@@ -260,7 +260,7 @@ class LammpsPlates:
         self._warned: set[str] = set()
         self._warn_of_walls()
         try:
-            self._put_in()
+            self._install()
         except BaseException:
             _remove(lmp)
             raise
@@ -275,7 +275,7 @@ class LammpsPlates:
         length = _UNITS[self._lmp.extract_global("units")][0]
         return float(max(self._comm.allgather(float(radius.max())))) * length
 
-    def _put_in(self) -> None:
+    def _install(self) -> None:
         """Make the adapter's parts in LAMMPS; a restart file may have left contacts there."""
         scene, places = self._contacts.scene, self._contacts.places
         columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
@@ -318,9 +318,9 @@ class LammpsPlates:
         for name in ("dt", "atime", "atimestep"):
             shared[name] = locate(handle, name.encode())
         scene = self._contacts.scene
-        for name in ("sheets", "frames", "facets", "found", "impacts", "status"):
+        for name in ("plate_rows", "frames", "facets", "found", "impacts", "status"):
             shared[name] = getattr(scene, name).ctypes.data
-        shared["types"], shared["sheet_count"] = scene.sheets.shape
+        shared["types"], shared["plate_row_count"] = scene.plate_rows.shape
         shared["frame_count"], shared["facet_count"] = len(scene.frames), len(scene.facets)
         shared["capacity"], shared["friction"] = len(scene.impacts), scene.friction
         shared["places"], shared["columns"] = self._contacts.places, columns
@@ -375,7 +375,7 @@ class LammpsPlates:
             calls = int(self._shared["calls"][0])
             renumbers = commands.renumbers(given)
             if renumbers:
-                self._drop_strangers()
+                self._clear_foreign_rows()
             try:
                 result = function(*arguments, **keywords)
             except Exception as error:
@@ -383,16 +383,16 @@ class LammpsPlates:
                     self._after_command(calls, error)
                 raise
             if renumbers:
-                self._own()
+                self._claim_rows()
             self._after_command(calls)
             return result
 
         return run
 
-    def _after_command(self, calls: int, stumble: Exception | None = None) -> None:
-        """Raise what went wrong in a command; `stumble` is the error that LAMMPS raised itself."""
+    def _after_command(self, calls: int, lammps_error: Exception | None = None) -> None:
+        """Raise what went wrong in a command; `lammps_error` is what LAMMPS raised itself."""
         if self._shared["calls"][0] != calls:
-            self._after_steps(stumble)
+            self._after_steps(lammps_error)
         gone = [(kind, name) for kind, name, _ in _PARTS if not self._lmp.has_id(kind, name)]
         if gone:
             whole = not any(
@@ -405,7 +405,7 @@ class LammpsPlates:
             raise RuntimeError(
                 f"{names}: taken out by a command, and all plates with it; "
                 "LammpsPlates.detach() is the way to do it"
-            ) from stumble
+            ) from lammps_error
         commands.check_integrator(self._lmp)
         self._warn_of_walls()
 
@@ -425,7 +425,7 @@ class LammpsPlates:
                     stacklevel=4,
                 )
 
-    def _after_steps(self, stumble: Exception | None) -> None:
+    def _after_steps(self, lammps_error: Exception | None) -> None:
         """Collect the impacts and raise the errors of time steps; all ranks have to call it."""
         scene = self._contacts.scene
         count = int(scene.status["impacts"][0])
@@ -437,13 +437,14 @@ class LammpsPlates:
         self._shared["error"] = 0
         errors = [error for error, _ in gathered if error]
         if errors:
-            raise RuntimeError(message(*min(errors, key=lambda error: error[1:3]))) from stumble
+            first = min(errors, key=lambda error: error[1:3])
+            raise RuntimeError(message(*first)) from lammps_error
         marked = [beads for _, beads in gathered if beads]
         if marked:
             raise RuntimeError(
                 f"beads {sorted(sum(marked, []))}: marked as wrong in d2_{HISTORY}, which stops a "
                 "run, but not by the plates; write nothing there"
-            ) from stumble
+            ) from lammps_error
 
     def _own_error(self) -> Any:
         names = [name for name in SHARED.names or () if name.startswith("error")]
@@ -485,19 +486,19 @@ class LammpsPlates:
                 "it; attach the same plates in the same order, and friction or none as before"
             )
 
-    def _drop_strangers(self) -> None:
+    def _clear_foreign_rows(self) -> None:
         """Empty the rows that belong to other beads than their present ones, and the spare rows."""
         if found := self._history():
             history, ids = found
             history[: len(ids)][history[: len(ids), OWNER] != ids] = 0.0
             history[len(ids) :] = 0.0
 
-    def _own(self) -> None:
+    def _claim_rows(self) -> None:
         """Give the rows the present IDs of their beads, so that renumbered beads keep contacts."""
         if found := self._history():
             history, ids = found
             history[: len(ids), OWNER] = ids
-            self._drop_strangers()
+            self._clear_foreign_rows()
 
     def collisions(self) -> NDArray[np.void]:
         """Impacts that ended on this rank, one row each, in SI units.

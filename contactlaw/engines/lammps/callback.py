@@ -30,19 +30,19 @@ from contactlaw.engines.lammps.memory import (
     SHARED,
     TOO_FAST,
     WIDTH,
-    complain,
     extract,
-    keep,
+    mark_error,
     matrix_at,
+    record_error,
     running,
     thermo,
 )
 from contactlaw.engines.record import IMPACT
 from contactlaw.stepping import Bead, Clock, Trouble, interact
 from contactlaw.stepping.bead import touches
-from contactlaw.stepping.contact import CONTACT, STATUS, Scene
+from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
 from contactlaw.stepping.friction import FRICTION
-from contactlaw.stepping.sheet import SHEET
+from contactlaw.stepping.plate_rows import PLATE_ROW
 from contactlaw.walls.frame import FACET, FRAME
 from contactlaw.walls.grid import MARGIN
 from contactlaw.walls.memory import array_at, carray
@@ -71,7 +71,7 @@ def _head(history: Any, i: int) -> Any:
 
 @kernel
 def _look_for_jumps(
-    shared: Any, clock: Clock, step: int, scene: Scene, tags: Any, v: Any, radius: Any,
+    shared: Any, clock: Clock, step: int, scene: WallScene, tags: Any, v: Any, radius: Any,
     history: Any, last: Any,
 ) -> None:  # fmt: skip
     """Report beads that could jump through a wall in one step, or that have another radius now.
@@ -87,12 +87,12 @@ def _look_for_jumps(
         size, head = shared.length * radius[i], _head(history, i)
         if not speed * clock.dt < size:
             code = TOO_FAST if speed < math.inf else NOT_FINITE
-            complain(shared, step, tags[i], head, code, -1, speed, size)
+            mark_error(shared, step, tags[i], head, code, -1, speed, size)
         if head.owner != tags[i]:
             last[i] = 0.0
         elif head.radius != 0.0 and not _same(size, head.radius):
             # Here for a bead that has become so small that no wall is near it.
-            complain(shared, step, tags[i], head, RESIZED, -1, size, head.radius)
+            mark_error(shared, step, tags[i], head, RESIZED, -1, size, head.radius)
             _forget(history[i])
 
 
@@ -109,17 +109,17 @@ def _forget(row: Any) -> None:
 
 
 @kernel
-def _check_sphere(shared: Any, sheets: Any, step: int, head: Any, bead: Bead) -> None:
+def _check_sphere(shared: Any, plate_rows: Any, step: int, head: Any, bead: Bead) -> None:
     """Report a bead whose radius, mass or type has changed since it began to touch walls."""
     tag, before = bead.number, int(head.kind)
     if not _same(bead.r, head.radius):
-        complain(shared, step, tag, head, RESIZED, -1, bead.r, head.radius)
+        mark_error(shared, step, tag, head, RESIZED, -1, bead.r, head.radius)
     elif not _same(bead.mass, head.mass):
-        complain(shared, step, tag, head, REWEIGHED, -1, bead.mass, head.mass)
+        mark_error(shared, step, tag, head, REWEIGHED, -1, bead.mass, head.mass)
     elif bead.kind != before:
-        now, then = sheets[bead.kind, 0], sheets[before, 0]
+        now, then = plate_rows[bead.kind, 0], plate_rows[before, 0]
         if now.law != 0 and now.alike != then.alike:  # without a model the contact reports that
-            complain(shared, step, tag, head, RETYPED, -1, bead.kind + 1.0, before + 1.0)
+            mark_error(shared, step, tag, head, RETYPED, -1, bead.kind + 1.0, before + 1.0)
 
 
 @kernel
@@ -152,7 +152,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     advancing = thermo(shared, shared.elapsed) > 0.0
     follows, shared.step = step == shared.step + 1, step
     if running(shared) == MINIMIZING or (advancing and not follows):
-        keep(shared, step, -1, NO_STEPS, -1, 0.0, 0.0)
+        record_error(shared, step, -1, NO_STEPS, -1, 0.0, 0.0)
         return
     length, seconds = shared.length, shared.time
     dt = array_at(shared.dt, 1, np.float64)[0] * seconds
@@ -164,8 +164,8 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if advancing:
         shared.before = dt
     clock = Clock(time[0] * seconds + (step - at_step[0]) * dt, dt, before, advancing)
-    scene = Scene(
-        array_at(shared.sheets, (shared.types, shared.sheet_count), SHEET),
+    scene = WallScene(
+        array_at(shared.plate_rows, (shared.types, shared.plate_row_count), PLATE_ROW),
         array_at(shared.frames, shared.frame_count, FRAME),
         array_at(shared.facets, shared.facet_count, FACET),
         array_at(shared.found, ROOM, OVERLAP),
@@ -228,7 +228,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             array_at(first + 8 * WIDTH * shared.places, sliding, FRICTION),
         )
         if head.radius != 0.0:
-            _check_sphere(shared, scene.sheets, step, head, bead)
+            _check_sphere(shared, scene.plate_rows, step, head, bead)
         if not head.error >= Trouble.STARTS_INSIDE.value:
             recorded, loads[:] = status.impacts, 0.0
             interact(scene, clock, bead)
@@ -240,7 +240,7 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             if status.impacts > recorded:
                 last[i] = scene.impacts[status.impacts - 1].restitution
             if status.trouble != 0:
-                complain(shared, step, tags[i], head, status.trouble, status.wall, status.value,
+                mark_error(shared, step, tags[i], head, status.trouble, status.wall, status.value,
                          status.limit)  # fmt: skip
                 head.error = max(head.error, status.worst)
                 status.trouble = status.worst = 0

@@ -49,8 +49,8 @@ SHARED = np.dtype(
     [(name, "i8") for name in ("extract_atom", "get_thermo", "is_running", "lammps")]
     + [(name, "i8") for name in ("v", "f", "radius", "rmass", "type", "omega", "torque")]
     + [(name, "i8") for name in ("history", "last", "elapsed", "dt", "atime", "atimestep")]
-    + [(name, "i8") for name in ("sheets", "frames", "facets", "found", "impacts", "status")]
-    + [(name, "i8") for name in ("types", "sheet_count", "frame_count", "facet_count")]
+    + [(name, "i8") for name in ("plate_rows", "frames", "facets", "found", "impacts", "status")]
+    + [(name, "i8") for name in ("types", "plate_row_count", "frame_count", "facet_count")]
     + [(name, "i8") for name in ("capacity", "places", "columns", "calls", "step", "ticks")]
     + [(name, "i8") for name in ("error", "error_step", "error_bead", "error_plate")]
     + [
@@ -100,16 +100,16 @@ def matrix_at(address: int, rows: int, columns: int) -> Any:
 
 
 @kernel
-def complain(
+def mark_error(
     shared: Any, step: int, tag: int, head: Any, code: int, plate: int, value: float, limit: float
 ) -> None:
     """Record an error of a bead, and mark the bead, which stops the run on all ranks."""
     head.error = max(head.error, code)
-    keep(shared, step, tag, code, plate, value, limit)
+    record_error(shared, step, tag, code, plate, value, limit)
 
 
 @kernel
-def keep(
+def record_error(
     shared: Any, step: int, tag: int, code: int, plate: int, value: float, limit: float
 ) -> None:
     """Record an error if it is the first on this rank; -1 means no bead or no plate."""

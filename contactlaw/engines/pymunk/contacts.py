@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 from contactlaw.engines.pymunk.handlers import Callback, Hook, overridden
 from contactlaw.engines.pymunk.lookahead import tunnelling
 from contactlaw.engines.pymunk.record import Record
-from contactlaw.engines.pymunk.registry import Bead, Plate, changed, unregistered
-from contactlaw.engines.pymunk.seams import is_anothers
+from contactlaw.engines.pymunk.registry import BeadShape, PlateShape, changed, unregistered
+from contactlaw.engines.pymunk.seams import belongs_to_neighbour
 
 if TYPE_CHECKING:
     import pymunk
@@ -39,8 +39,8 @@ class Contacts:
     """
 
     def __init__(self) -> None:
-        self.beads: dict[int, Bead] = {}
-        self.plates: dict[int, Plate] = {}
+        self.beads: dict[int, BeadShape] = {}
+        self.plates: dict[int, PlateShape] = {}
         self.record = Record()
         self.time = 0.0
         self.steps = 0
@@ -66,16 +66,16 @@ class Contacts:
                 bead, plate = bead_of(id(circle)), plate_of(id(shape))
                 if bead is None or plate is None:
                     raise unregistered(circle if bead is None else shape)
-                if bead.left:
-                    self._take_up(arbiter, bead, plate)
+                if bead.ceded:
+                    self._resume(arbiter, bead, plate)
                 if hooks:
                     _call(hooks, arbiter, space)
                 if not arbiter.process_collision or circle.sensor or shape.sensor:
                     return
                 body: Any = circle.body
                 x, y = body.position
-                if plate.joints and is_anothers(bead, plate, circle, shape, x, y):
-                    self._leave(arbiter, bead, plate)
+                if plate.joints and belongs_to_neighbour(bead, plate, circle, shape, x, y):
+                    self._cede(arbiter, bead, plate)
                     return
                 nx, ny = arbiter.normal  # from the bead to the plate
                 x, y = x + bead.radius * nx, y + bead.radius * ny
@@ -125,15 +125,15 @@ class Contacts:
 
         return pre_solve
 
-    def _take_up(self, arbiter: pymunk.Arbiter, bead: Bead, plate: Plate) -> None:
-        """Process a contact again that was left to a neighbour, as pymunk does not by itself."""
-        if bead.left.pop(plate.index, None) == self.steps - 1:
+    def _resume(self, arbiter: pymunk.Arbiter, bead: BeadShape, plate: PlateShape) -> None:
+        """Process a contact again that was ceded to a neighbour, as pymunk does not by itself."""
+        if bead.ceded.pop(plate.index, None) == self.steps - 1:
             arbiter.process_collision = True
 
-    def _leave(self, arbiter: pymunk.Arbiter, bead: Bead, plate: Plate) -> None:
-        """Leave a contact to the plate's neighbour, for this step."""
+    def _cede(self, arbiter: pymunk.Arbiter, bead: BeadShape, plate: PlateShape) -> None:
+        """Cede a contact to the plate's neighbour, for this step."""
         arbiter.process_collision = False
-        bead.left[plate.index] = self.steps
+        bead.ceded[plate.index] = self.steps
 
     def _rest(self, arbiter: pymunk.Arbiter, speed: float) -> None:
         """Let a contact rest that is too slow for an impact."""
@@ -159,8 +159,8 @@ class Contacts:
     def _answer(
         self,
         arbiter: pymunk.Arbiter,
-        bead: Bead,
-        other: Bead | Plate,
+        bead: BeadShape,
+        other: BeadShape | PlateShape,
         circle: Any,
         shape: Any,
         speed: float,
@@ -181,7 +181,7 @@ class Contacts:
         arbiter.restitution = restitution
         return restitution
 
-    def _describe(self, bead: Bead, other: Bead | Plate, speed: float) -> str:
+    def _describe(self, bead: BeadShape, other: BeadShape | PlateShape, speed: float) -> str:
         return f"for {bead} on {other} at {speed:.9g} m/s, t = {self.time:.9g} s"
 
     def keep(self, error: BaseException, arbiter: pymunk.Arbiter | None = None) -> None:

@@ -20,12 +20,12 @@ from contactlaw.engines.pymunk.contacts import Contacts
 from contactlaw.engines.pymunk.handlers import Handlers
 from contactlaw.engines.pymunk.lookahead import LookAhead
 from contactlaw.engines.pymunk.models import Models
-from contactlaw.engines.pymunk.record import Roll
+from contactlaw.engines.pymunk.record import Register
 from contactlaw.engines.pymunk.registry import (
-    Bead,
+    BeadShape,
     Kind,
     Mount,
-    Plate,
+    PlateShape,
     body_of,
     check_mass,
     ends,
@@ -61,11 +61,11 @@ class PymunkImpacts:
         self._space = space
         self._models = models
         self._contacts = Contacts()
-        self._bodies: dict[int, Bead] = {}  # by id of the body
+        self._bodies: dict[int, BeadShape] = {}  # by id of the body
         self._mounts: dict[int, Mount] = {}  # by id of a body with plates
         self._kinds: Counter[Kind] = Counter()  # numbers of present beads by kind
         self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
-        self._roll = Roll(models)
+        self._register = Register(models)
         self._seams = Seams()
         self._attached = True
         self._lookahead = LookAhead(space, self._bodies, self._contacts.plates, self._mounts)
@@ -167,8 +167,8 @@ class PymunkImpacts:
         key, kind = id(circle), (radius, number)
         noted = self._gone.append
         shape, owner = KeyedRef(circle, noted, key), KeyedRef(body, noted, key)
-        index = self._roll.bead(number, radius)
-        bead = Bead(index, shape, owner, body.id, radius, kind, self._sphere_curve)
+        index = self._register.bead(number, radius)
+        bead = BeadShape(index, shape, owner, body.id, radius, kind, self._sphere_curve)
         self._contacts.beads[key] = self._bodies[body.id] = bead
         self._kinds[kind] += 1
         circle.collision_type = self.bead_type
@@ -218,13 +218,13 @@ class PymunkImpacts:
             raise ValueError(f"shape: has no length, all of it is at {tuple(ends(shape)[0])}")
         if model is not None and material is not None:
             raise ValueError("material: a plate with a model of its own has that one's material")
-        chosen = self._models.plate(material) if model is None else self._models.own(model)
+        chosen = self._models.plate(material) if model is None else self._models.own_models(model)
         key = id(shape)
-        index = self._roll.plate(chosen, thickness)
+        index = self._register.plate(chosen, thickness)
         mount = self._mounts.get(id(body))
         if mount is None or mount.body() is not body:
             mount = self._mounts[id(body)] = Mount(id(body), ref(body))
-        plate = Plate(index, KeyedRef(shape, self._gone.append, key), mount, thickness, chosen)
+        plate = PlateShape(index, KeyedRef(shape, self._gone.append, key), mount, thickness, chosen)
         mount.plates[index] = plate
         self._contacts.plates[key] = plate
         self._seams.join(plate, shape, body)
@@ -270,7 +270,7 @@ class PymunkImpacts:
             record `rows`, the materials of the beads are ``beads()["material"][rows["bead"]]``, and
             those of the plates ``plates()["material"][rows["plate"]]``.
         """
-        return self._roll.beads()
+        return self._register.beads()
 
     def plates(self) -> NDArray[np.void]:
         """All plates that were ever registered, by their index in the record.
@@ -280,7 +280,7 @@ class PymunkImpacts:
         structured array
             Columns thickness [m] and material, a name, or "" if the model has no pair.
         """
-        return self._roll.plates()
+        return self._register.plates()
 
     def collisions(self) -> NDArray[np.void]:
         """Every impact so far, one row each, in SI units.
@@ -295,7 +295,7 @@ class PymunkImpacts:
             are those of solid spheres (bead on bead: of the relative motion, with the reduced
             mass), without the work of friction.
         """
-        return self._contacts.record.read(self._roll)
+        return self._contacts.record.read(self._register)
 
     def detach(self) -> None:
         """Restore the space as it was; the record stays readable. A second call has no effect.

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines.pymunk.registry import Bead, Mount, Plate, ends, may_meet
+from contactlaw.engines.pymunk.registry import BeadShape, Mount, PlateShape, ends, may_meet
 
 if TYPE_CHECKING:
     import pymunk
@@ -60,8 +60,8 @@ class LookAhead:
     def __init__(
         self,
         space: pymunk.Space,
-        beads: dict[int, Bead],
-        plates: dict[int, Plate],
+        beads: dict[int, BeadShape],
+        plates: dict[int, PlateShape],
         mounts: dict[int, Mount],
     ) -> None:
         from pymunk.batch import BodyFields, Buffer
@@ -117,7 +117,7 @@ class LookAhead:
             x, y, vx, vy = motion.tolist()
             raise ValueError(f"{names[0]}: not finite: position ({x}, {y}), velocity ({vx}, {vy})")
 
-    def _cross(self, beads: list[Bead], motion: Array, dt: float, time: float) -> None:
+    def _cross(self, beads: list[BeadShape], motion: Array, dt: float, time: float) -> None:
         """Raise if beads would cross plates, for the bead that needs the smallest step."""
         found = []
         for plate in self._plates.values():

@@ -7,10 +7,10 @@ from typing import Any, NoReturn
 
 from contactlaw import Material
 from contactlaw import material as catalogued
-from contactlaw.engines.needs import Curve, RestitutionModel, knows_beads
+from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows_beads
 
 
-class ByBead(dict[int, RestitutionModel]):
+class ModelsByBead(dict[int, RestitutionModel]):
     """Models for one plate, by the number of the bead's material in `Models.spheres`."""
 
     def __init__(self, spheres: list[Any], plate: Any) -> None:
@@ -55,7 +55,7 @@ class Models:
     def __init__(self, given: RestitutionModel | Sequence[RestitutionModel]) -> None:
         self.all = _listed(given)
         self.spheres: list[Any] = []
-        self._plates: list[tuple[Any, ByBead]] = []  # materials of plates, and their models
+        self._plates: list[tuple[Any, ModelsByBead]] = []  # materials of plates, and their models
         seen: list[tuple[Any, Any]] = []
         for model in self.all:
             pair = sphere_of(model), plate_of(model)
@@ -76,7 +76,7 @@ class Models:
                     models[number] = model
                     break
             else:
-                models = ByBead(self.spheres, pair[1])
+                models = ModelsByBead(self.spheres, pair[1])
                 models[number] = model
                 self._plates.append((pair[1], models))
 
@@ -89,17 +89,17 @@ class Models:
                 return number
         raise self._missing("spheres", material, self.spheres)
 
-    def plate(self, material: Material | str | None) -> ByBead:
+    def plate(self, material: Material | str | None) -> ModelsByBead:
         """Models for a plate of a material, by default that of the first model."""
         for plate, models in self._plates:
             if material is None or _is(material, plate):
                 return models
         raise self._missing("plates", material, [plate for plate, _ in self._plates])
 
-    def own(self, given: RestitutionModel | Sequence[RestitutionModel]) -> ByBead:
+    def own_models(self, given: RestitutionModel | Sequence[RestitutionModel]) -> ModelsByBead:
         """Models of a plate that was given its own."""
         models = _listed(given)
-        found = ByBead(self.spheres, plate_of(models[0]))
+        found = ModelsByBead(self.spheres, plate_of(models[0]))
         for model in models:
             sphere = sphere_of(model)
             known = [n for n, s in enumerate(self.spheres) if None in (s, sphere) or s == sphere]
@@ -116,17 +116,17 @@ class Models:
         sphere = self.spheres[number]
         return next(model for model in self.all if sphere_of(model) == sphere)
 
-    def others(self, number: int, other: int) -> tuple[Any, ...]:
+    def extra_arguments(self, number: int, other: int) -> tuple[Any, ...]:
         """Further argument of that model's methods: the other bead's material if it differs."""
         return () if number == other else (self.spheres[other],)
 
-    def sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> Curve:
+    def sphere_curve(self, one: tuple[float, int], two: tuple[float, int]) -> CorBySpeed:
         """Restitution by speed of two beads, each of a radius [m] and a material."""
         (radius, number), (other_radius, other) = one, two
         model = self.of_bead(number)
         if not knows_beads(model):
             raise TypeError(f"beads meet, but {model!r} has no sphere_sphere_curve()")
-        return model.sphere_sphere_curve(radius, other_radius, *self.others(number, other))
+        return model.sphere_sphere_curve(radius, other_radius, *self.extra_arguments(number, other))
 
     def density(self, number: int) -> float | None:
         """Density of a bead's material [kg/m3], None if the model does not have it."""

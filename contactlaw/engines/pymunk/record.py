@@ -11,12 +11,12 @@ from numpy.lib.recfunctions import repack_fields
 from numpy.typing import NDArray
 
 from contactlaw.engines.needs import RestitutionModel, knows_rebounds
-from contactlaw.engines.pymunk.models import ByBead, Models
+from contactlaw.engines.pymunk.models import Models, ModelsByBead
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
 from contactlaw.physical.materials import sphere_mass
 
 
-class Roll:
+class Register:
     """All beads and plates ever registered, by index, because the record outlives the shapes."""
 
     def __init__(self, models: Models) -> None:
@@ -24,7 +24,7 @@ class Roll:
         self._radii = array("d")
         self._materials = array("l")
         self._thicknesses = array("d")
-        self._plates: list[ByBead] = []
+        self._plates: list[ModelsByBead] = []
 
     def bead(self, material: int, radius: float) -> int:
         """Add a bead and return its index."""
@@ -32,7 +32,7 @@ class Roll:
         self._materials.append(material)
         return len(self._radii) - 1
 
-    def plate(self, models: ByBead, thickness: float) -> int:
+    def plate(self, models: ModelsByBead, thickness: float) -> int:
         """Add a plate and return its index."""
         self._thicknesses.append(thickness)
         self._plates.append(models)
@@ -84,32 +84,32 @@ class Record:
             del self._seen[-len(OBSERVED) :]
             self._rows = self._rows[: len(self._seen) // len(OBSERVED)]
 
-    def read(self, roll: Roll) -> NDArray[np.void]:
+    def read(self, register: Register) -> NDArray[np.void]:
         """Structured array of all impacts; each is looked up when it is first read, and not again.
 
         Parameters
         ----------
-        roll : Roll
+        register : Register
             Beads, plates and their models, with all those of the last call. Unless every model is a
             `ReboundModel`, there are only the columns of OBSERVED.
         """
-        whole = all(knows_rebounds(model) for model in roll.every_model())
+        whole = all(knows_rebounds(model) for model in register.every_model())
         seen = np.array(self._seen[len(self._rows) * len(OBSERVED) :]).reshape(-1, len(OBSERVED))
         if len(seen):
             rows = np.zeros(len(seen), IMPACT)
             for name, column in zip(OBSERVED, seen.T, strict=True):
                 rows[name] = column
             if whole:
-                _complete(rows, roll)
+                _complete(rows, register)
             self._rows = np.concatenate((self._rows, rows))
         # Once a model gives a COR alone, the rest of the run has the columns of OBSERVED only.
         return self._rows.copy() if whole else repack_fields(self._rows[list(OBSERVED)])
 
 
-def _complete(rows: NDArray[np.void], roll: Roll) -> None:
+def _complete(rows: NDArray[np.void], register: Register) -> None:
     """Look impacts up, each with the model of its materials; every model is a `ReboundModel`."""
-    beads, plates, material = roll.beads(), roll.plates(), roll.materials
-    density = np.array([roll.models.density(n) for n in range(len(roll.models.spheres))])
+    beads, plates, material = register.beads(), register.plates(), register.materials
+    density = np.array([register.models.density(n) for n in range(len(register.models.spheres))])
     mass = sphere_mass(density[material], beads["radius"])
     on_bead = rows["other"] >= 0
     bead, other = rows["bead"], rows["other"]
@@ -121,14 +121,14 @@ def _complete(rows: NDArray[np.void], roll: Roll) -> None:
     reduced = mass[bead] / (1.0 + np.where(on_bead, mass[bead] / mass[other], 0.0))
     energy = 0.5 * reduced * rows["approach_speed"] ** 2
     questions: list[tuple[Any, NDArray[np.bool_], tuple[Any, ...]]] = [
-        (model.lookup, own, ()) for model, own in roll.by_model(rows)
+        (model.lookup, own, ()) for model, own in register.by_model(rows)
     ]
     for pair in np.unique(
         np.stack((material[bead], material[other]))[:, on_bead], axis=1
     ).T.tolist():
         own = on_bead & (material[bead] == pair[0]) & (material[other] == pair[1])
-        model: Any = roll.models.of_bead(pair[0])
-        questions.append((model.lookup_sphere_sphere, own, roll.models.others(*pair)))
+        model: Any = register.models.of_bead(pair[0])
+        questions.append((model.lookup_sphere_sphere, own, register.models.extra_arguments(*pair)))
     for lookup, own, more in questions:
         part = rows[own]
         fill(

@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from contactlaw.engines.needs import Curve
-from contactlaw.engines.pymunk.models import ByBead
+from contactlaw.engines.needs import CorBySpeed
+from contactlaw.engines.pymunk.models import ModelsByBead
 from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.materials import sphere_mass
 
@@ -21,9 +21,11 @@ if TYPE_CHECKING:
 
 Vector = tuple[float, float]
 Kind = tuple[float, int]  # beads that rebound alike: radius [m], number of the material
-Joint = tuple[float, float, "Plate"]  # a shared end [m], in the body's coordinates; other plate
-NEVER = (-1, 0.0, 0.0)  # entry of `Bead.touched` for a plate that the bead has not touched
-FEW = 8  # entries of `Bead.touched` beyond which old ones are deleted
+# a shared end [m], in the body's coordinates, and the other plate
+Joint = tuple[float, float, "PlateShape"]
+# entry of `BeadShape.touched` for a plate that the bead has not touched
+NOT_TOUCHED = (-1, 0.0, 0.0)
+TOUCHED_KEPT = 8  # entries of `BeadShape.touched` beyond which old ones are deleted
 LARGEST = 1.0  # radius [m] of a boulder; a larger one was given in pixels
 # Allows for porosity and for a density that is not quite the material's. A disc, a mass of 1 or a
 # diameter taken for the radius are far outside.
@@ -33,7 +35,7 @@ MASS_RATIO = 1.5
 # The attachment holds weak references to shapes and bodies, because otherwise all beads that have
 # ever been in a space would stay in memory.
 @dataclass(slots=True, eq=False)
-class Bead:
+class BeadShape:
     """A registered sphere, which hits plates and other spheres."""
 
     index: int
@@ -42,17 +44,17 @@ class Bead:
     body_id: int  # pymunk may give it to another body after this one
     radius: float
     kind: Kind
-    pair_curve: Callable[[Kind, Kind], Curve]  # COR by speed of two beads, the smaller first
+    pair_curve: Callable[[Kind, Kind], CorBySpeed]  # COR by speed of two beads, the smaller first
     # by plate: the last step in which it touched, and the normal then
     touched: dict[int, tuple[int, float, float]] = field(default_factory=dict)
     # by plate: the last step in which a neighbour of the plate had the contact
-    left: dict[int, int] = field(default_factory=dict)
-    shake: ClassVar[float] = 0.0  # nothing drives a bead; see `Plate`
+    ceded: dict[int, int] = field(default_factory=dict)
+    shake: ClassVar[float] = 0.0  # nothing drives a bead; see `PlateShape`
 
     def __str__(self) -> str:
         return f"bead {self.index}"
 
-    def curve(self, bead: Bead, shape: pymunk.Circle) -> Curve:
+    def curve(self, bead: BeadShape, shape: pymunk.Circle) -> CorBySpeed:
         """COR by speed of a bead on this one."""
         if shape.radius != self.radius:
             raise changed(self, shape)
@@ -60,16 +62,16 @@ class Bead:
 
 
 @dataclass(slots=True, eq=False)
-class Plate:
+class PlateShape:
     """A registered plate, and its state from step to step."""
 
     index: int
     shape: weakref.ref[Face]
     mount: Mount
     thickness: float
-    models: ByBead
+    models: ModelsByBead
     joints: list[Joint] = field(default_factory=list)  # ends shared with other plates
-    curves: dict[Kind, Curve] = field(default_factory=dict)
+    curves: dict[Kind, CorBySpeed] = field(default_factory=dict)
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
     change: float = 0.0  # change of that velocity in the last step [m/s]
     shake: float = 0.0  # the change per step of a plate that keeps changing, else about 0 [m/s]
@@ -77,7 +79,7 @@ class Plate:
     def __str__(self) -> str:
         return f"plate {self.index}"
 
-    def curve(self, bead: Bead, shape: pymunk.Shape) -> Curve:
+    def curve(self, bead: BeadShape, shape: pymunk.Shape) -> CorBySpeed:
         """COR by speed of beads of this kind; made once."""
         curve = self.curves.get(bead.kind)
         if curve is None:
@@ -97,10 +99,10 @@ class Plate:
         velocity: Vector = body.velocity_at_world_point((x, y))
         return velocity
 
-    def passed(self, bead: Bead, nx: float, ny: float, step: int) -> bool:
+    def passed(self, bead: BeadShape, nx: float, ny: float, step: int) -> bool:
         """Whether a touching bead has been pressed through: its normal is reversed."""
-        last, old_nx, old_ny = bead.touched.get(self.index, NEVER)
-        if len(bead.touched) > FEW:
+        last, old_nx, old_ny = bead.touched.get(self.index, NOT_TOUCHED)
+        if len(bead.touched) > TOUCHED_KEPT:
             bead.touched = {n: seen for n, seen in bead.touched.items() if seen[0] >= step - 1}
         bead.touched[self.index] = (step, nx, ny)
         return last == step - 1 and old_nx * nx + old_ny * ny < 0.0
@@ -131,7 +133,7 @@ class Mount:
 
     key: int  # id of the body
     body: weakref.ref[pymunk.Body]
-    plates: dict[int, Plate] = field(default_factory=dict)
+    plates: dict[int, PlateShape] = field(default_factory=dict)
     # Whether the body has no velocity; None for a static body, until that is looked up. To ask
     # pymunk for the velocity of a point takes a tenth of the time of a collision.
     still: bool | None = False
@@ -221,7 +223,7 @@ def radius_of(circle: pymunk.Circle) -> float:
     return radius
 
 
-def changed(bead: Bead, circle: pymunk.Circle) -> ValueError:
+def changed(bead: BeadShape, circle: pymunk.Circle) -> ValueError:
     """Make the error for a circle that is no longer what was registered."""
     return ValueError(
         f"radius: {bead} was registered with {bead.radius!r} m and has {circle.radius!r} m now; "

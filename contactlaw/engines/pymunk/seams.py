@@ -6,7 +6,7 @@ import math
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
-from contactlaw.engines.pymunk.registry import Bead, Plate, Vector, ends, may_meet
+from contactlaw.engines.pymunk.registry import BeadShape, PlateShape, Vector, ends, may_meet
 
 if TYPE_CHECKING:
     import pymunk
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from contactlaw.engines.pymunk.registry import Face
 
 # Ends closer than this are one [m]: far below any bead's size, far above a drawing's rounding.
-SAME = 1e-7
+SAME_END = 1e-7
 # An end is the plate's nearest point to a bead if it is farther by at most this share of the bead's
 # radius; the distances have rounding errors of 1e-13 of it.
 AT_END = 1e-9
@@ -26,26 +26,26 @@ class Seams:
     """Ends of all plates, found by their position."""
 
     def __init__(self) -> None:
-        self._ends: dict[Cell, list[tuple[Vector, Plate, Vector]]] = {}
+        self._ends: dict[Cell, list[tuple[Vector, PlateShape, Vector]]] = {}
         self._cells: dict[int, list[Cell]] = {}  # by index of the plate
 
-    def join(self, plate: Plate, shape: Face, body: pymunk.Body) -> None:
+    def join(self, plate: PlateShape, shape: Face, body: pymunk.Body) -> None:
         """Make joints of the ends that a new plate shares with others on the same rigid body."""
         cells = self._cells[plate.index] = []
         for end in ends(shape):
             rigid, (x, y) = _place(end, body)
             if not (math.isfinite(x) and math.isfinite(y)):
                 continue
-            column, row = round(x / SAME), round(y / SAME)
+            column, row = round(x / SAME_END), round(y / SAME_END)
             for i, j in product((-1, 0, 1), repeat=2):
                 for (u, v), other, its_end in self._ends.get((rigid, column + i, row + j), ()):
-                    if other is not plate and math.hypot(x - u, y - v) <= SAME:
+                    if other is not plate and math.hypot(x - u, y - v) <= SAME_END:
                         plate.joints.append((*end, other))
                         other.joints.append((*its_end, plate))
             cells.append((rigid, column, row))
             self._ends.setdefault(cells[-1], []).append(((x, y), plate, end))
 
-    def part(self, plate: Plate) -> None:
+    def part(self, plate: PlateShape) -> None:
         """Forget a plate."""
         for _, _, other in plate.joints:
             other.joints[:] = [joint for joint in other.joints if joint[2] is not plate]
@@ -55,7 +55,9 @@ class Seams:
                 self._ends[cell] = left
 
 
-def is_anothers(bead: Bead, plate: Plate, circle: Any, shape: Any, x: float, y: float) -> bool:
+def belongs_to_neighbour(
+    bead: BeadShape, plate: PlateShape, circle: Any, shape: Any, x: float, y: float
+) -> bool:
     """Whether a contact of a bead at x, y belongs to another plate that shares the touched end.
 
     It belongs to the nearest plate, and of equally near plates to the one registered first.

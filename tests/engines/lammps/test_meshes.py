@@ -11,7 +11,7 @@ from scipy.spatial import Delaunay
 from scipy.spatial.transform import Rotation as Turn
 
 from contactlaw.engines.lammps import Mesh, Plate, memory
-from contactlaw.walls.grid import Grid
+from contactlaw.walls.grid import FacetGrid
 
 HALF = 0.014  # of the square that is tessellated [m]
 UNEVEN = Turn.from_euler("xyz", [0.3, -0.7, 1.1]).as_matrix()
@@ -195,9 +195,9 @@ def test_a_grid_across_its_axes_is_made_as_fast_as_along_them():
     seconds = []
     for end in ((0, 0, 0.3), (0.173, 0.173, 0.173)):
         corners = corners_of(Mesh.cylinder((0, 0, 0), end, 0.02, 1e-3, facets=72))
-        Grid(corners[:1], 0, R)  # compiled
+        FacetGrid(corners[:1], 0, R)  # compiled
         start = time.process_time()
-        Grid(corners, 0, R)
+        FacetGrid(corners, 0, R)
         seconds.append(time.process_time() - start)
     assert seconds[1] < 10 * seconds[0]
 
@@ -213,7 +213,7 @@ def sheet_about(place):
 def test_a_cell_lists_whatever_a_bead_in_it_may_touch(turn):
     """Beads at random points of facets' surroundings, against the distances to a dense cloud."""
     triangles = sheet_about([0.01, 0.02, 0.03]) @ turn.T
-    grid = Grid(triangles[:, [0, 1, 2, 2]], 0, R)
+    grid = FacetGrid(triangles[:, [0, 1, 2, 2]], 0, R)
     rng = np.random.default_rng(10)
     share = rng.dirichlet([0.5, 0.5, 0.5], (300, 40))
     points = np.einsum("nmk,nkd->nmd", share, triangles)

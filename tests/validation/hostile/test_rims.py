@@ -39,16 +39,16 @@ def test_a_bead_on_a_standing_rim(facets):
 def energy(frames, facets, x, r, found, force):
     """Potential of the contacts of an elastic bead over 0.4 K, and its force over K."""
     count = surface.overlaps(frames, facets, x, r, found)
-    surface.join(r, found, count)
+    surface.group_surfaces(r, found, count)
     total = 0.0
     force[:] = 0.0
     for n in range(count):
         row = found[n]
-        if row.surface == n:
+        if row.representative == n:
             total += row.x**2.5 - row.shared**2.5
             less = (0.0, 0.0, 0.0)
             if row.shared > 0.0:
-                less = surface.slope(frames, facets, x, r, found[row.one], found[row.other])
+                less = surface.pass_gradient(frames, facets, x, r, found[row.one], found[row.other])
             for k, normal in enumerate((row.nx, row.ny, row.nz)):
                 force[k] += row.x**1.5 * normal - row.shared**1.5 * less[k]
     return total

@@ -24,14 +24,14 @@ def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
     """Materials that the options name, otherwise those of the `known` pair of a record."""
     bodies = {}
     for name in ("sphere", "plate"):
-        asked = getattr(arguments, name)
-        if asked is None:
+        chosen = getattr(arguments, name)
+        if chosen is None:
             if known is None:
                 raise wording.Refused(f"--{name}: has to be given, no record says it")
             bodies[name] = getattr(known, name)
         else:
             with wording.material_of(name):
-                bodies[name] = material(asked)
+                bodies[name] = material(chosen)
     return Pair(**bodies)
 
 
@@ -44,7 +44,7 @@ def check_quantities(arguments: argparse.Namespace) -> None:
 
 
 @contextmanager
-def picture(arguments: argparse.Namespace) -> Iterator[None]:
+def plot_file(arguments: argparse.Namespace) -> Iterator[None]:
     """Refuse a file that cannot be drawn into before anything is computed; print its name after."""
     with wording.file_of("plot", arguments.plot):
         plots.check_suffix(arguments.plot)

@@ -1,6 +1,6 @@
 """Impacts as rows of a table: every combination of some speeds, radii and thicknesses.
 
-A sheet is printed for a terminal, as CSV or as JSON; its columns and their units are listed once.
+A table is printed for a terminal, as CSV or as JSON; its columns and their units are listed once.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ _COLUMNS = (
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
+class ImpactTable:
     """Impacts and their results in SI units; all columns have the same length.
 
     Attributes
@@ -75,13 +75,13 @@ class Sheet:
         return len(self.flags)
 
 
-def impacts(
+def tabulate(
     model: ImpactModel,
     speeds: Sequence[float],
     radii: Sequence[float],
     thicknesses: Sequence[float],
     solve: bool = False,
-) -> Sheet:
+) -> ImpactTable:
     """Look up every combination, or integrate it.
 
     Parameters
@@ -103,8 +103,8 @@ def impacts(
     --------
     >>> import contactlaw as cl
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> sheet = impacts(model, [1.0, 5.0], [0.9e-3], [0.5e-3, math.inf])
-    >>> sheet.columns["restitution"].round(4)
+    >>> table = tabulate(model, [1.0, 5.0], [0.9e-3], [0.5e-3, math.inf])
+    >>> table.columns["restitution"].round(4)
     array([0.7592, 0.6854, 1.    , 1.    ])
     """
     count = len(speeds) * len(radii) * len(thicknesses)
@@ -114,8 +114,8 @@ def impacts(
             f"{_MOST} is the most: give fewer values"
         )
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
-    with wording.impacts(v, r, h):
-        if not solve and _tableless(model):
+    with wording.naming_impact(v, r, h):
+        if not solve and _integrates(model):
             limited = model.outside == "raise"
             rebound = _solver(model, limited).rebounds(Impacts.on_plates(v, r, h))
         else:
@@ -123,10 +123,10 @@ def impacts(
     first = slice(None, None, len(speeds))  # first row of each bead on each plate
     yields = np.repeat(yield_speeds(model, r[first], h[first]), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
-    return Sheet({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
+    return ImpactTable({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
 
 
-def _tableless(model: ImpactModel) -> bool:
+def _integrates(model: ImpactModel) -> bool:
     """Whether to integrate instead: without numba's compiler, building a table takes minutes."""
     law = model.force_law
     ships = (law.is_hertz and not law.yields) or file.packaged(law) is not None
@@ -153,7 +153,7 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
     array([7.92,  inf])
     """
     try:
-        if _tableless(model):
+        if _integrates(model):
             return _solver(model, True).yield_speeds(radius, thickness)
         return np.asarray(model.yield_speed(radius, thickness))
     except ValueError:
@@ -163,14 +163,14 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
         return np.concatenate([yield_speeds(model, r, h) for r, h in parts])
 
 
-def text(sheet: Sheet) -> Iterator[str]:
+def text(table: ImpactTable) -> Iterator[str]:
     """Lines for a terminal: names, units, a row per impact, and the meaning of the flags.
 
     Examples
     --------
     >>> import contactlaw as cl
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> for line in text(impacts(model, [1.0, 5.0], [0.9e-3], [1e-3])):
+    >>> for line in text(tabulate(model, [1.0, 5.0], [0.9e-3], [1e-3])):
     ...     print(line[:46])
     speed  radius  thickness     COR   time  force
     [m/s]    [mm]       [mm]     [-]   [us]    [N]
@@ -180,12 +180,12 @@ def text(sheet: Sheet) -> Iterator[str]:
     shown = [column for column in _COLUMNS if column.title]
     cells = [
         [column.title, f"[{column.shown}]"]
-        + [f"{value:.4g}" for value in sheet.columns[column.name] * column.scale]
+        + [f"{value:.4g}" for value in table.columns[column.name] * column.scale]
         for column in shown
     ]
-    cells.append(["flags", "", *map(", ".join, map(flag_names, sheet.flags))])
+    cells.append(["flags", "", *map(", ".join, map(flag_names, table.flags))])
     yield from aligned(cells)
-    yield from explained(count_flags(sheet.flags), len(sheet))
+    yield from explained(count_flags(table.flags), len(table))
 
 
 def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
@@ -221,7 +221,7 @@ def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
         yield f"{flag.name}, {count} of {total}: {words}"
 
 
-def write_csv(sheet: Sheet, out: TextIO) -> None:
+def write_csv(table: ImpactTable, out: TextIO) -> None:
     """Write rows with every digit; the header has names and SI units.
 
     Examples
@@ -230,7 +230,7 @@ def write_csv(sheet: Sheet, out: TextIO) -> None:
     >>> import contactlaw as cl
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> out = io.StringIO()
-    >>> write_csv(impacts(model, [60.0], [0.9e-3], [1e-3]), out)
+    >>> write_csv(tabulate(model, [60.0], [0.9e-3], [1e-3]), out)
     >>> for line in out.getvalue().splitlines():
     ...     print(*line.split(",")[:3], line.split(",")[-1])
     speed_m/s radius_m thickness_m flags
@@ -240,30 +240,30 @@ def write_csv(sheet: Sheet, out: TextIO) -> None:
     units = (f"_{column.unit}" * bool(column.unit) for column in _COLUMNS)
     names = [column.name + unit for column, unit in zip(_COLUMNS, units, strict=True)]
     writer.writerow([*names, "flags"])
-    values = (column.tolist() for column in sheet.columns.values())
-    flags = ("|".join(flag_names(value)) for value in sheet.flags)
+    values = (column.tolist() for column in table.columns.values())
+    flags = ("|".join(flag_names(value)) for value in table.flags)
     writer.writerows([*row, last] for *row, last in zip(*values, flags, strict=True))
 
 
-def records(sheet: Sheet) -> list[dict[str, object]]:
+def records(table: ImpactTable) -> list[dict[str, object]]:
     """Rows for JSON, which has no inf: an infinite yield speed or thickness is None.
 
     Examples
     --------
     >>> import contactlaw as cl
     >>> model = cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")
-    >>> (row,) = records(impacts(model, [1.0], [1e-3], [math.inf]))
+    >>> (row,) = records(tabulate(model, [1.0], [1e-3], [math.inf]))
     >>> row["thickness"], row["yield_speed"], row["flags"]
     (None, None, [])
     """
-    values = zip(*(column.tolist() for column in sheet.columns.values()), strict=True)
+    values = zip(*(column.tolist() for column in table.columns.values()), strict=True)
     return [
         {
             name: value if value < math.inf else None
-            for name, value in zip(sheet.columns, row, strict=True)
+            for name, value in zip(table.columns, row, strict=True)
         }
         | {"flags": flag_names(flags)}
-        for row, flags in zip(values, sheet.flags, strict=True)
+        for row, flags in zip(values, table.flags, strict=True)
     ]
 
 

@@ -1,7 +1,7 @@
 """Constants of the contacts between bead types and walls, as rows that kernels read.
 
-A *sheet* is a plate of one thickness and material under beads of one type. Its row holds the spring
-of a bead of radius 1 m, the limits of the model's validity, and the contact law.
+A *plate row* is for a plate of one thickness and material under beads of one type. It holds the
+spring of a bead of radius 1 m, the limits of the model's validity, and the contact law.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.numbers import PlateConstants
-from contactlaw.equation.waves import Waves
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Limits
 from contactlaw.stepping.spring import Spring, resized, unit_spring
@@ -24,14 +24,14 @@ from contactlaw.walls.plate import by_type
 
 Rows = NDArray[np.void]
 
-SHEET = np.dtype(
+PLATE_ROW = np.dtype(
     [
         (name, "f8")
         for name in (
             "tangential",
             *Spring._fields[:-1],
             *PlateConstants._fields[:-1],
-            *Waves._fields,
+            *PlateCorrections._fields,
         )
     ]
     # the flags of an impact need the thickness and the fields of Limits
@@ -40,7 +40,7 @@ SHEET = np.dtype(
         (name, "i8" if "int" in str(kind) else "f8")
         for name, kind in Limits.__annotations__.items()
     ]
-    # largest inelasticity that the model accepts; first bead type with equal rows on all sheets
+    # largest inelasticity that the model accepts; first bead type with equal rows on all plates
     + [("largest", "f8"), ("alike", "i8")]
     # address and size of the law; 0: there is no model for beads of this type
     + [("law", "i8"), ("law_size", "i8")],
@@ -48,10 +48,10 @@ SHEET = np.dtype(
 )
 
 
-def sheets(
+def plate_rows(
     walls: Sequence[Wall], models: Mapping[int, ImpactModel], types: int
 ) -> tuple[Rows, list[NDArray[np.intp]], list[ImpactModel]]:
-    """Sheets by bead type and number, the sheet numbers of each wall's facets, and the models."""
+    """Plate rows by bead type and number, their numbers for each wall's facets, and the models."""
     table: dict[Any, int] = {}
     numbers = []
     by_id = {id(model): model for model in models.values()}
@@ -62,7 +62,7 @@ def sheets(
         keys = tuple((kind, id(model)) for kind, model in own.items())
         found = [table.setdefault((keys, float(value)), len(table)) for value in values]
         numbers.append(np.array(found)[which.ravel()])
-    rows = np.zeros((types, len(table)), SHEET)
+    rows = np.zeros((types, len(table)), PLATE_ROW)
     laws = [[""] * len(table) for _ in range(types)]
     for (kinds, thickness), number in table.items():
         for kind, model in kinds:
@@ -73,11 +73,11 @@ def sheets(
 
 
 def _first_alike(rows: Any, laws: list[list[str]]) -> NDArray[np.intp]:
-    """First bead type, from 0, with equal rows and laws on all sheets, for each bead type.
+    """First bead type, from 0, with equal rows and laws on all plates, for each bead type.
 
     Laws are compared by their keys, because equal models hold their data at different addresses.
     """
-    numbers = [name for name in SHEET.names or () if name != "law"]
+    numbers = [name for name in PLATE_ROW.names or () if name != "law"]
     said = [(row[numbers].tolist(), keys) for row, keys in zip(rows, laws, strict=True)]
     return np.array([said.index(one) for one in said])
 
@@ -87,7 +87,7 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     spring = unit_spring(model, thickness)
     parts: dict[str, Any] = spring._asdict() | model.limits._asdict()
     parts |= parts.pop("plate")._asdict()
-    parts |= parts.pop("waves")._asdict()
+    parts |= parts.pop("corrections")._asdict()
     for name, value in parts.items():
         row[name] = value
     law = model.force_law.data
@@ -99,26 +99,26 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
 
 
 @kernel
-def spring_of(sheet: Any, r: float) -> Spring:
-    """Spring of a bead of this radius [m] on a sheet."""
-    waves = Waves(
-        sheet.eta, sheet.eta_h, sheet.eta4, sheet.beyond, sheet.steepest, sheet.bulk_factor,
-        sheet.p1, sheet.p2, sheet.p3, sheet.p4, sheet.p5,
+def spring_of(row: Any, r: float) -> Spring:
+    """Spring of a bead of this radius [m] on the plate of a row."""
+    corrections = PlateCorrections(
+        row.eta, row.eta_h, row.eta4, row.plastic_growth, row.steepest, row.bulk_factor,
+        row.p1, row.p2, row.p3, row.p4, row.p5,
     )  # fmt: skip
     plate = PlateConstants(
-        sheet.inelasticity, sheet.transit, sheet.reach, sheet.saturated, waves
+        row.inelasticity, row.transit, row.x_at_one, row.saturated, corrections
     )  # fmt: skip
     unit = Spring(
-        sheet.mass, sheet.stiffness, sheet.mobility, sheet.scale, sheet.relaxation, sheet.ratio,
+        row.mass, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio,
         plate,
     )  # fmt: skip
     return resized(unit, r)
 
 
 @kernel
-def limits_of(sheet: Any) -> Limits:
-    """Limits of the model behind a sheet."""
+def limits_of(row: Any) -> Limits:
+    """Limits of the model behind a plate row."""
     return Limits(
-        sheet.slender, sheet.slowness, sheet.always, sheet.yielded, sheet.trusted, sheet.fastest,
-        sheet.swiftest, sheet.share, sheet.deepest, sheet.bending, sheet.damage, sheet.untried,
+        row.slender, row.slowness, row.always, row.flags_when_yielded, row.least_yield_ratio,
+        row.fastest, row.swiftest, row.share, row.deepest, row.bending, row.damage, row.untried,
     )  # fmt: skip

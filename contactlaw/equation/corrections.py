@@ -51,11 +51,12 @@ DEEPEST = 0.317  # x up to which finite elements reach, d = R/10; the first term
 # Contact radius over thickness, (R/H) x, from which on the first term of eta is constant. Finite
 # elements reach 1. Without a bound exp(eta) overflows for soft beads at high speeds.
 BROADEST = 10.0
-LONGER, LONGER_3 = 0.175, 0.18  # of lambda and lambda^3 in f; the second from finite elements
+# factors of lambda and lambda^3 in f; the second from finite elements
+LENGTHENING, LENGTHENING_3 = 0.175, 0.18
 # Largest lambda for which g has its f. From 2 on, f would grow faster than contact times do, and
 # lambda would rise with the thickness.
 LONGEST = 1.25
-USUAL = 0.02  # h_0
+H_0 = 0.02  # h_0
 _RANGE = (0.0, 0.45)  # range of nu here: c_L grows without bound towards 0.5
 # p2 to p5, each in powers of 1/h_c - _CENTRE; from ``python -m validation.derivations.mobility``
 _CENTRE = 1.07
@@ -69,13 +70,13 @@ _NEAR = np.array(
 )
 
 
-class Waves(NamedTuple):
+class PlateCorrections(NamedTuple):
     """Corrections of a plate to the thin-plate dashpot, for kernels; all zero: none."""
 
     eta: float  # first term of eta at R = H, h = h_0 and x = 1
     eta_h: float  # factor of g in that term
     eta4: float  # last term of eta
-    beyond: float  # growth of lambda beyond yield at R = H and x = x_s + 1
+    plastic_growth: float  # growth of lambda beyond yield at R = H and x = x_s + 1
     steepest: float  # 1/h_c
     bulk_factor: float  # k2
     p1: float  # P = 1 + p1 x + p2 x^2 + p3 x^3 + p4 x^4 + p5 x^5
@@ -85,22 +86,22 @@ class Waves(NamedTuple):
     p5: float
 
 
-THIN = Waves(*[0.0] * 11)
+THIN = PlateCorrections(*[0.0] * 11)
 """The plate of the paper, a dashpot at any frequency."""
 
 
-def waves(
+def plate_corrections(
     poissons_ratio: float,
     eta: float = 0.0,
     eta_h: float = 0.0,
     eta4: float = 0.0,
-    beyond: float = 0.0,
-) -> Waves:
+    plastic_growth: float = 0.0,
+) -> PlateCorrections:
     """Corrections for plates of this Poisson's ratio; b, b_h and b_p times E1'/(E1' + E2'), and b4.
 
     Examples
     --------
-    >>> one = waves(0.3)
+    >>> one = plate_corrections(0.3)
     >>> [round(one.bulk_factor * h**2 + near_field(one, h), 2) for h in (0.0, 0.1, 1.0)]
     [1.0, 1.12, 6.1]
     """
@@ -110,43 +111,52 @@ def waves(
     d = nu - 0.3
     k2 = 6.0994 - 4.8895 * d + 6.5469 * d**2 + 7.4075 * d**3
     others = (_NEAR @ (1.0 / h_c - _CENTRE) ** np.arange(5)).tolist()
-    return Waves(eta, eta_h, eta4, beyond, 1.0 / h_c, k2, 3.0 + k1 * h_c, *others)
+    return PlateCorrections(
+        eta, eta_h, eta4, plastic_growth, 1.0 / h_c, k2, 3.0 + k1 * h_c, *others
+    )
 
 
 @kernel(inline=True)
-def is_thin(waves: Waves) -> bool:
+def is_thin(corrections: PlateCorrections) -> bool:
     """Whether a plate is the paper's dashpot, without corrections."""
-    return waves.bulk_factor == 0.0
+    return corrections.bulk_factor == 0.0
 
 
 @kernel(inline=True)
 def _lengthening(lam: float) -> float:
     """Factor f by which losses lengthen the contact in Phi."""
-    return 1.0 + LONGER * lam + LONGER_3 * (lam * lam * lam)
+    return 1.0 + LENGTHENING * lam + LENGTHENING_3 * (lam * lam * lam)
 
 
 @kernel(inline=True)
-def stiffening(waves: Waves, ratio: float, x: float, thin: float, h: float) -> float:
+def eta_of(corrections: PlateCorrections, ratio: float, x: float, thin: float, h: float) -> float:
     """Stiffening eta of a contact by its plate, from R/H, x, and lambda and h without eta."""
     longer = _lengthening(min(thin, LONGEST))
-    usual = USUAL * (longer * longer)  # the square fits finite elements: late times matter
+    usual = H_0 * (longer * longer)  # the square fits finite elements: late times matter
     g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, WIDEST * WIDEST)
     w = min(x, DEEPEST, BROADEST / ratio)
-    return ratio * ((waves.eta + waves.eta_h * g) * w + waves.eta4 * (square * square))
+    return ratio * (
+        (corrections.eta + corrections.eta_h * g) * w + corrections.eta4 * (square * square)
+    )
 
 
 @kernel(inline=True)
-def near_field(waves: Waves, h: float) -> float:
+def near_field(corrections: PlateCorrections, h: float) -> float:
     """Phi minus its half-space part k2 h^2; 0 if h is infinite or NaN."""
-    x = h * waves.steepest
-    powers = 1.0 + x * (waves.p1 + x * (waves.p2 + x * (waves.p3 + x * (waves.p4 + x * waves.p5))))
+    x = h * corrections.steepest
+    powers = 1.0 + x * (
+        corrections.p1
+        + x * (corrections.p2 + x * (corrections.p3 + x * (corrections.p4 + x * corrections.p5)))
+    )
     left = 1.0 - x
     return left * left * left * powers if x < 1.0 else 0.0
 
 
 @kernel(inline=True)
-def with_waves(waves: Waves, thin: float, h: float, bulk: float, plastic: float) -> float:
+def with_corrections(
+    corrections: PlateCorrections, thin: float, h: float, bulk: float, plastic: float
+) -> float:
     """Inelasticity lambda with all corrections.
 
     `thin` is lambda of the thin plate, `h` that of a loss-free contact, `bulk` is thin h^2, which
@@ -154,6 +164,6 @@ def with_waves(waves: Waves, thin: float, h: float, bulk: float, plastic: float)
     lambda that acts as a dashpot, thin near_field, lengthens the contact. With the whole lambda of
     a thin plate the contact would shorten, and lambda rise, as a thick plate becomes thicker.
     """
-    longer = 1.0 / _lengthening(thin * near_field(waves, h))
-    far = waves.bulk_factor * bulk * (longer * longer)
-    return thin * near_field(waves, h * longer) + far + waves.beyond * plastic
+    longer = 1.0 / _lengthening(thin * near_field(corrections, h))
+    far = corrections.bulk_factor * bulk * (longer * longer)
+    return thin * near_field(corrections, h * longer) + far + corrections.plastic_growth * plastic
