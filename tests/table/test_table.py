@@ -39,14 +39,15 @@ def errors(law, packed, lam, chi):
         exact, w_m = solve(law, one_lam, one_chi)
         out = outcome.at(np.array([one_lam]), np.array([w_m / one_chi]))
         lookup.fields(packed, False, out)
-        e, time, wave, ratio, w = (values[0] for values in out[:5])
+        found = outcome.Outcome(*(values[0] for values in out))
+        w = found.compression_ratio * found.elastic_compression
         worst = np.maximum(
             worst,
             [
-                abs(e - exact.restitution),
-                abs(time / exact.contact_time - 1),
-                abs(wave / exact.wave_rate - 1),
-                abs(ratio * w / exact.peak_compression - 1),
+                abs(found.restitution - exact.restitution),
+                abs(found.contact_time / exact.contact_time - 1),
+                abs(found.wave_rate / exact.wave_rate - 1),
+                abs(w / exact.peak_compression - 1),
             ],
         )
     return worst
