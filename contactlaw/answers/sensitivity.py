@@ -39,7 +39,7 @@ from contactlaw.laws import Law
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts
-from contactlaw.physical.scaling import law_for_pair, scales, sphere_on_plate
+from contactlaw.physical.scaling import law_for_pair, pair_numbers, scales, sphere_on_plate
 from contactlaw.table import lookup
 from contactlaw.table.nodes import Table
 
@@ -166,7 +166,7 @@ def by_modulus_ratio(pair: Pair, law: Law, found: Outcome) -> Array:
     low, high = (float(f"{ratio * math.exp(step):.6g}") for step in (-_STEP, _STEP))
     below, above = (
         solved(
-            laws.law(law.family, modulus_ratio=value, poissons_ratio=pair.sphere.poissons_ratio),
+            laws.law(law.family, **{**pair_numbers(pair, law.family), "modulus_ratio": value}),
             found.inelasticity,
             found.yield_ratio,
             _RTOL,
