@@ -7,6 +7,7 @@ The columns of ``/collisions`` are those of `contactlaw.engines.record`.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import asdict, fields
 from typing import Any, NamedTuple
 
 import h5py
@@ -20,8 +21,8 @@ from contactlaw.physical.pair import Pair
 
 FORMAT = "contactlaw-"  # the attribute "format" is this and the name of what has run
 _BODIES = "sphere", "plate"
-_NUMBERS = "youngs_modulus", "poissons_ratio", "density"
-_OPTIONAL = {"yield_strength": float, "kind": str, "hardness": float}  # of a material
+_TEXTS = "name", "source", "kind"  # of a material; its other fields are numbers
+_REQUIRED = "name", "source", "youngs_modulus", "poissons_ratio", "density"
 _ROWS = 1024  # numbers of a growing column that are stored together
 
 
@@ -74,18 +75,7 @@ def write_plates(file: h5py.File, thickness: Iterable[float]) -> h5py.Group:
 def write_materials(file: h5py.File, sphere: Material, plate: Material) -> None:
     """Write all that is known of the two materials."""
     for body, material in zip(_BODIES, (sphere, plate), strict=True):
-        values = {
-            name: getattr(material, name)
-            for name in (
-                "name",
-                "youngs_modulus",
-                "poissons_ratio",
-                "density",
-                "source",
-                *_OPTIONAL,
-            )
-        }
-        values["units"] = "Pa (moduli, strength, hardness), kg/m3"
+        values = asdict(material) | {"units": "Pa (moduli, strength, hardness), kg/m3"}
         group = file.create_group(f"materials/{body}")
         group.attrs.update({name: value for name, value in values.items() if value is not None})
 
@@ -171,14 +161,9 @@ def hits(file: h5py.File) -> Hits:
 
 
 def _material(group: h5py.Group) -> Material:
-    optional: dict[str, Any] = {
-        name: hdf5.attribute(group, name, kind)
-        for name, kind in _OPTIONAL.items()
-        if hdf5.has(group, name)
+    stored: dict[str, Any] = {
+        field.name: hdf5.attribute(group, field.name, str if field.name in _TEXTS else float)
+        for field in fields(Material)
+        if field.name in _REQUIRED or hdf5.has(group, field.name)
     }
-    return Material(
-        name=hdf5.attribute(group, "name", str),
-        source=hdf5.attribute(group, "source", str),
-        **{name: hdf5.attribute(group, name, float) for name in _NUMBERS},
-        **optional,
-    )
+    return Material(**stored)
