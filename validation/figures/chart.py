@@ -5,6 +5,7 @@ A figure names its panels by their axes, `sheet` sets them up, and matplotlib's 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, SupportsFloat
 
@@ -84,10 +85,20 @@ SPEEDS = {0.6: SKY, 1.0: BLUE, 2.2: GREEN, 3.5: PURPLE, 7.0: VERMILION}  # V0/V_
 def sheet(
     size: tuple[float, float], title: str, subtitle: str, *panels: Panel, rows: int = 1, **grid: Any
 ) -> tuple[Figure, list[Axes]]:
-    """Make a figure of a size in inches and its panels, row by row."""
+    """Make a figure of a size in inches and its panels, row by row.
+
+    Examples
+    --------
+    >>> five = [Panel(SPEED, RESTITUTION)] * 5
+    >>> figure, every = sheet((9.0, 6.0), "Five panels", "in two rows", *five, rows=2)
+    >>> len(every), len(figure.axes)
+    (5, 5)
+    """
     figure = style.figure(*size, title, subtitle)
-    columns = len(panels) // rows
+    columns = math.ceil(len(panels) / rows)
     every = list(figure.subplots(rows, columns, squeeze=False, **grid).flat)
+    while len(every) > len(panels):
+        every.pop().remove()
     for axes, one in zip(every, panels, strict=True):
         one.set_up(axes)
     return figure, every
@@ -170,7 +181,7 @@ def error_maps(
     maps: Mapping[str, np.ndarray],
     widest: float,
 ) -> Figure:
-    """Make a figure of six maps of the matrix, in percent; colours end at `widest`."""
+    """Make a figure of maps of the matrix, in percent; colours end at `widest`."""
     case = compare.comparison("matrix")
     thick, speeds = np.unique(case.slenderness.round(3)), np.unique(case.speed_ratio.round(3))
     panels = [Panel(SPEED, SLENDERNESS, name) for name in maps]
