@@ -2,6 +2,7 @@
 
 import dataclasses
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from contactlaw import laws
 from contactlaw.answers import sensitivity
 from contactlaw.answers.solver import solved as by_solver
 from contactlaw.equation import outcome
+from contactlaw.laws import jackson_green
 from contactlaw.physical.scaling import law_of, pair_numbers, scales, sphere_on_plate
 
 SPEED = np.array([3.0, 12.0, 25.0, 40.0, 55.0])
@@ -177,6 +179,20 @@ def test_numbers_in_the_name_of_a_law_are_held_fixed(pair):
     found = outcome.at(np.ones(3), np.ones(3))
     law = law_of(pair, "jackson_green(23.1922,0.21)")
     assert (sensitivity.by_modulus_ratio(pair, law, found) == 0.0).all()
+
+
+def test_a_law_may_take_any_constant_beside_the_modulus_ratio(pair, monkeypatch):
+    known = law_of(pair, "jackson_green")
+    parameters = ("modulus_ratio", "plate_ratio", "poissons_ratio")
+    module = SimpleNamespace(
+        PARAMETERS=parameters, law=lambda ratio, _, nu: jackson_green.law(ratio, nu)
+    )
+    found = by_solver(known, np.array([0.1]), np.array([0.3]), 1e-13)
+    expected = sensitivity.by_modulus_ratio(pair, known, found)
+    monkeypatch.setattr(laws, "_module", lambda family: module)
+    other = law_of(pair, "jackson_green")
+    assert other.from_pair == parameters and (expected != 0.0).all()
+    assert (sensitivity.by_modulus_ratio(pair, other, found) == expected).all()
 
 
 # sphere, plate: the bead yields, the plate, both; nothing does

@@ -1,13 +1,16 @@
 """The record of impacts, without any engine."""
 
+import dataclasses
 import math
 import re
 
+import h5py
 import numpy as np
 import pytest
 from pymunk_room import Full, R, Stub
 
 import contactlaw as cl
+from contactlaw.engines import layout
 from contactlaw.engines.pymunk import PymunkImpacts
 from contactlaw.engines.pymunk.models import Models
 from contactlaw.engines.pymunk.record import Record, Register
@@ -37,6 +40,16 @@ def test_every_column_has_a_unit_and_a_description():
         assert len(column.description) > 10, column
         whole = column.name in ("bead", "plate", "other", "triangle", "flags")
         assert IMPACT[column.name] == (np.int64 if whole else np.float64), column
+
+
+def test_a_record_keeps_every_field_of_a_material(tmp_path):
+    sphere = dataclasses.replace(cl.material("gamma-alumina"), hardness=1e9)
+    plate = cl.Material("brittle", 70e9, 0.2, 2500)
+    assert None not in dataclasses.astuple(sphere)
+    with h5py.File(tmp_path / "run.h5", "w") as file:
+        layout.write_materials(file, sphere, plate)
+        assert set(file["materials/sphere"].attrs) == {*dataclasses.asdict(sphere), "units"}
+        assert layout.materials(file) == (sphere, plate)
 
 
 def test_flags_are_explained_bit_by_bit():
