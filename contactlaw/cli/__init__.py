@@ -1,8 +1,8 @@
 """Command line: ``contactlaw cor | sweep | constant | fit | history | export | ...``.
 
 Each file of this folder is a subcommand: its function `add` adds the parser and options to
-argparse's subparsers. Code that several subcommands share is in `parts`. Another
-command line may take `joined`, `quantities` and `sentence` from here.
+argparse's subparsers. Code that several subcommands share is in `parts`. Another command line, as
+that of dem-demo, takes `joined`, `quantities` and `sentence` from here.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ def add(commands: Any) -> None:
     add(
         "--record",
         metavar="FILE",
-        help="recorded impacts: rain.h5 or sieve.h5 of dem-demo, an engine's record (.npy), or "
+        help="recorded impacts: a file of dem-demo, such as rain.h5, an engine's record (.npy), or "
         "CSV with a column speed_m/s and, optionally, radius_m, thickness_m, weight and plate",
     )
     options.add_law(command, default=None)

@@ -83,7 +83,7 @@ def save(
     Raises
     ------
     ValueError
-        If the suffix is another.
+        If the suffix is none of these.
     OSError
         If the folder does not exist or is not writable, or the disk is full.
     """

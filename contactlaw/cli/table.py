@@ -28,7 +28,7 @@ def add(commands: Any) -> None:
         action.add_argument("file", nargs="?", metavar="FILE",
                             help="a table (default: the one in use for LAW)")  # fmt: skip
     for action in (info, check, build):
-        # not laws.DEFAULT, which may take numbers from a pair; the table of this law ships
+        # not laws.DEFAULT, whose table may depend on the pair; this table comes with the package
         action.add_argument("--law", default="myc", metavar="LAW",
                             help="force law of the table (default: %(default)s)")  # fmt: skip
         action.add_argument(

@@ -1,4 +1,4 @@
-"""Parts of an HDF5 file that somebody else may have written: each is what is expected, or refused.
+"""Reading of HDF5 files that other programs may have written: every part is checked.
 
 h5py answers what a file does not have with KeyError, TypeError, OSError or RuntimeError, and takes
 the memory that a dataset's shape asks for before it looks at what is stored: 15 kB may ask for
@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hundredth of it
-# What h5py raises where it finds something else than it can read.
+# Errors that h5py raises for what it cannot read.
 _DAMAGED = (OSError, RuntimeError, TypeError, ValueError, KeyError, OverflowError, MemoryError)
 _LONGEST = 10_000  # bytes of a text of fixed length
 
@@ -33,7 +33,7 @@ def opened(content: bytes) -> Iterator[h5py.File]:
     with file:
         try:
             yield file
-        except ValueError:  # one of ours
+        except ValueError:  # a refusal, which has its message already
             raise
         except _DAMAGED as error:
             raise ValueError(f"a damaged HDF5 file: {error}") from None
@@ -51,7 +51,7 @@ def group(parent: h5py.Group, name: str) -> h5py.Group:
 
 
 def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[Any]:
-    """Read a column of numbers, as many as others have if that is given.
+    """Read a column of numbers, which has `size` rows if that is given.
 
     Raises
     ------
@@ -78,23 +78,23 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
 
 
 def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> NDArray[np.intp]:
-    """Read a column of numbers that count something from zero, or are -1 for none of it.
+    """Read a column of whole numbers from 0 to `count` - 1, or -1 for none.
 
     Parameters
     ----------
     parent : Group
-        Where the column is.
+        Group of the column.
     name : str
-        Of the column.
+        Name of the column.
     count : int
-        How many there are to count.
+        Number of things that are counted, such as beads.
     size : int, optional
         Rows of the column, if that is known.
 
     Raises
     ------
     ValueError
-        As `numbers`; or if a value is no whole number, or beyond what there is.
+        As `numbers`; or if a value is no whole number, or not from -1 to `count` - 1.
     """
     found = numbers(parent, name, size)
     # not (...) also for NaN
@@ -125,7 +125,7 @@ def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
 
 
 def format_of(file: h5py.File) -> str:
-    """Say what a file calls itself; empty if nothing."""
+    """Text of a file's attribute ``format``; empty without one."""
     return str(_attribute(file, "format") or "")
 
 
@@ -135,12 +135,12 @@ def has(parent: h5py.Group, name: str) -> bool:
 
 
 def _attribute(parent: h5py.Group, name: str) -> object:
-    """Read a single value; None if there is none, a description of what is no single value."""
+    """Value of an attribute: None without one, an `_Other` for what is no text or number."""
     try:
         if name not in parent.attrs:
             return None
         there = parent.attrs.get_id(name)
-        if there.shape != () or there.get_type().get_size() > _LONGEST:  # of any size in memory
+        if there.shape != () or there.get_type().get_size() > _LONGEST:  # too large to read
             return _Other(f"an array of shape {there.shape} and type {there.dtype}")
         value = parent.attrs[name]
     except _DAMAGED as error:
@@ -151,7 +151,7 @@ def _attribute(parent: h5py.Group, name: str) -> object:
 
 
 class _Other:
-    """What is neither text nor a number."""
+    """Description, for an error message, of a value that is neither text nor a number."""
 
     def __init__(self, words: str) -> None:
         self._words = words

@@ -1,6 +1,6 @@
 """The file of a run: where beads, plates, materials and impacts are in HDF5.
 
-All that writes or reads such a file does it here. Each dataset names its unit, and says what it is.
+All writers and readers of such a file use this module. Each dataset has a unit and a description.
 The columns of ``/collisions`` are those of `contactlaw.engines.record`.
 """
 
@@ -19,11 +19,11 @@ from contactlaw.engines.record import COLUMNS, IMPACT
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
-FORMAT = "contactlaw-"  # the attribute "format" is this and the name of what has run
+FORMAT = "contactlaw-"  # the attribute "format" is this and the name of the scene that has run
 _BODIES = "sphere", "plate"
 _TEXTS = "name", "source", "kind"  # of a material; its other fields are numbers
 _REQUIRED = "name", "source", "youngs_modulus", "poissons_ratio", "density"
-_ROWS = 1024  # numbers of a growing column that are stored together
+_ROWS = 1024  # rows in a chunk of a growing column
 
 
 class Hits(NamedTuple):
@@ -37,7 +37,7 @@ class Hits(NamedTuple):
 
 
 def write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
-    """Write an array that says what it is."""
+    """Write an array with its unit and description."""
     data = np.asarray(values)
     dataset = group.create_dataset(name, data=data, compression="gzip" if data.size else None)
     dataset.attrs.update({"units": units, "description": description})
@@ -46,7 +46,7 @@ def write(group: h5py.Group, name: str, values: object, units: str, description:
 def grow(
     group: h5py.Group, name: str, kind: str, units: str, description: str, shape: tuple[int, ...]
 ) -> None:
-    """Make an empty dataset that grows along its first axis, whose items have a shape."""
+    """Make an empty dataset that grows along its first axis; `shape` is that of one item."""
     dataset = group.create_dataset(
         name, (0, *shape), kind, maxshape=(None, *shape), chunks=(1 if shape else _ROWS, *shape),
         compression="gzip",
@@ -81,7 +81,7 @@ def write_materials(file: h5py.File, sphere: Material, plate: Material) -> None:
 
 
 def begin_impacts(file: h5py.File, description: str) -> None:
-    """Make the empty table of impacts; the description says which axes and numbers it is about."""
+    """Make the empty table of impacts; the description defines axes, and bead and plate numbers."""
     file.create_group("collisions").attrs["description"] = description
 
 
@@ -101,7 +101,7 @@ def append_impacts(file: h5py.File, rows: NDArray[np.void]) -> None:
 
 
 def has_impacts(file: h5py.File) -> bool:
-    """Whether the table of impacts has got its columns."""
+    """Whether `append_impacts` has made the columns of the table."""
     return bool(file["collisions"].keys())
 
 
@@ -128,7 +128,7 @@ def hits(file: h5py.File) -> Hits:
     Raises
     ------
     ValueError
-        A file of another format, or one that lacks a part or has one that cannot be read.
+        If the file has another format, or lacks a part, or has one that cannot be read.
     """
     form = hdf5.format_of(file)
     if not form.startswith(FORMAT):
@@ -146,7 +146,7 @@ def hits(file: h5py.File) -> Hits:
     plate = hdf5.indices(table, "plate", thickness.size, speed.size)
     bead = hdf5.indices(table, "bead", radius.size, speed.size)
     on_plates = plate >= 0
-    if (bead[on_plates] < 0).any():  # numpy would take it for the last one
+    if (bead[on_plates] < 0).any():  # numpy would take the last bead
         raise ValueError(
             "dataset collisions/bead has -1, no bead, in a row that hits a plate; expected a "
             f"number from 0 to {radius.size - 1}"

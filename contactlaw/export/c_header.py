@@ -42,7 +42,7 @@ from contactlaw.table.nodes import thinned
 Array = NDArray[np.float64]
 
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
-ERROR = 4e-6  # of COR against the model's table, so that it is within 1e-5 of the equation
+ERROR = 4e-6  # largest of COR against the model's table, to be within 1e-5 of the equation
 _WIDTH = 96
 # Constants that have the same names in the template as in their modules.
 _CONSTANTS: dict[ModuleType, str] = {

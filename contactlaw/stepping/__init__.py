@@ -1,7 +1,8 @@
 """Forces in the contacts of beads with walls in one time step, for any engine.
 
 `spring` gives the normal force, `energy` corrects it for the errors of velocity Verlet, `friction`
-gives the tangential force, `contact` puts them together, and `bead` finds the contacts.
+gives the tangential force, `contact` puts them together, `plate_rows` holds their constants, and
+`bead` finds the contacts.
 """
 
 from contactlaw.stepping.bead import WallContacts, interact

@@ -45,7 +45,7 @@ from contactlaw.walls.surface import (
 
 Rows = NDArray[np.void]
 
-# Most contacts of a bead at once: three in a corner, in a hole one for each edge.
+# Most contacts of a bead at once: three in a corner; in a hole one for each edge.
 _MOST_CONTACTS = 8
 # Two forces count as perpendicular if the cosine of their angle is at most this.
 _PERPENDICULAR = 1e-6
@@ -83,7 +83,7 @@ class WallContacts:
     Raises
     ------
     TypeError, ValueError
-        If the friction is no finite number of 0 or more, or `models` holds no models of the types.
+        If the friction is no finite number of 0 or more, or `models` has a type beyond `types`.
     """
 
     def __init__(

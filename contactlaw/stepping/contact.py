@@ -37,7 +37,7 @@ _SOLID = 1e-6  # largest relative difference of a bead's mass from that of the m
 # any array of numbers that it stores with its beads.
 CONTACT = np.dtype(
     [
-        # number from 1, negative if the bead is on the side opposite to the normal; 0: an empty row
+        # facet's number from 1, negative for a bead opposite to its normal; 0: an empty row
         ("facet", "f8"),
         *((name, "f8") for name in State._fields),
         # time since first touch [s]: a sum of steps, so that a run in pieces gives the same bits
@@ -70,8 +70,8 @@ class Trouble(enum.IntEnum):
     STARTS_INSIDE = 10
     CROSSED = 11
     WRONG_MASS = 12
-    TOO_THIN = 13  # for the speed: the inelasticity is beyond the model's table
-    FOIL = 14  # thinner than any plate that the model is for, relative to the bead
+    TOO_THIN = 13  # the plate, for this speed: its inelasticity is beyond the model's table
+    FOIL = 14  # the plate is thinner, relative to the bead, than any that the model is for
 
 
 # What the kernels report to their caller, who clears it.
@@ -81,7 +81,7 @@ STATUS = np.dtype(
         ("left_out", "i8"),  # contacts left out because no row was empty, counted in every step
         ("trouble", "i8"),  # the first `Trouble`, 0 without any
         ("worst", "i8"),  # the `Trouble` with the largest number
-        ("wall", "i8"),  # of the first `Trouble`, as are the wrong value and its limit
+        ("wall", "i8"),  # wall, wrong value and its limit are those of the first `Trouble`
         ("value", "f8"),
         ("limit", "f8"),
     ]
@@ -103,7 +103,7 @@ class WallScene(NamedTuple):
     plate_rows: Any
     frames: Any
     facets: Any
-    found: Any  # room for the list of facets that a bead overlaps
+    found: Any  # scratch rows for the facets that a bead overlaps
     impacts: Any  # rows of the record
     status: Any
     friction: float  # Coulomb's coefficient [-]
@@ -136,7 +136,7 @@ class Contact(NamedTuple):
     point: Point  # [m]
     v: Point  # velocity of the bead relative to the wall, half a step before [m/s]
     w: Point  # velocity of the wall [m/s]
-    along: Point  # force on the bead over the law's; the normal, if no force is shared
+    along: Point  # vector that the law's force is multiplied by; the normal, if none is shared
     touching: bool  # whether the bead was on a wall before this step
     merged_into: int  # row of the contact that this one has merged into, else -1
 

@@ -30,8 +30,8 @@ Point = tuple[float, float, float]
 # zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6: a least-squares fit
 _ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 0.0013675)
 # Largest correction of the rebound speed, times (steps per contact)^2.5: twice the scheme's error
-# (`contactlaw.softsphere.time_step`). If more energy is missing, another bead struck this one in
-# between: it is left as it is. The correction is relative to the larger of the rebound and the
+# (`contactlaw.softsphere.time_step`). If more energy is missing, another bead struck this one, and
+# its speed is not corrected. The correction is relative to the larger of the rebound and the
 # approach speed, because a bead that rolls over a corner may leave slowly.
 _LARGEST_CORRECTION = 1.8
 # Largest relative correction of the speed of a bead that crossed kinks, times steps per contact. At

@@ -49,8 +49,8 @@ from contactlaw.physical.scaling import sphere_on_plate
 
 Array = NDArray[np.float64]
 
-RELAXATION = 1e5  # [contact times]; u2 then moves by 1e-5 of itself within an impact
-FEWEST_STEPS = 20  # per contact; with fewer the error no longer follows the order of the method
+RELAXATION = 1e5  # [contact times]; within an impact, u2 relaxes by 1e-5 of itself
+FEWEST_STEPS = 20  # of a contact; with fewer the error does not follow the order of the method
 
 # A force of at least this share of the loading curve's is on that curve.
 ON_LOADING_CURVE = 1.0 - 1e-12
@@ -65,7 +65,7 @@ class State(NamedTuple):
     largest_compression: Any  # dm [m]
     force: Any  # F [N]
     mobility: Any = 0.0  # of the plate in this contact [m/(s N)]; 0 where the spring's holds
-    stiffening: Any = 0.0  # stiffness of the contact over the spring's; 0 where the latter holds
+    stiffening: Any = 0.0  # stiffness of the contact over the spring's; 0 where the spring's holds
 
 
 class Spring(NamedTuple):
@@ -197,7 +197,7 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
             mobility, unit = own, unit * stiffening
     moved = 0.5 * step * mobility / (1.0 + leak)  # motion of the plate per force at either end
     known = state.plate_displacement * (1.0 - leak) / (1.0 + leak) + moved * state.force
-    rule_error = moved / 6.0  # the trapezoidal rule's error in it
+    rule_error = moved / 6.0  # the trapezoidal rule's error in `moved`
     b = (moved - rule_error + step * step / (12.0 * spring.mass)) * unit / scale
     r = (overlap - known - rule_error * state.force) / scale
     dm = state.largest_compression / scale

@@ -1,7 +1,7 @@
 """Where a sphere is with respect to a facet: overlap, normal and nearest point.
 
-Legend: r radius, x overlap of the sphere with the facet or position of its centre, n normal from
-the facet to the sphere, s height of the centre over the facet's plane.
+Legend: r radius, x overlap of the sphere with the facet or position of the sphere's centre, n
+normal from the facet to the sphere, s height of the centre over the facet's plane.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ FACET = np.dtype(
     align=True,
 )
 FRAME = np.dtype(
-    [*MOTION, *POSE, *GRID, ("fastest", "f8")],  # upper bound of the speed of its points [m/s]
+    [*MOTION, *POSE, *GRID, ("fastest", "f8")],  # fastest: bound of the speed of all points [m/s]
     align=True,
 )
 

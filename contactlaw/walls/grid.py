@@ -23,10 +23,10 @@ GRID: list[tuple[Any, ...]] = [
     ("reach", "f8"), ("low", "f8", 3), ("high", "f8", 3),  # low, high: box around the facets
 ]  # fmt: skip
 
-_MOST = 1 << 20  # cells that a grid is made for; their starts take 8 MB
-_FEW = 27  # blocks of so many cells are not halved: a facet smaller than a cell has 27 around it
-_DEEPEST = 64  # room for blocks; halving the largest grid, of 2^21 cells, takes some 20
-MARGIN = 1.1  # so that a facet is still in the list in the step after a bead has left it
+_MOST = 1 << 20  # cells of a large grid, up to twice as many by rounding; 8 bytes each
+_FEW = 27  # most cells of a block that is not halved; a facet smaller than a cell has 27 around it
+_DEEPEST = 64  # most blocks still to do; halving the largest grid, of 2^21 cells, takes some 20
+MARGIN = 1.1  # factor on the reach: a cell still lists a facet in the step after a bead left it
 
 
 class FacetGrid:

@@ -25,7 +25,7 @@ MOTION: list[tuple[Any, ...]] = [
     ("velocity", "f8", 3),  # of a translation
     ("axis", "f8", 3), ("spin", "f8"), ("hub", "f8", 3),  # spin [rad/s]
     ("amplitude", "f8", 3), ("frequency", "f8"), ("phase", "f8"),  # [rad/s], [rad]
-    ("times", "i8"), ("displacements", "i8"), ("count", "i8"),  # addresses
+    ("times", "i8"), ("displacements", "i8"), ("count", "i8"),  # addresses of a table, its rows
 ]  # fmt: skip
 
 
@@ -69,7 +69,7 @@ class Translation:
         _keep(self, velocity=vector("velocity", self.velocity, "m/s"))
 
     def fill(self, row: Any) -> None:
-        """Write it into a row of the kernel's memory."""
+        """Write the motion into a row of the kernel's memory."""
         row["moves"], row["velocity"] = 1, self.velocity
 
 
@@ -113,7 +113,7 @@ class Rotation:
         _keep_number(self, "speed", self.speed, "rad/s")
 
     def fill(self, row: Any) -> None:
-        """Write it into a row of the kernel's memory."""
+        """Write the motion into a row of the kernel's memory."""
         row["moves"], row["spin"], row["hub"] = 1, self.speed, self.centre
         row["axis"] = np.asarray(self.axis) / np.linalg.norm(self.axis)
 
@@ -156,7 +156,7 @@ class Vibration:
             raise ValueError(f"frequency: must be positive [Hz], got {self.frequency!r}")
 
     def fill(self, row: Any) -> None:
-        """Write it into a row of the kernel's memory."""
+        """Write the motion into a row of the kernel's memory."""
         row["moves"], row["amplitude"] = 1, self.amplitude
         row["frequency"], row["phase"] = 2.0 * math.pi * self.frequency, self.phase
 
@@ -212,7 +212,7 @@ class Tabulated:
             object.__setattr__(self, name, value)
 
     def fill(self, row: Any) -> None:
-        """Write it into a row of the kernel's memory."""
+        """Write the motion into a row of the kernel's memory."""
         row["moves"], row["count"] = 1, self.times.size
         row["times"] = self.times.ctypes.data
         row["displacements"] = self.displacements.ctypes.data
@@ -238,7 +238,7 @@ def check_motion(motion: Any) -> None:
     if motion is not None and not isinstance(motion, Motion):
         raise TypeError(
             "motion: expected a Translation, Rotation, Vibration or Tabulated of "
-            f"contactlaw.engines.lammps, got {motion!r}"
+            f"contactlaw.walls, got {motion!r}"
         )
 
 

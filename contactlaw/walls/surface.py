@@ -48,8 +48,8 @@ _SMOOTH = math.cos(math.radians(20.0))  # least cosine between facets of one smo
 # that lean towards each other by 20 degrees.
 _PASS_FACTOR = math.cos(math.radians(10.0))
 _NUDGE = 1e-6  # [r] step of the finite differences in `pass_gradient`
-# A bead's list holds so many facets, and one more while the shallowest is sought, to be left out.
-# Where facets are that small, a deeper one beside it is in contact in its place.
+# A bead's list holds so many facets, and one more while the one to drop is sought. Facets of a bead
+# that overlaps more are so small that a deeper one beside the dropped one takes its place.
 _MOST = 64
 ROOM = _MOST + 1
 

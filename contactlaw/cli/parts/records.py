@@ -28,9 +28,9 @@ class Recorded(NamedTuple):
     Attributes
     ----------
     speed, radius, thickness
-        Normal approach speed [m/s], of the bead and of the plate [m].
+        Normal approach speed [m/s], radius of the bead and thickness of the plate [m].
     weights
-        How often each happens.
+        Relative frequency of each impact.
     plate
         Number of the plate that is hit.
     pair, law
@@ -82,10 +82,10 @@ def read(path: str | os.PathLike[str]) -> Recorded:
     Raises
     ------
     ValueError
-        A file without a column of speeds, of another kind, or with a unit or a number that cannot
-        be read.
+        If the file has no column of speeds, is of another kind, or has a unit or a number that
+        cannot be read.
     OSError
-        A file that cannot be opened.
+        If the file cannot be opened.
 
     Examples
     --------
@@ -146,7 +146,7 @@ def completed(
     Raises
     ------
     ValueError
-        A value that is missing, or one that the record has itself.
+        If a value is missing, or given although the record has it.
 
     Examples
     --------
@@ -175,7 +175,7 @@ def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
 def _sized(
     name: str, recorded: Array | None, values: Sequence[float] | None, which: NDArray[np.int64]
 ) -> Array:
-    """Size of each impact's bead or plate: the record's own, or the one of some that it is of."""
+    """Size of each impact's bead or plate: the record's own, or the given one of number `which`."""
     if recorded is None:
         sizes = np.array(_given(name, values))
         if sizes.size != which.max() + 1:

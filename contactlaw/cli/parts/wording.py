@@ -129,7 +129,7 @@ def _writing(option: str, path: str) -> Iterator[None]:
         raise Refused(f"--{option}: there is no folder {folder}")
     try:
         yield
-    except OSError as error:  # which may be about a file beside it, of a temporary name
+    except OSError as error:  # its file name may be that of a temporary file: not shown
         raise Refused(f"--{option}: cannot write {path}: {error.strerror}") from error
 
 

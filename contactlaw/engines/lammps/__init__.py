@@ -23,8 +23,8 @@ Dump
 Time step
     A contact lasts some microseconds and takes at least 20 steps:
     `contactlaw.softsphere.time_step` gives the longest step. An impact too fast for the step ends
-    the run. Its limit is 1/20 of an elastic contact with a half-space; a plastic contact is
-    shorter, 18 such steps at 60 m/s, which `time_step` takes into account.
+    the run. The longest step allowed is 1/20 of an elastic contact with a half-space; a plastic
+    contact is shorter, 18 such steps at 60 m/s, which `time_step` takes into account.
 Thin plates
     An impact so inelastic that it is outside the model's table (lambda above 5 or 6: R/H of some 9
     at 5 m/s) ends the run, because the model refuses it. A model with ``outside="solve"``
@@ -68,10 +68,10 @@ Other commands
     to one sphere. Rank 0 warns of a ``fix wall/gran``: the restitution of a bead that touches such
     a wall and a plate at once belongs to neither.
 What it leaves out
-    Beads do not touch walls across a periodic boundary; a contact goes on across it on the wall
-    there that has the same overlap. The virial has no part of the walls. The law does not know the
-    curvature of a wall, and at an edge it is that of the face. Sliding friction has a spring
-    without damping, as LAMMPS's ``mindlin``; there is no rolling friction.
+    Beads do not touch walls across a periodic boundary; the contact of a bead that crosses one goes
+    on with the wall there that has the same overlap. The virial has no part of the walls. The law
+    does not know the curvature of a wall, and at an edge it is that of the face. Sliding friction
+    has a spring without damping, as LAMMPS's ``mindlin``; there is no rolling friction.
 """
 
 from contactlaw.engines.lammps.attachment import LammpsPlates, attach

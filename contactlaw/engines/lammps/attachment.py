@@ -40,7 +40,7 @@ _LAST = f"{HISTORY}_restitution"  # d_contactlaw_restitution
 # LAMMPS's units of length, time and mass, in SI
 _UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6, 1e-15)}
 _ROUNDED = 1e-6  # [time steps] by which LAMMPS's clock may differ from a whole number of steps
-_HALT_EVERY = 100  # steps; the search for errors adds one reduction over all ranks
+_HALT_EVERY = 100  # steps between searches for errors, each one a reduction over all ranks
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
 _PARTS = (  # parts of an attachment in LAMMPS: kind, name, command that removes it; in this order
     ("fix", HISTORY, f"unfix {HISTORY}"),

@@ -76,7 +76,7 @@ def _look_for_jumps(
 ) -> None:  # fmt: skip
     """Report beads that could jump through a wall in one step, or that have another radius now.
 
-    Rows that have gone from a removed bead to a new one forget the last COR.
+    A new bead in the row of a removed one does not inherit the last COR.
     """
     fastest = 0.0
     for frame in scene.frames:
@@ -91,7 +91,7 @@ def _look_for_jumps(
         if head.owner != tags[i]:
             last[i] = 0.0
         elif head.radius != 0.0 and not _same(size, head.radius):
-            # Here for a bead that has become so small that no wall is near it.
+            # `_check_sphere` misses a bead that has become so small that no wall is near it.
             mark_error(shared, step, tags[i], head, RESIZED, -1, size, head.radius)
             _forget(history[i])
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import pymunk
 
 # An approach slower than this many times the speed that gravity gives in one step is at rest.
-# Otherwise a pile of 120 beads with restitution 0.9 never settles (5000 impacts per bead, second).
+# Otherwise a pile of 120 beads with restitution 0.9 never settles (5000 impacts a bead and second).
 RESTING = 2.0
 # Speeds below this many smallest radii per step are rounding errors. Without gravity this is the
 # only limit.
@@ -49,7 +49,7 @@ class Contacts:
         self._resting_speed = 0.0
 
     def begin(self, dt: float, gravity: float, reach: float) -> None:
-        """Prepare for a step of length dt [s] under gravity [m/s2]; reach: smallest bead [m]."""
+        """Prepare for a step of length dt [s] under gravity [m/s2]; reach: least radius [m]."""
         self._resting_speed = max(RESTING * gravity * dt, ROUNDING * reach / dt)
         self.time += dt
         self.steps += 1

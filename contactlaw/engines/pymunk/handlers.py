@@ -19,7 +19,7 @@ class Handlers:
     pymunk keeps one ``pre_solve`` for each key, the last one given. A user's ``pre_solve`` for a
     key of the adapter becomes a hook that the adapter's calls first. One for a wildcard, or for the
     two types in the other order, is called by pymunk after the adapter's, when the restitution is
-    set and the impact recorded: it is watched.
+    set and the impact recorded: the adapter wraps it, to notice what it changes.
 
     Parameters
     ----------

@@ -76,7 +76,7 @@ class Record:
     def __init__(self) -> None:
         self._seen = array("d")  # 72 bytes per impact; a list of tuples takes five times that
         self.add = self._seen.extend  # takes one tuple in the order of OBSERVED
-        self._rows = np.empty(0, IMPACT)  # rows of the first impacts, which were read before
+        self._rows = np.empty(0, IMPACT)  # rows of the impacts that have been read
 
     def undo(self, time: float, bead: int, plate: int, other: int) -> None:
         """Remove the last impact if it is this one."""
@@ -90,8 +90,8 @@ class Record:
         Parameters
         ----------
         register : Register
-            Beads, plates and their models, with all those of the last call. Unless every model is a
-            `ReboundModel`, there are only the columns of OBSERVED.
+            Beads, plates and their models; none may be missing since the last call. Unless every
+            model is a `ReboundModel`, there are only the columns of OBSERVED.
         """
         whole = all(knows_rebounds(model) for model in register.every_model())
         seen = np.array(self._seen[len(self._rows) * len(OBSERVED) :]).reshape(-1, len(OBSERVED))

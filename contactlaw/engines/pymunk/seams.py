@@ -13,10 +13,10 @@ if TYPE_CHECKING:
 
     from contactlaw.engines.pymunk.registry import Face
 
-# Ends closer than this are one [m]: far below any bead's size, far above a drawing's rounding.
+# Ends closer than this are one end [m]: far below any bead's size, far above a drawing's rounding.
 SAME_END = 1e-7
-# An end is the plate's nearest point to a bead if it is farther by at most this share of the bead's
-# radius; the distances have rounding errors of 1e-13 of it.
+# A bead touches a plate's end if the end is farther than the plate's nearest point by at most this
+# share of the bead's radius; the distances have rounding errors of 1e-13 of the radius.
 AT_END = 1e-9
 
 Cell = tuple[int, int, int]
