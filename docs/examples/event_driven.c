@@ -24,7 +24,7 @@ int main(void)
                 return 1;
             }
             speed *= e;
-            time += 2.0 * speed / GRAVITY; /* of the next impact */
+            time += 2.0 * speed / GRAVITY; /* time of the next impact */
             printf(" %.9f", e);
         }
         printf(", %.9f m/s after %.9f s\n", speed, time);

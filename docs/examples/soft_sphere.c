@@ -14,8 +14,8 @@ int main(void)
     const double radius = 0.9e-3, thickness = 1e-3, fastest = 10.0; /* [m, m, m/s] */
     const double dt = contactlaw_rebound(fastest, radius, thickness).contact_time / 50.0;
     const contactlaw_spring spring = contactlaw_spring_of(radius, thickness);
-    double height[BEADS], speed[BEADS], peak[BEADS] = { 0.0 }; /* of the lowest points; downwards */
-    contactlaw_state state[BEADS] = { CONTACTLAW_APART };      /* the others become 0 too */
+    double height[BEADS], speed[BEADS], peak[BEADS] = { 0.0 }; /* of lowest points; speeds down */
+    contactlaw_state state[BEADS] = { CONTACTLAW_APART };      /* the other elements are zero too */
     int n, step;
 
     for (n = 0; n < BEADS; ++n) {
