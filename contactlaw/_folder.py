@@ -27,5 +27,5 @@ def folder() -> Path | None:
         return Path(chosen).expanduser()
     import platformdirs
 
-    # without a home folder old versions leave the ~, of which a folder would be made: raise instead
+    # without a home folder old versions of platformdirs leave the ~: raise, or it becomes a folder
     return platformdirs.user_cache_path("contactlaw", appauthor=False).expanduser()

@@ -77,7 +77,7 @@ def kernel(
         dispatcher: Any = numba.njit(**options)(python_function)
         if cache:
             _cached.append(dispatcher)
-            if enable_caching.cache_info().currsize:  # defined after the call of it
+            if enable_caching.cache_info().currsize:  # caching is enabled already
                 _cache_on_disk(dispatcher)
         return dispatcher  # type: ignore[no-any-return]
 
@@ -139,7 +139,7 @@ class _Inner(CPUDispatcher):
 
 
 def _name_uniquely(function: Callable[..., Any]) -> None:
-    """Add the names of the kernels that a kernel was made with to its own, as rates[_cubic].
+    """Add the names of the kernels that a kernel was made with to its own, as outer[inner].
 
     In machine code its symbol is its name, the types and a number that every process counts from
     the start. If another process's disk cache has a kernel of the same name, both may have the same

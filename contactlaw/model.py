@@ -123,7 +123,7 @@ class ImpactModel(Compiled):
 
     @property
     def largest_inelasticity(self) -> float:
-        """Largest lambda of the table, known before the table is made."""
+        """Largest lambda of the table; for the law's own, known before the table is made."""
         return self._tabulated.largest_inelasticity
 
     @property

@@ -274,5 +274,5 @@ def time_step(
     found = solved(model.force_law, units.inelasticity, units.yield_ratio, RTOL, few=True)
     time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
     steps: float = (_ERROR / error) ** 0.4
-    # Not the last digits: the same script has the same steps whether or not this was compiled.
+    # Six digits only, so that a script has the same steps whether or not the kernels were compiled.
     return float(f"{time / max(FEWEST_STEPS, steps):.6g}")

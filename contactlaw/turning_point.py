@@ -73,7 +73,7 @@ def _release(x: Array) -> Array:
 
 
 def _work_ratio(lam: Array, chi: Array) -> Array:
-    """Compute the loading work over that of Hertz's curve, which radiates a little more."""
+    """Compute the loading work over that along Hertz's curve, which loses more to waves."""
     share: Array = 1.0 + 0.56 * lam * np.maximum(1.0 - P / chi, 0.0) ** 2.5
     return share
 

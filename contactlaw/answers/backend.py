@@ -73,7 +73,7 @@ class OutsideTableError(ValueError):
     """
 
     def __init__(self, impact: int, reason: str) -> None:
-        super().__init__(impact, reason)  # as given, or it could not be pickled
+        super().__init__(impact, reason)  # the arguments as given: pickle needs them
         self.impact, self.reason = impact, reason
 
     def __str__(self) -> str:

@@ -91,7 +91,7 @@ class Beads:
     def integrated(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
     ) -> float | Array:
-        """COR of impacts as in `rebounds`, integrated to nine digits: a few need no table."""
+        """COR of impacts as in `rebounds`, integrated to nine digits; a few need no table."""
         enable_caching()
         v, r, o, shape = _checked(speed, radius, other_radius)
         found = within(self.law, scales(self._contact(r, o), v), RTOL, extent(self.law), few=True)

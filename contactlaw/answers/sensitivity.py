@@ -162,7 +162,7 @@ def by_modulus_ratio(pair: Pair, law: Law, found: Outcome) -> Array:
     if "modulus_ratio" not in law.from_pair:
         return np.zeros_like(found.restitution)
     ratio = pair.effective_modulus / pair.sphere.require_yield_strength(law.name)
-    # laws take six digits
+    # parameters of a law are rounded to six digits
     low, high = (float(f"{ratio * math.exp(step):.6g}") for step in (-_STEP, _STEP))
     below, above = (
         solved(

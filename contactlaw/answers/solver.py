@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 Places = NDArray[np.intp]  # indices of impacts in the flat arrays that the user gave
 
 RTOL = 1e-10  # error allowed per step, by default
-_CONVERGED = 1e-9  # of ln(largest compression/d_Y) at the yield speed
+_CONVERGED = 1e-9  # largest size of ln(largest compression/d_Y) at the yield speed found
 _ROUNDS = 30
 _SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5
 

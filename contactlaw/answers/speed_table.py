@@ -15,7 +15,7 @@ from contactlaw.physical.validity import Validity, count_flags
 Array = NDArray[np.float64]
 
 _CHOICE = 4000  # speeds that may become rows: 0.1 % apart over two decades
-_FINER = 4  # speeds between two of these at which the error is measured, across kinks too
+_FINER = 4  # speeds between two neighbouring ones at which the error is measured
 _ROUNDS = 10
 
 

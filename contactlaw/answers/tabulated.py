@@ -120,7 +120,7 @@ class Tabulated:
 
     @property
     def largest_inelasticity(self) -> float:
-        """Largest lambda of the table, known before the table is made."""
+        """Largest lambda of the table; for the law's own, known before the table is made."""
         if self.given is None:
             return grid.largest_inelasticity(_law_with_table(self.bodies.law))
         return lookup.lam_max(self.table.packed)
@@ -257,7 +257,7 @@ def _law_with_table(law: Law) -> Law:
 
 
 def table_for(law: Law, table: TableArgument) -> Table:
-    """Table that serves a law: the user's, or the packaged one."""
+    """Table that serves a law: the user's, or the law's own."""
     enable_caching()
     served = _law_with_table(law)
     if table is None:

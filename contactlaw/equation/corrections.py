@@ -18,7 +18,7 @@ T_H shrinks by exp(-eta), with
     eta = (R/H) ((b + b_h g) x E1'/(E1' + E2') + b4 x^4),    x = sqrt(d/R)
     g = (h - h_0)/(h + h_0),  which is ln(h/h_0)/2 near h_0 and ends at 1
 
-at the compression d = V0 T_H of an elastic impact, with h over the contact time with losses. Beyond
+at the compression d = V0 T_H of an elastic impact, and with h of a contact with losses. Beyond
 yield the force grows no faster than d, and x stays at x_s = 3 sqrt(d_Y/R), its value at about 17
 times the yield speed. The last term is empirical: contacts as wide as the plate is thick are
 stiffer still. Because the plate gives way less than a half-space it stores less energy, in
@@ -45,19 +45,19 @@ from contactlaw._jit import kernel
 Array = NDArray[np.float64]
 
 CONTACT_TIME = 3.2181  # [T_H], without losses; Johnson 1985, Eq. 11.24
-SATURATION = 3.0  # sqrt(V0 T_H/d_Y) from which on x is constant in eta
+SATURATION = 3.0  # x_s/sqrt(d_Y/R): beyond it x is constant in eta
 WIDEST = 0.3  # x up to which x^4 in eta was fitted; constant beyond
 DEEPEST = 0.317  # x up to which finite elements reach, d = R/10; the first term is constant beyond
 # Contact radius over thickness, (R/H) x, from which on the first term of eta is constant. Finite
 # elements reach 1. Without a bound exp(eta) overflows for soft beads at high speeds.
 BROADEST = 10.0
-# factors of lambda and lambda^3 in f; the second from finite elements
+# Factors of lambda and lambda^3 in f; the second is fitted to finite elements.
 LENGTHENING, LENGTHENING_3 = 0.175, 0.18
-# Largest lambda for which g has its f. From 2 on, f would grow faster than contact times do, and
-# lambda would rise with the thickness.
+# Largest lambda of f in g; f is constant beyond. From 2 on it would grow faster than contact times
+# do, and lambda would rise with the thickness.
 LONGEST = 1.25
 H_0 = 0.02  # h_0
-_RANGE = (0.0, 0.45)  # range of nu here: c_L grows without bound towards 0.5
+_RANGE = (0.0, 0.45)  # others are taken as the nearer end: c_L is infinite at nu = 0.5
 # p2 to p5, each in powers of 1/h_c - _CENTRE; from ``python -m validation.derivations.mobility``
 _CENTRE = 1.07
 _NEAR = np.array(
@@ -71,7 +71,7 @@ _NEAR = np.array(
 
 
 class PlateCorrections(NamedTuple):
-    """Corrections of a plate to the thin-plate dashpot, for kernels; all zero: none."""
+    """Corrections of a plate to the thin-plate dashpot, for kernels; all are 0 for the dashpot."""
 
     eta: float  # first term of eta at R = H, h = h_0 and x = 1
     eta_h: float  # factor of g in that term
@@ -97,7 +97,9 @@ def plate_corrections(
     eta4: float = 0.0,
     plastic_growth: float = 0.0,
 ) -> PlateCorrections:
-    """Corrections for plates of this Poisson's ratio; b, b_h and b_p times E1'/(E1' + E2'), and b4.
+    """Corrections for plates of this Poisson's ratio.
+
+    `eta`, `eta_h` and `plastic_growth` are b, b_h and b_p times E1'/(E1' + E2'), `eta4` is b4.
 
     Examples
     --------
@@ -132,7 +134,7 @@ def _lengthening(lam: float) -> float:
 def eta_of(corrections: PlateCorrections, ratio: float, x: float, thin: float, h: float) -> float:
     """Stiffening eta of a contact by its plate, from R/H, x, and lambda and h without eta."""
     longer = _lengthening(min(thin, LONGEST))
-    usual = H_0 * (longer * longer)  # the square fits finite elements: late times matter
+    usual = H_0 * (longer * longer)  # f squared fits finite elements: late times count more
     g = 1.0 - 2.0 * usual / (h + usual)
     square = min(x * x, WIDEST * WIDEST)
     w = min(x, DEEPEST, BROADEST / ratio)
@@ -159,8 +161,8 @@ def with_corrections(
 ) -> float:
     """Inelasticity lambda with all corrections.
 
-    `thin` is lambda of the thin plate, `h` that of a loss-free contact, `bulk` is thin h^2, which
-    stays finite on a half-space, and `plastic` is (R/H) (x - x_s) beyond yield. Only the part of
+    `thin` is lambda of the thin plate, `h` is taken without losses, `bulk` is thin h^2, which stays
+    finite on a half-space, and `plastic` is (R/H) (x - x_s) beyond yield. Only the part of
     lambda that acts as a dashpot, thin near_field, lengthens the contact. With the whole lambda of
     a thin plate the contact would shorten, and lambda rise, as a thick plate becomes thicker.
     """

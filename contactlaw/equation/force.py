@@ -15,14 +15,14 @@ compression `cap_high` down to `cap_low`, the contact unloads along the loading 
 The array begins with a header, then come the starts of the pieces, the rows, and the coefficients
 from the constant one up:
 
-    PIECES       pieces of the loading curve       UNLOADINGS     pieces of the unloading family
-    STARTS       where the q at which the pieces   FAMILY_STARTS  where the dm of those are
-                 begin are, one after the other    FAMILY         where their rows begin
-    CURVE        where the rows of those begin     CAPPED         1 for a capped law
+    PIECES  number of pieces of loading      UNLOADINGS     number of pieces of unloading
+    STARTS  index of the q of their starts   FAMILY_STARTS  index of the dm of their starts
+    CURVE   index of their rows              FAMILY         index of their rows
+                                             CAPPED         1 for a capped law
 
-    row of the loading curve   SCALE, OFFSET  of t             FIRST, NEXT  pieces at the kinks
-                               DEGREE, AT     of its polynomial
-    row of the unloading       SCALE, OFFSET  of t, and POWER, DEGREE, AT of each function of dm
+    row of loading     SCALE, OFFSET  of t, and DEGREE and AT, the index of its coefficients
+                       FIRST, NEXT    pieces that begin at the kink below, and at that above
+    row of unloading   SCALE, OFFSET  of t, and for each function of dm its power, DEGREE and AT
 
 Coefficients are padded with zeros to a multiple of four. The last of the starts, and of the family
 starts, is infinity. Between two kinks the loading curve is smooth, however many pieces it has: an
@@ -69,7 +69,7 @@ class UnloadingCurve(NamedTuple):
     residual: float  # dr
     stiffness: float  # a; 0 where the contact unloads along the loading curve
     exponent: float  # b
-    cap_low: float  # between these two it unloads along the loading curve; equal: nowhere
+    cap_low: float  # from cap_high down to cap_low it unloads along loading; equal: nowhere
     cap_high: float
 
 

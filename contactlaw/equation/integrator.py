@@ -4,9 +4,9 @@ A sphere that has flattened far on a compliant plate need not rebound. Where the
 slowly than the elastic compression that is left, with an exponent below 2, the contact becomes ever
 stiffer beside the plate: the energy that is left goes into the plate, and the sphere stays. Once
 that energy could throw the sphere off with no more than `LEAST_RESTITUTION` of its impact speed,
-the plate is held and the sphere is thrown off so. A restitution below `LEAST_RESTITUTION` is thus
-rounded up to it. The less energy is left, the finer are the steps, so that they resolve it. Where
-the steps would be too many, a series takes their place (`contactlaw.equation.creep`).
+the plate is held and the sphere leaves with that energy. A restitution below `LEAST_RESTITUTION`
+is thus rounded up to it. The less energy is left, the finer are the steps, so that they resolve it.
+Where the steps would be too many, a series takes their place (`contactlaw.equation.creep`).
 
 Legend, as in `contactlaw.equation.motion`: d compression, dm the largest, q root compression,
 u speed, t time, s the variable of integration, y yield compression.
@@ -183,7 +183,7 @@ def _follow(
                 h = b - gap_b * (b - a) / (gap_b - gap_a)
                 continue
             if event == TURN and trial.q > level:
-                event = LEVEL  # the step passed the kink before it turned: land on the kink
+                event = LEVEL  # loading ends beyond the kink: land on the kink first
             elif event != TIME and trial.t > until:
                 event = TIME
             else:
@@ -222,7 +222,7 @@ def follow(
         if legs.unloads(leg):
             if plate.moves(contact.plate):
                 state = creep(contact, leg, state, level, until, spent)
-            # less than the square: the last _ENERGY_LOW was met only to 1e-9
+            # a little less, because the last event _ENERGY_LOW was met only to 1e-9
             energy_low = (1.0 - 1e-6) * rebound_speed_squared(leg, state)
             while energy_low < scale.energy_low and scale.energy_low > spent:
                 scale = _finer(scale, spent)

@@ -33,10 +33,10 @@ NO_CURVE = UnloadingCurve(0.0, 0.0, 3.0, 0.0, 0.0)
 class Leg(NamedTuple):
     """Part of a contact's path on which the force is one smooth function of q."""
 
-    part: int
+    part: int  # _LOADING, _ABOVE_CAP, _ALONG_CAP or _BELOW_CAP
     level: float  # root compression at which it ends
     residual: float  # d = residual + q^2
-    kind: int
+    kind: int  # CUBIC, PIECES or POWER
     first: int  # first and last piece of the loading curve
     last: int
     c0: float  # coefficients of a cubic

@@ -41,11 +41,11 @@ DESCRIPTIONS = Losses(
 class Work(NamedTuple):
     """Work that channels have taken since first touch."""
 
-    wave: float  # over the mobility: a ratio with a limit at mobility 0
+    wave: float  # of the waves, over the plate's mobility: it has a limit where that is 0
 
 
 NO_WORK = Work(0.0)
-"""At first touch."""
+"""The work at first touch."""
 
 
 @kernel(inline=True)

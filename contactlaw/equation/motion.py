@@ -35,14 +35,14 @@ Array = NDArray[np.float64]
 
 
 class ScaledContact(NamedTuple):
-    """The bodies of a contact."""
+    """A contact in the law's scale: its force law and its plate."""
 
     law: Array  # data of the force law
     plate: PlateMobility
 
 
 class ScaledState(NamedTuple):
-    """A point of the trajectory, with the rates there."""
+    """A point on the path of a contact, in the law's scale, with the rates there."""
 
     q: float
     u: float

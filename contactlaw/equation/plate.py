@@ -13,7 +13,7 @@ from contactlaw._jit import kernel
 
 
 class PlateMobility(NamedTuple):
-    """Plate in the equation of motion."""
+    """The plate as the equation of motion has it."""
 
     mobility: float  # beta, lambda y^(1/4)
 

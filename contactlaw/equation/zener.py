@@ -60,8 +60,8 @@ class Solution(NamedTuple):
 class Notes(NamedTuple):
     """Points on the paths of contacts, a row for each contact."""
 
-    # Rising times [T_H], or compressions: first rising ones, whose last is infinity for the largest
-    # compression, then as many falling ones, whose last is 0 for separation.
+    # Where they are: rising times [T_H], or compressions, first rising ones, the last of which is
+    # infinity for the largest compression, then as many falling ones, the last 0 for separation.
     at: Any
     time: Any
     speed: Any  # of the sphere
@@ -225,8 +225,8 @@ def shape(
 def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) -> tuple[Any, Any]:
     """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
 
-    If the law is Hertz's up to yield, any elastic impact has it (Fig. 4 of the paper). If not, it
-    depends a little on the speed: it is the y whose largest compression is y itself.
+    If the law is Hertz's up to yield, all elastic impacts have the same (Fig. 4 of the paper). If
+    not, w_m depends a little on the speed: it is the y whose largest compression is y itself.
     """
     hertz, before = force.is_hertz(law), np.ones(np.size(lam))
     for _ in range(100):

@@ -59,12 +59,12 @@ class Errors(NamedTuple):
 
 
 class ModelCovariance(NamedTuple):
-    """Covariance of the model's errors of all values, which rebounds of one cell share.
+    """Covariance of the model's errors of all values.
 
-    A cell holds values of one kind at one place, by ln(speed) and ln(R/H). With n values in c
-    cells the covariance takes memory and time of n + c^2, where the matrix itself would take n^2,
+    A cell holds values of one kind at one place, by ln(speed) and ln(R/H), which share an error.
+    With n values in c cells this takes memory and time of n + c^2, where the matrix takes n^2, or
     800 MB for 10,000 rebounds. If there are more places than cells, places are rounded, by 1e-3 or
-    more: it changes errors by 0.3 % with one plate, by 5 % with as many plates as rebounds.
+    more: standard errors change by 0.3 % with one plate, by 5 % with as many plates as rebounds.
     """
 
     size: Array  # rms of the model's error of each value, in its units
@@ -114,8 +114,8 @@ def covariances(
     scaled = slopes / error[:, None]
     statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + _prior_information(predictor)))
     gain = statistical @ (scaled / error[:, None]).T
-    own = np.zeros_like(statistical) if model is None else model.propagated(gain)
-    return Errors(statistical, own)
+    from_model = np.zeros_like(statistical) if model is None else model.propagated(gain)
+    return Errors(statistical, from_model)
 
 
 def freedoms(
@@ -126,8 +126,8 @@ def freedoms(
 ) -> Array:
     """Degrees of freedom of each parameter's variance, by Welch and Satterthwaite.
 
-    The variance is a sum of what the values of each kind contribute, whose own variances were found
-    from few or many values, and of what priors and given errors do, which is known. A thickness
+    Each kind of values adds a part to the variance, as uncertain as the scatter of that kind, which
+    was found from few or many values; the parts of priors and given errors are known. A thickness
     that rests on five contact times is known no better for thirty peak forces beside them.
 
     Parameters
@@ -177,7 +177,7 @@ def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> Model
     rms = np.where(flagged, beyond, inside)
     kind, row = predictor.values.kind, predictor.values.row
     speed = np.log(np.asarray(predictor.data.speed))[row]
-    slenderness = np.log(np.maximum(at.radius / at.thickness, 1e-3))[row]  # 0: a half-space
+    slenderness = np.log(np.maximum(at.radius / at.thickness, 1e-3))[row]  # half-space: R/H = 0
     cell, (kinds, *places) = _cells(kind, speed, slenderness)
     apart = np.hypot(*(place[:, None] - place for place in places))
     correlation = np.exp(-apart / _LENGTH) * (kinds[:, None] == kinds)

@@ -203,14 +203,14 @@ def fit(
 
 
 def _law(pair: Pair, law: str | Law, parameters: list[Parameter]) -> Law:
-    """Resolve the law; a body whose strength is unknown is given some strength for it."""
+    """Resolve the law; for that, a body whose strength is unknown has a guess of it."""
     strengths = [one for one in parameters if one.is_strength]
     if strengths:
-        some = np.array(
+        guesses = np.array(
             [1e-2 * getattr(pair, one.unknown.body).youngs_modulus for one in strengths]
         )
         one_row = Measurements(speed=1.0, radius=1.0, thickness=1.0, restitution=0.5)
-        pair = setting(pair, one_row, strengths, some).pair
+        pair = setting(pair, one_row, strengths, guesses).pair
     return law_of(pair, law)
 
 
@@ -261,8 +261,8 @@ def _found_errors(
     for _ in range(_SETTLED):
         left = 1.0 - errors.leverages(predictor, slopes, error)
         error = error.copy()
-        for part, of in _pools(values):
-            square = float(np.sum(off[of] ** 2)) / max(float(left[of].sum()), _LEAST_FREEDOM)
+        for part, pool in _pools(values):
+            square = float(np.sum(off[pool] ** 2)) / max(float(left[pool].sum()), _LEAST_FREEDOM)
             error[part] = max(math.sqrt(square), _LEAST) * fitted[part]
     return error, float(left.sum())
 
@@ -301,17 +301,19 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     fitted = descent.predicted(np.log(at))
     hit = predictor.impacts(at)
     model = errors.model_covariance(predictor, at, hit)
-    slopes = predictor.derivatives(at, fitted)  # the descent's may be from nearby
+    slopes = predictor.derivatives(at, fitted)  # the descent may have kept those of a point nearby
     found = errors.covariances(predictor, slopes, error, model)
     unknowns = slice(len(names))  # the unknowns come first
-    own = None if model is None else model.size
+    model_error = None if model is None else model.size
     # with as many values as unknowns there is no scatter: only the model's errors are known
-    doubt = error if freedom > 0.0 or own is None else own
+    doubt = error if freedom > 0.0 or model_error is None else model_error
     _check_strengths(predictor, at, fitted, doubt)
     widths = np.zeros(at.size)
     if freedom > 0.0:
         left = 1.0 - errors.leverages(predictor, slopes, error)
-        pools = [(part, max(float(left[of].sum()), _LEAST_FREEDOM)) for part, of in _pools(values)]
+        pools = [
+            (part, max(float(left[pool].sum()), _LEAST_FREEDOM)) for part, pool in _pools(values)
+        ]
         each = errors.freedoms(predictor, slopes, error, pools)
         widths = np.array([errors.student(one) for one in each.tolist()])
     found = found.widened(widths)
@@ -319,8 +321,8 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     identify.check(
         names, at[unknowns], (found.statistical if freedom > 0.0 else total)[unknowns, unknowns]
     )
-    both = found.statistical if freedom > 0.0 else found.total
-    found = found.widened(_nonlinearity_factors(predictor, at, fitted, both, doubt))
+    used = found.statistical if freedom > 0.0 else found.total
+    found = found.widened(_nonlinearity_factors(predictor, at, fitted, used, doubt))
     total = found.total[unknowns, unknowns]
     spread = np.sqrt(np.diag(total))
     others = _alternatives(predictor, ended, np.sqrt(np.diag(found.total)), model)
@@ -351,7 +353,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
                     hit,
                     error / fitted,
                     freedom,
-                    None if own is None else own / fitted,
+                    None if model_error is None else model_error / fitted,
                 ),
                 *(alternative_note(names, other) for other in others),
             ]

@@ -31,7 +31,7 @@ class UnidentifiedError(ValueError):
         unknown: tuple[str, ...],
         known: tuple[tuple[dict[str, float], float, float], ...] = (),
     ) -> None:
-        super().__init__(message, unknown, known)  # as given, or it could not be pickled
+        super().__init__(message, unknown, known)  # the arguments as given: pickle needs them
         self.message, self.unknown, self.known = message, unknown, known
 
     def __str__(self) -> str:

@@ -17,7 +17,7 @@ from contactlaw.physical.validity import count_flags, explain
 
 Array = NDArray[np.float64]
 
-_FAR = 4.0  # standard errors; values that are off by more are named
+_FAR = 4.0  # standard errors; values that are further off the fit are named
 _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
 _AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
 _LISTED = 8  # rows or runs of rows that are listed; more are only counted
@@ -42,8 +42,7 @@ def notes(
     hit : Rebound
         Fitted rebounds.
     standard : ndarray (m,)
-        Standard errors of the values, as given or found, relative to the fitted ones: measured over
-        fitted value, minus 1, over this is about 1.
+        Standard errors of the values, as given or found, relative to the fitted values.
     freedom : float
         Degrees of freedom; inf where all errors were given.
     model : ndarray (m,) or None
@@ -73,7 +72,7 @@ def notes(
             yield f"{one.name} is at an end of what is searched, {least:.3g} to {largest:.3g}"
     if any(one.is_strength for one in predictor.parameters):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
-        yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and tell the strength"
+        yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and give the strength"
     flags = np.asarray(hit.flags)
     for flag, _ in count_flags(flags).items():
         (words,) = explain(flag)

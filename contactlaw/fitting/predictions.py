@@ -136,7 +136,7 @@ class Predictor:
     def _derivative(self, values: Array, here: Array, n: int) -> Array:
         try:
             return self._difference(values, here, n, _STEP)
-        except (UnsolvedError, ValueError):  # at the model's edge: to the other side
+        except (UnsolvedError, ValueError):  # at an edge of the model: a step to the other side
             return self._difference(values, here, n, -_STEP)
 
     def _difference(self, values: Array, here: Array, n: int, step: float) -> Array:

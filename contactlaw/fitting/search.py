@@ -23,24 +23,23 @@ from contactlaw.fitting.unknowns import Parameter, bounds
 
 Array = NDArray[np.float64]
 
-_ROWS = 8  # rebounds of a kind that a scan predicts, from the slowest to the fastest
-_SUBSET = 200  # rebounds of a kind for least squares that come close, before all are used
-_GUESSED = 0.02  # relative error of values that have none, until it is estimated
+_ROWS = 8  # rebounds of each kind that the scan predicts, from the slowest to the fastest
+_SUBSET = 200  # most rebounds of each kind in least squares before those with all rebounds
+_GUESSED = 0.02  # relative error assumed where none is given, until it is estimated
 _CONVERGED = 1e-7  # relative change of the sum of squares: 3e-4 of a standard error, and less
 _KEEP_SLOPES = 0.02  # distance in logarithms at which derivatives that need another law are kept
 # Points of an axis on which each needs its own law, by the number of such axes: a law takes 10 ms.
 _STRENGTHS, _MODULI = (0, 14, 9, 6), (0, 7, 5, 4)
-_DENSITIES = 5
-_SLENDERNESS = 22
+_DENSITIES, _SLENDERNESS = 5, 22  # points of an axis of densities, and of R/H
 _SLENDEREST, _THICKEST = 6.0, 0.03  # R/H; a plate thinner than R/6 gives no rebound to measure
 _RADII = np.geomspace(1e-5, 0.05, 16)  # [m]
 _FINER = (0, 16, 8, 3)  # points of the fine grid per step of the coarse one, by number of unknowns
 _BETWEEN = 0.01  # relative error of the splines between the points
 _CHAIN = 40  # lowest points of the fine grid from which least squares on the splines start
-_SAME_MINIMUM = 0.05  # distance in logarithms within which results of these are one minimum
-_INSIDE = np.array([[1e-9], [-1e-9]])  # distance of their starts from the ends of the grid
+_SAME_MINIMUM = 0.05  # distance in logarithms within which two results on the splines are one
+_INSIDE = np.array([[1e-9], [-1e-9]])  # least distance of a start from either end of the grid
 _MOST = 6  # basins of the scan from which least squares of the model start
-_STEPS = 6  # steps of these that show whether a basin may be the best: splines lead to 1 % of it
+_STEPS = 6  # steps after which a basin may be dropped: the splines' minimum is within 1 % of it
 # A basin whose sum of squares is above 3 times the least plus this is neither the best one with all
 # rebounds nor as good.
 _HOPELESS = 25.0
@@ -294,22 +293,22 @@ class Descent:
         self._held = [n for n, one in enumerate(parameters) if one.prior is not None]
         self._centres = np.log([parameters[n].centre for n in self._held])
         self._widths = np.array([parameters[n].prior for n in self._held], dtype=np.float64)
-        self._last: tuple[Array, Array] | None = None
-        self._steepest: tuple[Array, Array] | None = None
+        self._last_predicted: tuple[Array, Array] | None = None
+        self._last_slopes: tuple[Array, Array] | None = None
 
     def predicted(self, x: Array) -> Array:
         """Fitted values, from the logarithms of the parameters."""
-        if self._last is None or not np.array_equal(self._last[0], x):
-            self._last = x.copy(), self.predictor.predicted(np.exp(x))
-        return self._last[1]
+        if self._last_predicted is None or not np.array_equal(self._last_predicted[0], x):
+            self._last_predicted = x.copy(), self.predictor.predicted(np.exp(x))
+        return self._last_predicted[1]
 
     def slopes(self, x: Array) -> Array:
         """Differentiate the fitted values."""
         here = self.predicted(x)
-        if self._steepest and float(np.abs(x - self._steepest[0]).max()) < _KEEP_SLOPES:
-            return self.predictor.derivatives(np.exp(x), here, self._steepest[1])
-        self._steepest = x.copy(), self.predictor.derivatives(np.exp(x), here)
-        return self._steepest[1]
+        if self._last_slopes and float(np.abs(x - self._last_slopes[0]).max()) < _KEEP_SLOPES:
+            return self.predictor.derivatives(np.exp(x), here, self._last_slopes[1])
+        self._last_slopes = x.copy(), self.predictor.derivatives(np.exp(x), here)
+        return self._last_slopes[1]
 
     def __call__(self, start: Array, error: Array, steps: int = 60) -> Basin:
         """Find the minimum from a start, in so many steps."""
@@ -319,7 +318,7 @@ class Descent:
         def residuals(x: Array) -> Array:
             try:
                 off = (self.predicted(x) - self.predictor.values.value) / error
-            except (UnsolvedError, ValueError):  # too thin, too strong: a shorter step is taken
+            except (UnsolvedError, ValueError):  # no answer there: scipy shortens the step
                 off = np.full_like(error, np.inf)
             return np.concatenate([off, (x[self._held] - self._centres) / self._widths])
 

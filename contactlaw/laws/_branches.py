@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Formula = Callable[[Array], Array]
 
-END = 1e5  # [d_Y]; a law without a range follows its formulas up to here, then see `Law.of`
+END = 1e5  # [d_Y]; a law without a range follows its formulas up to here; for more see `Law.of`
 HERTZ = Polynomial([0.0, 0.0, 0.0, 1.0])  # F = q^3
 
 
@@ -57,7 +57,7 @@ class Unloading:
         are not divided, and the law follows them to 1e-13 of dm and of the loading work.
     cap : tuple of callable, optional
         Functions of dm: lower and upper compression between which the contact unloads along the
-        loading curve, which lies below the unloading curve there. None as the upper one is dm.
+        loading curve, which lies below the unloading curve there. The upper one may be None: dm.
     """
 
     start: float

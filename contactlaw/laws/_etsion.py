@@ -6,7 +6,7 @@ Etsion, Kligerman, Kadin, Int. J. Solids Struct. 42 (2005) 3716, for dm up to 17
 
 Just above yield, n falls faster than dr rises: as printed, unloading from dm < 1.2 lies above
 Hertz's curve, and from dm < 1.11 it returns more work than loading took, up to 0.05 %. There n is
-1.5 (1 - dr/dm) instead, the least exponent that does not: unloading begins with Hertz's slope.
+1.5 (1 - dr/dm) instead, the least exponent without either: unloading begins with Hertz's slope.
 
 Legend: d compression, dm the largest so far, dr what remains of it, all in units of d_Y; x = dr/dm.
 """
@@ -46,7 +46,7 @@ def _loss_next_to_yield(dm: Array) -> Array:
 
 
 KINK = float(bisect(lambda dm: dm**-0.0331 < 1.0 - share(dm), 1.1, 2.0))
-"""Largest dm whose exponent is not the printed one."""
+"""Largest dm at which the exponent is 1.5 (1 - dr/dm), not the printed one."""
 
 UNLOADING = (
     Unloading(1.0, _residual, _next_to_yield, _loss_next_to_yield, order=2.0, loss_order=2.0),

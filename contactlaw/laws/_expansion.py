@@ -47,11 +47,11 @@ class _Piece:
 
 @dataclass(frozen=True)
 class _Function:
-    """A function to expand, its name in messages, and the size of the numbers it comes from."""
+    """A function to expand, its name in messages, and the size that its error is relative to."""
 
     what: str
     function: Formula
-    size: Formula | None = None
+    size: Formula | None = None  # None: its own values
 
 
 def _expand(name: str, parts: Sequence[_Function | float], low: float, high: float) -> list[_Piece]:
@@ -275,7 +275,7 @@ def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading])
     for branch, end in _ends(branches, curve.end):
         dm = np.array([branch.start * (1.0 + 1e-9), end * (1.0 - 1e-9)])
         left, lost = (np.asarray(f(dm)) for f in _residual_and_loss(curve, branch))
-        if before is None:  # a stiffer law has friction, which takes energy of any contact
+        if before is None:  # a stiffer law has friction: any contact loses energy
             before = float(left[0]), float(lost[0])
         for what, value, last, scale in (
             ("residual compression", left, before[0], branch.start),

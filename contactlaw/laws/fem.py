@@ -54,7 +54,7 @@ from contactlaw.laws._law import Law
 Array = NDArray[np.float64]
 
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by similarity
-_FLOWN = (20.0, 10.0)  # q at which flow is complete, in indentations and in v
+_FLOWN = (20.0, 10.0)  # q at which flow is complete: the first for all sums but v, the second for v
 _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # two E*/sigma_Y, each with its deepest contacts, d/R
 _SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiffening negligible
 _EARLIEST = 0.01  # [d_Y]; the law's range begins here at the latest: tables begin before yield
@@ -176,7 +176,7 @@ class Given(NamedTuple):
                 (body, "poissons_ratio"): flow[body] * _within(nu - 0.3, _REACH_OF_POISSON)
                 for body, nu in ratios.items()
             },
-            # time of a wave through the sphere over the contact time is as sqrt(E*/E1')
+            # a wave crosses the sphere in a share of the contact time that goes as sqrt(E*/E1')
             ("any", "vibration"): math.sqrt(1.0 - self.modulus_share),
         }
 
@@ -315,7 +315,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         # the bodies are so strong that they would yield only where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 
-    known: list[tuple[Array, _Works]] = []  # of the last array: four formulas are called with it
+    known: list[tuple[Array, _Works]] = []  # at the last dm: four formulas share it
 
     def works(dm: Array) -> _Works:
         if not (known and known[0][0] is dm):

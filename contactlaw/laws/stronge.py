@@ -34,9 +34,9 @@ from contactlaw.laws._branches import HERTZ, Array, Loading, Unloading, bisect
 from contactlaw.laws._law import Law
 from contactlaw.laws.myc import residual  # dm - sqrt(2 dm - 1), over (dm - 1)^2
 
-_C_YIELD = (3.3 / 4.0) ** 2  # of pi^2 sigma_Y^2 R*/E*^2
-_PRESSURES = 2.8 / 1.1  # fully plastic over yield
-_P = 0.5 * (math.exp(3.3 * (_PRESSURES - 1.0)) + 1.0)
+_C_YIELD = (3.3 / 4.0) ** 2  # d_Y over pi^2 sigma_Y^2 R*/E*^2
+_PRESSURES = 2.8 / 1.1  # mean pressure when fully plastic, over that at yield
+_P = 0.5 * (math.exp(3.3 * (_PRESSURES - 1.0)) + 1.0)  # d_p
 
 
 def _elastic_plastic(d: Array) -> Array:

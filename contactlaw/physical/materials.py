@@ -57,7 +57,7 @@ class UnknownMaterialError(ValueError):
     """
 
     def __init__(self, name: str, near: tuple[str, ...]) -> None:
-        super().__init__(name, near)  # as given, or it could not be pickled
+        super().__init__(name, near)  # the arguments as given: pickle needs them
         self.name, self.near = name, near
 
     @property

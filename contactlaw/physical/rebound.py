@@ -98,7 +98,7 @@ def _with_units(
     out: Units,
     flags: NDArray[np.int64],
 ) -> None:
-    """Convert outcomes to SI units, those of `extremes` in place."""
+    """Convert outcomes to SI units, those of `extremes` in place; `unclamped_y` as in `rebound`."""
     for n in range(speed.size):
         v, t = speed[n], time[n]
         contact_time = outcome.contact_time[n] * t

@@ -65,7 +65,7 @@ def law_of(pair: Pair, law: str | Law) -> Law:
     else:
         found = laws.law(law)
     if found.from_pair and isinstance(law, Law) and law_of(pair, found.family) != found:
-        found = dataclasses.replace(found, from_pair=())  # of another pair: held fixed
+        found = dataclasses.replace(found, from_pair=())  # of another pair: numbers held fixed
     if found.yields and found.scale is None:
         pair.sphere.require_yield_strength(found.name)
     return found
@@ -151,7 +151,7 @@ def yield_share(pair: Pair, law: Law) -> float:
 
 
 def log_overload(factors: PairConstants, share: float) -> float:
-    """ln(chi/w_m) at 1 m/s, of a body that yields at this share d_Y/R: d_Y = share R."""
+    """ln(chi/w_m) at 1 m/s for a body that yields at the compression d_Y = share R."""
     return math.log(factors.time / share)
 
 
@@ -234,7 +234,7 @@ def scales(contact: ContactConstants, speed: Array) -> Numbers:
 
 
 def factors(pair: Pair, law: Law) -> PairConstants:
-    """Constants of spheres on plates."""
+    """Constants of a pair for impacts of spheres on plates."""
     one = np.ones(())
     time = _unit_time(pair)
     return PairConstants(

@@ -21,7 +21,8 @@ Array = NDArray[np.float64]
 
 SLENDER = 1.8  # R/H; Peng et al. 2021, section 4.4 and Fig. 8: H >= 0.556 R
 _SLENDER_YIELDED = 1.4  # R/H for "fem"; beyond, its errors in everyday impacts are twice as large
-_WELL_YIELDED = 2.0  # V0/V_Y0 from which on yield matters; our choice: our studies have 1.5 and 3.5
+# V0/V_Y0 from which on yield matters; our choice, between the 1.5 and 3.5 of our finite elements
+_WELL_YIELDED = 2.0
 _FASTEST = 7.0  # V0/V_Y0; Peng et al. 2021, section 4.1: their finite elements reach no further
 _SWIFTEST = 0.0131  # V0/sqrt(E*/rho1), 50 m/s for steel: up to there "fem" was fitted to impacts
 _AHEAD = 1.5  # speed of the fastest waves that matter over c_g, see `edge_distance`
@@ -56,7 +57,7 @@ class Validity(enum.IntFlag):
     """Faster than the impacts that the law was checked for: 7 times the yield speed, for "fem"
     0.0131 sqrt(E*/rho1), 50 m/s for steel."""
     THICK_PLATE = 4
-    """The contact ends within 6 transits of the thickness, too soon for the law's thin plate."""
+    """The contact ends before a pressure wave has crossed the plate 6 times; the law's is thin."""
     SOFT_PLATE = 8
     """The plate is weaker than the sphere and yields first; in this law only the sphere yields."""
     CLAMPED = 16

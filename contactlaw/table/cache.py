@@ -25,7 +25,7 @@ from contactlaw.table import file
 from contactlaw.table.grid import Settings, on_demand
 from contactlaw.table.nodes import Table
 
-# [s]; a build takes less than one second, so a lock held for longer belongs to a process that hangs
+# [s]; a build takes less than one second: a process that holds a lock for so long hangs
 _PATIENCE = 60.0
 
 

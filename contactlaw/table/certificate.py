@@ -46,8 +46,8 @@ def bounds(law: Law) -> dict[str, float]:
     return BOUNDS if math.isinf(law.range[1]) else PAIR_BOUNDS
 
 
-# Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2: next to it rounding
-# of chi makes any relative error. Smaller values (chi - 1 < 2e-6) have errors relative to this one.
+# Residual compression and plastic share start from 0 at chi = 1 as (chi - 1)^2, where rounding of
+# chi alone makes any relative error. Smaller values (chi - 1 < 2e-6) have errors relative to this.
 _SMALLEST = 1e-12
 _RETURNING = 1e-6  # least COR at which contact times are compared
 _PART = 500  # points that a thread solves at a time
@@ -146,7 +146,7 @@ def random_points(
     inelasticity, overload = grid.axes
     lows = [float(segment.start.min()) for segment in overload.segments]
     highs = [float(segment.start.max()) for segment in overload.segments]
-    hertz = lows[0] == 0.0  # the table begins at yield; below another one nothing is compared
+    hertz = lows[0] == 0.0  # such a table begins at yield and serves slower impacts, too
     strata = [(-2.0, 0.0)] * hertz + [*zip(lows, [*highs[1:], overload.largest], strict=True)]
     strata += [(low - _NEAR_KINK, low) for low in lows[not hertz :]]
     strata += [(high, high + _NEAR_KINK) for high in highs]

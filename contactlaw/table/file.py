@@ -2,8 +2,8 @@
 
 The file begins with a user block, which HDF5 leaves to applications: one line with the SHA-256 of
 all that follows. A reader checks it before HDF5 sees a byte, so a file that was cut short or
-altered is refused with a sentence, whatever HDF5 would have made of it. The checksum tells damage,
-not intent: what fits it is compared with the datasets below and with what kernels rely on, no more.
+altered is refused with a sentence, whatever HDF5 would have made of it. The checksum shows damage,
+not intent: a file that fits it is checked for the datasets below and what kernels rely on, no more.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ _LAW = {
 }
 _SERIES = {
     "series_inelasticity": _Part("lambda of what follows [-]", (SERIES,)),
-    # (5/4)^(2/5) at lambda = 0, it falls with lambda; beyond a law's range it may be larger
+    # w_m is (5/4)^(2/5) at lambda = 0 and falls with lambda; beyond a law's range it may be larger
     "elastic_compression": _Part("w_m, of an elastic impact [V0 T_H]", (SERIES,), 0.01, 1.3),
 }
 _SEGMENT = {

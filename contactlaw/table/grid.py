@@ -33,11 +33,13 @@ AXES = "inelasticity", "log_overload"
 _FEWEST_GRADED = 24  # nodes of a graded segment, our choice: two kinks may be only 8 % apart
 _COARSER = 4.0  # factor on steps in ln chi below yield, where only the sphere's stiffening counts
 _BEYOND = 1.5  # largest chi of a pair's table, over the chi up to which its law was made
-_LARGEST = 6.0  # largest lambda of a pair's table: 1 mm of carbide on 0.6 mm at 10 m/s
+# Largest lambda of a pair's table. At 10 m/s a bead of tungsten carbide of radius 1 mm has 5.5 on
+# 0.6 mm of gamma-alumina.
+_LARGEST = 6.0
 # Steps in ln chi of a table that is built on demand: one as fine as its rows, and one for the long
-# tables of soft bodies, which are complete flow for the most part: their largest errors are alike.
+# tables of soft bodies, most of which is complete flow. The largest errors of both are alike.
 _STEP, _LONG_STEP = 0.03, 0.05
-_ROOM = 0.02  # in ln chi, between the last kink and the end of the table
+_ROOM = 0.02  # least distance in ln chi from the last kink to the end of the table
 
 
 @dataclass(frozen=True)

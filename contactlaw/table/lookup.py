@@ -14,12 +14,12 @@ numbers is called from Python in a third of a microsecond. The array begins with
     X_MAX        x of the largest lambda  CURVED     1 if there are curved kinks
     LOG_CHI_MAX  largest ln chi           COR_AT     where the coefficients of COR begin
     NODES_PER_X  1/(distance of nodes)    OTHERS_AT  where those of the other fields begin
-    COLUMNS      of coefficients       TRANSIT to WAVES  of the plate, see `PlateConstants`
+    COLUMNS      coefficients in a row    TRANSIT to WAVES  of the plate, see `PlateConstants`
 
 then, at HEADER, the polynomial's coefficients, n blocks and the polynomials of curved kinks:
 
     START, END   ln chi at lambda = 0     COLUMN     first column of coefficients
-    PER_LOG      nodes per unit of it     GRADED     1 if nodes are uniform in the root
+    PER_LOG      cells per unit of ln chi GRADED     1 if nodes are uniform in the root
     CELLS        nodes less one           LINE       where the polynomial of the start is, or 0
 
 Legend: v speed, lam inelasticity, chi overload, w_m largest elastic compression [V0 T_H]. Powers:
@@ -43,9 +43,9 @@ from contactlaw.equation.outcome import Outcome
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
 
-# Input outside these is a mistake. Sizes [m]: there is no continuum below 1 nm, and no bead above
-# 1 km. Speeds [m/s]: no contact is quasi-static above the speed of every wave in a solid, and below
-# 1e-30 m/s squares begin to underflow.
+# Input outside these limits is a mistake. Sizes [m]: there is no continuum below 1 nm, and no bead
+# above 1 km. Speeds [m/s]: no contact is quasi-static above the speed of every wave in a solid, and
+# below 1e-30 m/s squares begin to underflow.
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = 1e-30
 # Smallest H/R, whatever the law and the speed. A plate thinner than that is a foil, and nothing is
@@ -102,9 +102,9 @@ def _root_series() -> tuple[float, ...]:
 
 
 ROOT = _root_series()
-_ABOVE = np.int64((1024 << 52) - 0x3FE6A09E667F3BCD)  # 1024 exponents, less sqrt(1/2)
+_ABOVE = np.int64((1024 << 52) - 0x3FE6A09E667F3BCD)  # 1024 exponents less sqrt(1/2), in bits
 _TWO_52 = np.int64(0x433 << 52)  # bits of 2^52
-_LN_2_HIGH, _LN_2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10  # fdlibm
+_LN_2_HIGH, _LN_2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10  # from fdlibm
 _FACTORIALS = tuple(1.0 / math.factorial(n) for n in range(14))
 _ROOTS_OF_TWO = 2.0 ** (np.arange(-1024, 3072) / 5)  # 2^(k/5), for any 12 bits of an exponent
 
@@ -255,8 +255,8 @@ def _locate_all(
 ) -> None:
     """`locate` for many places, in loops of one operation that become vector instructions.
 
-    Row by columns + column goes into first, the places in the cell over x and into along. Low and
-    high are scratch.
+    `first` gets row times columns + column, `x` and `along` the places within the cell. `low` and
+    `high` are scratch.
     """
     n, scale = x.size, 2.0 / table[X_MAX]
     for k in range(int(table[SEGMENTS])):
@@ -325,7 +325,7 @@ def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> flo
     return min(max(value, 0.0), 1.0)  # the spline may pass 1 by its error, and engines refuse that
 
 
-_U = tuple(np.uint64(n) for n in range(12))  # no test for a negative index
+_U = tuple(np.uint64(n) for n in range(12))  # indices need no test for negative ones
 
 
 class _Others(NamedTuple):
@@ -542,7 +542,7 @@ def outcomes(
     out: Outcome,
     root: Array,
 ) -> int:
-    """Write all fields of valid impacts on plates; return how many are outside, and NaN.
+    """Write all fields of valid impacts on plates; return how many are NaN, being outside.
 
     V^(1/5) exp(eta) goes into root.
     """

@@ -30,8 +30,8 @@ Array = NDArray[np.float64]
 POINTS = 1000  # points of the certificate of a table that is built on demand
 _COMPARED = 20_000  # points at which a coarser table is compared
 _ROW_FACTORS = 4, 2, 1  # factors by which a coarser table may have fewer rows
-# Factors by which its steps along ln chi may be wider, one for each segment: the COR of elastic
-# impacts bends far less than that beyond yield, for which a single step would have to be fine.
+# Factors by which a coarser table's steps in ln chi may be wider, one for each segment: the COR of
+# elastic impacts bends far less than that beyond yield, for which a single step has to be fine.
 _STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
 
 
@@ -177,7 +177,7 @@ def _widest_steps(
 def _looked_up(table: Table, lam: Array, chi: Array) -> Outcome:
     w_m = np.array([lookup.log_elastic_compression(table.packed, one) for one in lam])
     found = outcome.at(lam, np.exp(w_m) / chi)
-    lookup.fields(table.packed, True, found)  # rounding may put an edge outside
+    lookup.fields(table.packed, True, found)  # rounding may put nodes at the edge outside
     return found
 
 
@@ -247,7 +247,7 @@ def certify(
     """Compare lookups with the solver at random points off the grid.
 
     The points fall into equal shares: below yield, each segment between two kinks, the close
-    neighbourhood of each kink on either side, and all of these for the half-space.
+    neighbourhood of each kink on either side. A tenth of the points are on the half-space.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ def spline_coefficients(values: Array) -> Array:
 def surface(values: Array, grid: TableGrid) -> Array:
     """Coefficients of cubic splines along each axis of the grid, one spline for each segment.
 
-    One coefficient more follows at each end: kernels read it with the weight 0, without a test.
+    Each axis ends with one more coefficient: kernels read it with the weight 0, without a test.
     """
     for k, axis in enumerate(grid.axes):
         parts = np.split(values.swapaxes(0, k), np.cumsum(axis.sizes)[:-1])
@@ -50,7 +50,7 @@ def surface(values: Array, grid: TableGrid) -> Array:
 
 
 def header(grid: TableGrid) -> Array:
-    """Begin an array with what `lookup.locate` reads."""
+    """Make the beginning of a packed array, by which `lookup.locate` finds coefficients."""
     inelasticity, overload = grid.axes
     x_max = float(inelasticity.mapped(inelasticity.largest))
     sizes = np.array(overload.sizes)
