@@ -16,7 +16,7 @@ from dem_demo.kit.signals import Interrupted, interruptible
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Write report and pictures, all of them or none; print what became of the claims.
+    """Write report and pictures, all of them or none; print the count of each verdict.
 
     Returns
     -------

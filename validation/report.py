@@ -26,8 +26,8 @@ from validation.fem.census import pairs
 from validation.paper.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 from validation.typeset import typeset
 
-_MANY = 20  # numbers of a figure, from which on they are folded away
-_EACH = 100  # impacts of a pair in the census
+_MANY = 20  # a figure with more numbers folds them away
+_EACH = 100  # impacts per pair in the census
 _FOLDER = Path(__file__).parent
 _DERIVATIONS = {
     "errata": "errata",
@@ -43,14 +43,14 @@ _COLOURS = {
     OPEN: "#6E6E6E",
 }
 _NUMBER = " class='n'"
-_SIZE = "(size)"  # of the page, until that is known
+_SIZE = "(size)"  # stands for the size of the page until it is known
 
 
 class Picture(NamedTuple):
-    """A figure as the report has it."""
+    """A figure with its caption and its numbers."""
 
     name: str
-    part: str  # of the report
+    part: str  # part of the report
     caption: str
     numbers: dict[str, float]
     png: bytes
@@ -103,7 +103,7 @@ def page(claims: tuple[Claim, ...], pictures: Iterable[Picture]) -> str:
 
 
 def _practice() -> dict[str, str]:
-    """Fill what people who simulate read."""
+    """Fill the part for people who simulate."""
     overall = trust.overall()
     (everyday, others), (fem, pair), _ = overall.values()
     bounds = trust.EVERYDAY.bounds
@@ -176,7 +176,7 @@ def _row(cells: Iterable[str], numbers: Iterable[str]) -> str:
 
 
 def _scores(title: str, found: Mapping[str, list[Score]]) -> str:
-    """Set both laws beside each other."""
+    """Make a table of the scores of both laws, side by side."""
     kinds = ("right", "rms error", "largest error")
     heads = [title, *(f"<code>{law}</code>: {kind}#" for law in trust.LAWS for kind in kinds)]
     rows = []
@@ -318,7 +318,7 @@ def _figure(picture: Picture) -> str:
 
 
 def _derivation(anchor: str, name: str) -> str:
-    """Set a page of Markdown below the page's own headings."""
+    """Make a derivation from Markdown, with its headings two levels down."""
     text = (_FOLDER / "derivations" / f"{name}.md").read_text(encoding="utf-8")
     made = typeset(markdown.markdown(text, extensions=["tables"]))
     made = re.sub(r"(</?h)([1-3])", lambda found: f"{found[1]}{int(found[2]) + 2}", made)

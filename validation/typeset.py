@@ -1,7 +1,7 @@
 """Formulas in plain text, made readable in HTML: Greek letters, indices, powers, names of code.
 
-The text around them is prose without marks where a formula begins, so that no reader of AsciiMath
-or LaTeX can take it.
+Nothing in the text marks where a formula begins, so that no parser of AsciiMath or LaTeX can take
+it.
 """
 
 from __future__ import annotations

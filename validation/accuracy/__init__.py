@@ -1,1 +1,1 @@
-"""How right the laws are: beside finite elements, by what is asked of them, by kinds of impacts."""
+"""Accuracy of the laws beside finite elements: errors, acceptance, and scores by kind of impact."""

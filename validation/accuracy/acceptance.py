@@ -1,13 +1,13 @@
-"""The law ``"fem"`` held to what it has to reach, impact by impact.
+"""Acceptance of the law ``"fem"``: its errors beside finite elements, impact by impact.
 
-Two rows: the impacts of the paper's kind, which the law was fitted to among others, and everyday
-impacts that no fit has seen. A row holds if in each of its numbers at least 95 % of its impacts are
-right, and none is wrong without a flag of `contactlaw.Validity.ACCURACY`.
+Two sets are judged: impacts of the paper's kind, to which the law was also fitted, and everyday
+impacts that no fit has seen. A set holds if at least 95 % of its impacts are within the bound of
+each number, if its rms error in COR is within its bound, and if every impact beyond a bound carries
+a flag of `contactlaw.Validity.ACCURACY`.
 
-Both compare the law with finite elements of our own, each the mean of two meshes that differ by
-0.8 % in COR (root mean square) where a body flows; no published measurements of the restitution of
-spheres on plates, with their conditions, could be had. What could be had, published closed forms
-for half-spaces, is in `halfspace`.
+The reference is finite elements of our own, the mean of two meshes that differ by 0.8 % in COR
+(root mean square) where a body flows. No published measurements of the restitution of spheres on
+plates, with their conditions, could be had; `halfspace` has published closed forms.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from validation.accuracy import halfspace
 from validation.fem import fit, store
 
 LAW = "fem"
-ENOUGH = 0.95  # of the impacts without a flag, in each number
+ENOUGH = 0.95  # share of the impacts that has to be within the bound of each number
 YIELDING = ("none", "sphere", "plate", "both")
 
 
@@ -41,13 +41,13 @@ class Errors(NamedTuple):
 
 
 class Target(NamedTuple):
-    """A row: what it is about and what it asks for."""
+    """A set of impacts, and the bounds that its errors have to keep."""
 
     title: str
     studies: tuple[str, ...]
     bounds: Errors
-    rms: float = math.inf  # of the errors in COR
-    least: float = 0.0  # COR; the error of a lower one is over this
+    rms: float = math.inf  # bound of the rms error in COR [-]
+    least: float = 0.0  # the error of a lower COR is relative to this one
     slenderness: float = math.inf  # largest R/H
     speed_ratio: float = math.inf  # largest V0/V_Y0
 
@@ -79,7 +79,7 @@ class Member(NamedTuple):
     speed: float  # [m/s]
     slenderness: float  # R/H
     speed_ratio: float  # V0/V_Y0 of the weaker body; 0 where none yields
-    yielding: str  # of `YIELDING`
+    yielding: str  # one of `YIELDING`
     fem: float  # COR
     law: float  # COR
     errors: Errors
@@ -87,12 +87,12 @@ class Member(NamedTuple):
 
     @property
     def flagged(self) -> bool:
-        """Whether the answer says that it may be less accurate."""
+        """Whether the answer carries a flag of accuracy."""
         return bool(self.flags & Validity.ACCURACY)
 
 
 class Row(NamedTuple):
-    """What became of a target."""
+    """The impacts of a target, held to its bounds."""
 
     target: Target
     members: tuple[Member, ...]
@@ -136,12 +136,12 @@ class Row(NamedTuple):
 
     @property
     def enough(self) -> bool:
-        """Whether enough of the impacts are within each bound, and the rms is."""
+        """Whether enough impacts are within each bound, and the rms error within its own."""
         return min(self.shares) >= ENOUGH and self.rms <= self.target.rms
 
     @property
     def holds(self) -> bool:
-        """Whether enough are right, and none is wrong without a flag."""
+        """Whether enough impacts are within bounds, and all others carry a flag."""
         return self.enough and not self.silent
 
 
@@ -158,7 +158,7 @@ def within(errors: Errors, bounds: Errors) -> bool:
 
 @functools.cache
 def members(target: Target, law: str = LAW) -> tuple[Member, ...]:
-    """List the impacts of a row, and what a law says of them.
+    """List the impacts of a target, with the errors of a law.
 
     Parameters
     ----------
@@ -237,7 +237,7 @@ def _member(
 
 
 def _yielding(pair: cl.Pair) -> str:
-    """Which body flows once one does: the weaker, and the other if it is not much stronger."""
+    """Name the body that flows first: the weaker, or both if neither is much stronger."""
     sphere, plate = (body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
     if min(sphere, plate) > ALONE * max(sphere, plate):
         return "both"
@@ -256,7 +256,7 @@ def rows(names: Iterable[str] = TARGETS) -> dict[str, Row]:
 
 
 class Rubbed(NamedTuple):
-    """Friction of 0.1 beside none: change of the COR of an indentation, or impact [-]."""
+    """Change of the COR of an indentation or impact by friction of 0.1 in place of none [-]."""
 
     what: str
     change: float
@@ -265,7 +265,7 @@ class Rubbed(NamedTuple):
 def friction() -> list[Rubbed]:
     """Compare contacts with friction of 0.1 with those without, by finite elements alone.
 
-    Of an indentation, the COR is the root of what unloading gives back of the loading work.
+    The COR of an indentation is the square root of unloading work over loading work.
 
     Examples
     --------
@@ -296,7 +296,7 @@ def friction() -> list[Rubbed]:
 
 
 def report() -> str:
-    """All of it as text, with every impact of the set that was kept out."""
+    """Write the acceptance as text, with every impact that was kept out of the fit."""
     lines = []
     for name, row in rows().items():
         lines += _row(row)
@@ -331,8 +331,8 @@ def _row(row: Row) -> list[str]:
             f"    {name.replace('_', ' '):14s} within {100 * bound:g} %: {100 * share:5.1f} % "
             f"(at least {100 * ENOUGH:g}); largest without a flag {100 * largest:+.2f} %"
         )
-    asked = "" if math.isinf(target.rms) else f" (at most {100 * target.rms:g})"
-    return [*lines, f"    rms error of COR {100 * row.rms:.2f} %{asked}"]
+    most = "" if math.isinf(target.rms) else f" (at most {100 * target.rms:g})"
+    return [*lines, f"    rms error of COR {100 * row.rms:.2f} %{most}"]
 
 
 def _line(one: Member, target: Target) -> str:

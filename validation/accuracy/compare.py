@@ -26,8 +26,8 @@ class Comparison(NamedTuple):
     inelasticity: Array  # lambda
     fem: dict[str, Array]
     model: dict[str, Array]  # the modified Zener model, all fields of Rebound by name
-    restitution: dict[str, Array]  # of each predictor, the model included
-    yielded: NDArray[np.bool_]  # the model says so
+    restitution: dict[str, Array]  # COR by each predictor, the model included
+    yielded: NDArray[np.bool_]  # by the model
 
 
 @functools.cache
@@ -51,7 +51,7 @@ def comparison(name: str) -> Comparison:
         eta[rows] = closed_form.eta(pair)
     lam = model["inelasticity"]
     at_yield = eta * slenderness**2
-    # Eq. 22 knows a pair by its eta only: (R/H)^2 of the paper's pair
+    # Eq. 22 depends on lambda_Y only: take R/H of the paper's pair at the same lambda_Y
     like = np.sqrt(at_yield / setting.ETA)
     restitution = {
         "modified Zener": model["restitution"],
@@ -78,7 +78,7 @@ def by_law() -> dict[str, Array]:
 
 @functools.cache
 def by_fem(name: str) -> Array:
-    """COR of every impact of a study by the law that is made of finite elements.
+    """COR of every impact of a study by the law ``"fem"``.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def by_fem(name: str) -> Array:
 def _solved(
     fem: dict[str, Array], law: str
 ) -> Iterator[tuple[cl.Pair, NDArray[np.bool_], cl.Rebound]]:
-    """Let a law integrate the impacts of each pair of a study, which are these rows of it."""
+    """Integrate the impacts of a study by a law: each pair, its rows in the study, rebounds."""
     for sphere, plate in set(zip(fem["sphere"], fem["plate"], strict=True)):
         rows = (fem["sphere"] == sphere) & (fem["plate"] == plate)
         pair = elastic_plate(sphere, plate)
@@ -104,7 +104,7 @@ def _solved(
 
 
 class Yielded(NamedTuple):
-    """One impact of the studies `pairs` and `strengths`, and what each law has for it."""
+    """One impact of the studies `pairs` and `strengths`, with its COR by each law."""
 
     ratio: float  # E/sigma_Y of the sphere
     plate: str
@@ -153,7 +153,7 @@ def errors(case: Comparison, where: NDArray[np.bool_] | slice = slice(None)) -> 
 
 
 def regions(case: Comparison) -> dict[str, NDArray[np.bool_]]:
-    """Parts of a matrix: the paper's three, and its thin plates."""
+    """Impacts of a study in each of the paper's three regions, and on thick and thin plates."""
     plastic, wave = case.model["plastic_fraction"], case.model["wave_fraction"]
     return {
         "elastic": ~case.yielded,
@@ -186,26 +186,26 @@ def indentation(name: str) -> tuple[Array, Array, int]:
     """
     if name == "calculix":
         data = store.read("calculix").data
-        way, force = data["compression"], data["force"]
+        compression, force = data["compression"], data["force"]
     else:
         data = store.read("indentation").data
-        way, force = data[f"compression_{name}"], data[f"force_{name}"]
-    return way / setting.YIELD_COMPRESSION, force / setting.FORCE, int(way.argmax())
+        compression, force = data[f"compression_{name}"], data[f"force_{name}"]
+    return compression / setting.YIELD_COMPRESSION, force / setting.FORCE, int(compression.argmax())
 
 
-def force_at(name: str, way: Array, *, loading: bool = True) -> Array:
-    """Force [F_Y] of a stored indentation at compressions [d_Y], on the way in or out."""
+def force_at(name: str, compression: Array, *, loading: bool = True) -> Array:
+    """Force [F_Y] of a stored indentation at compressions [d_Y], loading or unloading."""
     x, force, top = indentation(name)
     part = slice(None, top + 1) if loading else slice(None, top - 1, -1)
-    return np.interp(way, x[part], force[part])
+    return np.interp(compression, x[part], force[part])
 
 
-def loading_errors(way: Array) -> dict[str, Array]:
+def loading_errors(compression: Array) -> dict[str, Array]:
     """Error of the loading force of `setting.all_laws`, relative to the indentation to 30 d_Y [-].
 
     Parameters
     ----------
-    way : ndarray
+    compression : ndarray
         Compressions [d_Y of MYC], from 0.4, where the force is no longer small, to 30.
 
     Examples
@@ -213,23 +213,23 @@ def loading_errors(way: Array) -> dict[str, Array]:
     >>> bool(abs(loading_errors(np.array([5.0]))["myc"][0]) < 0.06)
     True
     """
-    fem = force_at("30", way)
-    return {name: setting.force(law, way) / fem - 1.0 for name, law in setting.all_laws().items()}
+    fem, laws = force_at("30", compression), setting.all_laws()
+    return {name: setting.force(law, compression) / fem - 1.0 for name, law in laws.items()}
 
 
-def returned(way: Array, force: Array, top: int) -> float:
+def returned(compression: Array, force: Array, top: int) -> float:
     """Work of unloading over that of loading [-]."""
-    spent = np.trapezoid(force[: top + 1], way[: top + 1])
-    return float(-np.trapezoid(force[top:], way[top:]) / spent)
+    spent = np.trapezoid(force[: top + 1], compression[: top + 1])
+    return float(-np.trapezoid(force[top:], compression[top:]) / spent)
 
 
 def discretisation() -> dict[str, Array]:
     """Estimate the relative error of elements of 0.01 R; one entry per thickness [-].
 
     At 26 m/s, on plates of 0.5 and 1 mm. Grid convergence index (Roache, J. Fluids Eng. 116 (1994)
-    405): the limit of ever finer elements from those of 0.02, 0.01 and 0.005 R, at the order p that
-    they show, but at most 1, which is also taken where they oscillate and show none, times 1.25; to
-    it comes the plate's mesh away from the contact, halved once and so taken at order 1.
+    405): 1.25 times the distance from the limit of ever finer elements, extrapolated from those of
+    0.02, 0.01 and 0.005 R at the order p that they show, at most 1, or at 1 where they oscillate.
+    The plate's mesh away from the contact, halved once, adds its own error at order 1.
     """
     data = store.read("verification").data
     found: dict[str, Array] = {}
@@ -248,7 +248,7 @@ def discretisation() -> dict[str, Array]:
 
 
 def report() -> str:
-    """All numbers as text."""
+    """Write the comparison as text."""
     lines = []
     matrix = comparison("matrix")
     lines.append(f"COR over the matrix ({matrix.slenderness.size} impacts): largest, rms [%]")
@@ -268,9 +268,9 @@ def report() -> str:
             f"  {name:18s} largest {100 * off[n]:+.1f} at R/H {matrix.slenderness[n]:.2f}, "
             f"v {matrix.speed_ratio[n]:.1f}; rms {100 * np.sqrt(np.mean(off**2)):.1f} [%]"
         )
-    way = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 30.0])
-    lines.append(f"loading force of the laws less finite elements at {way} d_Y [%]")
-    for name, off in loading_errors(way).items():
+    compression = np.array([1.0, 2.0, 5.0, 10.0, 20.0, 30.0])
+    lines.append(f"loading force of the laws less finite elements at {compression} d_Y [%]")
+    for name, off in loading_errors(compression).items():
         lines.append(f"  {name:14s}" + "".join(f"{100 * value:+7.1f}" for value in off))
     for name in ("pairs", "limits"):
         case, by_its_law = comparison(name), by_fem(name)

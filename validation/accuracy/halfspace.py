@@ -1,4 +1,4 @@
-"""The law ``"fem"`` on half-spaces, beside closed forms that are published of them."""
+"""The law ``"fem"`` on half-spaces, beside published closed forms."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from validation.paper import closed_form
 
 Array = NDArray[np.float64]
 
-JOHNSON = -0.25  # d ln e/d ln V where the mean pressure has its largest value, as in hardness
-_CAPS = 1.65, 2.8  # over sigma_Y: p0 of first yield in the law, and the mean of full plasticity
+JOHNSON = -0.25  # d ln e/d ln V in full plasticity, where the mean pressure is the hardness
+_CAPS = 1.65, 2.8  # pressure over sigma_Y: largest at first yield, and mean in full plasticity
 _SPEED_RATIOS = 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0
 _RATIOS = 100.0, 400.0, 2000.0  # E*/sigma_Y
 
@@ -24,16 +24,15 @@ _RATIOS = 100.0, 400.0, 2000.0  # E*/sigma_Y
 def thornton(cap: float) -> Array:
     """COR at `_SPEED_RATIOS` by the closed form of Thornton (1997), for a cap of the pressure.
 
-    Not fitted, and no test of the law: the closed form leaves out what the law is made of, that the
-    pressure grows from 1.65 sigma_Y at first yield to a mean of about 3, and falls again on a
-    flattened sphere.
+    The closed form is not fitted and does not test the law: it leaves out that the pressure grows
+    from 1.65 sigma_Y at first yield to a mean of about 3, and falls on a flattened sphere.
 
     Examples
     --------
     >>> bool((thornton(1.65) < thornton(2.8)).all())
     True
     """
-    # the speed at which the cap is reached goes with its power 5/2
+    # the speed at which the pressure reaches the cap grows with the cap to the power 5/2
     ratio = np.array(_SPEED_RATIOS) * (_CAPS[0] / cap) ** 2.5
     return np.asarray(closed_form.thornton(ratio))
 
@@ -44,15 +43,15 @@ class Fall(NamedTuple):
     yielding: str
     ratio: float  # E*/sigma_Y
     speed_ratio: float  # V0/V_Y0
-    restitution: float  # of the law, in which a half-space carries off waves, too
-    slope: float  # d ln e/d ln V, of what remains without these waves
+    restitution: float  # by the law, in which waves in the half-space take energy too
+    slope: float  # d ln e/d ln V of the COR without the loss to these waves
     flags: Validity
 
 
 def falls() -> list[Fall]:
-    """Let spheres fall on half-spaces by the law, at speeds that it was made for.
+    """Solve impacts on half-spaces by the law; those flagged DEEP_CONTACT are left out.
 
-    Bodies of one modulus and density, elastic and perfectly plastic.
+    Both bodies are of one modulus and density, elastic and perfectly plastic.
 
     Examples
     --------
@@ -76,7 +75,7 @@ def falls() -> list[Fall]:
 
 
 def _slow(hit: Rebound) -> Array:
-    """COR without the waves: what they took is added."""
+    """COR without the loss to waves."""
     return np.asarray(np.sqrt(hit.restitution**2 + hit.wave_fraction))
 
 
@@ -100,7 +99,7 @@ def _fallen(pair: cl.Pair, speed: Array) -> Rebound:
 
 
 def lines() -> list[str]:
-    """All of it as text."""
+    """Write the comparison as text."""
     found = [
         "half-spaces at V0/V_Y0: COR of law fem, (d ln e/d ln V without waves; full plasticity, "
         f"Johnson 1985: {JOHNSON:g}),",

@@ -1,4 +1,4 @@
-"""How far to trust an answer, in numbers: laws beside finite elements, for people who simulate."""
+"""Scores of the laws beside finite elements, for people who simulate."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ from validation.fem import census
 
 LAWS = "fem", "myc"
 PAPER = TARGETS["paper"]
-# All that no fit has seen: two sets. The second alone judged the law, flags and all.
+# No fit has seen these two sets; the first placed the limit R/H = 1.4 of the law's answers.
 EVERYDAY = TARGETS["kept out"]._replace(studies=("everyday_5", "kept_out"))
 _WORDS = {"restitution": "COR"}
 
 
 class Score(NamedTuple):
-    """What became of some impacts by a law, beside finite elements."""
+    """Accuracy of a law over some impacts, beside finite elements."""
 
     law: str
     impacts: int
     answered: int  # the law has an answer
     right: int  # within every bound
-    shares: Errors  # of the answered, within each bound
+    shares: Errors  # share of the answered impacts within each bound
     rms: float  # error in COR [-]
     largest: float  # error in COR, with its sign [-]
-    silent: int  # beyond a bound, and without a flag that says so
+    silent: int  # beyond a bound, without a flag of accuracy
 
 
 def score(law: str, target: Target, chosen: Callable[[Member], bool] = lambda one: True) -> Score:
@@ -38,9 +38,9 @@ def score(law: str, target: Target, chosen: Callable[[Member], bool] = lambda on
     law : str
         Name of the law.
     target : Target
-        Whose bounds, and whose impacts.
+        Impacts, and their bounds.
     chosen : callable, optional
-        Which of its impacts.
+        Whether an impact counts; by default all do.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The C header beside the numba kernels: lookups and steps, in one run, the same impacts."""
+"""The C header against the numba kernels: lookups and time steps of the same impacts."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from validation.bench.row import Row
 
 Array = NDArray[np.float64]
 
-N, WALK = 200_000, 400  # impacts; overlaps along a path, in and out
-ROUNDS = 30  # the two take turns, so that both see the same noise
+N, WALK = 200_000, 400  # impacts; overlaps of one contact, loading and unloading
+ROUNDS = 30  # C and numba take turns, so that both see the same noise
 _SOURCE = """
 #include "contactlaw.h"
 void lookups(int n, const double *v, const double *r, const double *h, double *out)
@@ -47,7 +47,7 @@ void steps(int n, const double *x, int walks, double radius, double thickness, d
 
 
 def rows() -> Iterator[Row]:
-    """Measure for the law of the paper and for that of finite elements."""
+    """Measure with the laws myc and fem."""
     compiler = shutil.which("gcc")
     if compiler is None:
         raise RuntimeError("no gcc on PATH: the C header cannot be measured")
@@ -74,7 +74,7 @@ def _pointer(values: Array) -> Any:
 
 
 def _in_turns(one: Callable[[], object], other: Callable[[], object]) -> tuple[float, float]:
-    """Least times of both after a first call, of the processor alone: others may use it too [s]."""
+    """Least CPU time of each after a first call [s]; wall time would count other processes."""
     least = [math.inf, math.inf]
     for turn in range(ROUNDS + 1):
         for n, function in enumerate((one, other)):
@@ -117,7 +117,7 @@ def _walk(law: Array, spring: Spring, x: Array, walks: int, dt: float, out: Arra
 
 
 def _steps(model: cl.ImpactModel, library: ctypes.CDLL) -> Row:
-    """Contacts along the path of an impact far above yield."""
+    """Measure the time steps of a contact far above yield."""
     radius, thickness = 0.9e-3, 3e-3
     hit = model.solve(10.0, radius, thickness)
     dt = float(hit.contact_time) / WALK

@@ -27,22 +27,22 @@ from validation.fem import census
 Array = NDArray[np.float64]
 Flags = NDArray[np.int64]
 
-_SEED = 7  # not that of the impacts that are kept out
+_SEED = 7  # differs from those in `validation.fem.census.SEEDS`
 _LAWS = "fem", "myc"
-_EACH = 100  # impacts of a pair
+_EACH = 100  # impacts per pair
 _MOST_FLAGGED = 10.0  # %
 
 
 class Census(NamedTuple):
-    """Shares of all impacts [-]; they overlap but for `inside`, which is none of the others."""
+    """Shares of all impacts [-]; one may count in several, `inside` counts those in no other."""
 
     impacts: int
-    refused: float  # no model of the pair
-    outside: float  # the table ends before
-    inaccurate: float  # with a flag of `Validity.ACCURACY` but that of the table's end
+    refused: float  # the law has no model of the pair
+    outside: float  # beyond the end of the table of the pair
+    inaccurate: float  # with a flag of `Validity.ACCURACY` other than CLAMPED
     damaging: float  # with `Validity.DAMAGE`
     inside: float
-    flags: dict[Validity, float]  # each flag of accuracy that there is
+    flags: dict[Validity, float]  # share of each flag of accuracy that occurs
     warned: int  # pairs whose table is less accurate than it has to be
 
 
@@ -58,16 +58,16 @@ def draw(each: int) -> tuple[Array, Array]:
 
 
 def count(law: str, each: int = _EACH, tables: bool = True) -> Census:
-    """Put impacts to a law, each pair's at once.
+    """Count what a law answers and flags, pair by pair.
 
     Parameters
     ----------
     law : str
         Name of the law.
     each : int, optional
-        Impacts of a pair.
+        Impacts per pair.
     tables : bool, optional
-        Look up, which builds the table of every pair, or integrate, which takes its extent alone.
+        Whether to look up, which builds all tables, or to integrate, which needs their extent.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def count(law: str, each: int = _EACH, tables: bool = True) -> Census:
             try:
                 answer = _looked_up if tables else _integrated
                 found.append(answer(pair, law, speed, thickness))
-            except (ValueError, RuntimeError):  # it has no law, or its table cannot be built
+            except (ValueError, RuntimeError):  # the pair has no such law, or no table
                 refused += each
     flags = np.concatenate([np.empty(0, dtype=np.int64), *found])
     total = flags.size + refused
@@ -122,13 +122,13 @@ def _integrated(pair: cl.Pair, law: str, speed: Array, thickness: Array) -> Flag
 
 
 def settings(law: Law) -> Settings:
-    """Extent of the table that a law is served with."""
+    """Give the settings of the table of a law, packaged or built on demand."""
     packaged = file.packaged(law)
     return on_demand(law) if packaged is None else packaged.settings
 
 
 def rows() -> Iterator[Row]:
-    """Count for the law that is made for these pairs, and for that of the paper."""
+    """Count for the laws fem and myc."""
     for name in _LAWS:
         start = time.perf_counter()
         found = count(name)

@@ -1,4 +1,4 @@
-"""The finite elements: an element and step, and the paper's impact."""
+"""The finite elements: time per element and step, and of the paper's whole impact."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from validation.paper.setting import PAIR, RADIUS
 
 Array = NDArray[np.float64]
 
-_SPEED, _THICKNESS, _WIDTH = 26.0, 0.5e-3, 0.15  # of the paper's Figs 11 to 13
+_SPEED, _THICKNESS, _WIDTH = 26.0, 0.5e-3, 0.15  # impact of the paper's Figs 11 to 13 [m/s, m, m]
 
 
 def rows() -> Iterator[Row]:

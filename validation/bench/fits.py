@@ -1,4 +1,4 @@
-"""The other way round: what was not known, from 50 measured rebounds."""
+"""Fits of one to three unknowns to 50 measured rebounds."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _STEEL = (
 
 
 def rows() -> Iterator[Row]:
-    """Measure fits in a warm process; no law of an earlier fit is kept."""
+    """Measure fits in a warm process, without the laws that earlier fits cached."""
     steel = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
     paper = cl.Pair("gamma-alumina", "glass")
     data = measured(steel, "fem", ("thickness",))
     by_hand = seconds(lambda: with_a_table(steel, data), 3)
     ours = timed(steel, "fem", ("thickness",))
     yield Row("fit, fem, thickness", ours, "s", 0.3, "scipy on ImpactModel", by_hand / ours,
-              note="whose table is there already, and whose errors are not found")  # fmt: skip
+              note="which has its table already, and finds no standard errors")  # fmt: skip
     for question in _STEEL[1:]:
         yield Row(f"fit, fem, {', '.join(question)}", timed(steel, "fem", question), "s", 0.3)
     for law in laws.names():
@@ -47,7 +47,7 @@ def rows() -> Iterator[Row]:
 
 
 def timed(pair: cl.Pair, law: str, question: tuple[str, ...]) -> float:
-    """Time of a fit that makes all of its laws [s]."""
+    """Time of a fit that finds no law in the cache [s]."""
     data = measured(pair, law, question)
 
     def once() -> None:
@@ -59,7 +59,7 @@ def timed(pair: cl.Pair, law: str, question: tuple[str, ...]) -> float:
 
 
 def measured(pair: cl.Pair, law: str, question: tuple[str, ...]) -> Data:
-    """Draw rebounds of a bead of 1 mm from a plate of 1 mm."""
+    """Draw noisy rebounds of a bead of 1 mm radius from a plate of 1 mm."""
     random = np.random.default_rng(1)
     speed = np.geomspace(0.1, 8.0, POINTS) * (1.0 if law == "fem" else 4.0)
     size = np.full(POINTS, 1e-3)
@@ -74,11 +74,11 @@ def measured(pair: cl.Pair, law: str, question: tuple[str, ...]) -> Data:
 
 
 def with_a_table(pair: cl.Pair, data: Data) -> object:
-    """Find a thickness as one would by hand: answers of the table, differences of scipy."""
+    """Find a thickness as one would by hand: scipy's least squares on COR from the table."""
     model = cl.ImpactModel(pair)
 
     def residuals(x: Array) -> Array:
         cor = model.restitution(data["speed"], data["radius"], float(np.exp(x[0])))
         return np.asarray((cor - data["restitution"]) / data["restitution_error"])
 
-    return least_squares(residuals, [np.log(1.5e-3)])  # from 3e-3 it leaves the table
+    return least_squares(residuals, [np.log(1.5e-3)])  # a start at 3e-3 leaves the table

@@ -37,7 +37,7 @@ def rows() -> Iterator[Row]:
 
 def scipy_history() -> float:
     """Time of one elastic contact with solve_ivp to 1e-8: a lower bound for MYC."""
-    time = np.linspace(0.0, 3.0, SAMPLES)  # of 3.2, so that contact lasts throughout
+    time = np.linspace(0.0, 3.0, SAMPLES)  # the contact lasts 3.2, longer than the samples
 
     def rates(t: float, s: np.ndarray) -> list[float]:
         f = max(s[0], 0.0) ** 1.5

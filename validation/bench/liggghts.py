@@ -1,6 +1,6 @@
-"""The exported wall in LIGGGHTS against its own: 1e5 beads that fall on a plate, on 1 and 2 ranks.
+"""The exported wall against LIGGGHTS's own wall: 1e5 falling beads, on 1 and 2 ranks.
 
-Beads do not meet each other here: their contacts cost the same with any wall, and would hide it.
+Contacts between beads are left out: they cost the same with any wall, and would hide its cost.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from validation.bench.row import Row
 
 BEADS = 100_000
 RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, 1e-3
-PITCH, HEIGHT = 2.5e-3, 1.1e-3  # of the beads [m]; 8 % of them touch at any time
+PITCH, HEIGHT = 2.5e-3, 1.1e-3  # spacing and initial height of the beads [m]; 8 % touch at any time
 STEPS, PARTS, ROUNDS = 100, 4, 4  # the simulations take turns, so that all see the same noise
 WALLS = {
     "none": "",
@@ -61,7 +61,7 @@ run 300
 
 
 def rows() -> Iterator[Row]:
-    """Measure on one rank and on two; nothing where there is no LIGGGHTS."""
+    """Measure on one rank and on two; yield nothing where LIGGGHTS is not installed."""
     if not shutil.which("liggghts"):
         print("liggghts: not installed, see `make test-engines`", file=sys.stderr)
         return

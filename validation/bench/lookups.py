@@ -44,12 +44,12 @@ def rows() -> Iterator[Row]:
     )  # fmt: skip
     yield Row(
         "the same", batch * 1e9, "ns", None, "interpn, cubic, one thread", cubic / batch,
-        note="coordinates given: the peers are spared the way from SI units",
+        note="the peers are given table coordinates: they convert no SI units",
     )  # fmt: skip
     full = seconds(lambda: model.lookup(v, r, h)) / N
     yield Row(
         "batch, all fields of Rebound", full * 1e9, "ns", 60,
-        note="17 arrays of 8 bytes are written and read; the splines take 27 of it, the law 24",
+        note="17 arrays of 8 bytes are written and read; the splines take 27 ns, the law 24 ns",
     )  # fmt: skip
     yield from one_by_one(model, v, r, h)
 
@@ -57,7 +57,7 @@ def rows() -> Iterator[Row]:
 def peers(
     model: cl.ImpactModel, v: np.ndarray, r: np.ndarray, h: np.ndarray
 ) -> tuple[float, float]:
-    """Time per point of scipy's and interpn's interpolation on the same nodes."""
+    """Time per point of scipy's and interpn's interpolation on the same nodes [s]."""
     table = file.packaged(laws.law("myc"))
     assert table is not None
     nodes = table.grid.nodes()[1][0]  # both kinks of myc are lines of constant chi
@@ -78,7 +78,7 @@ def peers(
 
 
 def one_by_one(model: cl.ImpactModel, v: np.ndarray, r: np.ndarray, h: np.ndarray) -> Iterator[Row]:
-    """Scalar calls: from Python, inside a jitted loop, through the C function."""
+    """Measure scalar calls: from Python, inside a jitted loop, through the C function."""
     scalar = per_call(lambda: model.restitution(5.0, 0.9e-3, 1e-3))
     yield Row("scalar, from Python", scalar * 1e6, "us", 2)
     curve = model.curve(0.9e-3, 1e-3)

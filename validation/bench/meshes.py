@@ -1,7 +1,7 @@
-"""Meshes in LAMMPS: what a step costs against triangles and beads, beside LAMMPS's own wall.
+"""Meshes in LAMMPS: time of a step over triangles and over beads, beside LAMMPS's own wall.
 
-A tenth of the beads rests on the wall, the others fly above it; beads do not meet each other, for
-their contacts cost the same with any wall and would hide it. `figure` draws what `rows` measured.
+A tenth of the beads rests on the wall, others fly above it. Contacts between beads are left out:
+they cost the same with any wall, and would hide its cost. `figure` draws what `rows` measured.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ BEADS, FEW = 100_000, 2000
 RADIUS, THICKNESS, PITCH, LAYERS = 0.9e-3, 1e-3, 2.5e-3, 10  # [m]
 STEP = 1e-7  # [s]
 STEPS, ROUNDS = 40, 9  # the simulations take turns, so that all see the same noise
-CELLS = (1, 10, 71, 224)  # of a square, in each direction: 2 to 1e5 triangles
+CELLS = (1, 10, 71, 224)  # along each side of the square wall: 2 to 1e5 triangles
 CLOUDS = (1000, 10_000, 100_000)
 PLATES = (8, 64, 512, 2048)
 OWN_WALL = (
@@ -73,7 +73,7 @@ def rows() -> Iterator[Row]:
 
 
 def figure(found: dict[str, Any]) -> None:
-    """Cost of a step over triangles, and over beads."""
+    """Draw the time of a step over triangles, and over beads."""
     flat, clouds = found["flat"], found["clouds"]
     triangles = [2 * cells * cells for cells in CELLS]
     with style.applied():
@@ -134,7 +134,7 @@ def _side(beads: int) -> int:
 
 
 def _cloud(beads: int) -> lammps:
-    """Layers, the lowest on the plane z = 0."""
+    """Fill a box with layers of beads, the lowest in contact with the plane z = 0."""
     side = _side(beads)
     lmp = _box(side * PITCH, -0.02, 0.06)
     line = (np.arange(side) + 0.5) * PITCH
@@ -151,7 +151,7 @@ def _barrel(beads: int, radius: float, length: float) -> lammps:
     rng = np.random.default_rng(1)
     angle, along = rng.uniform(0, 2 * math.pi, beads), rng.uniform(0.01, 0.99, beads) * length
     out = np.sqrt(rng.uniform(0, 1, beads)) * (radius - 4 * RADIUS)
-    # on the chord of 72 facets, and on any finer wall within the depth that a bead may have at rest
+    # The overlap with the exact cylinder is 0.1 um.
     out[: beads // LAYERS] = radius - RADIUS + 1e-7
     x = 0.5 * length + out * np.cos(angle)
     _fill(lmp, np.column_stack((x, along, 1.1 * radius + out * np.sin(angle))))
@@ -195,7 +195,6 @@ def main(beads: int, parts: Sequence[str]) -> dict[str, Any]:
     width = _side(beads) * PITCH
     flat = {name: _cloud(beads) for name in ("none", "plate", *map(str, CELLS))}
     walls = attach(flat["plate"], model, [_floor(width)])
-    start = time.perf_counter()
     for cells in CELLS:
         start = time.perf_counter()
         attach(flat[str(cells)], model, [square(cells, width)])

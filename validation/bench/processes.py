@@ -1,8 +1,8 @@
-"""Whole processes: first answers on a fresh machine, a law that nobody has seen, LAMMPS attached.
+"""Whole processes: first answers on a fresh machine, a law that is not cached, LAMMPS attached.
 
-First answers are CPU time, of all threads and children, because that says the same on a busy
-machine. Before laws were data (version 0.1 at commit 16ff41f, on two cores of another day):
-`attach` took 9 s, a new law 4 to 22 s.
+First answers are measured in CPU time of all threads and children, which depends little on what
+else the machine does. In version 0.1 (commit 16ff41f, measured earlier on two cores), where laws
+were code, `attach` took 9 s and a new law 4 to 22 s.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ COR = "cor --sphere gamma-alumina --plate glass --radius 0.9mm --thickness 1mm -
 FIT = "fit rebounds.csv --sphere bearing-steel-52100 --plate aluminium-6061-t6 --radius 1mm"
 ROOT = Path(__file__).parent.parent.parent
 LAMMPS = "docs/examples/plates_lammps.py"
-# A user's processes find byte code on disk, and these begin with empty caches.
+# Without these, byte code is kept on disk as for users, and caches lie in the empty home folder.
 _UNSET = (
     "PYTHONDONTWRITEBYTECODE",
     "XDG_CACHE_HOME",
@@ -106,7 +106,7 @@ def cpu_time(command: Sequence[str], home: Path, folder: Path, **variables: str)
 
 
 def first_answers(folder: Path) -> Iterator[Row]:
-    """Measure first and second processes of what users begin with, each in a home of its own."""
+    """Measure first and later processes of common tasks, each task in a home folder of its own."""
     rebounds = fits.measured(
         cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), "fem", ("thickness",)
     )
@@ -115,13 +115,13 @@ def first_answers(folder: Path) -> Iterator[Row]:
         delimiter=",", header="speed_m/s,COR", comments="",
     )  # fmt: skip
     python, module = [sys.executable, "-c"], [sys.executable, "-m", "contactlaw"]
-    asked = (
+    commands = (
         ("contactlaw cor", [*module, *COR.split()], 8, None),
         ("every method of ImpactModel", [*python, EVERY_METHOD], 16, 1.2),
         ("plates_lammps.py", [sys.executable, str(ROOT / LAMMPS)], 20, None),
         ("contactlaw fit, 50 rows", [*module, *FIT.split(), "--unknown", "thickness"], 10, 1.5),
     )  # fmt: skip
-    for n, (name, command, first, second) in enumerate(asked):
+    for n, (name, command, first, second) in enumerate(commands):
         home = folder / f"home-{n}"
         home.mkdir()
         path = {"PYTHONPATH": str(ROOT)}
@@ -164,9 +164,9 @@ def rows() -> Iterator[Row]:
             firsts.append(first)
             builds.append(build)
         yield Row(
-            "a new law's first answer", min(firsts), "s", 2, note="jackson_green: 22 s before"
+            "a new law's first answer", min(firsts), "s", 2, note="jackson_green: 22 s in 0.1"
         )
         yield Row("table of a new law", min(builds), "s", 0.2, note="with its certificate")
         run(ATTACH, folder)
         attach = min(run(ATTACH, folder)[1][0] for _ in range(5))
-        yield Row("LAMMPS: model, attach, first step", attach, "s", 1, note="9 s before")
+        yield Row("LAMMPS: model, attach, first step", attach, "s", 1, note="9 s in 0.1")

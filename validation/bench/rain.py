@@ -17,7 +17,7 @@ from dem_demo.rain.scene import Scene
 from validation.bench.row import Row
 
 BEADS, COR, REPEAT = 1000, 0.9, 2
-DURATION = 0.6  # [s]; beads come during the first third, all have hit by the end
+DURATION = 0.6  # [s]; beads enter in the first third, all have hit a plate by the end
 
 
 class _Elasticities:
@@ -34,7 +34,7 @@ class _Elasticities:
 
 
 def rows() -> Iterator[Row]:
-    """Measure the same rain three ways, in turn."""
+    """Measure the same rain with the model, with one COR, and with pymunk alone, in turn."""
     pair = cl.Pair("gamma-alumina", "glass")
     scene = nozzles.rain(beads=BEADS, duration=DURATION)
     constant = ConstantRestitution(pair, COR)

@@ -27,7 +27,7 @@ class Row:
 
     @property
     def met(self) -> bool:
-        """Whether target and ratio, where there are any, hold."""
+        """Whether the target and the least ratio, where given, are met."""
         fast = self.target is None or self.measured <= self.target
         return fast and (self.least_ratio is None or (self.ratio or 0.0) >= self.least_ratio)
 

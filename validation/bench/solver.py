@@ -48,7 +48,7 @@ def rows() -> Iterator[Row]:
         f"direct solve, batch over {cores} cores", together * 1e6, "us", None, "one core",
         one_core / together,
     )  # fmt: skip
-    # the function behind keeps what it has made; stronge is made by an import, and takes longest
+    # jackson_green.law is cached: call what it wraps. stronge is made at import, and takes longest.
     one = seconds(lambda: jackson_green.law.__wrapped__(23.1922, 0.21))
     longest = seconds(lambda: importlib.reload(stronge))
     yield Row(

@@ -1,1 +1,1 @@
-"""What the formulas of the pages beside it are computed with."""
+"""The computations behind the pages of this folder."""

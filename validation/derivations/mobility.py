@@ -18,17 +18,17 @@ from scipy.special import beta, betainc
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-MEAN = 2.7134  # of omega T_d over the energy spectrum of a Hertz pulse
-SQUARE = 1.44 * beta(0.8, 1.5) / beta(1.6, 0.5) * beta(0.4, 0.5) ** 2  # of (omega T_d)^2
-CENTRE = 1.07  # 1/h_c, of whose distance from here the coefficients are polynomials
-_RATIOS = np.linspace(0.0, 0.45, 10)  # Poisson's
-_DEGREES = 4, 4  # powers of 1/h_c - CENTRE less one; coefficients of P that are free, of x^2 on
-_USUAL = (0.14, 0.41)  # Poisson's ratios between which Phi is that of the n-norm, more exactly
-_WORST = 0.012  # relative error of Phi
+MEAN = 2.7134  # mean of omega T_d over the energy spectrum of a Hertz pulse
+SQUARE = 1.44 * beta(0.8, 1.5) / beta(1.6, 0.5) * beta(0.4, 0.5) ** 2  # mean of (omega T_d)^2
+CENTRE = 1.07  # the coefficients of P are polynomials in 1/h_c - CENTRE
+_RATIOS = np.linspace(0.0, 0.45, 10)  # Poisson's ratios of the fit
+_DEGREES = 4, 4  # degree in 1/h_c - CENTRE; number of free coefficients of P, those from x^2 on
+_USUAL = (0.14, 0.41)  # Poisson's ratios between which Phi is fitted to `norm`, with more weight
+_WORST = 0.012  # largest relative error of Phi
 
 
 def kirchhoff(poisson: float) -> float:
-    """Mobility of a thin plate, in these units."""
+    """Mobility of a thin plate, in the units of this module."""
     return math.sqrt(6.0 * (1.0 - poisson)) / 8.0
 
 
@@ -94,7 +94,7 @@ def energy(h: float, poisson: float) -> float:
 
 
 def echo(poisson: float) -> float:
-    """Find h_c, from which on no echo comes back in time."""
+    """Find h_c, the thickness from which no echo returns within the contact."""
     return 0.5 / math.sqrt(ratio(poisson))
 
 
@@ -110,7 +110,7 @@ def slope(poisson: float) -> float:
 
 
 def norm(x: Array, poisson: float) -> Array:
-    """Phi with the P that is fitted freely, each Poisson's ratio by itself, to the n-norm."""
+    """Phi with P fitted to the n-norm for one Poisson's ratio, at x = h/h_c."""
     h_c, d = echo(poisson), poisson - 0.3
     k2, k1 = 6.1035 - 4.848 * d + 5.63 * d**2, (slope(poisson) - 3.0) / h_c
     nodes = np.linspace(0.0, 1.0, 65)[1:-1]
@@ -127,10 +127,10 @@ def norm(x: Array, poisson: float) -> Array:
 def coefficients() -> Array:
     """Fit the coefficients of P from x^2 on, each a polynomial in 1/h_c - `CENTRE`.
 
-    The sum over Poisson's ratios of the largest relative errors of Phi is least: beside the exact
-    one, and where the law was fitted to impacts beside the one that it was fitted with. Phi/h^2 may
-    not rise: of a thicker plate lambda is not larger. With N = (1 - x)^3 P that is 2 N - x N' >= 0,
-    and holds N above 0, too.
+    They minimise the sum over Poisson's ratios of the largest relative error of Phi, against the
+    exact one, but within `_USUAL` against `norm`, by which the law was fitted to impacts. Phi/h^2
+    must not rise, as lambda is not larger on a thicker plate: with N = (1 - x)^3 P this is
+    2 N - x N' >= 0, which keeps N above 0, too.
     """
     x, (powers, free) = np.linspace(0.04, 0.96, 24), _DEGREES
     count = (powers + 1) * free

@@ -1,4 +1,4 @@
-"""Finite elements that know nothing of the model: the paper's two ABAQUS models, rebuilt.
+"""Finite elements, independent of the model: the paper's two ABAQUS models, rebuilt.
 
 An explicit axisymmetric solver (`mesh`, `elements`, `contact`, `solver`) lets an elastic-plastic
 sphere fall on an elastic plate (`impact`) or presses it into a block (`indentation`). The studies

@@ -1,7 +1,7 @@
 """Recompute the studies: ``python -m validation.fem [NAME ...] [--processes N]``.
 
 ``fit`` makes the numbers of the law ``"fem"`` from what is stored; ``report`` prints the comparison
-of the stored results with the model, ``acceptance`` that of the law with what is asked of it;
+of the stored results with the model, ``acceptance`` the errors of the law and their bounds;
 ``python -m validation`` draws them.
 """
 
@@ -22,7 +22,7 @@ from validation.fem.studies import STUDIES
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run what is named, or all; 0 when done, 1 if it failed, 2 for wrong usage, 130 for Ctrl-C."""
+    """Run the named studies, or all; 0: done, 1: failed, 2: wrong usage, 130: Ctrl-C."""
     steps: dict[str, Callable[[int], None]] = {
         **STUDIES,
         "fit": fit.run,

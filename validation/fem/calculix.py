@@ -1,14 +1,14 @@
-"""The same indentations and one impact by CalculiX, a program that shares no line with this solver.
+"""The same indentations and one impact by CalculiX, a program that shares no code with this solver.
 
 G. Dhondt, K. Wittig, CalculiX, www.calculix.de; the Debian package is ``calculix-ccx``. Units in
 its input are mm, N, MPa and us, in which a density has the number that it has in kg/m^3.
 
-In an impact version 2.20 has to be led around three faults. Initial velocities do not reach the
+An impact avoids three faults of version 2.20. Initial velocities do not reach the
 nodes into which it expands axisymmetric elements (github.com/Dhondtguido/CalculiX, issue 63): a
 uniform body force sets the sphere in motion without stress. Face-to-face contact reads, in dynamic
-steps, state variables of plastic material that are not set yet (its source dates the repair July
-2023): nodes touch faces. Their contact does not converge on faces that shrink to a point at the
-axis: the bodies have a hole, a needle's, there.
+steps, state variables of plastic material that are not set yet (repaired in its source in July
+2023): contact is of nodes with faces. That does not converge on faces that shrink to a point at the
+axis: both bodies have a thin hole along it.
 """
 
 from __future__ import annotations
@@ -35,15 +35,15 @@ Array = NDArray[np.float64]
 
 FRICTION = 0.1  # as in the paper
 # Our choices.
-_STIFFNESS = 20.0  # of the contact, over the sphere's modulus per smallest element ...
+_STIFFNESS = 20.0  # stiffness of the contact, over the sphere's modulus per smallest element ...
 _SOFTER = 10.0  # ... and in an impact, where nodes of a stiffer contact chatter
 _STICK = 0.1  # stiffness of sticking, over that of the contact
-_TENSION = 0.1  # of nodes far from faces [MPa]: asked for, but a thousandth of the pressures
+_TENSION = 0.1  # on nodes far from faces [MPa]; ccx needs one; a thousandth of the pressures
 _REACH = 1.0  # how far from the axis the surfaces may touch [R]: contacts have less than 0.3
-_HARDENING = 1e-4  # of Young's modulus, which the iterations need
+_HARDENING = 1e-4  # slope over Young's modulus; the iterations need one
 _HOLE = 0.02  # radius, over the smallest element
 _FLIGHT = 3  # increments that set the sphere in motion ...
-_GAP = 2.5  # ... and those from there to the contact, which begins softly in mid-increment
+_GAP = 2.5  # ... and those from there to the contact, which begins in mid-increment
 _SILENT = 2e-3  # part of the peak force below which the sphere has left
 _WEDGE = 180.0  # its axisymmetric elements are wedges of 2 degrees
 _MM, _MPA, _US = 1e3, 1e-6, 1e6  # per m, per Pa, per s
@@ -65,10 +65,10 @@ IMPACT_SETTINGS = {
 
 
 class History(NamedTuple):
-    """One impact; time 0 is when the gap would close, and some instants are before."""
+    """One impact; time 0 is when the gap would close, and the first samples are earlier."""
 
     time: Array  # equally spaced [s]
-    force: Array  # of the contact [N]
+    force: Array  # contact force [N]
     speed: Array  # mean of the sphere, towards the plate [m/s]
 
     @property
@@ -140,9 +140,9 @@ def deck(
     foot = len(above.nodes) + np.flatnonzero(below.nodes[:, 1] < -block * (1 - 1e-9))
     motion = "".join(
         f"*STEP, NLGEOM, INC=2000\n*STATIC\n0.01, 1., 1e-6, 0.02\n"
-        f"*BOUNDARY\nTOP, 2, 2, {-way * _MM:.9e}\n"
+        f"*BOUNDARY\nTOP, 2, 2, {-target * _MM:.9e}\n"
         "*NODE PRINT, NSET=TOP, TOTALS=ONLY\nRF\n*END STEP\n"
-        for way in (depth, 0.0)
+        for target in (depth, 0.0)
     )
     return (
         _bodies(pair, radius, above, below)
@@ -168,7 +168,7 @@ class Fall(NamedTuple):
 
     @property
     def expected(self) -> Expected:
-        """What the model expects."""
+        """Contact time and radius of the contact by the model."""
         return expect(self.pair, self.speed, self.radius, self.thickness)
 
     @property
@@ -209,7 +209,7 @@ def impact_deck(fall: Fall) -> str:
 def run(
     pair: cl.Pair, radius: float, depth: float, size: float, friction: float = FRICTION
 ) -> tuple[Array, Array]:
-    """Compression [m] and force [N], loading then unloading, as ``ccx`` has them.
+    """Compression [m] and force [N], loading then unloading, by ``ccx``.
 
     Parameters
     ----------
@@ -229,7 +229,7 @@ def run(
 
 
 def run_impact(fall: Fall) -> History:
-    """History of an impact as ``ccx`` has it: momentum of the sphere from its displacements.
+    """Compute an impact by ``ccx``; force and speed are from the displacements of the sphere.
 
     Raises
     ------
@@ -239,17 +239,17 @@ def run_impact(fall: Fall) -> History:
     text = _printed(impact_deck(fall))
     blocks = re.split(r"displacements \(vx,vy,vz\) for set SPHERE and time", text)[1:]
     mass = _masses(fall.meshes[0], fall.pair.sphere.density)
-    time, way = np.empty(len(blocks)), np.empty(len(blocks))
+    time, fallen = np.empty(len(blocks)), np.empty(len(blocks))
     for n, block in enumerate(blocks):
         instant, table = block.split("\n\n")[:2]
         time[n] = float(instant) / _US
-        fallen = np.array([line.split()[2] for line in table.splitlines()], dtype=float)
-        way[n] = -mass @ fallen / mass.sum() / _MM
-    time, way = time[_FLIGHT - 1 :], way[_FLIGHT - 1 :]  # the end of the flight, and all after
+        nodes = np.array([line.split()[2] for line in table.splitlines()], dtype=float)
+        fallen[n] = -mass @ nodes / mass.sum() / _MM
+    time, fallen = time[_FLIGHT - 1 :], fallen[_FLIGHT - 1 :]  # from the end of the flight on
     step = time[1] - time[0]
-    force = -mass.sum() * np.diff(way, 2) / step**2
+    force = -mass.sum() * np.diff(fallen, 2) / step**2
     since = time[1:-1] - time[0] - _GAP * step
-    return History(since, force, (way[2:] - way[:-2]) / (2.0 * step))
+    return History(since, force, (fallen[2:] - fallen[:-2]) / (2.0 * step))
 
 
 def _masses(body: Mesh, density: float) -> Array:
@@ -268,7 +268,7 @@ def _masses(body: Mesh, density: float) -> Array:
 
 
 def _printed(text: str) -> str:
-    """Run ``ccx``; what it prints into its data file."""
+    """Run ``ccx`` on an input; return the text of its data file."""
     with tempfile.TemporaryDirectory() as folder:
         job = Path(folder) / "job"
         job.with_suffix(".inp").write_text(text)

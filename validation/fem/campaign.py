@@ -1,9 +1,8 @@
-"""What the law ``"fem"`` is made of: slow indentations and impacts in which either body yields.
+"""Indentations and impacts in which either body yields, to which the law ``"fem"`` is fitted.
 
-Small-strain similarity rules all of it: as long as the contact is small beside the sphere, only
-the compression over that at yield counts. So each E*/sigma_Y takes the depths at which it adds
-something: the stiff and strong materials those at yield, the soft metals those up to a tenth of
-the radius.
+By small-strain similarity, only the compression over that at yield matters while the contact is
+small beside the sphere. So each E*/sigma_Y has only depths that add information: strong materials
+those near yield, soft metals those up to a tenth of the radius.
 """
 
 from __future__ import annotations
@@ -23,12 +22,12 @@ from validation.fem.indentation import BLOCK, indent
 from validation.fem.solver import SETTINGS
 
 _ACROSS = 11  # elements in sqrt(R d), fewer than in the contact's radius
-_MODULUS = 1e11  # E* [Pa]: nothing depends on it
-_DENSITY = 5000.0  # [kg/m3], nor on this
+_MODULUS = 1e11  # E* [Pa]; the results do not depend on it
+_DENSITY = 5000.0  # [kg/m3], likewise
 _RADIUS = 1e-3  # [m]
-SAMPLES = 48  # of a stored curve
+SAMPLES = 48  # points of a stored curve
 
-# E*/sigma_Y of the softer body, and the depths of indentation [d_Y]
+# E*/sigma_Y of the weaker body, and the depths of indentation [d_Y]
 DEPTHS: dict[float, tuple[float, ...]] = {
     11.0: (1.5, 2.0, 3.0, 4.5),
     16.0: (1.5, 2.5, 4.0, 6.5, 9.5),
@@ -42,20 +41,20 @@ DEPTHS: dict[float, tuple[float, ...]] = {
     1200.0: (2400.0, 7200.0, 21400.0),
     2000.0: (7000.0, 20000.0, 59500.0),
 }
-MIXED: dict[float, tuple[float, ...]] = {  # for other ratios of strength
+MIXED: dict[float, tuple[float, ...]] = {  # for bodies of unequal strengths
     23.0: (2.5, 10.0),
     100.0: (6.0, 25.0, 149.0),
     400.0: (2380.0,),
 }
-SHARED: dict[float, tuple[float, ...]] = {  # for other moduli
+SHARED: dict[float, tuple[float, ...]] = {  # for bodies of unequal moduli
     11.0: (1.6, 2.4, 3.6),
     16.0: (3.0, 7.0),
     23.0: (2.5, 5.0, 10.0),
     100.0: (3.0, 6.0, 12.0, 25.0, 50.0, 149.0),
     400.0: (60.0, 200.0, 800.0, 2380.0),
 }
-# From meshes twice as fine and presses twice as slow (columns across, slowness), and from how the
-# depths scatter about smooth curves.
+# Estimated with meshes twice as fine and presses twice as slow (columns across, slowness), and by
+# the scatter of the depths about smooth curves.
 _ERROR = "force 1.5 %, recovered work 1 % (root mean square), up to 4 and 3 % where an edge joins"
 YIELDING = ("sphere", "plate", "both")
 
@@ -68,7 +67,7 @@ class Press:
     plate: float
     depth: float
     share: float = 0.5  # E1'/(E1' + E2')
-    poissons_ratio: float = 0.3  # of both
+    poissons_ratio: float = 0.3  # the same in both bodies
     friction: float = 0.1
     across: float = _ACROSS
     slowness: float = 1.0
@@ -106,7 +105,7 @@ def _pressed(ratio: float, yielding: str, depth: float, **others: float) -> Pres
 
 
 def presses() -> list[Press]:
-    """All indentations of the campaign."""
+    """List all indentations of the campaign."""
     listed = [
         _pressed(ratio, yielding, depth)
         for yielding in YIELDING
@@ -120,13 +119,13 @@ def presses() -> list[Press]:
         for share in (0.15, 0.5, 0.85)
         for friction in (0.0, 0.1)
     ]
-    # strengths between: the stronger body has 4/3 or 2 times the strength of the other
+    # both yield: the stronger body has 4/3 or 2 times the strength of the other
     for factor in (4 / 3, 2.0):
         for ratio, some in MIXED.items():
             for depth in some:
-                way = depth * yield_depth(ratio)
-                listed += [Press(ratio, ratio / factor, way), Press(ratio / factor, ratio, way)]
-    # what else may matter: moduli, Poisson's ratios, friction
+                top = depth * yield_depth(ratio)
+                listed += [Press(ratio, ratio / factor, top), Press(ratio / factor, ratio, top)]
+    # other moduli, Poisson's ratios, and no friction
     for yielding in ("sphere", "plate"):
         for ratio, depths in SHARED.items():
             for depth in depths:
@@ -141,7 +140,7 @@ def presses() -> list[Press]:
         _pressed(23.16, "sphere", depth, share=0.1435, poissons_ratio=0.21)
         for depth in (1.0, 1.5, 2.5, 5.0, 10.0, 16.0)
     ]
-    # how far to trust all of it
+    # finer meshes and slower presses, for the estimated error
     for yielding, ratio, depth in (
         ("sphere", 23.0, 5.0), ("plate", 23.0, 5.0), ("sphere", 100.0, 25.0),
         ("plate", 100.0, 25.0), ("both", 400.0, 2380.0),
@@ -178,7 +177,7 @@ def press(job: Press) -> dict[str, Any]:
         "residual": left,
         "size": size,
         "elements": len(found.system.sphere.elements) + len(found.system.plate.elements),
-        # at even steps of the root of depth, then at even steps of the way back
+        # at even steps of the root of compression, then of the compression while unloading
         "loading": np.interp(share**2 * d[top], d[: top + 1], f[: top + 1]).tolist(),
         "unloading": np.interp(
             left + share * (d[top] - left), down[1][::-1], down[0][::-1]
@@ -191,7 +190,7 @@ def indentations(processes: int) -> None:
     jobs = presses()
     rows = journal.complete("campaign_indentation", press, jobs, processes)
     data = {name: np.array([getattr(job, name) for job in jobs]) for name in Press.__annotations__}
-    # no modulus ratio is infinite in a file: a strength is
+    # a file has sigma_Y/E*, 0 for elastic bodies, in place of an infinite E*/sigma_Y
     for body in ("sphere", "plate"):
         data[f"{body}_yield_strain"] = 1.0 / data.pop(body)
     data |= {name: np.array([row[name] for row in rows]) for name in rows[0]}
@@ -211,7 +210,7 @@ def indentations(processes: int) -> None:
     journal.forget("campaign_indentation")
 
 
-# Impacts: bodies of one steel whose strength is scaled, on plates whose bending takes little.
+# Impacts of bodies of one steel with scaled strengths, on plates that bend little.
 _STEEL = "carbon-steel-1020"
 _THICK = 5e-3  # [m]
 IMPACT_DEPTHS = {
@@ -227,7 +226,7 @@ IMPACT_DEPTHS = {
     1500.0: (1000.0, 25000.0),
 }
 THIN = {23.0: (3.0,), 100.0: (10.0,), 400.0: (50.0, 200.0, 450.0, 1000.0)}
-# and of other moduli: a body that yields, stiffer and softer than the other
+# Impacts of unequal moduli, and the body that yields: the stiffer or the softer one.
 OTHER_MODULI = (
     ("stainless-steel-304", "glass", "sphere"),
     ("glass", "stainless-steel-304", "plate"),
@@ -247,14 +246,14 @@ ELASTIC_PAIRS = (
 
 
 def _speed(pair: cl.Pair, depth: float) -> float:
-    """Speed [m/s] of an impact that gets about so deep [d_Y]."""
+    """Estimate the speed [m/s] of an impact from its largest compression [d_Y]."""
     d = np.linspace(0.0, depth, 1000)
     work = np.trapezoid(d**1.5 / (1.0 + 0.02 * np.maximum(d - 1.0, 0.0)) ** 0.5, d)
     return float(pair.yield_speed * math.sqrt(work / 0.4))
 
 
 def impacts() -> list[Case]:
-    """All impacts of the campaign, those that yield nowhere first."""
+    """List all impacts of the campaign, those without plastic flow first."""
     listed = [
         Case(5.0, 1e-3 / slenderness, 1e-3, sphere, plate, yields=False)
         for sphere, plate in ELASTIC_PAIRS
@@ -270,16 +269,16 @@ def impacts() -> list[Case]:
         (IMPACT_DEPTHS, (_THICK,)),
         (THIN, (1e-3 / 0.6, 1e-3 / 1.67)),
     ):
-        for ratio, ways in depths.items():
+        for ratio, some in depths.items():
             for yielding in YIELDING:
-                for depth in ways:
+                for depth in some:
                     for thickness in thicknesses:
                         listed.append(_impact(ratio, yielding, depth, thickness))
 
     for sphere, plate, yielding in OTHER_MODULI:
-        for ratio, ways in OTHER_DEPTHS.items():
-            listed += [_other_impact(sphere, plate, yielding, ratio, depth) for depth in ways]
-    # a smooth curve is laid through so many of them that one mesh is enough
+        for ratio, some in OTHER_DEPTHS.items():
+            listed += [_other_impact(sphere, plate, yielding, ratio, depth) for depth in some]
+    # one mesh is enough, since a smooth curve is fitted to so many impacts
     return [dataclasses.replace(case, meshes=1) for case in listed]
 
 

@@ -33,7 +33,7 @@ _MEASURED = (
     "plastic_strain",
 )  # fmt: skip
 OUTCOMES = *_MEASURED, "steps", "step", "elements"
-_HALF = 1.027  # ratio of the elements of two meshes whose contacts differ by half an element
+_HALF = 1.027  # element sizes of two meshes whose contacts differ by half an element
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def material(name: str) -> cl.Material:
 
 
 def elastic_plate(sphere: str, plate: str) -> cl.Pair:
-    """Pair in which the sphere alone may yield; as `Case`, unless its plate does.
+    """Pair in which the sphere alone may yield, as in `Case` by default.
 
     Examples
     --------
@@ -89,11 +89,11 @@ def elastic_plate(sphere: str, plate: str) -> cl.Pair:
 def solve(case: Case) -> dict[str, Any]:
     """Compute a case; its inputs and outcomes by name.
 
-    A contact grows from node to node, and what comes of an impact swings with where its edge lies
-    between two of them: with 15 to 20 elements in the radius by 1.3 % in COR and 1.6 % in force if
-    a body flows. On two meshes whose contacts differ by half an element these errors are opposite:
-    the mean of both is kept, and half their difference in COR as ``mesh_error``. On one mesh there
-    is no such number.
+    A contact grows node by node, and the outcome of an impact oscillates with the place of the
+    contact's edge between two nodes: with 15 to 20 elements in the radius by 1.3 % in COR and 1.6 %
+    in force if a body flows. On two meshes whose contacts differ by half an element these errors
+    are opposite: the mean of both is kept, and half their difference in COR as ``mesh_error``,
+    which one mesh does not give.
     """
     one = _on_mesh(case)
     if case.meshes == 1:

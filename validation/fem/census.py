@@ -1,4 +1,4 @@
-"""Everyday impacts: what people pour, on what, how fast; and those that no fit may see.
+"""Everyday impacts: their materials, speeds and thicknesses, and those kept out of the fits.
 
 Every metal, ceramic and glass of the catalogue falls on every other, as a bead of 1 mm radius, at
 0.5 to 10 m/s onto plates of 0.6 to 10 mm.
@@ -21,7 +21,7 @@ SPEED = (0.5, 10.0)  # [m/s], drawn by its logarithm
 THICKNESS = (0.6e-3, 10e-3)  # [m], likewise
 # The impacts of the first four seeds were kept out of the first four fits of the law, and judged
 # them; later fits have seen them. Those of the fifth judged the last fit: they moved no number of
-# it, but the limit R/H = 1.4 of its answers was placed with them. Those of the last came later.
+# it, but the limit R/H = 1.4 of its answers was placed with them. The last were drawn later.
 SEEDS = {
     "everyday": 20261122,
     "everyday_2": 20261123,

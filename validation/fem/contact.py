@@ -31,7 +31,7 @@ class Surfaces(NamedTuple):
     segment: Indices  # (s,), the master's segment below each slave
     share: Array  # (s,), where on the segment, 0 to 1
     gap: Array  # (s,), from the segment up to the slave [m]
-    before: Array  # (s, 2), its rate half a step ago [m/s]
+    before: Array  # (s, 2), velocity of slave less segment half a step ago [m/s]
     impulse: Array  # (s, 2), normal and tangential [N s]
     work: Array  # (2,), loss in normal contact and in friction so far [J]
     friction: float  # coefficient

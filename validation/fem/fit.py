@@ -35,38 +35,38 @@ Array = NDArray[np.float64]
 FILE = Path(fem.__file__).with_name("fem.json")
 Size = tuple[int, int]
 Blocks = list[tuple[str, Size]]
-Tables = list[tuple[tuple[str, str], Size]]  # by who yields, and the part of the sum
-# Powers of t and w in each function, in what other moduli change of it, and Poisson's ratios
+Tables = list[tuple[tuple[str, str], Size]]  # by the body that yields, and the term
+# Numbers of powers of t and w in a function, and in its changes with moduli and Poisson's ratio
 STATIC = (5, 4), (4, 2), (3, 1)
 IMPACT = (5, 4), (4, 3), (2, 2)
-_IMPACT_RIDGE = 2e-4  # with less, v swings where contacts are deep and few
-# Weights in the fit of v: of the paper's kind, whose bound is narrower; of the campaign, most of
-# which is far from everyday impacts
+_IMPACT_RIDGE = 2e-4  # with less, v oscillates at deep contacts, of which there are few
+# Weights in the fit of v: more for the paper's kind, whose bound is narrower; less for the
+# campaign, most of which is far from everyday impacts
 _WEIGHTS_OF = {"matrix": 8.0, "pairs": 8.0, "strengths": 8.0, "campaign_impact": 0.5}
-_RAISED = 0.01  # of v/t^2, to see how the COR moves
-_MOST_PLASTIC = 0.98  # of the loss; more is noise of losses that are hardly there
-_BEYOND_YIELD, _LEAST = 1.05, 0.1  # root compressions and CORs that v is fitted to
+_RAISED = 0.01  # step of v/t^2 in the derivative of the COR
+_MOST_PLASTIC = 0.98  # plastic work over the loss; more is noise of small losses
+_BEYOND_YIELD, _LEAST = 1.05, 0.1  # least root of d/d_Y, and least COR, in the fit
 _THINNEST = 1.85  # R/H
-_WEIGHTS = 0.002, 0.005, 0.007  # errors of COR, contact time and peak force that count alike
+_WEIGHTS = 0.002, 0.005, 0.007  # errors of COR, contact time and peak force of equal weight
 _ELASTIC = 1e-4  # plastic share of an impact that counts as elastic
 _FORCE_ALONE = math.inf, math.inf, 0.007
 _SLENDER = 0.4  # R/H from which on a plate is thin
-_FAST, _WEAK = 60.0, 0.3  # [m/s], COR: impacts beyond are not what the law is for
-_START = 0.8, -0.65, 0.12, 0.3, 2.0, 0.002, 0.05, 0.0  # of the search in `elastic`
-_RIDGE = 1e-4  # holds the powers that the data leave free
-_WELL_MESHED = 0.6  # root of depth over the largest one, from where on a loading curve is used
+_FAST, _WEAK = 60.0, 0.3  # [m/s], COR: the law is not made for faster or less elastic impacts
+_START = 0.8, -0.65, 0.12, 0.3, 2.0, 0.002, 0.05, 0.0  # first guess of the search in `elastic`
+_RIDGE = 1e-4  # keeps coefficients small that the data do not determine
+_WELL_MESHED = 0.6  # root of compression over the largest, from which a loading curve is used
 
 
 class Pressed(NamedTuple):
     """One indentation, in terms of the law's functions."""
 
     q: float  # root of the largest compression over d_Y
-    w: float  # and over R
+    w: float  # root of the largest compression over R
     force: float  # over Hertz's
     recovery: float  # unloading work over loading work
     plastic: float  # plastic work over loading work
     residual: float  # over the largest compression
-    path: Array  # (n, 3): q, w and force over Hertz's on the way there
+    path: Array  # (n, 3): q, w and force over Hertz's while loading
 
 
 def presses(data: dict[str, Array], **chosen: Any) -> Iterator[tuple[int, float]]:
@@ -98,9 +98,9 @@ def read(data: dict[str, Array], n: int, ratio: float) -> Pressed:
 
 
 def _residual(data: dict[str, Array], n: int) -> float:
-    """Residual over the largest compression: that of the power law with this unloading work.
+    """Residual over the largest compression, of the power law fitted to the unloading curve.
 
-    The end of an unloading is sampled coarsely, its work and the whole of the curve are not.
+    The power law has the unloading work. The end of unloading itself is sampled too coarsely.
     """
     depth, left, top = (float(data[name][n]) for name in ("depth", "residual", "force"))
     d = left + np.linspace(0.0, 1.0, SAMPLES) * (depth - left)
@@ -153,7 +153,7 @@ def case(
         np.array([getattr(one, name) for one in chosen])
         for name in ("q", "w", "recovery", "plastic", "residual")
     )
-    own = share if yielding != "plate" else 1.0 - share  # of the body that yields
+    own = share if yielding != "plate" else 1.0 - share  # share of the body that yields
     path = np.concatenate([one.path for one in chosen])
     count = len(chosen[0].path)
     on, nus, shares = (np.repeat(values, count) for values in (own, nu, share))
@@ -245,11 +245,11 @@ class Blow(NamedTuple):
     contact_time: float
     peak_force: float
     plastic: float
-    weight: float  # of its row in the fit of v
+    weight: float  # weight of its row in the fit of v
 
 
 def blows() -> list[Blow]:
-    """Read the impacts of the campaign and of the studies before it, but for plates too thin."""
+    """Read the impacts of the campaign and of the studies before it, except on plates too thin."""
     listed = []
     for study in (
         "campaign_impact",
@@ -304,11 +304,11 @@ def solved(blow: Blow, law: Law) -> tuple[Solution, Numbers]:
 
 
 def elastic(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
-    """Fit what holds of any contact to impacts without plastic flow.
+    """Fit the stiffening of sphere and plate, and the loss to friction, to elastic impacts.
 
-    A sphere that flies is compressed by its own inertia, and stiffer than a hemisphere in a vice:
-    its stiffening, that of the plate, and what friction takes. Of impacts with plastic flow on thin
-    plates the peak force tells how much these stiffen a contact as wide as they are thick.
+    A flying sphere is compressed by its own inertia, and is stiffer than a hemisphere whose equator
+    is driven. The peak forces of impacts with plastic flow on thin plates are fitted too: these
+    plates stiffen a contact as wide as they are thick.
     """
     listed = []
     for blow in measured:
@@ -334,7 +334,7 @@ def elastic(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
             rows.append((np.array(ours) / np.array(theirs) - 1.0) / errors)
         return np.concatenate(rows)
 
-    # nearly linear: two steps from a start that is near
+    # nearly linear: two steps of Newton's from a start that is near
     x = np.array(_START)
     for _ in range(2):
         here = off(x)
@@ -344,10 +344,10 @@ def elastic(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
 
 
 def in_impacts(found: dict[str, Any], measured: list[Blow]) -> dict[str, Any]:
-    """Fit v, what impacts lose beyond slow contacts, and b_p: twice, since both move the law.
+    """Fit v, the loss of impacts beyond that of slow contacts, and b_p; twice, as both change it.
 
-    Each impact is a row: what of its COR the law misses, and how its COR moves with v, in which the
-    powers are linear whichever body yields, and with b_p. Errors of COR count as in `acceptance`.
+    Each impact is a row of a linear system: the error of its COR by the law, and the derivatives of
+    its COR with respect to the powers in v and to b_p. Errors of COR count as in `acceptance`.
     """
     tables: Tables = [
         ((name, part), size) for name in YIELDING for part, size in _blocks(name != "both", *IMPACT)
@@ -438,7 +438,7 @@ def blend(data: dict[str, Array], found: dict[str, Any]) -> float:
 
 
 def numbers() -> dict[str, Any]:
-    """All numbers of the law, from the stored campaign."""
+    """Compute all numbers of the law from the stored campaign."""
     data = store.read("campaign_indentation").data
     stiff, friction = stiffening(data)
     cases_ = {name: case(data, name, stiff, friction) for name in YIELDING}

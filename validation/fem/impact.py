@@ -19,14 +19,14 @@ from validation.fem.solver import System
 
 Array = NDArray[np.float64]
 
-_SAMPLES = 400  # of the history, per expected contact time
-PATIENCE = 0.15  # of the contact time: so long without a force, and the sphere has left
-_SOONEST, _GIVE_UP = 0.5, 3.0  # expected contact times
-_IMBALANCE = 0.1  # of the energy: elements that collapse make more
+_SAMPLES = 400  # samples of the history per expected contact time
+PATIENCE = 0.15  # share of the contact time: after so long without a force the sphere has left
+_SOONEST, _GIVE_UP = 0.5, 3.0  # earliest and latest end [expected contact times]
+_IMBALANCE = 0.1  # largest relative change of the total energy; collapsing elements exceed it
 _FINEST = 0.01  # R, the paper's smallest element, and at least ...
 _ACROSS = 15.0  # ... so many in the expected contact's radius
-_SOFT = 3.0  # part of a plate that may flow, over the finest part
-_RIM = 0.55  # half of the way that a pressure wave runs in a plate, and a tenth more
+_SOFT = 3.0  # radius in which a plate may flow, over the width of its finest part
+_RIM = 0.55  # half of the distance that a pressure wave runs in a plate, and a tenth more
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Impact:
     contact_time : float
         Until the last step with a force [s].
     peak_force, peak_compression, residual_compression : float
-        Largest force [N]; largest way of the sphere's centre of mass towards the foot of the plate
-        below it, and what of that is left at separation [m].
+        Largest force [N]; largest displacement of the sphere's centre of mass towards the
+        plate's lower face below it, and the displacement left at separation [m].
     plastic, wave, vibration, friction, hourglass, contact : float
         Shares of the energy: plastic work; energy in the plate; elastic and kinetic energy in the
         sphere beyond that of its mean motion; losses of friction and of touching; work of the
@@ -51,12 +51,12 @@ class Impact:
     plastic_strain : float
         Largest equivalent plastic strain [-].
     time, force, speed, compression : ndarray
-        History: time [s], force [N], mean of the time from the sample before to the sample after,
+        History: time [s], force [N], a mean from the sample before to the sample after,
         mean speed of the sphere towards the plate [m/s], compression [m].
     system : System
         All nodes and elements at the end.
     snapshots : list of ndarray
-        Positions (n, 2) of all nodes [m] at the times asked for.
+        Positions (n, 2) of all nodes [m] at `times`.
     size : float
         Smallest element, over the radius.
     step, steps : float, int
@@ -107,7 +107,7 @@ def impact(
     hourglass_stiffness: float | None = None,
     times: Sequence[float] = (),
 ) -> Impact:
-    """Let a sphere fall on a plate whose edge is too far to answer.
+    """Let a sphere fall on a plate whose edge sends no wave back.
 
     Parameters
     ----------
@@ -121,10 +121,10 @@ def impact(
     friction : float, optional
         Coefficient of friction, 0 to 1.
     yields, plate_yields : bool, optional
-        Whether the sphere does, and the plate.
+        Whether the sphere yields, and the plate.
     width : float, optional
-        Distance of the plate's free edge from the axis [m]; by default as far as no wave comes
-        back from in the contact time that the model expects; at least the radius.
+        Distance of the plate's free edge from the axis [m]; at least the radius; by default
+        so far that no wave returns within the contact time that the model expects.
     far : float, optional
         Factor on the plate's elements away from the contact, 0.1 to 2, see `mesh.plate`.
     hourglass_stiffness : float, optional
@@ -174,7 +174,7 @@ def impact(
     rows: list[tuple[float, float, float, float]] = []
     energies = [energy(system)]
     snapshots: list[Array] = []
-    last, start = 0.0, _way(system)
+    last, start = 0.0, _height(system)
     collapsed = RuntimeError(
         f"elements collapsed at speed {speed:g} m/s on a plate of {thickness:g} m: take a lower "
         f"speed, or coarser elements than {size:g}"
@@ -186,7 +186,7 @@ def impact(
         if touched:
             last = (len(rows) * every + touched) * step
         time = (len(rows) + 1) * every * step
-        rows.append((time, 2.0 * math.pi * force, _speed(system), start - _way(system)))
+        rows.append((time, 2.0 * math.pi * force, _speed(system), start - _height(system)))
         if len(rows) % 20 == 0:
             energies.append(energy(system))
             if abs(sum(energies[-1]) / sum(energies[0]) - 1.0) > _IMBALANCE:
@@ -204,9 +204,9 @@ def impact(
 
 
 class Expected(NamedTuple):
-    """What the model expects of an impact, for which time and mesh are chosen."""
+    """Estimates of the model, by which duration and mesh of a computation are chosen."""
 
-    time: float  # of contact [s]
+    time: float  # contact time [s]
     contact: float  # radius of the contact [m]
 
 
@@ -218,7 +218,7 @@ def expect(
     yields: bool = True,
     plate_yields: bool = False,
 ) -> Expected:
-    """Ask the model for an impact; what is softer yields there, whichever body it is."""
+    """Estimate an impact by the model, whose sphere has the lower of the strengths."""
     strengths = [
         body.require_yield_strength("fem")
         for body, may in ((pair.sphere, yields), (pair.plate, plate_yields))
@@ -258,7 +258,7 @@ def _speed(system: System) -> float:
     return -float(system.mass[:n] @ system.v[:n, 1] / system.mass[:n].sum())
 
 
-def _way(system: System) -> float:
+def _height(system: System) -> float:
     """Height of the sphere's centre of mass over the plate's lower face, on the axis."""
     n = _sphere_nodes(system)
     centre = system.mass[:n] @ system.x[:n, 1] / system.mass[:n].sum()
@@ -302,7 +302,7 @@ def _outcome(
     share = [float(value) / first for value in energy(system)]
     mass = system.mass[: _sphere_nodes(system)].sum()
     end = int(np.searchsorted(time, contact_time))
-    # a row's force is the mean since the row before, half a sample older than the rest of it
+    # the force of a row is the mean since the row before, so half a sample older than the rest
     force = 0.5 * (mean_force + np.append(mean_force[1:], 0.0))
     return Impact(
         restitution=float(-speed[-1]) / math.sqrt(2.0 * first / mass),

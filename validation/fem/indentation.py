@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 BLOCK = 20.0  # width and thickness of the block, over the sphere's radius
 _WIDEST = 0.3  # finest part of the mesh, over the radius, however deep
 _SAMPLES = 400
-_TRANSITS = 200.0  # of the pressure wave through the radius, for loading and unloading together
+_TRANSITS = 200.0  # duration of an indentation, in transits of the pressure wave through R
 
 
 @dataclass(frozen=True)
@@ -28,11 +28,11 @@ class Indentation:
     Attributes
     ----------
     compression, force : ndarray
-        Way of the hemisphere's equator [m] and force [N], loading then unloading.
+        Displacement of the hemisphere's equator [m] and force [N], loading then unloading.
     contact_radius : ndarray
         Largest radius at which the surfaces press on each other [m].
     kinetic : float
-        Largest kinetic energy over the largest work done: how far from static it was [-].
+        Largest kinetic energy over the largest work done: small if quasi-static [-].
     plastic : float
         Plastic work over the work of loading [-].
     system : System
@@ -78,7 +78,7 @@ def indent(
     friction : float, optional
         Coefficient of friction, 0 to 1.
     yields, plate_yields : bool, optional
-        Whether the hemisphere does, and the block.
+        Whether the hemisphere yields, and the block.
     slowness : float, optional
         Factor on the time T, 0.1 to 10, to show that it does not matter.
 
@@ -117,24 +117,24 @@ def indent(
     duration = slowness * _TRANSITS * radius / wave
     interval = duration / _SAMPLES
     load = np.zeros_like(system.x)
-    way, rows, plastic = 0.0, [], []
+    before, rows, plastic = 0.0, [], []
     for n in range(1, _SAMPLES + 1):
         stable = solver.time_step(system, materials)  # elements get thinner
         if not (stable > 0.0 and np.isfinite(system.v).all()):
             raise RuntimeError(
-                f"elements collapsed on the way to depth {depth:g} m: take less, or coarser "
+                f"elements collapsed before depth {depth:g} m: take a smaller depth, or coarser "
                 f"elements than {size:g}"
             )
         every = math.ceil(interval / stable)
         target = 0.5 * depth * (1.0 - math.cos(2.0 * math.pi * n / _SAMPLES))
-        system.v[driven, 1] = (way - target) / interval
+        system.v[driven, 1] = (before - target) / interval
         force, touched = solver.advance(system, load, interval / every, every)
         kinetic = 0.5 * system.mass @ (system.v**2).sum(axis=1)
         pressed = system.surfaces.slave[system.surfaces.impulse[:, 0] > 0.0]
         edge = system.x[pressed, 0].max(initial=0.0) if touched == every else 0.0
-        rows.append((0.5 * (way + target), 2.0 * math.pi * force, edge, kinetic))
+        rows.append((0.5 * (before + target), 2.0 * math.pi * force, edge, kinetic))
         plastic.append(system.sphere.work[0] + system.plate.work[0])
-        way = target
+        before = target
     compression, force_, edge_, kinetic_ = np.array(rows).T
     top = int(compression.argmax())
     work = float(np.trapezoid(force_[: top + 1], compression[: top + 1])) / (2.0 * math.pi)

@@ -65,7 +65,7 @@ def impacts(name: str, about: str, listed: Sequence[Case], processes: int) -> No
 
 
 def path(name: str) -> Path:
-    """Where the journal of a study is kept."""
+    """Path of the journal of a study."""
     return store.FOLDER / f".fem_{name}.jsonl"
 
 

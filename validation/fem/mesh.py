@@ -17,7 +17,7 @@ Indices = NDArray[np.int64]
 # Our choices.
 CORE = 1.3  # finest part, over the contact's expected radius sqrt(R d)
 _FAR_CORE = 1.2  # width of the part around the far pole [R]
-_GROWTH = 1.1  # of one element of the plate over its neighbour
+_GROWTH = 1.1  # size of one element of the plate over its neighbour
 _COARSEST = 0.15  # largest element of the plate [R] ...
 _LAYERS = 24  # ... or this part of its thickness: waves are at least 20 times longer
 
@@ -64,7 +64,7 @@ def sphere(radius: float, size: float, core: float, hemisphere: bool = False) ->
     near, far = n * size * rim, 4.0 * radius**2 / (_FAR_CORE * radius * rim.conj())
     if hemisphere:
         far = 2.0 * radius * np.exp(0.5j * np.pi * np.linspace(0.0, 1.0, rim.size))
-    # as many rings as make their elements as long as they are wide
+    # so many rings that their elements are as long as wide
     rings = round(np.log(abs(far[0] / near[0])) * 4 * n / np.pi)
     share = np.linspace(0.0, 1.0, rings + 1)[1:, None]
     grown = np.exp((1.0 - share) * np.log(near) + share * np.log(far))

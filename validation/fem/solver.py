@@ -1,6 +1,6 @@
 """Explicit dynamics of two axisymmetric bodies: central differences with a lumped mass.
 
-Legend: per radian, as all integrals here; velocities live half a step behind positions.
+All integrals are per radian; velocities are half a step behind positions.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ from validation.fem.mesh import Mesh
 
 Array = NDArray[np.float64]
 
-VERSION = 2  # of the solver, stored with each result: a change of its numbers needs another
-_COURANT = 0.85  # of the stable step of a mesh, whose elements may shorten by a tenth in an impact
+VERSION = 2  # stored with each result; to be raised when the solver gives other numbers
+_COURANT = 0.85  # share of the stable step, as elements may shorten by a tenth in an impact
 # Stiffness of the hourglass modes over that of bending. The plate bends, and an elastic sphere
 # pressed flat folds without them; a plastic one must not be stiffened. The study `verification`
-# tells what the choice is worth.
+# shows the effect of the choice.
 _HOURGLASS, _HOURGLASS_ELASTIC = 0.05, 1.0
 SETTINGS = {
     "solver_version": VERSION,
@@ -112,12 +112,12 @@ def assemble(
     friction : float, optional
         Coefficient of friction, 0.1 as in the paper.
     yields, plate_yields : bool, optional
-        Whether the sphere does, and the plate.
+        Whether the sphere yields, and the plate.
     hourglass : float, optional
         Stiffness of the sphere's hourglass modes, over that of bending; by default 0.05, or 1 if
         it does not yield.
     soft : float, optional
-        Distance from the first touch [m] up to which those of a plate that yields have 0.05, too.
+        Distance from the first contact [m] up to which a plate that yields has 0.05, too.
 
     Returns
     -------

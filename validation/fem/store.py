@@ -24,7 +24,7 @@ class Result(NamedTuple):
 
 
 def path(name: str) -> Path:
-    """Where a result is kept."""
+    """Path of the file of a result."""
     return FOLDER / f"fem_{name}.h5"
 
 

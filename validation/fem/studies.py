@@ -22,7 +22,7 @@ from validation.fem.yielding import BOTH, BOTH_DEPTH, BOTH_SIZE, JOBS, SOFT, pre
 from validation.paper.closed_form import eta
 from validation.paper.setting import ETA, PAIR, RADIUS, YIELD_COMPRESSION
 
-Pressed = dict[str, tuple[NDArray[Any], str]]  # of one indentation: values and unit by name
+Pressed = dict[str, tuple[NDArray[Any], str]]  # values and unit by name, of one indentation
 
 SLENDERNESS = (0.1, 0.25, 0.5, 0.75, 1.0, 1.25, 1.5, 1.8)  # R/H
 SPEED_RATIO = (0.3, 0.6, 1.0, 1.5, 2.2, 3.5, 5.0, 7.0)  # V0/V_Y0
@@ -30,13 +30,13 @@ OTHER_PAIRS = (
     ("bearing-steel-52100", "soda-lime-glass"),
     ("bearing-steel-52100", "aluminium-6061-t6"),
 )
-DEPTHS = (2.0, 5.0, 10.0, 30.0)  # of the indentations [d_Y]
+DEPTHS = (2.0, 5.0, 10.0, 30.0)  # largest compressions of the indentations [d_Y]
 CALCULIX_SIZE, CALCULIX_DEPTH = 0.03, 10.0  # [R], [d_Y]
-_SPEED, _THICKNESS = 26.0, 0.5e-3  # of the paper's Figs 11 to 13 [m/s, m]
+_SPEED, _THICKNESS = 26.0, 0.5e-3  # impact of the paper's Figs 11 to 13 [m/s, m]
 
 
 def verification(processes: int) -> None:
-    """Meshes from 0.04 R to 0.005 R and what else may matter of them; Hertz's limit."""
+    """Vary the mesh, from 0.04 R to 0.005 R, and other settings; compare with Hertz."""
     listed: list[tuple[str, Case]] = []
     for thickness in (0.5e-3, 1e-3):
         usual = Case(_SPEED, thickness, size=0.01, meshes=1)
@@ -79,7 +79,7 @@ def indentation(processes: int) -> None:
 
 
 def yielding(processes: int) -> None:
-    """Hold a block that yields, and two bodies that do, to what is known of them."""
+    """Compute the indentations of `yielding`, in which the block may yield."""
     data, units = _all_pressed(_yielded, {name: name for name in JOBS}, "yielding", processes)
     store.write(
         "yielding",
@@ -137,7 +137,7 @@ def _measured(done: Indentation) -> Pressed:
 
 
 def _where_installed(study: Callable[[int], None]) -> Callable[[int], None]:
-    """Make a study by CalculiX one that keeps the stored result where there is no CalculiX."""
+    """Make a study keep its stored result where CalculiX is not installed."""
 
     @functools.wraps(study)
     def run(processes: int) -> None:
@@ -158,7 +158,7 @@ def calculix_indentation(_: int) -> None:
 
 @_where_installed
 def calculix_block(_: int) -> None:
-    """Press into a block that yields, as the sphere does, with CalculiX."""
+    """Repeat one indentation in which both bodies yield with CalculiX."""
     what = "an indentation in which both bodies yield"
     _by_calculix("calculix_block", what, BOTH, BOTH_DEPTH, BOTH_SIZE)
 
@@ -276,7 +276,7 @@ def paper(_: int) -> None:
 
 
 def pairs(processes: int) -> None:
-    """Compare three pairs at equal inelasticity: does one table serve them all."""
+    """Compute three pairs at equal inelasticity, to see whether one table serves them all."""
     listed = []
     for slenderness in (0.5, 1.0, 1.5):
         for sphere, plate in ((PAIR.sphere.name, PAIR.plate.name), *OTHER_PAIRS):
@@ -289,12 +289,12 @@ def pairs(processes: int) -> None:
 
 
 def strengths(processes: int) -> None:
-    """Weaken the sphere: what its modulus over its strength does, at equal inelasticity."""
+    """Vary the sphere's modulus over its strength, at equal inelasticity."""
     listed = []
     for factor in (2.0, 0.5, 0.25, 0.125):  # 1 is in `pairs`
         sphere = f"{PAIR.sphere.name}, yield strength x {factor:g}"
         pair = cl.Pair(cases.material(sphere), PAIR.plate)
-        thickness = RADIUS * math.sqrt(eta(pair) / ETA)  # so lambda_Y is that of R/H = 1
+        thickness = RADIUS * math.sqrt(eta(pair) / ETA)  # lambda_Y is that of R/H = 1
         for v in (1.5, 3.5, 7.0):
             listed.append(Case(v * pair.yield_speed, thickness, sphere=sphere))
     about = "the paper's pair with 2 to 1/8 of its yield strength, at the lambda_Y of R/H = 1"
@@ -313,13 +313,13 @@ def limits(processes: int) -> None:
 
 
 def edge(processes: int) -> None:
-    """Let the bending wave come back from the free edge of a small plate: why 1.5."""
+    """Let the bending wave come back from the free edge: why `edge_distance` has a factor 1.5."""
     thickness = RADIUS / 1.5
     speed = PAIR.yield_speed
     time = expect(PAIR, speed, RADIUS, thickness).time
-    way = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5  # c_g time/2
+    distance = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5  # c_g time/2
     factors = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 4.0)
-    listed = [Case(speed, thickness, width=factor * way, meshes=1) for factor in factors]
+    listed = [Case(speed, thickness, width=factor * distance, meshes=1) for factor in factors]
     about = "free edge at 0.5 to 4 times the way of the contact's own bending wave, there and back"
     cases.compute("edge", about, listed, processes)
 

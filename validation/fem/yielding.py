@@ -1,14 +1,14 @@
-"""Either body may yield, or both: indentations that can show it wrong, and what they are held to.
+"""Indentations in which either body or both yield, and the known results to compare them with.
 
 - A block that yields under an elastic sphere: Tabor's mean pressure of about 3 yield strengths
   (D. Tabor, The Hardness of Metals, Oxford 1951).
-- A sphere that yields, flattened by what does not: the mean pressure falls as the contact widens
+- A sphere that yields, flattened by a rigid block: the mean pressure falls as the contact widens
   (R. L. Jackson, I. Green, J. Tribology 127 (2005) 343).
 - A mirror, rigid and without friction: the force on a sphere of 2R pressed d/2 into it is that of
   two equal spheres of 2R pressed together by d, and, as long as the contact is small, that of a
   sphere of R pressed d into a block of its own material, since only the sum of the curvatures
-  counts there. In the last, half of the plastic work is the block's; that it is less grows with
-  a/R, which is half as large in `pair_narrow` at the same d/d_Y.
+  counts there. In the last, half of the plastic work is the block's; what is missing of it grows
+  with a/R, which is half as large in `pair_narrow` at the same d/d_Y.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from validation.paper.setting import PAIR, RADIUS, YIELD_COMPRESSION
 
 Array = NDArray[np.float64]
 
-_MODULUS, _RATIO, _DENSITY = 200e9, 0.3, 8000.0  # of steel; only E/sigma_Y matters
+_MODULUS, _RATIO, _DENSITY = 200e9, 0.3, 8000.0  # those of steel; only E/sigma_Y matters
 _STIFFER = 1e4  # the mirror, in modulus and density: its waves are no faster
 SOFT = cl.Material("soft", _MODULUS, _RATIO, _DENSITY, yield_strength=250e6)
 MIRROR = cl.Material("mirror", _STIFFER * _MODULUS, _RATIO, _STIFFER * _DENSITY)
@@ -34,7 +34,7 @@ _WEAK = replace(SOFT, yield_strength=0.5 * SOFT.require_yield_strength("fem"))
 EQUAL, MIRRORED = cl.Pair(SOFT, SOFT), cl.Pair(SOFT, MIRROR)
 BOTH = cl.Pair(PAIR.sphere, cl.material("aluminium-6061-t6"))  # for CalculiX: both flow
 BOTH_DEPTH, BOTH_SIZE = 10.0 * YIELD_COMPRESSION, 0.03  # [m], [R]
-FULLY_PLASTIC = 0.15  # a/R from which it is: E* a/(sigma_Y R) is 66, and more on the mirror
+FULLY_PLASTIC = 0.15  # a/R from which the flow is full: E* a/(sigma_Y R) is 66, on the mirror more
 _SMALL = 2e-3 * RADIUS  # depth of a small contact: a/R is 0.045 [m]
 _BLOCK: dict[str, Any] = {
     "pair": EQUAL, "depth": 0.03 * RADIUS, "yields": False, "plate_yields": True,

@@ -1,8 +1,8 @@
 """The paper's figures and the project's own: each file ``figNN_<topic>.py`` is one figure.
 
-It has a function ``draw() -> (Figure, numbers)``; its docstring is the caption, the numbers, named,
-are what the tests assert and the report prints, and `PART` is the part of the report that it is in.
-To add a figure, add a file.
+The file has a function ``draw() -> (Figure, numbers)``; tests assert the named numbers, and the
+report prints them. Its docstring is the caption, and `PART` the part of the report. To add a
+figure, add a file.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the figures share: sheets of panels, their axes, and the looks of laws, speeds and remarks.
+"""What the figures share: panels and their axes, and the looks of laws, speeds and remarks.
 
 A figure names its panels by their axes, `sheet` sets them up, and matplotlib's ``plot`` fills them.
 """
@@ -20,7 +20,7 @@ from contactlaw.style import BLUE, GREEN, INK, MUTED, ORANGE, PALE, PURPLE, SKY,
 from validation.accuracy import compare
 
 Colour = str | tuple[float, ...]
-Look = dict[str, Any]  # of a line or marks, as of matplotlib's ``plot``
+Look = dict[str, Any]  # keywords of matplotlib's ``plot``
 Drawn = tuple[Figure, Mapping[str, SupportsFloat]]  # a figure and its numbers, named
 
 
@@ -28,7 +28,7 @@ class Axis(NamedTuple):
     """An axis: its label, its limits, and, where it is logarithmic, all of its ticks."""
 
     label: str
-    limits: tuple[float, float] | None = None  # without any it ends where the data does
+    limits: tuple[float, float] | None = None  # None: as far as the data
     ticks: tuple[float, ...] = ()
     unit: str = ""  # behind each tick
 
@@ -37,7 +37,7 @@ class Axis(NamedTuple):
         return self._replace(limits=(low, high))
 
     def log(self, *ticks: float, unit: str = "") -> Axis:
-        """Make it logarithmic, with these ticks only."""
+        """Make the axis logarithmic, with these ticks only."""
         return self._replace(ticks=ticks, unit=unit)
 
 
@@ -49,7 +49,7 @@ class Panel(NamedTuple):
     title: str = ""
 
     def set_up(self, axes: Axes) -> None:
-        """Give empty axes what the panel says of them."""
+        """Set labels, limits, ticks and title of empty axes."""
         for side, one in (("x", self.x), ("y", self.y)):
             if one.ticks:
                 labels = [f"{tick:g}{one.unit}" for tick in one.ticks]
@@ -107,7 +107,7 @@ def sheet(
 def by_thickness(
     size: tuple[float, float], title: str, subtitle: str, ratios: Sequence[float], x: Axis, y: Axis
 ) -> tuple[Figure, list[tuple[float, Axes]]]:
-    """Make a figure with a panel for each R/H, whose axes have their labels once."""
+    """Make a figure with a panel for each R/H, and label its axes once."""
     panels = [Panel(x._replace(label=""), y, f"R/H = {ratio:g}") for ratio in ratios]
     figure, every = sheet(size, title, f"{subtitle}; {RATIO}", *panels, sharey=True)
     for axes in every:
@@ -130,12 +130,12 @@ def cross(
     """Draw marks that stand out from lines of their colour."""
     axes.plot(
         x, y, "X", color=colour, label=label, markersize=9, markeredgecolor=INK, zorder=3,
-        clip_on=np.size(x) == 0,  # the layout would make room for a mark that has no place
+        clip_on=np.size(x) == 0,  # unclipped, an empty mark takes room in the layout
     )  # fmt: skip
 
 
 def law(name: str) -> tuple[Colour, str, str]:
-    """Colour, line and title of a law; one that is new here is drawn too."""
+    """Colour, line and title of a law, also of one that `_LAWS` does not list."""
     return _LAWS.get(name, (SKY, ":", name.replace("_", " ").capitalize()))
 
 
@@ -147,7 +147,7 @@ def of_law(axes: Axes, name: str, x: ArrayLike, y: ArrayLike, *, named: bool = T
 
 
 def matrix(axes: Axes, field: str, speed_ratio: float, unit: float = 1.0) -> None:
-    """Mark finite elements at one of `SPEEDS` against the inelasticity, a quantity in `unit`."""
+    """Mark a field of the finite elements over the inelasticity, at one of `SPEEDS`."""
     case = compare.comparison("matrix")
     here = np.isclose(case.speed_ratio, speed_ratio)
     cross(axes, case.inelasticity[here], case.fem[field][here] / unit, SPEEDS[speed_ratio])
@@ -161,7 +161,7 @@ def shades(count: int) -> list[Colour]:
 def contours(
     axes: Axes, x: ArrayLike, y: ArrayLike, values: ArrayLike, label: str, **look: Any
 ) -> None:
-    """Fill a panel by the values over two quantities, and say what the colours mean."""
+    """Draw filled contours over two quantities, with a labelled colour bar."""
     drawn = axes.contourf(x, y, values, **{"cmap": "cividis", **look})
     figure = axes.get_figure(root=True)
     assert figure is not None

@@ -1,10 +1,10 @@
 """Fig. 3: contact force against compression, loading and unloading from 5 d_Y, for all laws.
 
 The paper compares MYC, Thornton and Stronge with finite elements and finds MYC within 6 %, Thornton
-64 % low and Stronge 40 % high. So it is, each in its range: MYC from 0.5 to 10 d_Y (29 % high at
+64 % low and Stronge 40 % high. Ours agree, each in its range: MYC from 0.5 to 10 d_Y (29 % high at
 30), Stronge from 2 d_Y on, 38 to 44 % up to 10; Thornton's law is 41 % low at 2 d_Y, 57 % at 4.77,
-where 7 V_Y0 leads to, and 64 % at 10 d_Y. There Stronge's force is 3.3 times Thornton's. Jackson
-and Green made their fit for metals, E*/sigma_Y above about 120; this pair has 23.
+which 7 V_Y0 reaches on a half-space, and 64 % at 10 d_Y. There Stronge's force is 3.3 times
+Thornton's. Jackson and Green fitted metals, E*/sigma_Y above about 120; this pair has 23.
 """
 
 from __future__ import annotations
@@ -43,9 +43,9 @@ def draw() -> chart.Drawn:
         if law.yield_coefficient is not None:
             chart.of_law(left, name, *unloading(law, _TOP), named=False)
         chart.of_law(right, name, far, 100 * off[name])
-    way, load, _ = compare.indentation("5")
-    way, load = way[load > 0.0], load[load > 0.0]
-    left.plot(way[::8], load[::8], "o", color=INK, markersize=4.5, label="finite elements")
+    compression, load, _ = compare.indentation("5")
+    compression, load = compression[load > 0.0], load[load > 0.0]
+    left.plot(compression[::8], load[::8], "o", color=INK, markersize=4.5, label="finite elements")
     chart.key(left, "thin: unloading", "-", linewidth=1.2)
     left.legend(loc="upper left")
     right.axhspan(-6, 6, color=PALE, alpha=0.5, linewidth=0)

@@ -1,7 +1,7 @@
 """Fig. 9B: where the energy goes, against speed, at R/H = 0.2, 0.5 and 1.2.
 
-At R/H = 1.2 plastic flow does not take more than the wave below 9.98 V_Y0, so not in the paper's
-range; at 0.5 it overtakes at 1.82 V_Y0, at 0.2 at 1.22. The shares sum to 1.
+At R/H = 1.2 plastic flow takes more than the wave only above 9.98 V_Y0, beyond the paper's range;
+at 0.5 it does above 1.82 V_Y0, at 0.2 above 1.22. The shares sum to 1.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Fig. 12: what one per cent more of an input does to the COR, against speed.
 
-On thin plates thickness and radius rule: where the radius is 1.8 times the thickness, one per cent
-of either is worth 0.9 per cent of COR at twice the yield speed. On thick ones it is the yield
-strength, with 0.5 at 5 yield speeds and a radius of 0.3 times the thickness. Lines are derivatives
-of the table, dots difference quotients of the solver.
+On thin plates thickness and radius matter most: where the radius is 1.8 times the thickness, one
+per cent of either is worth 0.9 per cent of COR at twice the yield speed. On thick ones it is the
+yield strength, with 0.5 at 5 yield speeds and a radius of 0.3 times the thickness. Lines are
+derivatives of the table, dots difference quotients of the solver.
 """
 
 from __future__ import annotations

@@ -1,10 +1,10 @@
 """Fig. 14: unloading from 30 d_Y, and the share of the loading work that comes back.
 
 That share is the square of the COR on a half-space. MYC and Stronge come nearest to the finite
-elements, but give back too little: 0.58 for 0.64 from 5 d_Y, 0.39 for 0.42 from 10: this is the
-plastic work that the model has too much of. Etsion's unloading gives back too much, 0.70 to 0.73
-from 5 d_Y. At 30 d_Y, where the flattened sphere flows, every law gives back too much. An elastic
-hemisphere is 47 % above Hertz there: its contact is no longer narrow.
+elements, but give back too little: 0.58 for 0.64 from 5 d_Y, 0.39 for 0.42 from 10: the difference
+is plastic work, of which the model has too much. Etsion's unloading gives back too much, 0.70 to
+0.73 from 5 d_Y. At 30 d_Y, where the flattened sphere flows, every law gives back too much. An
+elastic hemisphere is 47 % above Hertz there: its contact is no longer small.
 """
 
 from __future__ import annotations
@@ -55,10 +55,10 @@ def draw() -> chart.Drawn:
         if name in ("10", "30"):
             label = "finite elements" if name == "30" else None
             left.plot(*_points(curve, 9), "o", color=INK, markersize=4, label=label)
-    way, load, top = compare.indentation("30_elastic")
-    numbers["elastic finite elements over Hertz at 30 d_Y"] = load[top] / way[top] ** 1.5
+    compression, load, top = compare.indentation("30_elastic")
+    numbers["elastic finite elements over Hertz at 30 d_Y"] = load[top] / compression[top] ** 1.5
     left.plot(
-        way[:top:8], load[:top:8], "o", color=INK, markersize=4, markerfacecolor="white",
+        compression[:top:8], load[:top:8], "o", color=INK, markersize=4, markerfacecolor="white",
         label="finite elements, elastic",
     )  # fmt: skip
     curve = compare.indentation("calculix")
@@ -71,9 +71,9 @@ def draw() -> chart.Drawn:
 
 
 def _points(curve: tuple[np.ndarray, np.ndarray, int], step: int) -> tuple[np.ndarray, np.ndarray]:
-    way, load, _ = curve
+    compression, load, _ = curve
     touching = load > 0.005 * load.max()
-    return way[touching][::step], load[touching][::step]
+    return compression[touching][::step], load[touching][::step]
 
 
 def _returned(law: Law, largest: float) -> float:

@@ -1,7 +1,7 @@
 """Fig. 15: the COR by finite elements, R/H 0.1 to 1.8, 0.3 to 7 V_Y0, beside the model.
 
 The modified Zener model is within 4.6 % of 64 impacts, 1.9 % rms; Zener's, which knows no yielding,
-is up to 37 % high. On thin plates just above yield the model is highest over the finite elements.
+is up to 37 % high. The model exceeds finite elements most on thin plates just above yield.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from validation.paper.setting import impacts
 
 PART = figures.FINITE_ELEMENTS
 
-_LIFT = {0.1: 4, 0.25: -6, 0.5: -9}  # labels that would lie on each other [points]
+_LIFT = {0.1: 4, 0.25: -6, 0.5: -9}  # shifts of labels that would overlap [points]
 
 
 def draw() -> chart.Drawn:

@@ -1,9 +1,9 @@
 """Fig. 16: where the model is off, impact by impact.
 
-Contact time and peak force are within 4 %. The peak compression, in finite elements the way of the
-sphere's centre towards the plate's lower face, is up to 8.6 % too large, most on thin plates. The
-model has up to 9 % of the energy too much in plastic flow on thick plates at 7 V_Y0, and up to
-3.5 % too little in the plate; residual stress and vibration keep a part of the difference.
+Contact time and peak force are within 4 %. The peak compression, in finite elements the
+displacement of the sphere's centre towards the plate's lower face, is up to 8.6 % too large, most
+on thin plates. The model puts up to 9 % of the energy too much into plastic flow on thick plates at
+7 V_Y0, and up to 3.5 % too little into the plate; residual stress and vibration hold part of it.
 """
 
 from __future__ import annotations

@@ -2,9 +2,8 @@
 
 The largest plastic strain is 0.0392 (the paper has about 0.039). The force peaks 2 % higher than
 that of the model and a tenth of a microsecond earlier; CalculiX, on elements of 0.03 R, has the
-same peak within 0.2 %. The plate under the contact is deeper than
-the model's mobility has it (crosses): by a quarter at 1 us, when bending has had little time, by
-4 % at 3 us.
+same peak within 0.2 %. The plate under the contact is deflected more than by the model's mobility
+(crosses): by a quarter at 1 us, when bending has had little time, by 4 % at 3 us.
 """
 
 from __future__ import annotations
@@ -51,8 +50,8 @@ def draw() -> chart.Drawn:
     a.legend(loc="lower center")
     sunk = np.interp(data["snapshot_time"], contact.time, contact.plate_displacement)
     for n, colour in enumerate((ORANGE, GREEN, VERMILION)):
-        way, words = -data["deflection"][n] * 1e6, f"{data['snapshot_time'][n] * 1e6:.0f} µs"
-        b.plot(data["r"] * 1e3, way, color=colour, label=words)
+        sagged, words = -data["deflection"][n] * 1e6, f"{data['snapshot_time'][n] * 1e6:.0f} µs"
+        b.plot(data["r"] * 1e3, sagged, color=colour, label=words)
         chart.cross(b, 0.0, sunk[n] * 1e6, colour)
     b.invert_yaxis()
     chart.cross(b, [], [], label="model, on the axis")

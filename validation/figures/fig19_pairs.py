@@ -1,8 +1,8 @@
-"""Fig. 19: three pairs at equal inelasticity, and the one line that the table has for them.
+"""Fig. 19: three pairs at equal inelasticity, for which the table of the MYC law has one line.
 
-Below yield it does: the COR of the three agree within 0.003. Above, the table of the MYC law has
-two to three times the plastic work of a sphere that is stiff for its strength (Fig. 24): steel on
-glass or on aluminium (taken as elastic) keeps 0.05 to 0.08 more at 7 V_Y0, 7 to 11 % of its COR.
+Below yield this is right: the COR of the three agree within 0.003. Above, the table of MYC has two
+to three times the plastic work of a sphere that is stiff for its strength (Fig. 24): steel on glass
+or on aluminium (taken as elastic) has a COR 0.05 to 0.08, or 7 to 11 %, higher at 7 V_Y0.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from validation.paper.setting import impacts
 
 PART = figures.FINITE_ELEMENTS
 
-_LOOKS: tuple[chart.Look, ...] = (  # of the pairs, which lie on each other
+_LOOKS: tuple[chart.Look, ...] = (  # the marks of the pairs overlap
     {"marker": "o", "markersize": 8, "color": BLUE},
     {"marker": "s", "markersize": 12, "color": INK, "markerfacecolor": "none"},
     {"marker": "^", "markersize": 7, "color": VERMILION},

@@ -1,11 +1,11 @@
 """Fig. 21: the finite elements converge with the mesh, and tend to Hertz for small contacts.
 
 Elements of 0.01 R, the paper's, leave an estimated error of 0.16 % in COR, 0.21 % in peak force,
-0.30 % in contact time and 0.61 % in the largest plastic strain: what the last three meshes leave if
-they go on converging, at first order at best, and halving the plate's mesh away from the contact; a
-quarter is added. Peak force and strain of one plate, and the contact time, oscillate. A finite
-contact is stiffer than Hertz's half-spaces, in proportion to its width: that is physics, not the
-mesh.
+0.30 % in contact time and 0.61 % in the largest plastic strain: what the last three meshes leave by
+extrapolation, at first order at best, and the effect of halving the plate's mesh away from the
+contact, both with a quarter added. Peak force and strain of one plate, and the contact time,
+oscillate. A finite contact is stiffer than Hertz's half-spaces, in proportion to its width: that is
+physics, not the mesh.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 Each field has the largest error over its impacts, and the rms. Before anything yields all but
 Thornton's law, which has its own yield speed, are within 6 %. The errors of the model are largest
 on thin plates where the wave takes more than plastic flow; Zener and Mueller fail wherever the
-sphere yields. Law fem, which was made of these impacts among others, is within 1 %.
+sphere yields. Law fem, which was fitted to these impacts too, is within 1 %.
 """
 
 from __future__ import annotations

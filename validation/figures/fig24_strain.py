@@ -1,11 +1,11 @@
 """Fig. 24: which law, by the sphere's modulus over its yield strength.
 
 The pair of the paper, its yield strength from 2 to 1/8 times the real one, and steel on glass and
-on aluminium, all at the same inelasticity, so that the equation has one COR for each law. Finite
-elements do not: a bead that is as soft for its strength as the paper's (26) has the COR of MYC, one
-as stiff as metals (100 and more) that of Kogut & Etsion and Jackson & Green, who fitted metals. A
-bead that is softer still (13) has the COR of none of them: MYC, the nearest, is 11 % high at
-3.5 V_Y0 and 30 % at 7. Law fem, within 1 % from 26 on, is 4 and 12 % high there, and flags it.
+on aluminium, all at the same inelasticity, so that the equation has one COR for each law. That of
+finite elements varies: a bead that is as soft for its strength as the paper's (26) has the COR of
+MYC, one as stiff as metals (100 and more) that of Kogut & Etsion and Jackson & Green, who fitted
+metals. A bead that is softer still (13) has the COR of none of them: MYC, the nearest, is 11 % high
+at 3.5 V_Y0 and 30 % at 7. Law fem, within 1 % from 26 on, is 4 and 12 % high there, and flags it.
 Whether the sphere or the plate is the stiffer body hardly matters.
 """
 
@@ -23,7 +23,7 @@ PART = figures.FINITE_ELEMENTS
 _LAWS = "myc", "stronge", "kogut_etsion", "jackson_green", "fem"
 _SPEEDS = 3.5, 7.0  # V0/V_Y0
 _KINDS = {"13": (0, 20), "26": (20, 40), "52": (40, 60), "100 and more": (60, 1e6)}  # E/sigma_Y
-_LOOKS: dict[str, chart.Look] = {  # of the pairs, by plate, which lie on each other
+_LOOKS: dict[str, chart.Look] = {  # the marks of the pairs overlap; by plate
     "glass": {"marker": "o", "markersize": 9, "label": "alumina on glass"},
     "soda-lime-glass": {
         "marker": "s", "markersize": 12, "markerfacecolor": "none",

@@ -1,10 +1,10 @@
-"""Fig. 25: the law that was made of finite elements, beside impacts that it has not seen.
+"""Fig. 25: law fem, which was fitted to finite elements, beside impacts by finite elements.
 
-Left, its COR over that of finite elements, by the body that yields; crosses are law myc, for those
-pairs that it answers: where the sphere has no yield strength it does not. Right, the errors of law
-fem in COR, above for impacts of the paper's kind, to which it was fitted too, below for everyday
-impacts that were drawn before the fit and kept out of it. The band is what is asked of 95 in 100;
-an open mark carries a flag of accuracy and is not asked.
+Left, its COR over that of finite elements, by the body that yields; crosses are law myc, which has
+no answer where the sphere has no yield strength. Right, the errors of law fem in COR, above for
+impacts of the paper's kind, to which it was fitted too, below for everyday impacts that were drawn
+before the fit and kept out of it. Of 100 impacts, 95 have to lie in the band; one outside of it has
+to carry a flag of accuracy, which an open mark shows.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ _TITLES = {
     "kept out": "everyday impacts, kept out of the fit",
 }
 _FEM = Axis("COR by finite elements").between(0.0, 1.005)
-_WIDEST = 5.0  # [%], errors beyond are written beside it
+_WIDEST = 5.0  # [%]; a larger error is drawn here, with its value
 
 
 def draw() -> chart.Drawn:
@@ -47,7 +47,7 @@ def draw() -> chart.Drawn:
         7.4,
         "Law fem has the COR of finite elements, whichever body yields",
         "left: the coefficient of restitution (COR) of each impact, coloured: law fem, crosses: "
-        "law myc, in which the sphere alone yields; right: errors of law fem, band: what is asked",
+        "law myc, in which the sphere alone yields; right: errors of law fem, band: their bound",
     )
     panels = figure.subplot_mosaic(
         [["cor", "paper"], ["cor", "kept out"]], width_ratios=(1.0, 1.15)
@@ -82,7 +82,7 @@ def _marks(axes: Axes, row: Row, value: Callable[[Member], float], size: float) 
             some = [
                 one for one in row.members if (one.yielding, one.flagged) == (yielding, flagged)
             ]
-            if not some:  # it would have no place, and no layout
+            if not some:  # an empty mark takes room in the layout
                 continue
             axes.plot(
                 [one.fem for one in some], [value(one) for one in some], marker, color=colour,
@@ -93,7 +93,7 @@ def _marks(axes: Axes, row: Row, value: Callable[[Member], float], size: float) 
 
 
 def _errors(axes: Axes, title: str, row: Row) -> None:
-    """Draw errors of law fem in COR, and the band that is asked for."""
+    """Draw errors of law fem in COR, and their bound as a band."""
     bound = 100.0 * row.target.bounds.restitution
     right = sum(abs(one.errors.restitution) <= 0.01 * bound for one in row.members)
     title = f"{title}: {right} of {len(row.members)} within {bound:g} %"

@@ -22,7 +22,7 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m validation.hostile", description=__doc__)
     parser.add_argument("name", nargs="*", default=list(CAMPAIGNS), choices=CAMPAIGNS)
     parser.add_argument("--count", type=int, help="cases to try; by default the whole campaign")
-    parser.add_argument("--seed", type=int, default=0, help="of the random cases (default 0)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the random cases (default 0)")
     options = parser.parse_args(arguments)
     found = 0
     for name in options.name:

@@ -1,7 +1,7 @@
-"""Fits of two unknowns to exact data: right within two stated errors, or a note says more.
+"""Fits of two unknowns to exact data: within two standard errors, or with alternatives, or refused.
 
-Beads and plates of the catalogue, R 0.1 to 5 mm, R/H 0.1 to 1.8, 6 to 16 speeds, one to three kinds
-of values that are exact and said to be so within 1 %, any two of the eight unknowns.
+A case is a bead and a plate of the catalogue, R 0.1 to 5 mm, R/H 0.1 to 1.8, 6 to 16 speeds, exact
+values of one to three kinds with a stated error of 1 %, and any two of the eight unknowns.
 """
 
 from __future__ import annotations
@@ -23,13 +23,13 @@ Array = NDArray[np.float64]
 
 FULL = 500
 
-_ERROR = 0.01  # of the values
-_LEAST_COR = 0.05  # that is still measured
-_LARGEST = 2.0  # standard errors that an answer may be off
+_ERROR = 0.01  # stated relative error of the values
+_LEAST_COR = 0.05  # smallest COR of a measurement
+_LARGEST = 2.0  # error of an answer that is allowed, in standard errors
 
 
 class Case(NamedTuple):
-    """A measurement, and what is asked."""
+    """A measurement, and its two unknowns."""
 
     pair: cl.Pair
     radius: float
@@ -39,7 +39,7 @@ class Case(NamedTuple):
     unknown: tuple[str, ...]
 
     def data(self) -> dict[str, Array | float]:
-        """Compute the rebounds, and leave out what is asked for."""
+        """Compute the rebounds, and leave out the unknowns."""
         hit = rebounds(self, "fem")
         found: dict[str, Array | float] = {"speed": self.speed}
         sizes = {"radius": self.radius, "thickness": self.thickness}
@@ -50,7 +50,7 @@ class Case(NamedTuple):
         return found
 
     def words(self) -> str:
-        """Say all of it."""
+        """Describe the case with all its inputs."""
         speeds = ", ".join(f"{v:.4g}" for v in self.speed.tolist())
         return (
             f"{self.pair.sphere.name} on {self.pair.plate.name}, R {self.radius:.9g} m, "
@@ -60,7 +60,7 @@ class Case(NamedTuple):
 
 
 def draw(random: np.random.Generator) -> Case:
-    """Draw a measurement of which the question can be asked, with speeds that a rig reaches."""
+    """Draw a measurement with two unknowns that its bodies have, at speeds of up to 30 m/s."""
     questions = list(itertools.combinations(UNKNOWNS, 2))
     names = list(cl.materials())
     while True:
@@ -81,7 +81,7 @@ def draw(random: np.random.Generator) -> Case:
 
 
 def faults(count: int, seed: int = 0) -> Iterator[str]:
-    """Fit so many, and say which answers are wrong without a word."""
+    """Fit random cases; yield those whose answer is wrong and has no alternatives."""
     random = np.random.default_rng(seed)
     for _ in range(count):
         fault = fault_of(draw(random))
@@ -90,7 +90,7 @@ def faults(count: int, seed: int = 0) -> Iterator[str]:
 
 
 def fault_of(case: Case) -> str:
-    """Say what is wrong with the fit of a case; empty where nothing is."""
+    """Describe what is wrong with the fit of a case; empty if nothing is."""
     try:
         found = cl.fit(case.pair, case.data(), case.unknown)
     except cl.UnidentifiedError:

@@ -1,4 +1,4 @@
-"""The C header of every pair of the catalogue: it is written, is small, and keeps its promise."""
+"""The C header of every pair of the catalogue: it is written, small, and states a small error."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import contactlaw as cl
 
 FULL = len(cl.materials()) ** 2
 _LARGEST = 400_000  # bytes, as docs/engines.md says
-_CLOSE = 1e-5  # of COR, table beside equation, as it says, too
+_CLOSE = 1e-5  # error of COR by the table, also as docs/engines.md says
 
 
 def faults(count: int, seed: int) -> Iterator[str]:

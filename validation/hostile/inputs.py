@@ -1,8 +1,8 @@
-"""Impacts of any size and speed, on plates of any thickness: every way of asking says the same.
+"""Impacts of any size and speed, on plates of any thickness: all interfaces give the same answer.
 
-A case is one impact of a random pair, with speed, radius and thickness drawn over 15 decades each.
-It is asked for as a user of each interface would. Accepted are a number in its range, on which all
-agree, and a refusal in words, of all alike.
+A case is one impact of a random pair, with speed, radius and thickness drawn over 12 to 15 decades.
+Every interface is called with it. Either all return the same number, within its range, or all
+refuse it with an error that names the argument.
 """
 
 from __future__ import annotations
@@ -26,27 +26,26 @@ from contactlaw.export import header
 from contactlaw.softsphere import Contacts
 
 FULL = 1_600_000
-_EACH = 8_000  # impacts of a pair
+_EACH = 8_000  # impacts per pair
 _OUTSIDE: tuple[Outside, ...] = ("raise", "clamp", "solve")
 _LAWS = ("fem", "fem", "fem", "myc", "hertz", "stronge")
-_SOLVED = 40  # of the impacts of a pair are integrated: they take the longest
-_CLOSE = 1e-5  # of COR, table beside equation: what a table made for a pair promises
-_ROUNDING = 1e-12  # of COR, one way of reading the table beside another
-_LEAST = (
-    1e-7  # compression over the radius; "fem" has no losses below 1e-9, and its table ends there
-)
-_HEADERS = 20  # pairs from one header to the next, which takes seconds to make and to compile
+_SOLVED = 40  # impacts per pair that are integrated, which takes the longest
+_CLOSE = 1e-5  # error of COR that the table of a pair promises
+_ROUNDING = 1e-12  # difference of COR between two ways to read one table
+# Least compression over radius; "fem" has no losses below 1e-9, where its table ends.
+_LEAST = 1e-7
+_HEADERS = 20  # every so many pairs a header is compiled, which takes seconds
 
 
 def faults(count: int, seed: int) -> Iterator[str]:
-    """Ask for that many impacts."""
+    """Try that many impacts."""
     rng = np.random.default_rng(seed)
     number, left = 0, count
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         while left > 0:
-            asked = min(_EACH, left)
-            left -= asked
+            part = min(_EACH, left)
+            left -= part
             pair = _pair(rng)
             law = str(rng.choice(_LAWS))
             try:
@@ -55,22 +54,22 @@ def faults(count: int, seed: int) -> Iterator[str]:
                 if not _in_words(error):
                     yield f"{pair!r}, law {law}: {error}"
                 continue
-            except UserWarning:  # says how inaccurate the table of this pair is
+            except UserWarning:  # the table of this pair is less accurate, and says so
                 continue
-            where = f"{_told(pair)}, law {law}"
-            impacts = _impacts(rng, asked)
+            where = f"{_described(pair)}, law {law}"
+            impacts = _impacts(rng, part)
             for fault in _of_pair(rng, models, impacts, headers=number % _HEADERS == 0):
                 yield f"{where}: {fault}"
             number += 1
 
 
-def _told(pair: cl.Pair) -> str:
+def _described(pair: cl.Pair) -> str:
     bodies = pair.sphere, pair.plate
     return " on ".join(one.name if one.name in cl.materials() else repr(one) for one in bodies)
 
 
 def _pair(rng: np.random.Generator) -> cl.Pair:
-    """Materials of the catalogue, or any that are accepted."""
+    """Draw a pair of materials, each of the catalogue or of its own."""
     return cl.Pair(*(_own(rng) if rng.random() < 0.4 else _known(rng) for _ in range(2)))
 
 
@@ -87,7 +86,7 @@ def _own(rng: np.random.Generator) -> cl.Material:
 
 
 def _impacts(rng: np.random.Generator, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Speeds, radii and thicknesses: one half over all decades, one where users are."""
+    """Draw speeds, radii and thicknesses: half over all decades, half in the usual range."""
     wide = rng.random(count) < 0.5
     speed = 10.0 ** np.where(wide, rng.uniform(-10, 5, count), rng.uniform(-3, 2.5, count))
     radius = 10.0 ** np.where(wide, rng.uniform(-9, 3, count), rng.uniform(-5, -1, count))
@@ -103,7 +102,7 @@ def _where(speed: float, radius: float, thickness: float) -> str:
 
 
 def _in_words(error: Exception) -> bool:
-    """Whether an error says which argument, and is our own."""
+    """Whether an error names the argument, as the errors of contactlaw do."""
     names = "speed", "radius", "thickness", "youngs_modulus", "yield_strength", "density", "lambda"
     return any(name in str(error) for name in names)
 
@@ -123,8 +122,8 @@ def _of_pair(
         if wrong.any():
             n = int(np.argmax(wrong))
             values = ", ".join(f"{name} = {float(x[n])!r}" for name, x in named.items())
-            told = ", ".join(repr(float(x[n])) for x in also)
-            yield f"{what} for {int(wrong.sum())}, as {values}: {told}"
+            answers = ", ".join(repr(float(x[n])) for x in also)
+            yield f"{what} for {int(wrong.sum())}, as {values}: {answers}"
 
     yield from first(inside & foil, "an answer for a foil", one)
     yield from first(inside & ~((one >= 0.0) & (one <= 1.0)), "COR out of range", one)
@@ -133,7 +132,7 @@ def _of_pair(
     if not np.array_equal(by_address, one[some], equal_nan=True):
         yield "kernel and address differ"
 
-    # what the kernel answers, batches do, and nothing else
+    # batches answer what the kernel answers
     part = tuple(x[inside] for x in impacts)
     batch, hit = np.asarray(model.restitution(*part)), model.lookup(*part)
     named = dict(zip(named, part, strict=True))
@@ -147,7 +146,7 @@ def _of_pair(
         if not abs(exact.restitution - one[n]) <= _CLOSE and exact.peak_compression > _LEAST * r[n]:
             yield f"table {one[n]!r}, equation {exact.restitution!r}, {_where(v[n], r[n], h[n])}"
 
-    # beyond the table: words, the border, or the equation; beyond all knowledge words alone
+    # beyond the table: an error, the border or the equation, as `outside` says; a foil: an error
     for n in rng.choice(np.flatnonzero(~inside), min(_SOLVED, int((~inside).sum())), replace=False):
         yield from _refused(models, float(v[n]), float(r[n]), float(h[n]), bool(foil[n]))
     known = tuple(x[~foil] for x in impacts)
@@ -201,7 +200,7 @@ def _refused(
 
 
 def _soft(model: cl.ImpactModel, known: Any, first: Any) -> Iterator[str]:
-    """First steps of contacts: a force that is a number."""
+    """Check that the force of the first time steps of contacts is a finite number."""
     v, r, h = known
     contacts = Contacts(model, r, h)
     step = 1e-2 * float(np.min(r / np.maximum(v, 1.0)))
@@ -217,7 +216,7 @@ double rebound(double v, double r, double h) { return contactlaw_rebound(v, r, h
 
 
 def _header(model: cl.ImpactModel, impacts: Any, one: np.ndarray) -> Iterator[str]:
-    """Compile the pair's header, and ask it."""
+    """Compile the header of a pair, and compare its answers with the kernel's."""
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder)
         header(made / "contactlaw.h", model)

@@ -1,11 +1,11 @@
-"""Random pairs of materials of nobody's catalogue: continuous, in range, and flagged where untried.
+"""Random pairs of materials: continuous, in range, and flagged outside of the finite elements.
 
-Moduli over six decades, Poisson's ratios to 0.49, strengths of E*/5 to E*/1e7 or none, the weaker
-body on either side, or both alike but for 1e-4. A case asks that its model can be made; that the
-COR of a few impacts moves no more across equal strengths, or with any input, than its slope
-explains; that waves take less of it on a thicker plate; that every number is finite and the
-energies sum to one; that what lies outside of the finite elements is flagged; and, of a tenth of
-the cases, that a lookup answers what integration does.
+Moduli are drawn over six decades, Poisson's ratios to 0.49, strengths of E*/5 to E*/1e7 or none;
+either body is the weaker, or the strengths are equal, also but for 2e-4. Of each case, the model
+can be made; the COR of a few impacts has no jump across equal strengths, nor along any input; waves
+take less energy on a thicker plate; every number is finite and the energies sum to one; a strength
+outside of the finite elements is flagged; and, in a tenth of the cases, a lookup agrees with
+integration.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ from contactlaw.physical.scaling import law_of
 Array = NDArray[np.float64]
 
 FULL = 2000
-_LOOKED_UP = 10  # cases for one table that is built
+_LOOKED_UP = 10  # one table is built in so many cases
 _NEAR = 1e-4  # relative step of an input
 _RADIUS = 1e-3  # [m]
-_ENERGIES = 1e-7  # integration errs by 1e-10 in each of some hundred steps
+_ENERGIES = 1e-7  # tolerance of their sum: 1e-10 in each of some hundred steps
 _RATIO = (5.0, 1e7)  # E*/sigma_Y of the weaker body
-# Largest second difference of COR over a step: the curvature of the laws explains it, and rounding.
+# A change of COR beyond this, over twice that of the steps beside it, is a jump.
 _KINK = 3e-6
 
 
 def faults(count: int, seed: int) -> Iterator[str]:
-    """Try some pairs; a sentence for each fault, with the pair."""
+    """Try random pairs; yield a sentence for each fault, with the pair."""
     generator = np.random.default_rng(seed)
     for n in range(count):
         pair, speed, thickness = draw(generator)
@@ -60,17 +60,17 @@ def faults(count: int, seed: int) -> Iterator[str]:
 
 
 def draw(generator: np.random.Generator) -> tuple[cl.Pair, Array, float]:
-    """One pair, speeds from well below yield to a tenth of the radius deep, and a thickness."""
+    """Draw a pair, speeds from well below yield up, and a thickness."""
     modulus = np.exp(generator.uniform(math.log(1e6), math.log(1e12), 2))
-    if generator.random() < 0.5:  # alike within a factor of ten: both bodies give way
+    if generator.random() < 0.5:  # within a factor of ten, so that both bodies deform
         modulus[1] = min(modulus[0] * math.exp(generator.uniform(-2.3, 2.3)), 1e12)
     nu = generator.uniform(0.0, 0.49, 2)
     effective = 1.0 / np.sum((1.0 - nu**2) / modulus)
-    # waves no faster than 20 km/s
+    # Waves are no faster than 20 km/s.
     least = np.maximum(modulus / 4e8, 500.0)
     density = least * np.exp(generator.uniform(0.0, np.log(2e4 / 500.0), 2))
     weakest = float(effective) / math.exp(generator.uniform(*np.log(_RATIO)))
-    weakest = max(weakest, 1.1e-12 * float(modulus.max()))  # no solid is weaker, and refused
+    weakest = max(weakest, 1.1e-12 * float(modulus.max()))  # a weaker solid is refused
     other = weakest * math.exp(generator.uniform(0.0, 3.0))
     kinds: tuple[tuple[float | None, float | None], ...] = (
         (None, None),
@@ -90,7 +90,7 @@ def draw(generator: np.random.Generator) -> tuple[cl.Pair, Array, float]:
         for name, e, n, rho, s in zip(("a", "b"), modulus, nu, density, strengths, strict=True)
     ]  # fmt: skip
     pair = cl.Pair(*bodies)
-    # kinetic energy, over that of Hertz's contact at yield, or at a tenth of the radius
+    # kinetic energy equal to the work of Hertz's contact at yield, or at a tenth of the radius
     deep = min(_share(pair), 0.1)
     slow = math.sqrt(0.8 * pair.effective_modulus * deep**2.5 / math.pi / pair.sphere.density)
     speed = slow * np.exp(generator.uniform(np.log(0.3), np.log(300.0), 3))
@@ -110,7 +110,7 @@ def solve(pair: cl.Pair, speed: Array, thickness: Array | float) -> cl.Rebound:
 
 
 def answers(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
-    """Finite, within 0 and 1, the energies whole; flagged where nothing was tried."""
+    """Check that numbers are finite, energies sum to one, and untried strengths are flagged."""
     for h in (thickness, math.inf):
         hit = solve(pair, speed, h)
         for field in dataclasses.fields(hit):
@@ -125,7 +125,7 @@ def answers(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
             yield f"energies sum to {whole}"
         if min(float(np.min(part)) for part in parts) < -_ENERGIES:
             yield f"a loss is negative: {parts}"
-        # who yields, by finite elements: the stronger body, too, up to 1/0.36 times the strength
+        # In finite elements the stronger body yields too, up to 1/0.36 times the lower strength.
         strengths = [s for s in (pair.sphere.yield_strength, pair.plate.yield_strength) if s]
         flowing = [s for s in strengths if s < min(strengths) / 0.36]
         ratios = [pair.effective_modulus / s for s in flowing]
@@ -137,7 +137,7 @@ def answers(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
 
 
 def steps(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
-    """No input's small step moves the COR by more than the step before and the one after."""
+    """Check that no small step of an input moves the COR far more than its neighbours do."""
     for name, moved in inputs(pair):
         cor = np.array([np.asarray(solve(one, speed, thickness).restitution) for one in moved])
         first = np.abs(np.diff(cor, axis=0))
@@ -147,7 +147,7 @@ def steps(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
 
 
 def inputs(pair: cl.Pair) -> Iterator[tuple[str, list[cl.Pair]]]:
-    """Four pairs in a row along each input, and four across equal strengths."""
+    """Yield four pairs along each input, and four across equal strengths."""
     at = _NEAR * np.array([-1.5, -0.5, 0.5, 1.5])
     for body, field in itertools.product(
         ("sphere", "plate"), ("youngs_modulus", "poissons_ratio", "yield_strength")
@@ -175,9 +175,9 @@ def _with(pair: cl.Pair, body: str, field: str, value: float) -> cl.Pair:
 
 
 def thicker(pair: cl.Pair, speed: Array) -> Iterator[str]:
-    """Lambda falls with the thickness, and so does what waves take where nothing yields.
+    """Check that lambda and, where nothing yields, the loss to waves fall with the thickness.
 
-    The COR rises but for friction: with less lost to waves a contact is deeper, and slips more.
+    The COR rises, except by friction: with less lost to waves a contact is deeper, and slips more.
     """
     thickness = _RADIUS * np.geomspace(0.3, 100.0, 60)
     elastic = cl.Pair(
@@ -195,9 +195,9 @@ def thicker(pair: cl.Pair, speed: Array) -> Iterator[str]:
 
 
 def lookups(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
-    """Tables of any pair are as near to integration as those of the catalogue.
+    """Check the COR by the table of a pair against integration.
 
-    A table warns where it errs more anywhere, as in the contact time of spheres that hardly leave.
+    Its warning is ignored: it may concern another field, as the contact time at a small COR.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
@@ -206,7 +206,7 @@ def lookups(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
     exact = model.solve(speed, _RADIUS, thickness).restitution
     off = float(np.abs(np.asarray(looked) - np.asarray(exact)).max())
     if not off <= 1e-5:
-        yield f"lookup is {off:.2g} beside solve"
+        yield f"lookup differs from solve by {off:.2g}"
 
 
 def _words(body: cl.Material) -> str:

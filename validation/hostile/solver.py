@@ -1,7 +1,7 @@
-"""Random impacts that the equation is integrated for: each comes to an end, with numbers.
+"""Random impacts by integration: each of them ends, with finite numbers.
 
-Half of them with the law fem, of random pairs as in `pairs`, half with the paper's, whose bead is
-the weaker body; speeds over nine decades, R/H to 5.
+Half are by the law fem, of random pairs as in `pairs`, half by the law myc, where the bead yields;
+speeds span nine decades, R/H goes to 5.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from validation.hostile.pairs import draw
 
 FULL = 10_000_000
 
-_BATCH = 10_000  # of one pair
-_THINNEST = 30.0  # lambda; beyond, steps are counted in thousands
+_BATCH = 10_000  # impacts per pair
+_THINNEST = 30.0  # lambda; beyond, an impact takes thousands of time steps
 
 
 def faults(count: int, seed: int) -> Iterator[str]:
-    """Integrate some impacts; a sentence for each that does not come to an end."""
+    """Integrate random impacts; yield a sentence for each that fails."""
     generator = np.random.default_rng(seed)
     for start in range(0, count, _BATCH):
         pair, _, _ = draw(generator)
@@ -43,7 +43,7 @@ def faults(count: int, seed: int) -> Iterator[str]:
 
 
 def _unsolved(generator: np.random.Generator, pair: cl.Pair, law: Law, count: int) -> Iterator[str]:
-    """Impacts of one pair."""
+    """Integrate random impacts of one pair."""
     speed = np.exp(generator.uniform(math.log(1e-6), math.log(1e3), count))
     radius = np.full(count, 1e-3)
     thickness = radius / np.exp(generator.uniform(math.log(1e-3), math.log(5.0), count))

@@ -1,4 +1,4 @@
-"""What `contactlaw.fit` finds, judged: by synthetic data, and by finite elements.
+"""Accuracy of `contactlaw.fit`, with synthetic data and with finite elements.
 
 ``python -m validation.inverse [coverage|elements|contact_time|model]``.
 """

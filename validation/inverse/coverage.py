@@ -1,10 +1,10 @@
-"""How often the true value lies within the stated standard error: 68 times of 100, if it is right.
+"""Share of fits whose true value lies within the stated standard error: 68 % if that is right.
 
-Configurations are drawn by a seed: beads and plates of the catalogue, half of them with other
-strengths, R 0.3 to 3 mm, R/H 0.15 to 1.8, 8 to 30 speeds below, across or above yield, one to three
-kinds of values with errors of 0.3 to 3 %, which the fit knows or has to find. The data are those of
-the model, with scatter; in half of the sets the model errs, too, as its stated covariance has it,
-and then the whole error is judged, else the part from the data.
+Configurations are random: beads and plates of the catalogue, half with other strengths, R 0.3 to 3
+mm, R/H 0.15 to 1.8, 8 to 30 speeds below, across or above yield, one to three kinds of values with
+errors of 0.3 to 3 %, which the fit is given or has to estimate. The data are those of the model,
+with scatter. In half of the sets a model error is added, drawn from its stated covariance, and the
+total standard error is judged; in the others the statistical one.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ Array = NDArray[np.float64]
 QUESTIONS = (*((name,) for name in UNKNOWNS), ("yield_strength", "thickness"),
              ("radius", "thickness", "plate_yield_strength"))  # fmt: skip
 REGIMES = {"below": (0.02, 0.7), "across": (0.2, 8.0), "above": (3.0, 60.0)}  # V0/V_Y0
-_LEAST = 0.05  # COR that is still measured
+_LEAST = 0.05  # smallest COR of a measurement
 _SWIFTEST = 40.0  # [m/s]
 
 
 class Configuration(NamedTuple):
-    """A measurement: what is true, and what was measured."""
+    """A measurement: the true inputs, and which values are measured at which errors."""
 
     pair: cl.Pair
     radius: float
@@ -45,12 +45,12 @@ class Configuration(NamedTuple):
     speed: Array
     kinds: tuple[str, ...]
     noise: tuple[float, ...]  # relative errors of the kinds
-    told: bool  # the fit knows these
+    stated: bool  # the fit is given these errors
     regime: str
 
 
 class Outcome(NamedTuple):
-    """What became of one unknown of a set; off and error are relative."""
+    """Fit of one unknown of a set: its error `off` and the stated `error`, both relative."""
 
     name: str
     regime: str
@@ -65,7 +65,7 @@ class Outcome(NamedTuple):
 
 
 def draw(random: np.random.Generator, question: tuple[str, ...], law: str) -> Configuration:
-    """Draw a configuration of which a question can be asked."""
+    """Draw a configuration whose data depend on the unknowns of a question."""
     names = [name for name in cl.materials() if cl.material(name).kind not in (None, "polymer")]
     while True:
         sphere, plate = (cl.material(str(random.choice(names))) for _ in range(2))
@@ -108,7 +108,7 @@ def _of_other_strength(random: np.random.Generator, body: cl.Material) -> cl.Mat
 def measured(
     random: np.random.Generator, one: Configuration, question: tuple[str, ...], law: str, errs: bool
 ) -> dict[str, Array | float]:
-    """Draw the data of a configuration, without what is asked for."""
+    """Draw the data of a configuration, without the unknowns."""
     hit = rebounds(one, law)
     data: dict[str, Array | float] = {"speed": one.speed}
     data |= {name: getattr(one, name) for name in ("radius", "thickness") if name not in question}
@@ -118,7 +118,7 @@ def measured(
         scatter = noise * exact[kind] * random.standard_normal(one.speed.size)
         values = exact[kind] + scatter + shift.get(kind, 0.0)
         data[kind] = np.clip(values, 1e-3, 1.19) if kind == "restitution" else values
-        if one.told:
+        if one.stated:
             data[f"{kind}_error"] = noise * exact[kind]
     return data
 
@@ -148,11 +148,11 @@ def _model_error(
 def outcomes(
     question: tuple[str, ...], sets: int, seed: int, law: str = "fem"
 ) -> Iterator[list[Outcome]]:
-    """Fit synthetic data sets: a list for each, which is empty where the fit refused."""
+    """Fit synthetic data sets; the outcomes of each, none where the fit is refused."""
     random = np.random.default_rng([seed, QUESTIONS.index(question)])
     for n in range(sets):
         one = draw(random, question, law)
-        errs = bool(n % 2) and law == "fem"  # others are too far off where they are flagged
+        errs = bool(n % 2) and law == "fem"  # flagged errors of the other laws are too large
         data = measured(random, one, question, law, errs)
         try:
             found = cl.fit(one.pair, data, question, law)
@@ -168,18 +168,18 @@ def outcomes(
 
 
 class Tally(NamedTuple):
-    """How one unknown of a question fared."""
+    """Counts for one unknown of a question."""
 
     question: tuple[str, ...]
     name: str
     answered: int
     refused: int
-    within: dict[str, float]  # share, by regime, by what was judged, and in all
+    within: dict[str, float]  # share, by regime, by the error that is judged, and of all
     median_error: float
 
 
 def tally(question: tuple[str, ...], sets: int, seed: int, law: str = "fem") -> list[Tally]:
-    """Count over as many answered sets as asked for."""
+    """Count until `sets` data sets are answered."""
     found: list[list[Outcome]] = []
     refused = 0
     for one in outcomes(question, 20 * sets, seed, law):
@@ -211,7 +211,7 @@ def _tally(task: tuple[tuple[str, ...], int, int, str]) -> list[Tally]:
 def report(sets: int = 1000, seed: int = 1) -> str:
     """Count for every question, as text; takes half an hour on two cores.
 
-    All is judged by the law fem, in as many processes as there are cores.
+    The law is fem; there are as many processes as cores.
     """
     lines = [f"share of {sets} true values within the stated standard error, seed {seed} [%]"]
     parts = ("all", "data", "data and model", *REGIMES)

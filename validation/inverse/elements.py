@@ -1,8 +1,8 @@
-"""What `contactlaw.fit` finds from single impacts by finite elements that no fit has seen.
+"""Fits of `contactlaw.fit` to single impacts by finite elements that no law was fitted to.
 
-Of each impact one number is taken for unknown, and found from its COR alone, from its contact time
-alone, or from COR, contact time and peak force together. The finite elements are right to about
-0.5 %, which is what their values are given for errors.
+One number of each impact is taken as unknown, and fitted to its COR alone, to its contact time
+alone, or to COR, contact time and peak force together. The stated error of these values is 0.5 %,
+about that of the finite elements.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from contactlaw import Validity
 from contactlaw.fitting.measurements import KINDS
 from validation.inverse.model import Impact, unseen
 
-_ERROR = 0.005  # of finite elements; half the mean difference of two meshes
+_ERROR = 0.005  # relative error of finite elements: half the mean difference of two meshes
 BY = {"COR": ("restitution",), "contact time": ("contact_time",), "all three": tuple(KINDS)}
 SLENDERNESS = {
     "R/H above 1.4": (1.4, math.inf), "R/H 0.9 to 1.2": (0.9, 1.2),
@@ -26,7 +26,7 @@ SLENDERNESS = {
 
 
 class Found(NamedTuple):
-    """One impact: how far off a number was, and how far it was said to be; both relative."""
+    """The fit to one impact: its error `off` and its stated `error`, both relative."""
 
     slenderness: float
     off: float
@@ -35,7 +35,7 @@ class Found(NamedTuple):
 
 
 class Score(NamedTuple):
-    """What became of some impacts."""
+    """Accuracy of the fits to some impacts."""
 
     answered: int
     median: float  # |off|
@@ -45,7 +45,7 @@ class Score(NamedTuple):
 
 
 def score(found: list[Found]) -> Score:
-    """Count.
+    """Summarise the fits to some impacts.
 
     Examples
     --------
@@ -64,14 +64,14 @@ def score(found: list[Found]) -> Score:
 
 
 def found(unknown: str, kinds: tuple[str, ...], law: str = "fem") -> tuple[list[Found], int]:
-    """Find a number from each impact, and count those of which the fit says that it cannot.
+    """Fit a number to each impact, and count the impacts that the fit refuses.
 
     Parameters
     ----------
     unknown : {"thickness", "yield_strength"}
         The strength is that of the weaker body, where it has yielded.
     kinds : tuple of str
-        What is taken for measured.
+        Values that are taken as measured.
     law : str, optional
         Name of the law.
 
@@ -95,12 +95,12 @@ def found(unknown: str, kinds: tuple[str, ...], law: str = "fem") -> tuple[list[
 def one_found(
     one: Impact, name: str, true: float, kinds: tuple[str, ...], law: str = "fem"
 ) -> Found:
-    """Find a number from one impact.
+    """Fit a number to one impact.
 
     Raises
     ------
     UnidentifiedError
-        If its values do not tell it.
+        If the number does not follow from the values.
     """
     data = {"speed": one.speed, "radius": one.radius}
     if name != "thickness":
@@ -114,7 +114,7 @@ def one_found(
 
 
 def asked(unknown: str, one: Impact) -> tuple[str, float]:
-    """Name and true value of what is asked for; no name where it cannot be asked."""
+    """Name and true value of the unknown; no name where the impact does not depend on it."""
     if unknown == "thickness":
         return unknown, one.thickness
     sphere, plate = (body.yield_strength or math.inf for body in (one.pair.sphere, one.pair.plate))
@@ -135,7 +135,7 @@ def _line(title: str, some: list[Found]) -> str:
 
 
 def _lines(title: str, answers: list[Found], refused: int) -> list[str]:
-    lines = [f"{title}; {refused} refused as not told by the data"]
+    lines = [f"{title}; {refused} refused as not identified by the data"]
     lines.append(_line("all", answers))
     lines.append(_line("without a flag of accuracy", [one for one in answers if not one.flagged]))
     for part, (low, high) in SLENDERNESS.items():
@@ -151,7 +151,7 @@ _HEAD = (
 
 
 def report() -> str:
-    """Strengths and thicknesses, by what is taken for measured."""
+    """Write the fits of strength and thickness, by the values taken as measured."""
     lines = [_HEAD]
     for unknown in ("yield_strength", "thickness"):
         for by in ("COR", "all three"):
@@ -160,10 +160,9 @@ def report() -> str:
 
 
 def contact_time() -> str:
-    """Thickness from contact times: by law fem, and by Zener's equation as others take it.
+    """Write the fits of thickness to contact times, by the laws fem and hertz.
 
-    Law "hertz" integrates Zener's own equation, to which Tsai's formula is an approximation; the
-    formula itself could not be had. Elastic impacts alone, for which it is meant.
+    Law "hertz" integrates Zener's equation for elastic impacts, which Tsai's formula approximates.
     """
     lines = [_HEAD]
     for law in ("fem", "hertz"):

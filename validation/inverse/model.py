@@ -1,4 +1,4 @@
-"""How far each law is from finite elements that no fit has seen: `fitting.errors.MODEL_ERRORS`."""
+"""Errors of each law beside finite elements that no fit has seen: `fitting.errors.MODEL_ERRORS`."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from validation.fem import fit, store
 
 Array = NDArray[np.float64]
 
-STUDIES = "everyday_5", "kept_out"  # all that no fit has seen
-_LEAST = {"restitution": 0.3}  # the error of a lower one is over this
+STUDIES = "everyday_5", "kept_out"  # the studies that no fit has seen
+_LEAST = {"restitution": 0.3}  # the error of a lower value is relative to this one
 
 
 def rebounds(one: Any, law: str) -> Rebound:
     """Predict the rebounds of a measurement as `contactlaw.fit` does.
 
-    It has a pair, a radius, a thickness [m], and a speed or several [m/s].
+    `one` has a pair, a radius, a thickness [m], and a speed or several [m/s].
     """
     speed = np.atleast_1d(one.speed)
     size = np.ones_like(speed)
@@ -35,7 +35,7 @@ def rebounds(one: Any, law: str) -> Rebound:
 
 
 def true(one: Any, name: str) -> float:
-    """Value of an unknown of `contactlaw.fit` in a measurement, as of `rebounds`."""
+    """Find the true value of an unknown of `contactlaw.fit` in a measurement, as in `rebounds`."""
     unknown = UNKNOWNS[name]
     of = getattr(one.pair, unknown.body) if unknown.body else one
     return float(getattr(of, unknown.field))
@@ -49,7 +49,7 @@ class Impact(NamedTuple):
     radius: float
     thickness: float
     yields: bool
-    values: dict[str, float]  # of the kinds that can be measured
+    values: dict[str, float]  # value of each kind that can be measured
 
     @property
     def slenderness(self) -> float:
@@ -86,7 +86,7 @@ def unseen() -> list[Impact]:
 def rms(law: str) -> tuple[Array, Array]:
     """Errors of a law in each kind of value, relative: of impacts without a flag, and with one.
 
-    Impacts that it refuses are left out, for want of a yield strength.
+    Impacts without the yield strength that the law needs are left out.
 
     Examples
     --------
@@ -113,7 +113,7 @@ def rms(law: str) -> tuple[Array, Array]:
 
 
 def report() -> str:
-    """All laws as text."""
+    """Write the errors of all laws as text."""
     lines = ["rms errors of COR, contact time, peak force [%], without and with a flag of accuracy"]
     for law in laws.names():
         parts = ("  ".join(f"{100.0 * error:6.2f}" for error in errors) for errors in rms(law))

@@ -164,18 +164,18 @@ def _section_3_1() -> Iterator[Claim]:
     d = np.linspace(0.5, 10.0, 191)
     off = compare.loading_errors(d)
     deep = {name: _percent(float(one[0])) for name, one in compare.loading_errors(DEEPEST).items()}
-    way = "largest difference from our finite elements while loading from 0.5 to 10 d_Y"
+    what = "largest difference from our finite elements while loading from 0.5 to 10 d_Y"
     yield at_most(
         "MYC", "section 3.1, Fig. 3", "MYC is within 6 % of finite elements", 0.06,
         float(np.abs(off["myc"]).max()),
-        f"{way}; it takes a ripple of theirs, nodes that come into contact, with it. {deep['myc']} "
+        f"{what}; it includes a ripple of theirs, as nodes come into contact. {deep['myc']} "
         "high at 30 d_Y", LIMITED,
     )  # fmt: skip
     worst = evidence.unloading_error()
     yield at_most(
         "MYC, unloading", "section 3.1, Fig. 3", "and while unloading", 0.06, worst,
-        "largest difference from 5 and 10 d_Y on the way back, over the largest force; less work "
-        "comes back than in finite elements, 58 % for 64 % from 5 d_Y", LIMITED,
+        "largest difference from 5 and 10 d_Y, over the largest force; less of the loading work "
+        "comes back than in finite elements, from 5 d_Y 58 % instead of 64 %", LIMITED,
     )  # fmt: skip
     too_high = d[(d > 1.0) & (np.abs(off["hertz"]) > 0.06)]
     yield at_most(
@@ -188,12 +188,12 @@ def _section_3_1() -> Iterator[Claim]:
     slow, fast = compare.loading_errors(np.array([2.0, evidence.FASTEST_COMPRESSION]))["thornton"]
     yield near(
         "Thornton", "section 3.1, Fig. 3", "Thornton's force is about 64 % low", -0.64, thornton,
-        0.05, f"{way}: at 10 d_Y. {_percent(-slow)} low at 2 d_Y, {_percent(-fast)} at 4.77, where "
-        "7 V_Y0 leads to on a half-space: less in the paper's own range of speeds",
+        0.05, f"{what}: at 10 d_Y. {_percent(-slow)} low at 2 d_Y, {_percent(-fast)} at 4.77, that "
+        "7 V_Y0 reaches on a half-space: less in the paper's own range of speeds",
     )  # fmt: skip
     yield near(
         "Stronge", "section 3.1, Fig. 3", "Stronge's force is about 40 % high", 0.40, stronge, 0.05,
-        f"{way}; {deep['stronge']} at 30 d_Y",
+        f"{what}; {deep['stronge']} at 30 d_Y",
     )  # fmt: skip
     yield undecided(
         "Dong et al.", "section 3.1", "MYC has the better COR from 1.6 m/s on (Dong et al. 2018)",
@@ -389,7 +389,7 @@ def _section_3_4() -> Iterator[Claim]:
     yield near(
         "c of Eq. 22, 4/5 in g", "Eq. 22", "c = 0.0935, and g with eta's exponent 4/5", 0.0935,
         evidence.fitted_c(surface, v, ratio, exponent=0.8), 2e-3,
-        "closest of the three: that g was computed so is our guess. 0.093 to 0.108 over other "
+        "closest of the three: we guess that g was computed so. 0.093 to 0.108 over other "
         "ranges and weights, with 2/5 in g 0.106 to 0.117",
     )  # fmt: skip
     as_printed = formulas.eq_22(v, ratio[:, None], ETA)

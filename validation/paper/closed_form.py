@@ -11,8 +11,8 @@ Arguments are dimensionless. With the yield speed V_Y0 of the sphere on a half-s
 Equation numbers are those of Peng, Jin, Liu, Wei, Int. J. Solids Struct. 222-223 (2021) 111036.
 The plastic forms are those of the `myc` law, d_P/d_Y = P, unless another law is named.
 
-Arguments are broadcast. One that is no number, or lies outside the range that its function names,
-is a ValueError. Errors of the forms are relative, against the solver, unless they say otherwise.
+Arguments are broadcast. One that is no number, or lies outside the range that its function states,
+raises ValueError. Errors of the forms are relative, against the solver, unless they say otherwise.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from contactlaw.turning_point import FASTEST, INTEGRATE, LARGEST_AT_YIELD, at_tu
 
 Array = NDArray[np.float64]
 
-_RTOL = 1e-11  # of the integrations here
+_RTOL = 1e-11  # relative tolerance of the integrations here
 TOO_THIN = "(the plate is far too thin for the model)"
 _RATIO = "(it is V0 over the yield speed V_Y0)"
 
@@ -272,8 +272,8 @@ def peng(
     Notes
     -----
     The plastic branch, printed without, has the elastic COR at yield as a factor: Eq. 3 with lambda
-    at V_Y = g V_Y0, g by Eq. 14. That the printed c belongs to the form with the factor is seen
-    from a fit (see validation's page of errata).
+    at V_Y = g V_Y0, g by Eq. 14. A fit shows that the printed c belongs to the form with the
+    factor (see ``validation/derivations/errata.md``).
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Evidence for the errata: the numbers that tell a misprint from a model."""
+"""Evidence for the errata: the numbers that tell misprints from errors of the model."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from validation.paper.setting import (
     unloading,
 )
 
-FASTEST_COMPRESSION = 4.77  # d_Y, where 7 V_Y0 leads to on a half-space
+FASTEST_COMPRESSION = 4.77  # largest compression at 7 V_Y0 on a half-space [d_Y]
 
 
 def contact(pair: cl.Pair, law: str, thickness_ratio: float) -> ContactConstants:
@@ -119,7 +119,7 @@ def fitted_c(
         elastic = np.where(v > g, 1.0, elastic)
     base = 1.0 - (1.0 - np.maximum(v / g, 1.0) ** -0.8) ** 2
 
-    def slope_of_squares(c: float) -> float:  # half of it
+    def slope_of_squares(c: float) -> float:  # half of their derivative
         form = elastic * base ** (0.25 + c * ratio[:, None] ** 2)
         return float(((form - surface) * form * np.log(base) * ratio[:, None] ** 2).sum())
 
@@ -136,7 +136,7 @@ def fitted_border(thinnest: float) -> float:
 def taken_by_thick_plate() -> tuple[float, float]:
     """Find the largest share of the energy that a plate of 10 R takes in finite elements.
 
-    And that at 7 V_Y0 over the share of plastic flow.
+    The second number is its share at 7 V_Y0 over that of plastic flow.
     """
     case = compare.comparison("matrix")
     thick = np.isclose(case.slenderness, 0.1)

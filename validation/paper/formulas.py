@@ -61,8 +61,8 @@ def thornton_asymptote(speed_ratio: ArrayLike) -> float | Array:
     Parameters
     ----------
     speed_ratio : array_like
-        V0/V_Y0 as there, from 5 to 1e6. Below 2 the power is above 1; a cap there would pass for a
-        COR, and 7 % off, where `thornton` costs no more.
+        V0/V_Y0 as there, from 5 to 1e6. Below 2 the power exceeds 1, and `thornton` costs no
+        more.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""What Peng, Jin, Liu, Wei (2021) compute with: their pair, their bead, and impacts of it."""
+"""The setting of Peng, Jin, Liu, Wei (2021): their pair, their bead, and impacts of it."""
 
 from __future__ import annotations
 
@@ -69,14 +69,14 @@ def extreme(values: ArrayLike) -> float:
 def all_laws(pair: cl.Pair = PAIR) -> dict[str, laws.Law]:
     """Laws of the literature by their names, with the numbers that they take from the pair.
 
-    Contacts are Hertz's until they yield, so that the thin plate's lambda and a scale of d_Y are
-    all that they need. The law that is made of finite elements is none of them.
+    Their contacts are Hertz's until they yield, so that they need lambda of a thin plate and d_Y
+    only. The law ``"fem"`` is left out.
     """
     return {name: law_of(pair, name) for name in laws.names() if name != "fem"}
 
 
 def yield_unit(law: laws.Law) -> float:
-    """Yield compression of a law in that of MYC; 1 for a law that never yields."""
+    """Yield compression of a law over that of MYC; 1 for a law that never yields."""
     assert _MYC.yield_coefficient is not None
     own = law.yield_coefficient
     return 1.0 if own is None else own / _MYC.yield_coefficient

@@ -1,7 +1,7 @@
 """A claim and its verdict: the outcome of a comparison, not an opinion.
 
 A claim holds if our number is within the tolerance of the printed one, or on the right side of a
-printed bound; if it is not, the verdict is the one named beside it.
+printed bound; otherwise it has the verdict that is given for this case.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ OPEN = "not reproducible here"
 
 @dataclass(frozen=True)
 class Claim:
-    """A claim of the paper and what became of it.
+    """A claim of the paper and its verdict.
 
     Parameters
     ----------
@@ -100,5 +100,5 @@ def undecided(
     why: str,
     ours: float | None = None,
 ) -> Claim:
-    """Nothing to compare with; why, and what we have beside it."""
+    """Make a claim that cannot be checked here, with the reason and our nearest number."""
     return Claim(name, where, statement, printed, ours, "-", OPEN, why)
