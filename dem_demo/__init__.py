@@ -1,6 +1,5 @@
-"""A rain of beads on plates of different thickness: what contactlaw gives a particle simulation.
+"""The command ``dem-demo``: simulations that show what contactlaw gives a particle simulation.
 
-``dem-demo rain`` builds a scene (`scene`), lets an engine run it (`engines`, one file each),
-records it (`recorder`), draws it (`figures`) and prints what it measured (`report`). All quantities
-are in SI units.
+Each command builds a scene, simulates it with an engine, records it (`kit.recorder`), draws figures
+and prints a summary; each folder but `kit` is a scene. All quantities are in SI units.
 """

@@ -1,7 +1,7 @@
 """The command ``dem-demo``: each folder here but the kit is a scene, and a subcommand.
 
-Its file ``command`` has a function `add`, which adds the subcommand, and sets what starts it as
-`start`. What takes long to import is imported inside functions, where Ctrl-C is already heard.
+The file ``command`` of a scene has a function `add`, which adds the subcommand and stores the
+function that runs it as `start`. Slow imports are inside functions, where Ctrl-C is handled.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import dem_demo
 from dem_demo.kit.options import Refused
 from dem_demo.kit.signals import Interrupted, interruptible
 
-_PATIENCE = 300.0  # [s]; more than figures and page of a rain take
+_PATIENCE = 300.0  # [s]; drawing the figures and the page of a rain takes less
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -43,10 +43,10 @@ def main(argv: Sequence[str] | None = None) -> int:
             status = int(arguments.start(arguments, shlex.join(["dem-demo", *argv])))
         return _stopped(status) if status else 0
     except Interrupted as stop:
-        if not _rank():  # of several, the first one tells what becomes of the results
+        if not _rank():  # of several ranks only the first one reports
             print(f"\ndem-demo: {stop} before it began; nothing was written", file=sys.stderr)
         return _stopped(stop.exit_status)
-    except (Refused, OSError, RuntimeError) as error:  # an engine's adapter raises the last one
+    except (Refused, OSError, RuntimeError) as error:  # adapters raise RuntimeError
         print(f"dem-demo: {error}", file=sys.stderr)
         return _stopped(1)
     except Exception:
@@ -96,6 +96,6 @@ def _stopped(status: int) -> int:
     mpi = sys.modules.get("mpi4py.MPI")
     if mpi is not None and mpi.COMM_WORLD.size > 1:
         if _rank() > 0:
-            time.sleep(_PATIENCE)  # rank 0 keeps what there is before it ends everything
+            time.sleep(_PATIENCE)  # rank 0 writes the partial results, then stops all ranks
         mpi.COMM_WORLD.Abort(status)
     return status

@@ -1,1 +1,1 @@
-"""Beads in a drum of thin sheet that turns: ``dem-demo drum``."""
+"""Beads in a turning drum of thin sheet metal: ``dem-demo drum``."""

@@ -1,6 +1,6 @@
-"""``dem-demo drum``: options, and what they start.
+"""``dem-demo drum``: its options, and the function that runs it.
 
-What takes long to import is imported inside functions, where Ctrl-C is already heard.
+Slow imports are inside functions, where Ctrl-C is handled.
 """
 
 from __future__ import annotations

@@ -13,13 +13,13 @@ from dem_demo.drum.scene import Drum
 from dem_demo.kit.drawing import Drawing
 from dem_demo.kit.graphs import MM
 
-_MARKS = 12  # on the shell
-_ROOM = 1.12  # of the drum's radius, to either side
-_THICK = 2.0  # times the thickness of the sheet, or it would hardly be seen
+_MARKS = 12  # number of marks on the shell
+_ROOM = 1.12  # half width of the picture over the drum's radius
+_THICK = 2.0  # the shell is drawn this many times as thick, to be visible
 
 
 class Section(Drawing[Drum]):
-    """The shell, and all beads."""
+    """Cross-section of the drum: the shell, and all beads."""
 
     STACKED, RATE = False, 12.0
 

@@ -1,4 +1,4 @@
-"""What the drum is made of: beads, a shell and two ends of thin sheet, and how they turn."""
+"""The scene of the drum: beads, and a turning shell with two ends of thin sheet metal."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
     from contactlaw.walls import Mesh
 
-_FACETS = 120  # of the shell
-_SPACING = 2.2  # [largest radius]: sites of the beads, so far apart that no two beads touch
-_FULL = 0.4  # [drum's radius] over the axis: the highest sites
-_AROUND = 0.01  # [m] around the drum
+_FACETS = 120  # facets around the shell
+_SPACING = 2.2  # [largest radius], distance of lattice sites: no two beads touch at the start
+_FULL = 0.4  # [drum's radius], height of the highest lattice sites over the axis
+_AROUND = 0.01  # [m], room around the drum in the simulation box
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -78,12 +78,12 @@ class Drum(Bed):
         return [shell, *discs]
 
     def write_walls(self, file: h5py.File) -> None:
-        """Write the sheet of the shell and of the two ends."""
+        """Write the thicknesses of the shell and of the two ends."""
         layout.write_plates(file, [self.thickness] * 3)
 
     @staticmethod
     def read_walls(file: h5py.File) -> Mapping[str, Any]:
-        """Read the sheet."""
+        """Read the thickness of the walls."""
         return {"thickness": float(file["plates/thickness"][0])}
 
 
@@ -110,9 +110,9 @@ def drum(
         Number of beads, their smallest and largest radius [m], which are drawn uniformly, and the
         speed at which they are thrown down [m/s].
     sphere, plate : str, optional
-        Materials of beads and sheet.
+        Names of the materials of beads and walls.
     drum, length, thickness, turns, friction, duration, seed : optional
-        As of `Drum`, in its units.
+        See `Drum`, in the same units.
 
     Raises
     ------
@@ -150,7 +150,7 @@ def drum(
 def _places(
     beads: int, radius: float, drum: float, length: float, rng: np.random.Generator
 ) -> Floats:
-    """Places of beads at random sites of a lattice within the drum, not far above its axis."""
+    """Positions of the beads: random sites of a lattice within the drum, jittered."""
     step, inside = _SPACING * radius, drum - radius
     along = max(1, int((length - 2.0 * radius) // step))
     across = np.arange(-inside, inside + 1e-9, step)

@@ -1,4 +1,4 @@
-"""What a drum tells: its numbers, and the words of its page."""
+"""Facts and texts of the drum for its summary and its page."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from dem_demo.kit.report import label
 from dem_demo.kit.runs import Run
 from dem_demo.kit.tale import Facts, Tale
 
-_SEAM = 1.05  # [bead's radius]: nearer to a seam, it touches shell and end at once
+_SEAM = 1.05  # [bead's radius]; nearer to a seam, a bead touches shell and end at once
 
 
 def on_faces(run: Run[Drum]) -> NDArray[np.bool_]:
-    """Tell for each impact whether the bead touched one wall: not a seam of shell and end.
+    """Mask of impacts in which a bead touched one wall, not a seam of shell and end.
 
-    At a seam both walls share its rebound, and neither contact has a COR of its own.
+    At a seam both walls contribute to the rebound, and neither contact has a COR of its own.
     """
     return np.asarray(_away(run) > _SEAM * run.scene.radius[run.collisions["bead"]])
 
 
 def near_edge(run: Run[Drum]) -> NDArray[np.bool_]:
-    """Tell for each impact whether a seam of shell and end answers while it lasts."""
+    """Mask of impacts so near a seam that the bending wave comes back during the contact."""
     unit = float(edge_distance(run.scene.plate_material, run.scene.thickness, 1.0))
     return np.asarray(_away(run) < unit * np.sqrt(run.collisions["contact_time"]))
 
@@ -68,9 +68,9 @@ TALE = Tale(
     figures=figures,
     page={
         "heading": "Beads in a turning drum",
-        "lede": "Shell and ends of the drum are thin sheet. Under the law each impact on it gets "
-        "the rebound that speed, bead and sheet give it, and tells where the energy went. Beside "
-        "it the same beads with one coefficient of restitution (COR) for all impacts.",
+        "lede": "Shell and ends of the drum are thin sheet. Under the law the rebound of each "
+        "impact follows from speed, bead and sheet, as does where its energy goes. For comparison, "
+        "the same beads with one coefficient of restitution (COR) for all impacts.",
         "alt": "The drum, seen along its axis",
         "others": "",
     },

@@ -1,1 +1,1 @@
-"""What the demo's scenes have in common; nothing here knows a scene."""
+"""What the demo's scenes have in common; no file here imports a scene."""

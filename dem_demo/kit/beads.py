@@ -1,4 +1,4 @@
-"""What is the same of all beads: gravity, and what has become of each."""
+"""Gravity, and the numbers that stand for the status of a bead."""
 
 from __future__ import annotations
 

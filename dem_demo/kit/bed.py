@@ -1,4 +1,4 @@
-"""A bed: beads on walls of sheet that move. Each scene of this kind is a class with its walls."""
+"""A bed: beads on moving walls of sheet metal. Each scene of this kind is a subclass."""
 
 from __future__ import annotations
 
@@ -20,39 +20,39 @@ if TYPE_CHECKING:
     from contactlaw import Material
     from contactlaw.walls import Mesh
 
-ENGINE, EXTRAS = "lammps", "demo,lammps"  # the one engine here that knows meshes
+ENGINE, EXTRAS = "lammps", "demo,lammps"  # no other engine of the demo has mesh walls
 
 Corners = tuple[tuple[float, float, float], tuple[float, float, float]]
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Bed(ABC):
-    """Beads on walls of sheet, and how long they are watched.
+    """Beads on walls of sheet metal, and the time that is simulated.
 
     Attributes
     ----------
     radius : ndarray, shape (N,)
         Radii of the beads [m].
     position : ndarray, shape (N, 3)
-        Of their centres at the start [m]; z points up.
+        Centres of the beads at the start [m]; z points up.
     velocity : ndarray, shape (3,)
-        Of all of them at the start [m/s].
+        Velocity of all beads at the start [m/s].
     thickness : float
-        Of the walls' sheet [m].
+        Thickness of the walls [m].
     sphere_material, plate_material : Material
-        Materials of the beads and of the sheet.
+        Materials of the beads and of the walls.
     friction : float
-        Coulomb's coefficient, of beads on the walls and on each other.
+        Coulomb's coefficient of friction [-], of beads on the walls and on each other.
     duration : float
         Simulated time [s].
     seed : int
         Seed that the beads were drawn with.
     NAME, SCHEMA : str, int
-        Of the scene, and number of its record's form.
+        Name of the scene, and version of the layout of its record.
     AXES : str
-        What the columns of impacts mean in its record.
+        What the columns of the table of impacts mean in the record of this scene.
     NUMBERS : tuple of str
-        Numbers of the scene that its record has as attributes.
+        Attributes of the scene that the record stores as attributes of the file.
     FRAME_RATE : float
         Recorded frames per second [1/s].
     """
@@ -102,10 +102,10 @@ class Bed(ABC):
 
     @abstractmethod
     def meshes(self, thickness: float, folder: Path) -> list[Mesh]:
-        """Make the moving walls, of a thickness [m]; their files are in a folder."""
+        """Make the moving walls, of a thickness [m], from the mesh files in a folder if any."""
 
     def write_files(self, folder: Path) -> None:
-        """Write the files that the walls are read from, where there are any."""
+        """Write the mesh files of the walls, if the scene has any."""
         return
 
     @abstractmethod
@@ -115,14 +115,14 @@ class Bed(ABC):
     @staticmethod
     @abstractmethod
     def read_walls(file: h5py.File) -> Mapping[str, Any]:
-        """Read what the scene has of its walls beside its numbers."""
+        """Read the fields of the scene that `write_walls` has written."""
 
 
 def check(
     scene: type[Bed], *, beads: int, seed: int, duration: float,
     positive: Mapping[str, tuple[float, str]], not_negative: Mapping[str, tuple[float, str]],
 ) -> None:  # fmt: skip
-    """Refuse numbers that no bed has; each of the mappings has a value and its unit by its name."""
+    """Refuse numbers out of range; the mappings give the value and the unit of each name."""
     if not beads >= 1:
         raise ValueError(f"beads: at least one is needed, got {beads!r}")
     if seed < 0:

@@ -28,16 +28,16 @@ class Plan(NamedTuple):
 
 
 def engine() -> None:
-    """Ask for the engine; a `ModuleNotFoundError` where it is missing."""
+    """Import the engine; raises `ModuleNotFoundError` if it is missing."""
     lammps.version()
     lammps.rank()
 
 
 def plan(arguments: argparse.Namespace, scene: Bed, speed: float) -> Plan:
-    """Choose the models of a bed; whatever they refuse is refused now.
+    """Choose the models of a bed, so that arguments out of range are refused before the run.
 
-    The default of the constant COR is the law's where the sheet is thick, at a speed [m/s]: what a
-    drop test on a block would tell.
+    The default of the constant COR is the law's COR on a half-space at a speed [m/s]: the result of
+    a drop test on a thick block.
     """
     pair = Pair(scene.sphere_material, scene.plate_material)
     law = ImpactModel(pair, getattr(arguments, "law", laws.DEFAULT), outside="clamp")
@@ -53,24 +53,24 @@ def start(
     arguments: argparse.Namespace,
     command: str,
     chosen: Plan,
-    told: Tale,
+    texts: Tale,
     drawn: type[drawing.Drawing[Any]],
     others: frozenset[str] = frozenset(),
 ) -> int:
-    """Simulate, draw and tell.
+    """Simulate both runs, and write the records, figures, summary and page.
 
     Parameters
     ----------
     arguments : Namespace
-        Its ``out`` is the folder for the results.
+        Parsed options; ``out`` is the folder for the results.
     command : str
         Command line, for the records.
     chosen : Plan
-        What is simulated.
-    told : Tale
-        What the scene tells.
+        The scene, its two models and the time step.
+    texts : Tale
+        Titles, facts and figures of the scene.
     drawn : type of Drawing
-        How it is drawn.
+        Class that draws a panel of the scene.
     others : set of str, optional
         Names of files that the scene writes beside its records.
 
@@ -83,11 +83,11 @@ def start(
     show = session.Show(
         name=kind.NAME,
         others=frozenset({CONSTANT, *others}),
-        figures=told.figures,
+        figures=texts.figures,
         read=partial(read, scene=kind),
-        summary=partial(tale.summary, told),
+        summary=partial(tale.summary, texts),
         progress=tale.progress,
-        page=partial(tale.page, told),
+        page=partial(tale.page, texts),
         film=partial(drawing.gif, drawn),
         sentence=_sentence,
     )
@@ -111,7 +111,7 @@ def _run(chosen: Plan, recorder: Recorder | None, *, constant: bool) -> None:
 
 
 def _simulate(chosen: Plan, show: session.Show, command: str, folder: Path) -> BaseException | None:
-    """Fill a folder with the records; returns what stopped it, if anything did."""
+    """Write both records into a folder; returns the exception that stopped a run, if any."""
     from mpi4py import MPI
 
     chosen.scene.write_files(folder)

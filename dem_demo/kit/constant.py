@@ -1,4 +1,4 @@
-"""A constant COR in an engine whose walls follow a force law: a law that gives it at any speed."""
+"""A force law whose COR is the same at any speed, for engines whose walls need a force law."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from contactlaw.laws import HERTZ, Law, Loading, Unloading
 from contactlaw.table import Settings
 
 LEAST = 0.2
-# The engine integrates, and a half-space has lambda = 0.
+# A coarse table is enough: the engine integrates the force, and half-spaces have lambda = 0.
 _COARSE = Settings(largest_inelasticity=1e-2, inelasticity_nodes=5, log_overload_step=0.2)
-_BEGIN = 1e-7  # [R*]: below such a compression it is elastic; 1 cm/s compresses 500 times as far
+_BEGIN = 1e-7  # [R*], compression at which losses begin; 1 cm/s compresses 500 times as far
 
 
 def constant_model(pair: Pair, restitution: float) -> ImpactModel:
     """Model whose COR on a half-space is the same at any speed.
 
-    Loading follows Hertz, d^1.5. Unloading returns the share e^2 of that work if it is Hertz's over
-    the share e^2 of the largest compression dm: F = dm^1.5 ((d - dr)/(dm - dr))^1.5 with what
-    remains, dr = (1 - e^2) dm. (As the law is made, dr is 0 where it begins, hence -1/dm.)
+    Loading follows Hertz, d^1.5. Unloading from the largest compression dm follows
+    F = dm^1.5 ((d - dr)/(dm - dr))^1.5 to the residual compression dr = (1 - e^2) dm and returns
+    the share e^2 of the work. (A law needs dr = 0 at yield, dm = 1: hence the term -1/dm.)
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def constant_model(pair: Pair, restitution: float) -> ImpactModel:
     Raises
     ------
     ValueError
-        If it is below 0.2, where 20 steps a contact no longer give it to 0.005, or above 1.
+        If the COR is above 1, or below 0.2, where 20 steps per contact miss it by over 0.005.
 
     Examples
     --------
@@ -52,5 +52,5 @@ def constant_model(pair: Pair, restitution: float) -> ImpactModel:
         unloading=[Unloading(1.0, lambda dm: lost * (dm - 1.0 / dm))] if lost else [],
     )
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the table is coarse, for nobody asks it
+        warnings.simplefilter("ignore")  # the coarse table warns, but is not used
         return ImpactModel(pair, law, _COARSE, outside="clamp")

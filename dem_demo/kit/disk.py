@@ -11,7 +11,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def complaint(error: OSError) -> str:
-    """Say what the disk said, and what would help if it is full.
+    """Message of an error of the disk, with a remedy if the disk is full.
 
     Examples
     --------
@@ -27,7 +27,7 @@ class Disk:
     """A file on disk that goes on in memory when the disk refuses more; for ``h5py.File``.
 
     HDF5 cannot close a file that it could not write, and takes the process down with it at the end.
-    So HDF5 never hears of the error: the attribute `error` has it, None before. From then on the
+    So the error is not raised but kept in the attribute `error`, which is None before. After it the
     whole file is in memory, and the one on disk is empty.
     """
 
@@ -36,7 +36,7 @@ class Disk:
         self.error: OSError | None = None
 
     def __getattr__(self, name: str) -> Any:
-        """Read, seek, tell, flush and close are those of the file."""
+        """Forward read, seek, tell, flush and close to the file."""
         return getattr(self._file, name)
 
     def content(self) -> bytes:
@@ -45,10 +45,10 @@ class Disk:
         return self._file.read()
 
     def write(self, data: memoryview) -> int:
-        """Write all of it at the place, here or in memory."""
+        """Write all data at the current position, on disk or in memory."""
         place, written = self._file.tell(), 0
         try:
-            while written < len(data):  # unbuffered: the last bytes of a disk are a part of it
+            while written < len(data):  # an unbuffered write may be partial when space runs out
                 written += self._file.write(data[written:])
         except OSError as error:
             self._leave(error)

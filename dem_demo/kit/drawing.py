@@ -1,4 +1,4 @@
-"""A bed as it is drawn, still or moving: seen from the side, beads coloured by their last COR."""
+"""Drawings and films of a bed from the side, beads coloured by the COR of their last impact."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from dem_demo.kit.graphs import MM, panels, source
 from dem_demo.kit.measure import restitution_range
 from dem_demo.kit.runs import Run, Runs, S
 
-_WIDTH, _ROOM = 9.0, 0.75  # inches, of a film, and beside the beds in height
+_WIDTH, _ROOM = 9.0, 0.75  # [inches]: width of a film, and height of a panel's title and labels
 
 
 class Drawing(ABC, Generic[S]):
-    """Walls and beads of one run; `show` moves them. A scene says which walls.
+    """Walls and beads of one run; `show` moves them. Each scene draws its walls in a subclass.
 
     Parameters
     ----------
@@ -31,12 +31,12 @@ class Drawing(ABC, Generic[S]):
     run : Run
         The run.
     range : tuple of float
-        Of the COR that colours span.
+        Lowest and highest COR of the colour scale.
 
     Attributes
     ----------
     STACKED : bool
-        Whether runs are drawn one above the other on a screen too, not side by side.
+        Whether the runs stand one above the other on wide screens too; else side by side.
     RATE : float
         Frames per second of the film [1/s].
     """
@@ -54,7 +54,7 @@ class Drawing(ABC, Generic[S]):
         axes.grid(visible=False)
         rows = run.collisions
         end = rows["time"] + rows["contact_time"]
-        order = np.argsort(end, kind="stable")  # to tell the last impact of each bead
+        order = np.argsort(end, kind="stable")  # the last impact of a bead comes last
         self._end, self._last = end[order], rows[["bead", "restitution"]][order]
         self.beads = style.circles(axes, style.PALE, linewidths=0.25, edgecolors="white")
         self.beads.set_clim(*range)
@@ -85,10 +85,10 @@ class Drawing(ABC, Generic[S]):
         near = np.flatnonzero(
             (np.abs(place[:, 1] - middle) < reach) & (run.status[frame] == FLYING)
         )
-        near = near[np.argsort(-place[near, 1])]  # those behind first
+        near = near[np.argsort(-place[near, 1])]  # from back to front
         colour = np.full(len(place), np.nan)
         past = self._last[: int(np.searchsorted(self._end, time, side="right"))]
-        colour[past["bead"]] = past["restitution"]  # the last one stays
+        colour[past["bead"]] = past["restitution"]  # later impacts replace earlier ones
         size: Floats = 2.0 * run.scene.radius[near] * MM
         self.beads.set(offsets=place[near][:, [0, 2]] * MM, widths=size, heights=size)
         self.beads.set(angles=0.0 * size)

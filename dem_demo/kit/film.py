@@ -6,12 +6,12 @@ import io
 
 from PIL import Image
 
-_COLOURS = 96  # beads of all colours, and what their edges mix with them
+_COLOURS = 96  # beads of all colours, and their blended edges
 
 
 def encoded(frames: list[Image.Image], rate: float) -> bytes:
-    """Make a GIF that repeats itself of frames, so many per second [1/s]."""
-    palette = frames[len(frames) // 2].quantize(_COLOURS)  # one for all, or the picture flickers
+    """Make an endless GIF of frames at a rate [1/s]."""
+    palette = frames[len(frames) // 2].quantize(_COLOURS)  # one palette, or it flickers
     reduced = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     file = io.BytesIO()
     reduced[0].save(

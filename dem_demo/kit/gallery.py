@@ -1,7 +1,7 @@
-"""Figures as files of a folder: each that does not begin with ``_`` is one.
+"""Figures as files of a folder: each file whose name does not begin with ``_`` draws one figure.
 
-It has a function ``draw(run) -> Figure``, and its name is the picture's. To add a figure, add a
-file.
+The file has a function ``draw(run) -> Figure``, and its name is the name of the picture. To add a
+figure, add a file.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ class Gallery:
     Parameters
     ----------
     package : str
-        Name of the package.
+        Name of the package with the figures.
     path : sequence of str
-        Its folders, ``__path__``.
+        Folders of the package, its ``__path__``.
     """
 
     def __init__(self, package: str, path: Sequence[str]) -> None:
@@ -42,7 +42,7 @@ class Gallery:
         return sorted(name for name in found if not name.startswith("_"))
 
     def module(self, name: str) -> ModuleType:
-        """File of a figure; its docstring is the caption."""
+        """Import the module that draws a figure; its docstring is the caption."""
         return importlib.import_module(f"{self._package}.{name}")
 
     def draw(self, name: str, run: Any) -> Picture:

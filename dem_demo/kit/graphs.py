@@ -1,6 +1,6 @@
-"""Figures that every bed has, and what its own figures need: words for the runs, a panel for each.
+"""Figures that every bed has, and helpers for the figures of a scene: titles, and a panel per run.
 
-A scene's file of the same name has the caption.
+The caption of a figure is in the scene's file of the same name.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from dem_demo.kit.tale import progress
 
 MM = 1e3
 
-_SHOWN = 6000  # points of each kind
-_SLOWEST = 0.03  # [m/s]
-_MARGIN = 0.12  # of the COR below the curves, and half of it above them
+_SHOWN = 6000  # most points that are drawn of each kind
+_SLOWEST = 0.03  # [m/s], left end of the speed axis
+_MARGIN = 0.12  # room on the COR axis below the curves; above them half of it
 _PARTS = (
     ("moving", "kinetic energy of the beads", style.PALE),
     ("wave", "bending wave in the sheet", style.BLUE),
@@ -34,7 +34,7 @@ _PARTS = (
 
 
 def source(runs: Runs[Any]) -> str:
-    """Say in a few words what ran."""
+    """Subtitle: beads, plate material and thickness, and how far a partial run came."""
     scene = runs.law.scene
     part = f", partial: {progress(runs)}" if runs.reason else ""
     return (
@@ -46,7 +46,7 @@ def source(runs: Runs[Any]) -> str:
 def panels(
     figure: Figure, runs: Runs[Any], *, stacked: bool = False, projection: str | None = None
 ) -> list[tuple[Axes, Run[Any]]]:
-    """Make a panel for each run, with a common scale and its name."""
+    """Make a panel for each run, titled with the name of the run; all have the same scale."""
     n = len(runs.every)
     shape = (n, 1) if stacked else (style.pick(1, n), style.pick(n, 1))
     kind = {"projection": projection}
@@ -60,7 +60,7 @@ def panels(
 
 
 def energy(runs: Runs[Any], title: str, wall: str) -> Figure:
-    """Draw stacked shares over time, under the law and with a constant COR."""
+    """Draw where the energy is over time, stacked, under the law and with a constant COR."""
     figure = style.figure(
         12.0, style.pick(6.0, 8.4), title, f"{source(runs)}; energies of all beads since the start"
     )
@@ -103,12 +103,12 @@ def restitution(
     runs : Runs
         As read from their files.
     flat : ndarray of bool
-        For which impacts under the law it holds.
+        Which impacts are on the flat of one wall, where the COR of the law holds.
     kinds : list
-        Two kinds of beads, smaller ones first: their name, and which ones they are. Each has curves
-        for its smallest and its largest bead.
+        Name and mask of two kinds of beads, smaller ones first. Each kind has curves for its
+        smallest and its largest bead.
     title, others : str
-        Of the figure, and what the other impacts are.
+        Title of the figure, and legend of the impacts that are not `flat`.
     """
     run = runs.law
     figure = style.figure(

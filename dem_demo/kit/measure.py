@@ -1,4 +1,4 @@
-"""What reports and figures say about any bed, computed from its record."""
+"""Numbers for the reports and figures of any bed, computed from its record."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from dem_demo.kit.runs import Run
 
 
 class Account(NamedTuple):
-    """Energy of all beads over time [J]: what came in since the start, and where it went."""
+    """Energy balance of all beads at each frame [J]: input since the start, and where it went."""
 
     start: Floats
     """Kinetic energy at the start."""
@@ -22,17 +22,17 @@ class Account(NamedTuple):
     walls: Floats
     """Work of the moving walls."""
     moving: Floats
-    """Kinetic energy now, that of rotation too."""
+    """Translational and rotational kinetic energy at the frame."""
     wave: Floats
     plastic: Floats
     vibration: Floats
     """Lost to friction within the contact and to vibration of the bodies."""
     others: Floats
-    """The rest: bead on bead, sliding friction, and what contacts hold at that moment."""
+    """The rest: bead on bead, sliding friction, and energy stored in open contacts."""
 
 
 def account(run: Run[Any]) -> Account:
-    """Tell where the energy came from and went until each frame."""
+    """Sum up the energy balance until each frame."""
     rows = run.collisions
     end = rows["time"] + rows["contact_time"]
     order = np.argsort(end, kind="stable")
@@ -51,7 +51,7 @@ def account(run: Run[Any]) -> Account:
 
 
 def kept(run: Run[Any], rows: NDArray[np.void]) -> float:
-    """Constant COR with which these impacts would lose as much; NaN without any.
+    """Constant COR with which these impacts would lose the same energy; NaN without impacts.
 
     e^2 is the mean of the impacts' own e^2, weighted by their energies.
     """
@@ -68,7 +68,7 @@ def curve(run: Run[Any], speed: Floats, radius: float) -> Floats:
 
 
 def restitution_range(run: Run[Any]) -> tuple[float, float]:
-    """Range of COR that colours span: from a low one under the law to 1."""
+    """Range of the colour scale: from the 2 % quantile of the COR, at most 0.9, to 1."""
     found = run.collisions["restitution"]
     low = float(np.quantile(found, 0.02)) if found.size else 0.9
     return max(0.0, min(low, 0.9)), 1.0

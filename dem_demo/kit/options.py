@@ -1,4 +1,4 @@
-"""What the commands have in common: refusals, and options with units. No slow imports."""
+"""Options with units that the commands share, and their errors. No slow imports."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from dem_demo.kit.signals import undisturbed
 
 
 class Refused(Exception):
-    """The physics does not allow what was asked for."""
+    """The command cannot do what was asked for; the message says why."""
 
 
 @contextmanager
 def needing(extras: str) -> Iterator[None]:
-    """Import within this block; what is missing is refused with the extras that have it.
+    """Import within this block; for a missing module, `Refused` names the extras to install.
 
-    An interrupt waits until its end: extension modules of matplotlib drop it, or crash.
+    Interrupts wait until the block ends: matplotlib's extension modules drop them, or crash.
     """
     try:
         with undisturbed():
@@ -31,7 +31,7 @@ def needing(extras: str) -> Iterator[None]:
 
 @contextmanager
 def refusing(arguments: argparse.Namespace) -> Iterator[None]:
-    """Refuse what contactlaw refuses within this block, by the names of the options."""
+    """Raise a `ValueError` of this block as `Refused`, in terms of the options."""
     from contactlaw.cli import sentence
 
     try:
@@ -41,7 +41,7 @@ def refusing(arguments: argparse.Namespace) -> Iterator[None]:
 
 
 def of(make: Callable[..., Any], arguments: argparse.Namespace) -> dict[str, Any]:
-    """Pick those arguments that a function takes."""
+    """Pick the arguments of the command line that a function takes."""
     return {name: getattr(arguments, name) for name in inspect.signature(make).parameters}
 
 
@@ -103,7 +103,7 @@ def _two(words: str, found: tuple[float, ...]) -> tuple[float, float]:
 
 
 def add_law(add: Any, cor: str) -> None:
-    """Add the options that say what rules the impacts, and what the constant COR is of."""
+    """Add the options for the law and for the constant COR, with a help text for the latter."""
     add("--law", metavar="NAME", default=argparse.SUPPRESS,
         help="contact law, of those that contactlaw cor --help lists (default: the one there)"
     )  # fmt: skip
@@ -111,7 +111,7 @@ def add_law(add: Any, cor: str) -> None:
 
 
 def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
-    """Add the options that every bed has, with its names for its wall and for its beads."""
+    """Add the options of every bed; `wall` and `beads` are its words in the help texts."""
     add("--thickness", type=length, metavar="H", default=f"{defaults.THICKNESS:g}",
         help="thickness of the sheet [m], or with a unit")  # fmt: skip
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")

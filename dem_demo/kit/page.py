@@ -1,4 +1,4 @@
-"""What the pages of all scenes have: each needs no other file and no network."""
+"""Parts of the pages of all scenes; a page needs no other file and no network."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ def template(package: str, name: str) -> Template:
 
 
 def partial(progress: str, reason: str) -> str:
-    """Say how far a partial run has come; nothing without a reason."""
+    """Paragraph that says how far a partial run has come; empty for a complete run."""
     if not reason:
         return ""
     return f"<p class='partial'><b>Partial: {html.escape(progress)}.</b> {html.escape(reason)}</p>"
 
 
 def exceeded(found: Sequence[Limit], marked: str) -> str:
-    """List the limits that impacts exceed, and say how those are marked."""
+    """List the limits that impacts exceed; `marked` says how the figures mark such impacts."""
     if not found:
         return "<p>All impacts on plates are inside every limit of the model.</p>"
     rows = "".join(

@@ -1,6 +1,6 @@
-"""The folder of the results: they appear there all at once, and a killed run leaves nothing.
+"""The folder of the results: all files appear there at once, and a killed run leaves none.
 
-An earlier run of the same scene is replaced; whatever else is in the folder is left.
+An earlier run of the same scene is replaced; other files in the folder are left alone.
 """
 
 from __future__ import annotations
@@ -24,27 +24,27 @@ if TYPE_CHECKING:
 
 LOCK = ".lock"
 _UNFINISHED = ".unfinished-"
-_PARTIAL = "partial"  # folder in that of a complete run, which a partial one does not replace
+_PARTIAL = "partial"  # subfolder for a partial run where the folder holds a complete one
 
 
 @contextmanager
 def workplace(folder: Path) -> Iterator[Path]:
-    """Give a temporary folder on the file system of another, which may not exist yet.
+    """Give a temporary folder on the file system of `folder`, which need not exist yet.
 
-    It is locked while its process lives, so that the next run can take away what a killed one left.
-    A `NotADirectoryError` if `folder`, or what it shall be in, is a file.
+    It is locked while its process lives, so that the next run can remove what a killed run left.
+    Raises `NotADirectoryError` if `folder`, or a parent of it, is a file.
     """
     nearest = folder.absolute()
     while not nearest.exists():
         nearest = nearest.parent
     if not nearest.is_dir():
         raise NotADirectoryError(f"out: {nearest} is a file, not a folder")
-    for place in {nearest, folder.absolute().parent}:  # of a run before the folder was there
+    for place in {nearest, folder.absolute().parent}:  # earlier runs may predate `folder`
         for left in place.glob(f"{_UNFINISHED}*"):
             try:
                 with FileLock(left / LOCK, timeout=0):
                     shutil.rmtree(left)
-            except (Timeout, OSError):  # of a run that lives, or not ours to remove
+            except (Timeout, OSError):  # another process uses it, or owns it
                 continue
     temporary = Path(tempfile.mkdtemp(prefix=_UNFINISHED, dir=nearest))
     try:
@@ -56,7 +56,7 @@ def workplace(folder: Path) -> Iterator[Path]:
 
 
 def move(temporary: Path, folder: Path) -> None:
-    """Move all files of a workplace into a folder, made if need be."""
+    """Move all files of a workplace into a folder, which is made if it is missing."""
     with noted():
         folder.mkdir(parents=True, exist_ok=True)
         for name in entries(temporary):
@@ -65,14 +65,14 @@ def move(temporary: Path, folder: Path) -> None:
 
 @contextmanager
 def results(folder: Path) -> Iterator[Path]:
-    """Give a temporary folder whose files move into the real one when all went well."""
+    """Give a temporary folder whose files move into `folder` if the block raises nothing."""
     with workplace(folder) as temporary:
         yield temporary
         move(temporary, folder)
 
 
 def entries(folder: Path) -> list[str]:
-    """Names of what is in a folder, sorted; nothing if there is none."""
+    """Sorted names of all entries of a folder; empty if it does not exist."""
     found = folder.iterdir() if folder.is_dir() else ()
     return sorted(entry.name for entry in found if entry.name != LOCK)
 
@@ -83,12 +83,12 @@ class Place:
     Attributes
     ----------
     earlier : bool
-        Whether it holds an earlier run of this scene.
+        Whether the folder holds an earlier run of this scene.
 
     Raises
     ------
     FileExistsError
-        If it holds a file that this run would replace, and none of its kind has left it there.
+        If this run would replace a file that no earlier run of the scene has written.
     """
 
     def __init__(self, path: Path, show: Show) -> None:
@@ -103,9 +103,9 @@ class Place:
             )
 
     def fill(self, temporary: Path, *, complete: bool) -> Path:
-        """Move all files of a workplace here, in the place of those of an earlier run.
+        """Move all files of a workplace here, and remove those of an earlier run.
 
-        Returns the folder; of a partial run one within it, if it holds a complete one.
+        Returns the folder; a partial run goes into a subfolder if the folder holds a complete run.
         """
         target = self.path if complete or not self._complete else self.path / _PARTIAL
         for place in (target / _PARTIAL, target):
@@ -118,7 +118,7 @@ class Place:
         return target
 
     def _attributes(self, path: Path) -> Mapping[str, Any]:
-        """Read what the record in a folder says of its run; nothing if there is none."""
+        """Read the attributes of the record in a folder; empty if it holds no record."""
         try:
             with h5py.File(path / self._show.record, "r") as file:
                 found = dict(file.attrs)
@@ -127,7 +127,7 @@ class Place:
         return found if found.get("format") == FORMAT + self._show.name else {}
 
     def _owned(self, path: Path) -> set[str]:
-        """Names of the files in a folder that a run of this kind has left there."""
+        """Names of the files in a folder that an earlier run of the scene has written."""
         attributes = self._attributes(path)
         return (
             set(attributes.get("files", self._show.files)) & {*entries(path)}

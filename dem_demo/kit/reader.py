@@ -1,4 +1,4 @@
-"""Reading what every record says of its run."""
+"""Reading the parts that the records of all scenes share."""
 
 from __future__ import annotations
 
@@ -17,27 +17,27 @@ from dem_demo.kit.recorder import COMPLETE, PARTIAL
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Recorded:
-    """What the record of any scene has.
+    """The parts of a run that the record of any scene has.
 
     Attributes
     ----------
     law : str
-        Contact law; with a constant COR the one that it is to be compared with.
+        Contact law; of a run with a constant COR, the law to compare it with.
     outside : str
-        What the model does outside its table.
+        Policy of the model for impacts outside its table.
     constant_cor : float or None
-        The COR of every impact, where there is one.
+        COR of every impact; None if a law gives it.
     engine, command, created : str
-        What ran it, the command line that made it, and when.
+        Name of the engine, command line, and date and time.
     versions : dict of str
-        Of the programs that made it, by name.
+        Versions of the programs that made the record, by name.
     reason : str
-        Why it is partial; empty if it is complete.
+        Why the run is partial; empty if it is complete.
     collisions : structured ndarray
-        One row per impact, as in `contactlaw.engines.record`; with a constant COR in an engine that
-        resolves an impact at once, it ends with the COR.
+        One row per impact, as in `contactlaw.engines.record`. With a constant COR in an engine that
+        resolves an impact in one step, the columns after the COR are missing.
     time, position, velocity, status : ndarray
-        Frames (T,) [s], (T, N, 2 or 3) [m], (T, N, 2 or 3) [m/s], (T, N).
+        Frames: shapes (T,) [s], (T, N, 2 or 3) [m], (T, N, 2 or 3) [m/s] and (T, N).
     """
 
     law: str
@@ -56,7 +56,7 @@ class Recorded:
 
 
 def closed(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
-    """Attributes of a record of a scene; a `ValueError` if it is something else or is open."""
+    """Attributes of a scene's record; `ValueError` if it is another file or was never closed."""
     attributes = dict(file.attrs)
     form, found, state = (attributes.get(name) for name in ("format", "schema", "state"))
     wanted = layout.FORMAT + name
@@ -69,7 +69,7 @@ def closed(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any
 
 
 def common(file: h5py.File) -> dict[str, Any]:
-    """Read what every record has, the frames too, by the names that a run has for it."""
+    """Read the fields of `Recorded`, and all datasets of the frames, by the names of the fields."""
     attributes = dict(file.attrs)
     names = "law", "outside", "engine", "command", "created", "reason"
     versions = {

@@ -1,6 +1,6 @@
 """Writing a run while it happens: frames and impacts, as an HDF5 file that explains itself.
 
-Where things are in it is what `contactlaw.engines.layout` says, and the scene that is recorded.
+The layout of the file is that of `contactlaw.engines.layout`, plus what the scene writes.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from contactlaw.engines.record import IMPACT, OBSERVED
 from dem_demo.kit.disk import Disk, complaint
 from dem_demo.kit.signals import Interrupted, noted, raise_dropped, undisturbed
 
-COMPLETE, PARTIAL = "complete", "partial"  # what the attribute "state" of a closed file says
-FORESEEN = (Interrupted, OSError, ValueError, RuntimeError)  # they say all that is to be said
+COMPLETE, PARTIAL = "complete", "partial"  # values of the attribute "state" of a closed file
+FORESEEN = (Interrupted, OSError, ValueError, RuntimeError)  # their messages suffice: no traceback
 
 
 class Dataset(NamedTuple):
-    """What a file holds of each frame under one name."""
+    """A dataset of the file with one entry per frame."""
 
     name: str
     kind: str
@@ -39,20 +39,20 @@ class Dataset(NamedTuple):
 
 
 class Making(NamedTuple):
-    """What makes a run."""
+    """Model, engine and command that a run is made with."""
 
     model: ImpactModel
-    """What rules the impacts; with a constant COR what to compare them with."""
+    """Model of the impacts; with a constant COR, the model to compare them with."""
     engine: tuple[str, str]
-    """Name and version."""
+    """Name and version of the engine."""
     command: str
-    """Command line."""
+    """Command line of the run."""
     files: Iterable[str]
-    """Names of the files that will be made of the record; those of the engine's own join them."""
+    """Names of the files that will be made of the record; files of the engine are added."""
     time_step: float
-    """Of the engine [s]."""
+    """Time step of the engine [s]."""
     constant_cor: float | None = None
-    """The COR of every impact, where there is one."""
+    """COR of every impact; None if the model gives it."""
 
 
 class Recorder:
@@ -65,22 +65,22 @@ class Recorder:
     scene : str
         Name of the scene.
     making : Making
-        What makes the run.
+        Model, engine and command of the run.
     attributes : mapping
-        What else the file says of itself.
+        Further attributes of the file.
     write_scene : callable
-        Writes what is known before the run into the open file.
+        Writes beads and walls into the open file.
     trajectories : sequence of Dataset
-        What there is of each frame; its time comes by itself.
+        Datasets with one entry per frame; the time of the frame is added.
     frame_rate : float
         Frames per second [1/s].
     axes : str
-        What the columns of impacts mean in this file.
+        What the columns of the table of impacts mean in this file.
 
     Attributes
     ----------
     folder : Path
-        Where the file is; an engine may put one of its own there.
+        Folder of the file; an engine may write files of its own there.
     """
 
     def __init__(
@@ -115,19 +115,19 @@ class Recorder:
     def record(
         self, run: Callable[[Recorder], None], sentence: Callable[[BaseException], str]
     ) -> BaseException | None:
-        """Let an engine run, and close the file, which says whether the run is complete.
+        """Let an engine run, then close the file with a note whether the run is complete.
 
         Parameters
         ----------
         run : callable
-            Hands frames and impacts over.
+            Runs the engine, and passes frames and impacts to the recorder.
         sentence : callable
             Puts an error into words.
 
         Returns
         -------
         BaseException or None
-            What stopped it, if anything did.
+            What stopped the run, if anything did.
         """
         stop: BaseException | None = None
         reason = ""
@@ -143,7 +143,7 @@ class Recorder:
         return stop or self._disk.error
 
     def frame(self, frame: NamedTuple) -> None:
-        """Append one frame, whose fields have the names of the datasets.
+        """Append one frame; its fields have the names of the datasets.
 
         Raises
         ------
@@ -190,7 +190,7 @@ def _made(scene: str, making: Making) -> dict[str, object]:
         "command": making.command,
         "engine": engine,
         f"version_{engine}": version_of_engine,
-        # the name by which the pair gets the law again: without the numbers that are its own
+        # The family's name suffices where the pair gives the numbers of the law.
         "law": law.family if law.from_pair else law.name,
         "outside": making.model.outside,
         "time_step": making.time_step,
@@ -207,7 +207,7 @@ def _made(scene: str, making: Making) -> dict[str, object]:
 def _write_shorter(path: Path, content: bytes, frames: int) -> None:
     """Write a record that the disk had no room for, with every collision but fewer frames.
 
-    Half of the room is left to what else there is to write.
+    The frames are halved at least once, which leaves room for the other files.
     """
     while frames > 0:
         frames //= 2

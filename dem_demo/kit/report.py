@@ -1,4 +1,4 @@
-"""Words that the reports of all scenes have: plates, and limits of the model."""
+"""Words that the reports of all scenes share: names of plates, and limits of the model."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Limit(NamedTuple):
 
 
 def exceeded(flags: NDArray[np.int64], near: NDArray[np.bool_]) -> list[Limit]:
-    """List the limits that impacts exceed, from their flags, and whether they are near an edge."""
+    """List the limits that impacts exceed; `near` marks the impacts near an edge of the plate."""
     found = [
         Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity
     ]
@@ -47,7 +47,7 @@ def _words(flag: Validity) -> str:
 
 
 def limits_lines(found: Sequence[Limit]) -> list[str]:
-    """Say which limits of the model impacts exceed, and what that means."""
+    """Lines of the summary that name the limits which impacts exceed, and their meaning."""
     if not found:
         return ["Limits of the model: all impacts on plates are inside"]
     width = max(len(f"{limit.impacts} {limit.name}") for limit in found)

@@ -1,6 +1,6 @@
-"""The records of a bed that ran twice, under the law and with one COR; written and read.
+"""Writing and reading the two records of a bed, which runs under the law and with a constant COR.
 
-NAME.h5 is that of the law, constant.h5 the other one.
+The run under the law is in NAME.h5, that with a constant COR in constant.h5.
 """
 
 from __future__ import annotations
@@ -30,9 +30,9 @@ class Run(Recorded, Generic[S]):
     Attributes
     ----------
     scene : Bed
-        What fell on what.
+        Beads and walls of the run.
     ranks : int
-        Processes that shared the work.
+        Number of MPI processes.
     kinetic, rotational, potential, elapsed : ndarray, shape (T,)
         Energies of all beads [J], and computing time [s].
     """
@@ -46,42 +46,42 @@ class Run(Recorded, Generic[S]):
 
     @property
     def pair(self) -> Pair:
-        """Materials."""
+        """Materials of beads and walls."""
         return Pair(self.scene.sphere_material, self.scene.plate_material)
 
     @property
     def dissipated(self) -> Floats:
-        """Energy that each impact has lost at its wall, but for friction [J]."""
+        """Energy that each impact lost at its wall, without sliding friction [J]."""
         rows = self.collisions
         lost: Floats = rows["plastic_energy"] + rows["wave_energy"] + rows["other_energy"]
         return lost
 
     @property
     def name(self) -> str:
-        """What ruled its impacts, in a few words."""
+        """Short name of the run: its law, or its constant COR."""
         return f"law {self.law}" if self.constant_cor is None else f"COR {self.constant_cor:.3g}"
 
 
 @dataclass(frozen=True, eq=False)
 class Runs(Generic[S]):
-    """The same bed twice: under the law, and with a constant COR if it got so far."""
+    """The same bed under the law and with a constant COR, which is None if it never started."""
 
     law: Run[S]
     constant: Run[S] | None
 
     @property
     def every(self) -> list[Run[S]]:
-        """Those there are."""
+        """The runs that exist, that of the law first."""
         return [self.law] if self.constant is None else [self.law, self.constant]
 
     @property
     def reason(self) -> str:
-        """Why they are partial; empty if they are complete."""
+        """Why a run is partial; empty if all are complete."""
         return next((run.reason for run in self.every if run.reason), "")
 
 
 def bed_recorder(path: Path, scene: Bed, making: Making, ranks: int) -> Recorder:
-    """Begin the record of a bed in a file, on so many processes that share the work."""
+    """Begin the record of a bed in a file; `ranks` is the number of MPI processes."""
     attributes = {name: getattr(scene, name) for name in scene.NUMBERS}
     n = scene.radius.size
     energy = "kinetic", "rotational", "potential"

@@ -1,4 +1,4 @@
-"""From a command to its folder: simulate, read back, tell, draw, and put everything in place."""
+"""From a command to its folder: simulate, read the record, print, draw, and move all files."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ Film = Callable[[], bytes]
 
 
 class Show(NamedTuple):
-    """What a scene makes of its folder. A run is what `read` gives; it has a `reason`."""
+    """How a scene makes its files. A run is what `read` returns; it has a `reason`."""
 
     name: str
-    """Of the scene; its record is NAME.h5, its film NAME.gif."""
+    """Name of the scene; its record is NAME.h5, its film NAME.gif."""
     others: frozenset[str]
-    """Names of other files that it simulates, but for those of an engine's own."""
+    """Names of further files that a simulation writes; files of an engine are not listed."""
     figures: ModuleType
-    """Has `names` and `draw` of a `Gallery`."""
+    """Package with the `names` and `draw` of a `Gallery`."""
     read: Callable[[Path], Any]
     """Reads the records in a folder."""
     summary: Callable[[Any], str]
@@ -40,27 +40,27 @@ class Show(NamedTuple):
 
     @property
     def record(self) -> str:
-        """Name of the record."""
+        """File name of the record."""
         return f"{self.name}.h5"
 
     @property
     def files(self) -> set[str]:
-        """Names of all files that are left, but for those of an engine's own."""
+        """Names of all files of the results, without those of an engine."""
         pictures = (f"{name}.png" for name in self.figures.names())
         return {self.record, f"{self.name}.gif", SUMMARY, PAGE, *self.others, *pictures}
 
 
 def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | None]) -> int:
-    """Simulate and show it; what has been computed is kept if it is stopped.
+    """Simulate a scene and write its files; an interrupted run keeps what it has computed.
 
     Parameters
     ----------
     out : Path
         The folder for the results.
     show : Show
-        What belongs there.
+        How the scene makes its files.
     simulate : callable
-        Fills a folder with records; returns what stopped it, if anything did.
+        Writes the records into a folder; returns the exception that stopped it, if any.
 
     Returns
     -------
@@ -89,14 +89,14 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
 
 
 def make(show: Show, run: Any, folder: Path) -> dict[str, BaseException]:
-    """Make all files of a run, in the order of what each is worth where a disk has little room.
+    """Make all files of a run, the most useful ones first in case the disk fills up.
 
-    What fails does not keep the rest from being made; an interrupt ends all.
+    If one file fails, the others are still made; an interrupt ends all.
 
     Returns
     -------
     dict
-        What went wrong, by the name of the file that is missing.
+        The exception for each file that is missing, by its name.
     """
     pictures: dict[str, Picture] = {}
     film = functools.cache(lambda: show.film(run))

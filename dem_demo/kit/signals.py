@@ -1,4 +1,4 @@
-"""Ctrl-C and its like: where they stop a run, and where they have to wait."""
+"""Ctrl-C and other signals: where they stop a run, and where they have to wait."""
 
 from __future__ import annotations
 
@@ -39,10 +39,10 @@ def _stop(number: int, frame: FrameType | None) -> None:
 
 
 def raise_dropped() -> None:
-    """Raise again what Python, or a library, dropped: call it where no interrupt is being handled.
+    """Raise an interrupt again that Python or a library dropped; not while one is handled.
 
     Python drops an exception that is raised while it calls a destructor, the callback of a weak
-    reference or a callback from C. Imports and compilation are full of these: of a hundred
+    reference or a callback from C. Imports and compilation make many such calls: of a hundred
     signals that came while a run started, one was lost.
     """
     if _raised:
@@ -77,9 +77,9 @@ def interruptible() -> Iterator[None]:
 
 @contextmanager
 def noted() -> Iterator[list[int]]:
-    """Within this block signals interrupt nothing; the list that it gives has their numbers.
+    """Collect the numbers of the signals of this block in a list; they interrupt nothing.
 
-    At the end of a run, which is short, nobody looks at the list.
+    At the end of a run the list is ignored, since little is left to do.
     """
     came: list[int] = []
     with _on_signals(lambda number, frame: came.append(number)):
@@ -88,9 +88,9 @@ def noted() -> Iterator[list[int]]:
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """Within this block nothing is interrupted; what came meanwhile is raised at its end.
+    """Delay interrupts: the first signal that comes within this block is raised at its end.
 
-    For steps that would leave a mess halfway: HDF5 in the middle of a file, files on the move.
+    It protects steps that must not stop halfway, such as writing HDF5 or moving files.
     """
     with noted() as came:
         yield

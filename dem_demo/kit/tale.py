@@ -1,4 +1,4 @@
-"""What a bed's scene tells of its runs, and the summary and the page that are made of it."""
+"""Texts and facts of a bed's scene, and the summary and the page that are made of them."""
 
 from __future__ import annotations
 
@@ -25,21 +25,21 @@ Marks = NDArray[np.bool_]
 
 
 class Tale(NamedTuple):
-    """What a scene tells beside its figures."""
+    """Texts, facts and figures of a scene."""
 
     wall: str
-    """What beads hit: a deck."""
+    """Name of what the beads hit, such as "deck"."""
     flat: tuple[str, Callable[[Run[Any]], Marks]]
-    """Which impacts the law's COR holds for, in words, and each of them."""
+    """Where the COR of the law holds, in words, and the mask of such impacts."""
     near_edge: Callable[[Run[Any]], Marks]
-    """Whether an edge of the sheet answers while the contact lasts, for each impact."""
+    """Mask of impacts whose bending wave comes back from an edge during the contact."""
     own: Callable[[Run[Any]], Facts]
-    """Facts that no other scene has."""
+    """Names and values of facts that only this scene has."""
     title: Callable[[Run[Any]], tuple[str, str]]
-    """What fell on what, and how, in two lines without what computed it."""
+    """Beads and walls in one line, and the motion of the walls in another."""
     figures: ModuleType
     page: Mapping[str, str]
-    """The words of the page: heading, lede, alt (of the film), others (files beside it)."""
+    """Texts of the page: heading, lede, alt (of the film), others (further files)."""
 
 
 def summary(tale: Tale, runs: Runs[Any]) -> str:
@@ -65,7 +65,7 @@ def summary(tale: Tale, runs: Runs[Any]) -> str:
 
 
 def title(tale: Tale, runs: Runs[Any]) -> tuple[str, str]:
-    """Say in two lines what fell on what, and what computed it."""
+    """Title in two lines: beads and walls; motion, friction, engine and seed."""
     run = runs.law
     what, how = tale.title(run)
     ranks = f"{run.ranks} {'rank' if run.ranks == 1 else 'ranks'}"
@@ -74,7 +74,7 @@ def title(tale: Tale, runs: Runs[Any]) -> tuple[str, str]:
 
 
 def facts(tale: Tale, run: Run[Any]) -> Facts:
-    """Name what was measured, and what it was."""
+    """Names and values of all facts of a run."""
     words, flat = tale.flat[0], run.collisions[tale.flat[1](run)]
     energy = account(run)
     found = [("", run.name), (f"impacts on the {tale.wall}", f"{run.collisions.size}")]
@@ -126,7 +126,7 @@ def page(
     Parameters
     ----------
     tale : Tale
-        Of the scene.
+        Texts and facts of the scene.
     runs : Runs
         As read from their files.
     pictures : mapping of Picture

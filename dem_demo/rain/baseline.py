@@ -8,14 +8,14 @@ from contactlaw import Pair
 
 
 class ConstantRestitution:
-    """What a user would type in without contactlaw; engines take it in place of an `ImpactModel`.
+    """One COR for all contacts, as without contactlaw; an engine takes it like an `ImpactModel`.
 
-    It has no ``lookup``: a constant tells nothing about contact time, force or where energy goes.
+    It has no ``lookup``: a constant does not give contact time, force or where the energy goes.
 
     Parameters
     ----------
     pair : Pair
-        Materials; only the mass of the beads follows from them.
+        Materials; only the masses of the beads depend on them.
     restitution : float
         Coefficient of restitution of every contact [-], between 0 and 1.
 

@@ -1,6 +1,6 @@
-"""``dem-demo rain``: options, and what they start.
+"""``dem-demo rain``: its options, and the function that runs it.
 
-What takes long to import is imported inside functions, where Ctrl-C is already heard.
+Slow imports are inside functions, where Ctrl-C is handled.
 """
 
 from __future__ import annotations
@@ -105,7 +105,7 @@ def _start(arguments: argparse.Namespace, command: str) -> int:
 def _plan(
     arguments: argparse.Namespace, engine: Engine
 ) -> tuple[Scene, ImpactModel | ConstantRestitution, ImpactModel]:
-    """Scene, what rules its impacts, and the model; whatever they refuse is refused now."""
+    """Scene, model or constant COR for the engine, and model; refuses bad arguments early."""
     from contactlaw import ImpactModel, Pair, laws
     from dem_demo.rain.baseline import ConstantRestitution
     from dem_demo.rain.nozzles import rain
@@ -134,7 +134,7 @@ def _plan(
 
 
 def _checked(scene: Scene, model: ImpactModel) -> ImpactModel:
-    """Refuse now what could not be answered later: the hardest impact on each plate."""
+    """Refuse a scene whose hardest impact on a plate is outside the model, before the run."""
     from dem_demo.kit.report import label
     from dem_demo.rain.complaint import sentence
 

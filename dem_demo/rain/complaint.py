@@ -1,4 +1,4 @@
-"""What went wrong, as a sentence for the user of the command line."""
+"""Errors of a rain as sentences for the user of the command line."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def sentence(error: BaseException, scene: Scene, model: ImpactModel) -> str:
     Parameters
     ----------
     error : BaseException
-        What was raised while it rained.
+        What was raised during the rain.
     scene : Scene
-        Sizes of its beads and plates are named beside their numbers.
+        Gives the sizes of the beads and plates, which are named beside their numbers.
     model : ImpactModel
-        Its law and `outside` are no remedy.
+        The model in use: its own law and `outside` are not proposed as remedies.
     """
     text = str(error) or type(error).__name__
     if isinstance(error, OSError):

@@ -1,14 +1,14 @@
-"""The default rain, our own choice: speeds span the yield speed, and something is to be seen.
+"""Default options of the rain, whose speeds span the yield speed.
 
 No imports, so that the command line can show these numbers at once.
 """
 
 BEADS = 600
 THICKNESSES = (0.5e-3, 0.7e-3, 1e-3, 1.5e-3, 2e-3)  # [m]
-RADIUS = (0.5e-3, 0.9e-3)  # [m]; R/H is at most 1.8, where the model is known to hold
+RADIUS = (0.5e-3, 0.9e-3)  # [m]; at most 1.8 times the thickness, where the model is known to hold
 SPEED = (0.5, 15.0)  # [m/s], downwards; gamma-alumina on glass yields from 7.4 m/s
-DURATION = 2.4  # [s], where the engine has no other
-FRAME_RATE = 200.0  # [1/s], where the engine has no other
+DURATION = 2.4  # [s], of engines without a default of their own
+FRAME_RATE = 200.0  # [1/s], likewise
 SEED = 1
 SPHERE, PLATE = "gamma-alumina", "glass"
 ENGINE = "pymunk"

@@ -1,4 +1,4 @@
-"""rain.gif: some of the rain in slow motion, for slides."""
+"""rain.gif: the busiest part of the rain in slow motion, for slides."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ from dem_demo.rain.figures._rain import Picture, instants
 from dem_demo.rain.record import Run
 from dem_demo.rain.report import title
 
-SLOWER = 20  # than it was
-_FRAMES, _RATE = 100, 20.0  # of the film, and per second [1/s]
-_SIZE = 7.2, 4.3  # inches
+SLOWER = 20  # times slower than the rain
+_FRAMES, _RATE = 100, 20.0  # frames of the film, and frames per second [1/s]
+_SIZE = 7.2, 4.3  # [inches]
 
 
 def gif(run: Run) -> bytes:

@@ -1,4 +1,4 @@
-"""What the report and the figures say about a run, computed from its record."""
+"""Numbers for the report and the figures of a rain, computed from its record."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _NOTHING = math.nan, math.nan, math.nan, math.nan
 
 
 class Shares(NamedTuple):
-    """Where energy went: shares that sum to 1.
+    """Shares of the impact energy, which sum to 1.
 
-    All but `kept` are NaN in the baseline: a constant COR does not say where the energy went.
+    In the baseline all but `kept` are NaN: a constant COR does not say where the energy went.
     """
 
     kept: float
@@ -42,7 +42,7 @@ class PlateRow:
     speed, restitution, lowest, highest : float
         Mean normal speed [m/s]; mean, smallest and largest COR.
     shares : Shares
-        Of the impacts' total kinetic energy (normal part).
+        Shares of the total kinetic energy of the impacts' normal motion.
     outside : int
         Number of impacts that exceed a limit of the model.
     """
@@ -94,7 +94,7 @@ def _plate_row(run: Run, plate: int) -> PlateRow:
 
 
 def model_shares(run: Run, plate: int) -> Shares:
-    """Where the energy went, or would have gone had the model ruled the baseline's impacts."""
+    """Shares of the energy by the model, also for the impacts of the baseline."""
     rows = run.modelled[run.modelled["plate"] == plate]
     total = run.energy(rows).sum()
     wave, plastic, other = (
@@ -104,10 +104,10 @@ def model_shares(run: Run, plate: int) -> Shares:
 
 
 def constant_beside_model(run: Run) -> tuple[Floats, Floats]:
-    """Give two CORs for each impact in `Run.modelled`: one for all, and the model's.
+    """Two CORs for each impact in `Run.modelled`: the constant one, and the model's.
 
-    The constant is that of the baseline, or else the mean over all impacts of the run, which nobody
-    would know beforehand.
+    The constant is that of the baseline; without one it is the mean over all impacts of the run,
+    which is not known beforehand.
     """
     rows = run.modelled
     own = rows["restitution"].astype(float)
@@ -119,7 +119,7 @@ def constant_beside_model(run: Run) -> tuple[Floats, Floats]:
 
 
 def restitution_range(run: Run) -> tuple[float, float]:
-    """Range of COR that colours span: from the lowest on a plate, not too narrow, to 1."""
+    """Range of the colour scale: from the lowest COR on a plate, at most 0.99, to 1."""
     on = run.collisions["plate"] >= 0
     return float(run.collisions["restitution"][on].min(initial=0.99)), 1.0
 
@@ -130,27 +130,27 @@ def limits(run: Run) -> list[Limit]:
 
 
 def outside(run: Run) -> NDArray[np.bool_]:
-    """Tell for each impact in `Run.modelled` whether it exceeds a limit of the model."""
+    """Mask of the impacts in `Run.modelled` that exceed a limit of the model."""
     found: NDArray[np.bool_] = (run.modelled["flags"] != 0) | near_edge(run)
     return found
 
 
 def near_edge(run: Run) -> NDArray[np.bool_]:
-    """Tell for each impact in `Run.modelled` whether the plate's edge answers while it lasts."""
+    """Mask of `Run.modelled`: the bending wave comes back from an edge during the contact."""
     rows, near = run.modelled, np.zeros(run.modelled.size, dtype=bool)
     for n, plate in enumerate(run.scene.plates):
         here = rows["plate"] == n
         if plate.thickness == math.inf or not here.any():
             continue
         edge = np.minimum(rows["x"] - plate.x0, plate.x1 - rows["x"])
-        # It grows with the square root of contact time, so one call serves for all.
+        # The distance grows with the square root of contact time: one call serves all impacts.
         unit = edge_distance(run.scene.plate_material, plate.thickness, 1.0)
         near |= here & (edge < unit * np.sqrt(rows["contact_time"]))
     return near
 
 
 class Rebounds(NamedTuple):
-    """Impact speed [m/s], measured rebound height over impact height, whether outside a limit."""
+    """Speed [m/s], rebound height over impact height, and mask of impacts outside a limit."""
 
     speed: Floats
     ratio: Floats
@@ -158,11 +158,11 @@ class Rebounds(NamedTuple):
 
 
 def first_rebounds(run: Run, plate: int) -> Rebounds:
-    """Measure the first impacts of beads.
+    """Measure how high beads rebound from their first impact.
 
-    A bead counts if its first collision is on this plate and it meets nothing until the next frame.
-    There its height and vertical speed give the apex it is going to reach, y + v^2/2g, from what
-    the engine did rather than from the COR it was told.
+    A bead counts if its first collision is on this plate and its second one after the next frame.
+    Height and vertical speed in that frame give the apex, y + v^2/2g: a measure of what the engine
+    did that does not rely on the COR in the record.
     """
     rows = run.collisions
     bead, time = np.r_[rows["bead"], rows["other"]], np.r_[rows["time"], rows["time"]]

@@ -12,14 +12,14 @@ from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.rain import defaults
 from dem_demo.rain.scene import Beads, Plate, Scene
 
-# Our own choices, made so that the figures show something.
-WIDTH, GAP = 0.060, 0.020  # [m], of a plate and between two
-DEPTH = 0.060  # [m], of a plate in three dimensions
-_LARGEST = 0.05  # [m], radius of a bead that suits plates of this size
+# Dimensions of the scene, chosen for clear figures.
+WIDTH, GAP = 0.060, 0.020  # [m], width of a plate, and distance to the next
+DEPTH = 0.060  # [m], depth of a plate in three dimensions
+_LARGEST = 0.05  # [m], largest radius of a bead that suits plates of this size
 MARGIN = 0.012  # [m]: nozzles keep off the edges, whose reflected waves the model leaves out
-HEIGHT = 0.2  # [m], of the nozzles above the plates
+HEIGHT = 0.2  # [m], height of the nozzles above the plates
 SIDEWAYS = 0.05  # [m/s], largest sideways speed: beads wander over to the next plate or the gap
-EMISSION = 0.75  # of the duration: few meet in the air; the rest is for further bounces
+EMISSION = 0.75  # share of the duration in which beads are emitted; the rest is for bounces
 
 GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 # Of n successive multiples of GOLDEN modulo 1, no two are closer than SPACING / n (Hurwitz).
@@ -56,7 +56,7 @@ def rain(
     sphere, plate : Material or str, optional
         Materials of beads and plates.
     dimensions : int, optional
-        Of the engine; in 3 there are as many rows of nozzles, one behind the other, as fit.
+        Dimensions of the engine, 2 or 3; in 3 there are as many rows of nozzles as fit.
     frame_rate : float, optional
         Recorded frames per second [1/s].
 
@@ -97,7 +97,7 @@ def rain(
 def depths(scene: Scene) -> Floats:
     """Third coordinate of each bead at its emission [m], from the middle of the plates.
 
-    The rows take turns.
+    Successive beads come from successive rows of nozzles.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def _draw(
     seed: int,
     rows: int,
 ) -> Beads:
-    """Beads at seeded times, places, sizes and speeds, none emitted into another."""
+    """Draw times, places, sizes and speeds of beads, none of which is emitted into another."""
     _check_crowd(n, plates, radius[1], speed[0], period, rows)
     rng = np.random.default_rng(seed)
     time = (np.arange(n) + rng.random(n)) * (period / n)
@@ -145,7 +145,7 @@ def _draw(
 def _check_crowd(
     n: int, plates: int, radius: float, speed: float, period: float, rows: int
 ) -> None:
-    """Refuse more beads than the nozzles can let go without overlap."""
+    """Refuse more beads than the nozzles can emit without overlap."""
     fall = 2.0 * radius
     clear = (math.sqrt(speed**2 + 2.0 * GRAVITY * fall) - speed) / GRAVITY
     together = SPACING * plates * (WIDTH - 2.0 * MARGIN) / fall

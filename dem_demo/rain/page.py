@@ -1,6 +1,6 @@
-"""index.html: one page with all that a rain has to show, which needs no other file and no network.
+"""index.html: the results of a rain on one page, which needs no other file and no network.
 
-``page.html`` is its frame, ``page.css`` of the kit its look, and ``player.js`` moves the beads.
+The page is made of ``page.html``, ``page.css`` of the kit, and ``player.js``, the animation.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from dem_demo.rain.measure import (
 from dem_demo.rain.record import Run
 from dem_demo.rain.report import progress, title
 
-_SAMPLES = 96  # of a contact's force
+_SAMPLES = 96  # points of the force curve of a contact
 _FIELDS = ("start", "end", "x", "y", "u", "v", "fall", "restitution", "other_v", "outside")
 
 
@@ -116,7 +116,7 @@ def _hardest(run: Run, plate: int) -> dict[str, object] | None:
     contact = run.model.force_history(speed, radius, thickness, samples=_SAMPLES)
     constant, model = (float(cor[n]) for cor in constant_beside_model(run))
     material = run.scene.plate_material
-    # Kirchhoff's plate: it spreads by sqrt(D/(rho H)), with D/(rho H) = E H^2/(12 rho (1 - nu^2))
+    # Kirchhoff's plate: waves spread by sqrt(D/(rho H)), D/(rho H) = E H^2/(12 rho (1 - nu^2)).
     stiffness = material.youngs_modulus / (12.0 * material.density)
     spread = math.sqrt(stiffness / (1.0 - material.poissons_ratio**2)) * min(thickness, 1.0)
     return {
@@ -139,7 +139,7 @@ def _rounded(values: NDArray[np.float64]) -> list[float]:
 
 
 def _other(run: Run) -> str:
-    """Name the COR that the rings follow."""
+    """Say which COR the rings of the animation follow."""
     if run.baseline:
         return "where contactlaw would send them"
     constant = constant_beside_model(run)[0]

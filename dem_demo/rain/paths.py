@@ -1,4 +1,4 @@
-"""The flight of every bead in pieces, from impact to impact: what animations need, and small."""
+"""The flight of every bead in pieces, from impact to impact: compact data for animations."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ PIECE = np.dtype(
         ("bead", "i4"),
         *[(name, "f8") for name in ("start", "end", "x", "y", "u", "v", "fall")],
         ("restitution", "f8"),  # of the last impact on a plate so far, NaN before the first
-        ("other_v", "f8"),  # as v, had the COR been the other one; NaN if no plate began the piece
-        ("outside", "i4"),  # 1: that last impact exceeds a limit of the model
+        ("other_v", "f8"),  # v with the other COR; NaN if no impact on a plate began it
+        ("outside", "i4"),  # 1: the last impact exceeds a limit of the model
     ]
 )
 
-_MOST = 3000  # beads: some 0.2 MB of the page per thousand
-_PLACE = 5e-5  # [m]: nobody sees less
-# Where a bead lies still it falls within every frame as far as this many times what gravity gives.
+_MOST = 3000  # most beads on a page; a thousand take some 0.2 MB
+_PLACE = 5e-5  # [m], invisible difference of two positions
+# A bead at rest is slower than this many times the speed that gravity adds in a frame.
 _STILL = 2.0
 _UNMARKED = math.nan, math.nan, 0
 
 
-@functools.lru_cache(maxsize=1)  # snapshot, film and page ask for the same
+@functools.lru_cache(maxsize=1)  # shared by snapshot, film and page
 def pieces(run: Run) -> NDArray[np.void]:
-    """Cut the flights of beads into parabolas, and rest into what stands still.
+    """Cut the paths of beads into parabolas, and into pieces at rest.
 
     Parameters
     ----------
@@ -44,8 +44,8 @@ def pieces(run: Run) -> NDArray[np.void]:
     Returns
     -------
     structured ndarray
-        Pieces of dtype `PIECE` of the beads that are `drawn`, by bead and by time. Recorded impacts
-        end a piece at their time, others (which an engine does not record) between two frames.
+        Pieces of dtype `PIECE` of the beads that are `drawn`, by bead and time. A piece ends at a
+        recorded impact, or between two frames where the engine does not record the impact.
     """
     found: list[tuple[float, ...]] = []
     hits = _hits(run)
@@ -57,26 +57,26 @@ def pieces(run: Run) -> NDArray[np.void]:
 
 
 def drawn(run: Run) -> NDArray[np.int64]:
-    """Numbers of the beads that are drawn: all, or as many as a page has room for."""
+    """Choose the beads that are drawn, by index: all, or `_MOST` of them evenly."""
     every = run.scene.beads.radius.size
     return np.unique(np.linspace(0, every - 1, min(every, _MOST)).round().astype(int))
 
 
 def at(made: NDArray[np.void], time: float) -> NDArray[np.void]:
-    """Pieces that are under way at a time [s], one for each bead that flies."""
+    """Pieces that cover a time [s], one for each bead that flies."""
     now: NDArray[np.void] = made[(made["start"] <= time) & (time < made["end"])]
     return now
 
 
 def places(made: NDArray[np.void], time: float | Floats) -> Floats:
-    """Places (N, 2) of the beads on pieces at a time [s], the same for all or one for each [m]."""
+    """Positions (N, 2) [m] of the beads on pieces at a time [s], one for all or one for each."""
     t = time - made["start"]
     height = made["y"] + made["v"] * t - 0.5 * made["fall"] * t**2
     return np.column_stack((made["x"] + made["u"] * t, height))
 
 
 def _hits(run: Run) -> list[Floats]:
-    """Find the times of each bead's recorded collisions, in order."""
+    """Find the times of the recorded collisions of each bead, ascending."""
     rows = run.collisions
     bead = np.r_[rows["bead"], rows["other"]]
     time = np.r_[rows["time"], rows["time"]]
@@ -87,7 +87,7 @@ def _hits(run: Run) -> list[Floats]:
 
 
 class _Free(NamedTuple):
-    """Free flight, or rest, as it is at one instant."""
+    """State of a bead in free flight, or at rest, at one instant."""
 
     time: float
     x: float
@@ -97,13 +97,13 @@ class _Free(NamedTuple):
     fall: float
 
     def later(self, time: float) -> _Free:
-        """Go on to another time."""
+        """State at another time of the same flight."""
         t = time - self.time
         y = self.y + self.v * t - 0.5 * self.fall * t * t
         return _Free(time, self.x + self.u * t, y, self.u, self.v - self.fall * t, self.fall)
 
     def meets(self, other: _Free, slow: float) -> bool:
-        """Whether another state of the same time is the same."""
+        """Whether another state at the same time is part of the same flight."""
         return (
             math.hypot(self.x - other.x, self.y - other.y) < _PLACE
             and math.hypot(self.u - other.u, self.v - other.v) < slow
@@ -122,7 +122,7 @@ def _flight(run: Run, bead: int, hits: Floats) -> list[tuple[float, ...]]:
         between = hits[(hits > before.time) & (hits <= new.time)].tolist()
         between = between or [0.5 * (before.time + new.time)]
         found.append((begin, between[0], now))
-        if len(between) > 1:  # nothing is known of what was between them: straight on
+        if len(between) > 1:  # between unknown impacts: a straight line
             found.append((between[0], between[-1], _straight(now, new, between)))
         lies = math.hypot(new.u, new.v) < slow
         begin, now = between[-1], new._replace(fall=0.0) if lies else new
@@ -146,7 +146,7 @@ def _straight(old: _Free, new: _Free, between: list[float]) -> _Free:
 
 
 def _mark(made: NDArray[np.void], run: Run) -> None:
-    """Say what the impacts on plates have to do with the pieces."""
+    """Write the last impact on a plate, and the rebound with the other COR, into the pieces."""
     rows = run.modelled
     constant, model = constant_beside_model(run)
     other = model if run.baseline else constant

@@ -1,5 +1,5 @@
 "use strict";
-// Metres and seconds throughout; only what draws knows pixels.
+// All quantities are in metres and seconds; only the drawing functions use pixels.
 const data = JSON.parse(document.getElementById("data").textContent);
 const byId = (id) => document.getElementById(id);
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -14,7 +14,7 @@ function unpack(text, fields) {
   return found;
 }
 
-// A canvas as wide as the page lets it be and as high as it should be; draws in CSS pixels.
+// A canvas of the page's width and a given height, drawn in CSS pixels.
 function surface(id, aspect, draw) {
   const canvas = byId(id), pen = canvas.getContext("2d");
   const fit = () => {
@@ -90,7 +90,7 @@ function drawRain(pen, width, tall) {
     }
     if (byId("others").checked && piece.other_v >= 0) {
       const other = height(piece, piece.other_v, age);
-      if (other < piece.y) continue; // it would have come down again
+      if (other < piece.y) continue; // the bead would have fallen back by now
       pen.strokeStyle = INK;
       pen.lineWidth = 1.2;
       circle(pen, x, Y(other), radius + 1);
@@ -106,7 +106,7 @@ function drawRain(pen, width, tall) {
   byId("clock").textContent = (now * 1e3).toFixed(0) + " ms";
 }
 
-// One hit: what it does to the plate, and its force.
+// One hit: motion of bead and plate, and contact force.
 const hits = data.hits;
 const BEFORE = 0.7, AFTER = 2.6, LOOP = 6; // contact times before and after touch; seconds
 let hit = hits[0], phase = still ? 0.5 : -BEFORE; // in contact times
@@ -159,7 +159,7 @@ function drawContact(pen, width, tall) {
   const sunk = phase < 0 ? 0 : pressed + sampled(hit.displacement, phase);
   const y = ground - radius - shift(gap) + shift(sunk);
   pen.save();
-  if (phase >= 0 && phase <= 1) { // it is flattened where it touches
+  if (phase >= 0 && phase <= 1) { // the bead is flattened at the contact
     pen.beginPath();
     pen.rect(0, 0, width, surfaceAt(width / 2));
     pen.clip();

@@ -1,4 +1,4 @@
-"""The record of a rain, rain.h5, written and read: all that figures and report need is in it."""
+"""Writing and reading the record of a rain, rain.h5, which figures and report are made from."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from dem_demo.rain.scene import Beads, Plate, Scene
 
 NAME, SCHEMA = "rain", 3
 
-# The columns' own descriptions are those of any engine; this is what they mean in this file.
+# What the columns of impacts mean in this file, beside their descriptions for any engine.
 _AXES = (
     "one row per impact; bead and other are rows of /beads, plate of /plates; x is horizontal, y "
     "points up, z is the depth"
@@ -37,13 +37,13 @@ def rain_recorder(
     path : Path
         File to create.
     scene : Scene
-        What is recorded.
+        Beads and plates.
     making : Making
-        What makes the run.
+        Model, engine and command of the run.
     dimensions : int
-        Of the engine, 2 or 3.
+        Dimensions of the engine, 2 or 3.
     bead_on_bead : str, optional
-        What is to be said of beads that hit beads, where the engine does not record them.
+        How the report describes bead-on-bead contacts, if the engine does not record them.
     """
     attributes = {name: getattr(scene, name) for name in ("seed", "duration", "frame_rate")}
     attributes["schema"] = SCHEMA
@@ -100,9 +100,9 @@ class Run(Recorded):
     Attributes
     ----------
     scene : Scene
-        What fell on what.
+        Beads and plates of the run.
     bead_on_bead : str or None
-        What is to be said of beads that hit beads, where the engine does not record them.
+        How the report describes bead-on-bead contacts, if the engine does not record them.
     depth : ndarray or None
         Third coordinate (T, N) [m], if the engine has one.
     """
@@ -113,10 +113,10 @@ class Run(Recorded):
 
     @cached_property
     def model(self) -> ImpactModel:
-        """The impact model; for the baseline the one that it is to be compared with.
+        """The impact model; for the baseline, the model to compare it with.
 
-        Curves and the baseline's impacts may leave the table where no recorded impact has: there it
-        takes the value at the border, and flags it.
+        Curves and the baseline's impacts may lie outside the table where no recorded impact does:
+        there the model takes the value at the border, and flags it.
         """
         pair = Pair(self.scene.sphere_material, self.scene.plate_material)
         outside = "clamp" if self.outside == "raise" else self.outside
@@ -124,10 +124,10 @@ class Run(Recorded):
 
     @cached_property
     def modelled(self) -> NDArray[np.void]:
-        """Impacts on plates with all that the model says of them: every column of the record.
+        """Impacts on plates, with every column that the model can fill.
 
-        As recorded; only where the record has no flags, as in the baseline, is the model asked
-        about the same impacts. Their COR is that of the run all the same.
+        They are as recorded if the record has flags. If it has none, as in the baseline, the model
+        fills the missing columns for the same impacts; the COR stays that of the run.
         """
         recorded = self.collisions[self.collisions["plate"] >= 0]
         names = recorded.dtype.names or ()

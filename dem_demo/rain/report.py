@@ -45,7 +45,7 @@ def progress(run: Run) -> str:
 
 
 def title(run: Run) -> tuple[str, str]:
-    """Say in two lines what fell on what, and what computed it."""
+    """Title in two lines: beads and plates; duration, engine, law and seed."""
     scene, radius = run.scene, run.scene.beads.radius * 1e3
     law = f"law {run.law}"
     if run.baseline:

@@ -1,4 +1,4 @@
-"""What the rain is made of: beads, plates, materials and the time they are given."""
+"""The scene of a rain: beads, plates, materials and duration."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from contactlaw import Material
 
 # Steps in which the fastest falling bead crosses the smallest radius. Beads that strike each other
-# get faster than that; up to three times as fast, no bead can jump through a plate.
+# may be faster: up to three times that speed, no bead can jump through a plate.
 STEPS_PER_RADIUS = 3.0
 
 
@@ -29,7 +29,7 @@ class Plate:
     thickness : float
         Thickness [m]; ``inf`` is a half-space.
     x0, x1 : float
-        Where it begins and ends [m].
+        Left and right end of the plate [m].
     y : float, optional
         Height of its upper face [m].
 
@@ -45,7 +45,7 @@ class Plate:
     y: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse what is no plate."""
+        """Refuse impossible numbers."""
         if not self.thickness > 0.0:
             raise ValueError(
                 f"plates: thickness must be positive [m], or inf, got {self.thickness!r}"
@@ -67,7 +67,7 @@ class Beads:
     emission_time : ndarray, shape (N,)
         When each bead leaves the nozzle row [s], ascending.
     position, velocity : ndarray, shape (N, 2)
-        Of the centre at that time, (x, y) [m] and [m/s].
+        Position [m] and velocity [m/s] of the centre at that time, (x, y).
     """
 
     radius: Floats
@@ -98,14 +98,14 @@ class Beads:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Scene:
-    """Beads that fall on plates, and how long they are watched.
+    """Beads that fall on plates, and the time that is simulated.
 
     Parameters
     ----------
     beads : Beads
-        What falls.
+        The beads.
     plates : sequence of Plate
-        What it falls on.
+        The plates.
     sphere_material, plate_material : Material
         Materials of the beads and of the plates.
     duration : float

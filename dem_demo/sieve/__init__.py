@@ -1,1 +1,1 @@
-"""``dem-demo sieve``: beads fall on a perforated deck of thin sheet that vibrates."""
+"""``dem-demo sieve``: beads fall on a vibrating, perforated deck of sheet metal."""

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from dem_demo.kit.beads import Floats
 
 FORM = "deck.stl"
-_PITCH = 2.0  # [opening]: 20 % of the sheet are openings
-_SIDES = 16  # of a polygon that stands for a circle; the corners of a cell are among its rays
+_PITCH = 2.0  # [opening], distance of openings: they take 20 % of the area
+_SIDES = 16  # corners of the polygon that stands for an opening; a multiple of 8
 _WALL = 5.0  # [opening], height of the walls
 
 
@@ -42,17 +42,17 @@ class Deck:
 
     @property
     def pitch(self) -> float:
-        """Distance of two openings [m]."""
+        """Distance of the centres of neighbouring openings [m]."""
         return _PITCH * self.opening
 
     @property
     def length(self) -> float:
-        """Along x [m]."""
+        """Length of the deck along x [m]."""
         return self.columns * self.pitch
 
     @property
     def width(self) -> float:
-        """Along y [m]."""
+        """Width of the deck along y [m]."""
         return self.rows * self.pitch
 
     @property
@@ -60,7 +60,7 @@ class Deck:
         """Height of the walls [m]."""
         return _WALL * self.opening
 
-    @functools.cache  # noqa: B019  a deck or two in a process
+    @functools.cache  # noqa: B019  a process has few decks
     def triangles(self) -> Floats:
         """Corners of all triangles, shape (n, 3, 3) [m]: the sheet at z = 0, and the walls."""
         column, row = np.meshgrid(np.arange(self.columns), np.arange(self.rows), indexing="ij")
@@ -85,7 +85,7 @@ class Deck:
         return found
 
     def nearest_edge(self, x: Floats, y: Floats) -> Floats:
-        """Distance of points of the sheet from the nearest opening [m]."""
+        """Distance of points of the deck from the nearest opening [m]; 0 within one."""
         cell = [
             np.clip(np.floor(value / self.pitch), 1, count - 2) + 0.5
             for value, count in ((x, self.columns), (y, self.rows))
@@ -98,7 +98,7 @@ def _edge() -> Floats:
     """Where the rays of a cell meet its side, from corner to corner [pitch]."""
     angle = np.linspace(-0.25 * math.pi, 0.25 * math.pi, _SIDES // 4 + 1)
     edge = 0.5 + 0.5 * np.tan(angle)
-    edge[[0, -1]] = 0.0, 1.0  # as the next cell has them
+    edge[[0, -1]] = 0.0, 1.0  # the corners that neighbouring cells share, exactly
     return edge.round(12)
 
 

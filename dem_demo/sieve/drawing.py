@@ -10,12 +10,12 @@ from dem_demo.kit.drawing import Drawing
 from dem_demo.kit.graphs import MM
 from dem_demo.sieve.scene import Sieve
 
-_SLICE = 4.0  # [largest radius], to either side of the middle
-_ABOVE, _BELOW = 1.05, 4.0  # of the feed's height; openings, below the deck
+_SLICE = 4.0  # [largest radius], half width of the slice that is drawn
+_ABOVE, _BELOW = 1.05, 4.0  # [feed's height], [opening]: room above and below the deck
 
 
 class Sheet(Drawing[Sieve]):
-    """The sheet between the openings of a row, and the walls."""
+    """Section of the deck through a row of openings, with its walls."""
 
     STACKED, RATE = True, 8.0
 
@@ -42,7 +42,7 @@ class Sheet(Drawing[Sieve]):
             line.set_data(*(rest + moved).T)
 
     def _sheet(self) -> list[Line2D]:
-        """Make lines of the sheet and of the walls."""
+        """Lines of the deck between its openings, and of its walls."""
         deck = self.run.scene.deck
         half = 0.5 * deck.opening
         holes = (np.arange(1, deck.columns - 1) + 0.5) * deck.pitch

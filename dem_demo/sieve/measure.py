@@ -1,4 +1,4 @@
-"""What the report and the figures say about a sieve, computed from its record."""
+"""Numbers for the report and the figures of a sieve, computed from its record."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from dem_demo.kit.runs import Run
 from dem_demo.sieve.deck import areas
 from dem_demo.sieve.scene import Sieve
 
-_SMOOTH = 1.0  # [pitch], standard deviation: single impacts become a density
-_GRID = 0.125  # [pitch]
-_RIM = 1e-6  # [m] from an opening: rounding of the contact point
+_SMOOTH = 1.0  # [pitch], standard deviation of the average that makes a density of impacts
+_GRID = 0.125  # [pitch], cell of the grid for that average
+_RIM = 1e-6  # [m]; contact points nearer to an opening are on its rim, within rounding
 
 
 def on_sheet(run: Run[Sieve]) -> NDArray[np.bool_]:
@@ -27,8 +27,8 @@ def on_sheet(run: Run[Sieve]) -> NDArray[np.bool_]:
 def density(run: Run[Sieve]) -> Floats:
     """Dissipated energy per area of the sheet [J/m2], one value per triangle of it.
 
-    Averaged over the neighbourhood, with a normal distribution whose standard deviation is the
-    distance of two openings: the energy of all triangles there over their area.
+    It is an average over neighbouring triangles: energy over area, both weighted by a Gaussian
+    whose standard deviation is the distance of two openings.
     """
     sheet = on_sheet(run)
     corners = run.scene.deck.triangles()[sheet]
@@ -57,7 +57,7 @@ def _averaged(corners: Floats, energy: Floats, pitch: float) -> Floats:
 
 
 def near_edge(run: Run[Sieve]) -> NDArray[np.bool_]:
-    """Tell for each impact on the sheet whether an opening answers while it lasts."""
+    """Mask of impacts so near an opening that the bending wave comes back during the contact."""
     scene = run.scene
     unit = float(edge_distance(scene.plate_material, scene.thickness, 1.0))
     near: NDArray[np.bool_] = _away(run) < unit * np.sqrt(run.collisions["contact_time"])
@@ -65,17 +65,17 @@ def near_edge(run: Run[Sieve]) -> NDArray[np.bool_]:
 
 
 def on_faces(run: Run[Sieve]) -> NDArray[np.bool_]:
-    """Tell for each impact whether it was on the flat of the sheet.
+    """Mask of impacts on the flat of the deck, not on a rim or a wall.
 
-    At the rim of an opening a bead may have several contacts at once. They share its rebound, and
-    none of them has a COR of its own.
+    At the rim of an opening a bead may have several contacts at once, none of which has a COR of
+    its own.
     """
     flat: NDArray[np.bool_] = on_sheet(run)[run.collisions["triangle"]]
     return flat & (_away(run) > _RIM)
 
 
 def _away(run: Run[Sieve]) -> Floats:
-    """Distance of each impact from the nearest opening, inf on a wall [m]."""
+    """Distance of each impact from the nearest opening [m]; inf on a wall."""
     rows, scene = run.collisions, run.scene
     moved = np.sin(2.0 * math.pi * scene.frequency * (rows["time"] + rows["contact_time"]))
     x, y = (rows[name] - scene.vibration[n] * moved for n, name in enumerate("xy"))
@@ -83,7 +83,7 @@ def _away(run: Run[Sieve]) -> Floats:
 
 
 def passed(run: Run[Sieve]) -> Floats:
-    """Share of the undersize beads that is under the deck, for each frame."""
+    """Share of the undersize beads that are under the deck, for each frame."""
     small = run.scene.small
     under = run.position[:, small, 2] < -run.scene.amplitude - 0.5 * run.scene.deck.opening
     share: Floats = under.sum(axis=1) / max(1, int(small.sum()))

@@ -1,4 +1,4 @@
-"""What the sieve is made of: a feed of beads of two sizes, a deck, its motion."""
+"""The scene of the sieve: a feed of beads of two sizes, and a vibrating deck."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 
     from contactlaw.walls import Mesh
 
-_COLUMNS, _ROWS, _BEADS = 48, 29, 10_000  # cells, and the beads that cover them 1.5 times
-_FEWEST = 8, 5  # cells
-_SPACING = 2.2  # [largest radius]: sites of the feed, so far apart that no two beads touch
-_LAYERS = 8  # of sites
-_MIDDLE, _SPREAD = 0.3, 0.4  # [length]: where the feed falls, most of it at its middle
-_DRIFT = 0.5  # times its speed: the feed's along the deck
-_AROUND = 0.2  # [m] beside and above the feed, in which beads still fly
+_COLUMNS, _ROWS, _BEADS = 48, 29, 10_000  # cells of a deck, and the beads that cover it 1.5 times
+_FEWEST = 8, 5  # columns and rows of the smallest deck
+_SPACING = 2.2  # [largest radius], distance of lattice sites: no two beads touch at the start
+_LAYERS = 8  # least number of layers of lattice sites
+_MIDDLE, _SPREAD = 0.3, 0.4  # [deck's length], centre and spread of the feed along x
+_DRIFT = 0.5  # speed of the feed along the deck, over its speed downwards
+_AROUND = 0.2  # [m], room around deck and feed in the simulation box
 _DECK = "columns", "rows", "opening"
-LIFT = 2.0  # [amplitude] of the feed's lowest beads over the highest deck
+LIFT = 2.0  # [amplitude], extra height of the feed, above the deck's highest position
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -40,9 +40,9 @@ class Sieve(Bed):
     Attributes
     ----------
     deck : Deck
-        The deck.
+        Mesh of the deck at rest.
     frequency, amplitude : float
-        Of its vibration [1/s], [m], at 45 degrees to it.
+        Frequency [1/s] and amplitude [m] of the vibration, which is at 45 degrees to the deck.
     """
 
     NAME, SCHEMA = "sieve", 1
@@ -64,7 +64,7 @@ class Sieve(Bed):
 
     @property
     def types(self) -> NDArray[np.int64]:
-        """1: undersize, 2: not."""
+        """Atom type of each bead: 1 for undersize beads, 2 for the others."""
         return np.where(self.small, 1, 2)
 
     @property
@@ -77,7 +77,7 @@ class Sieve(Bed):
 
     @property
     def vibration(self) -> Floats:
-        """Amplitude of the deck's motion [m], along x, y and z."""
+        """Components of the deck's amplitude along x, y and z [m]."""
         return self.amplitude * math.sqrt(0.5) * np.array([1.0, 0.0, 1.0])
 
     @property
@@ -105,7 +105,7 @@ class Sieve(Bed):
         return [Mesh.read(folder / FORM, thickness, scale=1e-3, motion=motion)]
 
     def write_walls(self, file: h5py.File) -> None:
-        """Write the deck."""
+        """Write the triangles and the dimensions of the deck."""
         deck = file.create_group("deck")
         corners = "corners (x, y, z) of each triangle at rest"
         layout.write(deck, "triangles", self.deck.triangles(), "m", corners)
@@ -113,7 +113,7 @@ class Sieve(Bed):
 
     @staticmethod
     def read_walls(file: h5py.File) -> Mapping[str, Any]:
-        """Read the deck."""
+        """Read the deck from its dimensions."""
         attributes = file["deck"].attrs
         return {"deck": Deck(**{name: attributes[name].item() for name in _DECK})}
 
@@ -133,7 +133,7 @@ def sieve(
     duration: float = defaults.DURATION,
     seed: int = defaults.SEED,
 ) -> Sieve:
-    """Make a sieve whose deck is as large as its beads need.
+    """Make a sieve with a deck in proportion to the number of beads.
 
     Parameters
     ----------
@@ -143,9 +143,9 @@ def sieve(
     opening : float, optional
         Diameter of the openings [m].
     sphere, plate : str, optional
-        Materials of beads and sheet.
+        Names of the materials of beads and deck.
     thickness, frequency, amplitude, friction, duration, seed : optional
-        As of `Sieve`, in its units.
+        See `Sieve`, in the same units.
 
     Raises
     ------
@@ -189,7 +189,7 @@ def sieve(
 
 
 def _feed(beads: int, radius: float, deck: Deck, rng: np.random.Generator) -> Floats:
-    """Places of beads on a loose lattice over the deck, dense where the feed falls."""
+    """Positions of the beads: sites of a loose lattice, most of them near `_MIDDLE`."""
     step, inside = _SPACING * radius, np.array([deck.length, deck.width]) - 2.0 * radius
     columns, rows = (inside // step).astype(int)
     layers = max(_LAYERS, math.ceil(1.5 * beads / (columns * rows)))
@@ -200,5 +200,5 @@ def _feed(beads: int, radius: float, deck: Deck, rng: np.random.Generator) -> Fl
     spare = 0.5 * (_SPACING - 2.0) * radius
     corner = radius + 0.5 * np.r_[inside - step * np.array([columns, rows]), 0.0]
     position: Floats = corner + step * site[chosen] + rng.uniform(-spare, spare, (beads, 3))
-    position[:, 2] += step * rng.random(columns * rows)[chosen // layers]  # no lattice to be seen
+    position[:, 2] += step * rng.random(columns * rows)[chosen // layers]  # hides the lattice
     return position

@@ -1,4 +1,4 @@
-"""What a sieve tells: its numbers, and the words of its page."""
+"""Facts and texts of the sieve for its summary and its page."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from dem_demo.sieve.scene import Sieve
 
 
 def title(run: Run[Sieve]) -> tuple[str, str]:
-    """Say what fell on what, and how."""
+    """Title in two lines: feed and deck; motion of the deck."""
     scene, deck = run.scene, run.scene.deck
     small, large = scene.radius.min() * 1e3, scene.radius.max() * 1e3
     return (
@@ -42,9 +42,9 @@ TALE = Tale(
     figures=figures,
     page={
         "heading": "Beads on a vibrating sieve",
-        "lede": "The deck is a mesh from an STL file. Under the law each impact on it gets the "
-        "rebound that speed, bead and sheet give it, and tells where the energy went. Beside it "
-        "the same feed with one coefficient of restitution (COR) for all impacts.",
+        "lede": "The deck is a mesh from an STL file. Under the law the rebound of each impact "
+        "follows from speed, bead and sheet, as does where its energy goes. For comparison, the "
+        "same feed with one coefficient of restitution (COR) for all impacts.",
         "alt": "A slice of the bed",
         "others": "; <code>deck.stl</code>",
     },

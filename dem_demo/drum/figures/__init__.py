@@ -1,4 +1,4 @@
-"""Figures of a drum, of which `dem_demo.kit.gallery` knows how a file becomes one."""
+"""Figures of a drum: each file draws one, as `dem_demo.kit.gallery` says."""
 
 from __future__ import annotations
 

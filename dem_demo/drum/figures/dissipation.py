@@ -1,7 +1,7 @@
 """Where round the drum its shell takes energy from the beads: where it wears, rings and warms.
 
-Energy that the impacts dissipate: bending waves, and losses at the contact. Sliding friction is not
-in it. The drum turns clockwise, and the directions are those of a room in which it turns.
+Bars show energy that impacts dissipate, in bending waves and at the contact, without sliding
+friction. The drum turns clockwise; the directions do not turn with it.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Where the energy of the beads came from and went, over time.
 
-Upper line: what they had at the start, what gravity and the turning drum have added since.
+Upper line: energy at the start, plus what gravity and the turning drum have added since.
 """
 
 from __future__ import annotations
@@ -13,5 +13,5 @@ from dem_demo.kit.runs import Runs
 
 
 def draw(runs: Runs[Drum]) -> Figure:
-    """Draw stacked shares over time, under the law and with a constant COR."""
+    """Draw where the energy is over time, stacked, under the law and with a constant COR."""
     return graphs.energy(runs, "The drum lifts the beads, and its sheet calms them", "drum")

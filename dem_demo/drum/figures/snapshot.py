@@ -1,4 +1,4 @@
-"""The drum at the end, seen along its axis, under the law and beside it.
+"""The drum at the end, seen along its axis, under the law and with a constant COR.
 
 Beads are coloured by the COR of their last impact on the drum; grey: none yet.
 """

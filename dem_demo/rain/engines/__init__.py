@@ -1,6 +1,6 @@
-"""Engines of the rain: each file here that does not begin with ``_`` is one engine.
+"""Engines of the rain: each file whose name does not begin with ``_`` is one engine.
 
-It is what `Engine` says, and its name is what ``--engine`` takes. To add an engine, add a file.
+The file has all members of `Engine`, and ``--engine`` takes its name. To add an engine, add a file.
 """
 
 from __future__ import annotations
@@ -18,25 +18,25 @@ if TYPE_CHECKING:
 
 @runtime_checkable
 class Engine(Protocol):
-    """What the file of an engine has: its facts, and how it rains in it.
+    """Members of the file of an engine: constants, and functions that simulate the rain.
 
-    The command line reads the facts of all engines, whichever of them are installed and before it
-    knows which one is wanted: a file imports its engine, and contactlaw, inside functions only.
+    The command line reads the constants of all engines, installed or not, before it knows which one
+    will run: so a file imports its engine, and contactlaw, inside functions only.
 
     Attributes
     ----------
     ABOUT : str
-        What ``--help`` says of it.
+        Description of the engine for ``--help``.
     EXTRAS : str
-        Extras of contactlaw that install all it needs, with commas between them.
+        Extras of contactlaw that install the engine, separated by commas.
     DIMENSIONS : int
-        2 or 3.
+        Dimensions of the simulation, 2 or 3.
     DURATION, FRAME_RATE : float
         Default simulated time [s] and recorded frames per second [1/s].
     NO_CONSTANT_COR : str or None
-        Why it cannot take one COR for all contacts; None if it can.
+        Why the engine cannot take one COR for all contacts; None if it can.
     BEAD_ON_BEAD : str or None
-        What the report says of beads that hit beads; None if they are in the record.
+        How the report describes bead-on-bead contacts; None if they are in the record.
     """
 
     ABOUT: str
@@ -48,13 +48,13 @@ class Engine(Protocol):
     BEAD_ON_BEAD: str | None
 
     def version(self) -> str:
-        """Version of the engine; a `ModuleNotFoundError` where it is missing."""
+        """Version of the engine; raises `ModuleNotFoundError` if it is missing."""
 
     def rank(self) -> int:
-        """Rank of this process among those that share the work; 0 if it is alone."""
+        """MPI rank of this process; 0 if it runs alone."""
 
     def time_step(self, scene: Scene, model: ImpactModel | ConstantRestitution) -> float:
-        """Step [s] that the engine will take."""
+        """Time step of the engine [s]."""
 
     def run(
         self,
@@ -62,7 +62,7 @@ class Engine(Protocol):
         model: ImpactModel | ConstantRestitution,
         recorder: Recorder | None,
     ) -> None:
-        """Let it rain; the recorder, None on all ranks but 0, gets frames and collisions."""
+        """Simulate the rain; frames and collisions go to the recorder, None on all ranks but 0."""
 
 
 def names() -> list[str]:
@@ -78,7 +78,7 @@ def names() -> list[str]:
 
 
 def load(name: str) -> Engine:
-    """Load the file of an engine, not the engine.
+    """Load the file of an engine; the engine itself is not imported.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def load(name: str) -> Engine:
     Raises
     ------
     TypeError
-        If the file lacks something that an `Engine` has.
+        If the file lacks a member of `Engine`.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""The rain in LAMMPS: three dimensions, bead on bead by its own contact, one rank or many.
+"""The rain in LAMMPS: three dimensions, LAMMPS's own contact of two beads, any number of ranks.
 
-The scene's x and height become LAMMPS's x and z; the plates, and the rows of nozzles above them,
-are as deep as a plate is wide. Bead on bead is not recorded.
+The scene's x and height become LAMMPS's x and z. The plates, and the rows of nozzles above them,
+are as deep as a plate is wide. Contacts of two beads are not recorded.
 """
 
 from __future__ import annotations
@@ -26,16 +26,16 @@ if TYPE_CHECKING:
 
 ABOUT = "three dimensions, under mpirun too"
 DIMENSIONS = 3
-DURATION = 0.3  # [s]: a contact of microseconds takes it 20 steps
+DURATION = 0.3  # [s]; short, since a contact of microseconds takes 20 steps
 FRAME_RATE = 1000.0  # [1/s]
 NO_CONSTANT_COR = "LAMMPS's plates follow the law"
 BEAD_ON_BEAD = "LAMMPS's own contact, not recorded"
 DUMP = "rain.lammpstrj"
 
-_AROUND = 0.1  # [m] beside and above the scene, in which beads still fly
-# Bins of LAMMPS's own choice would be millions, nearly all of them empty: 30 ms per neighbour list.
-_BIN = 6.0  # [largest radius]
-_RESERVE = 3.0  # light beads get so much faster by hits from heavy ones, as in `scene`
+_AROUND = 0.1  # [m], room beside and above the scene in the simulation box
+# With its default bin size LAMMPS would make millions of bins: 30 ms per neighbour list.
+_BIN = 6.0  # [largest radius], size of the bins
+_RESERVE = 3.0  # heavy beads may drive light ones to this multiple of the top speed
 
 
 def time_step(scene: Scene, model: ImpactModel) -> float:
@@ -71,7 +71,7 @@ class _Rain:
         self.depth = depths(scene)
         self.impacts = Gathering(self.comm, self.plates)
         self.emitted = 0
-        self.late = np.empty(0, dtype=np.int64)  # beads that found no room when they were due
+        self.late = np.empty(0, dtype=np.int64)  # beads whose place was taken when they were due
         self.frames = 0
         self.now = Frame(
             scene.beads.position.copy(),
@@ -97,9 +97,9 @@ class _Rain:
         )
 
     def advance(self) -> None:
-        """Go on by one frame; the beads emitted in it appear at its end, where they are then.
+        """Simulate one frame; the beads emitted during it appear at its end, at their places then.
 
-        One that would appear in another, which has come up from a plate, waits for the next frame.
+        A bead whose place is taken by a rebounding one waits for the next frame.
         """
         self.lmp.command(f"run {self.steps} post no")
         self.frames += 1
@@ -121,7 +121,7 @@ class _Rain:
                 self._create(new[fits], position[fits], velocity[fits])
 
     def _fits(self, position: Floats) -> NDArray[np.bool_]:
-        """Whether a bead can appear at each of these places, one after the other."""
+        """Mask of places at which a bead can appear, after those before it in the list."""
         reach = 2.0 * float(self.scene.beads.radius.max())
         here = self.lmp.extract_setting("nlocal")
         others = self.lmp.numpy.extract_atom("x")[:here] if here else np.empty((0, 3))
@@ -159,7 +159,7 @@ class _Rain:
         return now
 
     def collisions(self) -> NDArray[np.void] | None:
-        """Gather new impacts on plates, with the scene's axes and the beads' rows, on rank 0."""
+        """Gather new impacts on plates, in the axes of the scene: on rank 0, None on the others."""
         rows = self.impacts.take()
         if rows is not None:
             rows["y"], rows["z"] = rows["z"].copy(), rows["y"].copy()
@@ -167,17 +167,17 @@ class _Rain:
 
 
 def run(scene: Scene, model: ImpactModel, recorder: Recorder | None) -> None:
-    """Let it rain, and record it.
+    """Simulate the rain, and record it.
 
     Parameters
     ----------
     scene : Scene
-        What falls on what.
+        Beads and plates.
     model : ImpactModel
         The law of the plates, and the COR of bead on bead.
     recorder : Recorder or None
-        Gets every frame, and the collisions on the way to it; None on all ranks but 0. The file for
-        OVITO goes beside it.
+        Records every frame and all collisions; None on all ranks but 0. The file for OVITO goes
+        into its folder.
     """
     from mpi4py import MPI
 

@@ -33,22 +33,22 @@ def version() -> str:
 
 
 def rank() -> int:
-    """Tell that nobody shares the work."""
+    """Return 0: pymunk runs in one process."""
     return 0
 
 
 def time_step(scene: Scene, model: ImpactModel | ConstantRestitution) -> float:
-    """Step [s] in which no bead jumps through a plate."""
+    """Step [s], so short that no bead jumps through a plate."""
     return scene.time_step
 
 
 class Rain:
-    """A scene in a pymunk space: which bodies are in it, and what it looks like now.
+    """A scene in a pymunk space: the bodies in it, and the current frame.
 
     Parameters
     ----------
     scene : Scene
-        What falls on what.
+        Beads and plates.
     model : ImpactModel or ConstantRestitution
         Where each collision's COR comes from.
     """
@@ -62,7 +62,7 @@ class Rain:
         self.space = pymunk.Space()
         self.space.gravity = (0.0, -GRAVITY)
         self.space.collision_slop = 0.01 * float(scene.beads.radius.min())
-        # Fast small beads far apart: pymunk's tree takes 0.5 ms and more per step, the hash 0.1 ms.
+        # For fast small beads far apart a step takes 0.1 ms with the hash, 0.5 ms with the tree.
         cell, cells = 4.0 * float(scene.beads.radius.max()), 10 * scene.beads.radius.size
         self.space.use_spatial_hash(cell, cells)
         self.impacts = adapter.attach(self.space, model)
@@ -72,7 +72,7 @@ class Rain:
             self.space.add(segment)
             self.impacts.add_plate(segment, plate.thickness)
         self.mass = scene.beads.mass(scene.sphere_material.density)
-        # The first step at whose beginning a bead is out of its nozzle.
+        # First step of each bead: the one that begins after its emission.
         self.first_step = np.ceil(scene.beads.emission_time / scene.time_step).astype(int).tolist()
         self.flying: dict[int, tuple[pymunk.Body, pymunk.Circle]] = {}
         self.steps = 0
@@ -102,7 +102,7 @@ class Rain:
         body.velocity = tuple(beads.velocity[n].tolist())
         circle = pymunk.Circle(body, radius)
         self.space.add(body, circle)
-        # Beads are registered in the order of emission, so that the adapter's index is ours.
+        # Registered in the order of emission, beads have the same index in adapter and scene.
         self.impacts.add_bead(circle)
         self.flying[n] = body, circle
         self.now.status[n] = FLYING
@@ -121,25 +121,25 @@ class Rain:
 
 
 def run(scene: Scene, model: ImpactModel | ConstantRestitution, recorder: Recorder | None) -> None:
-    """Let it rain, and record it.
+    """Simulate the rain, and record it.
 
     Parameters
     ----------
     scene : Scene
-        What falls on what.
+        Beads and plates.
     model : ImpactModel or ConstantRestitution
         Where each collision's COR comes from.
     recorder : Recorder
-        Gets every frame, and the collisions on the way to it.
+        Records every frame and all collisions.
     """
-    assert recorder is not None  # of rank 0
+    assert recorder is not None  # the only process is rank 0
     rain = Rain(scene, model)
     recorder.frame(rain.look())
-    told = 0
-    # disable=None: no bar where there is no terminal
+    recorded = 0
+    # disable=None: no progress bar unless stderr is a terminal
     for _ in tqdm(range(scene.frames), desc="rain", unit="frame", disable=None):
         rain.advance(scene.steps_per_frame)
         collisions = rain.impacts.collisions()
-        recorder.collisions(collisions[told:])
-        told = collisions.size
+        recorder.collisions(collisions[recorded:])
+        recorded = collisions.size
         recorder.frame(rain.look())

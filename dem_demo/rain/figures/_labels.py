@@ -1,4 +1,4 @@
-"""What the figures of a run have in common: words for the run, columns for plates, rings."""
+"""Helpers for the figures of a run: subtitle, a column per plate, rings around impacts."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from dem_demo.rain.report import progress
 
 
 def source(run: Run) -> str:
-    """Say in a few words what ran."""
+    """Subtitle: materials, engine, law, and how far a partial run came."""
     scene = run.scene
     law = f"COR {run.constant_cor:g} everywhere" if run.baseline else f"law {run.law}"
     part = f", partial: {progress(run)}" if run.reason else ""
@@ -37,5 +37,5 @@ def ring(axes: Axes, x: Floats, y: Floats, far: NDArray[np.bool_]) -> None:
 
 
 def ringed(far: NDArray[np.bool_]) -> str:
-    """Say what the rings are, where there are any."""
+    """Legend of the rings; empty if there are none."""
     return "; ringed: outside a limit of the model" if far.any() else ""

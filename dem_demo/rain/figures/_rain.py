@@ -1,4 +1,4 @@
-"""The rain as it is drawn, still or moving: window, plates, beads coloured by their last COR."""
+"""Drawings of the rain for figure, film and page: window, plates, beads coloured by COR."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from dem_demo.rain.record import Run
 from dem_demo.rain.scene import Scene
 
 MM = 1e3
-MAGNIFIED = 3.0  # times their size, or beads would hardly be seen
-PLATES_MAGNIFIED = 4.0  # likewise, or a thin plate would not be told from a thick one
-EXPOSURE = 2e-3  # [s]: streaks are as long as the path flown in this time
+MAGNIFIED = 3.0  # beads are drawn this many times as large, to be visible
+PLATES_MAGNIFIED = 4.0  # plates are drawn this many times as thick, to look different
+EXPOSURE = 2e-3  # [s]; a streak is the path of a bead in this time
 _HALF_SPACE = 3e-3  # [m], drawn depth of a plate of infinite thickness
 _SIDES, _BELOW = 0.01, 0.016  # [m] beside and below the plates
-_ABOVE = 1.08  # of the nozzles' height
+_ABOVE = 1.08  # top of the picture over the height of the nozzles
 
 
 def window(scene: Scene) -> tuple[float, float, float, float]:
@@ -61,7 +61,7 @@ class Picture:
     run : Run
         The run.
     made : ndarray
-        Pieces of its beads, of `paths.pieces`.
+        Flight of its beads, from `paths.pieces`.
     """
 
     def __init__(self, axes: Axes, run: Run, made: NDArray[np.void]) -> None:
@@ -74,7 +74,7 @@ class Picture:
 
     @property
     def moving(self) -> tuple[LineCollection, EllipseCollection]:
-        """What changes from instant to instant."""
+        """The parts of the picture that move."""
         return self.streaks, self.circles
 
     def show(self, time: float) -> None:

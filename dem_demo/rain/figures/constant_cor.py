@@ -1,7 +1,7 @@
 """What a constant COR would do instead: error of the energy with which each bead rebounds.
 
-One number cannot be right on thin plates and on thick ones, for slow beads and for fast ones; that
-it is their mean helps none of them. The comparison is per impact: nothing but the COR differs.
+One number cannot be right on thin and on thick plates, for slow and for fast beads, even if it is
+their mean. Each impact is compared with itself: nothing but the COR differs.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def draw(run: Run) -> Figure:
         _column(axes, run, n, error)
     axes.axhline(0.0, color=style.INK, linewidth=1.4)
     thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
-    of_what = style.pick("% of impact energy", "%")  # a phone's figure is not higher than that
+    of_what = style.pick("% of impact energy", "%")  # the longer label does not fit on a phone
     axes.set_ylabel(f"error of rebound energy [{of_what}]")
     return figure
 

@@ -22,13 +22,13 @@ _PARTS = _KEPT, *_ = (
     ("micro-slip and vibration", style.GREEN),
 )
 _LOST = ("lost, nobody knows where", style.MUTED)
-_ROOM = 4.5  # [%]: the height of a number
+_ROOM = 4.5  # [%], the height of a number; smaller shares have theirs beside the bar
 _READABLE = {style.BLUE: style.BLUE, style.ORANGE: "#9A6700", style.GREEN: "#00694D",
              style.PALE: style.INK, style.MUTED: style.INK}  # fmt: skip
 
 
 def draw(run: Run) -> Figure:
-    """Draw a stacked bar per plate; beside the baseline, what the model says of its impacts."""
+    """Draw a stacked bar per plate; for the baseline, beside the model's answer for its impacts."""
     constant = run.baseline
     figure = style.figure(
         10.5,
@@ -58,7 +58,7 @@ def draw(run: Run) -> Figure:
 
 
 def _bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]]) -> None:
-    """Stack the shares; each has its number, beside the bar where it is too small for one."""
+    """Stack the shares, each with its number; those of small shares are beside the bar."""
     bottom = beside = 0.0
     for (name, colour), share in parts:
         height = 100.0 * share

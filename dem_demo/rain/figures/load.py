@@ -1,6 +1,6 @@
 """What a force sensor under each plate would see.
 
-Left the load over time, right the force within the hardest contact, which lasts some microseconds.
+Left: the load over time. Right: the force in the hardest contact, which lasts microseconds.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dem_demo.kit.report import label
 from dem_demo.rain.figures._labels import source
 from dem_demo.rain.record import Run
 
-_SAMPLES = 1000  # at least, at a rate of 10^n per second: single impacts can be told apart
+_SAMPLES = 1000  # least number of samples, which keeps single impacts apart
 
 
 def draw(run: Run) -> Figure:

@@ -1,6 +1,6 @@
 """How high beads rebound, measured on their flight, per plate.
 
-One COR for all would put all of them on one level line.
+With one COR for all, all points would lie on one level line.
 """
 
 from __future__ import annotations

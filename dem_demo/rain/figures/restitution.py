@@ -82,7 +82,7 @@ def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
 def _yield_speed(run: Run, radius: float, thickness: float) -> float:
     try:
         return float(run.model.yield_speed(radius, thickness))
-    except ValueError:  # so thin a plate that it is beyond the table; impacts need not be
+    except ValueError:  # the table has no yield on so thin a plate
         return math.inf
 
 

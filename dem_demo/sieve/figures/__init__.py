@@ -1,4 +1,4 @@
-"""Figures of a sieve, of which `dem_demo.kit.gallery` knows how a file becomes one."""
+"""Figures of a sieve: each file draws one, as `dem_demo.kit.gallery` says."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Where the deck takes energy from the beads: where it wears, rings and warms.
 
-Energy that the impacts dissipate, per area of sheet: bending waves, and losses at the contact.
-Sliding friction is not in it.
+Colours show the energy per area that impacts dissipate, in bending waves and at the contact,
+without sliding friction.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Where the energy of the beads came from and went, over time.
 
-Upper line: what they had at the start, what gravity and the deck have added since.
+Upper line: energy at the start, plus what gravity and the deck have added since.
 """
 
 from __future__ import annotations
@@ -13,6 +13,6 @@ from dem_demo.sieve.scene import Sieve
 
 
 def draw(runs: Runs[Sieve]) -> Figure:
-    """Draw stacked shares over time, under the law and with a constant COR."""
+    """Draw where the energy is over time, stacked, under the law and with a constant COR."""
     title = "A vibrating deck feeds energy in, and the sheet takes it away"
     return graphs.energy(runs, title, "deck")

@@ -1,8 +1,8 @@
 """The COR of the impacts on the deck, over their approach speed.
 
-A thin sheet gives heavy beads less back than light ones, and fast ones less than slow ones. Points
-off the lines are beads that were hit by others while they touched the sheet. At the rim of an
-opening a bead has several contacts at once, which share its rebound.
+From a thin sheet heavy beads rebound less than light ones, and fast ones less than slow ones.
+Points off the lines are beads that other beads struck while they touched the sheet. At the rim of
+an opening a bead has several contacts at once, which share its rebound.
 """
 
 from __future__ import annotations

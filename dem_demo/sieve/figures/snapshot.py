@@ -1,4 +1,4 @@
-"""The bed at its end, in a slice along the middle of the deck, under the law and beside it.
+"""The last frame, in a slice along the deck's middle, under the law and with a constant COR.
 
 Beads are coloured by the COR of their last impact on the deck; grey: none yet.
 """
