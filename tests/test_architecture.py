@@ -61,7 +61,7 @@ KERNELS = [
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 VALIDATION = ROOT.parent / "validation"
 DEMO = ROOT.parent / "dem_demo"
-# what is private to users, but not to the finite elements: numba's settings, and the version
+# Private to users, but imported by the finite elements: numba's settings, and the version.
 SHARED = {"contactlaw._jit", "contactlaw._jit.kernel"}
 SHARED |= {"contactlaw._version", "contactlaw._version.VERSION"}
 
@@ -152,7 +152,7 @@ def test_a_subcommand_knows_no_other():
 
 
 def test_the_model_is_public_methods():
-    """What they do is elsewhere; the docstrings are most of the file."""
+    """The methods only delegate, so docstrings are most of the file."""
     source = (ROOT / "model.py").read_text()
     assert len(source.splitlines()) <= 450
     (model,) = (node for node in ast.parse(source).body if isinstance(node, ast.ClassDef))
@@ -169,7 +169,7 @@ def test_walls_and_contacts_need_no_engine():
     )
     subprocess.run([sys.executable, "-c", code], check=True)
     adapter = [path.read_text() for path in (ROOT / "engines/lammps").glob("*.py")]
-    assert sum(text.count("\n") for text in adapter) <= 1300  # a translation, and no mechanics
+    assert sum(text.count("\n") for text in adapter) <= 1300  # an adapter has no mechanics
 
 
 def test_every_folder_says_what_it_is():
@@ -249,7 +249,7 @@ EDITS = [
 
 
 def test_a_changed_source_never_yields_an_old_result(tmp_path):
-    """Also where the edit is in another file than the function that Python calls."""
+    """This holds also if the edit is not in the file of the function that Python calls."""
     package = tmp_path / "contactlaw"
     shutil.copytree(ROOT, package, ignore=shutil.ignore_patterns("__pycache__", "engines"))
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "numba")}

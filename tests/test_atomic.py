@@ -41,7 +41,7 @@ def test_a_named_pipe_passes_the_content_on(tmp_path):
 
 
 def test_a_device_takes_the_content_and_stays_one():
-    """A terminal, which anybody may make; its folder takes no file."""
+    """The device is a terminal, whose folder takes no other file."""
     ours, its = os.openpty()
     tty.setraw(its)
     name, content = os.ttyname(its), b"a line\n" * 1000
@@ -95,7 +95,7 @@ def test_the_command_follows_links_and_says_what_it_was_told(tmp_path, capsys):
 
 
 def test_a_full_device_is_an_error_in_words(tmp_path, monkeypatch, capsys):
-    """As /dev/full is; the real one is not tried, since root would lose it if this failed."""
+    """A stand-in for /dev/full, which root would lose if this failed."""
     ours, its = os.openpty()
 
     class Full:

@@ -31,14 +31,14 @@ def test_yades_contact_has_the_cor_that_was_asked_for(e):
 
 
 def thornton(e):
-    """What YADE 2023.02a makes of ``en``: Thornton, Cummins, Cleary 2013, Eqs. B6 and B7."""
+    """Damping of YADE 2023.02a from ``en``: Thornton, Cummins, Cleary 2013, Eqs. B6 and B7."""
     h = (-6.918798, -16.41105, 146.8049, -796.4559, 2928.711, -7206.864, 11494.29, -11342.18,
          6276.757, -1489.915)  # fmt: skip
     alpha = sum(c * e ** (n + 1) for n, c in enumerate(h))
     return math.sqrt(1 / (1 - (1 + e) ** 2 * math.exp(alpha)) - 1)
 
 
-# asked of YADE itself, and got from it
+# COR asked of YADE itself, and COR of the rebound in it.
 @pytest.mark.parametrize(("asked", "got"), [(0.95, 0.9481), (0.97, 0.9650), (0.99, 0.9790)])
 def test_what_yade_makes_of_en_is_what_its_betan_gives(asked, got):
     """The damping of its own fit, put into this contact, gives what YADE was seen to give."""

@@ -25,7 +25,7 @@ VALUES = ("restitution", "contact_time", "peak_force", "plastic_fraction", "wave
 
 
 def answers():
-    """What every method of a model says; an impact takes milliseconds without the compiler."""
+    """Answers of every method of a model; without the compiler an impact takes milliseconds."""
     pair = cl.Pair("gamma-alumina", "glass")
     model = cl.ImpactModel(pair, law="myc")
     contacts = Contacts(model, 0.9e-3, 1e-3)
@@ -77,7 +77,7 @@ def start(code, tmp_path, stderr=subprocess.PIPE, **variables):
 
 
 def output(process):
-    """What it has printed, and its warnings."""
+    """Output of a process, and its warnings."""
     out, errors = process.communicate(timeout=200)
     assert process.returncode == 0, errors
     return out, errors
@@ -182,7 +182,7 @@ def truncated(content, choose):
 
 
 def flipped(content, choose):
-    """One bit is another, as of a worn-out disk."""
+    """Flip one bit, like a failing disk."""
     damaged = bytearray(content)
     damaged[choose.randrange(len(content))] ^= 1 << choose.randrange(8)
     return bytes(damaged)
@@ -247,7 +247,7 @@ def test_a_damaged_c_function_is_made_anew(kept_kernel):
 
 
 def test_two_processes_that_start_at_once_both_answer(tmp_path):
-    """And processes after them, whatever has become of the files meanwhile."""
+    """So do processes after them, whatever has happened to the files meanwhile."""
     folder = tmp_path / "kept"
     both = [start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder)) for _ in range(2)]
     results = [output(process) for process in both]
@@ -259,7 +259,7 @@ def test_two_processes_that_start_at_once_both_answer(tmp_path):
     before = {path: path.stat().st_mtime_ns for path in kept.rglob("*.nbc")}
     assert before
     assert output(start(FIRST, tmp_path, CONTACTLAW_CACHE_DIR=str(folder))) == results[0]
-    assert {path: path.stat().st_mtime_ns for path in kept.rglob("*.nbc")} == before  # all read
+    assert {path: path.stat().st_mtime_ns for path in kept.rglob("*.nbc")} == before  # none written
     files, choose = sorted(kept.rglob("*.nb?")), random.Random(3)
     for path, damage in zip(files, itertools.cycle(DAMAGES)):  # each another of index and data
         path.write_bytes(damage(path.read_bytes(), choose))
@@ -304,7 +304,7 @@ _jit.enable_caching()
 
 
 def test_kernels_of_one_name_stay_apart_in_the_code_of_several_processes(tmp_path):
-    """As legs of the equation are, each made of its own force by the same lines."""
+    """Kernels of the equation's legs share a name: the same lines make each from its own force."""
     terms = "\n        ".join(
         "y += math.sin(y) * math.cos(y + x)" for _ in range(60)
     )  # not inlined
@@ -324,7 +324,7 @@ def test_kernels_of_one_name_stay_apart_in_the_code_of_several_processes(tmp_pat
 
 
 def test_the_first_process_says_that_it_compiles(tmp_path):
-    """On a terminal, once; pipes stay quiet, as the tests above show.
+    """It says so once, and on a terminal only; the tests above show that pipes stay quiet.
 
     An import writes nothing at all; the first answer, machine code where numba keeps it.
     """

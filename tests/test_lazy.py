@@ -79,7 +79,7 @@ def left(tmp_path_factory):
     codes = WITHOUT | TABLED
     if not needs.has_lammps():
         del codes["lammps"]
-    # machine code stays where it is, or this would compile it again
+    # The compiled kernels stay where they are, or the process would compile them again.
     code = {"NUMBA_CACHE_DIR": os.environ.get("NUMBA_CACHE_DIR", str(_folder.folder()))}
     done = subprocess.run(
         [sys.executable, "-c", EACH, str(tmp_path_factory.mktemp("caches"))],
@@ -133,7 +133,7 @@ def test_a_warning_about_the_table_shows_the_users_line():
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc", table=coarse)
-        assert not caught  # it is made when first asked for
+        assert not caught  # the table is made on first use
         model.restitution(5.0, 1e-3, 1e-3)
         exec("cl.ImpactModel(pair, law='myc', table=table).lookup(5.0, 1e-3, 1e-3)",  # no __name__
              {"cl": cl, "pair": cl.Pair("gamma-alumina", "glass"), "table": coarse})  # fmt: skip

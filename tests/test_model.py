@@ -232,7 +232,7 @@ def test_outside_clamp_is_counted_and_flagged(pair, small_table):
     hit = model.lookup([5.0, 200.0], R, H)
     assert [bool(f & cl.Validity.CLAMPED) for f in hit.flags] == [False, True]
     assert model.clamped == 1
-    # what is answered is an impact: its energy closes, whatever was asked
+    # Every answer has a closed balance of energy, whatever the arguments.
     for speed, thickness in ((200.0, H), (9e3, 5e-5), (5.0, R / 12), (9e3, math.inf)):
         hit = model.lookup(speed, R, thickness)
         parts = hit.restitution**2, hit.plastic_fraction, hit.wave_fraction
@@ -270,7 +270,7 @@ def test_hertz_needs_no_yield_strength(model):
     assert hit.overload == 0.0
     assert hit.restitution == pytest.approx(elastic.solve(50.0, R, H).restitution, abs=1e-6)
     assert elastic.yield_speed(R, H) == math.inf
-    # below yield the two laws are one
+    # Below yield the two laws agree.
     same = cl.ImpactModel(model.pair, law="hertz")
     assert same.restitution(2.0, R, H) == model.restitution(2.0, R, H)
 
@@ -414,7 +414,7 @@ def test_a_callers_disk_cache_keeps_no_table(tmp_path):
     """A user's cached loop over one model must not answer for another one's."""
     (tmp_path / "user.py").write_text(
         "import sys, warnings, numba, contactlaw as cl\n"
-        "warnings.simplefilter('ignore')  # numba says that it cannot keep the loop\n"
+        "warnings.simplefilter('ignore')  # numba cannot cache the loop\n"
         "model = cl.ImpactModel(cl.Pair(sys.argv[1], 'glass'))\n"
         "cor = model.kernel\n"
         "@numba.njit(cache=True)\n"
@@ -449,7 +449,7 @@ def test_sphere_on_sphere(model):
 
 
 def test_two_spheres_have_the_law_that_was_named(pair, model):
-    """A law that takes E*/sigma_Y from the pair is another one for two of its spheres."""
+    """A law that depends on E*/sigma_Y has other numbers for two spheres than for the pair."""
     named, own = "jackson_green(23.2,0.21)", "jackson_green(23.1922,0.21)"
     # tables are one below yield
     tables = {name: dataclasses.replace(model.table, law=laws.law(name)) for name in (named, own)}

@@ -92,7 +92,7 @@ def commands(block):
             yield words[1 : words.index(">") if ">" in words else None]
 
 
-@pytest.mark.parametrize("page", sorted(PAGES.keys() - {"fit"}))  # whose outputs test_fit.py has
+@pytest.mark.parametrize("page", sorted(PAGES.keys() - {"fit"}))  # test_fit.py has that page
 def test_commands_print_what_the_page_shows(page, tmp_path, monkeypatch, capsys, pair):
     monkeypatch.chdir(tmp_path)
     Path("impacts.csv").write_text("speed_m/s\n0.5\n1.2\n")
@@ -134,7 +134,7 @@ def test_links_lead_somewhere(page):
 
 @pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_run(script):
-    """As a user starts them; each prints what it found."""
+    """Run the examples as a user does; each prints a result."""
     assert len(script.read_text().splitlines()) <= 60
     if "lammps" in script.stem:
         needs.lammps()

@@ -100,8 +100,8 @@ def test_the_relaxation_of_the_plate_moves_no_restitution(model, law):
 
 
 def test_unloading_and_reloading_follow_one_curve(model, law):
-    """Down, half up, down again and beyond: PHYSICS of the law, without any motion."""
-    # so small a step that its terms in dt^2, which are for a body in motion, do nothing
+    """The contact is loaded, half unloaded and loaded beyond, along a prescribed path."""
+    # The step is so small that terms in dt^2, which are for moving bodies, vanish.
     spring, step = spring_of(model, math.inf), 1e-15
     top = 3 * spring.scale
     left = force.residual(law, 3.0) * spring.scale
@@ -131,7 +131,7 @@ def test_no_force_in_the_dent_and_none_apart(model, law):
     dent = State(0.0, 5 * spring.scale, 1e-6)
     left = force.residual(law, 5.0) * spring.scale
     inside = advance(law, spring, dent, 0.9 * left, 1e-8)
-    assert inside == State(0.0, dent.largest_compression, 0.0)  # remembers
+    assert inside == State(0.0, dent.largest_compression, 0.0)  # it keeps the largest
     assert advance(law, spring, inside, 0.0, 1e-8) == PARTED
     assert advance(law, spring, inside, -1e-9, 1e-8) == PARTED
     assert advance(law, spring, inside, math.nan, 1e-8) == PARTED
@@ -144,7 +144,7 @@ def test_a_bead_at_rest_is_finite_and_quiet(model, law, thickness):
     fastest, x, state = rest(law, spring, weight, 2e-7, 20_000_000)  # 4 s
     assert state.force == pytest.approx(weight, rel=1e-3)
     assert fastest < 1e-6
-    # and no deeper than where the relaxation holds it
+    # The bead is no deeper than where the relaxation holds it.
     deepest = spring.mobility * weight * spring.relaxation
     assert x <= 1.01 * (deepest + (weight / spring.stiffness) ** (2 / 3))
 
@@ -237,7 +237,7 @@ def test_a_simulation_that_has_blown_up_is_refused(model, overlap, step, message
 
 
 def test_a_plate_may_recede_further_than_the_bead_is_large(model):
-    """A heavy bead sinks with a thin plate: no overlap is too deep as such."""
+    """A heavy bead sinks with a thin plate, so a deep overlap is not an error in itself."""
     contacts = Contacts(model, 1.0, 1e-2)
     for overlap in np.linspace(0.0, 3.0, 6001):
         contacts.advance(np.array([overlap]), 1e-4)

@@ -37,7 +37,7 @@ def test_yield_speeds_are_those_of_the_table(law, pair):
     tabulated, solver = backends(PAIRS[pair], law)
     found = solver.yield_speeds(radius, thickness)
     assert found == pytest.approx(tabulated.yield_speeds(radius, thickness), rel=1e-6)
-    # where the bead begins to yield, by another way: what is left of the compression
+    # The bead yields where some compression is left after the rebound: another way to find it.
     if law in ("myc", "thornton") and pair == "the bead yields":
         below, above = (
             solver.rebounds(Impacts(found * by, radius, thickness, found.shape))
@@ -55,7 +55,7 @@ def test_nothing_yields():
 
 @pytest.mark.parametrize("law", ["fem", "myc"])
 def test_a_solver_with_an_extent_refuses_what_the_table_does(law):
-    """Its speeds and sizes lie on both sides of either limit."""
+    """The speeds and radii lie on both sides of both limits of the table."""
     refused = []
     for v, h in ((1e-3, 1e-3), (5.0, 2e-5), (3000.0, 1e-2), (3.0, 3e-4), (20.0, 2e-3)):
         impacts = Impacts.on_plates([1.0, v], R, [1e-2, h])
@@ -110,4 +110,4 @@ def test_two_beads_build_no_table_of_plates():
     model.lookup_sphere_sphere(5.0, R, R)
     assert "table" not in vars(model._tabulated)
     assert model._beads(None) is model._beads(None)
-    assert model._beads(None).law != model.force_law  # which takes numbers from the plate
+    assert model._beads(None).law != model.force_law  # the pair's law depends on the plate

@@ -65,7 +65,7 @@ def test_weights_are_repetitions(model):
 
 
 def test_values_broadcast(model):
-    """Speeds along one axis, sizes along another, each with its share."""
+    """Speeds vary along one axis and radii along another; each impact has a weight."""
     speeds, sizes = np.array([1.0, 5.0, 9.0]), np.array([[0.5e-3], [0.9e-3]])
     shares = np.array([[0.2], [0.8]])
     grid = model.constant(speeds, sizes, H, weights=shares)
@@ -106,7 +106,7 @@ def drops(model, speed, radius):
 
 
 def test_beads_in_an_engine_lose_as_much_as_with_their_own_cor(model):
-    """pymunk itself gives the speeds after the impacts: with the model, the constant, the mean."""
+    """pymunk gives the rebound speeds with the model, the equal constant and the plain mean."""
     speed, radius = np.geomspace(0.3, 10, 12), np.linspace(0.4e-3, 0.9e-3, 12)
     best = model.constant(speed, radius, H)
     taken = []
@@ -122,7 +122,7 @@ def test_beads_in_an_engine_lose_as_much_as_with_their_own_cor(model):
 
 
 def test_a_plain_mean_misses_a_third_of_the_energy(model):
-    """Bounces from 0.05 to 10 m/s, as often at each decade."""
+    """The impact speeds are spread evenly over the logarithm from 0.05 to 10 m/s."""
     bounces = np.geomspace(0.05, 10, 400)
     found = [model.constant(bounces, R, h).mean_energy_error for h in (0.5e-3, 1e-3, 3e-3)]
     assert found == pytest.approx([-0.243, -0.308, -0.407], abs=1e-3)

@@ -57,7 +57,7 @@ def test_what_is_outside_is_cut_off(model):
 
 
 def test_no_momentum_is_lost_on_a_thin_plate(model):
-    """There the force has a peak and a long tail, and few samples would miss the peak."""
+    """On a thin plate the force has a peak and a long tail, and few samples would miss the peak."""
     thickness = R / np.array([2.0, 5.0, 8.0])
     assert np.max(model.lookup(5.0, R, thickness).inelasticity) > 4.0
     load = cl.load_signal([0.0, 1e-4, 2e-4], 5.0, R, thickness, model=model, rate=1e6)
@@ -66,7 +66,7 @@ def test_no_momentum_is_lost_on_a_thin_plate(model):
 
 
 def test_times_of_another_day(model):
-    """They would overflow an integer, and are cut off before."""
+    """Such times would overflow an integer sample number, and are cut off first."""
     load = cl.load_signal([1e20, -1e20, 0.0], 5.0, R, H, model=model, rate=1e3, duration=1e-2)
     assert load.force.sum() / 1e3 == pytest.approx(momentum(model, 5.0), rel=1e-6)
 

@@ -27,7 +27,7 @@ def solved(pair, speed=SPEED, radius=RADIUS, thickness=THICKNESS):
 
 
 def integrated(name, pair, speed, thickness):
-    """ln(COR) by scipy; the law's own numbers anew from the materials, with all their digits."""
+    """Compute ln(COR) by scipy, with the law's numbers from the materials in full precision."""
     law = law_of(pair, name)
     if law.from_pair:
         law = laws.exact(name, **pair_numbers(pair, name))
@@ -56,7 +56,7 @@ def assert_units_change_nothing(moved):
     assert moved.radius == pytest.approx(-moved.thickness, abs=1e-14)
     stresses = moved.sphere_modulus + moved.plate_modulus + moved.yield_strength
     assert stresses + moved.sphere_density + moved.plate_density == pytest.approx(0.0, abs=1e-13)
-    # and of time: V0 as the root of stress over density
+    # Units of time change with V0, the root of stress over density.
     assert moved.speed == pytest.approx(-2 * stresses, abs=1e-13)
 
 
@@ -98,7 +98,7 @@ def any_law(request, pair, model):
 
 
 def test_every_law_has_its_elasticities(any_law):
-    """Also the dependence on E*/sigma_Y of a law that takes it from the pair."""
+    """A law that depends on E*/sigma_Y of the pair is differentiated with respect to it too."""
     name, pair = any_law.law.partition("(")[0], any_law.pair
     v, h = CORNERS.get(name, 12.0), 0.7e-3
     ways = {
@@ -113,18 +113,18 @@ def test_every_law_has_its_elasticities(any_law):
     }
     ours = any_law.sensitivity(v, RADIUS, h)
     step = 5e-4
-    # next to Stronge's yield the third derivative is about 100, and unloading has a corner that
-    # scipy is not told of: an error of 4e-9 in ln e
+    # Next to Stronge's yield the third derivative is about 100, and scipy steps over a corner of
+    # the unloading curve: an error of 4e-9 in ln e.
     bound = 2e-5 if name == "stronge" else 2e-6
     for field, way in ways.items():
         expected = (way(math.exp(step)) - way(math.exp(-step))) / (2 * step)
         assert getattr(ours, field) == pytest.approx(expected, abs=bound), field
-    assert_units_change_nothing(ours)  # so the modulus of the plate is right, too
+    assert_units_change_nothing(ours)  # which checks the modulus of the plate too
 
 
 @pytest.mark.parametrize("name", ["hertz", "myc", "thornton"])
 def test_tables_have_the_derivatives_of_the_solver(name, pair):
-    """As `ImpactModel.sensitivity` says, for impacts that do not turn next to a kink."""
+    """This holds for impacts whose largest compression is not next to a kink of the law."""
     model = cl.ImpactModel(pair, law=name)
     rng = np.random.default_rng(9)
     speed, thickness = 40.0 * rng.uniform(0.05, 1.0, 600), RADIUS / rng.uniform(0.1, 6.0, 600)
@@ -154,7 +154,7 @@ def test_tables_have_the_derivatives_of_the_solver(name, pair):
 def test_below_yield_laws_are_one(any_law):
     ours = any_law.sensitivity(1.0, RADIUS, 0.7e-3)
     assert ours.yield_strength == 0.0
-    if any_law.force_law.family == "fem":  # is not Hertz's there
+    if any_law.force_law.family == "fem":  # its loading is not Hertz's below yield
         return
     hertz = cl.ImpactModel(any_law.pair, law="hertz").sensitivity(1.0, RADIUS, 0.7e-3)
     for field in INPUTS:
@@ -205,7 +205,7 @@ PAIRS = [
 
 
 def all_changed(pair, number, factor):
-    """Both bodies, where they have the number."""
+    """Change a property of both materials, if they have it."""
     bodies = (pair.sphere, pair.plate)
     values = [getattr(body, number) for body in bodies]
     return cl.Pair(
@@ -218,7 +218,7 @@ def all_changed(pair, number, factor):
 
 @pytest.mark.parametrize("names", PAIRS, ids="-".join)
 def test_fem_by_plain_differences_of_the_solver(names, monkeypatch):
-    """Every input through the whole chain: a new model, with a law of its own, for each."""
+    """Each changed input makes a new pair, law and model."""
     monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
     pair = cl.Pair(*names)
     model = cl.ImpactModel(pair, law="fem")
@@ -227,7 +227,7 @@ def test_fem_by_plain_differences_of_the_solver(names, monkeypatch):
     def solved(other, speed=1.0, radius=1.0, thickness=1.0):
         table = dataclasses.replace(
             model.table, law=law_of(other, "fem"), certificate=None
-        )  # not asked
+        )  # not used: the solver answers
         moved = (one * x for one, x in zip(impacts, (speed, radius, thickness), strict=True))
         found = cl.ImpactModel(other, law="fem", table=table).solve(*moved, rtol=1e-13)
         return np.log(found.restitution)
@@ -277,7 +277,7 @@ def test_other_units_change_nothing(moved):
 def test_below_yield_the_strength_does_not_matter(model):
     one = model.sensitivity(2.0, RADIUS, 0.5e-3)
     assert one.yield_strength == 0.0
-    assert one.speed == pytest.approx(0.1 * one.radius, rel=1e-12)  # both through lambda
+    assert one.speed == pytest.approx(0.1 * one.radius, rel=1e-12)  # both act through lambda only
 
 
 def test_on_a_half_space_the_plate_does_not_bend(model):

@@ -14,7 +14,7 @@ from contactlaw.answers.speed_table import fewest
 R, H = 0.9e-3, 1e-3
 RNG = np.random.default_rng(5)
 X = np.sort(RNG.uniform(0, 1, 13))
-# convex, of changing curvature, with a corner, and without any shape
+# Curves: convex, of changing curvature, with a corner, and random.
 CURVES = {
     "root": np.sqrt(X), "wave": np.sin(9 * X), "corner": np.abs(X - X[5]),
     "noise": RNG.uniform(0, 1, X.size), "step": np.where(X > 0.4, 1.0, 0.0),
@@ -28,7 +28,7 @@ def largest_miss(x, y, rows):
 @pytest.mark.parametrize("curve", CURVES)
 @pytest.mark.parametrize("error", [0.005, 0.05, 0.2])
 def test_no_choice_has_fewer_rows(curve, error):
-    """All choices of points, by brute force."""
+    """All choices of points are tried by brute force."""
     y = CURVES[curve]
     rows = fewest(X, y, error)
     assert largest_miss(X, y, rows) <= error * (1 + 1e-12)
@@ -39,10 +39,10 @@ def test_no_choice_has_fewer_rows(curve, error):
 
 
 def test_the_longest_line_each_time_is_not_enough():
-    """Where the curvature changes sign: what makes this a search."""
+    """Where the curvature changes sign, a greedy choice is not the best."""
     x = np.arange(6.0)
     y = np.array([0.0, 1.0, 0.0, 1.0, 2.0, 3.0])
-    assert fewest(x, y, 1.0).tolist() == [0, 2, 5]  # greed takes [0, 3, ...] or stops at 4
+    assert fewest(x, y, 1.0).tolist() == [0, 2, 5]  # greedily: [0, 3, ...], or stopping at 4
 
 
 @pytest.mark.parametrize("law", laws.names())
@@ -53,7 +53,7 @@ def test_straight_lines_are_within_the_error(law):
     miss = np.abs(np.interp(v, *rows[:2]) - model.restitution(v, 1e-3, 2e-3))
     assert miss.max() <= 2e-3 + 1e-9
     assert rows.error == pytest.approx(miss.max(), rel=1e-3)
-    # a compiler may give the last digit otherwise in a longer array
+    # In a longer array compiled code may round the last digit differently.
     own = model.restitution(rows.speed, 1e-3, 2e-3)
     assert rows.restitution.tolist() == pytest.approx(own.tolist(), rel=1e-15, abs=0.0)
     assert (rows.speed[0], rows.speed[-1]) == (0.05, 5.0)
@@ -67,7 +67,7 @@ def test_more_speeds_to_choose_from_do_not_save_a_row(model, error, monkeypatch)
 
 
 def test_the_error_is_measured_between_the_speeds_too():
-    """Where these alone would let it be 1.0013e-5; and across the kink at yield."""
+    """Measured at the candidate speeds alone, the error would reach 1.0013e-5 between them."""
     model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"), law="fem")
     rows = model.speed_table(R, 0.5e-3, error=1e-5)
     v = np.geomspace(0.1, 10, 200_001)
@@ -75,7 +75,7 @@ def test_the_error_is_measured_between_the_speeds_too():
 
 
 def test_on_a_half_space_one_line_leads_to_yield(model):
-    """The COR is 1 below."""
+    """Below yield the COR is 1."""
     rows = model.speed_table(R, math.inf, error=1e-5)
     yields = model.yield_speed(R, math.inf)
     assert rows.speed[1] == pytest.approx(yields, rel=0.01)
@@ -126,7 +126,7 @@ def test_what_is_refused(model, change, message):
 
 
 def test_a_range_too_wide_for_the_error(pair):
-    """34 decades in 4000 speeds, and a corner at the table's border."""
+    """4000 speeds span 34 decades, with a corner of the COR at the border of the table."""
     clamping = cl.ImpactModel(pair, law="myc", outside="clamp")
     with pytest.raises(ValueError, match="error: 1e-05 is too small from 1e-29 to 100000 m/s"):
         clamping.speed_table(R, H, 1e-5, 1e-29, 1e5)

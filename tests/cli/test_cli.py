@@ -217,7 +217,7 @@ def test_a_file_that_cannot_be_written(tmp_path, monkeypatch, capsys):
 
 
 def test_a_warning_is_a_sentence_too(monkeypatch, capsys):
-    """As where the cache cannot be written: no path of a source, no line of it."""
+    """A warning, as of a cache that cannot be written, shows no path or line of a source file."""
 
     def full():
         warnings.warn("the cache is full", stacklevel=1)
@@ -343,7 +343,7 @@ def test_ctrl_c_leaves_a_sentence_and_nothing_else(tmp_path):
 
 
 def shell(command):
-    """What a command leaves in bash: its own status, not that of the end of a pipe."""
+    """Exit status of a command in bash: its own, not that of the last command of a pipe."""
     return subprocess.run(
         ["bash", "-c", f"{command}; exit ${{PIPESTATUS[0]}}"], capture_output=True, text=True
     )

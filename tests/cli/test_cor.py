@@ -11,7 +11,7 @@ from contactlaw.__main__ import asks_for_few
 
 PAIR = "cor --sphere gamma-alumina --plate glass --radius 0.9mm"
 STEEL = "cor --sphere stainless-steel-304 --plate aluminium-6061-t6 --radius 1mm"
-# A bead that touches the limits of its table: of thickness, of speed, of what may be asked.
+# Impacts at the limits of the table, of the speed and of the arguments.
 ANSWERED = [
     f"{PAIR} --thickness 1mm --speed 12",
     f"{PAIR} --thickness inf --speed 12",
@@ -64,7 +64,7 @@ def outcomes(commands, route):
 
 @pytest.fixture(scope="module")
 def both():
-    """What each command says in Python and compiled: status, output and errors."""
+    """Status, output and errors of each command, integrated in Python and by compiled kernels."""
     commands = [*(f"{command} --json" for command in ANSWERED), *REFUSED, *ANSWERED[:4]]
     routes = (outcomes(commands, route) for route in ("python", "compiled"))
     return dict(zip(commands, zip(*routes, strict=True), strict=True))
@@ -89,7 +89,7 @@ def test_both_routes_agree(command, both):
 
 @pytest.mark.parametrize("command", ANSWERED[:4])
 def test_both_print_the_same(command, both):
-    """The COR to every digit, other numbers to one of the last; words and units as they are."""
+    """All digits of the COR, words and units agree, other numbers to one unit of the last digit."""
     (code, ours, said), (other_code, table, others) = both[command]
     assert (code, said) == (other_code, others) == (0, "")
     ours, table = ours.split(), table.split()
@@ -130,7 +130,7 @@ def test_few_impacts_are_told_from_many(few, words):
 
 
 def run(command, folder, *before):
-    """Run the command line as users do, in a home where nothing is."""
+    """Run the command line as users do, with an empty home folder."""
     environment = {**os.environ, "HOME": str(folder), "XDG_CACHE_HOME": str(folder)}
     for name in ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT", "CONTACTLAW_CACHE_DIR"):
         environment.pop(name, None)
@@ -148,7 +148,7 @@ def test_a_few_impacts_leave_neither_code_nor_a_table(tmp_path, both):
 
 
 def test_children_keep_their_compiler(tmp_path):
-    """As they would not if the environment said that there is none."""
+    """Child processes do not inherit the environment variable that disables the compiler."""
     child = "import os, atexit; atexit.register(lambda: print(os.environ.get('NUMBA_DISABLE_JIT')))"
     assert run(ANSWERED[0], tmp_path, child).stdout.endswith("\nNone\n")
 

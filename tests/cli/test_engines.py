@@ -127,7 +127,7 @@ def test_a_constant_as_csv(keep, model, capsys):
 
 
 def test_a_constant_from_the_record_of_a_run(tmp_path, capsys):
-    """Materials, law, sizes and plates are those of the run; the energy is what it lost."""
+    """Materials, law, radii and plates are those of the run, and as much energy is lost."""
     rain = ["rain", "--beads", "20", "--plates", "0.5e-3,3e-3", "--duration", "0.2"]
     rain += ["--law", "fem", "--sphere", "glass"]
     assert demo.main([*rain, "--out", str(tmp_path / "rain")]) == 0

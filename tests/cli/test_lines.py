@@ -47,7 +47,7 @@ def beads():
 
 
 def check(velocity, wanted):
-    """Rebounds from walls, and what two equal beads have between them."""
+    """Check the rebounds from walls, and the relative speed of two equal beads after an impact."""
     walls = np.stack([velocity[3 * n : 3 * n + 3, 2 - n] for n in range(3)])
     assert walls / SPEED == pytest.approx(np.tile(np.array(wanted[:3])[:, None], 3), abs=1e-3)
     low, high = velocity[9:, 0].reshape(3, 2).T
@@ -125,7 +125,7 @@ def test_liggghts_reads_them(capsys, tmp_path, wanted):
 
 
 def test_yade_reads_them(capsys, wanted):
-    """The lines are Python: what YADE's MatchMaker is given."""
+    """The lines are Python code with the values for YADE's MatchMaker."""
     names = {"MatchMaker": lambda matches: matches, "bead": 0, "wall1": 1, "wall2": 2, "wall3": 3}
     exec(lines("yade", capsys), names)
     assert [pair[:2] for pair in names["betan"]] == [(0, 0), (0, 1), (0, 2), (0, 3)]
@@ -150,7 +150,7 @@ def test_what_a_constant_gets_wrong_stands_beside_it(engine, capsys, wanted):
 
 
 def test_the_modulus_of_lammps_walls_is_the_pairs(capsys, tmp_path):
-    """LAMMPS makes E/(2 (1 - nu^2)) of what it is given: a contact lasts as long as Hertz's."""
+    """LAMMPS turns the modulus into E/(2 (1 - nu^2)): a contact lasts as long as Hertz's."""
     from lammps_box import quiet
 
     assert cli.main([*ASKED[:5], "--law", "hertz", *ASKED[7:9], "--thickness", "inf",

@@ -29,7 +29,7 @@ SPEEDS = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6}
         ("0.1:10:3log", SPEED, [0.1, 1.0, 10.0]),
         ("1mm:1cm:2,inf", LENGTH, [1e-3, 1e-2, math.inf]),
         ("100:1000:2 log, 5", SPEED, [100.0, 1000.0, 5.0]),
-        ("-1", SPEED, [-1.0]),  # of its range the model tells
+        ("-1", SPEED, [-1.0]),  # the model refuses it, not the parser
     ],
 )
 def test_what_people_write(text, quantity, expected):
@@ -38,7 +38,7 @@ def test_what_people_write(text, quantity, expected):
 
 @given(st.floats(1e-30, 1e30), st.sampled_from(sorted(POWERS)))
 def test_a_unit_is_a_shift_of_the_decimal_point(number, unit):
-    """To the last bit: 0.9mm is 0.9e-3, which 0.9*1e-3 need not be."""
+    """0.9mm is 0.9e-3 to the last bit, which the product 0.9*1e-3 need not be."""
     mantissa, _, exponent = f"{number!r}".partition("e")
     shifted = float(f"{mantissa}e{int(exponent or 0) + POWERS[unit]}")
     assert value(f"{number!r}{unit}", LENGTH) == shifted

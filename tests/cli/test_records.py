@@ -42,7 +42,7 @@ def test_columns_by_name_and_unit(head, rows, tmp_path):
 
 
 def test_sizes_are_those_that_would_be_typed(tmp_path):
-    """Plates of 0.9 mm in a file and on the command line are one plate."""
+    """A plate of 0.9 mm in a file equals a plate of 0.9 mm on the command line."""
     (tmp_path / "a.csv").write_text("speed,thickness_mm\n" + "\n".join(
         f"1,{size}" for size in (0.1, 0.3, 0.7, 0.9, 1.1)))  # fmt: skip
     found = read(tmp_path / "a.csv").thickness.tolist()
@@ -53,7 +53,7 @@ def test_weights_and_plates_and_a_half_space(tmp_path):
     text = "plate,speed,thickness_mm,weight\n0,1,0.5,3\n-1,9,9,9\n1,2,inf,1.5\n"
     (tmp_path / "a.csv").write_text(text)
     found = read(tmp_path / "a.csv")
-    assert found.speed.tolist() == [1, 2]  # bead on bead is left out
+    assert found.speed.tolist() == [1, 2]  # bead-on-bead impacts are left out
     assert found.thickness.tolist() == [0.5e-3, math.inf]
     assert found.weights.tolist() == [3, 1.5]
     assert found.plate.tolist() == [0, 1]
@@ -267,7 +267,7 @@ DAMAGES = [
 
 
 def constant(path, capsys):
-    """Exit status of the command, and what it says."""
+    """Exit status and messages of the command."""
     status = cli_of_contactlaw.main(["constant", "--record", str(path), "--csv"])
     return status, capsys.readouterr()
 
@@ -282,7 +282,7 @@ def test_a_damaged_rain_is_refused_in_words(damage, place, message, rain, tmp_pa
     assert (status, captured.out) == (1, "")
     assert message in captured.err
     assert len(captured.err) < 400 and captured.err.count("\n") == 1
-    assert str(path) in captured.err or message == "law"  # which the option may name as well
+    assert str(path) in captured.err or message == "law"  # the option --law may be named instead
 
 
 def test_a_rain_that_ends_early(rain, tmp_path):
@@ -295,7 +295,7 @@ def test_a_rain_that_ends_early(rain, tmp_path):
 
 @pytest.mark.parametrize("place", COLUMNS)
 def test_flipped_bits_of_a_column(place, rain, tmp_path):
-    """Of what is stored; in HDF5's own structures such a bit may keep its library busy for ever."""
+    """Bits flip in stored values only: in HDF5's own structures one may hang the library."""
     path, choose = tmp_path / "rain.h5", random.Random(4)
     path.write_bytes(rain)
     with h5py.File(path) as file:
@@ -306,7 +306,7 @@ def test_flipped_bits_of_a_column(place, rain, tmp_path):
         damaged[chunk.byte_offset + choose.randrange(chunk.size)] ^= 1 << choose.randrange(8)
         path.write_bytes(damaged)
         try:
-            assert read(path).speed.tolist() == [1.0, 2.0, 3.0]  # some bits mean nothing
+            assert read(path).speed.tolist() == [1.0, 2.0, 3.0]  # a flipped bit may have no effect
         except ValueError as error:
             assert f"rain.h5: dataset {place} is damaged: " in str(error)
             refused += 1

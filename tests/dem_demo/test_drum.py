@@ -148,7 +148,7 @@ def test_the_default_of_the_constant_is_the_law_on_a_thick_block():
 
 
 def test_the_account_of_energy_closes_where_beads_meet_only_the_drum(runs):
-    """Without friction: what came in, by gravity and the drum, is there or was lost at the drum."""
+    """Without friction, the energy from gravity and the drum is kinetic or was lost at the drum."""
     for run in runs.every:
         energy = account(run)
         assert abs(energy.gravity[-1]) > 0.01 * energy.start[0]

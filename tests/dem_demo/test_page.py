@@ -67,7 +67,7 @@ def test_nothing_moves_for_those_who_prefer_that(folder, page):
 
 
 def test_the_animation_goes_where_the_beads_went(folder):
-    """Its pieces of flight pass through every recorded frame."""
+    """The pieces of flight on the page pass through every recorded frame."""
     run = read(folder / "rain.h5")
     made = paths.pieces(run)
     seen = 0
@@ -77,7 +77,7 @@ def test_the_animation_goes_where_the_beads_went(folder):
         flying = run.status[n, now["bead"]] == 1
         assert flying.sum() == (run.status[n] == 1).sum()
         off = abs(paths.places(now, time + 1e-9) - where)[flying]
-        assert off.max(initial=0.0) < 1e-4  # metres; a bead's radius is 5e-4 at least
+        assert off.max(initial=0.0) < 1e-4  # [m]; the smallest radius is 5e-4
         seen += off.size
     assert seen > 1000
 

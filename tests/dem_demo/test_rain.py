@@ -149,7 +149,7 @@ def test_summary_is_that_of_the_file(folder, run):
 
 
 def test_beads_fly_on_parabolas(run):
-    """Between two frames without a collision a bead does what Newton says."""
+    """Between two frames without a collision a bead is in free fall."""
     hits = np.sort(run.collisions["time"])
     checked = 0
     for k in range(run.time.size - 1):
@@ -186,7 +186,7 @@ def test_baseline(baseline):
 
 @pytest.mark.parametrize(("which", "times"), [("folder", 0), ("baseline", 1)])
 def test_no_impact_is_looked_up_a_second_time(request, which, times, monkeypatch):
-    """In the baseline nobody has yet asked what the model says of the impacts."""
+    """Only the baseline needs a lookup of its impacts; other records have the results."""
     run = read(request.getfixturevalue(which) / "rain.h5")
     asked = []
 

@@ -65,7 +65,7 @@ def test_all_files_are_there_and_nothing_else(folder):
 
 @pytest.mark.parametrize("name", ["sieve.h5", "constant.h5"])
 def test_the_record_gives_a_constant(name, folder, capsys):
-    """The same walls as the engine's impacts with the scene's own sizes give."""
+    """The record gives the same constant as the impacts with the radii of the scene."""
     run = read_one(folder / name, Sieve)
     found = records.read(folder / name)
     rows = run.collisions
@@ -156,7 +156,7 @@ def test_impacts_on_the_flat_have_the_cor_of_the_law_and_the_constant(runs):
 
 
 def test_the_account_of_energy_closes_where_beads_meet_only_the_deck(runs):
-    """Without friction: what came in, by gravity and the deck, is there or was lost at the deck."""
+    """Without friction, the energy from gravity and the deck is kinetic or was lost at the deck."""
     for run in runs.every:
         energy = account(run)
         assert abs(energy.walls[-1]) > 0.05 * energy.start[0]

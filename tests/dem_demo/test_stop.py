@@ -20,7 +20,7 @@ SMALL = ["rain", "--beads", "40", "--plates", "0.5e-3,1e-3,inf", "--duration", "
 SMALL += ["--law", "myc"]
 FILES = {"rain.h5", "summary.txt", "index.html", "rain.gif"}
 FILES |= {f"{name}.png" for name in figures.names()}
-LONG = ["rain", "--beads", "1000", "--duration", "6", "--law", "myc"]  # nobody waits for its end
+LONG = ["rain", "--beads", "1000", "--duration", "6", "--law", "myc"]  # is stopped before its end
 
 
 def names(folder):
@@ -35,7 +35,7 @@ def start(argv, folder, **more):
 
 
 def wait_for_a_record(folder, size=400_000):
-    """Until it rains; gives the file that is being written."""
+    """Wait until the simulation has started; returns the file that is being written."""
     end = time.monotonic() + 120
     while time.monotonic() < end:
         for file in folder.glob("**/.unfinished-*/rain.h5"):
@@ -74,7 +74,7 @@ def test_an_interrupt_before_it_rains_leaves_nothing(tmp_path):
     time.sleep(0.5)
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=120)
-    assert process.returncode in (130, -signal.SIGINT)  # Python itself was still starting
+    assert process.returncode in (130, -signal.SIGINT)  # -SIGINT: Python itself was still starting
     assert "nothing was written" in errors or "KeyboardInterrupt" in errors
     assert names(tmp_path) == set()
 
@@ -84,7 +84,7 @@ def test_an_interrupt_that_python_drops_ends_the_rain_with_its_next_frame(
 ):
     class Thing:
         def __del__(self):
-            signal.raise_signal(signal.SIGINT)  # Python drops what a destructor raises
+            signal.raise_signal(signal.SIGINT)  # Python drops exceptions of destructors
 
     def run(scene, model, recorder):
         Thing()
@@ -131,7 +131,7 @@ def test_an_interrupt_while_figures_are_drawn_keeps_the_record(tmp_path, monkeyp
 
 
 class Failing:
-    """After some impacts the model has no answer."""
+    """A model that raises an error after some impacts."""
 
     def __init__(self, error):
         self.error, self.left = error, 20
@@ -187,8 +187,8 @@ def test_an_impact_outside_the_table_names_what_would_help(tmp_path, capsys):
 
 @pytest.mark.parametrize("sphere", cl.materials())
 def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, tmp_path, monkeypatch, capsys):
-    """On glass, at up to 15 m/s."""
-    if sphere != "glass":  # figures and page of two bodies that do not yield; the rest is quicker
+    """The beads fall on glass at up to 15 m/s."""
+    if sphere != "glass":  # draw for one pair only, of bodies that do not yield: drawing is slow
         monkeypatch.setattr("dem_demo.kit.session.make", lambda show, run, folder: {})
     few = ["rain", "--law", "fem", "--beads", "15", "--duration", "0.2", "--plates", "1e-3,3e-3"]
     few += ["--sphere", sphere, "--out", str(tmp_path / "out")]

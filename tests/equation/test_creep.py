@@ -13,7 +13,7 @@ from contactlaw.laws import fem
 
 SOFT = fem.law(486795.0, 0.0, 0.999419, 0.0786415, 0.28555)  # a sphere of no strength
 # law, lambda, overload: the force falls with a power below 2, so that all is creeping once it has
-# begun; above 2, where it ends again; and with Hertz's, which the first part of the way creeps
+# begun; above 2, where it ends again; and with Hertz's power, in the first part of unloading only
 CASES = {
     "power 1.6": (SOFT, 13.5, 5e6),
     "power 1.5": (SOFT, 30.0, 1e5),
@@ -24,7 +24,7 @@ CASES = {
 
 
 def numbers(name):
-    """Data of the law, lambda, and yield compression of a case, and what the solver says."""
+    """Data of the law, lambda and yield compression of a case, and its solution."""
     law, lam, overload = CASES[name]
     status, w_m = zener.elastic_compression(law.data, lam, 1e-10)
     assert status == zener.OK
@@ -32,10 +32,10 @@ def numbers(name):
 
 
 def way_back(law, lam, y, dm):
-    """Implicit integration from the largest compression to where nothing is left.
+    """Integrate implicitly from the largest compression until no energy is left.
 
-    Time, with what passes after it while the plate is held; work on the plate; time without that;
-    and the speed and force at times since. In the law's scale; logarithms keep the digits.
+    Returns the time with the last phase, in which the plate is held; the work on the plate; the
+    time without that phase; and a function that gives speed and force at given times.
     """
     beta, curve = lam * y**0.25, force.unloading(law, dm)
     a, b = curve.stiffness, curve.exponent
@@ -58,9 +58,9 @@ def way_back(law, lam, y, dm):
     )  # fmt: skip
     assert run.t_events[0].size == 1
     u, f, work = *np.exp(run.y[:2, -1]), run.y[2, -1]
-    square = (f / a) ** (2.0 / b)  # of the root compression
+    square = (f / a) ** (2.0 / b)  # square of the root compression
 
-    def rate(share):  # of time over that share of it, from the work that the force has yet to do
+    def rate(share):  # d(time)/d(share), from the work that the force has yet to do
         ahead = 4.0 * f * square * share ** (b + 2.0) / (b + 2.0)
         return 2.0 * square * share / math.sqrt(left(u, f) - ahead)
 
@@ -92,7 +92,7 @@ def test_a_creeping_contact_is_an_implicit_methods(name):
 
 @pytest.mark.parametrize("name", CASES)
 def test_times_and_levels_within_the_creep(name):
-    """Forces at given times, and times at given compressions, which the series stops short of."""
+    """Forces at given times, and times at given compressions, are found within the creep."""
     law, lam, y, found = numbers(name)
     unit, dm = y**0.25, found.peak_compression / y
     curve = force.unloading(law, dm)
@@ -115,7 +115,7 @@ def test_times_and_levels_within_the_creep(name):
 
 
 def test_the_series_errs_as_the_square_of_its_number():
-    """Beside the closed form of an exponent of 2, two decays, the slower of which remains."""
+    """For exponent 2 the closed form is a sum of two decays, of which the slower one remains."""
     law, errors = laws.law("myc").data, []
     for delta in (8e-5, 4e-5, 2e-5):
         leg = legs._on_unloading_curve(
@@ -130,7 +130,7 @@ def test_the_series_errs_as_the_square_of_its_number():
         assert 4.9 * beta < there.t < 5.0 * beta
         decayed = math.exp(-slow * there.t)
         errors.append([there.u / decayed - 1.0, there.f / (slow * decayed) - 1.0])
-        work = slow**2 * (1.0 - decayed**2) / (2.0 * slow)  # of f^2 over time
+        work = slow**2 * (1.0 - decayed**2) / (2.0 * slow)  # integral of f^2 over time
         assert there.work.wave == pytest.approx(work, rel=1e-7)
     errors = np.abs(errors)
     assert (errors[0] < 1e-7).all()

@@ -150,7 +150,7 @@ def overload(law, lam, dm):
 
 
 def largest_imbalance(law, lam, chi):
-    """Of impacts, and which of them it is."""
+    """Largest imbalance of energy of the impacts, and its lambda and overload."""
     out = outcome.at(np.array(lam), np.ones(len(lam)))
     assert zener.solve_overloads(law.data, 1e-10, np.array(chi), out) == (zener.OK, 0)
     extremes = outcome.extremes(len(lam))
@@ -161,7 +161,7 @@ def largest_imbalance(law, lam, chi):
 
 
 # Errors of single steps, 1e-10, add up: 6e-10 at most. Of the energy a hundredth of a thousandth
-# was lost where an unloading curve's corner was run over.
+# was lost where a step ran across a corner of an unloading curve.
 @pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
 class TestEnergyBalance:
     def test_over_the_whole_table(self, law):
@@ -191,7 +191,7 @@ def test_energy_balance_at_the_kinks(law):
 
 
 def test_stronges_contact_closes_through_the_model(pair):
-    """Its corners were run over: 1e-5 at 21.8468 m/s, and at every hundredth speed around."""
+    """Steps across its corners lost 1e-5 at 21.8468 m/s, and at 1 % of the speeds around."""
     model = cl.ImpactModel(pair, law="stronge")
     speed = np.append(np.linspace(8.0, 30.0, 2201), 21.8468)
     for radius, thickness in ((1e-3, math.inf), (0.9e-3, 1e-3)):
@@ -251,7 +251,7 @@ def test_too_thin_is_a_status():
 
 
 def test_a_level_next_to_a_turn_is_sought_within_the_step():
-    """A trajectory that turns 1e-12 above a kink: where an impact of some 3e6 never ended."""
+    """The motion turns 1e-12 above a kink, where once one impact of 3e6 never ended."""
     none = losses.NO_WORK
     before = motion.ScaledState(0.9999943343816174, 0.0, 1.5, none, 0.005034003062177397, 0.0, 1.0)
     beyond = motion.ScaledState(
@@ -263,7 +263,7 @@ def test_a_level_next_to_a_turn_is_sought_within_the_step():
 
 
 def test_a_sphere_that_never_leaves_is_done_when_its_energy_is():
-    """Radau's implicit method from the turning point: the same energy left, and never a rebound."""
+    """Radau's implicit method from the turning point leaves the same energy and never rebounds."""
     law = law_of(STAYING, "fem").data
     lam, y = 0.75, 1e-5
     found = zener.solve(law, lam, y, 1e-10)
@@ -278,7 +278,7 @@ def test_a_sphere_that_never_leaves_is_done_when_its_energy_is():
 
     half = curve.exponent / 2
 
-    def slowed(_, logarithms):  # of what is left of the compression, and of the speed
+    def slowed(_, logarithms):  # rates of ln(remaining compression), ln(speed)
         span, u = np.exp(logarithms)
         f = curve.stiffness * span**half
         return (u - beta * f) / span, -f / u
@@ -288,16 +288,16 @@ def test_a_sphere_that_never_leaves_is_done_when_its_energy_is():
         slowed, (0.0, times[-1]), np.log([dm - curve.residual, beta * found.peak_force * y**-1.5]),
         "Radau", times, rtol=1e-8, atol=1e-10,
     )  # fmt: skip
-    assert run.success  # the sphere is pressed on, for ever
+    assert run.success  # the sphere presses on the plate for ever
     span, u = np.exp(run.y)
     left = np.sqrt(u**2 + 2.0 / (half + 1.0) * curve.stiffness * span ** (half + 1.0)) / first
-    # the last of it, with the plate held, takes some of a unit of time
+    # The last part of the contact, with the plate held, takes a fraction of a unit of time.
     assert 0.3 < left[0] / integrator.LEAST_RESTITUTION <= 1.0
     assert left[1] < 1e-2 * left[0]
 
 
 def test_contact_times_and_restitution_are_continuous_where_spheres_come_to_stay():
-    """Contact times rise steeply there, by 2 in a thousandth of lambda: steps vanish with it."""
+    """Contact times rise by 2 within 0.001 of lambda: smaller intervals, smaller changes."""
     law = law_of(STAYING, "fem").data
     low, high, steps = 0.7, 0.75, []
     for _ in range(5):
@@ -314,7 +314,7 @@ def test_contact_times_and_restitution_are_continuous_where_spheres_come_to_stay
 
 
 def test_times_of_a_sphere_that_stays_end_with_its_contact():
-    """`history`, which stops in the middle of steps, and `shape`, which stops at levels."""
+    """Check `history`, which stops in the middle of steps, and `shape`, which stops at levels."""
     law = law_of(STAYING, "fem").data
     lam, y = 0.75, 1e-5
     found = zener.solve(law, lam, y, 1e-10)
@@ -352,21 +352,21 @@ solved(0.6)
 
 
 def test_force_plate_and_losses_are_replaced_one_by_one():
-    """Without the compiler, which binds them: another plate, another force, another channel."""
+    """Without the compiler a plate, a force or a loss channel can be replaced on its own."""
     run = subprocess.run(
         [sys.executable, "-c", PARTS], env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
         check=True, capture_output=True, text=True,
     )  # fmt: skip
     thin, stiff, mobile, doubled, halved = np.loadtxt(run.stdout.splitlines())
-    assert mobile[:2] == pytest.approx(thin[:2], rel=1e-7)  # a plate that gives way twice as fast
+    assert mobile[:2] == pytest.approx(thin[:2], rel=1e-7)  # twice the mobility of the plate
     assert doubled[0] == pytest.approx(stiff[0], rel=1e-7)  # lambda goes with K^0.4
-    assert halved[:2] == pytest.approx(thin[:2], rel=1e-12)  # losses follow from the motion
+    assert halved[:2] == pytest.approx(thin[:2], rel=1e-12)  # losses do not change the motion
     assert halved[2] == pytest.approx(0.5 * thin[2], rel=1e-12)
 
 
 @pytest.mark.parametrize("law", ALL_LAWS)
 def test_what_an_impact_loses_is_the_sum_of_its_channels(law):
-    """Of all fields with that ending, in `Solution` and in `Rebound`, and of no others."""
+    """The channels are all fields named so in `Solution` and `Rebound`, and no others."""
     named = {f"{channel}_fraction" for channel in losses.Losses._fields}
     for fields in (zener.Solution._fields, cl.Rebound.__dataclass_fields__):
         assert {name for name in fields if name.endswith("_fraction")} == named

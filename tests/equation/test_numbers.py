@@ -17,8 +17,8 @@ STEEL = cl.Pair("stainless-steel-304", "stainless-steel-304")
 PAIRS = [cl.Pair("gamma-alumina", "glass"), STEEL, cl.Pair("glass", "carbon-steel-1020"),
          cl.Pair("aluminium-6061-t6", "pmma")]  # fmt: skip
 COUNT = 25_000  # of each pair
-# What decides on these flags is known before the impact is integrated.
-# THIN_PLATE is not: once a body yields it begins at a thicker plate.
+# These flags are decided before the impact is integrated.
+# THIN_PLATE is not among them: once a body yields, it begins at a thicker plate.
 BEFOREHAND = Validity.FAST_IMPACT | Validity.RATE_DEPENDENT | Validity.SOFT_PLATE
 
 
@@ -60,7 +60,7 @@ def fastest(model, radius, thickness):
 @pytest.mark.parametrize("law", ["fem", "myc"])
 @pytest.mark.parametrize("pair", PAIRS[:2], ids=repr)
 def test_they_are_those_of_the_paper_with_the_next_orders(pair, law):
-    """From SI quantities, each by its formula; `numbers` goes by powers of the speed."""
+    """Each number follows from SI quantities by its formula; `numbers` scales with speed."""
     model = cl.ImpactModel(pair, law)
     plate, found = sphere_on_plate(pair, model.force_law, 1.0, 1.0).plate, []
     for v, r, h in ((1e-3, 1e-5, 1e-4), (2.0, 1e-3, 1e-3), (80.0, 5e-3, 4e-3), (300.0, 1.0, 9.0)):
@@ -91,7 +91,7 @@ def test_they_are_those_of_the_paper_with_the_next_orders(pair, law):
     ids=repr,
 )
 def test_table_solver_and_stepping_have_the_same(pair, law):
-    """Lambda within rounding; flags, but for those that a result decides next to its limit."""
+    """Lambda agrees within rounding, and the flags too, unless a result next to a limit decides."""
     model = cl.ImpactModel(pair, law, outside="solve")
     v, r, h = impacts(model, 1) if law == "fem" else impacts(cl.ImpactModel(pair, "fem"), 2)
     units = scales(sphere_on_plate(pair, model.force_law, r, h), v)
@@ -122,7 +122,7 @@ def test_table_solver_and_stepping_have_the_same(pair, law):
 @pytest.mark.parametrize("method", ["table", "solve"])
 @pytest.mark.parametrize("law", ["fem", "myc"])
 def test_a_history_has_the_same(law, method):
-    """It tells its numbers by what it is scaled with: its end, and the plate's displacement."""
+    """The numbers of a history follow from its last time and from the plate's displacement."""
     model = cl.ImpactModel(STEEL, law, outside="solve")
     v, r, h = (each[:2000] for each in impacts(cl.ImpactModel(STEEL), 3))
     units = scales(sphere_on_plate(STEEL, model.force_law, r, h), v)
@@ -138,7 +138,7 @@ def test_a_history_has_the_same(law, method):
 
 @pytest.mark.parametrize("share", [0.999, 1.001])
 def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share):
-    """In LAMMPS it was so 0.5 % below: that left out how the plate stiffens contacts."""
+    """The flag began 0.5 % too low in LAMMPS when it left out how plates stiffen contacts."""
     import lammps_box as box
 
     model, r = cl.ImpactModel(STEEL, outside="solve"), 1e-3
@@ -146,7 +146,7 @@ def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share)
     speed = share * fastest(model, r, thickness)
     size = np.array([r, thickness])
     units = scales(sphere_on_plate(STEEL, model.force_law, *size), np.array(speed))
-    assert units.stiffer**1.25 > 1.002  # by which the speeds differed
+    assert units.stiffer**1.25 > 1.002  # the factor by which the speeds differed
     lmp = box.make((0.0, 0.0, r + 1e-6), (0.0, 0.0, -speed), r, dt=1e-8)
     lmp.command(f"set group all density {STEEL.sphere.density!r}")
     walls = box.attach(lmp, model, [box.flat(thickness)])

@@ -43,8 +43,8 @@ COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 PAIR = cl.Pair("gamma-alumina", "glass")
 STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
-# every registered law, the one with next orders of the plate for three kinds of bodies, and two of
-# a user's own
+# Every registered law; fem, which has corrections to the thin-plate dashpot, for three kinds of
+# bodies; and two laws of a user's own.
 MODELS = {name: (PAIR, name) for name in laws.names()}
 MODELS |= {"fem, metals": (STEEL, "fem"), "fem, elastic": (cl.Pair("glass", "glass"), "fem")}
 MODELS |= {"own": (PAIR, own()), "measured": (PAIR, measured())}
@@ -192,10 +192,10 @@ def lookups(table, c_lam, c_chi, v, r, h, out):
 
 
 def test_a_lookup_is_that_of_numba_in_the_same_table(compiled):
-    """1e5 random impacts, some of them outside."""
+    """Compare 1e5 random impacts, some of them outside the table."""
     model, library, _ = compiled
     table = thinned(model.table, c_header.ERROR)
-    bare = dataclasses.replace(table, certificate=None)  # which a model would warn of
+    bare = dataclasses.replace(table, certificate=None)  # of which a model would warn
     peer = cl.ImpactModel(model.pair, model.force_law, table=bare)
     v, r, h = impacts(100_000, seed=1)
     expected = np.empty(v.size)
@@ -212,12 +212,12 @@ def test_a_lookup_is_that_of_numba_in_the_same_table(compiled):
 
 
 def test_a_contact_by_steps_is_that_of_softsphere(compiled):
-    """2000 random impacts at 15 to 120 steps a contact."""
+    """Compare 2000 random impacts at 15 to 120 steps per contact."""
     model, library, _ = compiled
     v, r, h = impacts(2000, seed=2)
     rng = np.random.default_rng(3)
     units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
-    keep = units.inelasticity < 3.0  # at most; beyond, nothing comes back
+    keep = units.inelasticity < 3.0  # beyond 3 spheres do not rebound
     v, r, h = v[keep], r[keep], h[keep]
     dt = 3.2 * units.time[keep] / np.exp(rng.uniform(math.log(15.0), math.log(120.0), v.size))
     phase = rng.uniform(0.02, 0.98, v.size)
@@ -264,7 +264,7 @@ def test_a_rebound_is_the_solvers(compiled):
 
 
 def test_flags_are_those_of_the_solver(compiled):
-    """1e5 impacts over all models; what differs is within an integration's error of a limit."""
+    """Of 1e5 impacts only those within the integration's error of a limit may have other flags."""
     model, library, _ = compiled
     v, r, h = impacts(10_000, seed=11)
     units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
@@ -333,7 +333,7 @@ def test_a_state_in_c_is_softspheres():
 
 
 def test_no_constant_of_python_is_repeated_in_the_template():
-    """Those with a value of their own; small whole numbers mean many things."""
+    """Constants with distinctive values are searched for; small whole numbers mean many things."""
     folder = Path(c_header.__file__).parent
     values = {float(getattr(module, name)): name for module, name in CONSTANTS}
     values |= {RELAXATION: "RELAXATION", validity.SLENDER: "THINNEST"}
@@ -346,13 +346,13 @@ def test_no_constant_of_python_is_repeated_in_the_template():
 
 
 def without_a_table(folder, model):
-    """Library of a header that integrates."""
+    """Library of a header without a table, which integrates."""
     cl.export.header(folder / "contactlaw.h", model, table="none")
     return ctypes.CDLL(build(folder, LINKAGE + CALLS, "-O2", "-shared", "-fPIC", *WARNINGS))
 
 
 def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
-    """COR 1e-2 to 0: once what is left of an impact can do no more, the contact is over."""
+    """The COR is 1e-2 to 0: the contact ends once its remaining energy is negligible."""
     model = cl.ImpactModel(STAYING)
     library = without_a_table(tmp_path, model)
     v, h = np.array(np.meshgrid(np.geomspace(1e-6, 1.0, 16), np.geomspace(1.5e-4, 4e-3, 9)))
@@ -370,7 +370,7 @@ def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
 
 
 def test_the_series_is_not_for_the_loading_curve(tmp_path):
-    """An elastic contact goes back along it, and this one is no power of the compression."""
+    """An elastic contact unloads along the loading curve, which is no power law here."""
     stiffening = np.polynomial.Polynomial([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1e3])
     law = Law.of(name="stiffening", source="s", yield_coefficient=None, scale=1e-5,
                  loading=[Loading(0.0, stiffening)])  # fmt: skip
@@ -388,12 +388,12 @@ def test_compilers_have_nothing_to_say(name, table, tmp_path):
     write_header(tmp_path, name, table)
     assert (tmp_path / "contactlaw.h").stat().st_size <= 500_000
     source = LINKAGE + LOOKUPS + CALLS if table == "cor" else LINKAGE
-    # what `compiled` has built with gcc, with the same warnings, is not built again
+    # `compiled` has built the header with gcc and the same warnings already.
     for compiler in COMPILERS if table == "none" else ["g++"]:
         build(tmp_path, source, "-c", "-O1", *WARNINGS, compiler=compiler)
 
 
-# Calls with numbers of all kinds, in any order: everything that is no answer has to be NaN.
+# Calls with numbers of all kinds, in any order: a call without a valid answer has to give NaN.
 ANY_INPUT = """
 #include "contactlaw.h"
 #include <stdio.h>
@@ -496,7 +496,7 @@ SANITIZERS = ["-fsanitize=address,undefined,float-cast-overflow", "-fno-sanitize
 
 @pytest.mark.parametrize("name", MODELS)
 def test_sanitizers_find_nothing_whatever_the_input(name, tmp_path):
-    """NaN, inf, zero, negative, denormal numbers and any bits, in arguments, springs and states."""
+    """Arguments, springs and states may be NaN, inf, zero, negative, denormal or random bits."""
     write_header(tmp_path, name)
     program = build(tmp_path, ANY_INPUT, "-O1", "-g", *SANITIZERS)
     done = subprocess.run([program], capture_output=True, text=True, timeout=300)
@@ -534,7 +534,7 @@ def test_the_data_are_those_that_python_reads(compiled):
     text = (folder / "contactlaw.h").read_text()
     table = thinned(model.table, c_header.ERROR).packed.copy()
     plate = slice(lookup.TRANSIT, lookup.HEADER)
-    table[plate] = model._tabulated.packed[plate]  # which the pair adds
+    table[plate] = model._tabulated.packed[plate]  # the pair adds these constants of the plate
     for array, values in (("law", model.force_law.data), ("table", table)):
         inside = re.search(rf"contactlaw_{array}\[\] = {{(.*?)}}", text, re.DOTALL)[1]
         found = np.array(inside.replace("HUGE_VAL", "inf").split(","), dtype=np.float64)
@@ -543,7 +543,7 @@ def test_the_data_are_those_that_python_reads(compiled):
 
 
 def test_a_table_of_ones_own_without_a_certificate(tmp_path):
-    """Too coarse to be made coarser: taken as it is, and its error is told."""
+    """A table too coarse to be thinned is exported as it is, and the header states its error."""
     settings = Settings(
         inelasticity_nodes=6, log_overload_step=0.4, largest_inelasticity=1.0, largest_overload=3.0
     )
@@ -575,7 +575,7 @@ def test_whatever_a_law_or_a_material_is_called(name, tmp_path):
 
 
 def test_nothing_that_threads_could_share(tmp_path):
-    """Functions and constants alone, and no call but of the mathematical library."""
+    """The header has functions and constants only, and calls only the mathematical library."""
     write_header(tmp_path, "fem")
     compiled = build(tmp_path, LINKAGE + LOOKUPS + CALLS, "-c", "-O1", out="out.o")
     done = subprocess.run(["nm", compiled], capture_output=True, text=True)
@@ -764,7 +764,7 @@ def test_the_soft_sphere_example_is_pythons(tmp_path):
         u += 0.5 * dt * (9.81 - contacts.advance(x, dt) / contacts.mass)
         peak = np.maximum(peak, contacts.force)
     assert np.array(found) == pytest.approx(np.column_stack([v, peak, -u]), abs=1e-6)
-    # and its COR is the integrated one's, gravity aside
+    # Its COR is the integrated one, but for gravity.
     assert -u / v == pytest.approx(model.solve(v, 0.9e-3, 1e-3).restitution, abs=2e-4)
 
 
@@ -788,7 +788,7 @@ def test_headers_of_two_pairs_in_one_source_file_stop_the_compiler(compiler, tmp
         capture_output=True, text=True,
     )  # fmt: skip
     assert done.returncode != 0
-    assert done.stderr.count("error:") == 1, done.stderr  # no list of redefinitions after it
+    assert done.stderr.count("error:") == 1, done.stderr  # no redefinitions after it
     assert "other.h" in done.stderr
     assert "include each in a source file of its own" in done.stderr
     source.write_text('#include "one.h"\n#include "one.h"\nint main(void) { return 0; }\n')

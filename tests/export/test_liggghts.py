@@ -79,7 +79,7 @@ class Scene:
         return min(time_step(self.model, v, self.radius, math.inf) for v in speeds)
 
     def beads(self, centres, velocities, name="beads.data"):
-        """Write beads; the script's line that reads them."""
+        """Write a file of beads, and return the line of a script that reads it."""
         centres, velocities = np.broadcast_arrays(centres, velocities)
         density = self.model.pair.sphere.density
         lines = ["beads", "", f"{len(centres)} atoms", "5 atom types", ""]
@@ -153,7 +153,7 @@ def zplane(kind=3):
 
 
 def meshes(**kinds):
-    """Sheets of these types; LIGGGHTS wants all meshes in one wall."""
+    """Plates of these atom types; LIGGGHTS needs all meshes in one wall."""
     lines = [
         f"fix {name} all mesh/surface file {name}.stl type {kind}" for name, kind in kinds.items()
     ]
@@ -188,7 +188,7 @@ def both_laws(function):
 
 @both_laws
 def test_drops_have_the_restitution_of_the_table(law, libraries, tmp_path):
-    """Sheets of four thicknesses in one scene, each a mesh of a type of its own."""
+    """Plates of four thicknesses are in one scene, each a mesh with its own atom type."""
     scene = Scene(tmp_path, *libraries[law])
     r = scene.radius
     sheets, centres, rng = {}, [], np.random.default_rng(5)
@@ -266,7 +266,7 @@ def test_a_vibrating_plate(frequency, scene):
     start = scene.beads([(1e-3, 2e-3, r + gap)], (0, 0, velocity))
     last = scene.run(scene.script(start, walls, every=steps) + f"run {steps}")
     speeds = 3.0 * np.cos(omega * step * np.arange(1, steps + 1))
-    heights = np.cumsum(speeds) * step  # so LIGGGHTS moves the mesh
+    heights = np.cumsum(speeds) * step  # as LIGGGHTS moves the mesh
     expected = bounce(scene, THICKNESS[1], velocity, gap, step, heights)
     assert last["vz"][-1, 0] == pytest.approx(expected, abs=1e-6)
     if frequency < 1000.0:
@@ -279,13 +279,13 @@ FRICTION = " ".join(["0.2"] * 25)
 
 
 def shower(scene):
-    """Beads that slide over a sheet's seams, and across the border of two ranks in mid-contact."""
+    """Beads that slide over seams of a plate, and across the border of two ranks in mid-contact."""
     scene.sheet(low=(-0.04, -0.04), high=(0.04, 0.04), parts=8)
     rng = np.random.default_rng(7)
     x, y = np.meshgrid(np.linspace(-0.036, 0.036, 11), np.linspace(-0.036, 0.036, 11))
     centres = np.column_stack([x.ravel(), y.ravel(), scene.radius + 1e-4 * rng.random(x.size)])
     velocities = rng.uniform((-8, -8, -9), (8, 8, -2), centres.shape)
-    border = slice(5, None, 11)  # these touch after 4 us, and cross it from then on
+    border = slice(5, None, 11)  # these touch after 4 us, then cross the border
     centres[border, 0], centres[border, 2] = -np.linspace(3e-5, 9e-5, 11), scene.radius + 2e-5
     velocities[border] = 10.0, 0.0, -5.0
     return scene.beads(centres, velocities)
@@ -305,7 +305,7 @@ def test_ranks_agree_in_every_digit(law, libraries, tmp_path):
         assert np.array_equal(one[name], two[name]), name
     assert np.abs(one["omegay"][-1]).max() > 100.0
     ranks = [moved_in_contact(scene.folder / f"rank.{k}") for k in (0, 1)]
-    assert len(ranks[0][0] & ranks[1][1]) >= 3  # left one in contact, appeared in the other so
+    assert len(ranks[0][0] & ranks[1][1]) >= 3  # beads changed ranks in contact
 
 
 def moved_in_contact(path):
@@ -384,7 +384,7 @@ def test_a_bead_that_sticks_has_mindlins_spring(scene):
         u -= 0.5 * step * pull / (mass * 2 / 7)
         expected.append(sideways + 2 / 7 * (u - sideways))
     change = np.array(expected) - sideways
-    assert change.min() < -0.25  # on its way it has turned the point of contact round
+    assert change.min() < -0.25  # meanwhile the slip at the contact has changed its sign
     # LIGGGHTS lets the tangential force act at half the overlap
     assert found["vx"][:, 0] - sideways == pytest.approx(change, abs=0.01)
 
@@ -443,7 +443,7 @@ def test_liggghts_refuses(wrong, scene):
 
 @needs_liggghts
 def test_the_rain_comes_back_from_the_thick_sheet_faster(scene):
-    """Every bead hits one of two sheets at 3 m/s; beads that meet on the way lose more."""
+    """Every bead hits one of two plates at 3 m/s; beads that meet on the way lose more energy."""
     for path in (ROOT / "docs/examples/liggghts").iterdir():
         shutil.copy(path, scene.folder)
     done = scene.start((scene.folder / "in.rain").read_text())

@@ -89,7 +89,7 @@ def test_value_and_error_are_those_of_least_squares_by_scipy(by_scipy):
 
 
 def test_the_model_part_of_the_error_is_its_rms_where_all_errors_are_alike(by_scipy):
-    """One rebound: 0.43 % of COR, over the derivative of ln e by ln H, which `sensitivity` has."""
+    """For one rebound it is 0.43 % over the derivative of ln e by ln H, from `sensitivity`."""
     v = 1.0
     cor = float(cl.ImpactModel(STEEL).solve(v, RADIUS, THICKNESS).restitution)
     found = cl.fit(STEEL, {"speed": v, "radius": RADIUS, "restitution": cor}, "thickness")
@@ -114,7 +114,7 @@ def test_derivatives_are_those_of_the_models_own_sensitivity(name):
 
 
 def test_errors_that_are_not_given_are_found_from_the_scatter():
-    """Mean and 1/sqrt(n) of a parameter that all values are proportional to: exact by hand."""
+    """If all values are proportional to the parameter, mean and 1/sqrt(n) are exact by hand."""
     v = np.full(6, 1.0)
     hit = impacts(Setting(STEEL, v * RADIUS, v * THICKNESS), law_of(STEEL, "fem"), v)
     scatter = np.array([1.01, 0.98, 1.03, 0.995, 1.002, 0.99])
@@ -141,7 +141,7 @@ def dense(speed, slenderness, kind, size):
     ("count", "plates", "close"), [(40, "many", 1e-9), (1500, "one", 5e-3), (1500, "many", 6e-2)]
 )
 def test_the_shared_errors_of_the_model_are_those_of_their_matrix(count, plates, close):
-    """Exactly, up to 600 different places; beyond, those in one cell err alike."""
+    """They agree exactly up to 600 different impacts; beyond, impacts in one cell err alike."""
     random = np.random.default_rng(4)
     v, h = np.exp(random.uniform(-1.0, 2.0, (2, count))) * [[1.0], [1e-3]]
     h = h if plates == "many" else np.full(count, THICKNESS)
@@ -168,7 +168,7 @@ def test_the_shared_errors_of_the_model_are_those_of_their_matrix(count, plates,
 
 
 def test_many_rebounds_take_little_memory():
-    """10,000 took 3.3 GB and 45 s; 2000 would take 250 MB as matrices."""
+    """10,000 rebounds once took 3.3 GB and 45 s; as matrices 2000 would take 250 MB."""
     v = np.exp(np.random.default_rng(1).uniform(np.log(0.1), np.log(8.0), 2000))
     data = rebounds(STEEL, speed=v, noise=0.01, without=("thickness",))
     tracemalloc.start()
@@ -182,7 +182,7 @@ def test_many_rebounds_take_little_memory():
 
 
 def test_a_prior_costs_the_share_of_a_value_that_the_data_tell_of_it():
-    """One that is as good as exact costs nothing, one that says nothing is an unknown."""
+    """An almost exact prior costs no degree of freedom, a very wide one costs a whole one."""
     data = cl.Measurements.of(rebounds(STEEL, kinds=KINDS, without=("thickness",)))
     for prior, told in ((1e-9, 1.0), (0.99, 2.0)):
         priors = {"density": prior * STEEL.sphere.density}
@@ -196,7 +196,7 @@ def test_a_prior_costs_the_share_of_a_value_that_the_data_tell_of_it():
 
 
 def test_degrees_of_freedom_are_those_of_the_values_that_tell():
-    """Of two equal parts with 4 and 4 they are 8; of one alone its own."""
+    """Two equal parts with 4 each have 8; a single part has its own."""
     data = cl.Measurements.of(rebounds(STEEL, kinds=KINDS[:2], without=("thickness",)))
     moved = parameters(STEEL, data, "thickness", {})
     predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
@@ -209,7 +209,7 @@ def test_degrees_of_freedom_are_those_of_the_values_that_tell():
 
 
 def test_a_prior_enters_the_error():
-    """A density that is known to 10 % leaves H uncertain by what the two derivatives say."""
+    """A density known to 10 % adds an error to H by the ratio of the two derivatives."""
     data = rebounds(STEEL, speed=[1.0], without=("thickness",))
     alone = cl.fit(STEEL, data, "thickness")
     with_it = cl.fit(STEEL, data, "thickness", priors={"density": 0.1 * STEEL.sphere.density})
@@ -241,7 +241,7 @@ def test_a_strength_from_below_yield_is_refused_with_what_is_known():
 
 
 def test_a_product_is_told_where_its_factors_are_not():
-    """Below yield a thin plate is its mobility, H^2 sqrt(rho2): 1/4 in the exponent of rho2."""
+    """Below yield only the mobility of a thin plate counts, and so only H^2 sqrt(rho2)."""
     pair = cl.Pair("gamma-alumina", "glass")
     data = rebounds(pair, speed=np.geomspace(0.3, 4.0, 10), noise=0.01, without=("thickness",))
     with pytest.raises(cl.UnidentifiedError, match="apart: they determine") as caught:
@@ -263,7 +263,7 @@ def test_what_a_law_does_not_depend_on_is_refused(law, asked):
 
 
 def test_a_thickness_that_may_be_any_larger_is_refused():
-    """A thick plate's contact time ends at that of a half-space."""
+    """The contact time on thick plates tends to that on a half-space, which bounds no thickness."""
     pair, speed, size = cl.Pair("glass", "glass"), np.array([0.5, 1.0, 2.0]), np.ones(3)
     thick = impacts(Setting(pair, RADIUS * size, 3e-3 * size), law_of(pair, "fem"), speed)
     time = np.asarray(thick.contact_time)
@@ -296,7 +296,7 @@ def test_the_curve_of_a_fit_is_the_models_with_its_values():
     hit, errors_of = found.curve([0.5, 5.0], RADIUS, found.values["thickness"])
     table = cl.ImpactModel(found.pair)
     own = table.solve([0.5, 5.0], RADIUS, found.values["thickness"])
-    assert hit.restitution == pytest.approx(own.restitution, rel=3e-6)  # the rtol of a fit
+    assert hit.restitution == pytest.approx(own.restitution, rel=3e-6)  # a fit's rtol
     assert hit.flags.tolist() == own.flags.tolist()
     slope = table.sensitivity([0.5, 5.0], RADIUS, found.values["thickness"]).thickness
     share = found.errors["thickness"] / found.values["thickness"]
@@ -315,7 +315,7 @@ def test_missing_values_are_left_out():
 
 
 def test_a_size_of_each_rebound_with_a_prior():
-    """A radius of each, of which all are off by one factor."""
+    """Each rebound has a radius of its own, and all radii are off by the same factor."""
     data = rebounds(STEEL, kinds=KINDS, without=("thickness",))
     data["radius"] = np.full(12, 1.05 * RADIUS)
     found = cl.fit(STEEL, data, ("thickness", "radius"), priors={"radius": 1e-4})
@@ -420,7 +420,7 @@ def test_finite_elements_that_no_fit_has_seen():
 
 
 def test_the_page_prints_what_the_command_prints(capsys, monkeypatch, tmp_path):
-    """Command and output, as they stand in docs/fit.md."""
+    """docs/fit.md shows the command and its output."""
     docs = ROOT / "docs"
     command, shown = re.search(
         r"(contactlaw fit rebounds.csv .*?)```\n\n```text\n(.*?)```",

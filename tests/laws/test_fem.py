@@ -23,7 +23,7 @@ ENERGIES = ("plastic_fraction", "wave_fraction", "other_fraction")
 
 @pytest.fixture(autouse=True, scope="module")
 def no_folder():
-    """Tables of many pairs are made here: none for the user's folder."""
+    """Keep the tables of the many pairs here out of the user's cache."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("CONTACTLAW_NO_CACHE", "1")
         yield
@@ -36,17 +36,17 @@ def model_of(sphere, plate, law="fem"):
 
 @functools.cache
 def solver_of(pair):
-    """A model whose table is none of its own, and not asked."""
+    """A model that only solves: its table belongs to another law and is not used."""
     spans = model_of("gamma-alumina", "glass").table
     table = dataclasses.replace(spans, law=law_of(pair, "fem"), certificate=None)
     return cl.ImpactModel(pair, law="fem", table=table)
 
 
-# Pairs and speeds for which somebody takes the wrong law.
+# Pairs and speeds for which a user chose a law that does not suit them.
 
 
 def test_glass_on_steel_is_no_elastic_impact():
-    """The steel yields: Hertz's law has nothing of it, and says so."""
+    """The steel yields, which Hertz's law does not model but flags."""
     elastic = model_of("soda-lime-glass", "stainless-steel-304", "hertz")
     assert elastic.lookup(2.0, R, 5e-3).flags & Validity.OTHER_LAW
     ours = model_of("soda-lime-glass", "stainless-steel-304").lookup(2.0, R, 5e-3)
@@ -67,13 +67,13 @@ def test_aluminium_yields_under_steel():
     )
     alone = dataclasses.replace(cl.material(aluminium), yield_strength=None)
     assert model.pair.yield_speed == cl.Pair(weak, alone).yield_speed
-    # on a half-space, but for the stiffening and the wave: 1 % each
+    # The pair's speed is for Hertz's contact: stiffening and the wave change it by 1 % each.
     assert model.yield_speed(R, math.inf) == pytest.approx(model.pair.yield_speed, rel=0.05)
     assert model.lookup(0.5, R, 5e-3).plastic_fraction > 0.1
     assert model.lookup(0.5, R, 5e-3).flags == 0
     other = cl.ImpactModel(model.pair, law="myc", outside="solve")
     assert other.lookup(0.5, R, 5e-3).flags & Validity.SOFT_PLATE
-    assert other.lookup(0.5, R, 5e-3).plastic_fraction == 0.0  # it is the steel that yields there
+    assert other.lookup(0.5, R, 5e-3).plastic_fraction == 0.0  # here only the steel bead may yield
 
 
 def test_polymers_depend_on_the_rate():
@@ -86,7 +86,7 @@ def test_polymers_depend_on_the_rate():
 @pytest.mark.parametrize(
     ("modulus", "density", "kind", "depends"),
     [
-        (2.9e9, 1410.0, None, True),  # POM, whose kind nobody gave
+        (2.9e9, 1410.0, None, True),  # POM without a kind
         (2.9e9, 1410.0, "polymer", True),
         (12e9, 1410.0, "polymer", True),
         (2.9e9, 1410.0, "ceramic", False),  # a porous granule, say
@@ -143,7 +143,7 @@ def test_it_is_stiffer_than_hertz_and_gives_back_no_more(pair):
 
 
 def test_slow_impacts_on_thin_plates_are_those_of_zener():
-    """Narrow beside the bead and long for the plate: what is left goes as lambda h, V^(2/5)."""
+    """In small, long contacts the difference from Zener's goes as lambda h, or V^(2/5)."""
     glass = cl.Pair("soda-lime-glass", "soda-lime-glass")
     ours, zener = solver_of(glass), cl.ImpactModel(glass, law="hertz")
     off = [
@@ -164,7 +164,7 @@ def test_two_elastic_bodies():
     assert total == pytest.approx(np.ones_like(total), abs=1e-4)  # the table's
     assert (np.diff(hit.restitution, axis=0) > 0.0).all()  # the thicker, the more comes back
     assert (hit.wave_fraction[2] > 0.0).all()  # into a half-space, too
-    assert (hit.other_fraction > 0.0).all()  # friction of unlike bodies
+    assert (hit.other_fraction > 0.0).all()  # unlike bodies lose energy by micro-slip
     elastic = cl.ImpactModel(model.pair, law="hertz").lookup(v, R, 1e-3).restitution
     assert hit.restitution[0] == pytest.approx(elastic, abs=0.05)
 
@@ -186,7 +186,7 @@ FASTER_THAN_ITS_WAVES = [  # elastic spheres at a tenth of sqrt(E*/rho1), plates
 
 @pytest.mark.parametrize(("pair", "speed"), FASTER_THAN_ITS_WAVES)
 def test_thicker_plates_take_no_more_however_fast_the_impact(pair, speed):
-    """Seven times the speed from which on FAST_IMPACT flags them, R/H to 5."""
+    """Speeds are up to seven times the limit of FAST_IMPACT, and R/H up to 5."""
     hit = cl.ImpactModel(pair).solve(speed, R, R * np.geomspace(0.2, 100.0, 400))
     assert (np.diff(hit.inelasticity) <= 1e-9 * hit.inelasticity[1:]).all()
     assert (np.diff(hit.wave_fraction) <= 1e-7).all()
@@ -248,7 +248,7 @@ def test_soft_bodies_follow_the_slope_of_the_law():
 
 
 def test_indium_under_steel():
-    """Its COR was flat at 0.10: beyond 1e5 d_Y the law went on by its tangent."""
+    """Its COR was once flat at 0.10, since beyond 1e5 d_Y the law continued along its tangent."""
     pair = soft(1e6)
     hit = answered(pair, np.array([0.1, 0.5, 2.5]))
     assert (np.diff(hit.restitution) < -0.01).all()
@@ -275,7 +275,7 @@ def test_untried_strengths_are_flagged_once_a_body_yields(strength, speed, yield
 
 
 def test_an_untried_strength_of_the_stronger_body_counts_where_it_yields():
-    """Of steels with strengths of E*/12 and less than 1/0.36 of that."""
+    """Steels with strengths of E*/12, and of less than 1/0.36 of that, hit each other."""
     steel = cl.Material("a", 200e9, 0.3, 7850)
     strength = cl.Pair(steel, steel).effective_modulus / 12.0
     for share, flagged in ((1.05, False), (1.2, True), (2.7, True), (2.9, False)):
@@ -289,7 +289,7 @@ def test_an_untried_strength_of_the_stronger_body_counts_where_it_yields():
 
 @pytest.mark.parametrize("strength", [1.0, 1e3, 1e6])
 def test_every_soft_body_makes_a_model(strength):
-    """Some had a table that no setting allows; its errors are those of any pair's."""
+    """Some tables once exceeded the settings; their errors are like those of any pair."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         model = cl.ImpactModel(soft(strength))
@@ -324,7 +324,7 @@ def test_nothing_jumps_where_a_body_is_so_strong_that_it_does_not_yield():
 
 
 def test_energies_sum_to_one():
-    """Of 200 impacts of whatever falls on whatever."""
+    """The shares sum to one in 200 impacts of random pairs."""
     for case in census.draw(71, 200):
         model = solver_of(cl.Pair(case.sphere, case.plate))
         hit = model.solve(case.speed, case.radius, case.thickness)
@@ -350,7 +350,7 @@ def test_tables_are_near_the_solver(pair):
     assert model.restitution(speed, R, thickness) == pytest.approx(looked.restitution, abs=1e-10)
     for name in ("contact_time", "peak_force", "peak_compression", "wave_fraction"):
         assert getattr(looked, name) == pytest.approx(getattr(exact, name), rel=5e-4), name
-    # lambda by other formulas, which do not know of the table
+    # Lambda by formulas that share no code with the table.
     assert looked.inelasticity == pytest.approx(exact.inelasticity, rel=1e-10)
     assert looked.overload == pytest.approx(exact.overload, rel=1e-7)  # by a polynomial for w_m
     assert np.array_equal(looked.flags, exact.flags)

@@ -54,7 +54,7 @@ def test_loading_is_continuous_and_rises(law):
     force = np.array([law.loading(math.sqrt(x)) for x in d])
     steps = np.diff(force)
     assert (steps > 0).all()
-    # no jump hides: the steepest, Stronge's at yield, has (2 + 2/3.3)/1.5 of Hertz's slope there
+    # The bound excludes jumps: the steepest slope, Stronge's at yield, is (2 + 2/3.3)/1.5 Hertz's.
     assert (steps <= 1.74 * 1.5 * np.sqrt(d[1:]) * np.diff(d) * (1 + 1e-6)).all()
 
 
@@ -107,7 +107,7 @@ def test_dissipation_keeps_its_digits_just_above_yield():
 
 
 # the pair of the other tests, and one that jackson_green was fitted for
-# a law that is new here is held by all the other tests, which take nothing from it but its data
+# All other tests apply to a new law too, since they take only its data.
 REFERENCED = [law for law in ALL_LAWS if law.family in reference_laws.FAMILIES]
 REFERENCED.append(laws.law("jackson_green(150,0.3)"))
 
@@ -134,7 +134,7 @@ def places(kinks, count):
 
 @pytest.mark.parametrize("law", REFERENCED, ids=lambda law: law.name)
 class TestAgainstTheFormulas:
-    """To 1e-12 of each quantity itself, by a reference that shares no code."""
+    """Each quantity agrees to 1e-12 with a reference that shares no code."""
 
     def test_kinks_and_yield(self, law):
         exact = reference_laws.of(law.name)
@@ -179,7 +179,7 @@ class TestAgainstTheFormulas:
         assert worst[0] < 1e-12, worst
 
     def test_beyond_the_last_piece(self, law):
-        """Tangent over the compression; share of the residual, and exponent, are kept."""
+        """The law continues along its tangent, with the same residual share and exponent."""
         exact = reference_laws.of(law.name)
         deepest = [reference_laws.END * step for step in (1.0, 1.0 + 1e-9, 1.01, 2.0, 1e3, 1e9)]
         force = [exact.loading(mpf(math.sqrt(dm)) ** 2) for dm in deepest]

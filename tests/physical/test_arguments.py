@@ -110,7 +110,7 @@ def test_the_unit_to_convert_to_is_named(model, call, unit):
 
 def test_units_of_none_of_them_are_taken(model):
     class Row(dict):
-        """As a pandas Series, whose rows are attributes too."""
+        """A stand-in for a pandas Series, whose rows are attributes too."""
 
         units = 3.0
         unit = None
@@ -155,7 +155,7 @@ def test_single_numbers_have_their_range(model, name, bad):
     for argument, _, call in calls(model):
         if argument == name and not (name == "duration" and bad in (None, 5e-324)):
             if name == "step" and bad == 5e-324:
-                continue  # a short step is no mistake
+                continue  # a step may be arbitrarily short
             with pytest.raises(ValueError, match=f"^{name}: "):
                 call(bad)
 
@@ -169,7 +169,7 @@ def test_single_numbers_have_their_range(model, name, bad):
     ],
 )
 def test_materials_whose_products_overflow_are_refused(numbers, name):
-    """As 'math domain error', OverflowError or a force of NaN later on, otherwise."""
+    """They would else give 'math domain error', OverflowError or a force of NaN later on."""
     with pytest.raises(ValueError, match=f"^{name} .* of 'own' must "):
         cl.Material("own", *numbers)
 
@@ -212,7 +212,7 @@ def test_of_many_plates_the_foil_is_named():
 
 
 def test_a_soft_bead_at_high_speed_keeps_its_stiffening_finite():
-    """A contact is at most 10 times as wide as the plate is thick, for the stiffening: eta < 8."""
+    """For the stiffening a contact is at most 10 times as wide as the plate is thick: eta < 8."""
     soft = cl.Material("gel", 1e4, 0.45, 1000.0)
     model = cl.ImpactModel(cl.Pair(soft, soft), outside="clamp")
     hit = model.lookup([1e2, 1e4, 1e5], 1e-3, [[1e-5], [1e-3]])

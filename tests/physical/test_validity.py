@@ -24,7 +24,7 @@ def test_thin_plate(model):
 
 
 def test_thin_plate_that_yields():
-    """For fem the limit is lower where a body yields, on this plate."""
+    """On this plate the limit of the law fem is lower where a body yields."""
     steel = cl.ImpactModel(cl.Pair("bearing-steel-52100", "stainless-steel-304"), law="fem")
     for thickness, elastic, plastic in ((R / 1.39, 0, 0), (R / 1.41, 0, 1), (R / 1.81, 1, 1)):
         first = steel.yield_speed(R, thickness)

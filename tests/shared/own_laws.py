@@ -11,7 +11,7 @@ from contactlaw.physical.scaling import yield_scales
 
 R, H = 0.9e-3, 1e-3
 PAIR = cl.Pair("gamma-alumina", "glass")
-CUT_OFF = Loading(1.0, lambda d: 1.5 * d - 0.5)  # Hertz's curve left along its tangent
+CUT_OFF = Loading(1.0, lambda d: 1.5 * d - 0.5)  # Hertz's curve, then its tangent
 
 
 def residual(dm):

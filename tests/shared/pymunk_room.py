@@ -11,12 +11,12 @@ from contactlaw.engines.pymunk import attach
 R = 0.9e-3
 G = 9.81
 DT = 1e-4
-# pymunk solves for a velocity: a few roundings of numbers of the size of the speed.
+# pymunk solves for velocities, with a few rounding errors of the size of the speed.
 EXACT = 1e-12
 
 
 class Stub:
-    """A model that answers with a constant or a function, and remembers what it was asked."""
+    """A model whose COR is a constant or a function of speed; it keeps the speeds asked for."""
 
     def __init__(self, answer=0.7):
         self.answer = answer if callable(answer) else lambda speed: answer
@@ -37,7 +37,7 @@ class Stub:
 
 
 class Full(Stub):
-    """With the parts that fill the whole record: numbers that can be told apart."""
+    """A stub with all columns of the record, each with a distinct number."""
 
     pair = SimpleNamespace(sphere=SimpleNamespace(density=1000.0))
     flags = 0
@@ -79,7 +79,7 @@ def make_plate(space, a=(-1, 0), b=(1, 0), body=None, radius=0.0):
 
 
 def registered(space, model, beads, plates, thickness=1e-3):
-    """Impacts of these beads with these plates, as the model says."""
+    """Attach a model, and register these beads and plates."""
     impacts = attach(space, model)
     for circle in beads:
         impacts.add_bead(circle)
@@ -109,7 +109,7 @@ def meet(model, speed=1.0, radii=(R, R)):
 
 
 def moving_body(space, velocity=(0, 0), spin=0.0, position=(0, 0)):
-    """A body that moves as it is told, for plates."""
+    """A kinematic body for plates, with a given velocity."""
     body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     body.position, body.velocity, body.angular_velocity = position, velocity, spin
     space.add(body)

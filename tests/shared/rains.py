@@ -8,7 +8,7 @@ from contactlaw.engines.layout import write, write_materials
 
 
 def write_rain(path, pair):
-    """Write what `contactlaw constant` reads of a record, as `dem-demo rain` does."""
+    """Write the datasets that `contactlaw constant` reads, as `dem-demo rain` does."""
     columns = {
         "beads/radius": [0.9e-3, 1e-3, 1.1e-3],
         "plates/thickness": [0.5e-3, math.inf],

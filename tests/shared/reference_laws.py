@@ -11,8 +11,8 @@ from typing import Any
 
 from mpmath import diff, exp, findroot, inf, linspace, log, mp, mpf, pi, quad, sqrt
 
-mp.dps = 60  # a loss 1e-9 above yield is 1e-32 of the work with `stronge`
-END = 100_000  # compression from which a law goes on along its tangent
+mp.dps = 60  # `stronge` loses 1e-32 of the work at 1e-9 above yield
+END = 100_000  # compression from which a law continues along its tangent
 
 
 @dataclass
@@ -42,7 +42,7 @@ def power(start, factor, exponent):
 
 
 def line(start, at, force, slope):
-    """Through a point."""
+    """Straight line through a point."""
     return Branch(
         start,
         lambda d: force + slope * (d - at),
@@ -62,7 +62,7 @@ def root(of, low, high):
 class Reference:
     """A law: branches of its loading curve, residual and exponent as functions of dm."""
 
-    coefficient: Any  # of d_Y in pi^2 sigma_Y^2 R*/E*^2
+    coefficient: Any  # d_Y over pi^2 sigma_Y^2 R*/E*^2
     branches: list
     residual_at: Any = None
     exponent_at: Any = None
@@ -106,7 +106,7 @@ class Reference:
         return self.exponent_at(min(dm, mpf(END)))
 
     def unloading(self, d, dm):
-        """Force on the way back from dm."""
+        """Force of unloading from dm."""
         printed = self.printed(d, dm)
         return min(printed, self.loading(d)) if self.capped else printed
 
@@ -194,7 +194,7 @@ def thornton():
 
 
 def stronge():
-    """Chapter 6, with d_p by continuity; the way back is the lower of the two curves."""
+    """Chapter 6, with d_p by continuity; unloading follows the lower of the two curves."""
     rise, plastic = mpf("3.3"), mpf("2.8") / mpf("1.1")
     d_p = (exp(rise * (plastic - 1)) + 1) / 2
 
@@ -251,7 +251,7 @@ def etsion(coefficient, branches):
 
 
 def kogut_etsion(nu):
-    """With the printed branches joined where they meet."""
+    """Kogut and Etsion, with the printed branches joined where they meet."""
     first = mpf("1.03") ** (1 / mpf("0.075"))
     second = (mpf("1.40") / mpf("1.03")) ** (1 / mpf("0.162"))
     return etsion(
@@ -261,7 +261,7 @@ def kogut_etsion(nu):
 
 
 def jackson_green(ratio, nu):
-    """With the second form from where it meets Hertz's curve."""
+    """Jackson and Green, whose second form begins where it meets Hertz's curve."""
     e_y, c = 1 / ratio, mpf("1.295") * exp(mpf("0.736") * nu)
     b = mpf("0.14") * exp(23 * e_y)
 

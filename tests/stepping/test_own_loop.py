@@ -1,4 +1,4 @@
-"""The loop of one's own in docs/examples, beside the same scene in LAMMPS."""
+"""The time loop without an engine in docs/examples, beside the same scene in LAMMPS."""
 
 import importlib.util
 import math
@@ -85,7 +85,7 @@ def hit(scene, contacts, friction, speed, mass, radius, dt, steps):
 
 @pytest.mark.parametrize("rising", [0.0, 1.5, 3.0])
 def test_a_plate_that_rises_hits_as_hard_as_the_bead_that_falls(example, rising):
-    """Galileo's: what counts is the speed of one relative to the other."""
+    """Only the relative speed counts (Galilean invariance)."""
     model, r = cl.ImpactModel(example.PAIR), example.RADIUS
     motion = Translation((0.0, 0.0, rising)) if rising else None
     plate = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3, motion=motion)

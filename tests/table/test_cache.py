@@ -115,7 +115,7 @@ def other_schema(path):
 
 
 def negative_share(path):
-    """As a program would write it that sets the checksum, too."""
+    """Damage a field like a program that also updates the checksum."""
     image = io.BytesIO(path.read_bytes())
     with h5py.File(image, "r+") as file:
         file["fields/wave_rate"][0, 0] = -1.0
@@ -180,7 +180,7 @@ def test_a_folder_in_the_place_of_the_file(path, expected):
 
 
 def test_a_damaged_file_in_a_full_folder(place, path, expected):
-    """Two things are wrong; one warning says which of them matters."""
+    """Two things are wrong, and a single warning names the one that matters."""
     place.mkdir()
     path.write_bytes(b"")
 
@@ -262,7 +262,7 @@ def test_a_builder_killed_with_the_lock_does_not_block_the_next(place, path, exp
     builder.join()
     before = time.monotonic()
     assert same(cache.cached(MYC, SMALL), expected)
-    assert time.monotonic() - before < 30  # the lock went with its process
+    assert time.monotonic() - before < 30  # the lock ended with its process
 
 
 def warned(change):
@@ -315,7 +315,7 @@ def test_a_full_disk(place, expected):
         resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
 
     check_one_warning(in_child(warned, fill), expected, os.strerror(errno.EFBIG))
-    assert [p.suffix for p in place.iterdir()] == [".lock"]  # no table, no half of one
+    assert [p.suffix for p in place.iterdir()] == [".lock"]  # neither a table nor a part of one
 
 
 def test_a_file_where_the_folder_should_be(place, expected):

@@ -56,7 +56,7 @@ def test_parameters_of_a_law_are_numbers_in_its_file(tmp_path):
 
 
 def test_parameters_of_a_law_keep_their_order(tmp_path):
-    """The law's name is made of them; HDF5 has attributes by the alphabet unless it is told."""
+    """The law's name lists them in order, but HDF5 sorts attributes by name by default."""
     law = law_of(cl.Pair("gamma-alumina", "glass"), "fem")
     assert list(law.parameters) != sorted(law.parameters)
     store.write(table.build(law, SMALL), tmp_path / "t.h5")
@@ -185,7 +185,7 @@ def test_a_wrong_file_is_refused(path, change, message):
 
 def make_socket(path):
     with socket.socket(socket.AF_UNIX) as end:
-        end.bind(path.name)  # a whole path may be too long for it
+        end.bind(path.name)  # a socket's path may not be long
 
 
 def make_sparse(path):
@@ -196,8 +196,8 @@ def make_sparse(path):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (os.mkfifo, "no regular file"),  # to open it as a file waits for a writer
-        (lambda path: path.symlink_to("/dev/zero"), "no regular file"),  # without an end
+        (os.mkfifo, "no regular file"),  # opening a pipe waits for a writer
+        (lambda path: path.symlink_to("/dev/zero"), "no regular file"),  # a file without an end
         (lambda path: path.symlink_to(path), "no regular file"),
         (lambda path: path.symlink_to("nowhere"), "no regular file"),
         (lambda path: path.symlink_to(path.parent), "no regular file"),
@@ -244,7 +244,7 @@ def test_any_altered_byte_is_found(path):
             read = store.read(path)
         except store.DamagedTableError:
             continue
-        # the padding behind the checksum, which says nothing, is all that may change
+        # Only the meaningless padding behind the checksum may change.
         assert 93 < place < store._BLOCK
         assert read.law == MYC
 
@@ -291,7 +291,7 @@ def test_a_folder_that_is_not_there(built, tmp_path):
 
 
 def test_a_file_of_another_numpy_is_read(monkeypatch, path):
-    """Its sines and powers end in another digit."""
+    """Sines and powers of another numpy version differ in the last digit."""
     monkeypatch.setattr(store.shapes, "SHARES", store.shapes.SHARES * (1 + 4e-16))
     store.read(path)
     monkeypatch.setattr(store.shapes, "SHARES", store.shapes.SHARES * (1 + 1e-9))

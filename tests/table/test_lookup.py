@@ -10,7 +10,7 @@ from contactlaw.table import lookup
 
 
 def compiled(inner):
-    """Give a kernel that kernels call a way in from Python, which would run it as it is written."""
+    """Compile a caller for an inlined kernel, which Python would otherwise interpret."""
 
     @kernel(entry=True)
     def outer(*arguments):

@@ -1,4 +1,4 @@
-"""The table and its packed against the solver that they stand for."""
+"""The table and its packed form against the solver that they stand for."""
 
 import dataclasses
 import math
@@ -57,14 +57,14 @@ def test_packaged_table_against_the_solver():
     packed = file.packaged(MYC).packed
     worst = errors(MYC, packed, *random_points(MYC, 2000, table.Settings(), seed=7))
     assert worst[0] < 1e-6  # the design's target for COR
-    assert (worst[1:] < 1e-5).all()  # and, relatively, for the rest
+    assert (worst[1:] < 1e-5).all()  # relative errors of the other fields
 
 
 @pytest.mark.parametrize(
     "law", [law for law in ALL_LAWS if law.yields and law.name != "myc"], ids=lambda law: law.name
 )
 def test_tables_of_the_other_laws(law):
-    """As they are built on demand; the figures are those of `ImpactModel.lookup`'s notes."""
+    """Tables built on demand have the accuracy that the notes of `ImpactModel.lookup` state."""
     built = table.build(law, on_demand(law), points=10_000)
     assert built.certificate.largest["restitution"] < (4e-7 if law.capped else 2e-7)
     next_to_yield = {"plastic_fraction", "residual_compression"}  # they begin there at zero
@@ -91,13 +91,13 @@ def built(request):
 
 
 def check_promise(built, lam, chi):
-    """COR within 1e-6, contact time within 1e-5, relatively; the largest are 3e-7 and 7e-6."""
+    """Check COR to 1e-6 and contact time to 1e-5, relatively; the largest are 3e-7 and 7e-6."""
     order = np.argsort(lam, kind="stable")  # equal neighbours share their w_m
     lam, chi = np.asarray(lam)[order], np.asarray(chi)[order]
     exact, looked = (outcome.at(lam, np.ones(lam.size)) for _ in range(2))
     assert zener.solve_overloads(built.law.data, 1e-12, chi, exact) == (zener.OK, 0)
     looked.yield_ratio[:] = exact.yield_ratio
-    lookup.fields(built.packed, True, looked)  # clamped: chi = 40 may be one rounding error beyond
+    lookup.fields(built.packed, True, looked)  # clamped: chi = 40 may be beyond by a rounding
     for off, promise in (
         (looked.restitution - exact.restitution, 1e-6),
         (looked.contact_time / exact.contact_time - 1.0, 1e-5),
@@ -132,7 +132,7 @@ class TestEveryLaw:
 
 
 def test_kogut_etsion_next_to_its_second_corner(pair, monkeypatch):
-    """The COR was 1.94e-4 off at this point, lambda near 0 and chi = 6.43."""
+    """At this point, lambda near 0 and chi = 6.43, the COR was once 1.94e-4 off."""
     monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
     model = cl.ImpactModel(pair, law="kogut_etsion")
     looked, exact = (
@@ -203,7 +203,7 @@ def test_restitution_falls_with_overload_and_with_inelasticity():
 
 
 def test_the_certificate_is_honest():
-    """Its figures are those of an independent comparison, through the public model."""
+    """The certificate agrees with an independent comparison through the public model."""
     packaged = file.packaged(MYC)
     assert packaged.certificate.exceeded() == {}
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
@@ -213,7 +213,7 @@ def test_the_certificate_is_honest():
     looked = model.lookup(speed, radius, thickness)
     exact = model.solve(speed, radius, thickness, rtol=1e-12)
     for name, largest in packaged.certificate.largest.items():
-        if name == "force_history":  # has tests of its own
+        if name == "force_history":  # test_history.py has tests of it
             continue
         ours, truth = getattr(looked, name), getattr(exact, name)
         if name == "other_fraction":  # this law has none, exactly
@@ -286,7 +286,7 @@ def test_splines_reproduce_cubics():
 
 
 def test_a_table_may_have_one_axis_more():
-    """Nodes and splines of three axes, the last of which has a kink that is a curve, and a map."""
+    """A table of three axes works, whose last axis has a curved kink and a map."""
     rows = axes.Segment(
         np.zeros(axes.SERIES), np.full(axes.SERIES, 4.0), np.linspace(0, 1, 9), False
     )
@@ -306,7 +306,7 @@ def test_a_table_may_have_one_axis_more():
     steps = np.diff((c / (c + 1.0))[:, :, 5:], axis=2)
     np.testing.assert_allclose(steps, steps[:, :, :1] * np.ones(6), rtol=1e-12)
 
-    def values(n):  # along c by the number of the node, in which its nodes are even
+    def values(n):  # values along c over the number of the node, in which nodes are evenly spaced
         return (1.0 + a**2) * (b - b**3) * np.where(n < 5, n**3, -(n**2))
 
     held = values(np.arange(12.0))
@@ -348,10 +348,10 @@ def test_progress_sees_every_row():
 
 @pytest.mark.parametrize("law", [law for law in ALL_LAWS if law.yields], ids=lambda law: law.name)
 def test_plastic_fields_keep_their_digits_next_to_yield(law):
-    """Down to 1e-5 above it, where residual compression and plastic share are some 1e-10."""
+    """They do down to 1e-5 above yield, where both fields are about 1e-10."""
     built = table.build(law, on_demand(law))
     exceeded = built.certificate.exceeded()
-    if law.name == "stronge":  # its cap begins there, and loses as the power 7/2
+    if law.name == "stronge":  # the cap begins at yield, and losses grow as the power 7/2
         assert exceeded.pop("residual_compression", 0.0) < 1e-3
         assert exceeded.pop("plastic_fraction", 0.0) < 1e-3
     assert exceeded == {}

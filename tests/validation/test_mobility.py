@@ -49,7 +49,7 @@ def mode(omega: float, poisson: float, which: int) -> Compliance:
 
 
 def share(compliance: Compliance, omega: float, poisson: float) -> float:
-    """Real part of the mobility over Kirchhoff's: from the poles, by a path that goes round them.
+    """Real part of the mobility over Kirchhoff's, by an integral along a path around the poles.
 
     On the real axis the integrand is real; the arc ends beyond the last pole.
     """
@@ -150,13 +150,13 @@ RATIOS = np.linspace(0.0, 0.45, 10)
 
 
 def phi(one: corrections.PlateCorrections, h: float) -> float:
-    """Factor on the mobility of a thin plate."""
+    """Factor phi on the mobility of a thin plate."""
     return one.bulk_factor * h * h + corrections.near_field(one, h)
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.1, 0.25, 0.3, 0.45])
 def test_the_model_has_the_energy_of_an_impact(poisson: float) -> None:
-    """Within 1.2 % of the integral, on plates of any thickness."""
+    """The model is within 1.2 % of the integral, on plates of any thickness."""
     one = corrections.plate_corrections(poisson)
     for x in (0.1, 0.3, 0.5, 0.65, 0.8, 1.0):
         h = x * 0.5 / math.sqrt(ratio(poisson))
@@ -176,7 +176,7 @@ def test_a_thicker_plate_never_takes_more(poisson: float) -> None:
 @pytest.mark.parametrize("poisson", RATIOS)
 @pytest.mark.parametrize("far", [0.01, 0.1, 0.5, 2.0])  # lambda of a half-space
 def test_lambda_falls_with_the_thickness(poisson: float, far: float) -> None:
-    """Of any sphere, though losses lengthen contacts with thin plates only."""
+    """Lambda falls for any sphere, although losses lengthen only contacts with thin plates."""
     one = corrections.plate_corrections(poisson)
     h = np.geomspace(0.02, 30.0, 1000)
     thin = far / one.bulk_factor / h**2

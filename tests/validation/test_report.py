@@ -27,8 +27,8 @@ from validation.paper.verdicts import (
     undecided,
 )
 
-# Recorded numbers of ours: all of each figure, as they were printed and looked at; null is an error
-# of table or solver, below 5e-6.
+# Our recorded numbers of each figure, checked by eye when printed; null is an error of table or
+# solver below 5e-6.
 NUMBERS = json.loads((Path(__file__).parent / "figures.json").read_text())
 # Elements that reach beyond the screen, but for those in a container that scrolls sideways.
 TOO_WIDE = """[...document.querySelectorAll("*")]
@@ -215,7 +215,7 @@ def test_the_report_states_its_size(drawn):
 
 
 def test_the_report_says_of_calculix_what_the_docs_say(drawn):
-    """There it is tested."""
+    """docs/laws.md states the same numbers, which are tested there."""
     docs = (ROOT / "docs/laws.md").read_text()
     said = [
         re.search(r"within (\d\.\d), (\d\.\d) and (\d\.\d) %", text).groups()
@@ -225,7 +225,7 @@ def test_the_report_says_of_calculix_what_the_docs_say(drawn):
 
 
 def test_the_parts_of_the_report_come_in_order(drawn):
-    """People who simulate first; each figure in its part, with words for who cannot see it."""
+    """Parts for people who simulate come first; each figure is in its part, with an alt text."""
     text = (drawn[1] / "index.html").read_text()
     parts = re.findall(r"<section id=\"([a-z-]*)\">(.*?)</section>", text, flags=re.DOTALL)
     assert [name for name, _ in parts] == ["practice", "finite-elements", "paper", "derivations"]
@@ -310,7 +310,7 @@ def test_captions_name_their_figure():
 
 
 def test_a_thin_run_is_a_report(tmp_path, monkeypatch, capsys):
-    """A figure of each part and the first claims: all of the page, in seconds."""
+    """One figure of each part and the first claims make a whole page in seconds."""
     few = ["fig09b_energy", "fig12_sensitivity", "fig20_limits"]
     monkeypatch.setattr(figures, "names", lambda: few)
     monkeypatch.setattr("validation.paper.claims.SECTIONS", SECTIONS[:1])
@@ -328,7 +328,7 @@ def counted(score):
 
 
 def test_how_right_the_laws_are():
-    """Recorded, as README and docs say it; what counts is in `test_acceptance`."""
+    """README and docs quote these recorded numbers; `test_acceptance` has the bounds."""
     fem, myc = trust.overall()["everyday impacts, kept out of the fit"]
     assert counted(fem) == (160, 157, 0.006, -0.047)
     assert counted(myc) == (108, 10, 0.323, 1.047)
@@ -350,7 +350,7 @@ def test_parts_of_the_everyday_impacts_are_all_of_them():
 
 
 def test_law_fem_is_right_on_plates_that_are_not_thin():
-    """As the report says in words."""
+    """The report states these numbers in words."""
     thin, *thick = (fem for fem, _ in list(trust.where().values())[:3])
     assert thin.right < thin.impacts
     assert all(one.right == one.impacts for one in thick)

@@ -85,7 +85,7 @@ def test_two_ranks_give_the_same_bits(whole, two_ranks):
 
 
 def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path):
-    """Too few beads to meet each other: the same bits."""
+    """The beads are too few to meet each other, so one and two ranks give the same bits."""
     assert cli.main([*box.RAIN, "--out", str(tmp_path / "rain")]) == 0
     one, two = (
         reader.read(path / "rain.h5")
@@ -116,7 +116,7 @@ def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path):
 
 
 def test_the_dump_is_one_that_ovito_opens(two_ranks):
-    """Its text format: a header for each frame, then one row per bead."""
+    """OVITO reads a text format with a header for each frame, and one row per bead."""
     lines = (two_ranks[1].with_name("rain") / "rain.lammpstrj").read_text().splitlines()
     heads = [n for n, line in enumerate(lines) if line == "ITEM: TIMESTEP"]
     assert len(heads) == 31  # frames of 1 ms, and the start
@@ -130,7 +130,7 @@ def test_the_dump_is_one_that_ovito_opens(two_ranks):
 
 
 def test_an_error_on_one_rank_reaches_both(two_ranks):
-    """Once on each: a later error of LAMMPS's own does not hide it, and it is not told again."""
+    """Each rank raises the error once, and a later error of LAMMPS does not hide it."""
     assert two_ranks[0].count("caught: bead 1 on plate 0 at step") == 4
     assert two_ranks[0].count("caught") == 4
 
@@ -140,7 +140,7 @@ def test_a_command_without_time_steps_needs_no_other_rank(two_ranks):
 
 
 def test_a_restart_in_mid_contact_gives_the_same_bits(whole, tmp_path):
-    """With it the walls move on from where they were."""
+    """After the restart the walls move on from where they were."""
     name, ends, _ = whole
     lmp = box.rain()
     walls = SCENES[name](lmp)
@@ -183,7 +183,7 @@ def test_a_bead_at_rest_is_quiet(model):
 
 
 def test_edges_and_both_sides(model):
-    """From below as from above; on an edge the force is along the line to its nearest point."""
+    """Beads hit from below and from above; at an edge the force points from its nearest point."""
     plate = flat(1e-3, x=0.0, width=0.01)
     places = above(x=0.005), (0.005, 0.01, -R - 1e-4), (-R - 1e-4, 0, 0)
     towards = (0, 0, -5), (0, 0, 5), (5, 0, 0)
@@ -219,7 +219,7 @@ def test_a_seam_is_not_felt(model, x, order):
 @pytest.mark.parametrize("order", [(0, 1), (1, 0)])
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_a_bead_that_crosses_a_seam_takes_its_contact_along(model, order, friction):
-    """The same bits as on one plate: also there and back, with x as the bead's fast direction."""
+    """The bits are those on one plate, also if the bead crosses twice, or moves fast in x."""
     ends = []
     for plates in (halves(order=order), [flat(1e-3)]):
         for side in (-1, 1):
@@ -227,7 +227,7 @@ def test_a_bead_that_crosses_a_seam_takes_its_contact_along(model, order, fricti
             lmp, walls = scene(model, plates, start, (side * 20, 0, -5), friction=friction, dt=5e-8)
             lmp.command("run 60")
             assert state(lmp)["d2_contactlaw"][0, PLATE] != 0.0
-            assert state(lmp)["x"][0, 0] * side > 0  # crossed while in contact
+            assert state(lmp)["x"][0, 0] * side > 0  # the bead crossed while in contact
             lmp.command("run 300")
             (row,) = walls.collisions()
             ends.append((row["restitution"], row["contact_time"], *state(lmp)["v"][0]))
@@ -249,7 +249,7 @@ def test_four_tiles_at_a_corner_are_one_plate(model, place):
 
 
 def test_a_ridge_is_hit_once(model):
-    """The edge that two sides of a roof share, the outer corner of a box, and the rim of tiles."""
+    """A ridge is the edge of a roof, the outer corner of a box, or the rim of tiles."""
     left = Plate((0, -0.05, 0), (-0.03, 0, -0.04), (0, 0.1, 0), 1e-3)
     right = Plate((0, -0.05, 0), (0.03, 0, -0.04), (0, 0.1, 0), 1e-3)
     down = Plate((0, -0.05, 0), (0, 0.1, 0), (0, 0, -0.05), 1e-3)
@@ -276,25 +276,25 @@ def test_a_leaning_plate_is_a_level_one_turned(model):
 
 
 def test_sliding_friction_of_an_oblique_impact(model):
-    """Gross sliding: the tangential impulse is friction times the normal one (Coulomb)."""
+    """In gross sliding the tangential impulse is friction times the normal impulse (Coulomb)."""
     options = {"friction": 0.1, "dt": 5e-8, "steps": 1200}
     _, now = dropped(model, None, above(2e-4), (20, 0, -5), **options)
     v, spin = now["v"][0], now["omega"][0]
     normal = 5 + v[2]
     assert 20 - v[0] == pytest.approx(0.1 * normal, rel=1e-9)
-    # torque of the same impulse, moment of inertia (2/5) m R^2
+    # The impulse turns the bead too; its moment of inertia is (2/5) m R^2.
     assert spin[1] == pytest.approx(0.1 * normal / (0.4 * R), rel=1e-9)
     assert abs(spin[[0, 2]]).max() < 1e-9 * spin[1]
 
 
 def test_a_sliding_bead_ends_rolling(model):
-    """At 5/7 of its speed, whatever the friction: Lamb, Dynamics; a textbook result."""
+    """It rolls at 5/7 of its first speed, whatever the friction (Lamb, Dynamics)."""
     lmp, _ = scene(model, [flat(0.5e-3)], above(1e-8), (0.1, 0, 0), friction=0.5, gravity=1e4)
     rolling = []
     for _ in range(200):
         lmp.command("run 20")
         v, spin = state(lmp)["v"][0, 0], state(lmp)["omega"][0, 1]
-        assert v + 0.4 * R * spin == pytest.approx(0.1, rel=1e-9)  # about the point of contact
+        assert v + 0.4 * R * spin == pytest.approx(0.1, rel=1e-9)  # angular momentum there
         rolling.append((v, spin * R))
     # the spring has no damping, so the bead swings about rolling
     assert np.mean(rolling[50:], axis=0) == pytest.approx(0.1 * 5 / 7, rel=1e-2)
@@ -309,7 +309,7 @@ def test_a_new_bead_knows_nothing_of_the_one_whose_place_it_takes(model):
     lmp.commands_string("group gone id 2\ndelete_atoms group gone compress no")
     lmp.create_atoms(1, [7], [1], [0.03, 0, R + 2e-5], [0, 0, -5.0])
     lmp.command(f"set atom 7 diameter {2 * R} density {box.DENSITY}")
-    assert np.array_equal(state(lmp)["d2_contactlaw"][1], old[1])  # if not, this test is idle
+    assert np.array_equal(state(lmp)["d2_contactlaw"][1], old[1])  # otherwise nothing is checked
     lmp.command("run 400")
     rows = walls.collisions()
     assert rows["bead"].tolist() == [1, 7]
@@ -318,7 +318,7 @@ def test_a_new_bead_knows_nothing_of_the_one_whose_place_it_takes(model):
 
 @pytest.mark.parametrize("step", [51, 50, 55, 100000, 0])
 def test_the_clock_may_be_reset_in_mid_contact(model, step):
-    """Only the time in the record knows of it."""
+    """A reset of LAMMPS's step counter changes only the times in the record."""
     outcomes = []
     for command in ("", f"reset_timestep {step}"):
         lmp, walls = scene(model, [flat(0.5e-3)], above(1e-5))
@@ -411,7 +411,7 @@ def test_two_beads_rebound_as_asked(speed, friction):
 
 
 def test_beads_meet_each_other_and_plates(model):
-    """A pair style beside the plates: momentum of two beads, one of which rebounds from a plate."""
+    """A pair style acts beside the plates: one of two beads that meet rebounds from a plate."""
     lmp = make([above(1e-5), above(2 * R + 1e-4)], (0, 0, -3), dt=5e-8)
     line = pair_coeff("gamma-alumina", radius=R, speed=6.0)
     lmp.commands_string(f"comm_modify vel yes\npair_style granular\n{line}")

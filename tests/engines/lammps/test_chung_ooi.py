@@ -22,7 +22,7 @@ import contactlaw as cl
 from contactlaw.engines.lammps import Plate
 from contactlaw.laws import HERTZ, Law, Loading, Unloading
 
-STEPS = 400  # of a contact
+STEPS = 400  # steps per contact
 CYCLE = 2.94328  # contact time [compression over speed]; Johnson 1985, Eq. 11.24, has 2.94
 
 
@@ -43,15 +43,15 @@ class Case(NamedTuple):
 
     @property
     def stiffness(self):
-        """K in F = K d^1.5."""
+        """Stiffness K in F = K d^1.5."""
         return 4 / 3 * self.modulus / (1 - self.ratio**2) * math.sqrt(self.radius)
 
     def compression(self, speed):
-        """Largest one of Hertz's impact."""
+        """Largest compression of Hertz's impact."""
         return (1.25 * self.mass * speed**2 / self.stiffness) ** 0.4
 
     def model(self):
-        """Model on the plane; a COR below 1 by what is left of the compression after unloading."""
+        """Model of impacts on the plane; a COR below 1 comes from a residual compression."""
         law, strength = "hertz", None
         if self.restitution < 1.0:
             lost = 1.0 - self.restitution**2
@@ -71,7 +71,7 @@ class Case(NamedTuple):
 
 
 class Rebound(NamedTuple):
-    """Of all beads: velocities along and from the plane [m/s], spin [rad/s], slip [m/s], rows."""
+    """Tangential and normal velocity [m/s], spin [rad/s], slip [m/s] of all beads; the record."""
 
     along: np.ndarray
     normal: np.ndarray
@@ -112,7 +112,7 @@ def sorted_beads(lmp, n):
 
 
 def rebound(case, along, normal, spin=0.0):
-    """What LAMMPS makes of impacts at these velocities."""
+    """State of the beads after impacts at these velocities in LAMMPS."""
     along, normal = np.broadcast_arrays(np.asarray(along, float), np.asarray(normal, float))
     lmp, walls, step = launch(case, along, normal, spin)
     lmp.command(f"run {int(1.2 * CYCLE * (case.compression(normal) / normal).max() / step) + 10}")
@@ -121,14 +121,14 @@ def rebound(case, along, normal, spin=0.0):
     lmp.close()
     assert len(rows) == len(normal)
     rows.sort(order="bead")
-    slip = v[:, 1] + case.radius * omega[:, 0]  # of the point of contact
+    slip = v[:, 1] + case.radius * omega[:, 0]  # slip of the point of contact
     return Rebound(v[:, 1], v[:, 2], omega[:, 0], slip, rows)
 
 
 def slip_of(case, slip, normal, *, share=1.0, increments=False):
     """Slip after the impact, by an integration of our own.
 
-    With a `share` of the tangential stiffness, and with the force, not the spring, summed up.
+    It takes a `share` of the tangential stiffness, and can sum up the force instead of the spring.
     """
     slip, normal = np.broadcast_arrays(np.asarray(slip, float), np.asarray(normal, float))
     slip, u = slip.copy(), normal.copy()
@@ -149,7 +149,7 @@ def slip_of(case, slip, normal, *, share=1.0, increments=False):
             spring = np.where(abs(k * spring) > most, pull / np.maximum(k, 1e-300), spring)
         u = u - dt * force / case.mass
         x = x + dt * u
-        slip = slip - dt * 3.5 * pull / case.mass  # of a solid sphere
+        slip = slip - dt * 3.5 * pull / case.mass  # 3.5: a solid sphere
     return slip
 
 
@@ -168,7 +168,7 @@ PULSE = [(32.8, 0.519), (84.8, 2.212), (129.1, 4.064), (169.6, 5.894), (209.0, 7
 
 @pytest.mark.parametrize("case", [ALLOY_2, MAGNESIUM], ids=["aluminium alloy", "magnesium alloy"])
 def test_2_elastic_normal_impact(case):
-    """Hertz's, and for the aluminium alloy the published curves within 2 % of their peak."""
+    """The impact is Hertz's; the published curves of the alloy are met within 2 % of their peak."""
     lmp, walls, step = launch(case, np.zeros(1), np.array([case.speed]), 0.0)
     time, overlap, force = [], [], []
     v, every = -case.speed, 4
@@ -207,7 +207,7 @@ IRON = Case(1e11, 0.25, 7000, 2.5e-3, 3.9)
 @pytest.mark.parametrize("case", [OXIDE, IRON], ids=["aluminium oxide", "cast iron"])
 @pytest.mark.parametrize("restitution", [0.2, 0.4, 0.6, 0.8, 1.0])
 def test_3_normal_impact_with_a_given_restitution(case, restitution):
-    """The paper's COR are damped, ours are of a loop in the force: no matter here."""
+    """The paper's COR come from damping, ours from hysteresis: the rebound is the same."""
     after = rebound(case._replace(restitution=restitution), [0.0], [case.speed])
     assert after.normal / case.speed == pytest.approx([restitution], abs=1e-3)
     assert after.rows["restitution"] == pytest.approx([restitution], abs=1e-3)
@@ -245,7 +245,7 @@ def oblique(request):
 
 
 def test_4_oblique_impact_by_closed_forms(oblique):
-    """Own integration; from 35 degrees on the bead slides all the time, as a rigid one does."""
+    """Compare with our own integration and, from 35 degrees on, with a rigid bead that slides."""
     case, along, normal, after = oblique
     mu, e, r = case.friction, case.restitution, case.radius
     assert after.normal == pytest.approx(e * normal, abs=1e-3 * case.speed)
@@ -258,7 +258,7 @@ def test_4_oblique_impact_by_closed_forms(oblique):
 
 
 def test_4_oblique_impact_as_published(oblique):
-    """The paper's programs, which damp as well, are as near as they can be read off."""
+    """The programs of the paper, which use damping, agree within the accuracy of its figures."""
     case, along, normal, after = oblique
     turn = np.degrees(np.arctan(after.slip / after.normal))
     assert after.along / along == pytest.approx(np.array(ALONG[case]), abs=0.008)
@@ -268,7 +268,7 @@ def test_4_oblique_impact_as_published(oblique):
 
 @pytest.mark.parametrize("oblique", [OXIDE_4], ids=["aluminium oxide"], indirect=True)
 def test_4_oblique_impact_as_measured(oblique):
-    """As near as the paper's programs are: some 7 % in spin, 2 degrees at the point of contact."""
+    """Measurements are met as by the programs of the paper: 7 % in spin, 2 degrees in angle."""
     _, along, _, after = oblique
     turn = np.degrees(np.arctan(after.slip / after.normal))
     for found, measured, bound in (
@@ -298,7 +298,7 @@ ELEMENTS = [(0.27, -0.03), (0.59, -0.03), (0.88, -0.08), (1.19, -0.21), (1.55, -
 
 @pytest.mark.parametrize("case", [STEEL, POLYETHYLENE], ids=["steel", "polyethylene"])
 def test_5_tangential_speeds(case):
-    """Own integration, a bead that slides all the time, and what was published.
+    """Compare with our own integration, with a rigid bead that slides, and with published results.
 
     Where a bead sticks, the paper's curves are of half the tangential stiffness that belongs to
     Hertz's contact, with the force summed up: our own integration of that is on them. (Kratos
@@ -330,12 +330,12 @@ STEEP = [(2.749, 1.272), (3.733, 3.241), (5.677, 7.127), (6.106, 7.985)]
 
 
 def test_6_spins():
-    """Own integration; where beads slide, also the closed form and what was published.
+    """Compare with our own integration; for sliding beads also with closed form and publication.
 
     The paper's beads that stick are damped along the plane too, which ours are not.
     """
     case = ALLOY_6
-    most = 3.5 * case.friction * (1 + case.restitution) * case.speed  # of the slip that is lost
+    most = 3.5 * case.friction * (1 + case.restitution) * case.speed  # largest loss of slip
     x, turned = np.array(TURNED).T
     tangent, recoil = np.array(STEEP).T
     before = np.concatenate(

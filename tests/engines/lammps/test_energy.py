@@ -12,7 +12,7 @@ from contactlaw.engines.lammps import Plate
 from contactlaw.softsphere import unit_spring
 
 HERTZ, MYC, FEM = (cl.ImpactModel(PAIR, law=law) for law in ("hertz", "myc", "fem"))
-# law, thickness [m], speed [m/s]: lambda to 0.8, elastic, below and above yield
+# Law, thickness [m] and speed [m/s]: lambda up to 0.8, elastic, below and above yield.
 DROPS = [(HERTZ, math.inf, 3.0), (MYC, math.inf, 20.0), (MYC, 1e-3, 5.0), (MYC, 1e-3, 15.0)]
 DROPS += [(MYC, 0.5e-3, 3.0), (MYC, 0.5e-3, 20.0), (MYC, 0.25e-3, 3.0)]
 DROPS += [(FEM, 3e-3, 20.0), (FEM, 1e-3, 5.0), (FEM, 1e-3, 20.0)]
@@ -23,7 +23,7 @@ def kinetic(velocities):
 
 
 def drops(model, thickness, speed, steps, phases):
-    """The record of beads that meet the plate at these phases of a step, and their last speeds."""
+    """Record and last speeds of beads that first touch the plate at these phases of a step."""
     hit = model.solve(speed, R, thickness)
     dt = float(min(hit.contact_time, HERTZ.solve(speed, R, math.inf).contact_time)) / steps
     places = [above(speed * dt * (2 + phase), x=0.003 * n - 0.04) for n, phase in enumerate(phases)]
@@ -37,7 +37,7 @@ PHASES = np.linspace(0.0, 1.0, 13)
 
 @pytest.mark.parametrize("steps", [21, 50])
 def test_an_elastic_bead_keeps_its_energy_for_ten_thousand_bounces(steps):
-    """Between two plates, at ever another phase of the step."""
+    """The bead bounces between two plates, and first touches at ever another phase of a step."""
     dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / steps
     plates = [flat(math.inf), flat(math.inf, height=2 * R + 2e-5)]
     options = {"dt": dt, "steps": 22_700 * steps, "records": 30_000}
@@ -48,7 +48,7 @@ def test_an_elastic_bead_keeps_its_energy_for_ten_thousand_bounces(steps):
 
 
 def test_and_in_a_field_of_gravity():
-    """So strong a one that a flight takes as long as 11 contacts."""
+    """Gravity is so strong that a flight takes as long as 11 contacts."""
     speed, gravity, start = 3.0, 1e5, R + 1e-6
     dt = float(HERTZ.solve(speed, R, math.inf).contact_time) / 50
     options = {"dt": dt, "gravity": gravity, "records": 30_000}
@@ -74,15 +74,15 @@ def test_the_energies_of_an_impact_add_up(model, thickness, speed):
 @pytest.mark.parametrize(("steps", "bound"), [(21, 1.5e-4), (50, 1.2e-5)])
 @pytest.mark.parametrize(("model", "thickness", "speed"), DROPS)
 def test_drops_are_the_solvers(model, thickness, speed, steps, bound):
-    """To the fourth order: where the force sets in and ends is taken into account."""
+    """The error is of fourth order, since start and end of the force within a step are resolved."""
     rows, _, hit = drops(model, thickness, speed, steps, PHASES)
-    if model is FEM:  # knows its plate from the second step on
+    if model is FEM:  # fem corrects for the plate from the second step on
         bound *= 2.5
     assert rows["restitution"] == pytest.approx(hit.restitution, abs=bound)
 
 
 def test_two_contacts_at_once_do_no_harm():
-    """In a groove whose sides' normals are no right angle apart: each force acts in both."""
+    """In a groove whose sides are not at right angles, each force acts along both normals."""
     side, lean = 0.03, math.radians(50)
     edges = [(sign * side * math.cos(lean), 0, side * math.sin(lean)) for sign in (1, -1)]
     plates = [Plate((0, -0.05, 0), edge, (0, 0.1, 0), math.inf) for edge in edges]
@@ -99,10 +99,10 @@ def test_two_contacts_at_once_do_no_harm():
     assert np.array(energies) == pytest.approx(0.5 * (0.81 + 9.0) + 1e4 * start, rel=1e-4)
 
 
-@pytest.mark.parametrize("thickness", [math.inf, 1e-3])  # parted at the push, and not quite yet
+@pytest.mark.parametrize("thickness", [math.inf, 1e-3])  # parted in the last step, or not quite
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_a_run_in_pieces_gives_the_last_push_once(friction, thickness):
-    """A set-up asks for the forces of the last step again, also for those of a bead that parted."""
+    """The set-up of a run computes the last forces again, also of a bead that has left."""
     ends = []
     dt = float(MYC.solve(5.0, R, thickness).contact_time) / 40
     for pieces in (1, 120):
@@ -141,7 +141,7 @@ CHANGES += ["fix adapt all dt/reset 1 {less} {more} {way} units box"]
     ("model", "thickness", "speed"), [DROPS[0], (MYC, 1e-3, 5.0), (MYC, 0.5e-3, 3.0)]
 )
 def test_the_step_may_change_in_mid_contact(model, thickness, speed, command):
-    """Also in every step, as fix dt/reset does it; beside these, 1e-4 is what 50 steps promise."""
+    """The step may change each time, as by fix dt/reset; 50 steps per contact promise 1e-4."""
     for after in range(1, 50, 6):
         found, exact = changed(model, thickness, speed, 50, after, command)
         bound = 1e-8 if model is HERTZ else 1e-4
@@ -161,7 +161,7 @@ def round_an_edge(model, thickness, speed, around, steps):
         x, z, lean = -0.04 + 0.01 * n, 0.0, 0.2
         away = np.array([-math.cos(lean), 0, math.sin(lean)])
         velocity = -speed * away + turn * np.array([-away[2], 0, away[0]])
-        velocity[1] = 0.5  # along the edge
+        velocity[1] = 0.5  # motion along the edge
         velocities.append(velocity)
         places.append((x, 0, z) + R * away - velocity * dt * (3 + 0.618 * n % 1))
         plates.append(Plate((x, -0.005, z), (0.004, 0, 0), (0, 0.01, 0), thickness))
@@ -197,7 +197,7 @@ TURNS = [0.0, 1.0, 3.0, 6.0, 10.0]
 
 @pytest.mark.parametrize("thickness", [math.inf, 1e-3, 0.5e-3])
 def test_oblique_hits_on_a_free_edge(thickness):
-    """The normal turns: speeds are those at one distance from the edge, and the energies add up."""
+    """The normal turns during contact: speeds are taken at one distance, and energies add up."""
     rows, change = round_an_edge(HERTZ, thickness, 3.0, TURNS, 50)
     energy = 0.5 * MASS * 3.0**2
     assert change / energy == pytest.approx(lost(rows) / energy, abs=1e-10)
@@ -205,5 +205,5 @@ def test_oblique_hits_on_a_free_edge(thickness):
     assert 1 - rows["restitution"] ** 2 == pytest.approx(lost(rows) / energy, abs=2e-5)
     exact = [swing(HERTZ, thickness, 3.0, turn) for turn in TURNS]
     assert rows["restitution"] == pytest.approx(exact, abs=5e-5)
-    # and it is that of a flat plate for a bead that does not swing
+    # For a bead that does not swing the COR is that of a flat plate.
     assert exact[0] == pytest.approx(HERTZ.restitution(3.0, R, thickness), abs=1e-6)

@@ -79,7 +79,7 @@ def test_a_valley_is_no_start_inside(model, rise, x, hit):
 @pytest.mark.parametrize("ratio", [20.0, 90.0])
 @pytest.mark.parametrize("law", ["fem", "myc"])
 def test_a_plate_that_is_too_thin(law, ratio):
-    """In the words of the model, which is asked for the same impact; and no record of it."""
+    """The error has the words of the model for the same impact, which is not recorded."""
     model = cl.ImpactModel(PAIR, law=law)
     with pytest.raises(ValueError, match="too thin") as caught:
         model.restitution(5.0, R, R / ratio)
@@ -95,7 +95,7 @@ def assert_refused(model, thickness, words):
 
 
 def test_a_foil_is_refused_whatever_the_model_would_integrate():
-    """The lookup's own limit, R/H = 100."""
+    """A foil beyond R/H = 100 is refused, the limit of the lookup."""
     model = cl.ImpactModel(PAIR, outside="solve")
     with pytest.raises(ValueError, match="thickness: .* R/H = 120"):
         model.restitution(5.0, R, R / 120)
@@ -103,7 +103,7 @@ def test_a_foil_is_refused_whatever_the_model_would_integrate():
 
 
 def test_a_plate_that_is_thin_and_integrated_all_the_same():
-    """As the model does it with ``outside="solve"``: hardly any rebound, and a flag."""
+    """With ``outside="solve"`` the bead hardly rebounds, as by the model, with a flag."""
     model = cl.ImpactModel(PAIR, outside="solve")
     (row,), _ = dropped(model, [flat(R / 10)], above(1e-5), steps=3000)
     assert row["restitution"] == pytest.approx(model.restitution(5.0, R, R / 10), abs=1e-4)
@@ -126,11 +126,11 @@ def test_errors_stop_the_run_and_reach_the_caller(model, way, tmp_path):
     with pytest.raises(RuntimeError, match="timestep"):
         getattr(lmp, way)(given)
     assert lmp.extract_global("ntimestep") <= 200
-    lmp.command("run 0")  # told once
+    lmp.command("run 0")  # the warning comes once
 
 
 def test_an_error_is_told_once_whatever_lammps_says(model):
-    """Also where LAMMPS stumbles after it; the records are kept."""
+    """The error is raised once even if LAMMPS fails after it, and the records are kept."""
     lmp, walls = scene(model, None, [ABOVE, above(1e-6, x=0.02), above(x=0.03)])
     lmp.command("set atom 3 density 900")
     with pytest.raises(RuntimeError, match="bead 3 on plate 0.*density"):
@@ -225,7 +225,7 @@ def test_a_lammps_without_mpi(model, monkeypatch):
     ],
 )
 def test_names_that_the_user_has_taken(model, theirs, words):
-    """Refused, and left as they are."""
+    """Names that the user has taken are refused, and stay as they are."""
     lmp = make(ABOVE)
     lmp.command(theirs)
     with pytest.raises(RuntimeError, match=words):

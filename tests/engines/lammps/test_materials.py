@@ -26,7 +26,7 @@ def units_of(system):
 
 
 def scene(units="si", types=3, beads=()):
-    """Beads of (type, place, velocity, density), told in SI, in a box of other units."""
+    """Beads of (type, position, velocity, density), given in SI, in a box of other units."""
     length, time, mass = units_of(units)
     side, low, high = 0.06 / length, -0.02 / length, 0.08 / length
     lmp = quiet(
@@ -147,7 +147,7 @@ def in_contact(given):
     ],
 )
 def test_a_bead_that_is_changed_in_mid_contact(commands, words):
-    """Two spheres have no one COR: an error, and no record, neither then nor later."""
+    """A bead that changes in mid-contact is an error, and its impact is never recorded."""
     lmp, walls = in_contact(models(STEEL))
     with pytest.raises(RuntimeError, match=f"bead 1 at step.*{words}.*change beads that touch no"):
         lmp.commands_string(f"{commands}\nrun 200")
@@ -162,7 +162,7 @@ def test_a_bead_that_is_changed_in_mid_contact(commands, words):
     "commands", [f"set group all diameter {2 * R!r} density {DENSITY}", "set group all type 3"]
 )
 def test_a_change_that_is_none_in_mid_contact(commands):
-    """The same numbers set again, and another atom type of the same model."""
+    """Setting the same numbers again, or another atom type of the same model, changes nothing."""
     alumina = cl.ImpactModel(cl.Pair(SPHERES[0], STEEL))
     lmp, walls = in_contact({1: alumina, 2: models(STEEL)[2], 3: alumina})
     lmp.commands_string(f"{commands}\nrun 1000")
@@ -215,7 +215,7 @@ def test_units_are_converted_at_the_border(units, model):
 
 @pytest.mark.parametrize("units", ["si", "cgs", "micro"])
 def test_energies_in_the_record_are_those_of_lammpss_temperature(units, model):
-    """A kelvin is one in all units: 3/2 k T of a bead, before and after it has fallen on a plate.
+    """Kinetic energy is 3/2 k T in all units, before and after a bead has fallen on a plate.
 
     It falls with LAMMPS's own gravity, so that its clock and its lengths are in it too.
     """

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation as Turn
 from contactlaw.engines.lammps import Mesh, Plate, memory
 from contactlaw.walls.grid import FacetGrid
 
-HALF = 0.014  # of the square that is tessellated [m]
+HALF = 0.014  # half side of the tessellated square [m]
 UNEVEN = Turn.from_euler("xyz", [0.3, -0.7, 1.1]).as_matrix()
 
 
@@ -73,7 +73,7 @@ def places(corners, triangles):
 @pytest.mark.parametrize("turn", [np.eye(3), UNEVEN], ids=["level", "leaning"])
 @pytest.mark.parametrize("name", SQUARES)
 def test_a_tessellated_plate_is_the_plate(model, name, turn):
-    """COR and path to 1e-9, on faces, seams and corners, with friction and on either side."""
+    """COR and path agree to 1e-9 on faces, seams and corners, with friction, on both sides."""
     corners, triangles = SQUARES[name]()
     hit = places(corners, triangles)
     rng = np.random.default_rng(11)
@@ -107,7 +107,7 @@ def test_each_triangle_has_its_thickness(model):
 
 @pytest.mark.parametrize("facets", [36, 72, 360])
 def test_a_cylinder_of_facets_is_one_surface(model, facets):
-    """One contact at a time, and the COR of the cylinder: that of a plate, hit across.
+    """There is one contact at a time, with the COR of a plate at the same normal speed.
 
     A facet's normal is up to pi/facets from the cylinder's, which turns as much of the velocity.
     """
@@ -148,7 +148,7 @@ def test_rolling_over_seams_loses_nothing(model):
 
 @pytest.mark.parametrize("edges", [10, 24])
 def test_more_contacts_than_slots_end_no_run(model, edges):
-    """A bead that falls into a hole stays there: of 24 edges, which are one surface, and of ten.
+    """A bead that falls into a hole stays there: 24 edges are one surface, ten are several.
 
     Next to each other these lean by 29 degrees, so that each has a contact.
     """
@@ -159,7 +159,7 @@ def test_more_contacts_than_slots_end_no_run(model, edges):
     ring = np.concatenate((np.stack((here, there, here + edges), 1),
                            np.stack((there, there + edges, here + edges), 1)))  # fmt: skip
     hole = Mesh(np.vstack((0.8 * R * rim, 0.01 * rim)), ring, 1e-3)
-    rest = math.sqrt(1 - (0.8 * math.cos(math.pi / edges)) ** 2)  # [R] of its height
+    rest = math.sqrt(1 - (0.8 * math.cos(math.pi / edges)) ** 2)  # height of the centre at rest [R]
     start = 1e-6, 2e-6, (rest + 0.003) * R
     lmp, walls = scene(model, [hole], start, (0, 0, 0), gravity=1000.0)
     lmp.command("run 60000")
@@ -169,7 +169,7 @@ def test_more_contacts_than_slots_end_no_run(model, edges):
 
 
 def test_a_larger_bead_than_the_grid_was_made_for(model):
-    """It finds all that it touches in the cells around its own."""
+    """The bead finds all triangles that it touches in the cells around its own."""
     outcomes = []
     for walls in ([flat(1e-3)], [Mesh(*lattice(60), 1e-3)]):
         start = 0.0101, 0.0071, 0.02
@@ -195,7 +195,7 @@ def test_a_grid_across_its_axes_is_made_as_fast_as_along_them():
     seconds = []
     for end in ((0, 0, 0.3), (0.173, 0.173, 0.173)):
         corners = corners_of(Mesh.cylinder((0, 0, 0), end, 0.02, 1e-3, facets=72))
-        FacetGrid(corners[:1], 0, R)  # compiled
+        FacetGrid(corners[:1], 0, R)  # compiles the kernel
         start = time.process_time()
         FacetGrid(corners, 0, R)
         seconds.append(time.process_time() - start)

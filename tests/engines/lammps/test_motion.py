@@ -13,7 +13,7 @@ from contactlaw.walls.motion import place
 
 
 def placed(motion, time, dt=1e-6):
-    """Row of a motion at a time."""
+    """Row of numbers of a motion at a time."""
     rows = np.zeros(1, FRAME)
     motion.fill(rows[0])
     place(rows[0], time, dt)
@@ -65,7 +65,7 @@ PLACE = above(1e-5, 0.001, 0.002)
 
 @pytest.mark.parametrize("wind", [(0, 0, 1.5), (0, 0, -2), (3, -1, 2)])
 def test_galilean_shift(model, wind):
-    """The same impact, in whatever frame it is seen."""
+    """An impact is the same in any inertial frame."""
     wind = np.array(wind, dtype=float)
     still, ends = dropped(model, [flat(1e-3)], PLACE, (1, 2, -5), friction=0.2)
     plate = flat(1e-3, motion=Translation(tuple(wind)))
@@ -92,7 +92,7 @@ def energy(now):
     ids=["translation", "vibration", "rotation", "table"],
 )
 def test_the_work_of_the_wall_closes_the_account(model, motion):
-    """Kinetic energy after less that before: work of the wall less what is lost."""
+    """The change of kinetic energy is the work of the wall less the recorded losses."""
     (row,), now = dropped(model, [flat(1e-3, motion=motion)], above(6e-5, 0.001))
     before = 0.5 * MASS * 25
     assert abs(row["wall_work"]) > 0.1 * before
@@ -113,7 +113,7 @@ def test_a_table_of_a_constant_velocity_is_a_translation(model):
 
 
 def test_a_plate_carries_a_bead(model):
-    """Up with it, as fast; the weight rests on it."""
+    """The bead rises as fast as the plate, which carries its weight."""
     plate = flat(0.5e-3, motion=Translation((0, 0, 0.2)))
     lmp, walls = scene(model, [plate], above(1e-9), (0, 0, 0.2), gravity=1e3)
     lmp.command("run 100000")
@@ -158,7 +158,7 @@ def test_a_drum_turns_a_bead(model):
 
 
 def test_the_walls_go_on_when_the_clock_is_reset(model):
-    """And when the step changes: their time is the sum of the steps."""
+    """The time of the walls is the sum of the steps, also when the step changes."""
     plate = flat(1e-3, motion=Vibration((0, 0, 1e-4), 500.0))
     lmp, walls = scene(model, [plate], (0, 0, 0.02), (0, 0, 0))
     lmp.commands_string("run 100\nreset_timestep 0\nrun 50\nreset_timestep 7000\nrun 50")
@@ -168,7 +168,7 @@ def test_the_walls_go_on_when_the_clock_is_reset(model):
 
 
 def test_a_bead_at_the_meeting_of_two_motions_has_one_contact(model):
-    """A plate that stands still beside one that slides along the seam."""
+    """One plate stands still; its neighbour slides along their seam."""
     still = flat(1e-3, x=-0.05, width=0.05)
     sliding = flat(1e-3, x=0.0, width=0.05, motion=Translation((0, 1.0, 0)))
     for x in (-1e-5, 0.0, 1e-5):

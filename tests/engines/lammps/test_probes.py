@@ -1,4 +1,4 @@
-"""What once went wrong in LAMMPS without a word: tiny triangles, periodic boxes, work."""
+"""Cases that once went wrong in LAMMPS without an error: tiny triangles, periodic boxes, work."""
 
 import math
 
@@ -15,7 +15,7 @@ HERTZ = cl.ImpactModel(box.PAIR, law="hertz")
 
 @pytest.mark.parametrize("n", [1, 80])
 def test_a_floor_of_many_tiny_triangles_hides_no_wall(n):
-    """A bead that presses on hundreds of them and begins to touch a wall of such: both are felt."""
+    """A bead on hundreds of tiny triangles begins to touch a wall of such: both act on it."""
     half = 1e-3
     corners, triangles = square(n, half)
     upright = corners[:, [2, 1, 0]] + [half, 0, half]
@@ -29,7 +29,7 @@ def test_a_floor_of_many_tiny_triangles_hides_no_wall(n):
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_a_contact_goes_on_across_a_periodic_boundary(model, monkeypatch, friction):
-    """On the other side there is another triangle; the outcome is that of a plate without any."""
+    """Beyond the boundary is another triangle; the rebound is that from a single plate."""
     monkeypatch.setattr(box, "BOX", box.BOX.replace("boundary f f f", "boundary p p f"))
     places = [above(5e-6, 0.06 - 8 * n * 2e-7, 0.003 * n - 0.045) for n in range(30)]
     plate = Plate((-0.07, -0.07, 0), (0.14, 0, 0), (0, 0.14, 0), 1e-3)
@@ -48,14 +48,14 @@ def test_a_contact_goes_on_across_a_periodic_boundary(model, monkeypatch, fricti
 KINKED = Tabulated([0.0, 4e-6, 7e-6], [[0, 0, 0], [0, 0, 4e-6], [0, 0, 13e-6]])
 MOTIONS = [
     (Translation((1.0, 0.5, 2.0)), 1e-11),
-    (KINKED, 1e-3),  # it hits the bead in mid-contact; what is missing then is not given back
+    (KINKED, 1e-3),  # a jump of the wall's speed in mid-contact; lost energy is not restored
 ]
 
 
 @pytest.mark.parametrize("thickness", [1e-3, math.inf])  # parted at the last push, or not
 @pytest.mark.parametrize(("motion", "bound"), MOTIONS)
 def test_a_wall_does_the_work_that_the_record_says(model, motion, bound, thickness):
-    """Kinetic energy changes by it, less the losses; the last push of a contact counts, too."""
+    """Kinetic energy changes by the wall's work less losses, to the last step of a contact."""
     n = 30
     places = [above(1e-5 + 3.7e-7 * k, 0.003 * k - 0.045) for k in range(n)]
     velocity = np.array([2.0, 0, -5.0])
@@ -70,7 +70,7 @@ def test_a_wall_does_the_work_that_the_record_says(model, motion, bound, thickne
 
 @pytest.mark.parametrize(("before", "after"), [(0.3, 0.0), (0.0, 0.3)])
 def test_a_restart_with_another_friction_is_refused_in_mid_contact(model, tmp_path, before, after):
-    """What the beads remember has another layout."""
+    """With another friction the history of the beads has another layout."""
     upright = Plate((R + 2e-7, -0.05, 0), (0, 0.1, 0), (0, 0, 0.03), 2e-3)
     plates = [flat(1e-3), upright]
     lmp, _ = scene(model, plates, above(1e-6), (1.0, 0, -5.0), friction=before)

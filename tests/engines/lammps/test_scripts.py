@@ -70,7 +70,7 @@ def in_a_file(lmp, tmp_path, commands):
     ],
 )
 def test_what_changes_nothing_in_mid_contact(scene, undisturbed, commands):
-    """The same bits, whatever the beads are called afterwards."""
+    """The rebounds have the same bits, also if the beads get other IDs."""
     lmp, walls = scene()
     lmp.command(IN_CONTACT)
     assert (state(lmp)["d2_contactlaw"][:, PLATE] != 0.0).all()
@@ -81,7 +81,7 @@ def test_what_changes_nothing_in_mid_contact(scene, undisturbed, commands):
 
 
 def test_balancing_in_mid_contact(scene, undisturbed):
-    """It rounds the positions, on one rank as well."""
+    """Balancing rounds the positions, even on one rank."""
     lmp, walls = scene()
     lmp.command(IN_CONTACT)
     lmp.command("balance 1.0 shift x 10 1.05")
@@ -91,7 +91,7 @@ def test_balancing_in_mid_contact(scene, undisturbed):
 
 @pytest.mark.parametrize("option", ["", " compress no"])
 def test_deleted_beads_take_their_contacts_along(scene, undisturbed, option):
-    """The others keep theirs, under the IDs that `delete_atoms` gives them."""
+    """The other beads keep their contacts, under the IDs that `delete_atoms` gives them."""
     lmp, walls = scene()
     lmp.command(IN_CONTACT)
     lmp.command("group first id 1")
@@ -105,7 +105,7 @@ def test_deleted_beads_take_their_contacts_along(scene, undisturbed, option):
     ("delete", "name"), [("delete_atoms group last", 3), ("\ndelete_atoms group last\nprint x", 7)]
 )
 def test_a_new_bead_in_the_row_of_a_deleted_one_begins_anew(scene, undisturbed, delete, name):
-    """Under the ID of the deleted one, or another, which then becomes its ID."""
+    """The new bead has the ID of the deleted one, or another."""
     lmp, walls = scene()
     lmp.command(IN_CONTACT)
     lmp.command("group last id 3")
@@ -133,7 +133,7 @@ def test_deleting_in_mid_contact_among_other_commands_is_told(scene):
 
 @pytest.mark.parametrize(("kind", "name"), PARTS)
 def test_the_adapters_own_parts_are_not_taken_out_by_hand(scene, undisturbed, kind, name):
-    """Refused before anything has run, with the way to do it."""
+    """The command is refused before it has run, and the error names the remedy."""
     lmp, walls = scene()
     undo = {"fix": "unfix", "compute": "uncompute"}.get(kind, kind)
     for way, given in (
@@ -169,13 +169,13 @@ def test_the_adapters_names_are_its_own(scene, command):
         ("unfix contactlaw_halt\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),
         ("unfix contactlaw_force\nrun 300", "fix 'contactlaw_force'"),
         ("run 230\nunfix contactlaw_halt\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),
-        ("run 300\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),  # LAMMPS stumbles over it
+        ("run 300\nunfix contactlaw\nrun 300", "fix 'contactlaw'"),  # LAMMPS itself fails
         ("uncompute contactlaw_error\nrun 300", "compute 'contactlaw_error'"),
         ("variable contactlaw_error delete\nrun 300", "variable 'contactlaw_error'"),
     ],
 )
 def test_parts_that_a_file_takes_out(scene, model, tmp_path, commands, gone):
-    """An error, no segmentation fault; nothing is left, and plates can be attached anew."""
+    """An error is raised, no segmentation fault; plates can be attached anew afterwards."""
     lmp, walls = scene()
     with pytest.raises(RuntimeError, match=rf"{gone}.*taken out by a command.*detach\(\)"):
         in_a_file(lmp, tmp_path, commands)
@@ -191,7 +191,7 @@ def test_parts_that_a_file_takes_out(scene, model, tmp_path, commands, gone):
 
 @pytest.mark.parametrize("way", ["command", "string", "file"])
 def test_clear_ends_an_attachment(scene, model, tmp_path, way):
-    """Quietly: the record stays, the LAMMPS object is as it was, and has plates again."""
+    """No error is raised, the record stays, and plates can be attached again."""
     lmp, walls = scene()
     methods = {name: vars(lmp).get(name) for name in ("command", "file")}
     assert all(methods.values())
@@ -214,7 +214,7 @@ def test_clear_ends_an_attachment(scene, model, tmp_path, way):
 
 
 def test_what_comes_after_clear_is_free(scene, tmp_path):
-    """Also a restart file that brings the adapter's group back."""
+    """After clear the names are free, also if a restart file brings the adapter's group back."""
     lmp, walls = scene()
     lmp.command(f"write_restart {tmp_path / 'old.restart'}")
     lmp.commands_string(
@@ -249,7 +249,7 @@ def test_what_plates_cannot_follow_is_refused(scene, undisturbed, command, words
 
 @pytest.mark.parametrize("started", [False, True])
 def test_a_minimization_in_a_file(scene, tmp_path, started):
-    """It is not taken for time steps: what the beads remember is as before."""
+    """A minimization is not taken for time steps: the history of the beads stays."""
     lmp, walls = scene()
     if started:
         lmp.command(IN_CONTACT)
@@ -276,7 +276,7 @@ def test_a_rerun_in_a_file(scene, tmp_path):
 
 
 def test_an_integrator_that_leaves_the_plates_out(scene, model, tmp_path):
-    """Under respa LAMMPS calls ``fix external`` in set-ups alone: beads would fly through."""
+    """Under respa LAMMPS calls ``fix external`` in set-ups only: beads would fly through plates."""
     lmp, walls = scene()
     with pytest.raises(RuntimeError, match="respa.*use 'run_style verlet'"):
         in_a_file(lmp, tmp_path, "run_style respa 2 2")
@@ -311,7 +311,7 @@ def test_two_simulations_beside_each_other(scene, undisturbed):
 
 
 def test_plates_that_nobody_holds_act_all_the_same(model, undisturbed):
-    """Their memory lives as long as the LAMMPS object, and no longer."""
+    """The plates live as long as the LAMMPS object, and no longer."""
     lmp = make(STARTS)
     attach(lmp, model, [flat(1e-3)])
     gc.collect()
@@ -335,7 +335,7 @@ def test_a_closed_simulation(scene):
 
 
 def test_methods_take_what_lammps_takes(scene, undisturbed):
-    """Arguments by name; lines of several commands; texts that only look like commands."""
+    """Named arguments, strings of several commands, and texts that only look like commands work."""
     lmp, walls = scene()
     lmp.command(cmd="run 100")
     lmp.commands_list(cmdlist=["run 100", "run 100"])
@@ -346,12 +346,12 @@ def test_methods_take_what_lammps_takes(scene, undisturbed):
 
 
 def test_both_walls_act(scene):
-    """What the warning is for."""
+    """A granular wall of LAMMPS beside the adapter's plate acts too, of which a warning tells."""
     lmp, walls = scene()
     with pytest.warns(UserWarning, match="fix floor has the style wall/gran:"):
         lmp.command(WALL)
     lmp.command("run 630")
-    assert (walls.collisions()["restitution"] > 0.92).all()  # for 0.908
+    assert (walls.collisions()["restitution"] > 0.92).all()  # the adapter's plate alone gives 0.908
 
 
 @pytest.mark.parametrize("way", ["command", "string", "file"])
@@ -390,7 +390,7 @@ def test_other_walls_are_nobodys_business(scene):
 
 @pytest.fixture(scope="module")
 def two_ranks(tmp_path_factory):
-    """What `main` printed on two ranks; it ends, so no rank waits for another."""
+    """Output of `main` on two ranks; if it ends, no rank waits for another."""
     return box.on_two_ranks(__file__, tmp_path_factory.mktemp("ranks"))
 
 

@@ -24,7 +24,7 @@ def test_exception_in_the_model_reaches_the_caller(error):
     slow = make_bead(space, (10 * R, 1.005 * R), (0, -1))
     impacts.add_bead(slow)
     for shape in space.shapes:
-        shape.elasticity = 0.9  # what pymunk would use on its own
+        shape.elasticity = 0.9  # pymunk's own restitution, which must not be used
     with pytest.raises(type(error)) as caught:
         room.steps(space, 10)
     assert caught.value is error and "answer" in [entry.name for entry in caught.traceback]

@@ -142,7 +142,7 @@ def test_a_restitution_of_the_users_is_refused(key):
 
 
 def test_a_restitution_for_other_shapes_is_the_users(key):
-    """Handlers for any type see contacts that are none of the adapter's."""
+    """Handlers for any collision type also get contacts that are not the adapter's."""
     space, _, impacts = drop(Stub(0.6), gravity=0.0)
     stranger = make_bead(space, (0.5, 1.01 * R), (0, -2))  # not registered, on the plate
 
@@ -193,7 +193,7 @@ def test_a_handler_that_is_made_in_a_step(key):
     space.step(DT)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)
     assert len(impacts.collisions()) == 1
-    # Others than (None, None) and our own were chosen by pymunk before, for this contact.
+    # pymunk chose handlers other than (None, None) and our own before, for this contact.
     body.position, body.velocity = (0, 0.99 * R), (0, -2)
     space.step(DT)
     assert seen in ([1], [1, 1]) and len(impacts.collisions()) == 2

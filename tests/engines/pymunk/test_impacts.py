@@ -158,7 +158,7 @@ def test_bouncing_ends_in_rest(restitution):
     rows = impacts.collisions()
     assert 0 < len(rows) < 100
     assert rows["time"].max() < 0.5  # of 0.6 s
-    assert min(model.speeds) > 2 * G * DT  # slower ones are no question for the model
+    assert min(model.speeds) > 2 * G * DT  # slower touches are not looked up
     assert impacts.resting > 0
     assert abs(body.velocity.y) < EXACT and body.position.y == pytest.approx(R, rel=0.02)
 
@@ -221,7 +221,7 @@ def test_a_plate_that_strikes_is_an_impact():
 @pytest.mark.parametrize("speed", [0.5, 2.0, 6.5, 9.0, 15.0, 25.0])  # V_Y: 7.4 m/s (bulk) to 9.0
 @pytest.mark.parametrize("thickness", [0.5e-3, 1e-3, 3e-3, math.inf])
 def test_bead_rebounds_as_the_solver_says(model, thickness, speed):
-    """The pair of the paper; 1e-4 is what issue and table promise, pymunk adds roundings."""
+    """The pair is the paper's; the table promises 1e-4, and pymunk adds rounding errors."""
     space, body, impacts = drop(model, speed, gap=0.2 * R, thickness=thickness)
     before, after = room.step_to_impact(space, impacts, body, dt=1e-5)
     solved = model.solve(speed=-before.y, radius=R, thickness=thickness)
@@ -245,7 +245,7 @@ def test_beads_rebound_from_each_other_with_the_bulk_law(model):
     bead = model.pair.sphere
     expected = cl.restitution_sphere_sphere(bead, bead, 30.0, R, 2 * R, law="myc")
     rebound = right.body.velocity.x - left.body.velocity.x
-    assert rebound / 30.0 == pytest.approx(expected, abs=1e-12)  # the same table
+    assert rebound / 30.0 == pytest.approx(expected, abs=1e-12)  # both come from the same table
     (row,) = impacts.collisions()
     mass = left.body.mass * right.body.mass / (left.body.mass + right.body.mass)
     assert row["wave_energy"] == 0.0
@@ -263,7 +263,7 @@ def test_a_plate_of_another_material(model):
     space.step(1e-5)
     rows = np.sort(impacts.collisions(), order="bead")
     for row, own in zip(rows, (model, steel), strict=True):
-        # the two differ by 0.06; the approach speed by a rounding from 5.0
+        # The two COR differ by 0.06; the approach speed differs from 5.0 by rounding.
         assert row["restitution"] == pytest.approx(own.restitution(5.0, R, 1e-3), rel=1e-12)
         assert row["peak_force"] == pytest.approx(own.lookup(5.0, R, 1e-3).peak_force, rel=1e-12)
 

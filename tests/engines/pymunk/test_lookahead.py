@@ -17,7 +17,7 @@ from contactlaw.engines.pymunk.lookahead import Line, approach
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize("offset", [0.01, 0.3, 0.6, 0.99])
 def test_a_fast_bead_rebounds_or_is_reported(ratio, side, offset):
-    """Speed x dt from half a radius to fifty, the first contact anywhere within the step."""
+    """A step covers half a radius to fifty, and the contact begins anywhere within the step."""
     speed = ratio * R / DT
     space, body, impacts = drop(Stub(0.7), speed=0, gravity=0.0)
     body.position = (0, side * (R + offset * speed * DT))

@@ -55,7 +55,7 @@ def test_a_removed_bead_is_an_ordinary_circle():
     space.step(DT)
     assert body.velocity.y == pytest.approx(2 * 0.25, abs=EXACT)
     assert impacts.collisions()["bead"].tolist() == [0]
-    assert impacts.add_bead(circle) == 1  # an index is never given twice
+    assert impacts.add_bead(circle) == 1  # an index is never used twice
     body.position, body.velocity = (0, 0.99 * R), (0, -2)
     space.step(DT)
     assert impacts.collisions()["bead"].tolist() == [0, 1]
@@ -120,7 +120,7 @@ def test_memory_of_beads_that_left_is_released():
     after, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     # 72 bytes for each impact in the record and 16 for each bead, in arrays that grow by an eighth;
-    # with the shapes it was 2800 and more.
+    # with the shapes kept it was 2800 and more.
     assert (after - before) / 1000 < 150
     rows = impacts.collisions()
     assert rows["bead"].tolist() == list(range(1200))
@@ -140,7 +140,7 @@ def test_plates_that_left_are_forgotten_too():
         impacts.add_plate(plate, 1e-3)
         space.step(DT)
         space.remove(plate)
-        plate.body = None  # or its body keeps it
+        plate.body = None  # otherwise its body keeps the shape alive
         del plate
     gc.collect()
     space.step(DT)
@@ -183,7 +183,7 @@ def test_every_side_of_a_box_is_a_plate(model, side, corner, speed):
     assert after.cross(normal) == pytest.approx(0.0, abs=1e-9)
     (row,) = impacts.collisions()
     touch = pymunk.Vec2d(row["x"], row["y"]).dot(normal)
-    assert touch == pytest.approx(height - 1.02 * R, abs=1e-5 * speed)  # less what one step goes in
+    assert touch == pytest.approx(height - 1.02 * R, abs=1e-5 * speed)  # less the path of a step
 
 
 def test_a_sloping_side_of_a_turning_polygon():
@@ -234,7 +234,7 @@ def test_a_bead_never_jumps_into_or_over_a_box(ratio):
 
 
 def test_a_static_plate_may_have_a_speed():
-    """As a conveyor: pymunk never moves it, and counts its speed in every contact."""
+    """The plate is a conveyor: pymunk never moves it, but counts its speed in every contact."""
     space, body, impacts = drop(Stub(0.5), gravity=0.0)
     for _ in range(2):
         space.static_body.velocity = (0, 1)
@@ -253,11 +253,11 @@ def test_a_plate_that_stops_does_not_shake():
     body = room.moving_body(space)
     circle = make_bead(space, (0, 1.5 * R))
     impacts = room.registered(space, Stub(0.5), [circle], [make_plate(space, body=body)])
-    for velocity in (0.1, -0.1, 0.1, -0.1):  # changes by 0.2 m/s a step
+    for velocity in (0.1, -0.1, 0.1, -0.1):  # the speed changes by 0.2 m/s each step
         body.velocity = (0, velocity)
         space.step(1e-6)
     body.body_type, body.velocity = pymunk.Body.STATIC, (0, 0)
-    circle.body.velocity = (0, -0.3)  # slower than twice the change
+    circle.body.velocity = (0, -0.3)  # slower than twice that change
     room.steps(space, 200, 1e-5)
     assert impacts.collisions()["approach_speed"] == pytest.approx([0.3], abs=EXACT)
 
@@ -270,7 +270,7 @@ BEADS, PLATES = ("gamma-alumina", STEEL), ("glass", STEEL)
 
 @pytest.fixture(scope="module")
 def models():
-    """Every bead on every plate, each a model of its own."""
+    """Models of every kind of bead on every kind of plate."""
     return {
         (b, p): cl.ImpactModel(cl.Pair(b, p), law="jackson_green") for b in BEADS for p in PLATES
     }
@@ -343,7 +343,7 @@ def test_beads_of_two_materials_meet(models):
 @pytest.mark.parametrize("law", ["myc", "jackson_green", "hertz"])
 @pytest.mark.parametrize("pair", [("gamma-alumina", STEEL), (STEEL, "gamma-alumina")])
 def test_a_model_answers_for_its_bead_on_one_of_another_material(pair, law):
-    """Against the function that needs no model, and its own balance of energy."""
+    """Compare with the function that needs no model, and check the balance of energy."""
     bead, other = pair
     model = cl.ImpactModel(cl.Pair(bead, "glass"), law=law)
     speeds = [0.5, 2.0, 10.0]
@@ -354,7 +354,7 @@ def test_a_model_answers_for_its_bead_on_one_of_another_material(pair, law):
     assert [curve(speed) for speed in speeds] == pytest.approx(expected, abs=1e-9)
     lost = found.plastic_fraction + found.wave_fraction + found.other_fraction
     assert 1 - found.restitution**2 == pytest.approx(lost, abs=1e-4)
-    # whoever is called the first
+    # Either of the two beads may be the one that the model is made for.
     there = cl.ImpactModel(cl.Pair(other, "glass"), law=law)
     back = there.lookup_sphere_sphere(speeds, 2 * R, R, cl.material(bead))
     assert back.peak_force == pytest.approx(found.peak_force, rel=1e-12)
@@ -463,7 +463,7 @@ def test_a_bead_on_a_seam_hits_once_and_rebounds_as_from_one_plate(at, turn, rad
 
 
 def test_a_bead_that_rolls_over_seams_is_not_lost():
-    """Every contact is on one plate, whoever has it; ghosts would brake or lift the bead."""
+    """One plate has the contact at a time: contacts with seams would brake or lift the bead."""
     space = make_space()
     circle = make_bead(space, (-0.015, 0.999 * R), (0.2, 0))
     places = [-0.02 + 0.004 * n for n in range(10)]
@@ -519,7 +519,7 @@ def test_a_neighbour_that_is_not_there_has_no_part(gone):
 @pytest.mark.parametrize("dt", [DT, 20 * DT], ids=["overlaps", "jumps"])
 @pytest.mark.parametrize("which", ["bead", "plate"])
 def test_a_sensor_lets_pass_and_hits_nothing(which, dt):
-    """Whether some steps overlap or none does; it hits again when it is no sensor any more."""
+    """A sensor has no impacts in steps with or without overlap; it has again as a solid shape."""
     space, body, impacts = drop(Stub(0.5), gravity=0.0)
     (circle,), (plate,) = body.shapes, space.static_body.shapes
     shape = circle if which == "bead" else plate

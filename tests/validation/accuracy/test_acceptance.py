@@ -19,7 +19,7 @@ MEASURED = {
     "paper": (112, 31, 0, (0.973, 0.991, 0.991, 0.982), 0.00995),
     "kept out": (80, 3, 0, (1.0, 1.0, 1.0, 1.0), 0.00442),
 }
-MOST_FLAGGED = 0.1  # of everyday impacts
+MOST_FLAGGED = 0.1  # largest share of everyday impacts with a flag
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +46,7 @@ def test_bounds_are_those_that_were_agreed():
 
 
 def test_the_set_that_was_kept_out_is_the_one_that_was_drawn():
-    """Each impact of the list, and none else; the list is the draw."""
+    """The stored impacts are those of the list, and the list is the seeded draw."""
     drawn = census.drawn("kept_out")
     assert drawn == census.draw(census.SEEDS["kept_out"], census.COUNT)
     assert census.SEEDS["kept_out"] != census.SEEDS["everyday"]
@@ -69,10 +69,10 @@ def member(error, flags=0):
     ("wrong", "enough", "holds"),
     [
         ([], True, True),
-        ([member(0.5, Validity.BENT_PLATE)], True, True),  # wrong, and says so
-        ([member(0.5, Validity.BENT_PLATE)] * 20, False, False),  # too many
-        ([member(0.5)], True, False),  # 1 of 20 is wrong and does not say so
-        ([member(0.5, Validity.DAMAGE)], True, False),  # that is no limit of accuracy
+        ([member(0.5, Validity.BENT_PLATE)], True, True),  # wrong, but flagged
+        ([member(0.5, Validity.BENT_PLATE)] * 20, False, False),  # too many flags
+        ([member(0.5)], True, False),  # 1 of 20 is wrong without a flag
+        ([member(0.5, Validity.DAMAGE)], True, False),  # DAMAGE is no limit of accuracy
         ([member(0.5)] * 2, False, False),
         ([member(math.nan)] * 2, False, False),
     ],
@@ -114,11 +114,11 @@ def test_friction_matters_in_deep_contacts_only():
     small = [one for one in acceptance.friction() if "d/R 0.100" not in one.what]
     assert max(abs(one.change) for one in small) < 0.012
     elastic = [one for one in acceptance.friction() if one.what.startswith("elastic")]
-    assert all(-0.003 < one.change <= 0.0 for one in elastic)  # it takes energy
+    assert all(-0.003 < one.change <= 0.0 for one in elastic)  # the wave takes energy
 
 
 def test_half_spaces_go_the_way_of_the_closed_forms():
-    """The slope steepens to Johnson's -1/4; flattened spheres, whose pressure falls, go beyond."""
+    """The slope steepens to Johnson's -1/4; for flattened spheres it gets steeper still."""
     falls = halfspace.falls()
     for yielding in acceptance.YIELDING[1:]:
         for ratio in (400.0, 2000.0):
@@ -133,7 +133,7 @@ def test_half_spaces_go_the_way_of_the_closed_forms():
 
 
 def test_everyday_pairs():
-    """None is refused; on this coarse draw, as on that of the benchmark."""
+    """No impact is refused, on this small draw as on that of the benchmark."""
     found = bench.count("fem", each=4, tables=False)
     assert found.impacts == 4 * len(census.pairs()) == 960
     assert (found.refused, found.outside) == (0.0, 0.0)
@@ -150,7 +150,7 @@ def test_the_law_of_the_paper_is_not_made_for_them():
 
 
 def test_tables_answer_what_integration_does(monkeypatch):
-    """Of a few pairs, those with the widest tables among them."""
+    """Compare a few pairs, among them those with the widest tables."""
     some = [
         ("bearing-steel-52100", "soda-lime-glass"),
         ("tungsten-carbide", "aluminium-2024-t3"),

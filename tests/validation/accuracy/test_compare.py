@@ -59,7 +59,7 @@ STUDY = """
 import os, sys, time
 from validation.fem import __main__ as command, cases
 def slow(case):
-    os.write(1, b"inside\\n")  # whole, though there are two
+    os.write(1, b"inside\\n")  # one write keeps the lines of two workers whole
     {deed}
 cases.solve = slow
 sys.exit(command.main(["limits", "--processes", "2"]))
@@ -67,7 +67,7 @@ sys.exit(command.main(["limits", "--processes", "2"]))
 
 
 def test_ctrl_c_ends_a_study_at_once():
-    """Its workers too: they would keep the pipe open."""
+    """Its workers end too, which would otherwise keep the pipe open."""
     stored = store.path("limits").read_bytes()
     process = subprocess.Popen(
         [sys.executable, "-c", STUDY.format(deed="time.sleep(60)")],
@@ -113,7 +113,7 @@ def test_a_result_that_cannot_be_written_leaves_nothing(tmp_path, monkeypatch):
 
 
 def test_discretisation_error():
-    """Estimated from three meshes and from the plate's far mesh; what the docs say of it."""
+    """The error is estimated from three meshes and the plate's far mesh, as the docs say."""
     found = compare.discretisation()
     assert all(off.max() < 0.007 for off in found.values())
     stated = re.search(
@@ -125,7 +125,7 @@ def test_discretisation_error():
 
 
 def test_meshes_converge():
-    """All but the contact time, whose end is the last touch of a single node."""
+    """The contact time is left out: it ends with the last touch of a single node."""
     data = store.read("verification").data
     for thickness in (0.5e-3, 1e-3):
         rows = (data["check"] == "mesh") & (data["thickness"] == thickness)
@@ -178,7 +178,7 @@ def test_indentation_is_static_and_agrees_with_calculix():
 
 
 def test_impact_agrees_with_calculix():
-    """Another program, implicit, on the same meshes; finer ones bring the two together."""
+    """CalculiX, an implicit program, runs the same meshes; finer meshes agree better."""
     theirs, made = store.read("calculix_impact")
     apart = {}
     for n, size in enumerate(theirs["size"]):
@@ -193,7 +193,7 @@ def test_impact_agrees_with_calculix():
             for key in ("restitution", "peak_force", "contact_time")
         ]
         assert apart[size][1] < 0.02
-        assert apart[size][2] < 0.015  # it comes in whole increments, of 0.009
+        assert apart[size][2] < 0.015  # the time comes in increments of 0.009
     assert apart[0.03][0] < 0.01
     assert apart[0.03][0] < 0.5 * apart[0.06][0]
     stated = re.search(r"within (\d\.\d), (\d\.\d) and (\d\.\d) %", SAID)
@@ -214,10 +214,10 @@ def test_numerical_damping_of_calculix_hardly_matters():
 
 
 def test_which_law_is_right():
-    """The paper's percentages: MYC 6 %, Thornton 64 % low, Stronge 40 % high; and their range."""
+    """The paper says: MYC within 6 %, Thornton 64 % low, Stronge 40 % high, to 10 d_Y."""
     way = np.linspace(0.5, 10.0, 200)
     off = compare.loading_errors(way)
-    assert set(off) == set(laws.names()) - {"fem"}  # which is made of them
+    assert set(off) == set(laws.names()) - {"fem"}  # it was fitted to these results
     assert np.abs(off["myc"]).max() < 0.06
     assert off["thornton"][-1] == pytest.approx(-0.64, abs=0.01)
     assert off["stronge"][way > 2.5] == pytest.approx(0.43, abs=0.03)
@@ -226,18 +226,18 @@ def test_which_law_is_right():
     deep = compare.loading_errors(np.array([30.0]))
     assert deep["thornton"] < -0.5
     stiff = ("hertz", "jackson_green", "kogut_etsion", "myc", "stronge")
-    assert min(deep[name] for name in stiff) > 0.25  # not beyond: MYC is within 6 % up to 17 d_Y
+    assert min(deep[name] for name in stiff) > 0.25  # MYC: 6 % up to 17 d_Y
 
 
 def test_the_law_fem_has_the_force_that_it_was_made_of():
-    """A sphere of the paper's on another mesh, to 10 d_Y; as near as MYC's law, by nobody's fit."""
+    """The law meets a sphere of the paper on another mesh, to 10 d_Y, about as well as MYC."""
     way = np.linspace(0.5, 10.0, 200)
     off = setting.force(law_of(setting.PAIR, "fem"), way) / force_at("30", way) - 1.0
     assert np.abs(off).max() < 0.08
 
 
 def test_laws_are_compared_in_common_units():
-    """Below its own yield every law is Hertz's, whatever its d_Y."""
+    """Below its own yield every law is Hertz's, although each has its own d_Y."""
     way = np.array([0.1, 0.3])
     for law in setting.all_laws().values():
         assert setting.force(law, way) == pytest.approx(way**1.5, rel=1e-12), law.name
@@ -247,7 +247,7 @@ def test_laws_are_compared_in_common_units():
 
 
 def test_unloading():
-    """The law in use gives back too little work: the plastic share that the model overrates."""
+    """MYC's unloading returns too little work, so the model overrates the plastic share."""
     curves = {name: compare.indentation(name) for name in ("2", "5", "10", "calculix")}
     share = {name: compare.returned(*curve) for name, curve in curves.items()}
     assert share["calculix"] == pytest.approx(share["10"], abs=0.002)
@@ -263,15 +263,15 @@ def test_the_model_over_the_matrix(matrix):
     errors = compare.errors(matrix)
     assert errors["modified Zener"][0] < 0.05
     assert errors["modified Zener"][1] < 0.02
-    # an independent ranking: each step of the physics left out costs
+    # An independent ranking: every part of the physics that is left out costs accuracy.
     ranked = [errors[name][1] for name in ("modified Zener", "Zener", "Mueller, Eq. 3")]
     assert ranked == sorted(ranked)
-    # the closed form is as near as what it stands for
+    # The closed form is as near as the model that it approximates.
     assert errors["turning point"] == pytest.approx(errors["modified Zener"], abs=1e-3)
 
 
 def test_the_law_fem_over_the_matrix(matrix):
-    """Twice as near as the laws of the literature, and near where the sphere is of steel."""
+    """The law fem is twice as near as those of the literature, and near for steel spheres too."""
     largest, rms = compare.deviation(compare.by_fem("matrix"), matrix)
     assert largest < 0.03 and rms < 0.012
     others = [compare.deviation(cor, matrix)[1] for cor in compare.by_law().values()]
@@ -300,7 +300,7 @@ def test_one_table_serves_every_pair_below_yield_only():
 
 
 def test_laws_of_metals_suit_steel():
-    """On thick plates and thin ones, as `Validity.OTHER_LAW` and the docs say."""
+    """They do on thick and thin plates, as `Validity.OTHER_LAW` and the docs say."""
     case = compare.comparison("pairs")
     fast = np.isclose(case.speed_ratio, 7.0)
     steel = np.char.startswith(case.fem["sphere"].astype(str), "bearing")

@@ -60,7 +60,7 @@ def test_the_campaign_covers_what_it_says():
 
 @pytest.mark.parametrize("yielding", campaign.YIELDING)
 def test_a_coarse_indentation_again(yielding):
-    """On a mesh half as fine, three times as quick: within 3 % of what is stored."""
+    """On a mesh half as fine, three times as fast, it is within 3 % of the stored one."""
     data = store.read("campaign_indentation").data
     depth = 6.0 * campaign.yield_depth(40.0)
     job = campaign._pressed(40.0, yielding, 6.0, across=6, slowness=0.5)

@@ -60,7 +60,7 @@ def test_energy_and_momentum_are_kept(hit):
 
 
 def test_coarse_impact_agrees_with_the_stored_one(hit):
-    """Within the error of its mesh, which `verification` records."""
+    """They agree within the error of the mesh, which `verification` records."""
     fine = store.read("paper").data
     assert hit.restitution == pytest.approx(fine["restitution"], abs=0.004)
     assert hit.force.max() == pytest.approx(fine["force"].max(), rel=0.02)
@@ -68,7 +68,7 @@ def test_coarse_impact_agrees_with_the_stored_one(hit):
 
 
 def test_the_papers_plastic_strain():
-    """About 0.039 (Fig. 12)."""
+    """The plastic strain is about 0.039 (Fig. 12)."""
     assert store.read("paper").data["largest_plastic_strain"] == pytest.approx(0.039, abs=5e-4)
 
 
@@ -93,7 +93,7 @@ def test_coarse_indentation_agrees_with_calculix():
 
 
 def test_the_input_of_calculix_is_the_same_mesh():
-    """Both bodies, their sets and the faces that may touch; ccx itself takes minutes."""
+    """The input has both bodies, their sets and contact faces; ccx itself takes minutes."""
     depth = CALCULIX_DEPTH * YIELD_COMPRESSION
     text = calculix.deck(PAIR, R, depth, 0.1)
     width = core(R, depth)
@@ -122,7 +122,7 @@ def test_wrong_arguments_are_refused(argument, value):
 
 
 def test_collapse_is_an_error(monkeypatch):
-    """Central differences with steps far too long blow up."""
+    """Steps far too long for central differences make the motion diverge."""
     monkeypatch.setattr(solver, "_COURANT", 4.0)
     with pytest.raises(RuntimeError, match="elements collapsed at speed 26 m/s.* coarser"):
         impact(PAIR, 26.0, R, 0.5e-3, size=0.08)

@@ -39,7 +39,7 @@ def force_at(found, way, loading=True):
 
 
 def plastic_pressures(found, size):
-    """a/R and mean pressure over the yield strength, from where all of the contact flows."""
+    """a/R, and mean pressure over yield strength, once the whole contact flows."""
     top = int(found.compression.argmax())
     a, p = pressures(found.contact_radius[:top], found.force[:top], size * RADIUS)
     full = a > FULLY_PLASTIC * RADIUS
@@ -47,7 +47,7 @@ def plastic_pressures(found, size):
 
 
 def test_stored_indentations_are_slow_and_only_the_right_body_flows():
-    """The energy is that of whole hemispheres in motion, far from the contact."""
+    """The kinetic energy is that of hemispheres which move as a whole, far from the contact."""
     for name, job in JOBS.items():
         found = stored(name)
         assert found.kinetic < (0.1 if name.startswith(("pair", "mirror")) else 0.01), name
@@ -56,7 +56,7 @@ def test_stored_indentations_are_slow_and_only_the_right_body_flows():
 
 
 def test_tabors_mean_pressure_on_a_block():
-    """About 3 yield strengths; a perfectly plastic block reaches 2.8 to 3.2."""
+    """The pressure is about 3 yield strengths; perfectly plastic blocks reach 2.8 to 3.2."""
     means = {}
     for name in ("block", "block_coarse"):
         size = JOBS[name]["size"]
@@ -69,7 +69,7 @@ def test_tabors_mean_pressure_on_a_block():
 
 
 def test_coarse_block_agrees_with_the_stored_one():
-    """Elements four times as large have 3 % more force, and a pressure known to a tenth."""
+    """Elements four times as large give 3 % more force, and the pressure within 10 %."""
     found = press("block", **CRUDE)
     depth = np.array([0.01, 0.02, 0.029]) * RADIUS
     assert force_at(found, depth) == pytest.approx(force_at(stored("block"), depth), rel=0.05)
@@ -78,7 +78,7 @@ def test_coarse_block_agrees_with_the_stored_one():
 
 
 def test_a_flattened_sphere_is_softer_the_wider_its_contact():
-    """By Jackson and Green from a/R 0.19 on; before, it is 5 % softer than their fit."""
+    """Jackson and Green's fit holds from a/R 0.19 on; before, the sphere is 5 % softer."""
     for name, tolerance in (("flat", 0.03), ("flat_coarse", 0.06)):
         a, p = plastic_pressures(stored(name), JOBS[name]["size"])
         assert a[-1] > 0.4
@@ -109,7 +109,7 @@ def test_two_bodies_that_yield_are_one_and_its_image():
 
 
 def test_coarse_image_in_the_mirror():
-    """At four times the depth: few elements, and a contact that is less small."""
+    """The depth is four times as large, so that few elements are enough."""
     deep, way = 4.0 * JOBS["pair"]["depth"], 4.0 * APPROACH
     pair = press("pair", depth=deep, size=0.02, slowness=0.25)
     mirror = press("mirror", depth=0.5 * deep, size=0.01, slowness=0.25)
@@ -119,7 +119,7 @@ def test_coarse_image_in_the_mirror():
 
 
 def test_block_and_sphere_share_the_plastic_work():
-    """Half each where the contact is small; the sphere gives way more in proportion to a/R."""
+    """In small contacts each body takes half; the share of the sphere grows with a/R."""
     wide, narrow = stored("pair"), stored("pair_narrow")
     less, half = (1.0 - found.work_block / found.work_sphere for found in (wide, narrow))
     assert 0.0 < less < 0.12
@@ -127,7 +127,7 @@ def test_block_and_sphere_share_the_plastic_work():
 
 
 def test_yielding_block_agrees_with_calculix():
-    """Another program, implicit, on the same mesh; in it both bodies flow alike."""
+    """CalculiX, an implicit program, runs the same mesh; both bodies flow alike in it."""
     ours = stored("both")
     theirs, made = store.read("calculix_block")
     theirs = SimpleNamespace(**theirs)
@@ -149,7 +149,7 @@ def test_yielding_block_agrees_with_calculix():
 
 
 def _left(found):
-    """Compression left, over the largest: where 1 % of the peak force is, met on the way out."""
+    """Residual over largest compression, taken where unloading reaches 1 % of the peak force."""
     top = int(found.compression.argmax())
     down = np.interp(
         0.01 * found.force.max(), found.force[top:][::-1], found.compression[top:][::-1]
@@ -162,7 +162,7 @@ def _given_back(found):
 
 
 def test_the_input_of_calculix_says_who_yields():
-    """As often as there are yield strengths, each in its own material."""
+    """Each yield strength is in the input once, in a material of its own."""
     text = calculix.deck(BOTH, RADIUS, BOTH_DEPTH, 0.1)
     sphere, plate = text.split("*MATERIAL, NAME=")[1:]
     assert "*PLASTIC\n4.725000e+02, 0." in sphere

@@ -23,7 +23,7 @@ def test_exact_data_of_a_soft_bead_are_not_those_of_a_hard_one_on_a_thin_plate()
 
 
 def test_a_second_regime_that_fits_as_well_is_told():
-    """Known within 5 %, four of these rebounds are those of a hard bead on a thin plate, too."""
+    """Within 5 %, four of these rebounds also fit a hard bead on a thin plate."""
     data = {name: values if name == "radius" else values[::3]
             for name, values in STEEL_ON_ALUMINA.data().items()}  # fmt: skip
     data["restitution_error"] = 0.05 * data["restitution"]

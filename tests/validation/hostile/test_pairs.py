@@ -1,4 +1,4 @@
-"""Random pairs of materials of nobody's catalogue: a part of the campaign."""
+"""Random pairs of invented materials: a part of the campaign."""
 
 import dataclasses
 
@@ -18,7 +18,7 @@ def test_random_pairs_are_continuous_and_flagged():
 
 
 def test_the_campaign_finds_a_jump_where_the_weaker_body_changes(monkeypatch):
-    """As it was: Poisson's ratio of the weaker body alone counted."""
+    """The jump came from taking Poisson's ratio of the weaker body alone."""
 
     def weaker(given, _):
         return {"sphere": float(given.weaker == "sphere"), "plate": float(given.weaker == "plate")}

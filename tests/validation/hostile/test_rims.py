@@ -23,7 +23,7 @@ def test_beads_on_rims_holes_and_corners_keep_their_energy():
 
 @pytest.mark.parametrize("facets", [72, 360])
 def test_a_bead_on_a_standing_rim(facets):
-    """It had 1.74 times its energy on 360 facets; turned, so as to meet corner and edge."""
+    """On 360 facets the bead once gained 74 % energy; turned starts meet corners and edges."""
     rim = Mesh.cylinder((0, 0, -0.05), (0, 0, 0), 0.02, math.inf, facets=facets)
     turn = np.linspace(0, 2 * math.pi / 36, 41)
     cosine, sine, zero = np.cos(turn), np.sin(turn), 0 * turn
@@ -56,9 +56,9 @@ def energy(frames, facets, x, r, found, force):
 
 @pytest.mark.parametrize("name", ["cylinder of 72", "hole of 16, 1.2 R", "star of 60, 3.0 R"])
 def test_the_force_on_meshes_has_a_continuous_potential(name):
-    """Work along any way is the difference of the potential, but for the sum's own error at kinks.
+    """Work along any path is the difference of the potential, but for the sum's error at kinks.
 
-    Which falls with the pieces of the way; no scheme of time steps has a part in it.
+    That error falls with the length of the path's pieces; no time steps are involved.
     """
     rng = np.random.default_rng(3)
     mesh = rims.scenes(rng)[name]

@@ -135,7 +135,7 @@ def test_eq_22_jumps_as_printed_and_is_continuous_with_the_factor():
 
 
 def largest_error(form, surface, lam_y, v):
-    """Over the part of the surface up to (lam_y, v)."""
+    """Largest error over the part of the surface up to (lam_y, v)."""
     rows, columns = lam_y + 1e-9 >= INELASTICITIES, v >= SPEEDS
     part = np.ix_(rows, columns)
     return np.abs(form(SPEEDS[columns], INELASTICITIES[rows, None]) / surface[part] - 1).max()
@@ -199,7 +199,7 @@ def test_the_turning_point_form_is_continuous():
 
 
 def test_unloading_is_the_second_half_of_an_elastic_impact():
-    """What the turning-point form rests on, exactly: whatever the loading was."""
+    """The turning-point form rests on this, which holds exactly whatever the loading was."""
     myc, hertz = laws.law("myc"), laws.law("hertz").data
     v, lam_y = 8.0, 0.25
     y = yield_ratio(v)
@@ -220,7 +220,7 @@ def test_border_errs_by_what_it_states(model):
     v_y0 = model.pair.yield_speed
     stated = {0.25: -0.10, 0.5: -0.04, 0.7: 0.04, 1.2: -0.07}
     for ratio, error in stated.items():
-        v = formulas.border(ratio) / (1 + error)  # so the two losses are equal nearby
+        v = formulas.border(ratio) / (1 + error)  # the two losses are equal near this speed
         losses = [
             (hit.plastic_fraction, hit.wave_fraction)
             for hit in (model.solve(v * by * v_y0, 1e-3, 1e-3 / ratio) for by in (0.99, 1.01))
