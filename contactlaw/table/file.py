@@ -270,6 +270,8 @@ def _take(file: h5py.Group, group: str, parts: dict[str, _Part]) -> dict[str, ND
         if (dataset.shape, dataset.dtype.newbyteorder("=")) != (shape, kind):
             what = f"{dataset.dtype} of shape {dataset.shape}"
             raise ValueError(f"its {where} holds {what}, not {kind} of shape {shape}")
+        if dataset.nbytes > LARGEST:  # a few bytes of a file may declare an array of any size
+            raise ValueError(f"its {where} has {dataset.nbytes} bytes, above {LARGEST}")
         values = dataset[()].astype(kind, copy=False)
         outside = values[~((values >= part.least) & (values <= part.largest))]
         if outside.size:

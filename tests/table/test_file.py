@@ -108,6 +108,11 @@ def declare_huge(file):
     file.create_dataset("fields/restitution", (10**6, 10**6), "f8")
 
 
+def declare_a_huge_row(file):
+    del file["law/loading_kinks"]
+    file.create_dataset("law/loading_kinks", (10**13,), "f8", chunks=(1024,))
+
+
 def other_law(place, value):
     """Change of the law's data that would lead a kernel astray."""
 
@@ -158,6 +163,7 @@ def put_group(file):
         (put("shapes/states", np.inf, 0, 0, 1, 5), "shapes/states holds inf"),
         (put("shapes/states", 9e3, 0, 0, 0, 5), "times that do not grow"),
         (declare_huge, r"shape \(1000000, 1000000\), not float64 of shape \(9, "),
+        (declare_a_huge_row, "law/loading_kinks has 80000000000000 bytes, above"),
         (store_anew("fields/restitution", dtype="c16"), "holds complex128 .* not float64"),
         (store_anew("fields/restitution", dtype="i1"), "holds int8 .* not float64"),
         (store_anew("shapes/states", dtype="f8"), "holds float64 .* not float32"),
