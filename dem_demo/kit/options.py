@@ -123,4 +123,4 @@ def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
     add("--seed", type=int, metavar="S", default=defaults.SEED,
         help=f"the same seed gives the same {beads}")  # fmt: skip
     add_law(add, "COR of the other run (default: the law's for a thick block, at the "
-            f"{beads}'s speed)")  # fmt: skip
+            f"speed of the {beads})")  # fmt: skip

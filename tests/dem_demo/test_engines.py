@@ -111,6 +111,13 @@ def test_help_loads_neither_an_engine_nor_what_takes_long():
         assert f"{engine.DURATION:g} in {name}" in " ".join(done.stdout.split())
 
 
+@pytest.mark.parametrize(("scene", "beads"), [("drum", "beads"), ("sieve", "feed")])
+def test_help_says_whose_speed_the_constant_cor_is_for(scene, beads, capsys):
+    with pytest.raises(SystemExit):
+        cli.main([scene, "--help"])
+    assert f"at the speed of the {beads})" in " ".join(capsys.readouterr().out.split())
+
+
 def test_a_new_file_is_a_new_engine(falling, tmp_path, capsys):
     with pytest.raises(SystemExit):
         cli.main(["rain", "--help"])
