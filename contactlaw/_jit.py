@@ -213,22 +213,26 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
     return entry
 
 
-def at_first_as_python(function: _F, calls: int) -> _F:
-    """Run a kernel as Python, until it is compiled for others or this has been called so often.
+def at_first_as_python(function: _F, seconds: float) -> _F:
+    """Run a kernel as Python, until others have compiled it or its runs have taken so long [s].
 
     A compiler may fuse a product with a sum, so that answers differ in the last digits.
     """
     if switched_off():
         return function
     dispatcher: Any = function
-    left = iter(range(calls))
+    taken = 0.0
 
     @functools.wraps(dispatcher.py_func)
     def called(*arguments: Any) -> Any:
-        if dispatcher.overloads or next(left, None) is None:
+        nonlocal taken
+        if dispatcher.overloads or taken > seconds:
             return dispatcher(*arguments)
+        begun = time.perf_counter()
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            return dispatcher.py_func(*arguments)
+            found = dispatcher.py_func(*arguments)
+        taken += time.perf_counter() - begun
+        return found
 
     return called  # type: ignore[return-value]
 

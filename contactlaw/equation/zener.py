@@ -145,8 +145,8 @@ def _impact(
     )
 
 
-# Python integrates this many impacts in less time than the compiler takes.
-_integrate_few = at_first_as_python(_integrate, 50)
+# Python takes 25 ms for an impact, the compiler six seconds and more.
+_integrate_few = at_first_as_python(_integrate, 3.0)
 
 
 def _run(

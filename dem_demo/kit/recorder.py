@@ -76,6 +76,8 @@ class Recorder:
         Frames per second [1/s].
     axes : str
         What the columns of the table of impacts mean in this file.
+    columns : iterable of str, optional
+        Columns of the table of impacts if none happens.
 
     Attributes
     ----------
@@ -94,12 +96,13 @@ class Recorder:
         trajectories: Sequence[Dataset],
         frame_rate: float,
         axes: str,
+        columns: Iterable[str] = OBSERVED,
     ) -> None:
         raise_dropped()  # nothing has been written yet
         self.folder = path.parent
         self._path, self._disk = path, Disk(path)
         self._files, self._frame_rate = {*making.files}, frame_rate
-        self._frames = 0
+        self._frames, self._columns = 0, list(columns)
         with undisturbed():
             self._file = h5py.File(self._disk, "w")
             self._file.attrs.update(_made(scene, making))
@@ -169,7 +172,7 @@ class Recorder:
 
     def _close(self, reason: str) -> None:
         if not layout.has_impacts(self._file):
-            layout.append_impacts(self._file, np.empty(0, IMPACT[list(OBSERVED)]))
+            layout.append_impacts(self._file, np.empty(0, IMPACT[self._columns]))
         if not reason and self._disk.error is not None:
             reason = complaint(self._disk.error)
         own = {file.name for file in self.folder.iterdir() if not file.name.startswith(".")}
@@ -179,6 +182,8 @@ class Recorder:
         self._file.close()
         if self._disk.error is not None:
             _write_shorter(self._path, self._disk.content(), self._frames)
+        elif self._frames == 0:
+            self._path.unlink()  # nothing has been simulated
         self._disk.close()
 
 

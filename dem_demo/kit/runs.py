@@ -13,6 +13,7 @@ import h5py
 
 from contactlaw import Pair
 from contactlaw.engines import layout
+from contactlaw.engines.record import IMPACT
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.bed import Bed
 from dem_demo.kit.reader import Recorded, closed, common
@@ -100,6 +101,7 @@ def bed_recorder(path: Path, scene: Bed, making: Making, ranks: int) -> Recorder
         ],
         frame_rate=scene.FRAME_RATE,
         axes=scene.AXES,
+        columns=IMPACT.names or (),
     )
 
 

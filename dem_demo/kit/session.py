@@ -72,19 +72,22 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
         stop = simulate(folder)
         if not (folder / show.record).exists():
             assert stop is not None
+            if isinstance(stop, Interrupted):
+                raise stop
             raise Refused(f"{show.sentence(stop)}; nothing could be kept")
         run = show.read(folder)
+        reason = run.reason or (show.sentence(stop) if stop is not None else "")
         print(show.summary(run), flush=True)
         failed = make(show, run, folder)
         written = ", ".join(entries(folder))
-        reached = target.fill(folder, complete=not run.reason)
+        reached = target.fill(folder, complete=not reason)
     replaced = target.earlier and reached == target.path
     earlier = f", in the place of an earlier {show.name}" * replaced
     print(f"\nWritten to {reached}{earlier}: {written}", flush=True)
     for name, why in failed.items():
         print(f"dem-demo: {name} is missing: {show.sentence(why)}", file=sys.stderr)
-    if run.reason:
-        print(f"dem-demo: partial, {show.progress(run)}: {run.reason}", file=sys.stderr)
+    if reason:
+        print(f"dem-demo: partial, {show.progress(run)}: {reason}", file=sys.stderr)
     return max((getattr(e, "exit_status", 1) for e in (stop, *failed.values()) if e), default=0)
 
 

@@ -29,6 +29,7 @@ from dem_demo.drum.tale import near_edge, on_faces  # noqa: E402
 from dem_demo.kit import comparison, lammps  # noqa: E402
 from dem_demo.kit.measure import account  # noqa: E402
 from dem_demo.kit.runs import read  # noqa: E402
+from dem_demo.kit.signals import Interrupted  # noqa: E402
 
 # Few beads that never meet; the law's table comes with the package.
 SMALL = ["drum", "--beads", "4", "--duration", "0.16", "--friction", "0", "--speed", "1.5"]
@@ -236,3 +237,34 @@ def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
     assert runs.constant is None and runs.reason == "interrupted by SIGINT"
     assert 2 < runs.law.time.size < 1800
     assert "Partial" in (tmp_path / "out" / "summary.txt").read_text()
+
+
+@pytest.mark.parametrize("method", ["_create", "advance"])
+@pytest.mark.parametrize("scene", [SMALL, ["sieve", *SMALL[1:5], "--seed", "6"]])
+def test_an_interrupt_before_the_first_impact(scene, method, tmp_path, monkeypatch, capsys):
+    def stop(self, *arguments):
+        raise Interrupted(signal.SIGINT)
+
+    monkeypatch.setattr(lammps._Simulation, method, stop)
+    out = tmp_path / "out"
+    assert cli.main([*scene, "--out", str(out)]) == 130
+    assert "Traceback" not in capsys.readouterr().err
+    written = {path.name for path in out.iterdir()} if out.exists() else set()
+    kept = {f"{scene[0]}.h5", "summary.txt", "index.html"}
+    assert written >= kept if method == "advance" else not written  # no frame: nothing to keep
+
+
+def test_an_interrupt_between_the_runs_keeps_the_first(tmp_path, monkeypatch, capsys):
+    create, calls = lammps._Simulation._create, []
+
+    def stop(self):
+        calls.append(None)
+        if len(calls) == 2:
+            raise Interrupted(signal.SIGINT)
+        create(self)
+
+    monkeypatch.setattr(lammps._Simulation, "_create", stop)
+    assert cli.main([*SMALL, "--out", str(tmp_path / "out")]) == 130
+    errors = capsys.readouterr().err
+    assert "Traceback" not in errors and errors.rstrip().endswith(": interrupted by SIGINT")
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"constant.h5"}
