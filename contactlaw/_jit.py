@@ -213,6 +213,11 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
     return entry
 
 
+def as_python(function: _F) -> _F:
+    """Return the Python function of a kernel, for work that is done before it were compiled."""
+    return getattr(function, "py_func", function)
+
+
 def at_first_as_python(function: _F, seconds: float) -> _F:
     """Run a kernel as Python, until others have compiled it or its runs have taken so long [s].
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw._jit import enable_caching, kernel
+from contactlaw._jit import as_python, enable_caching, kernel
 
 Floats = NDArray[np.float64]
 
@@ -23,6 +23,7 @@ GRID: list[tuple[Any, ...]] = [
     ("reach", "f8"), ("low", "f8", 3), ("high", "f8", 3),  # low, high: box around the facets
 ]  # fmt: skip
 
+_SMALL = 10_000  # facets times cells that Python fills in 0.1 s; the compiler takes 1.5 s
 _MOST = 1 << 20  # cells of a large grid, up to twice as many by rounding; 8 bytes each
 _FEW = 27  # most cells of a block that is not halved; a facet smaller than a cell has 27 around it
 _DEEPEST = 64  # most blocks still to do; halving the largest grid, of 2^21 cells, takes some 20
@@ -58,12 +59,15 @@ class FacetGrid:
         corners = np.ascontiguousarray(corners)
         counts = np.zeros(int(cells.prod()) + 1, np.int64)
         nothing = np.empty(0, np.int32)
-        _fill_lists(corners, low, cell, cells, self.reach, counts, nothing)
+        # The same one for both: with another one's rounding, a list might not have room for all.
+        small = len(corners) * counts.size < _SMALL
+        fill_lists = as_python(_fill_lists) if small else _fill_lists
+        fill_lists(corners, low, cell, cells, self.reach, counts, nothing)
         self.starts = np.cumsum(counts)
         self.busy = np.packbits(counts[1:] > 0, bitorder="little")
         self.entries = np.empty(int(self.starts[-1]), np.int32)
         ends = self.starts[:-1].copy()
-        _fill_lists(corners, low, cell, cells, self.reach, ends, self.entries)
+        fill_lists(corners, low, cell, cells, self.reach, ends, self.entries)
         self.entries += first
 
     def fill(self, row: Any) -> None:
