@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import importlib
 import platform
 import sys
@@ -25,16 +26,15 @@ SUBJECTS = (
 )
 
 
-def main(names: list[str]) -> int:
-    """Print each row as it is measured; 0 if all targets are met, 1 if not, 2 for wrong usage."""
-    wrong = set(names) - set(SUBJECTS)
-    if wrong:
-        print(f"no such benchmark: {', '.join(wrong)}; there are {', '.join(SUBJECTS)}")
-        return 2
+def main(arguments: list[str] | None = None) -> int:
+    """Print each row as it is measured; 0 if all targets are met, 1 if not."""
+    parser = argparse.ArgumentParser(prog="python -m validation.bench", description=__doc__)
+    parser.add_argument("name", nargs="*", default=list(SUBJECTS), choices=SUBJECTS)
+    names = parser.parse_args(arguments).name
     print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}")
     print(f"{'':34s} {'measured':>12s} {'target':>8s}  peer")
     met = True
-    for name in tqdm(names or SUBJECTS, desc="bench", disable=None, leave=False):
+    for name in tqdm(names, desc="bench", disable=None, leave=False):
         for row in importlib.import_module(f"{__package__}.{name}").rows():
             target = "-" if row.target is None else f"{row.target:g}"
             ratio = "" if row.ratio is None else f"{row.peer}: {row.ratio:.3g}x"
@@ -48,4 +48,4 @@ def main(names: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import argparse
 
 from validation.inverse import coverage, elements, model
 
@@ -14,16 +14,13 @@ REPORTS = {
 }
 
 
-def main(names: list[str]) -> int:
-    """Print the reports that are named, or all; 2 for wrong usage."""
-    wrong = set(names) - set(REPORTS)
-    if wrong:
-        print(f"no such report: {', '.join(wrong)}; there are {', '.join(REPORTS)}")
-        return 2
-    for name in names or REPORTS:
+def main(arguments: list[str] | None = None) -> None:
+    """Print the reports that are named, or all."""
+    parser = argparse.ArgumentParser(prog="python -m validation.inverse", description=__doc__)
+    parser.add_argument("name", nargs="*", default=list(REPORTS), choices=REPORTS)
+    for name in parser.parse_args(arguments).name:
         print(REPORTS[name](), flush=True)
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main()
