@@ -6,6 +6,7 @@ import csv
 import math
 import re
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +32,20 @@ class Located(NamedTuple):
 
     place: int
     per_unit: float  # values are divided by this, which rounds only once
+
+
+def content_of(path: Path) -> bytes:
+    """Read a file that a user names; a device might never end.
+
+    Examples
+    --------
+    >>> content_of(Path("/dev/zero"))
+    Traceback (most recent call last):
+    ValueError: /dev/zero: it is a device, not a file
+    """
+    if path.is_char_device() or path.is_block_device():
+        raise ValueError(f"{path}: it is a device, not a file")
+    return path.read_bytes()
 
 
 def split_table(content: bytes) -> tuple[list[str], list[str], str]:

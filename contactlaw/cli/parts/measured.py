@@ -74,7 +74,7 @@ def read(path: str | os.PathLike[str]) -> Read:
     (array([0.91,  nan]), ('No',))
     """
     path = Path(path)
-    content = path.read_bytes()
+    content = columns.content_of(path)
     try:
         return _read(content)
     except ValueError as error:

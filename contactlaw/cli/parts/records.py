@@ -99,7 +99,7 @@ def read(path: str | os.PathLike[str]) -> Recorded:
     """
     readers = {".h5": _hdf5, ".hdf5": _hdf5, ".npy": _npy}
     path = Path(path)
-    content = path.read_bytes()
+    content = columns.content_of(path)
     try:
         found = readers.get(path.suffix.lower(), _text)(content)
         _check(found)
