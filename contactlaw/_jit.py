@@ -214,7 +214,7 @@ def direct(function: Callable[..., Any], signature: str) -> Callable[..., Any]:
 
 
 def as_python(function: _F) -> _F:
-    """Return the Python function of a kernel, for work that is done before it were compiled."""
+    """Return the Python function of a kernel, for work that takes less time than compiling."""
     return getattr(function, "py_func", function)
 
 

@@ -36,26 +36,13 @@ def add(commands: Any) -> None:
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
     with wording.file_of("out", arguments.out):
-        check_suffix(arguments.out)
+        wording.check_suffix("out", arguments.out, _SUFFIXES)
         axes = (arguments.speed, arguments.radius, arguments.thickness)
         model = chosen.model(arguments)
         found = tabulate(model, *axes, solve=arguments.solve)
         save(found, model, axes, arguments.out)
     flags = explained(count_flags(found.flags), len(found))
     print(f"{arguments.out}: {len(found)} impacts", *flags, sep="\n")
-
-
-def check_suffix(path: str | os.PathLike[str]) -> None:
-    """Refuse a file name whose suffix is none of CSV or HDF5.
-
-    Examples
-    --------
-    >>> check_suffix("cor.xls")
-    Traceback (most recent call last):
-    ValueError: out: got 'cor.xls', must end in .csv, .h5 or .hdf5
-    """
-    if Path(path).suffix.lower() not in _SUFFIXES:
-        raise ValueError(f"out: got {os.fspath(path)!r}, must end in .csv, .h5 or .hdf5")
 
 
 def save(
@@ -87,7 +74,7 @@ def save(
     OSError
         If the folder does not exist or is not writable, or the disk is full.
     """
-    check_suffix(path)
+    wording.check_suffix("out", path, _SUFFIXES)
     if Path(path).suffix.lower() == ".csv":
         text = io.StringIO()
         write_csv(table, text)

@@ -47,6 +47,6 @@ def check_quantities(arguments: argparse.Namespace) -> None:
 def plot_file(arguments: argparse.Namespace) -> Iterator[None]:
     """Refuse a file that cannot be drawn into before anything is computed; print its name after."""
     with wording.file_of("plot", arguments.plot):
-        plots.check_suffix(arguments.plot)
+        wording.check_suffix("path", arguments.plot, plots.SUFFIXES)
         yield
     print(arguments.plot)

@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.fits import values_in_words
-from contactlaw.cli.parts.plots import check_suffix, colour_of, length_of, plate_of
+from contactlaw.cli.parts.plots import SUFFIXES, colour_of, length_of, plate_of
 from contactlaw.fitting import Fit
 from contactlaw.physical.validity import Validity, limits_in_words
 
@@ -77,7 +78,7 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
     ValueError
         If the suffix names no format.
     """
-    check_suffix(path)
+    wording.check_suffix("path", path, SUFFIXES)
     groups = list(groups_of(found))
     curves = [curve_of(found, group) for group in groups] if len(groups) <= _MOST_CURVES else []
     kinds = list(found.residuals)

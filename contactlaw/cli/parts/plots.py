@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Sequence
-from pathlib import PurePath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.curves import CorCurve, is_logarithmic
 from contactlaw.cli.parts.quantities import LENGTH, formatted
 from contactlaw.physical.history import ForceHistory
@@ -24,23 +24,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _HALF_SPACE = "half-space"
-_SUFFIXES = (".png", ".svg", ".pdf")
-
-
-def check_suffix(path: str | os.PathLike[str]) -> None:
-    """Refuse a file whose suffix names no format.
-
-    Examples
-    --------
-    >>> check_suffix("cor.xyz")
-    Traceback (most recent call last):
-    ValueError: path: got 'cor.xyz', must end in .png, .svg or .pdf
-    """
-    if PurePath(path).suffix.lower() not in _SUFFIXES:
-        *others, last = _SUFFIXES
-        raise ValueError(
-            f"path: got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
-        )
+SUFFIXES = ".png", ".svg", ".pdf"
 
 
 def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]) -> None:
@@ -62,7 +46,7 @@ def save_history(contact: ForceHistory, title: str, path: str | os.PathLike[str]
     ValueError
         If the suffix names no format.
     """
-    check_suffix(path)
+    wording.check_suffix("path", path, SUFFIXES)
     with style.applied():
         from matplotlib.figure import Figure
 
@@ -115,7 +99,7 @@ def save_restitution(curves: Sequence[CorCurve], title: str, path: str | os.Path
     ImportError, ValueError
         As in `save_history`.
     """
-    check_suffix(path)
+    wording.check_suffix("path", path, SUFFIXES)
     radii = dict.fromkeys(curve.radius for curve in curves)
     by_radius = len(radii) == len(curves) > 1
     panels = [list(curves)] if by_radius else [[c for c in curves if c.radius == r] for r in radii]

@@ -9,8 +9,9 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
 from contextlib import contextmanager
+from pathlib import PurePath
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -82,6 +83,22 @@ lists all
         yield
     except UnknownMaterialError as error:
         raise Refused(f"--{option}: {sentence(error, {})}") from error
+
+
+def check_suffix(name: str, path: str | os.PathLike[str], suffixes: Sequence[str]) -> None:
+    """Refuse a file whose suffix names none of some formats.
+
+    Examples
+    --------
+    >>> check_suffix("path", "cor.xyz", (".png", ".svg", ".pdf"))
+    Traceback (most recent call last):
+    ValueError: path: got 'cor.xyz', must end in .png, .svg or .pdf
+    """
+    if PurePath(path).suffix.lower() not in suffixes:
+        *others, last = suffixes
+        raise ValueError(
+            f"{name}: got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
+        )
 
 
 @contextmanager
