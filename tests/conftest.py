@@ -4,6 +4,7 @@ import os
 import signal
 import sys
 import tempfile
+from pathlib import Path
 
 # A stale cache would let an old result pass; and the tests must not write into a user's folders.
 # Workers of one run share theirs.
@@ -19,6 +20,12 @@ sys.dont_write_bytecode = False
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 import pytest  # noqa: E402
+
+# A check that several tests share says what it compared, as those in the tests do.
+pytest.register_assert_rewrite(
+    *(path.stem for path in (Path(__file__).parent / "shared").glob("*.py"))
+)
+
 from browser import CHROMIUM, browser  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
