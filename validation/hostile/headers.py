@@ -13,8 +13,8 @@ import numpy as np
 import contactlaw as cl
 
 FULL = len(cl.materials()) ** 2
-_LARGEST = 400_000  # bytes, as docs/engines.md says
-_CLOSE = 1e-5  # error of COR by the table, also as docs/engines.md says
+_LARGEST = 400_000  # bytes, as docs/c.md says
+_CLOSE = 1e-5  # error of COR by the table, also as docs/c.md says
 
 
 def faults(count: int, seed: int) -> Iterator[str]:
