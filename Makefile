@@ -7,7 +7,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 # Without byte code on disk each process would compile numba's sources again, for 2 s.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-engines lint package validation bench clean
+.PHONY: demo test test-engines lint package validation bench pictures clean
 
 demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
@@ -43,6 +43,16 @@ validation: .venv/validation.done  ## write the report on accuracy and on the pa
 
 bench: .venv/bench.done  ## measure each performance target beside a comparable program
 	$(BIN)/python -m validation.bench
+
+PICTURES := .venv/pictures
+
+pictures: .venv/test.done  ## draw the pictures of docs again, in about 10 minutes
+	$(BIN)/dem-demo rain --out $(PICTURES)/rain
+	$(BIN)/mpirun -np 2 $(BIN)/dem-demo sieve --out $(PICTURES)/sieve
+	$(BIN)/python -m validation --out $(PICTURES)/report
+	cp $(PICTURES)/rain/rain.gif $(PICTURES)/rain/restitution.png docs
+	cp $(PICTURES)/sieve/dissipation.png docs/sieve.png
+	cp $(PICTURES)/report/fig15_restitution.png docs/fem_restitution.png
 
 clean:  ## remove the environment and the wheels
 	rm -rf .venv dist

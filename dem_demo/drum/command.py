@@ -18,8 +18,8 @@ def add(commands: Any) -> None:
     """Add the command to those of ``dem-demo``."""
     drum = commands.add_parser(
         "drum",
-        help="beads in a drum of thin sheet that turns",
-        description="Beads are lifted and thrown by a drum of thin sheet that turns. It is "
+        help="beads in a turning drum of sheet metal",
+        description="Beads are lifted and thrown by a turning drum of sheet metal. It is "
         "simulated twice: under the law, and with one COR for all impacts on the drum. Writes "
         "drum.h5 and constant.h5, index.html, figures (PNG), drum.gif, summary.txt, and a dump "
         "for OVITO. What has been computed is kept if it is stopped. All numbers are in SI units. "

@@ -68,8 +68,8 @@ TALE = Tale(
     figures=figures,
     page={
         "heading": "Beads in a turning drum",
-        "lede": "Shell and ends of the drum are thin sheet. Under the law the rebound of each "
-        "impact follows from speed, bead and sheet, as does where its energy goes. For comparison, "
+        "lede": "Shell and ends of the drum are sheet metal. Under the law the rebound of each "
+        "impact follows from speed, bead and plate, as does where its energy goes. For comparison, "
         "the same beads with one coefficient of restitution (COR) for all impacts.",
         "alt": "The drum, seen along its axis",
         "others": "",

@@ -26,7 +26,7 @@ _SLOWEST = 0.03  # [m/s], left end of the speed axis
 _MARGIN = 0.12  # room on the COR axis below the curves; above them half of it
 _PARTS = (
     ("moving", "kinetic energy of the beads", style.PALE),
-    ("wave", "bending wave in the sheet", style.BLUE),
+    ("wave", "bending wave in the plate", style.BLUE),
     ("plastic", "lost at the contact", style.ORANGE),
     ("vibration", "micro-slip and vibration at the contact", style.VERMILION),
     ("others", "bead on bead, sliding friction", style.GREEN),
@@ -74,7 +74,7 @@ def energy(runs: Runs[Any], title: str, wall: str) -> Figure:
             colors=[_PARTS[n][2] for n in used], linewidth=0,
         )  # fmt: skip
         whole = (found.start + found.gravity + found.walls) * 1e3
-        axes.plot(run.time * 1e3, whole, color=style.INK, linewidth=2.0, label="all of it")
+        axes.plot(run.time * 1e3, whole, color=style.INK, linewidth=2.0, label="total")
         without = (found.start + found.gravity) * 1e3
         axes.plot(
             run.time * 1e3, without, color=style.INK, linewidth=1.5, linestyle=":",
@@ -136,6 +136,7 @@ def restitution(
             label=f"constant {runs.constant.name}",
         )  # fmt: skip
     axes.set_xscale("log")
+    axes.xaxis.set_major_formatter("{x:g}")
     axes.set_xlim(speeds[0], speeds[-1])
     axes.set_ylim(max(0.0, lowest - _MARGIN), min(1.0, highest) + 0.5 * _MARGIN)
     axes.set(xlabel="normal approach speed [m/s]", ylabel="coefficient of restitution")

@@ -113,9 +113,9 @@ def add_law(add: Any, cor: str) -> None:
 def add_bed(add: Any, defaults: ModuleType, *, wall: str, beads: str) -> None:
     """Add the options of every bed; `wall` and `beads` are its words in the help texts."""
     add("--thickness", type=length, metavar="H", default=f"{defaults.THICKNESS:g}",
-        help="thickness of the sheet [m], or with a unit")  # fmt: skip
+        help="thickness of the sheet metal [m], or with a unit")  # fmt: skip
     add("--sphere", metavar="NAME", default=defaults.SPHERE, help="material of the beads")
-    add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the sheet")
+    add("--plate", metavar="NAME", default=defaults.PLATE, help="material of the sheet metal")
     add("--friction", type=float, metavar="MU", default=defaults.FRICTION,
         help=f"coefficient of friction, on the {wall} and of beads on each other")  # fmt: skip
     add("--duration", type=float, metavar="T", default=defaults.DURATION,

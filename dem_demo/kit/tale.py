@@ -90,7 +90,7 @@ def facts(tale: Tale, run: Run[Any]) -> Facts:
     return [
         *found,
         (f"dissipated at the {tale.wall}", _energy(float(run.dissipated.sum()))),
-        ("  bending wave in the sheet", _energy(energy.wave[-1])),
+        ("  bending wave in the plate", _energy(energy.wave[-1])),
         ("  lost at the contact", _energy(energy.plastic[-1])),
         (f"work of the {tale.wall} on the beads", _energy(energy.walls[-1])),
         ("beads on beads, sliding friction", _energy(energy.others[-1])),

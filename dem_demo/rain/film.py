@@ -40,11 +40,11 @@ def gif(run: Run) -> bytes:
         figure = Figure(figsize=_SIZE, dpi=100, layout="constrained")
         canvas: Any = FigureCanvasAgg(figure)  # its methods are untyped
         axes = figure.add_subplot()
-        what = title(run)[0].split(", ")
-        axes.set_title(f"{what[0]}{what[-1].partition(' mm')[2]}, {SLOWER} times slower")
+        beads, *_, plates = title(run)[0].split(", ")
+        axes.set_title(f"{beads} {plates}, {SLOWER} times slower")
         picture = Picture(axes, run, made)
         bar = figure.colorbar(picture.circles, ax=axes, pad=0.01, fraction=0.03)
-        bar.set_label("COR of its last impact")
+        bar.set_label("COR of the last impact (grey: none yet)")
         canvas.draw()
         still = canvas.copy_from_bbox(figure.bbox)
         frames = []

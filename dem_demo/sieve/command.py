@@ -19,7 +19,7 @@ def add(commands: Any) -> None:
     sieve = commands.add_parser(
         "sieve",
         help="beads on a vibrating deck, a mesh from an STL file",
-        description="Beads of two sizes fall on a perforated deck of thin sheet that vibrates; the "
+        description="Beads of two sizes fall on a vibrating, perforated deck of sheet metal; the "
         "deck is a mesh from an STL file. It is simulated twice: under the law, and with one COR "
         "for all impacts on the deck. Writes sieve.h5 and constant.h5, index.html, figures "
         "(PNG), sieve.gif, summary.txt, deck.stl, and a dump for OVITO. What has been "

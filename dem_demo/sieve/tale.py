@@ -43,7 +43,7 @@ TALE = Tale(
     page={
         "heading": "Beads on a vibrating sieve",
         "lede": "The deck is a mesh from an STL file. Under the law the rebound of each impact "
-        "follows from speed, bead and sheet, as does where its energy goes. For comparison, the "
+        "follows from speed, bead and plate, as does where its energy goes. For comparison, the "
         "same feed with one coefficient of restitution (COR) for all impacts.",
         "alt": "A slice of the bed",
         "others": "; <code>deck.stl</code>",

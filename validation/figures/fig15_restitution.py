@@ -28,7 +28,7 @@ def draw() -> chart.Drawn:
     up = RESTITUTION.between(0.3, 1.02)
     figure, (left, right) = chart.sheet(
         (13.0, 6.4),
-        "The modified Zener model holds where yielding ends Zener's",
+        "Once the bead yields, the modified Zener model holds and Zener's does not",
         f"gamma-alumina on glass, each colour a thickness; {RATIO}",
         Panel(SPEED.log(0.3, 0.6, 1, 2, 3.5, 7).between(0.27, 9.0), up),
         Panel(INELASTICITY, up),

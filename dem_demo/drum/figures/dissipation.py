@@ -20,7 +20,7 @@ from dem_demo.kit.beads import Floats
 from dem_demo.kit.runs import Run, Runs
 
 _BINS = 36
-_LOSSES = ("wave", "bending wave in the sheet"), ("plastic", "lost at the contact")
+_LOSSES = ("wave", "bending wave in the plate"), ("plastic", "lost at the contact")
 
 
 def draw(runs: Runs[Drum]) -> Figure:
@@ -45,6 +45,8 @@ def draw(runs: Runs[Drum]) -> Figure:
         axes.yaxis.set_major_locator(MaxNLocator(3))
         axes.yaxis.set_major_formatter("{x:g} µJ")
         axes.set_rlabel_position(20.0)
+        axes.set_ymargin(0.15)  # room for the outermost number inside the circle
+        axes.tick_params(axis="x", pad=8.0)
         axes.set_title(axes.get_title("left"), loc="center", pad=10.0)
         axes.set_title("", loc="left")
     figure.legend(*shown[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=2)

@@ -14,4 +14,4 @@ from dem_demo.kit.runs import Runs
 
 def draw(runs: Runs[Drum]) -> Figure:
     """Draw where the energy is over time, stacked, under the law and with a constant COR."""
-    return graphs.energy(runs, "The drum lifts the beads, and its sheet calms them", "drum")
+    return graphs.energy(runs, "The drum lifts the beads, and impacts calm them", "drum")

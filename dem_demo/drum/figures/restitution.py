@@ -1,7 +1,7 @@
 """The COR of the impacts on the drum, over their approach speed.
 
-From a thin sheet heavy beads rebound less than light ones, and fast ones less than slow ones.
-Points off the lines are beads that other beads struck while they touched the sheet. At a seam of
+From a thin plate heavy beads rebound less than light ones, and fast ones less than slow ones.
+Points off the lines are beads that other beads struck while they touched the drum. At a seam of
 shell and end a bead has two contacts at once, which share its rebound.
 """
 

@@ -16,4 +16,4 @@ from dem_demo.kit.runs import Runs
 def draw(runs: Runs[Drum]) -> Figure:
     """Draw the last frame that both runs have."""
     both = "The same beads in the same drum, with two kinds of rebound"
-    return snapshot(Section, runs, "Beads in a drum of thin sheet", both)
+    return snapshot(Section, runs, "Beads in a drum of thin sheet metal", both)

@@ -14,5 +14,5 @@ from dem_demo.sieve.scene import Sieve
 
 def draw(runs: Runs[Sieve]) -> Figure:
     """Draw where the energy is over time, stacked, under the law and with a constant COR."""
-    title = "A vibrating deck feeds energy in, and the sheet takes it away"
+    title = "A vibrating deck feeds energy in, and impacts take it away"
     return graphs.energy(runs, title, "deck")

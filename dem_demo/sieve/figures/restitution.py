@@ -1,7 +1,7 @@
 """The COR of the impacts on the deck, over their approach speed.
 
-From a thin sheet heavy beads rebound less than light ones, and fast ones less than slow ones.
-Points off the lines are beads that other beads struck while they touched the sheet. At the rim of
+From a thin plate heavy beads rebound less than light ones, and fast ones less than slow ones.
+Points off the lines are beads that other beads struck while they touched the deck. At the rim of
 an opening a bead has several contacts at once, which share its rebound.
 """
 
@@ -23,5 +23,5 @@ def draw(runs: Runs[Sieve]) -> Figure:
         (f"smaller beads, radius {radius.min():g} mm", small),
         (f"larger beads, radius {radius.max():g} mm", ~small),
     ]
-    title = "One sheet has many coefficients of restitution"
+    title = "One deck has many coefficients of restitution"
     return graphs.restitution(runs, on_faces(run), kinds, title, "at a rim or a wall")

@@ -15,5 +15,5 @@ from dem_demo.sieve.scene import Sieve
 
 def draw(runs: Runs[Sieve]) -> Figure:
     """Draw the last frame that both runs have."""
-    both = "The same feed on the same sheet, with two kinds of rebound"
-    return snapshot(Sheet, runs, "The feed on the sheet", both)
+    both = "The same feed on the same deck, with two kinds of rebound"
+    return snapshot(Sheet, runs, "The feed on the deck", both)
