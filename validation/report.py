@@ -1,4 +1,4 @@
-"""The report: how right the laws are, finite elements, claims and figures of the paper.
+"""The report: accuracy of the laws, finite elements, claims and figures of the paper.
 
 ``page.html`` is the frame of its page, ``page.css`` the look.
 """
@@ -110,16 +110,16 @@ def _practice() -> dict[str, str]:
     right = round(everyday.shares.restitution * everyday.answered)
     wrong = round((1.0 - others.shares.restitution) * others.answered)
     return {
-        "everyday": f"{right} of {everyday.impacts} everyday impacts that it was not made from "
-        f"have the COR of finite elements within {_percent(bounds.restitution)}; the root mean "
-        f"square error is {_percent(everyday.rms, 2)}.",
-        "pair": f"Over {pair.impacts} impacts <code>fem</code> is within "
-        f"{_percent(abs(fem.largest), 1)} of finite elements, <code>myc</code>, to the letter of "
-        f"the paper, within {_percent(abs(pair.largest), 1)}.",
-        "others": f"Of the {everyday.impacts} everyday impacts it answers {others.answered}, and "
-        f"{wrong} of these are more than {_percent(bounds.restitution)} off; the root mean square "
-        f"error is {_percent(others.rms)}. All but {others.silent} of those beyond a bound carry a "
-        "flag that says so.",
+        "everyday": f"For {right} of {everyday.impacts} everyday impacts to which it was not "
+        f"fitted, its COR is within {_percent(bounds.restitution)} of finite elements; the root "
+        f"mean square error is {_percent(everyday.rms, 2)}.",
+        "pair": f"Over {pair.impacts} impacts the COR of <code>fem</code> is within "
+        f"{_percent(abs(fem.largest), 1)} of finite elements; that of <code>myc</code>, the "
+        f"paper's model unchanged, is within {_percent(abs(pair.largest), 1)}.",
+        "others": f"It answers {others.answered} of the {everyday.impacts} everyday impacts, and "
+        f"for {wrong} of these its COR is more than {_percent(bounds.restitution)} off; the root "
+        f"mean square error is {_percent(others.rms)}. Where it exceeds a bound, all but "
+        f"{others.silent} of its answers carry a flag of accuracy.",
         "kept": f"{everyday.impacts}",
         "overall": _scores("set of impacts", overall),
         "shares": _shares(overall),
@@ -211,7 +211,7 @@ def _misses() -> str:
         )
         for one in trust.misses()
     )
-    heads = ("beyond a bound of <code>fem</code>", "by", "COR by finite elements#", "by law fem#")
+    heads = ("everyday impact", "errors beyond a bound", "COR by finite elements#", "COR by fem#")
     return _table("everyday impacts beyond a bound", heads, rows)
 
 
@@ -266,9 +266,9 @@ def _summary(claims: tuple[Claim, ...]) -> str:
         "Q. Peng, Y. Jin, X. Liu, Y. G. Wei, <i>Effect of plasticity on the coefficient of "
         "restitution of an elastoplastic sphere impacting an elastic plate</i>, Int. J. Solids "
         "Struct. 222-223 (2021) 111036. Its equations, figures and numbers, computed again by "
-        "contactlaw and, where the paper used ABAQUS, by finite elements of our own, which are "
-        f"stored. {len(claims)} claims; verdicts: {counts}. "
-        "The model itself stands; what is wrong is on paper: exponents, a factor, a slope."
+        "contactlaw and, where the paper used ABAQUS, by finite elements of our own. "
+        f"{len(claims)} claims; verdicts: {counts}. The paper's model itself is right; its errors "
+        "are in printed formulas: exponents, a factor, a slope."
     )
 
 
