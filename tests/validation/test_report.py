@@ -37,11 +37,14 @@ TOO_WIDE = """[...document.querySelectorAll("*")]
               || e.getBoundingClientRect().left < -0.5
               || (e.scrollWidth > innerWidth && getComputedStyle(e).overflowX !== "auto"))
   .map((e) => e.outerHTML.slice(0, 80))"""
-# Cells of five lines or more that have hardly more than a word a line: each line of text is a box.
+# Cells of five lines or more that have hardly more than a word a line. Each line of text is a box;
+# subscripts are boxes of their own, whose middles are within 8 px of that of their line.
 SQUEEZED = """[...document.querySelectorAll("td")].filter((cell) => {
   const range = document.createRange();
   range.selectNodeContents(cell);
-  const lines = new Set([...range.getClientRects()].map((box) => Math.round(box.bottom / 8))).size;
+  const middles = [...range.getClientRects()].map((box) => box.top + 0.5 * box.height);
+  middles.sort((a, b) => a - b);
+  const lines = middles.filter((y, n) => n === 0 || y - middles[n - 1] > 8).length;
   return lines >= 5 && cell.innerText.trim().split(/\\s+/).length < 1.75 * lines;
 }).map((cell) => cell.innerText)"""
 # verdict and our number, to the digits given

@@ -1,7 +1,7 @@
 """Fig. 5: the COR over speed and thickness (A), and against Mueller's elastic formula (B).
 
-The COR falls with speed and with R/H everywhere. Above the yield speed, Mueller's formula, which
-knows no plasticity, is far too high: by 31 % at 7 V_Y0 on a plate of R/H = 0.5.
+The COR falls with speed and with R/H everywhere. Above the yield speed Mueller's formula, which
+leaves out plastic flow, is far too high: by 31 % at 7 V_Y0 on a plate of R/H = 0.5.
 """
 
 from __future__ import annotations

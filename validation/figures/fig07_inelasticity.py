@@ -1,8 +1,8 @@
 """Fig. 7: COR against lambda: the elastic models, and impacts of the paper's pair.
 
 Below yield all impacts lie on one curve (Zener's); Mueller's formula is within 2.5 % of it up to
-lambda = 0.5, Raman's within 9.3 %. Above yield they leave it: at small lambda (R/H = 0.2) all three
-are 30 % high at 7 V_Y0. Crosses are finite elements.
+lambda = 0.5, Raman's within 9.3 %. Above yield the impacts leave that curve: at small lambda (R/H =
+0.2) all three elastic models are 30 % high at 7 V_Y0. Crosses are finite elements.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Fig. 11: error map of the turning-point form, the project's own closed form of the COR.
 
 Within 0.05 % of the solver for lambda_Y up to 0.3 and v up to 10, within 0.15 % up to 20; exact on
-the half-space (bottom edge). Left of the line loading follows Hertz's curve to the end, and only
-the fits of two one-dimensional functions err; right of it, the fitted loading work too. Eq. 22, in
-its continuous form, is up to 4.6 % off over v <= 10.
+the half-space (bottom edge). The form contains fits of two functions of one variable; right of the
+line, where loading leaves Hertz's curve, also a fit of the loading work. Eq. 22 in its continuous
+form is up to 4.6 % off for v up to 10.
 """
 
 from __future__ import annotations

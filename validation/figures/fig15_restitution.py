@@ -1,6 +1,6 @@
-"""Fig. 15: the COR by finite elements, R/H 0.1 to 1.8, 0.3 to 7 V_Y0, beside the model.
+"""Fig. 15: the COR by finite elements, R/H 0.1 to 1.8, 0.3 to 7 V_Y0, and by the model.
 
-The modified Zener model is within 4.6 % of 64 impacts, 1.9 % rms; Zener's, which knows no yielding,
+The modified Zener model is within 4.6 % for 64 impacts, 1.9 % rms; Zener's, which has no yielding,
 is up to 37 % high. The model exceeds finite elements most on thin plates just above yield.
 """
 

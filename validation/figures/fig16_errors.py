@@ -1,9 +1,10 @@
-"""Fig. 16: where the model is off, impact by impact.
+"""Fig. 16: the errors of the model, impact by impact.
 
 Contact time and peak force are within 4 %. The peak compression, in finite elements the
 displacement of the sphere's centre towards the plate's lower face, is up to 8.6 % too large, most
-on thin plates. The model puts up to 9 % of the energy too much into plastic flow on thick plates at
-7 V_Y0, and up to 3.5 % too little into the plate; residual stress and vibration hold part of it.
+on thin plates. On thick plates at 7 V_Y0 plastic flow takes up to 9 % of the energy more in the
+model than in finite elements; the plate takes up to 3.5 % less. A part of the difference is in
+residual stress and vibration, which the model does not have.
 """
 
 from __future__ import annotations

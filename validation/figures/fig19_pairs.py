@@ -1,6 +1,6 @@
 """Fig. 19: three pairs at equal inelasticity, for which the table of the MYC law has one line.
 
-Below yield this is right: the COR of the three agree within 0.003. Above, the table of MYC has two
+Below yield that is right: the CORs of the three agree within 0.003. Above, the table of MYC has two
 to three times the plastic work of a sphere that is stiff for its strength (Fig. 24): steel on glass
 or on aluminium (taken as elastic) has a COR 0.05 to 0.08, or 7 to 11 %, higher at 7 V_Y0.
 """

@@ -1,8 +1,9 @@
-"""Fig. 20: beyond the limits: thinner plates, faster impacts, edges that are near.
+"""Fig. 20: beyond the limits of the model: thinner plates, faster impacts, near edges.
 
 At R/H = 2.5 the model is up to 7.4 % too high up to 7 V_Y0, 19 % at 14 V_Y0. An edge changes the
-COR by less than 0.2 % from `contactlaw.edge_distance` on; at two thirds of it, where the wave of
-the contact's own frequency would just not be back, it is already 2.3 % off: faster waves run ahead.
+COR by less than 0.2 % if it is farther away than `contactlaw.edge_distance`. At two thirds of that
+distance a wave of the contact's own frequency comes back only when the contact ends, but the COR
+is already 2.3 % off: waves of higher frequency are faster.
 """
 
 from __future__ import annotations

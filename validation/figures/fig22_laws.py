@@ -2,7 +2,7 @@
 
 The COR hardly tells the laws of Stronge and MYC apart (5.2 and 4.6 % at worst), though their forces
 differ by 40 %: a law that is too stiff in loading is so in unloading, too, and only its force tells
-(Fig. 3). The laws with Etsion's unloading part from the finite elements at the highest speeds;
+(Fig. 3). The laws with Etsion's unloading deviate from finite elements at the highest speeds;
 Thornton's, which yields at 2.13 m/s, is low from the start. Jackson and Green made their fit for
 metals, E*/sigma_Y above about 120; this pair has 23.
 """

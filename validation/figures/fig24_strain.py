@@ -2,10 +2,10 @@
 
 The pair of the paper, its yield strength from 2 to 1/8 times the real one, and steel on glass and
 on aluminium, all at the same inelasticity, so that the equation has one COR for each law. That of
-finite elements varies: a bead that is as soft for its strength as the paper's (26) has the COR of
-MYC, one as stiff as metals (100 and more) that of Kogut & Etsion and Jackson & Green, who fitted
-metals. A bead that is softer still (13) has the COR of none of them: MYC, the nearest, is 11 % high
-at 3.5 V_Y0 and 30 % at 7. Law fem, within 1 % from 26 on, is 4 and 12 % high there, and flags it.
+finite elements varies: a bead with the ratio of the paper's (26) has the COR of MYC, one with that
+of metals (100 and more) the COR of Kogut & Etsion and Jackson & Green, who fitted metals. With a
+ratio of 13 it has the COR of none of them: MYC, the nearest, is 11 % high at 3.5 V_Y0 and 30 % at
+7. Law fem, which is within 1 % from 26 on, is 4 and 12 % high there, and flags these impacts.
 Whether the sphere or the plate is the stiffer body hardly matters.
 """
 

@@ -1,10 +1,10 @@
-"""Fig. 25: law fem, which was fitted to finite elements, beside impacts by finite elements.
+"""Fig. 25: law fem, which was fitted to finite elements, against impacts by finite elements.
 
 Left, its COR over that of finite elements, by the body that yields; crosses are law myc, which has
 no answer where the sphere has no yield strength. Right, the errors of law fem in COR, above for
 impacts of the paper's kind, to which it was fitted too, below for everyday impacts that were drawn
-before the fit and kept out of it. Of 100 impacts, 95 have to lie in the band; one outside of it has
-to carry a flag of accuracy, which an open mark shows.
+before the fit and kept out of it. The target is that 95 % of the impacts lie in the band, and that
+those outside of it carry a flag of accuracy, which an open mark shows.
 """
 
 from __future__ import annotations
