@@ -26,8 +26,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     parser = argparse.ArgumentParser(
         prog="python -m validation",
-        description="Say how right the model is, and reproduce the paper: its figures and numbers, "
-        "and what holds of its claims.",
+        description="Say how accurate the model is, and reproduce the paper: its figures and "
+        "numbers, and what holds of its claims.",
     )
     parser.add_argument(
         "--out",
