@@ -60,7 +60,8 @@ def _write(folder: Path) -> collections.Counter[str]:
 
     from contactlaw import style
     from validation import figures
-    from validation.paper.claims import SECTIONS, of_section
+    from validation.paper.claims import ROWS
+    from validation.paper.verdicts import judge
     from validation.report import Picture, page
 
     drawn = []
@@ -72,8 +73,7 @@ def _write(folder: Path) -> collections.Counter[str]:
             one = Picture(name, module.PART, str(module.__doc__), numbers, style.png(figure))
             (folder / one.file).write_bytes(one.png)
             drawn.append(one)
-    sections = tqdm(SECTIONS, "validation: claims", disable=None)
-    found = tuple(claim for section in sections for claim in of_section(section))
+    found = tuple(judge(row) for row in tqdm(ROWS, "validation: claims", disable=None))
     (folder / "index.html").write_text(page(found, drawn), encoding="utf-8")
     return collections.Counter(claim.verdict for claim in found)
 

@@ -13,18 +13,20 @@ from validation import figures, report
 from validation.__main__ import main
 from validation.accuracy import trust
 from validation.paper import closed_form, evidence
-from validation.paper.claims import SECTIONS, claims, of_section
+from validation.paper.claims import ROWS, claims
 from validation.paper.setting import PAIR
 from validation.paper.verdicts import (
+    AT_MOST,
     FAILS,
     HOLDS,
     LIMITED,
     MISPRINT,
+    MORE_THAN,
     OPEN,
-    at_most,
-    more_than,
-    near,
-    undecided,
+    Row,
+    at_most_rounded,
+    judge,
+    within,
 )
 
 # Our recorded numbers of each figure, checked by eye when printed; null is an error of table or
@@ -183,13 +185,23 @@ def test_no_claim_is_lost_or_named_twice(judged):
 
 
 def test_a_verdict_can_be_another():
-    assert near("", "", "", 1.0, 1.1, 0.2).verdict == HOLDS
-    assert near("", "", "", 1.0, 1.3, 0.2, otherwise=MISPRINT).verdict == MISPRINT
-    assert at_most("", "", "", 0.012, 0.0121).verdict == FAILS
-    assert at_most("", "", "", 0.012, 0.0121, digits=3).verdict == HOLDS
-    assert at_most("", "", "", 0.012, 0.0126, digits=3).verdict == FAILS
-    assert more_than("", "", "", 7.0, 7.0, otherwise=LIMITED).verdict == LIMITED
-    assert undecided("", "", "", 7.0, "why", 7.0).verdict == OPEN
+    def verdict(printed, agreement, ours, otherwise=FAILS):
+        return judge(Row("", "", "", printed, agreement, lambda: ours, "", otherwise)).verdict
+
+    assert verdict(1.0, within(0.2), 1.1) == HOLDS
+    assert verdict(1.0, within(0.2), 1.3, MISPRINT) == MISPRINT
+    assert verdict(0.012, AT_MOST, 0.0121) == FAILS
+    assert verdict(0.012, at_most_rounded(3), 0.0121) == HOLDS
+    assert verdict(0.012, at_most_rounded(3), 0.0126) == FAILS
+    assert verdict(7.0, MORE_THAN, 7.0, LIMITED) == LIMITED
+    assert verdict(7.0, None, 7.0) == OPEN
+
+
+def test_a_note_quotes_the_numbers_of_its_row():
+    row = Row("", "", "", None, within(1.0), lambda: {"ours": 1, "printed": 1.1, "off": 0.1},
+              "{off:.0%} off; 5 % is allowed")  # fmt: skip
+    claim = judge(row)
+    assert (claim.printed, claim.note) == (1.1, "10 % off; 5 % is allowed")
 
 
 def test_eta_is_eq_10_corrected():
@@ -316,12 +328,12 @@ def test_a_thin_run_is_a_report(tmp_path, monkeypatch, capsys):
     """One figure of each part and the first claims make a whole page in seconds."""
     few = ["fig09b_energy", "fig12_sensitivity", "fig20_limits"]
     monkeypatch.setattr(figures, "names", lambda: few)
-    monkeypatch.setattr("validation.paper.claims.SECTIONS", SECTIONS[:1])
+    monkeypatch.setattr("validation.paper.claims.ROWS", ROWS[:7])
     assert main(["--out", str(tmp_path)]) == 0
     text = (tmp_path / "index.html").read_text()
     assert sorted(re.findall(r"<figure id='(\w*)'", text)) == few
     assert sorted(path.stem for path in tmp_path.glob("*.png")) == few
-    assert f"{len(of_section(SECTIONS[0]))} claims; verdicts:" in text
+    assert "7 claims; verdicts:" in text
     assert "$" not in re.sub(r"<style>.*?</style>", "", text, flags=re.DOTALL)
     assert str(tmp_path / "index.html") in capsys.readouterr().out
 

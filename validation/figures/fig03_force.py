@@ -16,7 +16,7 @@ from validation import figures
 from validation.accuracy import compare
 from validation.figures import chart
 from validation.figures.chart import COMPRESSION, FORCE, Axis, Panel
-from validation.paper.evidence import FASTEST_COMPRESSION
+from validation.paper.elements import FASTEST_COMPRESSION
 from validation.paper.setting import PAIR, all_laws, force, largest, unloading
 
 PART = figures.PAPER

@@ -15,7 +15,7 @@ import numpy as np
 from validation import figures
 from validation.figures import chart
 from validation.figures.chart import INELASTICITY, SPEEDS, Axis, Panel
-from validation.paper.evidence import contact_time_errors
+from validation.paper.elements import contact_time_errors
 from validation.paper.setting import impacts
 
 PART = figures.PAPER

@@ -1,19 +1,26 @@
-"""Evidence for the errata: the numbers that tell misprints from errors of the model."""
+"""What the equations and the model say of the paper's claims: the numbers of `claims`.
+
+`elements` has those that need finite elements. Largest means the largest magnitude.
+"""
 
 from __future__ import annotations
 
+import functools
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from typing import SupportsFloat
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import brentq, newton
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.physical.scaling import ContactConstants, scales, sphere_on_plate
-from validation.accuracy import compare
-from validation.fem import store
+from contactlaw.laws.myc import P
+from contactlaw.physical.scaling import ContactConstants, plate_mobility, scales, sphere_on_plate
 from validation.paper import closed_form, formulas
+from validation.paper.closed_form import elastic_compression, yield_speed_ratio
 from validation.paper.setting import (
     ETA,
     FASTEST,
@@ -26,10 +33,17 @@ from validation.paper.setting import (
     Array,
     borderline,
     impacts,
-    unloading,
+    largest,
 )
+from validation.paper.verdicts import Numbers
 
-FASTEST_COMPRESSION = 4.77  # largest compression at 7 V_Y0 on a half-space [d_Y]
+STRENGTH = PAIR.sphere.require_yield_strength("myc")  # [Pa]
+MYC = laws.law("myc")
+Q_THINNEST = 1.25**0.6 * ETA * THINNEST**2  # q of Eq. 9 at R/H = 1.8
+# V0/V_Y0 and R/H of `surface`
+V, RATIO = np.linspace(0.05, FASTEST, 120), np.linspace(0.02, THINNEST, 46)[:, None]
+Q = np.linspace(0.0, 20.0, 200_001)  # q of Eqs. 11 to 14
+_H = 1e-6  # step of difference quotients
 
 
 def contact(pair: cl.Pair, law: str, thickness_ratio: float) -> ContactConstants:
@@ -41,6 +55,37 @@ def contact(pair: cl.Pair, law: str, thickness_ratio: float) -> ContactConstants
 def slope(one: tuple[float, float], two: tuple[float, float]) -> float:
     """Exponent of a power law through two points (x, y)."""
     return math.log(two[1] / one[1]) / math.log(two[0] / one[0])
+
+
+def power(y: Callable[[float], SupportsFloat], one: float, two: float) -> float:
+    """Exponent of the power law through y at two x."""
+    return slope((one, float(y(one))), (two, float(y(two))))
+
+
+def hertz_time(speed_ratio: float = 1.0, mass: float = 1.0) -> float:
+    """Contact time [s] by Hertz's law on a half-space, with the bead's mass times a factor."""
+    pair = cl.Pair(replace(PAIR.sphere, density=mass * PAIR.sphere.density), PAIR.plate)
+    model = cl.ImpactModel(pair, law="hertz", outside="solve")
+    return float(model.lookup(speed_ratio * SPEED, RADIUS, math.inf).contact_time)
+
+
+def mueller_error() -> float:
+    """Find the largest absolute error of Eq. 3 where the COR of Zener's model exceeds 0.2."""
+    lam = np.linspace(0.0, 0.95, 96)
+    zener = np.asarray(closed_form.zener(lam))
+    return largest((closed_form.mueller(lam) - zener)[zener > 0.2])
+
+
+def alpha() -> Numbers:
+    """Mobility of the plate, by Eq. 1 and by the package, over that of an infinite plate."""
+    glass, thickness = PAIR.plate, 1e-3
+    root = math.sqrt(3.0 * glass.density * (1.0 - glass.poissons_ratio**2) / glass.youngs_modulus)
+    bending = glass.plane_modulus * thickness**3 / 12.0
+    impedance = 8.0 * math.sqrt(bending * glass.density * thickness)
+    return {
+        "printed": impedance * root / (4.0 * glass.density * thickness**2),
+        "ours": impedance * float(plate_mobility(glass, np.array(thickness))),
+    }
 
 
 def exponent_of_moduli() -> float:
@@ -55,6 +100,41 @@ def exponent_of_moduli() -> float:
         return share, lam * density**0.6
 
     return slope(point(1.0), point(1.001))
+
+
+def thornton_yield_speed() -> float:
+    """V_Y0 [m/s] with the d_Y of Thornton's law."""
+    thick = contact(PAIR, "thornton", 0.0)
+    energy = 0.8 * float(thick.stiffness * thick.yield_compression**2.5)
+    return math.sqrt(energy / float(thick.mass))
+
+
+def factor_of_davies() -> float:
+    """Thornton's V_Y0 in units of (sigma_Y^5 R^3/(E*^4 m))^0.5."""
+    mass = float(contact(PAIR, "thornton", 0.0).mass)
+    unit = math.sqrt(STRENGTH**5 * RADIUS**3 / (PAIR.effective_modulus**4 * mass))
+    return thornton_yield_speed() / unit
+
+
+def factor_of_eq_4() -> float:
+    """MYC's V_Y0 in units of (pi^4 sigma_Y^5/(rho1 E*^4))^0.5."""
+    unit = math.pi**2 * math.sqrt(STRENGTH**5 / PAIR.sphere.density) / PAIR.effective_modulus**2
+    return SPEED / unit
+
+
+def scale_of_time() -> float:
+    """Time scale of the package over that of section 3.2."""
+    scale = math.pi * PAIR.sphere.density / (PAIR.effective_modulus * math.sqrt(5.0))
+    ours = float(scales(contact(PAIR, "myc", 1.0), np.array(5.0)).time)
+    return ours / (RADIUS * math.pow(scale, 0.4))
+
+
+def slope_of_eq_6(largest_inelasticity: float) -> float:
+    """Slope of w_m^-1.5 over lambda from 0 to 0.5 or 2 by least squares; the intercept is exact."""
+    lam = np.linspace(0.0, 2.0, 81)
+    rise = np.asarray(elastic_compression(lam)) ** -1.5 - 1.25**-0.6
+    part = lam <= largest_inelasticity
+    return float((lam * rise)[part].sum() / (lam[part] ** 2).sum())
 
 
 def eq_10(power_of_pi: float, exponent: float) -> float:
@@ -98,30 +178,86 @@ def left_side_of_eq_8(speed_ratio: float | None) -> float:
     return x * SPEED * RADIUS * math.pow(scale, 0.4) * w_m / YIELD_COMPRESSION
 
 
-def eq_11(q: Array) -> Array:
+def eq_11(q: ArrayLike) -> Array:
     """Solve Eq. 11, x - x^(-1/5) = q, for x = V_Y/V_Y0 by Newton's method."""
-    found: Array = newton(lambda x: x - x**-0.2 - q, 1.0 + q, lambda x: 1.0 + 0.2 * x**-1.2)
+    start = 1.0 + np.asarray(q)
+    found: Array = newton(lambda x: x - x**-0.2 - q, start, lambda x: 1.0 + 0.2 * x**-1.2)
     return found
 
 
-def fitted_c(
-    surface: Array, v: Array, ratio: Array, *, factor: bool = True, exponent: float = 0.4
-) -> float:
-    """Fit c of Eq. 22 to COR over (R/H, v) by least squares, with or without the elastic factor.
+def eq_12() -> Numbers:
+    """Compute both sides of Eq. 12 from the root of Eq. 9, and its right side mended."""
+    x = yield_speed_of_eq_9()
+    return {"printed": x**0.2, "ours": x - Q_THINNEST, "mended": x**-0.2}
+
+
+def bound_of_eq_13() -> Array:
+    """Bound of Eq. 14's residual over `Q`."""
+    bound: Array = (1.0 - (Q + 1.0) ** -0.2) / (1.0 + Q * (Q + 1.0) ** 0.2)
+    return bound
+
+
+def sum_of_eq_13(exponent: float) -> float:
+    """Largest difference of the series of Eq. 13, with (q + 1)^exponent, from its closed form."""
+    step = (1.0 - (Q + 1.0) ** exponent) / (Q + 1.0)
+    series = sum(step**k for k in range(1, 60)) / (Q + 1.0) ** 0.2
+    return largest(series - bound_of_eq_13())
+
+
+def eq_14_against_eq_11() -> tuple[float, float]:
+    """Find the largest error of Eq. 14 against Eq. 11: in V_Y/V_Y0, and relative."""
+    solved = eq_11(Q)
+    error = np.abs(Q + (1.0 + Q) ** -0.2 - solved)
+    return float(error.max()), float((error / solved).max())
+
+
+def eq_14_error(at_yield: Array) -> float:
+    """Find the largest relative error of Eq. 14 over lambda_Y."""
+    return largest(formulas.eq_14(at_yield) / np.asarray(yield_speed_ratio(at_yield)) - 1.0)
+
+
+def slope_of_loading(d: float) -> float:
+    """Slope of MYC's loading curve at d [d_Y], more than 1e-6 from a kink, in units of F_Y/d_Y."""
+    after, before = (MYC.loading(math.sqrt(d + step)) for step in (_H, -_H))
+    return (after - before) / (2.0 * _H)
+
+
+def slope_of_unloading() -> float:
+    """Slope of MYC's unloading from x3 = 5 d_Y, half way to d_r, in units of F_m/(x3 - d_r)."""
+    top = 5.0
+    span, curve = top - MYC.residual(top), MYC.unloading_curve(top)
+    down = [MYC.unloading(math.sqrt(0.5 * span + step), curve) for step in (-_H, _H)]
+    return (down[1] - down[0]) / (2.0 * _H) * span / MYC.loading(math.sqrt(top))
+
+
+@functools.cache
+def surface() -> Array:
+    """COR of the model over `V`, one row for each of `RATIO`."""
+    return np.asarray(impacts(V, RATIO).restitution)
+
+
+def eq_21_error() -> float:
+    """Largest error of Eq. 21 from yield to the speed at which loading leaves Hertz's curve."""
+    slow = np.linspace(1.0, P**1.25, 50)
+    return largest(formulas.eq_21(slow) / np.asarray(impacts(slow, 0.0).restitution) - 1)
+
+
+def fitted_c(*, factor: bool = True, exponent: float = 0.4) -> float:
+    """Fit c of Eq. 22 to `surface` by least squares, with or without the elastic factor.
 
     `exponent` is that of E1'/(E1' + E2') in the eta from which g comes; lambda has 2/5. (Hence not
     `closed_form.peng`, where one eta serves both.)
     """
-    lam_y = ETA * ratio[:, None] ** 2
+    lam_y = ETA * RATIO**2
     g = np.asarray(formulas.eq_14(lam_y * SHARE ** (exponent - 0.4)))
-    elastic = np.asarray(closed_form.mueller(lam_y * np.minimum(v, g) ** 0.2))
+    elastic = np.asarray(closed_form.mueller(lam_y * np.minimum(V, g) ** 0.2))
     if not factor:
-        elastic = np.where(v > g, 1.0, elastic)
-    base = 1.0 - (1.0 - np.maximum(v / g, 1.0) ** -0.8) ** 2
+        elastic = np.where(V > g, 1.0, elastic)
+    base = 1.0 - (1.0 - np.maximum(V / g, 1.0) ** -0.8) ** 2
 
     def slope_of_squares(c: float) -> float:  # half of their derivative
-        form = elastic * base ** (0.25 + c * ratio[:, None] ** 2)
-        return float(((form - surface) * form * np.log(base) * ratio[:, None] ** 2).sum())
+        form = elastic * base ** (0.25 + c * RATIO**2)
+        return float(((form - surface()) * form * np.log(base) * RATIO**2).sum())
 
     return float(brentq(slope_of_squares, 0.0, 0.6))
 
@@ -133,107 +269,19 @@ def fitted_border(thinnest: float) -> float:
     return float((excess * ratio**2).sum() / (ratio**4).sum())
 
 
-def taken_by_thick_plate() -> tuple[float, float]:
-    """Find the largest share of the energy that a plate of 10 R takes in finite elements.
-
-    The second number is its share at 7 V_Y0 over that of plastic flow.
-    """
-    case = compare.comparison("matrix")
-    thick = np.isclose(case.slenderness, 0.1)
-    fastest = thick & np.isclose(case.speed_ratio, FASTEST)
-    wave = case.fem["wave"]
-    return float(wave[thick].max()), (wave[fastest] / case.fem["plastic"][fastest]).item()
+def eq_23_error() -> float:
+    """Largest relative error of Eq. 23 in speed, R/H 0.1 to 1.2."""
+    ratio = np.linspace(0.1, 1.2, 23)
+    return largest(formulas.border(ratio) / np.array([borderline(float(x)) for x in ratio]) - 1)
 
 
-def zener_time_on_the_thinnest() -> float:
-    """Find Zener's contact time over that of finite elements at R/H = 2.5, below yield."""
-    case = compare.comparison("limits")
-    here = np.isclose(case.slenderness, 2.5) & ~case.yielded
-    return float((case.model["contact_time"] / case.fem["contact_time"])[here].item())
+def plastic_share(speed_ratio: float) -> float:
+    """Share of plastic flow in what an impact at R/H = 0.2 loses."""
+    one = impacts(speed_ratio, 0.2)
+    return float(one.plastic_fraction / (one.plastic_fraction + one.wave_fraction))
 
 
-def bending_by_transits() -> tuple[float, float]:
-    """Energy that the plate takes in finite elements over that of the model's bending wave.
-
-    Largest ratio where the contact lasts for less than 6 transits H/c_L of the plate's thickness,
-    and where it lasts for more than 8.
-    """
-    case = compare.comparison("matrix")
-    plate = PAIR.plate
-    nu = plate.poissons_ratio
-    stiffness = plate.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
-    transit = case.fem["thickness"] / math.sqrt(stiffness / plate.density)
-    transits = case.fem["contact_time"] / transit
-    more = case.fem["wave"] / case.model["wave_fraction"]
-    return float(more[transits < 6.0].max()), float(more[transits > 8.0].max())
-
-
-def contact_time_errors() -> tuple[Array, Array]:
-    """Errors of contact times relative to finite elements.
-
-    The modified Zener model's over the whole matrix; Zener's where the bead yields.
-    """
-    case = compare.comparison("matrix")
-    fem = case.fem["contact_time"]
-    elastic = np.asarray(impacts(case.speed_ratio, case.slenderness, law="hertz").contact_time)
-    return case.model["contact_time"] / fem - 1.0, (elastic / fem - 1.0)[case.yielded]
-
-
-def last_touch() -> float:
-    """Find the time [s] at which the bead leaves the plate in the finite elements of Fig. 13."""
-    data = store.read("paper").data
-    return float(data["time"][data["force"] > 0.0].max())
-
-
-def eq_22_against_impacts() -> tuple[float, float]:
-    """Find the largest relative difference of Eq. 22, continuous and printed, from impacts."""
-    found = compare.errors(compare.comparison("matrix"))
-    return float(found["Eq. 22, continuous"][0]), float(found["Eq. 22, printed"][0])
-
-
-def eq_22_on_thin_plates() -> tuple[float, float, float]:
-    """R/H at which the continuous form errs most; its error at R/H = 1.8 and on thicker plates."""
-    case = compare.comparison("matrix")
-    off = np.abs(case.restitution["Eq. 22, continuous"] / case.fem["restitution"] - 1.0)
-    thin = np.isclose(case.slenderness, THINNEST)
-    return float(case.slenderness[off.argmax()]), float(off[thin].max()), float(off[~thin].max())
-
-
-def elastic_forms_against_impacts() -> dict[str, tuple[float, float, float]]:
-    """Find how far Zener's and Raman's models are from finite elements.
-
-    Largest relative difference while the bead does not yield; least excess where it does, on the
-    two thickest plates; least excess at 7 V_Y0.
-    """
-    case = compare.comparison("matrix")
-    raman = np.asarray(formulas.raman(case.inelasticity))
-    forms = {"Zener": case.restitution["Zener"], "Raman": raman}
-    fastest = case.speed_ratio > 0.99 * FASTEST
-    thick = case.slenderness < 0.3
-    found = {}
-    for name, cor in forms.items():
-        off = cor / case.fem["restitution"] - 1.0
-        found[name] = (
-            float(np.abs(off[~case.yielded]).max()),
-            float(off[case.yielded & thick].min()),
-            float(off[fastest].min()),
-        )
-    return found
-
-
-def unloading_error() -> float:
-    """Find the largest error of MYC's unloading from 5 and 10 d_Y, over the largest force."""
-    law, worst = laws.law("myc"), 0.0
-    for depth in (5.0, 10.0):
-        back, load = unloading(law, depth)
-        found = compare.force_at(f"{depth:g}", back, loading=False)
-        worst = max(worst, float(np.abs(load - found).max() / found.max()))
-    return worst
-
-
-def nearest_harmless_edge() -> float:
-    """Find the distance [m] from which on the edge changes the COR by less than 0.2 %."""
-    edge = store.read("edge").data
-    change = np.abs(edge["restitution"] / edge["restitution"][-1] - 1.0)
-    felt = np.flatnonzero(change > 2e-3)
-    return float(edge["width"][felt[-1] + 1])
+def contact_times(law: str = "myc") -> Array:
+    """Contact times [s] from 0.2 to 7 V_Y0, one row for each R/H from 0.05 to 1.8."""
+    v, ratio = np.linspace(0.2, FASTEST, 120), np.linspace(0.05, THINNEST, 15)
+    return np.asarray(impacts(v, ratio[:, None], law).contact_time)

@@ -1,12 +1,15 @@
 """A claim and its verdict: the outcome of a comparison, not an opinion.
 
 A claim holds if our number is within the tolerance of the printed one, or on the right side of a
-printed bound; otherwise it has the verdict that is given for this case.
+printed bound; otherwise it has the verdict that its row states for this case.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import functools
+import re
+from collections.abc import Callable, Mapping
+from typing import NamedTuple, SupportsFloat
 
 HOLDS = "holds"
 MISPRINT = "misprint"
@@ -14,28 +17,51 @@ LIMITED = "holds in part"
 FAILS = "does not hold"
 OPEN = "not reproducible here"
 
+# Our number, "ours", what the note quotes, and "printed" where the paper has a formula.
+Numbers = Mapping[str, SupportsFloat]
 
-@dataclass(frozen=True)
-class Claim:
-    """A claim of the paper and its verdict.
 
-    Parameters
-    ----------
-    name : str
-        Short name, for tests and links.
-    where : str
-        Section, equation or figure.
-    statement : str
-        What the paper says.
-    printed, ours : float or None
-        The paper's number and ours; None where there is none.
-    tolerance : str
-        What counts as agreement.
-    verdict : str
-        `HOLDS`, `MISPRINT`, `LIMITED`, `FAILS` or `OPEN`.
-    note : str
-        Correction, range or reason.
-    """
+class Agreement(NamedTuple):
+    """What counts as agreement, and the function of our number and the printed one that says so."""
+
+    words: str
+    holds: Callable[[float, float], bool]
+
+
+def within(tolerance: float) -> Agreement:
+    """Agreement within an absolute tolerance."""
+    return Agreement(
+        f"within {tolerance:g}", lambda ours, printed: abs(ours - printed) <= tolerance
+    )
+
+
+def at_most_rounded(digits: int) -> Agreement:
+    """Agreement with an upper bound after rounding to the decimals that are printed."""
+    return Agreement(
+        f"at most, to the {digits} decimals printed",
+        lambda ours, printed: round(ours, digits) <= printed,
+    )
+
+
+AT_MOST = Agreement("at most", lambda ours, printed: ours <= printed)
+MORE_THAN = Agreement("more than", lambda ours, printed: ours > printed)
+
+
+class Row(NamedTuple):
+    """A claim of the paper, before it is judged."""
+
+    name: str  # short, for tests and links
+    where: str  # section, equation or figure
+    statement: str  # what the paper says
+    printed: float | None  # the paper's number; None if there is none, or if `ours` computes it
+    agreement: Agreement | None  # None if the claim cannot be checked here
+    ours: Callable[[], SupportsFloat | Numbers] | None  # computes our number; None: there is none
+    note: str = ""  # correction, range or reason; `Numbers` take the places of their {names}
+    otherwise: str = FAILS  # verdict if the claim does not hold as it is stated
+
+
+class Claim(NamedTuple):
+    """A claim with its verdict, one of those above; the other fields are those of `Row`."""
 
     name: str
     where: str
@@ -44,61 +70,20 @@ class Claim:
     ours: float | None
     tolerance: str
     verdict: str
-    note: str = ""
+    note: str
 
 
-def near(
-    name: str,
-    where: str,
-    statement: str,
-    printed: float,
-    ours: float,
-    within: float,
-    note: str = "",
-    otherwise: str = FAILS,
-) -> Claim:
-    """Agreement within an absolute tolerance."""
-    verdict = HOLDS if abs(ours - printed) <= within else otherwise
-    return Claim(name, where, statement, printed, ours, f"within {within:g}", verdict, note)
-
-
-def at_most(
-    name: str,
-    where: str,
-    statement: str,
-    bound: float,
-    ours: float,
-    note: str = "",
-    otherwise: str = FAILS,
-    digits: int | None = None,
-) -> Claim:
-    """Agreement with an upper bound; with `digits`, after rounding to as many decimals."""
-    verdict = HOLDS if (ours if digits is None else round(ours, digits)) <= bound else otherwise
-    tolerance = "at most" if digits is None else f"at most, to the {digits} decimals printed"
-    return Claim(name, where, statement, bound, ours, tolerance, verdict, note)
-
-
-def more_than(
-    name: str,
-    where: str,
-    statement: str,
-    bound: float,
-    ours: float,
-    note: str = "",
-    otherwise: str = FAILS,
-) -> Claim:
-    """Agreement with a lower bound."""
-    verdict = HOLDS if ours > bound else otherwise
-    return Claim(name, where, statement, bound, ours, "more than", verdict, note)
-
-
-def undecided(
-    name: str,
-    where: str,
-    statement: str,
-    printed: float | None,
-    why: str,
-    ours: float | None = None,
-) -> Claim:
-    """Make a claim that cannot be checked here, with the reason and our nearest number."""
-    return Claim(name, where, statement, printed, ours, "-", OPEN, why)
+@functools.cache
+def judge(row: Row) -> Claim:
+    """Compute our number, compare it with the printed one, and fill in the note."""
+    found = row.ours() if row.ours is not None else {}
+    found = found if isinstance(found, Mapping) else {"ours": found}
+    numbers = {name: float(number) for name, number in found.items()}
+    printed, ours = numbers.get("printed", row.printed), numbers.get("ours")
+    tolerance, verdict = "-", OPEN
+    if row.agreement is not None:
+        assert ours is not None and printed is not None, row.name
+        tolerance = row.agreement.words
+        verdict = HOLDS if row.agreement.holds(ours, printed) else row.otherwise
+    note = re.sub(r"(?<=\d)%", " %", row.note.format(**numbers))  # SI puts a space before the sign
+    return Claim(row.name, row.where, row.statement, printed, ours, tolerance, verdict, note)
