@@ -61,6 +61,9 @@ KERNELS = [
 LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 VALIDATION = ROOT.parent / "validation"
 DEMO = ROOT.parent / "dem_demo"
+EXAMPLES = ROOT.parent / "docs/examples"
+# Modules from which the pages of docs import; other names for users are in contactlaw.__all__.
+FOR_USERS = {"engines", "laws", "softsphere", "stepping", "walls"}
 # Private to users, but imported by the finite elements: numba's settings, and the version.
 SHARED = {"contactlaw._jit", "contactlaw._jit.kernel"}
 SHARED |= {"contactlaw._version", "contactlaw._version.VERSION"}
@@ -185,6 +188,16 @@ def test_validation_imports_public_names_only(path):
         package, *parts = name.split(".")
         if package in ("contactlaw", "dem_demo"):
             assert name in SHARED or not any(part.startswith("_") for part in parts), name
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
+def test_examples_import_what_is_for_users(path):
+    for name in imported(path):
+        package, *parts = name.split(".")
+        assert package not in ("dem_demo", "validation"), name
+        if package == "contactlaw" and parts:
+            assert parts[0] in {*contactlaw.__all__, *FOR_USERS}, name
+            assert not any(part.startswith("_") for part in parts), name
 
 
 @pytest.mark.parametrize(

@@ -8,32 +8,50 @@ The table holds speed, COR and its error of each rebound of a drop test. The sam
 import tempfile
 from pathlib import Path
 
+import numpy as np
+from matplotlib.figure import Figure
+
 import contactlaw as cl
-from contactlaw.cli.parts import fitplot, measured
 
 REBOUNDS = Path(__file__).with_name("rebounds.csv")  # beads of alumina on glass of 1 mm
-RADIUS, THICKNESS = 0.9e-3, 1e-3  # [m]
+SIZES = {"radius": 0.9e-3, "thickness": 1e-3}  # [m]
 WANTED, SPEED = 0.6, 10.0  # COR that a designer wants [-], at this speed [m/s]
 
 
-def main(folder=None):
+def main():
     """Find the strength of the beads, draw the fit, and choose a plate for them."""
-    data = measured.measurements(REBOUNDS, radius=RADIUS, thickness=THICKNESS)
+    speed, cor, error = np.loadtxt(REBOUNDS, delimiter=",", skiprows=1, unpack=True)
+    data = {"speed": speed, "restitution": cor, "restitution_error": error, **SIZES}
     found = cl.fit(cl.Pair("gamma-alumina", "glass"), data, unknown="yield_strength")
     strength, error = (part["yield_strength"] / 1e6 for part in (found.values, found.errors))
     print(f"yield strength of the beads {strength:.0f} +- {error:.0f} MPa")
     print(f"  of which {found.statistical_errors['yield_strength'] / 1e6:.0f} from the data,")
     print(f"  {found.model_errors['yield_strength'] / 1e6:.0f} from the model")
-    picture = Path(folder or tempfile.mkdtemp()) / "rebounds.png"
-    fitplot.save_fit(found, "gamma-alumina on glass", picture)
+    picture = Path(tempfile.mkdtemp()) / "rebounds.png"
+    draw(found, picture)
     print(picture)
 
     # A plate for a wanted COR is a fit to one rebound without an error.
-    wanted = {"speed": SPEED, "radius": RADIUS, "restitution": WANTED}
+    wanted = {"speed": SPEED, "radius": SIZES["radius"], "restitution": WANTED}
     plate = cl.fit(found.pair, wanted, unknown="thickness")
     thickness, off = (1e3 * part["thickness"] for part in (plate.values, plate.errors))
     print(f"COR {WANTED} at {SPEED:g} m/s: a plate of {thickness:.3f} +- {off:.3f} mm")
-    return found, plate
+
+
+def draw(found, picture):
+    """Draw the rebounds, and the fitted COR over speed with its standard error."""
+    data = found.data
+    speed = np.geomspace(data.speed.min(), data.speed.max(), 100)
+    hit, errors = found.curve(speed, **SIZES)
+    below, above = (hit.restitution + sign * errors["restitution"] for sign in (-1.0, 1.0))
+    figure = Figure()
+    axes = figure.subplots()
+    axes.errorbar(data.speed, data.restitution, data.restitution_error, fmt="o", label="measured")
+    axes.plot(speed, hit.restitution, label="fitted")
+    axes.fill_between(speed, below, above, alpha=0.3)
+    axes.set(xscale="log", xlabel="speed [m/s]", ylabel="coefficient of restitution")
+    axes.legend()
+    figure.savefig(picture)
 
 
 if __name__ == "__main__":

@@ -65,7 +65,8 @@ def test_text_has_the_value_its_error_and_each_rebound(usual, capsys):
     ],
 )
 def test_tables_as_people_write_them(head, rows, table):
-    data = measured.measurements(table(head, *rows), radius=RADIUS, thickness=THICKNESS)
+    path = table(head, *rows)
+    data = measured.completed(measured.read(path), path, radius=RADIUS, thickness=THICKNESS)
     assert data.speed == pytest.approx([1.0, 2.0])
     assert data.restitution == pytest.approx([0.5, np.nan], nan_ok=True)
     assert data.contact_time == pytest.approx([np.nan, 7.5e-6], nan_ok=True)

@@ -107,40 +107,8 @@ def _read(content: bytes) -> Read:
     return Read(picked, tuple(name for n, name in enumerate(names) if n not in places))
 
 
-def measurements(path: str | os.PathLike[str], **sizes: float | None) -> Measurements:
-    r"""Read a table of rebounds; a radius and a thickness may be given for all of them.
-
-    Parameters
-    ----------
-    path : path-like
-        As in `read`.
-    **sizes : float or None
-        ``radius`` and ``thickness`` [m]; None if the table has the column, or it is unknown.
-
-    Returns
-    -------
-    Measurements
-
-    Raises
-    ------
-    ValueError
-        As in `read`; also if the table has a given size, too, or values are out of range.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
-    ...     _ = file.write("speed_m/s,COR\n1,0.93\n2,0.91\n")
-    ...     file.flush()
-    ...     data = measurements(file.name, radius=0.9e-3)
-    >>> len(data), data.restitution
-    (2, array([0.93, 0.91]))
-    """
-    return completed(read(path), path, **sizes)
-
-
 def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) -> Measurements:
-    """Add the sizes that a table does not have."""
+    """Add the sizes [m] that a table does not have; None for those that are unknown."""
     given = {name: size for name, size in sizes.items() if size is not None}
     twice = given.keys() & found.columns.keys()
     if twice:
