@@ -1,6 +1,6 @@
 """Command line: ``contactlaw cor | sweep | constant | fit | history | export | ...``.
 
-Each file of this folder is a subcommand: its function `add` adds the parser and options to
+Each file or folder but `parts` is a subcommand: its function `add` adds the parser and options to
 argparse's subparsers. Code that several subcommands share is in `parts`. Another command line, as
 that of dem-demo, takes `joined`, `quantities` and `sentence` from here.
 """
@@ -82,7 +82,7 @@ def parser() -> argparse.ArgumentParser:
                       help="print the version and exit")  # fmt: skip
     commands = made.add_subparsers(required=True, metavar="COMMAND", help="what to do")
     for found in pkgutil.iter_modules(__path__):
-        if not found.ispkg:
+        if found.name != "parts":
             importlib.import_module(f"{__name__}.{found.name}").add(commands)
     return made
 

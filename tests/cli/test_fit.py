@@ -9,7 +9,7 @@ from rebounds import RADIUS, STEEL, THICKNESS, rebounds
 
 import contactlaw as cl
 from contactlaw.cli import main
-from contactlaw.cli.parts import measured
+from contactlaw.cli.fit import measured
 
 BODIES = ["--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name]
 FIT = [*BODIES, "--radius", "1mm", "--unknown", "thickness"]
@@ -160,7 +160,7 @@ def test_a_picture(usual, tmp_path, capsys, monkeypatch):
 
 
 def test_where_yield_begins_is_drawn(tmp_path):
-    from contactlaw.cli.parts.fitplot import curve_of, groups_of
+    from contactlaw.cli.fit.figure import curve_of, groups_of
 
     pair = cl.Pair("gamma-alumina", "glass")
     data = rebounds(pair, speed=np.geomspace(1.0, 30.0, 12), without=("thickness",))

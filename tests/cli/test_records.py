@@ -9,7 +9,7 @@ import pytest
 from rains import write_rain
 
 from contactlaw import cli as cli_of_contactlaw
-from contactlaw.cli.parts.records import Recorded, _npy, combined, completed, read
+from contactlaw.cli.constant.records import Recorded, _npy, combined, completed, read
 from contactlaw.engines.record import IMPACT
 from dem_demo import cli
 from dem_demo.rain import record as reader

@@ -18,7 +18,7 @@ from beds import check_what_an_interrupt_keeps  # noqa: E402
 import contactlaw as cl  # noqa: E402
 from contactlaw import cli as cli_of_contactlaw  # noqa: E402
 from contactlaw import style  # noqa: E402
-from contactlaw.cli.parts import records  # noqa: E402
+from contactlaw.cli.constant import records  # noqa: E402
 from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
 from dem_demo import cli  # noqa: E402
 from dem_demo.drum import figures  # noqa: E402

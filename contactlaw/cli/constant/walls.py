@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from contactlaw._readable import rounded
 from contactlaw.answers.constant import Constant, Keep
+from contactlaw.cli.constant.records import PlannedImpacts
 from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.impacts import aligned, explained
-from contactlaw.cli.parts.records import PlannedImpacts
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity
 
@@ -57,7 +57,7 @@ def walls(model: ImpactModel, recorded: PlannedImpacts, keep: Keep) -> list[Wall
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.cli.parts.records import combined
+    >>> from contactlaw.cli.constant.records import combined
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> found = walls(model, combined([1.0, 10.0], [0.9e-3], [0.5e-3, 3e-3]), "energy")
     >>> [(wall.thickness, round(wall.best.restitution, 3)) for wall in found]

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw.cli.fit.printed import values_in_words
 from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.fits import values_in_words
 from contactlaw.cli.parts.plots import SUFFIXES, colour_of, length_of, plate_of
 from contactlaw.fitting import Fit
 from contactlaw.physical.validity import Validity, limits_in_words

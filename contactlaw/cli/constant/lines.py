@@ -10,8 +10,8 @@ import numpy as np
 from contactlaw._version import VERSION
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.constant import Constant, Keep, constant
+from contactlaw.cli.constant.walls import Wall, meaning
 from contactlaw.cli.parts.quantities import LENGTH, formatted
-from contactlaw.cli.parts.walls import Wall, meaning
 from contactlaw.dashpot import betan
 from contactlaw.engines.lammps.beads import hertz_material
 from contactlaw.model import ImpactModel
@@ -31,8 +31,8 @@ def lammps(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.cli.parts.records import combined
-    >>> from contactlaw.cli.parts.walls import walls
+    >>> from contactlaw.cli.constant.records import combined
+    >>> from contactlaw.cli.constant.walls import walls
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> found = walls(model, combined([5.0], [0.9e-3], [1e-3]), "energy")
     >>> print(list(lammps(model, found, "energy"))[-1].split(" tangential")[0])
@@ -65,8 +65,8 @@ def liggghts(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.cli.parts.records import combined
-    >>> from contactlaw.cli.parts.walls import walls
+    >>> from contactlaw.cli.constant.records import combined
+    >>> from contactlaw.cli.constant.walls import walls
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> found = walls(model, combined([5.0], [0.9e-3], [1e-3]), "energy")
     >>> for line in list(liggghts(model, found, "energy"))[-3:]:
@@ -101,8 +101,8 @@ def yade(model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     Examples
     --------
     >>> import contactlaw as cl
-    >>> from contactlaw.cli.parts.records import combined
-    >>> from contactlaw.cli.parts.walls import walls
+    >>> from contactlaw.cli.constant.records import combined
+    >>> from contactlaw.cli.constant.walls import walls
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> found = walls(model, combined([40.0], [0.9e-3], [1e-3]), "energy")
     >>> print(list(yade(model, found, "energy"))[-1])

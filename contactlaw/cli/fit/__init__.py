@@ -7,7 +7,8 @@ import json
 from contextlib import nullcontext
 from typing import Any
 
-from contactlaw.cli.parts import chosen, fitplot, fits, measured, options, quantities, wording
+from contactlaw.cli.fit import figure, measured, printed
+from contactlaw.cli.parts import chosen, options, quantities, wording
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import LENGTH
 from contactlaw.fitting import fit
@@ -90,8 +91,8 @@ def _run(arguments: argparse.Namespace) -> None:
         found = fit(pair, data, arguments.unknown, arguments.law, priors)
         if arguments.plot is not None:
             title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
-            fitplot.save_fit(found, title, arguments.plot)
+            figure.save_fit(found, title, arguments.plot)
         if arguments.json:
-            print(json.dumps(fits.record(found), indent=2))
+            print(json.dumps(printed.record(found), indent=2))
         else:
-            print(*fits.text(found), "", *fits.rows(found), sep="\n")
+            print(*printed.text(found), "", *printed.rows(found), sep="\n")

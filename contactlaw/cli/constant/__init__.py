@@ -7,7 +7,8 @@ import sys
 from typing import Any
 
 from contactlaw import laws
-from contactlaw.cli.parts import chosen, lines, options, quantities, records, walls
+from contactlaw.cli.constant import lines, records, walls
+from contactlaw.cli.parts import chosen, options, quantities
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import SPEED
 from contactlaw.model import ImpactModel
