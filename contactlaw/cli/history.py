@@ -8,7 +8,8 @@ from typing import Any, Literal
 
 import numpy as np
 
-from contactlaw.cli.parts import chosen, impacts, options, plots, quantities, wording
+from contactlaw import style
+from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
 from contactlaw.cli.parts.quantities import LENGTH, formatted
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import explain
@@ -59,4 +60,38 @@ def _plot_history(arguments: argparse.Namespace) -> None:
         f"{arguments.sphere} on {arguments.plate}: radius {radius}, plate {thickness}, "
         f"{arguments.speed:g} m/s"
     )
-    plots.save_history(contact, title, arguments.plot)
+    _draw(contact, title, arguments.plot)
+
+
+def _draw(contact: ForceHistory, title: str, path: str) -> None:
+    """Draw force over time, and over compression; matplotlib is loaded here."""
+    with style.applied():
+        from matplotlib.figure import Figure
+
+        figure = Figure(figsize=(10.0, 4.6), layout="constrained")
+        figure.suptitle(title, x=0.012, ha="left", fontsize=13, fontweight="bold")
+        left, right = figure.subplots(1, 2, sharey=True)
+        top = int(np.argmax(contact.force))
+        parts = (
+            (slice(top + 1), style.BLUE, "loading"),
+            (slice(top, None), style.VERMILION, "unloading"),
+        )
+        for part, colour, name in parts:
+            left.plot(contact.time[part] * 1e6, contact.force[part], color=colour, linewidth=2.2)
+            right.plot(
+                contact.compression[part] * 1e6, contact.force[part], color=colour, linewidth=2.2,
+                label=name,
+            )  # fmt: skip
+        left.set(xlabel="time since touch [µs]", ylabel="contact force [N]", ylim=(0.0, None))
+        left.set_xlim(0.0, 1.02 * contact.time[-1] * 1e6)
+        plate = left.twinx()
+        plate.plot(
+            contact.time * 1e6, contact.plate_displacement * 1e6, color=style.MUTED, linestyle="--"
+        )
+        plate.set_ylabel("displacement of the plate [µm] (dashed)", color=style.MUTED)
+        plate.set_ylim(0.0, None)
+        plate.grid(visible=False)
+        plate.spines["right"].set_visible(True)
+        right.set(xlabel="compression [µm]", xlim=(0.0, None))
+        right.legend(loc="upper left")
+        figure.savefig(path)

@@ -8,7 +8,8 @@ import pytest
 from matplotlib.figure import Figure
 
 import contactlaw as cl
-from contactlaw.cli.parts import curves, plots
+from contactlaw.cli.cor import curves
+from contactlaw.cli.cor.figure import save_restitution
 
 R, INF = 0.9e-3, math.inf
 
@@ -23,7 +24,7 @@ def drawn(monkeypatch):
 
 def picture(drawn, model, speeds, radii, plates, **options):
     found = curves.restitution_curves(model, speeds, radii, plates, **options)
-    plots.save_restitution(found, "gamma-alumina on glass", "cor.png")
+    save_restitution(found, "gamma-alumina on glass", "cor.png")
     return found, drawn[-1]
 
 
@@ -132,7 +133,7 @@ def test_every_curve_is_named_and_nothing_overlaps(model, drawn, radii, plates, 
 @pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
 def test_formats(model, tmp_path, suffix):
     found = curves.restitution_curves(model, [1.0, 5.0], [R], [1e-3])
-    plots.save_restitution(found, "title", tmp_path / f"cor.{suffix}")
+    save_restitution(found, "title", tmp_path / f"cor.{suffix}")
     assert (tmp_path / f"cor.{suffix}").stat().st_size > 1000
     with pytest.raises(ValueError, match=r"path: got 'cor.gif', must end in .png, .svg or .pdf"):
-        plots.save_restitution(found, "title", "cor.gif")
+        save_restitution(found, "title", "cor.gif")

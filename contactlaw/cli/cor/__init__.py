@@ -8,7 +8,8 @@ import math
 import sys
 from typing import Any
 
-from contactlaw.cli.parts import chosen, curves, impacts, options, plots, quantities
+from contactlaw.cli.cor import curves, figure
+from contactlaw.cli.parts import chosen, impacts, options, quantities
 from contactlaw.physical.validity import explain
 
 
@@ -72,4 +73,4 @@ def _plot_cor(arguments: argparse.Namespace) -> None:
         model, arguments.speed, arguments.radius, arguments.thickness, solve=arguments.solve
     )
     title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
-    plots.save_restitution(drawn, title, arguments.plot)
+    figure.save_restitution(drawn, title, arguments.plot)
