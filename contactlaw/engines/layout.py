@@ -23,7 +23,6 @@ FORMAT = "contactlaw-"  # the attribute "format" is this and the name of the sce
 _BODIES = "sphere", "plate"
 _TEXTS = "name", "source", "kind"  # of a material; its other fields are numbers
 _REQUIRED = "name", "source", "youngs_modulus", "poissons_ratio", "density"
-_ROWS = 1024  # rows in a chunk of a growing column
 
 
 class Hits(NamedTuple):
@@ -40,17 +39,6 @@ def write(group: h5py.Group, name: str, values: object, units: str, description:
     """Write an array with its unit and description."""
     data = np.asarray(values)
     dataset = group.create_dataset(name, data=data, compression="gzip" if data.size else None)
-    dataset.attrs.update({"units": units, "description": description})
-
-
-def grow(
-    group: h5py.Group, name: str, kind: str, units: str, description: str, shape: tuple[int, ...]
-) -> None:
-    """Make an empty dataset that grows along its first axis; `shape` is that of one item."""
-    dataset = group.create_dataset(
-        name, (0, *shape), kind, maxshape=(None, *shape), chunks=(1 if shape else _ROWS, *shape),
-        compression="gzip",
-    )  # fmt: skip
     dataset.attrs.update({"units": units, "description": description})
 
 
@@ -80,29 +68,13 @@ def write_materials(file: h5py.File, sphere: Material, plate: Material) -> None:
         group.attrs.update({name: value for name, value in values.items() if value is not None})
 
 
-def begin_impacts(file: h5py.File, description: str) -> None:
-    """Make the empty table of impacts; the description defines axes, and bead and plate numbers."""
-    file.create_group("collisions").attrs["description"] = description
-
-
-def append_impacts(file: h5py.File, rows: NDArray[np.void]) -> None:
-    """Append impacts; the first ones decide which columns of the record the file has."""
-    group = file["collisions"]
-    if group.keys() and not rows.size:
-        return
-    for name, kind, unit, description in COLUMNS:
+def write_impacts(file: h5py.File, rows: NDArray[np.void], description: str) -> None:
+    """Write the table of impacts; the description defines axes, and bead and plate numbers."""
+    table = file.create_group("collisions")
+    table.attrs["description"] = description
+    for name, _, unit, text in COLUMNS:
         if name in (rows.dtype.names or ()):
-            if name not in group:
-                grow(group, name, kind, unit, description, ())
-            column = group[name]
-            before = column.size
-            column.resize(before + rows.size, axis=0)
-            column[before:] = rows[name]
-
-
-def has_impacts(file: h5py.File) -> bool:
-    """Whether `append_impacts` has made the columns of the table."""
-    return bool(file["collisions"].keys())
+            write(table, name, rows[name], unit, text)
 
 
 def impacts(file: h5py.File) -> NDArray[np.void]:

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from tqdm import tqdm
 
+from dem_demo.kit import signals
 from dem_demo.kit.beads import FLYING, GONE, GRAVITY, Floats
 from dem_demo.kit.bed import Bed
-from dem_demo.kit.signals import Interrupted, noted
 
 if TYPE_CHECKING:
     from contactlaw import ImpactModel
@@ -225,13 +225,13 @@ class _Simulation:
         self.lmp.command(f"dump frames all custom {self.chunk * _CHUNKS} {path} {COLUMNS}")
         self.lmp.command("dump_modify frames sort id first yes")
 
-    def advance(self, came: list[int]) -> None:
+    def advance(self) -> None:
         """Simulate one frame; if any rank has received a signal, all ranks stop."""
         for _ in range(_CHUNKS):
             self.lmp.command(f"run {self.chunk} post no")
-            number = max(self.comm.allgather(max(came, default=0)))
+            number = max(self.comm.allgather(signals.first()))
             if number:
-                raise Interrupted(number)
+                raise signals.Interrupted(number)
 
     def collisions(self) -> NDArray[np.void] | None:
         """Gather new impacts: on rank 0, None on the others."""
@@ -297,10 +297,10 @@ def run(
     frames = range(scene.frames)
     if recorder is not None:
         frames = tqdm(frames, desc=name, unit="frame", disable=None)
-    with noted() as came:
+    with signals.held():
         record(simulation, recorder)
         for _ in frames:
-            simulation.advance(came)
+            simulation.advance()
             record(simulation, recorder)
     simulation.lmp.close()
 

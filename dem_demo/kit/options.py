@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
 
-from dem_demo.kit.signals import undisturbed
+from dem_demo.kit import signals
 
 
 class Refused(Exception):
@@ -23,8 +23,9 @@ def needing(extras: str) -> Iterator[None]:
     Interrupts wait until the block ends: matplotlib's extension modules drop them, or crash.
     """
     try:
-        with undisturbed():
+        with signals.held():
             yield
+        signals.check()
     except ModuleNotFoundError as error:
         raise Refused(f"{error.name} is missing: pip install contactlaw[{extras}]") from error
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from contactlaw.engines import layout
 from dem_demo.kit.beads import Floats
-from dem_demo.kit.recorder import COMPLETE, PARTIAL
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -55,15 +54,15 @@ class Recorded:
     status: NDArray[np.uint8]
 
 
-def closed(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
-    """Attributes of a scene's record; `ValueError` if it is another file or was never closed."""
+def checked(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
+    """Attributes of a scene's record; `ValueError` if it is another file."""
     attributes = dict(file.attrs)
-    form, found, state = (attributes.get(name) for name in ("format", "schema", "state"))
+    form, found = (attributes.get(name) for name in ("format", "schema"))
     wanted = layout.FORMAT + name
-    if (form, found) != (wanted, schema) or state not in (COMPLETE, PARTIAL):
+    if (form, found) != (wanted, schema):
         raise ValueError(
-            f"{path}: not a closed file of format {wanted!r}, schema {schema}, but "
-            f"format {form!r}, schema {found}, state {state}: run the {name} again"
+            f"{path}: no file of format {wanted!r}, schema {schema}, but format {form!r}, "
+            f"schema {found}: run the {name} again"
         )
     return attributes
 

@@ -1,6 +1,9 @@
-"""Writing a run while it happens: frames and impacts, as an HDF5 file that explains itself.
+"""Recording a run: its frames and impacts, as an HDF5 file that explains itself.
 
-The layout of the file is that of `contactlaw.engines.layout`, plus what the scene writes.
+The layout of the file is that of `contactlaw.engines.layout`, plus what the scene writes. The file
+is written when the run has ended, in whichever way: HDF5 can neither be interrupted halfway nor
+close a file that the disk has no room for. The record of a run fits into memory, because figures
+and page need all of it at once.
 """
 
 from __future__ import annotations
@@ -12,7 +15,7 @@ import traceback
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -20,11 +23,11 @@ from numpy.typing import NDArray
 
 from contactlaw import ImpactModel
 from contactlaw.engines import layout
-from contactlaw.engines.record import IMPACT, OBSERVED
-from dem_demo.kit.disk import Disk, complaint
-from dem_demo.kit.signals import Interrupted, noted, raise_dropped, undisturbed
+from contactlaw.engines.record import IMPACT
+from dem_demo.kit import disk, signals
+from dem_demo.kit.signals import Interrupted
 
-COMPLETE, PARTIAL = "complete", "partial"  # values of the attribute "state" of a closed file
+COMPLETE, PARTIAL = "complete", "partial"  # values of the attribute "state" of a file
 FORESEEN = (Interrupted, OSError, ValueError, RuntimeError)  # their messages suffice: no traceback
 
 
@@ -33,7 +36,6 @@ class Dataset(NamedTuple):
 
     name: str
     kind: str
-    shape: tuple[int, ...]
     unit: str
     description: str
 
@@ -56,7 +58,7 @@ class Making(NamedTuple):
 
 
 class Recorder:
-    """Writes one run to an HDF5 file.
+    """Keeps the frames and impacts of one run in memory, and writes them to an HDF5 file.
 
     Parameters
     ----------
@@ -76,8 +78,6 @@ class Recorder:
         Frames per second [1/s].
     axes : str
         What the columns of the table of impacts mean in this file.
-    columns : iterable of str, optional
-        Columns of the table of impacts if none happens.
 
     Attributes
     ----------
@@ -96,29 +96,18 @@ class Recorder:
         trajectories: Sequence[Dataset],
         frame_rate: float,
         axes: str,
-        columns: Iterable[str] = OBSERVED,
     ) -> None:
-        raise_dropped()  # nothing has been written yet
-        self.folder = path.parent
-        self._path, self._disk = path, Disk(path)
-        self._files, self._frame_rate = {*making.files}, frame_rate
-        self._frames, self._columns = 0, list(columns)
-        with undisturbed():
-            self._file = h5py.File(self._disk, "w")
-            self._file.attrs.update(_made(scene, making))
-            self._file.attrs.update(attributes)
-            write_scene(self._file)
-            self._trajectories = self._file.create_group("trajectories")
-            for name, kind, shape, unit, description in (
-                Dataset("time", "f8", (), "s", "time of the frame"), *trajectories,
-            ):  # fmt: skip
-                layout.grow(self._trajectories, name, kind, unit, description, shape)
-            layout.begin_impacts(self._file, axes)
+        self.folder, self._path = path.parent, path
+        self._attributes = {**_made(scene, making), **attributes}
+        self._files, self._write_scene, self._axes = {*making.files}, write_scene, axes
+        self._trajectories, self._frame_rate = trajectories, frame_rate
+        self._frames: list[dict[str, NDArray[Any]]] = []
+        self._impacts: list[NDArray[np.void]] = []
 
     def record(
         self, run: Callable[[Recorder], None], sentence: Callable[[BaseException], str]
     ) -> BaseException | None:
-        """Let an engine run, then close the file with a note whether the run is complete.
+        """Let an engine run, then write the file with a note whether the run is complete.
 
         Parameters
         ----------
@@ -130,61 +119,64 @@ class Recorder:
         Returns
         -------
         BaseException or None
-            What stopped the run, if anything did.
+            What stopped the run or kept frames out of the file, if anything did.
         """
         stop: BaseException | None = None
         reason = ""
         try:
+            signals.check()
             run(self)
         except (Exception, Interrupted) as error:
             if not isinstance(error, FORESEEN):
                 traceback.print_exc()
             stop, reason = error, sentence(error)
-        finally:
-            with noted():
-                self._close(reason)
-        return stop or self._disk.error
+        with signals.held():
+            full = self._save(reason)
+        return stop or full
 
     def frame(self, frame: NamedTuple) -> None:
-        """Append one frame; its fields have the names of the datasets.
-
-        Raises
-        ------
-        OSError
-            If the disk is full; what has been recorded is safe.
-        """
-        with undisturbed():
-            values = {"time": self._frames / self._frame_rate, **frame._asdict()}
-            for name, value in values.items():
-                if value is not None:
-                    dataset = self._trajectories[name]
-                    dataset.resize(self._frames + 1, axis=0)
-                    dataset[self._frames] = value
-            self._frames += 1
-        raise_dropped()
-        if self._disk.error is not None:
-            raise self._disk.error
+        """Append one frame; its fields have the names of the datasets."""
+        values = frame._asdict()
+        self._frames.append({one.name: np.array(values[one.name], one.kind)
+                             for one in self._trajectories})  # fmt: skip
+        signals.check()
 
     def collisions(self, table: NDArray[np.void]) -> None:
         """Append collisions, in the columns that their table has."""
-        with undisturbed():
-            layout.append_impacts(self._file, table)
+        self._impacts.append(table.copy())  # of the few rows; a view would keep the whole table
 
-    def _close(self, reason: str) -> None:
-        if not layout.has_impacts(self._file):
-            layout.append_impacts(self._file, np.empty(0, IMPACT[self._columns]))
-        if not reason and self._disk.error is not None:
-            reason = complaint(self._disk.error)
-        own = {file.name for file in self.folder.iterdir() if not file.name.startswith(".")}
-        self._file.attrs["state"] = PARTIAL if reason else COMPLETE
-        self._file.attrs["reason"] = reason
-        self._file.attrs["files"] = sorted(self._files | own)
-        self._file.close()
-        if self._disk.error is not None:
-            _write_shorter(self._path, self._disk.content(), self._frames)
-        elif self._frames == 0:
-            self._path.unlink()  # nothing has been simulated
-        self._disk.close()
+    def _save(self, reason: str) -> OSError | None:
+        """Write the file if there is a frame; returns why it has fewer frames, if it has.
+
+        If the disk has no room, it gets every impact but half of the frames, or half of these, and
+        so on. That leaves room for the other files.
+        """
+        frames, full = len(self._frames), None
+        while frames:
+            try:
+                disk.write(self._path, self._content(frames, reason))
+                break
+            except OSError as error:
+                frames, full, reason = frames // 2, error, reason or disk.complaint(error)
+        return full
+
+    def _content(self, frames: int, reason: str) -> bytes:
+        image = io.BytesIO()
+        others = {file.name for file in self.folder.iterdir() if not file.name.startswith(".")}
+        impacts = np.concatenate(self._impacts or [np.empty(0, IMPACT)])
+        with h5py.File(image, "w") as file:
+            file.attrs.update(self._attributes)
+            file.attrs["state"] = PARTIAL if reason else COMPLETE
+            file.attrs["reason"] = reason
+            file.attrs["files"] = sorted(self._files | others)
+            self._write_scene(file)
+            group, time = file.create_group("trajectories"), np.arange(frames) / self._frame_rate
+            layout.write(group, "time", time, "s", "time of the frame")
+            for name, _, unit, description in self._trajectories:
+                values = np.stack([frame[name] for frame in self._frames[:frames]])
+                layout.write(group, name, values, unit, description)
+            layout.write_impacts(file, impacts, self._axes)
+        return image.getvalue()
 
 
 def _made(scene: str, making: Making) -> dict[str, object]:
@@ -207,25 +199,3 @@ def _made(scene: str, making: Making) -> dict[str, object]:
         "version_python": platform.python_version(),
         "units": "SI: metres, seconds, kilograms, newtons, joules; each dataset names its own",
     }
-
-
-def _write_shorter(path: Path, content: bytes, frames: int) -> None:
-    """Write a record that the disk had no room for, with every collision but fewer frames.
-
-    The frames are halved at least once, which leaves room for the other files.
-    """
-    while frames > 0:
-        frames //= 2
-        short = io.BytesIO()
-        with h5py.File(io.BytesIO(content), "r+") as whole, h5py.File(short, "w") as part:
-            for dataset in whole["trajectories"].values():
-                dataset.resize(frames, axis=0)
-            part.attrs.update(whole.attrs)
-            for name in whole:
-                whole.copy(name, part)
-        try:
-            path.write_bytes(short.getvalue())
-        except OSError:
-            continue
-        return
-    path.unlink()

@@ -13,10 +13,9 @@ import h5py
 
 from contactlaw import Pair
 from contactlaw.engines import layout
-from contactlaw.engines.record import IMPACT
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.bed import Bed
-from dem_demo.kit.reader import Recorded, closed, common
+from dem_demo.kit.reader import Recorded, checked, common
 from dem_demo.kit.recorder import Dataset, Making, Recorder
 
 CONSTANT = "constant.h5"
@@ -84,7 +83,6 @@ class Runs(Generic[S]):
 def bed_recorder(path: Path, scene: Bed, making: Making, ranks: int) -> Recorder:
     """Begin the record of a bed in a file; `ranks` is the number of MPI processes."""
     attributes = {name: getattr(scene, name) for name in scene.NUMBERS}
-    n = scene.radius.size
     energy = "kinetic", "rotational", "potential"
     return Recorder(
         path,
@@ -93,15 +91,14 @@ def bed_recorder(path: Path, scene: Bed, making: Making, ranks: int) -> Recorder
         attributes={**attributes, "schema": scene.SCHEMA, "ranks": ranks},
         write_scene=lambda file: _write(file, scene),
         trajectories=[
-            Dataset("position", "f4", (n, 3), "m", "centre; of a bead that is gone: where it was"),
-            Dataset("velocity", "f4", (n, 3), "m/s", "velocity; of a bead that is gone: 0"),
-            Dataset("status", "u1", (n,), "1", "1 in the box, 2 gone"),
-            *(Dataset(name, "f8", (), "J", f"{name} energy of all beads") for name in energy),
-            Dataset("elapsed", "f8", (), "s", "computing time so far"),
+            Dataset("position", "f4", "m", "centre; of a bead that is gone: where it was"),
+            Dataset("velocity", "f4", "m/s", "velocity; of a bead that is gone: 0"),
+            Dataset("status", "u1", "1", "1 in the box, 2 gone"),
+            *(Dataset(name, "f8", "J", f"{name} energy of all beads") for name in energy),
+            Dataset("elapsed", "f8", "s", "computing time so far"),
         ],
         frame_rate=scene.FRAME_RATE,
         axes=scene.AXES,
-        columns=IMPACT.names or (),
     )
 
 
@@ -127,10 +124,10 @@ def read_one(path: Path, scene: type[S]) -> Run[S]:
     Raises
     ------
     ValueError
-        If the file is something else, of another schema, or was never closed.
+        If the file is something else, or of another schema.
     """
     with h5py.File(path, "r") as file:
-        attributes = closed(file, path, scene.NAME, scene.SCHEMA)
+        attributes = checked(file, path, scene.NAME, scene.SCHEMA)
         sphere, plate = layout.materials(file)
         return Run(
             scene=scene(

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import functools
 import sys
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from dem_demo.kit import disk
 from dem_demo.kit.gallery import Picture
 from dem_demo.kit.options import Refused
-from dem_demo.kit.place import Place, entries, workplace
+from dem_demo.kit.place import PARTIAL, earlier, entries, replace, workplace
 from dem_demo.kit.signals import Interrupted
 
 SUMMARY, PAGE = "summary.txt", "index.html"
@@ -44,10 +45,15 @@ class Show(NamedTuple):
         return f"{self.name}.h5"
 
     @property
+    def products(self) -> set[str]:
+        """Names of all files that are made of the records."""
+        pictures = (f"{name}.png" for name in self.figures.names())
+        return {SUMMARY, PAGE, *pictures, f"{self.name}.gif"}
+
+    @property
     def files(self) -> set[str]:
         """Names of all files of the results, without those of an engine."""
-        pictures = (f"{name}.png" for name in self.figures.names())
-        return {self.record, f"{self.name}.gif", SUMMARY, PAGE, *self.others, *pictures}
+        return {self.record, *self.others, *self.products}
 
 
 def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | None]) -> int:
@@ -67,7 +73,13 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
     int
         Exit status of the command.
     """
-    target = Place(out, show)
+    old, complete = earlier(out, show.name)
+    others = sorted(show.files & {*entries(out)} - old)
+    if others:
+        raise Refused(
+            f"--out: {out} holds {', '.join(others)}, which no {show.name} has left "
+            "there; name another folder"
+        )
     with workplace(out) as folder:
         stop = simulate(folder)
         if not (folder / show.record).exists():
@@ -80,10 +92,10 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
         print(show.summary(run), flush=True)
         failed = make(show, run, folder)
         written = ", ".join(entries(folder))
-        reached = target.fill(folder, complete=not reason)
-    replaced = target.earlier and reached == target.path
-    earlier = f", in the place of an earlier {show.name}" * replaced
-    print(f"\nWritten to {reached}{earlier}: {written}", flush=True)
+        target = out / PARTIAL if reason and complete else out
+        replace(folder, target, show.name)
+    replaced = f", in the place of an earlier {show.name}" if old and target == out else ""
+    print(f"\nWritten to {target}{replaced}: {written}", flush=True)
     for name, why in failed.items():
         print(f"dem-demo: {name} is missing: {show.sentence(why)}", file=sys.stderr)
     if reason:
@@ -101,40 +113,30 @@ def make(show: Show, run: Any, folder: Path) -> dict[str, BaseException]:
     dict
         The exception for each file that is missing, by its name.
     """
+    failed: dict[str, BaseException] = {}
     pictures: dict[str, Picture] = {}
     film = functools.cache(lambda: show.film(run))
 
-    def draw(name: str) -> None:
-        pictures[name] = show.figures.draw(name, run)
-
-    def write(name: str, content: Callable[[], bytes]) -> None:
+    @contextmanager
+    def attempt(name: str) -> Iterator[Path]:
         try:
-            (folder / name).write_bytes(content())
-        except BaseException:
-            (folder / name).unlink(missing_ok=True)
-            raise
-
-    contents: dict[str, Callable[[], bytes]] = {
-        SUMMARY: lambda: f"{show.summary(run)}\n".encode(),
-        PAGE: lambda: show.page(run, pictures, film).encode(),
-        **{f"{name}.png": partial(_wide, pictures, name) for name in show.figures.names()},
-        f"{show.name}.gif": film,
-    }
-    steps: list[tuple[str, Callable[[], None]]] = [
-        *((f"{name}.png", partial(draw, name)) for name in show.figures.names()),
-        *((name, partial(write, name, content)) for name, content in contents.items()),
-    ]
-    failed: dict[str, BaseException] = {}
-    for n, (name, step) in enumerate(steps):
-        try:
-            if name not in failed:
-                step()
+            yield folder / name
         except Exception as error:
             failed[name] = error
-        except Interrupted as error:
-            return {**failed, **dict.fromkeys((name for name, _ in steps[n:]), error)}
+
+    try:
+        for name in show.figures.names():
+            with attempt(f"{name}.png"):
+                pictures[name] = show.figures.draw(name, run)
+        with attempt(SUMMARY) as path:
+            disk.write(path, f"{show.summary(run)}\n".encode())
+        with attempt(PAGE) as path:
+            disk.write(path, show.page(run, pictures, film).encode())
+        for name, picture in pictures.items():
+            with attempt(f"{name}.png") as path:
+                disk.write(path, picture.wide)
+        with attempt(f"{show.name}.gif") as path:
+            disk.write(path, film())
+    except Interrupted as error:
+        failed |= dict.fromkeys(sorted(show.products - {*entries(folder)}), error)
     return failed
-
-
-def _wide(pictures: Mapping[str, Picture], name: str) -> bytes:
-    return pictures[name].wide

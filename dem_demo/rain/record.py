@@ -14,7 +14,7 @@ from contactlaw import ImpactModel, Pair
 from contactlaw.engines import layout
 from contactlaw.engines.record import IMPACT, fill
 from dem_demo.kit.beads import Floats
-from dem_demo.kit.reader import Recorded, closed, common
+from dem_demo.kit.reader import Recorded, checked, common
 from dem_demo.kit.recorder import Dataset, Making, Recorder
 from dem_demo.rain.scene import Beads, Plate, Scene
 
@@ -55,7 +55,7 @@ def rain_recorder(
         making,
         attributes=attributes,
         write_scene=lambda file: _write_scene(file, scene),
-        trajectories=_trajectories(scene, dimensions),
+        trajectories=_trajectories(dimensions),
         frame_rate=scene.frame_rate,
         axes=_AXES,
     )
@@ -81,16 +81,14 @@ def _write_scene(file: h5py.File, scene: Scene) -> None:
         layout.write(beads, name, getattr(scene.beads, name), units, description)
 
 
-def _trajectories(scene: Scene, dimensions: int) -> list[Dataset]:
-    beads = scene.beads.radius.size
+def _trajectories(dimensions: int) -> list[Dataset]:
+    depth = [Dataset("depth", "f4", "m", "third coordinate of the centre")]
     return [
-        Dataset("position", "f4", (beads, 2), "m", "centre (x, y); of a bead that is gone: where "
-                "it left"),
-        Dataset("velocity", "f4", (beads, 2), "m/s", "velocity (x, y); of a bead that is gone: 0"),
-        Dataset("status", "u1", (beads,), "1", "0 waiting for its emission, 1 flying, 2 gone"),
-        *[Dataset("depth", "f4", (beads,), "m", "third coordinate of the centre")]
-        [: dimensions - 2],
-    ]  # fmt: skip
+        Dataset("position", "f4", "m", "centre (x, y); of a bead that is gone: where it left"),
+        Dataset("velocity", "f4", "m/s", "velocity (x, y); of a bead that is gone: 0"),
+        Dataset("status", "u1", "1", "0 waiting for its emission, 1 flying, 2 gone"),
+        *depth[: dimensions - 2],
+    ]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -169,10 +167,10 @@ def read(path: Path) -> Run:
     Raises
     ------
     ValueError
-        If the file is something else, of another schema, or was never closed.
+        If the file is something else, or of another schema.
     """
     with h5py.File(path, "r") as file:
-        attributes = closed(file, path, NAME, SCHEMA)
+        attributes = checked(file, path, NAME, SCHEMA)
         return Run(
             scene=_scene(file),
             bead_on_bead=attributes.get("bead_on_bead"),

@@ -21,10 +21,27 @@ SMALL += ["--law", "myc"]
 FILES = {"rain.h5", "summary.txt", "index.html", "rain.gif"}
 FILES |= {f"{name}.png" for name in figures.names()}
 LONG = ["rain", "--beads", "1000", "--duration", "6", "--law", "myc"]  # is stopped before its end
+LARGE = [*LONG, "--duration", "1"]  # its record has 1.5 MB
 
 
 def names(folder):
     return {path.name for path in folder.iterdir()}
+
+
+# The command, which prints a line when the rain has begun.
+BEGINS = """
+import sys
+from dem_demo import cli
+from dem_demo.kit.recorder import Recorder
+
+def frame(self, frame, real=Recorder.frame):
+    real(self, frame)
+    if len(self._frames) == 50:
+        print("It rains", flush=True)
+
+Recorder.frame = frame
+sys.exit(cli.main(sys.argv[1:]))
+"""
 
 
 def start(argv, folder, **more):
@@ -34,23 +51,21 @@ def start(argv, folder, **more):
     )
 
 
-def wait_for_a_record(folder, size=400_000):
-    """Wait until the simulation has started; returns the file that is being written."""
-    end = time.monotonic() + 120
-    while time.monotonic() < end:
-        for file in folder.glob("**/.unfinished-*/rain.h5"):
-            if file.stat().st_size > size:
-                return file
-        time.sleep(0.05)
-    raise AssertionError("it never rained")
+def raining(argv, folder):
+    """Start the command, and wait until it rains."""
+    process = subprocess.Popen(
+        [sys.executable, "-c", BEGINS, *argv], cwd=folder, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    assert process.stdout.readline() == "It rains\n"
+    return process
 
 
 @pytest.mark.parametrize(
     ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
 )
 def test_an_interrupt_in_the_middle_keeps_what_has_been_computed(number, status, tmp_path):
-    process = start([*LONG, "--out", "out"], tmp_path)
-    wait_for_a_record(tmp_path)
+    process = raining([*LONG, "--out", "out"], tmp_path)
     process.send_signal(number)
     output, errors = process.communicate(timeout=120)
     assert process.returncode == status
@@ -199,16 +214,15 @@ def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, tmp_path, mon
 
 
 def test_a_killed_run_is_cleaned_up_by_the_next_and_a_living_one_is_not(tmp_path):
-    living = start([*LONG, "--out", "living"], tmp_path)
-    mine = wait_for_a_record(tmp_path).parent
-    killed = start([*LONG, "--out", "killed"], tmp_path)
-    while not (others := [f for f in tmp_path.glob(".unfinished-*/rain.h5") if f.parent != mine]):
-        time.sleep(0.05)
+    living = raining([*LONG, "--out", "living"], tmp_path)
+    (mine,) = tmp_path.glob(".unfinished-*")
+    killed = raining([*LONG, "--out", "killed"], tmp_path)
+    (other,) = {*tmp_path.glob(".unfinished-*")} - {mine}
     killed.send_signal(signal.SIGKILL)
     killed.communicate()
-    assert others[0].exists()
+    assert other.exists()
     assert cli.main([*SMALL, "--out", str(tmp_path / "out")]) == 0
-    assert not others[0].parent.exists()
+    assert not other.exists()
     assert mine.exists()
     living.send_signal(signal.SIGINT)
     living.communicate(timeout=120)
@@ -240,7 +254,9 @@ def test_a_full_disk_keeps_what_fits(tmp_path):
     if shutil.which("mount") is None or subprocess.run(mount, capture_output=True).returncode:
         pytest.skip("mounting a small disk needs more rights")
     try:
-        check_what_a_full_disk_leaves(start([*LONG, "--out", "small/out"], tmp_path), small / "out")
+        check_what_a_full_disk_leaves(
+            start([*LARGE, "--out", "small/out"], tmp_path), small / "out"
+        )
     finally:
         subprocess.run(["umount", str(small)], check=True)
 
@@ -250,7 +266,7 @@ def test_files_that_may_not_grow_keep_what_fits(tmp_path):
         resource.setrlimit(resource.RLIMIT_FSIZE, (400_000, 400_000))
 
     environment = {**os.environ, "CONTACTLAW_NO_CACHE": "1"}
-    process = start([*LONG, "--out", "out"], tmp_path, preexec_fn=limit, env=environment)
+    process = start([*LARGE, "--out", "out"], tmp_path, preexec_fn=limit, env=environment)
     check_what_a_full_disk_leaves(process, tmp_path / "out")
 
 
