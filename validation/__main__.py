@@ -41,7 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         with interruptible(), results(out) as folder:
             verdicts = _write(folder)
     except NotADirectoryError as error:
-        parser.error(f"argument --{error}; name a folder, which may be new")
+        parser.error(f"argument {error}")
     except OSError as error:
         print(f"validation: {error}; nothing was written to --out {out}", file=sys.stderr)
         return 1

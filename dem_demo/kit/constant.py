@@ -41,7 +41,7 @@ def constant_model(pair: Pair, restitution: float) -> ImpactModel:
     array([0.63, 0.63])
     """
     if not LEAST <= restitution <= 1.0:
-        raise ValueError(f"constant COR: must lie between {LEAST:g} and 1, got {restitution!r}")
+        raise ValueError(f"constant_cor: must lie between {LEAST:g} and 1, got {restitution!r}")
     lost = 1.0 - restitution**2
     law = Law.of(
         name="constant_cor",

@@ -33,7 +33,9 @@ def workplace(folder: Path) -> Iterator[Path]:
     whole = folder.absolute()
     nearest = next(place for place in (whole, *whole.parents) if place.exists())
     if not nearest.is_dir():
-        raise NotADirectoryError(f"out: {nearest} is a file, not a folder")
+        raise NotADirectoryError(
+            f"--out: {nearest} is a file, not a folder; name a folder, which may be new"
+        )
     for place in {nearest, whole.parent}:  # earlier runs may predate `folder`
         for left in place.glob(f"{_UNFINISHED}*"):
             # Another process may use it, or own it.

@@ -77,8 +77,8 @@ def deliver(out: Path, show: Show, simulate: Callable[[Path], BaseException | No
     others = sorted(show.files & {*entries(out)} - old)
     if others:
         raise Refused(
-            f"--out: {out} holds {', '.join(others)}, which no {show.name} has left "
-            "there; name another folder"
+            f"--out: {out} holds {', '.join(others)}, which no {show.name} has left there; name "
+            "another folder"
         )
     with workplace(out) as folder:
         stop = simulate(folder)

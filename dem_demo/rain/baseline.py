@@ -34,7 +34,7 @@ class ConstantRestitution:
 
     def __init__(self, pair: Pair, restitution: float) -> None:
         if not 0.0 <= restitution <= 1.0:
-            raise ValueError(f"constant COR: must lie between 0 and 1, got {restitution!r}")
+            raise ValueError(f"constant_cor: must lie between 0 and 1, got {restitution!r}")
         self.pair = pair
         self.restitution = restitution
 

@@ -112,7 +112,7 @@ def _plan(
 
     with options.refusing(arguments):
         if engine.NO_CONSTANT_COR is not None and "constant_cor" in arguments:
-            raise ValueError(f"constant-cor: {engine.NO_CONSTANT_COR}; leave it out")
+            raise ValueError(f"constant_cor: {engine.NO_CONSTANT_COR}; leave it out")
         scene = rain(
             beads=arguments.beads,
             thicknesses=arguments.plates,

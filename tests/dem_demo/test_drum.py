@@ -185,7 +185,7 @@ def test_beads_are_in_the_drum_and_do_not_overlap():
         (["--thickness", "-1mm"], ["--thickness", "positive"]),
         (["--drum", "0"], ["--drum", "positive"]),
         (["--turns", "nan"], ["turns", "finite"]),
-        (["--constant-cor", "1.2"], ["between 0.2 and 1", "1.2"]),
+        (["--constant-cor", "1.2"], ["--constant-cor: must lie between 0.2 and 1, got 1.2"]),
         (["--duration", "1e-9"], ["duration", "at least one frame"]),
         (["--sphere", "stele"], ["stele"]),
         (["--law", "hertzz"], ["law", "hertz"]),

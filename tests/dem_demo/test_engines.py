@@ -138,7 +138,7 @@ def test_a_new_file_is_a_new_engine(falling, tmp_path, capsys):
 
 def test_an_engine_without_a_constant_cor_says_why(falling, tmp_path, capsys):
     assert cli.main([*RAIN, "--constant-cor", "0.9", "--out", str(tmp_path / "out")]) == 1
-    message = "dem-demo: constant-cor: beads fall through; leave it out\n"
+    message = "dem-demo: --constant-cor: beads fall through; leave it out\n"
     assert capsys.readouterr().err == message
 
 

@@ -273,8 +273,8 @@ def test_figures_are_pictures(request, which, name):
         (["--beads", "100000"], "emitted into each other"),
         (["--seed", "-1"], "seed"),
         (["--duration", "-1"], "duration"),
-        (["--constant-cor", "1.5"], "between 0 and 1"),
-        (["--constant-cor", "nan"], "between 0 and 1"),
+        (["--constant-cor", "1.5"], "--constant-cor: must lie between 0 and 1, got 1.5"),
+        (["--constant-cor", "nan"], "--constant-cor: must lie between 0 and 1, got nan"),
     ],
     ids=" ".join,
 )
@@ -310,8 +310,10 @@ def test_wrong_usage_is_status_2(argv, capsys):
 def test_a_file_in_the_way(tmp_path, capsys):
     (tmp_path / "out").write_text("mine")
     assert cli.main([*SMALL, "--out", str(tmp_path / "out")]) == 1
-    assert "is a file" in capsys.readouterr().err
-    assert (tmp_path / "out").read_text() == "mine"
+    path = tmp_path / "out"
+    message = f"dem-demo: --out: {path} is a file, not a folder; name a folder, which may be new\n"
+    assert capsys.readouterr().err == message
+    assert path.read_text() == "mine"
 
 
 def test_quiet_without_a_terminal(tmp_path):

@@ -288,7 +288,7 @@ def test_a_feed_has_two_sizes_and_no_overlap():
     [
         (["--radius", "1mm,2mm"], ["radius", "pass the opening"]),
         (["--thickness", "0"], ["thickness", "positive"]),
-        (["--constant-cor", "1.2"], ["between 0.2 and 1", "1.2"]),
+        (["--constant-cor", "1.2"], ["--constant-cor: must lie between 0.2 and 1, got 1.2"]),
         (["--duration", "1e-9"], ["duration", "at least one frame"]),
         (["--beads", "0"], ["beads", "at least one"]),
         (["--sphere", "stele"], ["stele"]),

@@ -290,7 +290,9 @@ def test_an_earlier_rain_is_replaced_as_a_whole(tmp_path, capsys):
 def test_a_folder_with_other_files_of_our_names_is_refused(name, tmp_path, capsys):
     (tmp_path / name).write_text("mine")
     assert cli.main([*SMALL, "--out", str(tmp_path)]) == 1
-    assert f"holds {name}, which no rain has left there" in capsys.readouterr().err
+    assert (
+        f"--out: {tmp_path} holds {name}, which no rain has left there" in capsys.readouterr().err
+    )
     assert names(tmp_path) == {name}
     assert (tmp_path / name).read_text() == "mine"
 

@@ -43,6 +43,8 @@ def sentence(error: Exception, options: Container[str]) -> str:
     --------
     >>> sentence(ValueError("radius, speed: shapes do not broadcast"), {"radius", "speed"})
     '--radius, --speed: shapes do not broadcast'
+    >>> sentence(ValueError("constant_cor: must lie between 0 and 1"), {"constant_cor"})
+    '--constant-cor: must lie between 0 and 1'
     >>> sentence(UnknownMaterialError("glas", ("glass",)), {})
     "unknown material 'glas': did you mean 'glass'? `contactlaw materials` lists all"
     """
@@ -63,7 +65,7 @@ def sentence(error: Exception, options: Container[str]) -> str:
     if arguments:
         names = [_OTHER_NAMES.get(name, name) for name in arguments[0].split(", ")]
         if all(name in options for name in names):
-            return f"--{', --'.join(names)}{message[arguments.end() :]}"
+            return f"--{', --'.join(names)}".replace("_", "-") + message[arguments.end() :]
     return message
 
 
