@@ -19,6 +19,7 @@ from places import ROOT
 import contactlaw as cl
 from contactlaw import _jit, cli
 from contactlaw.softsphere import Contacts
+from dem_demo.cli import scenes
 
 IMPACT = (12.0, 0.9e-3, 1e-3)
 VALUES = ("restitution", "contact_time", "peak_force", "plastic_fraction", "wave_fraction")
@@ -369,7 +370,9 @@ COMMANDS = [
     f"contactlaw table build --law jackson_green {PAIR} --out OUT.h5",
     f"dem-demo rain {DEMO} 5 --plates 1mm --duration 0.05",
     f"dem-demo sieve {DEMO} 12 --duration 0.004 --speed 2.5",
+    f"dem-demo drum {DEMO} 4 --duration 0.01 --speed 2.5",
 ]
+IN_LAMMPS = COMMANDS[-2:]
 # Runs each of the commands that it is given; tells their status, and the kernels that they compile.
 COUNTED = """
 import json, sys
@@ -399,7 +402,7 @@ def second(tmp_path_factory):
     A kernel that one of them needs is read, or compiled, by the first that needs it.
     """
     folder = tmp_path_factory.mktemp("commands")
-    given = [one for one in COMMANDS if "sieve" not in one or needs.has_lammps()]
+    given = [one for one in COMMANDS if one not in IN_LAMMPS or needs.has_lammps()]
     words = [one.replace("OUT", str(folder / f"out{n}")).split() for n, one in enumerate(given)]
     for _ in range(2):
         done = subprocess.run(
@@ -412,12 +415,12 @@ def second(tmp_path_factory):
 
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_second_process_compiles_nothing(command, second):
-    if "sieve" in command:
+    if command in IN_LAMMPS:
         needs.lammps()
     assert second[command] == [0, []]
 
 
 def test_every_subcommand_has_its_second_process():
     names = {name for name, one in parsers(cli.parser()) if one.get_default("run")}
-    names |= {"dem-demo rain", "dem-demo sieve"}
+    names |= {f"dem-demo {scene}" for scene in scenes()}
     assert {name for name in names for command in COMMANDS if command.startswith(name)} == names
