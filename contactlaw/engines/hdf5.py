@@ -20,7 +20,6 @@ from numpy.typing import NDArray
 LARGEST = 100_000_000  # rows of a column: a day's run of 10,000 beads has a hundredth of it
 # Errors that h5py raises for what it cannot read.
 _DAMAGED = (OSError, RuntimeError, TypeError, ValueError, KeyError, OverflowError, MemoryError)
-_LONGEST = 10_000  # bytes of a text of fixed length
 
 
 @contextmanager
@@ -64,7 +63,9 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
     if dataset.shape is None or dataset.ndim != 1:
         raise ValueError(f"{where} has the shape {dataset.shape}, expected a column of numbers")
     if dataset.dtype.kind not in "iuf":
-        raise ValueError(f"{where} holds {_kind(dataset.dtype)}, expected numbers")
+        text = dataset.dtype.kind in "OSU"
+        what = "text or objects" if text else f"values of type {dataset.dtype}"
+        raise ValueError(f"{where} holds {what}, expected numbers")
     if dataset.size > LARGEST:
         raise ValueError(f"{where} has {dataset.size} rows, expected {LARGEST} at most")
     if size is not None and dataset.size != size:
@@ -116,48 +117,16 @@ def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
         If there is none of that name, or of another kind.
     """
     expected = "text" if kind is str else "a number"
-    value = _attribute(parent, name)
+    value = parent.attrs.get(name)
     if value is None:
         raise ValueError(f"{_place(parent)} has no attribute {name}, expected {expected}")
-    if not isinstance(value, (int, float) if kind is float else kind):
-        raise ValueError(f"attribute {name} of {_place(parent)} is {value!r}, expected {expected}")
-    return kind(value)
-
-
-def format_of(file: h5py.File) -> str:
-    """Text of a file's attribute ``format``; empty without one."""
-    return str(_attribute(file, "format") or "")
-
-
-def has(parent: h5py.Group, name: str) -> bool:
-    """Whether there is an attribute of that name."""
-    return _attribute(parent, name) is not None
-
-
-def _attribute(parent: h5py.Group, name: str) -> object:
-    """Value of an attribute: None without one, an `_Other` for what is no text or number."""
-    try:
-        if name not in parent.attrs:
-            return None
-        there = parent.attrs.get_id(name)
-        if there.shape != () or there.get_type().get_size() > _LONGEST:  # too large to read
-            return _Other(f"an array of shape {there.shape} and type {there.dtype}")
-        value = parent.attrs[name]
-    except _DAMAGED as error:
-        raise ValueError(f"attribute {name} of {_place(parent)} is damaged: {error}") from None
     if isinstance(value, np.generic) and value.dtype.kind in "iuf":
-        return value.item()
-    return value if isinstance(value, str) else _Other(f"of type {type(value).__name__}")
-
-
-class _Other:
-    """Description, for an error message, of a value that is neither text nor a number."""
-
-    def __init__(self, words: str) -> None:
-        self._words = words
-
-    def __repr__(self) -> str:
-        return self._words
+        value = value.item()
+    if not isinstance(value, (int, float) if kind is float else kind):
+        raise ValueError(
+            f"attribute {name} of {_place(parent)} is {_words(value)}, expected {expected}"
+        )
+    return kind(value)
 
 
 def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
@@ -170,10 +139,12 @@ def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
     return found
 
 
-def _kind(dtype: np.dtype[Any]) -> str:
-    if dtype.names:
-        return f"rows of {', '.join(dtype.names)}"
-    return "text or objects" if dtype.kind in "OSU" else f"values of type {dtype}"
+def _words(value: object) -> str:
+    if isinstance(value, np.ndarray):
+        return f"an array of shape {value.shape} and type {value.dtype}"
+    return (
+        repr(value) if isinstance(value, (str, int, float)) else f"of type {type(value).__name__}"
+    )
 
 
 def _place(parent: h5py.Group) -> str:

@@ -102,7 +102,7 @@ def hits(file: h5py.File) -> Hits:
     ValueError
         If the file has another format, or lacks a part, or has one that cannot be read.
     """
-    form = hdf5.format_of(file)
+    form = str(file.attrs.get("format", ""))
     if not form.startswith(FORMAT):
         raise ValueError(
             f"no record of dem-demo, whose format is {FORMAT!r} and the name of a scene, got "
@@ -136,6 +136,6 @@ def _material(group: h5py.Group) -> Material:
     stored: dict[str, Any] = {
         field.name: hdf5.attribute(group, field.name, str if field.name in _TEXTS else float)
         for field in fields(Material)
-        if field.name in _REQUIRED or hdf5.has(group, field.name)
+        if field.name in _REQUIRED or field.name in group.attrs
     }
     return Material(**stored)
