@@ -1,6 +1,7 @@
 """The table and its packed form against the solver that they stand for."""
 
 import dataclasses
+import functools
 import math
 
 import numpy as np
@@ -60,12 +61,18 @@ def test_packaged_table_against_the_solver():
     assert (worst[1:] < 1e-5).all()  # relative errors of the other fields
 
 
+@functools.cache
+def built_for(law):
+    """Table of a law as it is built when it is first needed, with a thorough certificate."""
+    return table.build(law, on_demand(law), points=10_000)
+
+
 @pytest.mark.parametrize(
     "law", [law for law in ALL_LAWS if law.yields and law.name != "myc"], ids=lambda law: law.name
 )
 def test_tables_of_the_other_laws(law):
     """Tables built on demand have the accuracy that the notes of `ImpactModel.lookup` state."""
-    built = table.build(law, on_demand(law), points=10_000)
+    built = built_for(law)
     assert built.certificate.largest["restitution"] < (4e-7 if law.capped else 2e-7)
     next_to_yield = {"plastic_fraction", "residual_compression"}  # they begin there at zero
     assert set(built.certificate.exceeded()) <= next_to_yield
@@ -86,8 +93,7 @@ def test_tables_of_the_other_laws(law):
     scope="module", params=[law for law in ALL_LAWS if law.yields], ids=lambda x: x.name
 )
 def built(request):
-    """Table of a law as it is built when it is first needed."""
-    return table.build(request.param, on_demand(request.param))
+    return built_for(request.param)
 
 
 def check_promise(built, lam, chi):
