@@ -42,6 +42,14 @@ def model(pair):
     return cl.ImpactModel(pair, law="myc")
 
 
+@pytest.fixture
+def empty_pictures():
+    """Do not render figures, also after a test has undone its `monkeypatch`; see `unrendered`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("contactlaw.style.png", lambda figure: b"")
+        yield
+
+
 @pytest.fixture(scope="module")
 def page(tmp_path_factory):
     """A blank page in a browser."""

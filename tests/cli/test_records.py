@@ -68,7 +68,7 @@ def test_a_record_of_an_engine(tmp_path):
     assert found.plate.tolist() == [1, 0]
 
 
-def test_a_rain_of_the_demo(tmp_path):
+def test_a_rain_of_the_demo(tmp_path, empty_pictures):
     rain = ["rain", "--beads", "12", "--plates", "0.5e-3,inf", "--duration", "0.2", "--seed", "3"]
     assert cli.main([*rain, "--out", str(tmp_path / "rain")]) == 0
     found, run = read(tmp_path / "rain/rain.h5"), reader.read(tmp_path / "rain/rain.h5")

@@ -221,7 +221,9 @@ def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
 
 @pytest.mark.parametrize("method", ["_create", "advance"])
 @pytest.mark.parametrize("scene", [SMALL, ["sieve", *SMALL[1:5], "--seed", "6"]])
-def test_an_interrupt_before_the_first_impact(scene, method, tmp_path, monkeypatch, capsys):
+def test_an_interrupt_before_the_first_impact(
+    scene, method, empty_pictures, tmp_path, monkeypatch, capsys
+):
     def stop(self, *arguments):
         raise Interrupted(signal.SIGINT)
 
@@ -234,7 +236,9 @@ def test_an_interrupt_before_the_first_impact(scene, method, tmp_path, monkeypat
     assert written >= kept if method == "advance" else not written  # no frame: nothing to keep
 
 
-def test_an_interrupt_between_the_runs_keeps_the_first(tmp_path, monkeypatch, capsys):
+def test_an_interrupt_between_the_runs_keeps_the_first(
+    tmp_path, empty_pictures, monkeypatch, capsys
+):
     create, calls = lammps._Simulation._create, []
 
     def stop(self):

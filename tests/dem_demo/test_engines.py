@@ -118,7 +118,7 @@ def test_help_says_whose_speed_the_constant_cor_is_for(scene, beads, capsys):
     assert f"at the speed of the {beads})" in " ".join(capsys.readouterr().out.split())
 
 
-def test_a_new_file_is_a_new_engine(falling, tmp_path, capsys):
+def test_a_new_file_is_a_new_engine(falling, empty_pictures, tmp_path, capsys):
     with pytest.raises(SystemExit):
         cli.main(["rain", "--help"])
     text = " ".join(capsys.readouterr().out.split())

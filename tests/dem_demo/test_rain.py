@@ -85,7 +85,7 @@ def test_collisions_are_the_one_record_of_impacts(folder, run):
         assert "/beads" in group.attrs["description"]
 
 
-def test_each_impact_has_the_flags_of_the_model(tmp_path):
+def test_each_impact_has_the_flags_of_the_model(tmp_path, empty_pictures):
     thin = ["rain", "--beads", "30", "--plates", "0.35e-3,0.4e-3", "--duration", "0.3"]
     thin += ["--law", "myc"]
     assert cli.main([*thin, "--out", str(tmp_path)]) == 0
@@ -167,7 +167,7 @@ def test_beads_fly_on_parabolas(run):
     assert checked > 100
 
 
-def test_the_same_seed_gives_the_same_rain(run, tmp_path):
+def test_the_same_seed_gives_the_same_rain(run, tmp_path, empty_pictures):
     for seed, same in (("1", True), ("2", False)):
         out = tmp_path / seed
         assert cli.main([*SMALL, "--seed", seed, "--out", str(out)]) == 0
@@ -197,7 +197,9 @@ def test_no_impact_is_looked_up_a_second_time(request, which, times, monkeypatch
     monkeypatch.setattr(cl.ImpactModel, "lookup", count)
     limits(run)
     for name in figures.names():
-        figures.draw(name, run)
+        for narrow in (False, True):
+            with style.applied(narrow=narrow):
+                figures.module(name).draw(run)
     on = run.collisions[run.collisions["plate"] >= 0]
     assert sorted(asked) == sorted(on["approach_speed"].tolist() * times)
 

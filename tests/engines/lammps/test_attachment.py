@@ -84,7 +84,7 @@ def test_two_ranks_give_the_same_bits(whole, two_ranks):
             assert np.array_equal(out["rows"][column], impacts[column]), column
 
 
-def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path):
+def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path, empty_pictures):
     """The beads are too few to meet each other, so one and two ranks give the same bits."""
     assert cli.main([*box.RAIN, "--out", str(tmp_path / "rain")]) == 0
     one, two = (

@@ -1,0 +1,14 @@
+"""The demo without rendering, which takes most of the time of a short run.
+
+All figures are drawn and all files written, but pictures are empty. Tests of pictures and pages
+render them; this is for tests of what happens around them.
+"""
+
+import sys
+
+FIRST = "from contactlaw import style; style.png = lambda figure: b''\n"
+COMMAND = [  # takes the words that follow `dem-demo`
+    sys.executable,
+    "-c",
+    f"{FIRST}import sys; from dem_demo import cli; sys.exit(cli.main())",
+]
