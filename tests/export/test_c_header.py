@@ -35,8 +35,8 @@ from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.physical.validity import flags_of
 from contactlaw.softsphere import Contacts, State, resized, unit_spring
 from contactlaw.stepping.spring import RELAXATION
-from contactlaw.table import Settings, lookup
-from contactlaw.table.nodes import POINTS, thinned
+from contactlaw.table import Settings, lookup, nodes
+from contactlaw.table.nodes import POINTS
 from validation.hostile import headers
 
 COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
@@ -123,6 +123,17 @@ def compilers():
     for name in COMPILERS:
         if not shutil.which(name):
             pytest.skip(f"no {name} on PATH: the header is not compiled")
+
+
+# Of half a second each, for tables that an export and several tests thin out.
+thinned = functools.cache(nodes.thinned)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def thinned_once():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(c_header, "thinned", thinned)
+        yield
 
 
 def model_of(name, **options):
