@@ -17,6 +17,7 @@ from contactlaw.answers.backend import Backend, SphereOnPlate
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
+from contactlaw.answers.oblique import Oblique
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
@@ -31,11 +32,10 @@ from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
 
 
-class ImpactModel(Compiled):
+class ImpactModel(Compiled, Oblique):
     """The modified Zener model of one pair of materials, ready to answer per collision.
 
-    Normal impact only: the tangential part of an oblique impact, friction, adhesion, viscosity
-    and strain rate are outside the model (see `Validity` for the limits that are checked).
+    Adhesion, viscosity, strain rate, rolling and drilling friction are outside it (see `Validity`).
 
     Parameters
     ----------

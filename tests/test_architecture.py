@@ -34,12 +34,12 @@ LAYERS = [
 ]
 # Within a folder without units, the same: the order of its files.
 FILES = {
-    "equation": ["force", "outcome", "corrections", "numbers", "plate", "legs", "losses", "motion",
-                 "creep", "integrator", "zener"],
+    "equation": ["force", "outcome", "tangential", "corrections", "numbers", "plate", "legs",
+                 "losses", "motion", "creep", "integrator", "zener"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
-              "file", "cache"],
+              "slides", "file", "cache"],
     "answers": ["backend", "solver", "tabulated", "beads", "compiled", "constant", "loads",
-                "sensitivity", "speed_table"],
+                "oblique", "sensitivity", "speed_table"],
     "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
     "stepping": ["spring", "energy", "friction", "plate_rows", "contact", "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
@@ -54,7 +54,7 @@ FILES = {
     "cli/cor": ["curves", "figure"],
     "cli/fit": ["measured", "printed", "figure"],
     "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
-                 "rebound"],
+                 "rebound", "oblique"],
 }  # fmt: skip
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),

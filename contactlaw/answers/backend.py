@@ -30,6 +30,13 @@ class Backend(Protocol):
         """Everything about impacts."""
         ...
 
+    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
+        """Everything about the normal part, and the change of the sliding speed [mu V0].
+
+        `psi` are the sliding speeds before [mu V0].
+        """
+        ...
+
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
         ...

@@ -23,6 +23,7 @@ from contactlaw.laws import Law
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
 from contactlaw.physical.scaling import scales, yield_share
+from contactlaw.table import slides
 from contactlaw.table.grid import Settings
 
 Array = NDArray[np.float64]
@@ -44,6 +45,15 @@ class Solver:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
+        return self._solved(impacts)[0]
+
+    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
+        """Everything about the normal part, and the change of the sliding speed [mu V0]."""
+        normal, found = self._solved(impacts)
+        kappa = self.bodies.pair.tangential_ratio
+        return normal, psi - slides.after(self.bodies.law, found, kappa, psi[:, None])[:, 0]
+
+    def _solved(self, impacts: Impacts) -> tuple[Rebound, Outcome]:
         contact = self.bodies.contact(impacts)
         units = scales(contact, impacts.speed)
         found = within(self.bodies.law, units, self.rtol, self.extent)
@@ -52,7 +62,7 @@ class Solver:
         return rebound(
             self.bodies.law.data, self.bodies.limits, impacts, units.time, contact.mass, unclamped,
             found, flags,
-        )  # fmt: skip
+        ), found  # fmt: skip
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""

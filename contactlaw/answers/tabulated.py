@@ -33,7 +33,7 @@ from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
 from contactlaw.physical.scaling import ContactConstants, log_overload, scales, yield_share
 from contactlaw.physical.validity import Validity
-from contactlaw.table import cache, file, grid, lookup, shapes
+from contactlaw.table import cache, file, grid, lookup, shapes, slides
 from contactlaw.table.certificate import bounds
 from contactlaw.table.grid import Settings
 from contactlaw.table.nodes import Table
@@ -114,6 +114,11 @@ class Tabulated:
         return lookup.with_plate(self.table.packed, self.bodies.factors.plate)
 
     @functools.cached_property
+    def slides(self) -> Array:
+        """The tangential rebounds of the pair, as kernels read them; they take a second to make."""
+        return slides.build(self.table, self.bodies.pair.tangential_ratio)
+
+    @functools.cached_property
     def restitution(self) -> Callable[[float, float, float], float]:
         """COR of one impact, whose arguments have to be floats; NaN outside the table."""
         return functools.partial(python_entries()[0], self.packed, self.c_lam, self.c_chi)
@@ -140,12 +145,30 @@ class Tabulated:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
+        return self._rebounds(impacts)[0]
+
+    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
+        """Everything about the normal part, and the change of the sliding speed [mu V0]."""
+        normal, found = self._rebounds(impacts)
+        changes, inside = np.empty_like(psi), self._inside(found)
+        if inside.all():
+            slides.changes(self.slides, found, psi, changes)
+            return normal, changes
+        part = np.empty(np.count_nonzero(inside))
+        slides.changes(self.slides, outcome.part(found, inside), psi[inside], part)
+        changes[inside], beyond = part, psi[~inside]
+        kappa = self.bodies.pair.tangential_ratio
+        after = slides.after(self.bodies.law, outcome.part(found, ~inside), kappa, beyond[:, None])
+        changes[~inside] = beyond - after[:, 0]
+        return normal, changes
+
+    def _rebounds(self, impacts: Impacts) -> tuple[Rebound, Outcome]:
         found, flags, unclamped, root = self._outcomes(impacts)
         r, made = impacts.radius, self.bodies.factors
         return rebound(
             self.bodies.law.data, self.bodies.limits, impacts, made.time * r / root,
             made.mass * (r * r * r), unclamped, found, flags,
-        )  # fmt: skip
+        ), found  # fmt: skip
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
@@ -191,15 +214,20 @@ class Tabulated:
             flags[outside] = self.border.complete(law, self.packed, found, outside)
         return found, flags, unclamped, root
 
-    def _shapes(self, found: Outcome, samples: int) -> History:
-        """Contacts over time on Hertz's scale, integrated where they are outside the table."""
+    def _inside(self, found: Outcome) -> NDArray[np.bool_]:
+        """Which outcomes the table reaches, rather than those that were integrated."""
         lam, chi = found.inelasticity, found.elastic_compression / found.yield_ratio
         # a clamped impact lies on the border, give or take a rounding error
-        inside = (lam <= lookup.lam_max(self.packed) * (1 + 1e-9)) & (
+        within = (lam <= lookup.lam_max(self.packed) * (1 + 1e-9)) & (
             chi <= lookup.chi_max(self.packed) * (1 + 1e-9)
         )
+        return np.asarray(within)
+
+    def _shapes(self, found: Outcome, samples: int) -> History:
+        """Contacts over time on Hertz's scale, integrated where they are outside the table."""
+        inside = self._inside(found)
         law, packed = self.bodies.law, cache.cached_shapes(self.table).packed_shapes
-        out = outcome.history(lam.size, samples)
+        out = outcome.history(inside.size, samples)
         if inside.all():
             shapes.sample(law.data, packed, found, out)
             return out

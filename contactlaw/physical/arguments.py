@@ -16,7 +16,8 @@ Array = NDArray[np.float64]
 # Units by argument. The others are dimensionless, for which pint and astropy take the unit "".
 _SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")
 _SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
-_SI |= dict.fromkeys(("speed", "slowest", "fastest"), "m/s") | {"rate": "1/s"}
+_SI |= dict.fromkeys(("speed", "slowest", "fastest", "sliding_speed"), "m/s") | {"rate": "1/s"}
+_SI |= {"velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"}
 
 _BARE = frozenset({float, int, np.float64})  # types without a unit, which long lists hold
 _LIMITS = {
@@ -27,6 +28,8 @@ _LIMITS = {
     "other_radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
     "thickness": (lookup.R_MIN, math.inf, "metres; inf is the half-space"),
     "contact_time": (1e-12, 1e6, "seconds"),
+    "sliding_speed": (-lookup.V_MAX, lookup.V_MAX, "m/s, of the contact point along the plate"),
+    "friction": (0.0, 1e3, "Coulomb's coefficient"),
 }
 
 
@@ -80,6 +83,26 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
     if array.shape == shape and not read_only:
         return np.ravel(array)
     return np.broadcast_to(array, shape).flatten()
+
+
+def vectors(**arguments: ArrayLike) -> tuple[Any, tuple[int, ...]]:
+    """Rows of three numbers (n, 3), copied, all of one length, and their common shape (..., 3)."""
+    arrays = {name: _numbers(name, value) for name, value in arguments.items()}
+    for name, values in arrays.items():
+        if values.ndim > 0 and values.shape[-1] != 3:
+            raise ValueError(
+                f"{name}: expected vectors of three numbers along the last axis, got shape "
+                f"{values.shape}"
+            )
+        if not np.isfinite(values).all():
+            raise ValueError(f"{name}: must be finite, got {arguments[name]!r}")
+    try:
+        shape = np.broadcast_shapes((3,), *(values.shape for values in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{n} {v.shape}" for n, v in arrays.items())
+        raise ValueError(f"{next(iter(arrays))}: shapes do not broadcast: {shapes}") from None
+    rows = (np.broadcast_to(values, shape).reshape(-1, 3) for values in arrays.values())
+    return tuple(np.array(row, dtype=np.float64, order="C") for row in rows), shape
 
 
 def number(name: str, value: float) -> float:

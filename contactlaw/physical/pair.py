@@ -70,6 +70,20 @@ class Pair:
         return 1.0 / compliance
 
     @property
+    def tangential_ratio(self) -> float:
+        """Stiffness of a contact along the surface over that across it, 4 G*/E* [-].
+
+        From 2/3 to 4/3; 2 (1 - nu)/(2 - nu) for bodies of one material (Johnson 1985, section 7.3).
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> round(cl.Pair("glass", "glass").tangential_ratio, 3)
+        0.883
+        """
+        return 4.0 * self.effective_shear_modulus / self.effective_modulus
+
+    @property
     def yield_speed(self) -> float:
         """Speed V_Y0 [m/s] from which one of the bodies yields, on a half-space.
 

@@ -382,17 +382,19 @@ def _write_nan(out: Outcome, n: int) -> None:
 
 
 @kernel(inline=True)
-def _is_valid(speed: float, radius: float, thickness: float) -> bool:
+def is_valid(speed: float, radius: float, thickness: float) -> bool:
     """Whether an impact is in its limits; without a branch, so that loops become vectors."""
     valid = (speed >= V_MIN) & (speed <= V_MAX) & (thickness >= R_MIN)
     return valid & (radius >= R_MIN) & (radius <= R_MAX) & (THINNEST * radius <= thickness)
 
 
-@kernel(cache=True)
-def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: float) -> float:
-    """COR for a ratio R/H; NaN where the speed is no positive number and outside the table."""
+@kernel
+def place_of(
+    table: Array, c_lam: float, c_chi: float, speed: float, ratio: float
+) -> tuple[float, float]:
+    """Place of an impact in the table, x and ln chi; NaN as in `restitution`."""
     if not V_MIN <= speed <= V_MAX:
-        return math.nan
+        return math.nan, math.nan
     log_speed, root = _log_and_root(speed)
     plate, stiffer = _plate(table, c_lam), 1.0
     if not is_thin(plate.corrections):
@@ -402,10 +404,16 @@ def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: f
     lam = inelasticity_of(plate, root, ratio, stiffer)
     x = lam / (lam + table[STRETCH])
     if not 0.0 <= x <= table[X_MAX]:
-        return math.nan
+        return math.nan, math.nan
     log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
     if not log_chi <= table[LOG_CHI_MAX]:
-        return math.nan
+        return math.nan, math.nan
+    return x, log_chi
+
+
+@kernel
+def cor_at(table: Array, x: float, log_chi: float) -> float:
+    """COR at a place in the table."""
     row, column, s, t = locate(table, x, log_chi)
     step = int(table[COLUMNS])
     first = int(table[COR_AT]) + row * step + column
@@ -413,11 +421,18 @@ def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: f
 
 
 @kernel(cache=True)
+def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: float) -> float:
+    """COR for a ratio R/H; NaN where the speed is no positive number and outside the table."""
+    x, log_chi = place_of(table, c_lam, c_chi, speed, ratio)
+    return cor_at(table, x, log_chi) if x == x else math.nan
+
+
+@kernel(cache=True)
 def restitution_on_plate(
     table: Array, c_lam: float, c_chi: float, speed: float, radius: float, thickness: float
 ) -> float:
     """COR of one sphere on a plate; NaN for bad input and outside the table."""
-    if not _is_valid(speed, radius, thickness):
+    if not is_valid(speed, radius, thickness):
         return math.nan
     return restitution(table, c_lam, c_chi, speed, radius / thickness)
 
@@ -463,7 +478,7 @@ def _coordinates(
         log_chi[i] = c_chi + 0.8 * log_chi[i] + log_w[i]
     good = 0
     for i in range(x.size):
-        valid = _is_valid(speed[i], radius[i], thickness[i]) & (x[i] >= 0.0)
+        valid = is_valid(speed[i], radius[i], thickness[i]) & (x[i] >= 0.0)
         good += valid & (x[i] <= x_max) & (log_chi[i] <= log_chi_max)
     return good == x.size
 
@@ -480,7 +495,7 @@ def _move_inside(
 ) -> None:
     """Set coordinates of invalid impacts, or outside the table, to 0; `outside` is NaN for them."""
     for i in range(x.size):
-        valid = _is_valid(speed[i], radius[i], thickness[i])
+        valid = is_valid(speed[i], radius[i], thickness[i])
         inside = valid and 0.0 <= x[i] <= table[X_MAX] and log_chi[i] <= table[LOG_CHI_MAX]
         outside[i] = 0.0 if inside else math.nan
         x[i], log_chi[i] = (x[i], log_chi[i]) if inside else (0.0, 0.0)

@@ -42,7 +42,18 @@ def impact(lam, y, law="myc"):
 def force_history(lam, y, share):
     """Force and speed of the sphere at shares of the contact time."""
     _, end, _, at = _integrated(lam, y, "myc", dense_output=True)
-    return np.array([at(t) for t in end * share]).T
+    return np.array([at(t)[:2] for t in end * share]).T
+
+
+def contact(lam, y):
+    """Contact time, largest compression, and force and compression as functions of time."""
+    _, end, largest, at = _integrated(lam, y, "myc", dense_output=True)
+
+    def force_and_compression(time):
+        force, _, compression = at(time)
+        return force, compression
+
+    return end, largest, force_and_compression
 
 
 def _integrated(lam, y, law, **options):
@@ -95,7 +106,7 @@ def _integrated(lam, y, law, **options):
     def at(time):
         part, law_there = next(p for p in parts if time <= p[0].t[-1] or p is parts[-1])
         w, speed = part.sol(time)
-        return law_there(w), speed
+        return law_there(w), speed, w
 
     return -run.y[1, -1], run.t[-1], wm, at
 

@@ -1,0 +1,152 @@
+"""Tangential motion of a contact whose normal history is known: springs that slide.
+
+The method of dimensionality reduction (Popov & Hess 2015; Willert & Popov, Sci. Rep. 6 (2016) 8479)
+replaces a contact of radius a by independent springs across it. Those that lie within the radius
+carry the incremental stiffness k = 2 E* a of the normal contact, so k itself serves as the
+coordinate across it: a spring is the part of the contact between two values of k. Each spring has
+kappa = G*/E* of its normal stiffness along the surface, and Coulomb's law holds for each by itself,
+with its own share of the normal force. For elastic bodies this is the solution of Cattaneo and
+Mindlin, whatever the history.
+
+If the contact unloads as F = c d^n, the shares at x, as a part of k, are proportional to 1 - x^p
+with p = 1/(n - 1): Hertz's law has 2. They add up to the whole force at any load, because the
+outermost spring is only as wide as the contact.
+
+Friction needs no number of its own: with speeds in mu V0 and tangential forces in mu m V0/T_H,
+Coulomb's coefficient is 1.
+
+Legend: V0 normal approach speed, T_H Hertz's time, m mass, d compression, q its root, f normal
+force, y yield compression, all on Hertz's scale as in `contactlaw.equation.zener`.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.equation import force
+from contactlaw.equation.outcome import History
+
+Array = NDArray[np.float64]
+
+# What a tangential force changes at the contact point of a solid sphere, beside its centre: 1 for
+# the centre and m R^2/I = 5/2 for the spin.
+POINT = 3.5
+SPRINGS = 64  # of a reference solution
+
+
+class Stiffness(NamedTuple):
+    """The elastic part of a contact at one moment."""
+
+    normal: float  # k = dF/dd of unloading
+    power: float  # p of the shares of the normal force
+
+
+@kernel(inline=True)
+def share_within(x: float, power: float) -> float:
+    """Share of the normal force that the part of a contact up to x, a part of k, carries."""
+    if power == 2.0:
+        return 1.5 * x - 0.5 * x * x * x
+    return x * (1.0 + (1.0 - math.pow(x, power)) / power)
+
+
+@kernel(inline=True)
+def limited(wish: float, most: float) -> float:
+    """Clip a number to `most` of either sign."""
+    return min(max(wish, -most), most)
+
+
+@kernel
+def stiffness_at(law: Array, y: float, largest: float, d: float, f: float) -> Stiffness:
+    """Elastic part of a contact that was loaded up to `largest`; y = inf follows Hertz's law."""
+    exponent, left = 1.5, 0.0
+    if largest > y * force.leaves_hertz(law):
+        curve = force.unloading(law, largest / y)
+        exponent, left = 0.5 * curve.exponent, curve.residual * y
+    power = 2.0 if exponent == 1.5 else 1.0 / (exponent - 1.0)
+    return Stiffness(exponent * f / (d - left) if d > left else 0.0, power)
+
+
+@kernel(inline=True)
+def part_of(spring: int, springs: int, width: float, k: float) -> float:
+    """Width in k of a spring that touches: the last one is as wide as it has to be."""
+    wide = max(k - spring * width, 0.0)
+    return wide if spring == springs - 1 else min(width, wide)
+
+
+@kernel
+def pull(
+    stretch: Array, width: float, kappa: float, before: float, now: Stiffness, f: float,
+    path: Array, total: Array,
+) -> None:  # fmt: skip
+    """Move springs (springs, impacts) along the surface by each impact's path; total their force.
+
+    A spring is `width` wide in k, and `before` is k at the last call. Parts that have joined since
+    then share half the path, and those that have left take their force with them: their energy is
+    lost, and no step makes any.
+    """
+    springs, within, k = stretch.shape[0], 0.0, now.normal
+    total[:] = 0.0
+    for n in range(springs):
+        wide = part_of(n, springs, width, k)
+        if wide == 0.0:
+            stretch[n] = 0.0
+            continue
+        held = min(part_of(n, springs, width, before), wide)
+        share = share_within((n * width + wide) / k, now.power)
+        most = f * (share - within)
+        within = share
+        old, new, per_force = kappa * held, 0.5 * kappa * (wide + held), 1.0 / (kappa * wide)
+        for i in range(path.size):
+            pulled = limited(old * stretch[n, i] + new * path[i], most)
+            stretch[n, i] = pulled * per_force
+            total[i] += pulled
+
+
+@kernel
+def slide(law: Array, y: float, kappa: float, path: History, speed: Array, stretch: Array) -> None:
+    """Turn speeds of the contact point before an impact into those after it [mu V0].
+
+    All have the same normal history, `path`. In each step the impulse of the normal force, which
+    the history knows exactly, is multiplied by the mean of the ratios of tangential and normal
+    force at either end: a contact that slides all the time gets mu times the normal impulse.
+    """
+    time, f, d = path.time, path.force, path.compression
+    peak = 0.0
+    for i in range(time.size):
+        peak = max(peak, stiffness_at(law, y, d[i], d[i], f[i]).normal)
+    width = peak / stretch.shape[0]
+    stretch[:] = 0.0
+    ratio, moved = np.empty(speed.size), np.empty(speed.size)
+    for n in range(speed.size):  # a contact that just begins either slides or sticks as a whole
+        ratio[n] = limited(kappa * speed[n], 1.0)
+    largest, before = 0.0, 0.0
+    for i in range(1, time.size):
+        half, step = 0.5 * POINT * (path.impulse[i] - path.impulse[i - 1]), time[i] - time[i - 1]
+        for n in range(speed.size):
+            speed[n] -= half * ratio[n]
+            moved[n] = step * speed[n]
+        largest = max(largest, d[i])
+        if f[i] > 0.0:
+            now = stiffness_at(law, y, largest, d[i], f[i])
+            pull(stretch, width, kappa, before, now, f[i], moved, ratio)
+            before = now.normal
+            for n in range(speed.size):
+                ratio[n] /= f[i]
+        for n in range(speed.size):
+            speed[n] -= half * ratio[n]
+
+
+@kernel(cache=True)
+def slide_all(
+    law: Array, y: Array, kappa: float, paths: History, speed: Array, springs: int
+) -> None:
+    """`slide` for speeds (histories, speeds)."""
+    stretch = np.empty((springs, speed.shape[1]))
+    for n in range(speed.shape[0]):
+        path = History(paths.time[n], paths.force[n], paths.compression[n], paths.impulse[n])
+        slide(law, y[n], kappa, path, speed[n], stretch)

@@ -1,0 +1,201 @@
+"""Oblique impacts of solid spheres in SI units: tangential rebound and spin.
+
+Legend: R radius, m mass, n unit normal from the plate to the sphere, s velocity of the contact
+point along the plate (of the centre, and from spin), J_n and J_t impulses, e restitution, mu
+coefficient of friction, I = 2/5 m R^2. A tangential impulse changes s by 7/2 J_t/m, of which the
+centre has 2/7 and the spin the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.equation.tangential import POINT
+from contactlaw.physical.arguments import shaped
+from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.table import lookup
+from contactlaw.table.slides import change
+
+Array = NDArray[np.float64]
+Vector = tuple[float, float, float]
+
+FASTEST = 1e9  # psi from which the digits of a sliding speed no longer matter
+
+
+@dataclass(frozen=True)
+class ObliqueRebound(Rebound):
+    """Outcome of an oblique impact, or of many: the fields of `Rebound` and those of friction.
+
+    The shares of the energy are those of the normal motion.
+
+    Attributes
+    ----------
+    sliding_speed
+        Speed of the contact point along the plate afterwards, negative if it has turned round
+        [m/s].
+    tangential_restitution
+        v_t'/v_t of the centre of a bead that came without spin [-]; NaN without sliding.
+    rotational_restitution
+        beta = -v_s'/v_s of the contact point (Walton 1993) [-]; NaN without sliding.
+    impulse_ratio
+        J_t/J_n [-]; below the coefficient of friction it did not slide all the time.
+    friction_energy
+        What friction took: (1/7) m (v_s^2 - v_s'^2) [J].
+    """
+
+    sliding_speed: float | Array
+    tangential_restitution: float | Array
+    rotational_restitution: float | Array
+    impulse_ratio: float | Array
+    friction_energy: float | Array
+
+
+class Sliding(NamedTuple):
+    """How a bead approaches a plate."""
+
+    speed: float  # normal approach speed [m/s]
+    size: float  # sliding speed [m/s]
+    along: Vector  # s [m/s]
+
+
+@kernel
+def unit(n: Vector) -> Vector:
+    """Direction of a vector."""
+    size = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
+    return n[0] / size, n[1] / size, n[2] / size
+
+
+@kernel
+def sliding(v: Vector, omega: Vector, n: Vector, w: Vector, radius: float) -> Sliding:
+    """Speeds of a bead towards and along a plate that moves with w; n has the length 1."""
+    x = v[0] - w[0] - radius * (omega[1] * n[2] - omega[2] * n[1])
+    y = v[1] - w[1] - radius * (omega[2] * n[0] - omega[0] * n[2])
+    z = v[2] - w[2] - radius * (omega[0] * n[1] - omega[1] * n[0])
+    u = x * n[0] + y * n[1] + z * n[2]
+    s = x - u * n[0], y - u * n[1], z - u * n[2]
+    return Sliding(-u, math.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]), s)
+
+
+@kernel
+def rebound_of(
+    v: Vector, omega: Vector, n: Vector, came: Sliding, radius: float, e: float, changed: float
+) -> tuple[Vector, Vector]:
+    """Velocity and spin afterwards, from the restitution and the change of the sliding speed."""
+    up = (1.0 + e) * came.speed
+    part = changed / came.size if came.size > 0.0 else 0.0
+    centre, s = part / POINT, came.along
+    spin = (1.0 - 1.0 / POINT) * part / radius
+    return (
+        (
+            v[0] + up * n[0] - centre * s[0],
+            v[1] + up * n[1] - centre * s[1],
+            v[2] + up * n[2] - centre * s[2],
+        ),
+        (
+            omega[0] + spin * (n[1] * s[2] - n[2] * s[1]),
+            omega[1] + spin * (n[2] * s[0] - n[0] * s[2]),
+            omega[2] + spin * (n[0] * s[1] - n[1] * s[0]),
+        ),
+    )
+
+
+@kernel
+def tangential(
+    table: Array, slides: Array, c_lam: float, c_chi: float, radius: float, thickness: float,
+    friction: float, speed: float, size: float,
+) -> tuple[float, float]:  # fmt: skip
+    """COR and change of the sliding speed [m/s]; NaN for bad input or outside the table."""
+    limit = friction * speed
+    if not (lookup.is_valid(speed, radius, thickness) and 0.0 <= limit < math.inf):
+        return math.nan, math.nan
+    x, log_chi = lookup.place_of(table, c_lam, c_chi, speed, radius / thickness)
+    if x != x:
+        return math.nan, math.nan
+    e = lookup.cor_at(table, x, log_chi)
+    psi = min(size / limit, FASTEST) if limit > 0.0 else 0.0
+    return e, limit * change(slides, x, log_chi, e, psi)
+
+
+@kernel
+def collide(
+    table: Array, slides: Array, c_lam: float, c_chi: float, v: Vector, omega: Vector, n: Vector,
+    radius: float, thickness: float, friction: float, w: Vector,
+) -> tuple[Vector, Vector]:  # fmt: skip
+    """Velocity and spin after an impact, as they were if the bead recedes; NaN as `tangential`."""
+    n = unit(n)
+    came = sliding(v, omega, n, w, radius)
+    if came.speed < lookup.V_MIN:
+        return v, omega
+    e, changed = tangential(
+        table, slides, c_lam, c_chi, radius, thickness, friction, came.speed, came.size
+    )
+    return rebound_of(v, omega, n, came, radius, e, changed)
+
+
+@kernel
+def _vector(rows: Array, i: int) -> Vector:
+    return rows[i, 0], rows[i, 1], rows[i, 2]
+
+
+@kernel(cache=True)
+def approach_all(
+    velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, speed: Array,
+    size: Array,
+) -> None:  # fmt: skip
+    """Speeds of beads towards plates and along them; vectors are rows."""
+    for i in range(radius.size):
+        came = sliding(
+            _vector(velocity, i), _vector(spin, i), _vector(normal, i), _vector(wall, i), radius[i]
+        )
+        speed[i], size[i] = came.speed, came.size
+
+
+@kernel(cache=True)
+def tangential_all(
+    table: Array, slides: Array, c_lam: float, c_chi: float, radius: Array, thickness: Array,
+    friction: Array, speed: Array, size: Array, e: Array, changed: Array,
+) -> None:  # fmt: skip
+    """`tangential` of many impacts."""
+    for i in range(radius.size):
+        e[i], changed[i] = tangential(
+            table, slides, c_lam, c_chi, radius[i], thickness[i], friction[i], speed[i], size[i]
+        )
+
+
+@kernel(cache=True)
+def rebound_all(
+    velocity: Array, spin: Array, normal: Array, wall: Array, radius: Array, e: Array,
+    changed: Array,
+) -> None:  # fmt: skip
+    """Replace velocities and spins by those afterwards, where a bead does not recede."""
+    for i in range(radius.size):
+        v, omega, n = _vector(velocity, i), _vector(spin, i), _vector(normal, i)
+        came = sliding(v, omega, n, _vector(wall, i), radius[i])
+        if came.speed >= lookup.V_MIN:
+            v, omega = rebound_of(v, omega, n, came, radius[i], e[i], changed[i])
+            for k in range(3):
+                velocity[i, k], spin[i, k] = v[k], omega[k]
+
+
+def of(
+    normal: Rebound, impacts: Impacts, mass: Array, size: Array, changed: Array
+) -> ObliqueRebound:
+    """Complete an answer: normal part, sliding speed before it and the change of that [m/s]."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        part = changed / size  # NaN without sliding
+    e, after = np.ravel(normal.restitution), size - changed
+    found: dict[str, Any] = {
+        "sliding_speed": after,
+        "tangential_restitution": 1.0 - part / POINT,
+        "rotational_restitution": part - 1.0,
+        "impulse_ratio": changed / POINT / ((1.0 + e) * impacts.speed),
+        "friction_energy": mass / (2.0 * POINT) * changed * (size + after),
+    }
+    found = {name: shaped(values, impacts.shape) for name, values in found.items()}
+    return ObliqueRebound(**vars(normal), **found)
