@@ -19,7 +19,7 @@ from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.physical.validity import flags_of
 from contactlaw.stepping import energy
 from contactlaw.stepping.energy import dot
-from contactlaw.stepping.friction import surface_velocity, tangential_force
+from contactlaw.stepping.friction import clear_friction, surface_velocity, tangential_force
 from contactlaw.stepping.plate_rows import limits_of, spring_of
 from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, impact
 from contactlaw.table.lookup import THINNEST
@@ -318,7 +318,15 @@ def clear_contact(bead: Bead, k: int) -> None:
     """Empty the row of a contact."""
     bead.contacts[k] = NO_CONTACT[0]
     if len(bead.friction) > 0:
-        bead.friction[k].stretch[:] = 0.0
+        clear_friction(bead.friction[k])
+
+
+@kernel
+def state_of(row: Any) -> State:
+    """State of the normal force in the row of a contact."""
+    return State(
+        row.plate_displacement, row.largest_compression, row.force, row.mobility, row.stiffening
+    )
 
 
 @kernel
@@ -339,9 +347,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r)
-    last = State(
-        row.plate_displacement, row.largest_compression, row.force, row.mobility, row.stiffening
-    )
+    last = state_of(row)
     state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
@@ -403,13 +409,12 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         return
     n, sliding = (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0)
     if len(bead.friction) > 0:
-        stiffness = plate_row.tangential * math.sqrt(
-            bead.r * max(touch.x - row.plate_displacement, 0.0)
-        )
         slip = surface_velocity(contact.v, bead.omega, bead.r, n)
+        law = array_at(plate_row.law, plate_row.law_size, np.float64)
         sliding = tangential_force(
-            bead.friction[k], scene.friction, stiffness, n, slip,
-            clock.dt if clock.advancing else 0.0, row.force, row.extra_force,
+            bead.friction[k], scene.friction, plate_row.tangential, law,
+            spring_of(plate_row, bead.r), state_of(row), touch.x, row.approach_speed, n, slip,
+            clock.dt if clock.advancing else 0.0, row.extra_force,
         )  # fmt: skip
         bead.torque[0] -= bead.r * (n[1] * sliding[2] - n[2] * sliding[1])
         bead.torque[1] -= bead.r * (n[2] * sliding[0] - n[0] * sliding[2])

@@ -83,7 +83,7 @@ def _first_alike(rows: Any, laws: list[list[str]]) -> NDArray[np.intp]:
 
 
 def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
-    row["tangential"] = 8.0 * model.pair.effective_shear_modulus
+    row["tangential"] = model.pair.tangential_ratio
     spring = unit_spring(model, thickness)
     parts: dict[str, Any] = spring._asdict() | model.limits._asdict()
     parts |= parts.pop("plate")._asdict()

@@ -70,8 +70,8 @@ Other commands
 What it leaves out
     Beads do not touch walls across a periodic boundary; the contact of a bead that crosses one goes
     on with the wall there that has the same overlap. The virial has no part of the walls. The law
-    does not know the curvature of a wall, and at an edge it is that of the face. Sliding friction
-    has a spring without damping, as LAMMPS's ``mindlin``; there is no rolling friction.
+    does not know the curvature of a wall, and at an edge it is that of the face. There is no
+    rolling friction.
 """
 
 from contactlaw.engines.lammps.attachment import LammpsPlates, attach

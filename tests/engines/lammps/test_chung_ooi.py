@@ -7,8 +7,8 @@ those of polyethylene PySPH's. Its curves are as Kratos has read them off the fi
 (test_examples/basic_benchmarks/paper_data), rounded; the reader's hand is worth about 1 % of an
 axis. The inputs of test 6 for nylon could not be had.
 
-Beside them stand closed forms (Hertz; a sphere that slides all the time) and `slip_of`, a plain
-integration of the same contact in 20,000 steps that shares no line with the package.
+Beside them stand closed forms (Hertz; a sphere that slides all the time) and `slip_of`, 400 springs
+across the same contact, which share no line with the package.
 """
 
 import math
@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from lammps_box import attach, quiet
+from springs import follow
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate
@@ -125,30 +126,43 @@ def rebound(case, along, normal, spin=0.0):
     return Rebound(v[:, 1], v[:, 2], omega[:, 0], slip, rows)
 
 
-def slip_of(case, slip, normal, *, share=1.0, increments=False):
-    """Slip after the impact, by an integration of our own.
+def slip_of(case, slip, normal):
+    """Slip after impacts with one normal speed each, by 400 springs and an integration of our own.
 
-    It takes a `share` of the tangential stiffness, and can sum up the force instead of the spring.
+    It begins with a step of no length, since the springs know no contact before.
     """
-    slip, normal = np.broadcast_arrays(np.asarray(slip, float), np.asarray(normal, float))
-    slip, u = slip.copy(), normal.copy()
-    shear = 8 * share * case.modulus / (2 * (1 + case.ratio) * (2 - case.ratio))
-    x, largest, spring, pull = (np.zeros_like(slip) for _ in range(4))
+    after = []
+    for one, speed in np.broadcast(slip, normal):
+        dt, x, u, top = CYCLE * case.compression(speed) / speed / 4000, 0.0, speed, 0.0
+        path = []
+        for _ in range(4100):
+            top = max(top, x)
+            left = (1 - case.restitution**2) * top
+            back = max((x - left) / (top - left), 0.0) ** 1.5 if x > 0.0 else 0.0
+            force = case.stiffness * top**1.5 * back
+            path.append((force, 1.5 * force / (x - left) if x > left else 0.0))
+            u -= dt * force / case.mass
+            x += dt * u
+        kappa = 2 * (1 - case.ratio) / (2 - case.ratio)
+        after.append(follow(path, dt, kappa, [one], case.friction, case.mass)[0])
+    return np.array(after)
+
+
+def slip_of_programs(case, slip, normal):
+    """Slip after impacts as the paper's programs have it.
+
+    One spring with half the stiffness that belongs to Hertz's contact; its force is summed up.
+    """
+    slip, u = np.array(slip, float), normal
+    shear = 4 * case.modulus / (2 * (1 + case.ratio) * (2 - case.ratio))
+    x, pull = 0.0, np.zeros_like(slip)
     dt = CYCLE * case.compression(normal) / normal / 20_000
     for _ in range(20_020):
-        largest = np.maximum(largest, x)
-        left = (1 - case.restitution**2) * largest
-        back = np.clip((x - left) / np.maximum(largest - left, 1e-300), 0, None) ** 1.5
-        force = case.stiffness * largest**1.5 * back
-        k, most = shear * np.sqrt(case.radius * np.maximum(x, 0)), case.friction * force
-        if increments:
-            pull = np.clip(pull + k * slip * dt, -most, most)
-        else:
-            spring += slip * dt
-            pull = np.clip(k * spring, -most, most)
-            spring = np.where(abs(k * spring) > most, pull / np.maximum(k, 1e-300), spring)
-        u = u - dt * force / case.mass
-        x = x + dt * u
+        force = case.stiffness * max(x, 0.0) ** 1.5
+        most = case.friction * force
+        pull = np.clip(pull + shear * math.sqrt(case.radius * max(x, 0.0)) * slip * dt, -most, most)
+        u -= dt * force / case.mass
+        x += dt * u
         slip = slip - dt * 3.5 * pull / case.mass  # 3.5: a solid sphere
     return slip
 
@@ -227,11 +241,10 @@ SPIN = {
     ALLOY_4: [35.3, 224, 390, 519, 599, 618, 582, 545, 458, 359, 245, 125, 64.2],
 }
 TURN = [3.76, -1.56, -5.54, -7.54, -7.54, -3.55, 3.43, 11.57, 29.35, 47.79, 64.58, 78.70, 84.52]
-# Kharaz, Gorham, Salman, Powder Technology 120 (2001) 281: aluminium oxide on glass; without what
-# is below 5 degrees, and a spin of 135 at 5.9, of which the paper's programs have 19 to 35 at 5
+# Kharaz, Gorham, Salman, Powder Technology 120 (2001) 281: aluminium oxide on glass
 MEASURED_ALONG = [(9.84, .675), (20.22, .599), (30.36, .690), (39.54, .774), (49.60, .848),
                   (71.07, .937), (79.23, .970), (85.17, .979)]  # fmt: skip
-MEASURED_SPIN = [(10.87, 261), (21.12, 574), (31.14, 612), (38.95, 595), (50.24, 450),
+MEASURED_SPIN = [(5.90, 135), (10.87, 261), (21.12, 574), (31.14, 612), (38.95, 595), (50.24, 450),
                  (60.10, 376), (69.96, 243), (78.56, 142), (84.32, 70.6)]  # fmt: skip
 MEASURED_TURN = [(9.72, -1.06), (20.31, -8.53), (30.16, -2.55), (39.12, 9.91), (49.51, 30.0),
                  (59.90, 50.0), (70.46, 66.9), (78.86, 78.9), (84.78, 85.7)]  # fmt: skip
@@ -245,7 +258,7 @@ def oblique(request):
 
 
 def test_4_oblique_impact_by_closed_forms(oblique):
-    """Compare with our own integration and, from 35 degrees on, with a rigid bead that slides."""
+    """Compare with 400 springs and, from 35 degrees on, with a rigid bead that slides."""
     case, along, normal, after = oblique
     mu, e, r = case.friction, case.restitution, case.radius
     assert after.normal == pytest.approx(e * normal, abs=1e-3 * case.speed)
@@ -258,12 +271,16 @@ def test_4_oblique_impact_by_closed_forms(oblique):
 
 
 def test_4_oblique_impact_as_published(oblique):
-    """The programs of the paper, which use damping, agree within the accuracy of its figures."""
+    """The programs of the paper, which use damping, agree where beads slide most of the time.
+
+    Below 30 degrees their one spring has a tangential COR of up to 0.2 above the measured one.
+    """
     case, along, normal, after = oblique
     turn = np.degrees(np.arctan(after.slip / after.normal))
-    assert after.along / along == pytest.approx(np.array(ALONG[case]), abs=0.008)
-    assert -after.spin == pytest.approx(np.array(SPIN[case]), abs=7.0)
-    assert turn == pytest.approx(np.array(TURN), abs=1.0)
+    slides = np.array(ANGLES) >= 30
+    assert (after.along / along)[slides] == pytest.approx(np.array(ALONG[case])[slides], abs=0.008)
+    assert -after.spin[slides] == pytest.approx(np.array(SPIN[case])[slides], abs=7.0)
+    assert turn[slides] == pytest.approx(np.array(TURN)[slides], abs=1.0)
 
 
 @pytest.mark.parametrize("oblique", [OXIDE_4], ids=["aluminium oxide"], indirect=True)
@@ -298,28 +315,30 @@ ELEMENTS = [(0.27, -0.03), (0.59, -0.03), (0.88, -0.08), (1.19, -0.21), (1.55, -
 
 @pytest.mark.parametrize("case", [STEEL, POLYETHYLENE], ids=["steel", "polyethylene"])
 def test_5_tangential_speeds(case):
-    """Compare with our own integration, with a rigid bead that slides, and with published results.
+    """Compare with 400 springs, with a rigid bead that slides, and with published results.
 
-    Where a bead sticks, the paper's curves are of half the tangential stiffness that belongs to
-    Hertz's contact, with the force summed up: our own integration of that is on them. (Kratos
-    compares the sliding beads alone.) Finite elements lie between, for they know of micro-slip.
+    Where a bead sticks, the paper's curves are of one spring that is too soft; `slip_of_programs`
+    is on them. (Kratos compares the sliding beads alone.) Its finite elements know of micro-slip,
+    as our springs do; below psi = 1.2 they lie up to 0.15 lower.
     """
     unit = case.friction * case.speed
     after = rebound(case, BEFORE * unit, case.speed)
     slip, rim = after.slip / unit, case.radius * after.spin / unit
     assert after.normal == pytest.approx(case.speed, rel=1e-6)
     assert slip == pytest.approx(BEFORE + 1.4 * rim, abs=1e-6)  # angular momentum
-    assert slip == pytest.approx(slip_of(case, BEFORE * unit, case.speed) / unit, abs=3e-3)
+    assert slip == pytest.approx(slip_of(case, BEFORE * unit, case.speed) / unit, abs=8e-3)
     slides = BEFORE > 7.0
     assert rim[slides] == pytest.approx(-5.0, abs=1e-6)
     published = np.array(AFTER[case])
     assert slip[BEFORE >= 6.0] == pytest.approx(published[BEFORE >= 6.0], abs=0.06)
-    theirs = slip_of(case, BEFORE * unit, case.speed, share=0.5, increments=True) / unit
+    theirs = slip_of_programs(case, BEFORE * unit, case.speed) / unit
     assert theirs == pytest.approx(published, abs=0.14)
     at, elements = np.array(ELEMENTS).T
     ours = np.interp(at, BEFORE, slip)
     assert ours[at >= 7.0] == pytest.approx(elements[at >= 7.0], abs=0.08)
-    assert ours == pytest.approx(elements, abs=0.75)  # 0.73 for steel where it is worst
+    if case is STEEL:  # of which the elements are
+        assert ours[at > 1.3] == pytest.approx(elements[at > 1.3], abs=0.08)
+        assert ours == pytest.approx(elements, abs=0.16)
 
 
 # Test 6: 0.2 m/s normal and a spin; 3.5 mu (1 + e) times the normal speed, and minus slip
@@ -330,7 +349,7 @@ STEEP = [(2.749, 1.272), (3.733, 3.241), (5.677, 7.127), (6.106, 7.985)]
 
 
 def test_6_spins():
-    """Compare with our own integration; for sliding beads also with closed form and publication.
+    """Compare with 400 springs; for sliding beads also with closed form and publication.
 
     The paper's beads that stick are damped along the plane too, which ours are not.
     """
@@ -344,7 +363,7 @@ def test_6_spins():
     after = rebound(case, 0.0 * before, case.speed, before / case.radius)
     assert after.normal == pytest.approx(case.restitution * case.speed, rel=1e-3)
     assert after.slip / before == pytest.approx(
-        slip_of(case, before, case.speed) / before, abs=3e-3
+        slip_of(case, before, case.speed) / before, abs=0.01
     )
     sliding = after.slip[: len(x) + len(tangent)]
     assert sliding == pytest.approx(before[: len(sliding)] - most, abs=2e-3 * case.speed)

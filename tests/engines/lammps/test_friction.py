@@ -1,0 +1,114 @@
+"""Friction between beads and walls in LAMMPS: against integration, on inclines, in mid-contact."""
+
+import math
+
+import lammps_box as box
+import numpy as np
+import pytest
+from lammps_box import R, above, attach, flat, make, scene, state
+
+import contactlaw as cl
+from contactlaw.engines.lammps.memory import FIRST, SLIDING, WIDTH
+
+MODELS = {
+    "myc": cl.ImpactModel(box.PAIR, law="myc"),
+    "fem": cl.ImpactModel(cl.Pair("stainless-steel-304", "glass")),
+}
+PSI = np.array([0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0])
+MU = 0.2
+
+
+def slid(model, thickness, speed, steps):
+    """Sliding speeds after impacts that came with PSI, in mu V0."""
+    dt = float(model.solve(speed, R, thickness).contact_time) / steps
+    places = [above(3.3 * dt * speed, x=0.008 * n - 0.036) for n in range(PSI.size)]
+    along = np.column_stack((PSI * MU * speed, 0 * PSI, -speed + 0 * PSI))
+    lmp, _ = scene(model, [flat(thickness)], places, along, friction=MU, dt=dt)
+    # the model's mass, which is not that of the box's beads for another pair
+    lmp.command(f"set group all density {model.pair.sphere.density}")
+    lmp.command(f"run {int(1.2 * steps) + 8}")
+    now = state(lmp)
+    assert (now["v"][:, 2] > 0).all()
+    return (now["v"][:, 0] - R * now["omega"][:, 1]) / (MU * speed)
+
+
+@pytest.mark.parametrize("law", MODELS)
+@pytest.mark.parametrize(("thickness", "speed"), [(math.inf, 2.0), (1e-3, 5.0), (0.5e-3, 3.0)])
+def test_sliding_speed_is_that_of_the_integration(law, thickness, speed):
+    model = MODELS[law]
+    exact = model.oblique(speed, PSI * MU * speed, R, thickness, MU, method="solve").sliding_speed
+    for steps, bound in ((50, 0.012), (100, 0.008)):
+        error = slid(model, thickness, speed, steps) - exact / (MU * speed)
+        assert np.abs(error).max() < bound
+
+
+@pytest.mark.parametrize("share", [0.5, 0.97, 1.03, 2.0])
+@pytest.mark.parametrize("thickness", [0.5e-3, math.inf])
+def test_a_bead_that_cannot_roll_rests_on_an_incline_or_slides(share, thickness):
+    """On the half-space, which takes no energy, it jumps and creeps by 1e-9 R a step for ever."""
+    slope, g, dt, steps = math.atan(MU * share), 9.81, 2e-7, 100_000
+    lmp = make([above(1e-9)], (0, 0, 0), dt=dt)
+    down = f"{math.sin(slope)!r} 0 {-math.cos(slope)!r}"
+    lmp.commands_string(
+        f"unfix move\nunfix gravity\nfix move all nve\nfix tilt all gravity {g} vector {down}"
+    )
+    attach(lmp, MODELS["myc"], [flat(thickness)], friction=MU, records=10_000)
+    lmp.command(f"run {steps}")
+    now = state(lmp)
+    pulled = g * (math.sin(slope) - MU * math.cos(slope)) * steps * dt
+    if share > 1.0:
+        assert now["v"][0, 0] == pytest.approx(pulled, rel=0.08 if share < 1.1 else 0.01)
+    else:
+        assert abs(now["x"][0, 0]) < (2e-4 if thickness == math.inf else 1e-5) * R
+        assert abs(now["v"][0, 0]) < 1e-3 * g * steps * dt
+
+
+def test_beads_struck_in_mid_contact_gain_no_energy():
+    """What the tangential motion has at the end is what it came with and what the blows gave."""
+    count, generator = 60, np.random.default_rng(0)
+    model, dt = MODELS["myc"], 5e-8
+    places = [
+        above(1e-6, x=0.008 * (n % 8) - 0.03, y=0.008 * (n // 8) - 0.03) for n in range(count)
+    ]
+    start = generator.normal(size=(count, 3)) * (2, 2, 0) - (0, 0, 5)
+    lmp, _ = scene(model, [flat(1e-3)], places, start, friction=0.4, dt=dt)
+    lmp.command("run 0")
+    v, omega = (lmp.numpy.extract_atom(name) for name in ("v", "omega"))
+
+    def energy():
+        """Tangential kinetic energy of each bead over its mass, with spin."""
+        return 0.5 * (v[:count, :2] ** 2).sum(axis=1) + 0.2 * R**2 * (omega[:count] ** 2).sum(
+            axis=1
+        )
+
+    held = energy()
+    for _ in range(30):
+        lmp.command("run 10 post no")
+        before = energy()
+        v[:count] += generator.normal(size=(count, 3)) * (1, 1, 2)
+        omega[:count, :2] += generator.normal(size=(count, 2)) / R
+        held += energy() - before
+    lmp.commands_string("velocity all set NULL NULL 5\nrun 300")
+    assert (state(lmp)["x"][:, 2] > R).all()
+    assert (energy() <= held + 1e-9).all()
+    assert (energy() < 0.9 * held).sum() > 20
+
+
+def test_friction_at_most_doubles_the_memory_of_a_contact():
+    # without micro-slip a contact with friction had three numbers more than one without
+    assert FIRST + WIDTH + SLIDING <= 2 * (FIRST + WIDTH + 3)
+
+
+@pytest.mark.parametrize("normal", [(0, 0, 1), (1, 1, 1), (1, 0, 0), (-0.6, 0.64, 0.48)])
+def test_friction_does_nothing_to_a_bead_that_does_not_slide(normal):
+    """Nor to its place: a direction along the wall is needed, and there is none to follow."""
+    n = np.array(normal) / np.linalg.norm(normal)
+    a = np.cross(n, (0.3, -0.5, 0.8))
+    a /= np.linalg.norm(a)
+    b = np.cross(n, a)
+    plate = box.Plate(0.01 * (-a - b), 0.02 * a, 0.02 * b, 1e-3)
+    ends = []
+    for friction in (0.0, 0.5):
+        _, now = box.dropped(MODELS["myc"], [plate], (R + 2e-6) * n, -5 * n, friction=friction)
+        ends.append(np.concatenate((now["x"], now["v"], R * now["omega"])))
+    assert ends[1] == pytest.approx(ends[0], abs=1e-7)  # of 5 m/s; without a direction it is NaN
