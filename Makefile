@@ -53,6 +53,7 @@ pictures: .venv/test.done  ## draw the pictures of docs again, in about 10 minut
 	cp $(PICTURES)/rain/rain.gif $(PICTURES)/rain/restitution.png docs
 	cp $(PICTURES)/sieve/dissipation.png docs/sieve.png
 	cp $(PICTURES)/report/fig15_restitution.png docs/fem_restitution.png
+	cp $(PICTURES)/report/fig26_oblique.png docs/oblique.png
 
 clean:  ## remove the environment and the wheels
 	rm -rf .venv dist
