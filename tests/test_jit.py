@@ -48,6 +48,7 @@ def answers():
         "curve": model.curve(0.9e-3, 1e-3)(12.0),
         "sphere curve": model.sphere_sphere_curve(1e-3, 1e-3)(12.0),
         "kernel": model.kernel(*IMPACT),
+        "oblique": model.oblique(12.0, 5.0, 0.9e-3, 1e-3, 0.3, method="solve").sliding_speed,
         "outside, from the kernel": int(math.isnan(model.kernel(1e4, 0.9e-3, 1e-3))),
         "steps": [
             contacts.advance(np.array([depth]), 1e-7)[0] for depth in (1e-6, 5e-6, 9e-6, 5e-6)
@@ -97,6 +98,29 @@ def test_all_answers_without_the_compiler(tmp_path):
     for name, values in compiled.items():
         assert interpreted[name] == pytest.approx(values, rel=1e-9, abs=1e-9), name
     assert list(tmp_path.rglob("home/*")) == []
+
+
+def test_oblique_impacts_without_the_compiler(tmp_path):
+    # its table would take hours, so both integrate
+    code = """
+import json
+import contactlaw as cl
+model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+hit = model.oblique(2.0, 1.0, 1e-3, 3e-3, 0.2)
+new, _ = model.collide([[1.0, 0, -2.0], [1.0, 0, 2.0]], 0, [0, 0, 1], 1e-3, 3e-3, 0.2)
+print(json.dumps([hit.sliding_speed, *new.ravel()]))
+try:
+    model.collide_kernel
+except RuntimeError as error:
+    print(error)
+"""
+    out, _ = output(start(WITHOUT + code, tmp_path, NUMBA_DISABLE_JIT="1"))
+    numbers, refusal = out.splitlines()
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
+    hit = model.oblique(2.0, 1.0, 1e-3, 3e-3, 0.2, method="solve")
+    rows = [hit.tangential_restitution, 0, 2 * hit.restitution, 1, 0, 2]
+    assert json.loads(numbers) == pytest.approx([hit.sliding_speed, *rows], abs=1e-6)
+    assert refusal.startswith("numba is switched off (NUMBA_DISABLE_JIT is set)")
 
 
 REFUSALS = """

@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw._jit import in_memory, kernel
+from contactlaw._jit import in_memory, kernel, switched_off
 from contactlaw.answers.backend import Backend
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Tabulated
@@ -107,13 +107,13 @@ class Oblique:
         Parameters
         ----------
         velocity, spin : array_like
-            Of the beads before, shape (..., 3) [m/s, rad/s].
+            Of the beads before, shape (..., 3), or the number 0 [m/s, rad/s].
         normal : array_like
             Normal of the plate towards the bead, of any length, shape (..., 3).
         radius, thickness, friction : array_like
             As in `oblique`.
         wall_velocity : array_like, optional
-            Velocity of the plate at the contact point, shape (..., 3) [m/s].
+            Velocity of the plate at the contact point, shape (..., 3), or the number 0 [m/s].
 
         Returns
         -------
@@ -136,10 +136,9 @@ class Oblique:
         (v, omega, n, w), shape = vectors(
             velocity=velocity, spin=spin, normal=normal, wall_velocity=wall_velocity
         )
-        length = np.sqrt((n * n).sum(axis=1))
-        if not (length > 0.0).all():
+        if not n.any(axis=1).all():
             raise ValueError(f"normal: must not be zero, got {normal!r}")
-        n /= length[:, None]
+        oblique.unit_all(n)
         count = np.empty(shape[:-1])
         r, h, mu, _, within = broadcast(
             radius=radius, thickness=thickness, friction=friction, velocity=count
@@ -154,13 +153,16 @@ class Oblique:
         tabulated = self._tabulated
         speed, size, e, changed = np.empty((4, r.size))
         oblique.approach_all(v, omega, n, w, r, speed, size)
-        oblique.tangential_all(
-            tabulated.packed, tabulated.slides, tabulated.c_lam, tabulated.c_chi, r, h, mu, speed,
-            size, e, changed,
-        )  # fmt: skip
+        if switched_off():  # no table: all are answered as those beyond one
+            e[:] = np.nan
+        else:
+            oblique.tangential_all(
+                tabulated.packed, tabulated.slides, tabulated.c_lam, tabulated.c_chi, r, h, mu,
+                speed, size, e, changed,
+            )  # fmt: skip
         beyond = np.isnan(e) & (speed >= lookup.V_MIN)
         if beyond.any():
-            check(speed=speed[beyond])
+            check(speed=speed[beyond], sliding_speed=size[beyond])
             impacts = Impacts(speed[beyond], r[beyond], h[beyond], None)
             found, changed[beyond] = _answer(tabulated, impacts, mu[beyond], size[beyond])
             e[beyond] = found.restitution
@@ -175,6 +177,11 @@ class Oblique:
         tuples and gives two of them, velocity and spin. It cannot raise: bad input and an impact
         outside the table give NaN, whatever `outside` says.
 
+        Raises
+        ------
+        RuntimeError
+            If numba is switched off.
+
         Examples
         --------
         >>> import contactlaw as cl, numba
@@ -187,6 +194,11 @@ class Oblique:
         >>> round(velocity[2], 3)
         1.973
         """
+        if switched_off():
+            raise RuntimeError(
+                "numba is switched off (NUMBA_DISABLE_JIT is set), and without its compiler the "
+                "table of oblique impacts takes hours: call collide, which integrates then"
+            )
         known = self._tabulated
         return _jitted(known.packed, known.slides, known.c_lam, known.c_chi)
 
@@ -195,7 +207,8 @@ def _answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) ->
     """Everything about the normal part, and the change of the sliding speed [m/s]."""
     limit = friction * impacts.speed
     psi = np.zeros_like(limit)
-    np.divide(size, limit, out=psi, where=limit > 0.0)
+    with np.errstate(over="ignore"):  # with next to no friction psi is inf
+        np.divide(size, limit, out=psi, where=limit > 0.0)
     normal, changed = backend.oblique(impacts, np.clip(psi, -FASTEST, FASTEST))
     return normal, limit * changed
 

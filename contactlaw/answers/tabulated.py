@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
-from contactlaw._jit import direct, enable_caching
+from contactlaw._jit import direct, enable_caching, switched_off
 from contactlaw.answers.backend import (
     OutsideTableError,
     SphereOnPlate,
@@ -150,13 +150,16 @@ class Tabulated:
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
         normal, found = self._rebounds(impacts)
-        changes, inside = np.empty_like(psi), self._inside(found)
+        # without the compiler a table takes hours to make, and an integration a fifth of a second
+        changes, inside = np.empty_like(psi), self._inside(found) & (not switched_off())
         if inside.all():
             slides.changes(self.slides, found, psi, changes)
             return normal, changes
-        part = np.empty(np.count_nonzero(inside))
-        slides.changes(self.slides, outcome.part(found, inside), psi[inside], part)
-        changes[inside], beyond = part, psi[~inside]
+        if inside.any():
+            part = np.empty(np.count_nonzero(inside))
+            slides.changes(self.slides, outcome.part(found, inside), psi[inside], part)
+            changes[inside] = part
+        beyond = psi[~inside]
         kappa = self.bodies.pair.tangential_ratio
         after = slides.after(self.bodies.law, outcome.part(found, ~inside), kappa, beyond[:, None])
         changes[~inside] = beyond - after[:, 0]

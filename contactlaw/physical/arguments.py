@@ -19,6 +19,7 @@ _SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
 _SI |= dict.fromkeys(("speed", "slowest", "fastest", "sliding_speed"), "m/s") | {"rate": "1/s"}
 _SI |= {"velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"}
 
+ROUGHEST = 1e3  # largest coefficient of friction
 _BARE = frozenset({float, int, np.float64})  # types without a unit, which long lists hold
 _LIMITS = {
     "speed": (lookup.V_MIN, lookup.V_MAX, "m/s, the approach speed"),
@@ -29,7 +30,7 @@ _LIMITS = {
     "thickness": (lookup.R_MIN, math.inf, "metres; inf is the half-space"),
     "contact_time": (1e-12, 1e6, "seconds"),
     "sliding_speed": (-lookup.V_MAX, lookup.V_MAX, "m/s, of the contact point along the plate"),
-    "friction": (0.0, 1e3, "Coulomb's coefficient"),
+    "friction": (0.0, ROUGHEST, "Coulomb's coefficient"),
 }
 
 
@@ -86,10 +87,13 @@ def _flat(array: Array, shape: tuple[int, ...]) -> Array:
 
 
 def vectors(**arguments: ArrayLike) -> tuple[Any, tuple[int, ...]]:
-    """Rows of three numbers (n, 3), copied, all of one length, and their common shape (..., 3)."""
+    """Rows of three numbers (n, 3), copied, all of one length, and their common shape (..., 3).
+
+    The number 0 is the vector of zeros.
+    """
     arrays = {name: _numbers(name, value) for name, value in arguments.items()}
     for name, values in arrays.items():
-        if values.ndim > 0 and values.shape[-1] != 3:
+        if values.shape[-1:] != (3,) and not (values.ndim == 0 and values == 0.0):
             raise ValueError(
                 f"{name}: expected vectors of three numbers along the last axis, got shape "
                 f"{values.shape}"

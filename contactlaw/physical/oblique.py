@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
-from contactlaw.physical.arguments import shaped
+from contactlaw.physical.arguments import ROUGHEST, shaped
 from contactlaw.physical.rebound import Impacts, Rebound
 from contactlaw.table import lookup
 from contactlaw.table.slides import change
@@ -66,9 +66,11 @@ class Sliding(NamedTuple):
 
 @kernel
 def unit(n: Vector) -> Vector:
-    """Direction of a vector."""
-    size = math.sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2])
-    return n[0] / size, n[1] / size, n[2] / size
+    """Direction of a vector, whose squares may be beyond the largest or least number."""
+    most = max(abs(n[0]), abs(n[1]), abs(n[2]))
+    x, y, z = n[0] / most, n[1] / most, n[2] / most
+    size = math.sqrt(x * x + y * y + z * z)
+    return x / size, y / size, z / size
 
 
 @kernel
@@ -88,7 +90,7 @@ def rebound_of(
 ) -> tuple[Vector, Vector]:
     """Velocity and spin afterwards, from the restitution and the change of the sliding speed."""
     up = (1.0 + e) * came.speed
-    part = changed / came.size if came.size > 0.0 else 0.0
+    part = changed / came.size if came.size > 0.0 else 0.0 * changed  # a NaN stays one
     centre, s = part / POINT, came.along
     spin = (1.0 - 1.0 / POINT) * part / radius
     return (
@@ -112,7 +114,9 @@ def tangential(
 ) -> tuple[float, float]:  # fmt: skip
     """COR and change of the sliding speed [m/s]; NaN for bad input or outside the table."""
     limit = friction * speed
-    if not (lookup.is_valid(speed, radius, thickness) and 0.0 <= limit < math.inf):
+    if not (lookup.is_valid(speed, radius, thickness) and 0.0 <= friction <= ROUGHEST):
+        return math.nan, math.nan
+    if not size <= lookup.V_MAX:
         return math.nan, math.nan
     x, log_chi = lookup.place_of(table, c_lam, c_chi, speed, radius / thickness)
     if x != x:
@@ -141,6 +145,15 @@ def collide(
 @kernel
 def _vector(rows: Array, i: int) -> Vector:
     return rows[i, 0], rows[i, 1], rows[i, 2]
+
+
+@kernel(cache=True)
+def unit_all(normal: Array) -> None:
+    """Replace vectors, which are rows, by their directions."""
+    for i in range(len(normal)):
+        n = unit(_vector(normal, i))
+        for k in range(3):
+            normal[i, k] = n[k]
 
 
 @kernel(cache=True)

@@ -157,6 +157,31 @@ def test_shapes():
     assert hit.sliding_speed.shape == hit.restitution.shape == (2, 3)
 
 
+@pytest.mark.parametrize("length", [5e-324, 1e-200, 1e200])
+def test_a_normal_of_any_length(length):
+    model, v, rest = PAIRS["myc"], (0.5, 0.0, -1.0), (0.0, 0.0, 0.0)
+    usual, turned = model.collide(v, 0, [0, 0, 1], 1e-3, 3e-3, 0.1)
+    new, spin = model.collide(v, 0, [0, 0, length], 1e-3, 3e-3, 0.1)
+    assert np.array_equal((new, spin), (usual, turned))
+    one = model.collide_kernel(v, rest, (0.0, 0.0, length), 1e-3, 3e-3, 0.1, rest)
+    assert one == (pytest.approx(usual, rel=1e-13), pytest.approx(turned, rel=1e-13))
+
+
+@pytest.mark.parametrize("x", [0.0, 0.5, 1e200])
+@pytest.mark.parametrize("friction", [-0.1, np.nan, 1001.0])
+def test_kernel_gives_nan_for_bad_input(x, friction):
+    rest = (0.0, 0.0, 0.0)
+    given = (x, 0.0, -1.0), rest, (0.0, 0.0, 1.0), 1e-3, 3e-3
+    assert np.isnan(PAIRS["myc"].collide_kernel(*given, friction, rest)).all()
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("method", ["table", "solve"])
+def test_next_to_no_friction(method):
+    hit = PAIRS["myc"].oblique(1.0, [5.0, 1e-3], 1e-3, 3e-3, 1e-310, method=method)
+    assert np.array_equal(hit.sliding_speed, [5.0, 1e-3])
+
+
 def test_outside_the_table():
     v, thin = [0, 0, -1.0], 2e-5
     model = PAIRS["myc"]
@@ -195,6 +220,8 @@ def test_oblique_refuses(change, match):
         ({"velocity": np.zeros((2, 3)), "spin": np.zeros((4, 3))}, "shapes do not broadcast"),
         ({"radius": -1.0}, "radius: got -1.0"),
         ({"friction": "a"}, "friction: expected a number"),
+        ({"velocity": -1.0}, "velocity: expected vectors of three numbers"),
+        ({"velocity": [1e200, 0, -1]}, "sliding_speed: got inf"),
         ({"velocity": [0, 0, -1e6]}, "speed: got 1000000.0"),
     ],
 )
