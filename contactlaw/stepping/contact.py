@@ -356,6 +356,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
             row.disturbance = max(row.disturbance, UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
         _begin(scene, clock, bead, contact, row, spring, u)
+        if len(bead.friction) > 0:  # of a bead that returns before it has left the wall
+            clear_friction(bead.friction[k])
     else:
         first = 0.0 < row.duration < clock.before
         if not touch.face and last.force > 0.0 and first and row.disturbance == ALONE:

@@ -100,6 +100,41 @@ def test_a_plate_that_rises_hits_as_hard_as_the_bead_that_falls(example, rising)
     assert row["restitution"] == pytest.approx(model.restitution(3.0, r, 1e-3), abs=1e-4)
 
 
+@numba.njit
+def strike_in_dent(scene, contacts, friction, mass, radius, dt, steps):
+    """A bead that slides over the plate z = 0 and, in its dent, is thrown back without sliding.
+
+    Its speed along the plate at the end, and the overlap at which it was thrown back.
+    """
+    x, v, omega = np.array([0.0, 0.0, radius]), np.array([2.0, 0.0, -5.0]), np.zeros(3)
+    force, torque, depth = np.zeros(3), np.zeros(3), 0.0
+    for step in range(steps):
+        x += dt * v
+        force[:] = torque[:] = 0.0
+        clock = Clock(step * dt, dt, dt, True)
+        interact(scene, clock, Bead(0, 0, (x[0], x[1], x[2]), (v[0], v[1], v[2]),
+                                    (omega[0], omega[1], omega[2]), radius, mass, force, torque,
+                                    contacts, friction))  # fmt: skip
+        v += dt / mass * force
+        omega += dt / (0.4 * mass * radius**2) * torque
+        if depth == 0.0 and v[2] > 0.0 and contacts[0].force == 0.0:
+            depth, omega[:] = radius - x[2], 0.0
+            v[:] = (0.0, 0.0, -0.02)
+    return v[0], depth
+
+
+def test_an_impact_in_a_dent_does_not_know_the_last_ones_friction():
+    """Springs that were left stretched pushed a bead that does not slide."""
+    model, r = cl.ImpactModel(cl.Pair("stainless-steel-304", "glass")), 1e-3
+    plate = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-2)
+    walls = WallContacts([plate], model, r, np.zeros(9, IMPACT), friction=0.3)
+    mass = 4 / 3 * math.pi * r**3 * model.pair.sphere.density
+    along, depth = strike_in_dent(walls.scene, *(a for (a,) in walls.memory(1)), mass, r, 2e-8, 999)
+    assert depth > 1e-6
+    assert len(walls.collisions()) == 2
+    assert along == 0.0
+
+
 def test_a_type_without_a_model_is_named(example):
     walls = WallContacts(
         [Plate((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)],
