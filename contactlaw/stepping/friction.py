@@ -41,6 +41,7 @@ FRICTION = np.dtype(
     ]
 )
 _NO_DIRECTION = 1e-6  # least share of a vector along the wall; below, rounding decides
+_LEAST_SPEED = 1e-30  # [m/s] far below it the stiffness of an impact is 0 in floating point
 _DEEPEST = 1.25**0.4  # largest compression of Hertz's impact [V0 T_H]
 
 
@@ -68,7 +69,7 @@ def _width(law: Array, spring: Spring, speed: float, k: float) -> float:
 
     Beyond yield the compression follows from the energy, since F d is 2.0 to 2.5 times the work.
     """
-    if not speed > 0.0:
+    if not speed > _LEAST_SPEED:
         return k / SPRINGS
     d = _DEEPEST * impact(spring, speed).compression / spring.scale
     unit = spring.stiffness * spring.scale * math.sqrt(spring.scale)  # F_Y

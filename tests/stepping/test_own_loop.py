@@ -135,6 +135,22 @@ def test_an_impact_in_a_dent_does_not_know_the_last_ones_friction():
     assert along == 0.0
 
 
+@pytest.mark.parametrize("speed", [0.0, 1e-20, 1e-300])
+def test_a_bead_that_was_put_down_at_next_to_no_speed(example, speed):
+    """Springs without a width were joined for ever."""
+    model, r = cl.ImpactModel(example.PAIR), 1e-3
+    plate = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)
+    walls = WallContacts([plate], model, r, np.zeros(9, IMPACT), friction=0.3)
+    (contacts,), (friction,) = walls.memory(1)
+    mass = 4 / 3 * math.pi * r**3 * example.PAIR.sphere.density
+    force = np.zeros(3)
+    interact(walls.scene, Clock(0.0, 1e-8, 1e-8, True),
+             Bead(0, 0, (0.0, 0.0, r - 1e-8), (1e-3, 0.0, -speed), (0.0, 0.0, 0.0), r, mass,
+                  force, np.zeros(3), contacts, friction))  # fmt: skip
+    assert force[2] > 0.0
+    assert -0.3 * force[2] * (1 + 1e-12) <= force[0] < 0.0
+
+
 def test_a_type_without_a_model_is_named(example):
     walls = WallContacts(
         [Plate((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)],
