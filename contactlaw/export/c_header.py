@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
-from contactlaw.equation import corrections, creep, force, integrator
+from contactlaw.equation import corrections, creep, force, integrator, tangential
 from contactlaw.model import ImpactModel
 from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
@@ -51,6 +51,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
     integrator: "MAX_STEPS LEAST_RESTITUTION FINER_EVERY",
     creep: "SLOW",
+    tangential: "POINT",
     solver: "RTOL",
     stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED",
     validity: "TRANSITS",
@@ -99,7 +100,8 @@ def header(
     Notes
     -----
     For every law, ``contactlaw_step`` computes what `contactlaw.softsphere` does,
-    ``contactlaw_rebound`` `ImpactModel.solve`, and ``contactlaw_restitution`` `ImpactModel.kernel`.
+    ``contactlaw_rebound`` `ImpactModel.solve`, ``contactlaw_collide`` `ImpactModel.collide`, and
+    ``contactlaw_restitution`` `ImpactModel.kernel`.
 
     Examples
     --------
@@ -146,6 +148,7 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         "scale": _number(spring.scale),
         "relaxation": _number(spring.relaxation),
         "transit": _number(transit),
+        "tangential_ratio": _number(model.pair.tangential_ratio),
         "plate": ", ".join(plate._fields[:-1]),
         "plate_values": _array(plate[:-1]),
         "corrections": ", ".join(plate.corrections._fields),

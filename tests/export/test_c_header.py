@@ -84,6 +84,19 @@ CALLED void flagged(int n, const double *v, const double *r, const double *h, do
     }
 }
 
+CALLED void collided(int n, const double *v, const double *omega, const double *r,
+                     const double *h, const double *mu, double *out)
+{
+    const double normal[3] = { 0.0, -3.0, 4.0 }, still[3] = { 0.0, 0.0, 0.0 };
+    int k;
+    for (k = 0; k < n; ++k) {
+        memcpy(out + 7 * k, v + 3 * k, 3 * sizeof *v);
+        memcpy(out + 7 * k + 3, omega + 3 * k, 3 * sizeof *v);
+        out[7 * k + 6] = contactlaw_collide(out + 7 * k, out + 7 * k + 3, normal, still, r[k], h[k],
+                                            mu[k]);
+    }
+}
+
 CALLED double step(const contactlaw_spring *spring, contactlaw_state *state, double x, double dt)
 {
     return contactlaw_step(spring, state, x, dt);
@@ -272,6 +285,43 @@ def test_a_rebound_is_the_solvers(compiled):
     lost = [name.endswith("_fraction") for name in FIELDS]
     energy = found[:, 0] ** 2 + found[:, lost].sum(axis=1)
     assert np.abs(energy - 1.0).max() < 1e-8
+
+
+def test_an_oblique_impact_is_that_of_the_integration(compiled):
+    model, library, _ = compiled
+    v, r, h = impacts(400, seed=5)
+    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
+    keep = units.inelasticity < 2.0
+    v, r, h, count = v[keep], r[keep], h[keep], keep.sum()
+    rng = np.random.default_rng(6)
+    mu = rng.uniform(0.0, 0.6, count)
+    n, across = np.array([0.0, -0.6, 0.8]), np.array([1.0, 0.0, 0.0])
+    turned = np.cross(n, across)
+    angle, size = rng.uniform(0.0, 6.3, count), rng.uniform(0.0, 10.0, count) * mu * v
+    along = np.cos(angle)[:, None] * across + np.sin(angle)[:, None] * turned
+    spin = rng.normal(size=(count, 3)) * (v / r)[:, None]
+    velocity = size[:, None] * along - v[:, None] * n + r[:, None] * np.cross(spin, n)
+    out = np.empty((count, 7))
+    given = (np.ascontiguousarray(one) for one in (velocity, spin, r, h, mu))
+    library.collided(ctypes.c_int(count), *map(pointer, given), pointer(out))
+    assert (out[:, 6] == 1.0).all()
+    hit = model.oblique(v, size, r, h, mu, method="solve")
+    new, turns = out[:, :3], out[:, 3:6]
+    point = new - r[:, None] * np.cross(turns, n)
+    error = (point * along).sum(axis=1) - hit.sliding_speed
+    assert np.abs(error / np.maximum(mu * v, 1e-3 * v)).max() < 2e-3
+    assert (new @ n) / v == pytest.approx(hit.restitution, abs=1e-8)
+    # all forces act at the contact point
+    shift = np.cross(-r[:, None] * n, new - velocity) - 0.4 * (r**2)[:, None] * (turns - spin)
+    assert np.abs(shift / (r * v)[:, None]).max() < 1e-12
+    bad = np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0], [math.nan, 0.0, -1.0], [0.0, 0.0, -1.0]])
+    sizes = np.array([1e-3, 1e-3, 1e-3, -1e-3])
+    given = bad, np.zeros((4, 3)), sizes, np.full(4, 1e-2), np.full(4, 0.1)
+    out = np.empty((4, 7))
+    library.collided(ctypes.c_int(4), *map(pointer, given), pointer(out))
+    assert out[:, 6].tolist() == [1.0, 0.0, -1.0, -1.0]
+    assert np.array_equal(out[1, :6], [0, 0, 1, 0, 0, 0])
+    assert np.isnan(out[2:, :6]).all()
 
 
 def test_flags_are_those_of_the_solver(compiled):
