@@ -27,7 +27,7 @@ from contactlaw.walls.facet import Point
 
 Array = NDArray[np.float64]
 
-SPRINGS = 8  # the sliding speed is within 0.01 mu V0 at 50 steps a contact, 0.003 at 100
+SPRINGS = 8  # the sliding speed is within 0.012 mu V0 at 50 steps a contact, 0.008 at 100
 
 # State of a contact's friction between two steps.
 FRICTION = np.dtype(
