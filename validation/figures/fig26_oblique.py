@@ -61,15 +61,15 @@ def draw() -> chart.Drawn:
     )
     numbers = {}
     angle = np.linspace(0.5, 89.5, 179)
-    columns = ("tangential_restitution", "spin_rad_per_s")
-    for n, (axes, column, curve) in enumerate(zip(every, columns, impacts(angle), strict=True)):
-        at, value = measured(column)
+    columns = {"tangential restitution": "tangential_restitution", "spin": "spin_rad_per_s"}
+    for n, (name, axes, curve) in enumerate(zip(columns, every, impacts(angle), strict=True)):
+        at, value = measured(columns[name])
         axes.plot(angle, curve, color=BLUE, linewidth=2.4, label="model")
         axes.plot(at, value, "o", color=INK, markersize=6, markerfacecolor="none", label="measured")
         off = impacts(at)[n] / value - 1.0
         slides = at > SLIDING
-        for name, part in (("sticking", ~slides), ("sliding", slides)):
-            numbers[f"{column}, {name}: largest error"] = off[part][np.abs(off[part]).argmax()]
+        for motion, part in (("sticking", ~slides), ("sliding", slides)):
+            numbers[f"{name}, {motion}: largest error"] = off[part][np.abs(off[part]).argmax()]
         axes.axvline(SLIDING, color=INK, linewidth=1.0, linestyle=":")
     chart.note(every[0], SLIDING + 1.5, 0.52, "slides all the time")
     every[0].legend(loc="lower right")
