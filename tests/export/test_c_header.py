@@ -806,7 +806,9 @@ def test_the_documented_c_compiles(tmp_path):
     (shown,) = re.findall(r"```c\n(.*?)```", (ROOT / "docs/c.md").read_text(), re.DOTALL)
     include, _, calls = shown.partition("\n")
     write_header(tmp_path, "myc")
-    arguments = "double speed, double radius, double thickness, double overlap, double dt"
+    arguments = "double speed, double radius, double thickness, double overlap, double dt, "
+    arguments += "double friction, double *velocity, double *spin, const double *normal, "
+    arguments += "const double *wall_velocity"
     body = f"{calls} return e + force + impact.peak_force + flags;"
     source = f"{include}\ndouble f({arguments});\ndouble f({arguments}) {{ {body} }}\n"
     build(tmp_path, source, "-c", *WARNINGS)
