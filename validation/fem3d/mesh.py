@@ -78,7 +78,7 @@ def half_space(core: float, n: int, width: float) -> Mesh:
     blocks = [core * _box(n), *shells]
     surface = [block[..., 2] == 0.0 for block in blocks]
     for block in blocks:
-        block[..., 2] *= -1.0
+        block[..., 2] = 0.0 - block[..., 2]
     return _joined([block[:, :, ::-1] for block in blocks], [s[:, :, ::-1] for s in surface])
 
 
@@ -99,7 +99,7 @@ def plate(core: float, n: int, thickness: float, width: float) -> Mesh:
     blocks, surface = [], []
     for face in faces:
         block = np.repeat(face, depth.size, axis=2)
-        block[..., 2] = -depth
+        block[..., 2] = 0.0 - depth
         blocks.append(block)
         surface.append(block[..., 2] == 0.0)
     return _joined(blocks, surface)

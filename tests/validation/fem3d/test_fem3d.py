@@ -1,0 +1,195 @@
+"""Finite elements in three dimensions, on meshes that are coarser than those of the results."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from validation.fem3d import __main__, cases, hexahedra, impact, mesh
+from validation.fem3d.impact import oblique_impact
+
+R = 1e-3
+STEEL = cl.Material("steel", 210e9, 0.3, 7850.0)
+PAIR = cl.Pair(STEEL, STEEL)
+SPEED, FRICTION = 6.0, 0.2
+
+
+def _body(elements, stiffness=1.0, strength=math.inf):
+    m = len(elements)
+    return hexahedra.Body(
+        elements, np.zeros((m, 6)), np.zeros((m, 12)), np.zeros(m), np.full(m, stiffness),
+        np.zeros(2), 1.5, 1.0, strength,
+    )  # fmt: skip
+
+
+def _strained(nodes, elements, v, **given):
+    """A body after one short step of velocities v."""
+    body = _body(elements, **given)
+    force = np.zeros_like(nodes)
+    hexahedra.add_forces(body, nodes, v, 1e-6, force)
+    return body, force
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return mesh.sphere(1.0, 0.2, 5)
+
+
+@pytest.fixture(scope="module")
+def sliding():
+    """An impact that slides from beginning to end."""
+    return oblique_impact(PAIR, SPEED, 20 * FRICTION * SPEED, R, math.inf, FRICTION, across=3)
+
+
+def test_elements_fill_the_bodies(ball):
+    plate, block = mesh.plate(0.2, 5, 1.0, 8.0), mesh.half_space(0.2, 5, 8.0)
+    volumes = 2 / 3 * math.pi, 32 * math.pi, 2 / 3 * math.pi * 8**3 / 2
+    for body, exact in zip((ball, plate, block), volumes, strict=True):
+        found = hexahedra.volumes(body.elements, body.nodes)
+        assert found.min() > 0
+        assert found.sum() == pytest.approx(exact, rel=0.03)
+
+
+def test_surfaces_touch_at_the_origin(ball):
+    for body in (ball, mesh.plate(0.2, 5, 1.0, 8.0)):
+        faces = mesh.top(body)
+        ends, times = np.unique(np.sort(faces.ravel()), return_counts=True)
+        assert times.max() == 4 and body.surface[ends].all()
+        assert np.linalg.norm(body.nodes[body.surface], axis=1).min() == 0
+    assert mesh.areas(ball).sum() == pytest.approx(2 * math.pi, rel=0.03)
+
+
+def test_a_linear_field_has_one_stress_and_no_hourglass_force(ball):
+    gradient = np.array([[0.1, 0.2, 0.3], [-0.5, 0.1, 0.7], [0.2, -0.4, 0.3]])
+    body, _ = _strained(ball.nodes, ball.elements, ball.nodes @ gradient.T)
+    assert abs(body.hourglass).max() < 1e-16
+    assert np.ptp(body.stress, axis=0).max() < 1e-15 < abs(body.stress).max()
+
+
+def test_rotation_turns_the_stress_and_leaves_the_hourglass_strains(ball):
+    spin = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    body, _ = _strained(ball.nodes, ball.elements, ball.nodes @ spin.T)
+    assert abs(body.stress).max() < 1e-16
+    body.stress[:, 0], body.hourglass[:] = 1.0, 2.0
+    hexahedra.add_forces(body, ball.nodes, ball.nodes @ spin.T, 1e-3, np.zeros_like(ball.nodes))
+    assert body.stress[:, 3] == pytest.approx(1e-3)
+    assert body.hourglass == pytest.approx(2.0)
+
+
+def test_work_of_the_forces_is_the_energy_stored(ball):
+    v = np.random.default_rng(1).normal(size=ball.nodes.shape)
+    body, force = _strained(ball.nodes, ball.elements, v)
+    stored = hexahedra.strain_energy(body, ball.nodes) + body.work[1]
+    assert -0.5 * 1e-6 * (force * v).sum() == pytest.approx(stored, rel=1e-5)
+    assert abs(force.sum(axis=0)).max() < 1e-12 * abs(force).sum()
+
+
+@pytest.mark.parametrize("axes", [(0, 1), (1, 2), (2, 0)])
+def test_an_element_bends_as_a_beam_does(axes):
+    """Energy of bending to a unit curvature: E' I/2 per length, I = b h^3/12, without shear."""
+    long, high = axes
+    corners = np.array([[k >> axis & 1 for axis in range(3)] for k in range(8)], dtype=float)
+    sides = np.array([0.5, 1.0, 2.0])
+    x = (corners - 0.5) * sides
+    v = np.zeros_like(x)
+    v[:, long] = x[:, long] * x[:, high]
+    body, _ = _strained(x, np.arange(8)[None], v)
+    modulus = 4 * 1.0 * (1.5 + 1.0) / (1.5 + 2.0)  # E/(1 - nu^2)
+    exact = modulus / 24 * sides.prod() * sides[high] ** 2
+    assert body.work[1] == pytest.approx(exact * 1e-12)
+
+
+def test_stress_returns_to_the_yield_surface(ball):
+    v = ball.nodes @ np.diag([1.0, -1.0, 0.0])
+    body, _ = _strained(ball.nodes, ball.elements, v, strength=1e-6)
+    s = body.stress
+    mises = np.sqrt(
+        0.5 * ((s[:, 0] - s[:, 1]) ** 2 + (s[:, 1] - s[:, 2]) ** 2 + (s[:, 2] - s[:, 0]) ** 2)
+    )
+    assert mises == pytest.approx(1e-6)
+    # plastic strain is the total one, 2/sqrt(3), less the elastic one, sigma_Y/(3 G)
+    assert body.plastic_strain == pytest.approx((2 / math.sqrt(3) - 1 / 3) * 1e-6)
+
+
+def test_nodes_that_slide_have_coulombs_force():
+    core, touch = 0.13 * R, 0.5 * R
+    meshes = mesh.sphere(R, core, 4), mesh.half_space(core, 4, 5 * R)
+    system = impact.assemble(meshes, PAIR, R, FRICTION, False, False, core, touch)
+    n = len(meshes[0].nodes)
+    system.v[:n, 0], system.v[:n, 2] = 30 * FRICTION * SPEED, -SPEED
+    impact.advance(system, 1e-9, 1000, np.zeros(3))
+    normal, *along = system.surfaces.impulse[system.surfaces.impulse[:, 0] > 0].T
+    assert normal.size > 5
+    assert np.hypot(*along) == pytest.approx(FRICTION * normal, rel=1e-9)
+
+
+def test_a_sliding_impact_loses_what_coulombs_force_takes(sliding):
+    """All but the slope of the common surface, which has 1 % on these elements."""
+    assert sliding.impulse_ratio == pytest.approx(FRICTION, rel=0.015)
+    after = 20 - 3.5 * (1 + sliding.restitution)
+    assert sliding.sliding_speed / (FRICTION * SPEED) == pytest.approx(after, abs=0.15)
+
+
+def test_energy_and_momentum_are_kept(sliding):
+    assert sliding.balance < 0.003
+    shares = sliding.translation + sliding.rotation + sliding.friction + sliding.contact
+    shares += sliding.wave + sliding.vibration + sliding.plastic
+    assert shares == pytest.approx(1, abs=0.003)
+    time, normal, tangential, speed, _ = sliding.history
+    mass = 4 / 3 * math.pi * R**3 * STEEL.density
+    impulses = np.array([normal.sum(), tangential.sum()]) * time[0]
+    assert impulses[0] == pytest.approx(mass * SPEED * (1 + sliding.restitution), rel=1e-6)
+    assert impulses[1] / impulses[0] == pytest.approx(sliding.impulse_ratio)
+    assert speed[-1] == sliding.sliding_speed
+
+
+def test_normal_incidence_has_neither_spin_nor_tangential_force():
+    hit = oblique_impact(PAIR, SPEED, 0.0, R, R, FRICTION, across=3)
+    assert abs(hit.impulse_ratio) < 1e-5
+    assert abs(hit.spin) * R < 1e-4 * SPEED
+    # the axisymmetric code: 0.660 (friction 0) on elements of 0.006 R
+    assert hit.restitution == pytest.approx(0.660, abs=0.02)
+
+
+def test_impacts_were_drawn_by_their_seeds():
+    for name, seed in cases.SEEDS.items():
+        assert cases.drawn(name) == cases.draw(seed)
+
+
+def test_a_stopped_run_goes_on(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(cases, "_FOLDER", tmp_path)
+    cases.write("kept_out")
+    listed = cases.drawn("kept_out")
+    outcome = dict.fromkeys(
+        ("psi_after", "impulse_ratio", "restitution", "normal_restitution", "pressure", "slide",
+         "contact_radius"), 0.5,
+    )  # fmt: skip
+    computed = []
+
+    def solve(case):
+        if len(computed) == 2:
+            raise KeyboardInterrupt
+        computed.append(case)
+        return outcome
+
+    monkeypatch.setattr(cases, "solve", solve)
+    assert __main__.main(["kept_out"]) == 130
+    assert list(cases.results("kept_out")) == listed[:2] == computed
+    monkeypatch.setattr(cases, "solve", lambda case: computed.append(case) or outcome)
+    assert __main__.main(["kept_out"]) == 0
+    assert computed == listed
+    assert len(capsys.readouterr().out.splitlines()) == 1 + 2 + 1 + len(listed)
+    line = json.loads((tmp_path / "kept_out.jsonl").read_text().splitlines()[0])
+    assert line["solver_version"] == impact.VERSION and line["command"].endswith("kept_out")
+    monkeypatch.setattr(impact, "VERSION", impact.VERSION + 1)
+    assert cases.results("kept_out") == {}
+
+
+def test_wrong_usage(capsys):
+    with pytest.raises(SystemExit):
+        __main__.main(["everything"])
+    assert "everything" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="friction"):
+        oblique_impact(PAIR, SPEED, 1.0, R, R, -0.1)
