@@ -125,6 +125,42 @@ def test_nodes_that_slide_have_coulombs_force():
     assert np.hypot(*along) == pytest.approx(FRICTION * normal, rel=1e-9)
 
 
+def test_slip_begins_in_cattaneos_annulus():
+    """Drawn along slowly, a pressed sphere sticks within c = a (1 - T/(mu N))^(1/3)."""
+    core, wave, still = 0.13 * R, R / 6000.0, 0.97
+    meshes = mesh.sphere(R, core, 5), mesh.half_space(core, 5, 4 * R)
+    system = impact.assemble(meshes, PAIR, R, FRICTION, False, False, core, 0.3 * R)
+    above = len(meshes[0].nodes)
+    held = system.x[:, 2] >= R
+    held[above:] |= np.linalg.norm(system.x[above:], axis=1) > 3.99 * R
+    system.inverse_mass[held] = 0.0
+    held[above:] = False  # the rim of the block does not move
+    step = 0.95 * min(
+        hexahedra.stable_step(body, system.x, STEEL.density)
+        for body in (system.sphere, system.plate)
+    )
+    share = mesh.areas(meshes[0])[system.surfaces.slave]
+
+    def move(axis, way, duration):
+        steps = int(duration / step)
+        for done in range(0, steps, 20):
+            system.v[:] *= still  # damps the waves
+            faster = min(1.0, 6 * done / steps, 6 * (1 - done / steps) if axis == 2 else 1.0)
+            system.v[held], system.v[held, axis] = 0.0, way / duration * faster
+            total = np.zeros(3)
+            impact.advance(system, step, 20, total)
+        return -total[0] / total[2] / FRICTION
+
+    move(2, -0.0138 * R, 20 * wave)
+    for way, duration in ((0.0013 * R, 22 * wave), (0.00075 * R, 13 * wave)):
+        pulled = move(0, way, duration)
+        normal, *along = system.surfaces.impulse.T
+        sticks = np.hypot(*along) < 0.999 * FRICTION * normal
+        radius = math.sqrt(share @ (sticks & (normal > 0)) / (share @ (normal > 0)))
+        assert 0.3 < pulled < 0.9
+        assert radius == pytest.approx((1 - pulled) ** (1 / 3), abs=0.06)
+
+
 def test_a_sliding_impact_loses_what_coulombs_force_takes(sliding):
     """All but the slope of the common surface, which has 1 % on these elements."""
     assert sliding.impulse_ratio == pytest.approx(FRICTION, rel=0.015)
