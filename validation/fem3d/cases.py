@@ -163,6 +163,7 @@ def compute(name: str) -> Iterator[tuple[Case, dict[str, Any]]]:
                 "case": asdict(case),
                 "outcome": done[case],
                 "command": f"python -m validation.fem3d {name}",
+                "across": impact.ACROSS,
                 "solver_version": impact.VERSION,
                 "contactlaw_version": VERSION,
                 "date": date.today().isoformat(),
