@@ -14,6 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -191,10 +194,10 @@ def _joined(blocks: list[Array], surface: list[NDArray[np.bool_]]) -> Mesh:
     points = np.concatenate([block.reshape(-1, 3) for block in blocks])
     touching = np.concatenate([on.ravel() for on in surface])
     size = np.abs(blocks[0][1, 0, 0] - blocks[0][0, 0, 0]).max()
-    _, kept, number = np.unique(
-        np.round(points / (1e-4 * size)).astype(np.int64), axis=0,
-        return_index=True, return_inverse=True,
-    )  # fmt: skip
+    one, other = cKDTree(points).query_pairs(1e-3 * size, output_type="ndarray").T
+    same = coo_matrix((np.ones(one.size), (one, other)), shape=(len(points), len(points)))
+    number = connected_components(same, directed=False)[1]
+    kept = np.unique(number, return_index=True)[1]
     nodes = points[kept]
     nodes[abs(nodes[:, 1]) < 1e-4 * size, 1] = 0.0  # the plane of symmetry, to the last bit
-    return Mesh(nodes, number.reshape(-1)[np.concatenate(elements)], touching[kept])
+    return Mesh(nodes, number[np.concatenate(elements)].astype(np.int64), touching[kept])

@@ -194,6 +194,15 @@ def test_impacts_were_drawn_by_their_seeds():
         assert cases.drawn(name) == cases.draw(seed)
 
 
+@pytest.mark.parametrize("name", cases.SEEDS)
+def test_every_impact_drawn_is_stored_with_its_energy_kept(name):
+    stored = cases.results(name)
+    assert set(stored) == set(cases.drawn(name))
+    for case, hit in stored.items():
+        assert hit["balance"] < 0.003
+        assert (hit["plastic"] == 0) == (case.kind == "elastic")
+
+
 def test_a_stopped_run_goes_on(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(cases, "_FOLDER", tmp_path)
     cases.write("kept_out")
