@@ -144,10 +144,12 @@ def _shells(n: int, growth: float, near: Move, far: Move) -> list[Array]:
     """Points between the outer faces of the box, moved by `near`, and these moved by `far`."""
     box = _box(n)
     faces = [(0, box[-1:]), (0, box[:1]), (1, box[:, -1:]), (2, box[:, :, -1:])]
-    blocks = []
+    blocks: list[Array] = []
+    rings = 1
     for axis, face in faces:
         inner, outer = np.log(np.sqrt(_squared(near(face)))), np.log(np.sqrt(_squared(far(face))))
-        rings = max(math.ceil(float((outer - inner).mean()) / math.log1p(growth)), 1)
+        if not blocks:  # the same number for all faces, whose edges meet
+            rings = max(math.ceil(float((outer - inner).mean()) / math.log1p(growth)), 1)
         share = np.arange(rings + 1) / rings
         if face[0, 0, 0, 0] == -1.0 and axis == 0:  # this one goes outwards against x
             share = share[::-1]
