@@ -50,8 +50,7 @@ class Solver:
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
         normal, found = self._solved(impacts)
-        kappa = self.bodies.pair.tangential_ratio
-        return normal, psi - slides.after(self.bodies.law, found, kappa, psi[:, None])[:, 0]
+        return normal, slid(self.bodies, found, psi)
 
     def _solved(self, impacts: Impacts) -> tuple[Rebound, Outcome]:
         contact = self.bodies.contact(impacts)
@@ -157,6 +156,13 @@ def solved(
         where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
         raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])
     return out
+
+
+def slid(bodies: SphereOnPlate, found: Outcome, psi: Array) -> Array:
+    """Change of the sliding speeds psi in impacts with these outcomes [mu V0], by integration."""
+    kappa = bodies.pair.tangential_ratio
+    changed: Array = psi - slides.after(bodies.law, found, kappa, psi[:, None])[:, 0]
+    return changed
 
 
 def histories(law: Law, found: Outcome, samples: int) -> History:

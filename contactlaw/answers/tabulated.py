@@ -23,7 +23,7 @@ from contactlaw.answers.backend import (
     too_fast,
     too_thin,
 )
-from contactlaw.answers.solver import RTOL, histories, solved
+from contactlaw.answers.solver import RTOL, histories, slid, solved
 from contactlaw.equation import outcome
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History, Outcome
@@ -159,10 +159,7 @@ class Tabulated:
             part = np.empty(np.count_nonzero(inside))
             slides.changes(self.slides, outcome.part(found, inside), psi[inside], part)
             changes[inside] = part
-        beyond = psi[~inside]
-        kappa = self.bodies.pair.tangential_ratio
-        after = slides.after(self.bodies.law, outcome.part(found, ~inside), kappa, beyond[:, None])
-        changes[~inside] = beyond - after[:, 0]
+        changes[~inside] = slid(self.bodies, outcome.part(found, ~inside), psi[~inside])
         return normal, changes
 
     def _rebounds(self, impacts: Impacts) -> tuple[Rebound, Outcome]:

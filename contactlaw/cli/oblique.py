@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import csv
 import sys
 from decimal import Decimal
 from typing import Any
@@ -13,9 +12,10 @@ from numpy.typing import NDArray
 
 from contactlaw import style
 from contactlaw.cli.parts import chosen, impacts, options, plots, quantities, wording
+from contactlaw.cli.parts.impacts import Column, ImpactTable
 from contactlaw.cli.parts.quantities import Quantity
+from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import within
-from contactlaw.physical.validity import count_flags
 
 Array = NDArray[np.float64]
 
@@ -23,19 +23,18 @@ _ANGLE = Quantity(
     "angle", {"deg": Decimal(1), "rad": Decimal(180) / Decimal(np.pi), "°": Decimal(1)}
 )
 _FRICTION = quantities.SHARE._replace(name="coefficient of friction")
-# Columns: SI unit, and title on a terminal; a column without one is not shown there.
-_COLUMNS = {
-    "angle": ("deg", "angle"),
-    "friction": ("", "friction"),
-    "restitution": ("", "COR"),
-    "tangential_restitution": ("", "tangential"),
-    "rotational_restitution": ("", "rotational"),
-    "impulse_ratio": ("", "J_t/J_n"),
-    "sliding_speed": ("m/s", ""),
-    "spin": ("rad/s", "spin"),
-    "rebound_angle": ("deg", "leaves at"),
-    "friction_energy": ("J", ""),
-}
+_COLUMNS = (
+    Column("angle", "deg", "angle", "deg"),
+    Column("friction", "", "friction"),
+    Column("restitution", "", "COR"),
+    Column("tangential_restitution", "", "tangential"),
+    Column("rotational_restitution", "", "rotational"),
+    Column("impulse_ratio", "", "J_t/J_n"),
+    Column("sliding_speed", "m/s"),
+    Column("spin", "rad/s", "spin", "rad/s"),
+    Column("rebound_angle", "deg", "leaves at", "deg"),
+    Column("friction_energy", "J"),
+)
 
 
 def add(commands: Any) -> None:
@@ -72,43 +71,32 @@ def _run(arguments: argparse.Namespace) -> None:
     within("angle", angles, 0.0, 89.999, "degrees from the normal")
     if arguments.plot is not None:
         with chosen.plot_file(arguments):
-            _plot(arguments, _rows(arguments, angles, coefficients)[0], coefficients)
+            _plot(arguments, _table(arguments, angles, coefficients).columns, coefficients)
         return
-    rows, flags = _rows(arguments, angles, coefficients)
+    found = _table(arguments, angles, coefficients)
     if arguments.csv:
-        writer = csv.writer(sys.stdout, lineterminator="\n")
-        header = (name + f"_{unit}" * bool(unit) for name, (unit, _) in _COLUMNS.items())
-        writer.writerow([*header, "flags"])
-        named = ("|".join(impacts.flag_names(flag)) for flag in flags)
-        columns = (rows[name].tolist() for name in _COLUMNS)
-        writer.writerows([*row, last] for *row, last in zip(*columns, named, strict=True))
-        return
-    cells = [
-        [title, f"[{unit or '-'}]", *(f"{value:.4g}" for value in rows[name])]
-        for name, (unit, title) in _COLUMNS.items()
-        if title
-    ]
-    cells.append(["flags", "", *map(", ".join, map(impacts.flag_names, flags))])
-    print(*impacts.aligned(cells), *impacts.explained(count_flags(flags), len(flags)), sep="\n")
+        impacts.write_csv(found, sys.stdout, _COLUMNS)
+    else:
+        print(*impacts.text(found, _COLUMNS), sep="\n")
 
 
-def _rows(
-    arguments: argparse.Namespace, angles: Array, coefficients: Array
-) -> tuple[dict[str, Array], NDArray[np.int64]]:
-    """Columns and flags of all impacts; angles change fastest. Few impacts need no table."""
+def _table(arguments: argparse.Namespace, angles: Array, coefficients: Array) -> ImpactTable:
+    """All impacts, of which angles change fastest. Few impacts need no table of the model."""
     friction, angle = (part.ravel() for part in np.meshgrid(coefficients, angles, indexing="ij"))
     inclined = np.radians(angle)
     speed, sliding = arguments.speed * np.cos(inclined), arguments.speed * np.sin(inclined)
     size = arguments.radius, arguments.thickness
     with wording.naming_impact(speed, np.full_like(speed, size[0]), np.full_like(speed, size[1])):
         hit = chosen.model(arguments).oblique(speed, sliding, *size, friction, method="solve")
-    along = sliding - (sliding - np.asarray(hit.sliding_speed)) / 3.5
+    changed = sliding - np.asarray(hit.sliding_speed)
     found = {
         **vars(hit), "angle": angle, "friction": friction,
-        "spin": 2.5 * (sliding - along) / arguments.radius,
-        "rebound_angle": np.degrees(np.arctan2(along, hit.restitution * speed)),
+        "spin": (1.0 - 1.0 / POINT) * changed / arguments.radius,
+        "rebound_angle": np.degrees(
+            np.arctan2(sliding - changed / POINT, hit.restitution * speed)
+        ),
     }  # fmt: skip
-    return found, found["flags"]
+    return ImpactTable({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
 
 
 def _plot(arguments: argparse.Namespace, rows: dict[str, Array], coefficients: Array) -> None:

@@ -36,13 +36,18 @@ _LIMITS = {
 
 def broadcast(**arguments: ArrayLike) -> Any:
     """Flat float64 arrays of one length, and their common shape (None for scalars)."""
-    arrays = [_numbers(name, value) for name, value in arguments.items()]
+    arrays = {name: _numbers(name, value) for name, value in arguments.items()}
+    shape = _common_shape(arrays)
+    return *(_flat(array, shape) for array in arrays.values()), shape or None
+
+
+def _common_shape(arrays: dict[str, Array], *more: tuple[int, ...]) -> tuple[int, ...]:
+    """Shape to which all arrays, and shapes beside them, can be broadcast."""
     try:
-        shape = np.broadcast_shapes(*(array.shape for array in arrays))
+        return np.broadcast_shapes(*more, *(array.shape for array in arrays.values()))
     except ValueError:
-        shapes = ", ".join(f"{n} {np.shape(v)}" for n, v in arguments.items())
-        raise ValueError(f"{next(iter(arguments))}: shapes do not broadcast: {shapes}") from None
-    return *(_flat(array, shape) for array in arrays), shape or None
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in arrays.items())
+        raise ValueError(f"{next(iter(arrays))}: shapes do not broadcast: {shapes}") from None
 
 
 def refuse_units(name: str, value: object, unit: str) -> None:
@@ -100,11 +105,7 @@ def vectors(**arguments: ArrayLike) -> tuple[Any, tuple[int, ...]]:
             )
         if not np.isfinite(values).all():
             raise ValueError(f"{name}: must be finite, got {arguments[name]!r}")
-    try:
-        shape = np.broadcast_shapes((3,), *(values.shape for values in arrays.values()))
-    except ValueError:
-        shapes = ", ".join(f"{n} {v.shape}" for n, v in arrays.items())
-        raise ValueError(f"{next(iter(arrays))}: shapes do not broadcast: {shapes}") from None
+    shape = _common_shape(arrays, (3,))
     rows = (np.broadcast_to(values, shape).reshape(-1, 3) for values in arrays.values())
     return tuple(np.array(row, dtype=np.float64, order="C") for row in rows), shape
 

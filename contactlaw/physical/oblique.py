@@ -74,11 +74,19 @@ def unit(n: Vector) -> Vector:
 
 
 @kernel
+def surface_velocity(v: Vector, omega: Vector, r: float, n: Vector) -> Vector:
+    """Velocity of a sphere's surface at -r n from its centre [m/s]."""
+    return (
+        v[0] - r * (omega[1] * n[2] - omega[2] * n[1]),
+        v[1] - r * (omega[2] * n[0] - omega[0] * n[2]),
+        v[2] - r * (omega[0] * n[1] - omega[1] * n[0]),
+    )
+
+
+@kernel
 def sliding(v: Vector, omega: Vector, n: Vector, w: Vector, radius: float) -> Sliding:
     """Speeds of a bead towards and along a plate that moves with w; n has the length 1."""
-    x = v[0] - w[0] - radius * (omega[1] * n[2] - omega[2] * n[1])
-    y = v[1] - w[1] - radius * (omega[2] * n[0] - omega[0] * n[2])
-    z = v[2] - w[2] - radius * (omega[0] * n[1] - omega[1] * n[0])
+    x, y, z = surface_velocity((v[0] - w[0], v[1] - w[1], v[2] - w[2]), omega, radius, n)
     u = x * n[0] + y * n[1] + z * n[2]
     s = x - u * n[0], y - u * n[1], z - u * n[2]
     return Sliding(-u, math.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]), s)

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.physical.oblique import surface_velocity
 from contactlaw.physical.validity import flags_of
 from contactlaw.stepping import energy
 from contactlaw.stepping.energy import dot
-from contactlaw.stepping.friction import clear_friction, surface_velocity, tangential_force
+from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.plate_rows import limits_of, spring_of
 from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, impact
 from contactlaw.table.lookup import THINNEST

@@ -176,13 +176,3 @@ def tangential_force(
     row.force[0], row.force[1], row.force[2] = force
     row.normal = f + extra
     return force
-
-
-@kernel
-def surface_velocity(v: Point, omega: Point, r: float, n: Point) -> Point:
-    """Velocity of a sphere's surface at -r n from its centre [m/s]."""
-    return (
-        v[0] - r * (omega[1] * n[2] - omega[2] * n[1]),
-        v[1] - r * (omega[2] * n[0] - omega[0] * n[2]),
-        v[2] - r * (omega[0] * n[1] - omega[1] * n[0]),
-    )

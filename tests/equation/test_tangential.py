@@ -7,7 +7,7 @@ import pytest
 from springs import slide
 
 from contactlaw import laws
-from contactlaw.equation import outcome
+from contactlaw.equation import outcome, zener
 from contactlaw.table.slides import after
 
 MYC = laws.law("myc")
@@ -16,8 +16,6 @@ PSI = np.array([0.0, 0.02, 0.1, 0.3, 0.7, 1.0, 1.5, 2.2, 3.0, 4.0, 5.0, 6.0, 7.0
 
 def solved(lam, chi, law=MYC):
     """Outcome of one impact, and its yield ratio."""
-    from contactlaw.equation import zener
-
     found = outcome.at(np.array([lam]), np.empty(1))
     assert zener.solve_overloads(law.data, 1e-11, np.array([chi]), found) == (zener.OK, 0)
     return found

@@ -13,13 +13,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, fields
 from datetime import date
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 import contactlaw as cl
 from contactlaw._version import VERSION
+from validation.fem import store
 from validation.fem3d import impact
 from validation.fem3d.impact import oblique_impact
 
@@ -35,7 +35,7 @@ _FRICTION = 0.1, 0.4
 _PSI = 0.3, 8.0  # likewise by its logarithm
 _THICKEST = 0.3  # R/H below which the plate stands for a half-space
 _STEEPEST = 1.4  # largest R/H
-_FOLDER = Path(__file__).parent
+_FOLDER = store.FOLDER
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def draw(seed: int) -> list[Case]:
 
 def drawn(name: str) -> list[Case]:
     """Read the impacts of one of `SEEDS`."""
-    with (_FOLDER / f"{name}.csv").open() as file:
+    with (_FOLDER / f"fem3d_{name}.csv").open() as file:
         rows = list(csv.DictReader(file))
     kinds = {field.name: float for field in fields(Case) if field.name != "kind"}
     return [Case(row["kind"], **{key: of(row[key]) for key, of in kinds.items()}) for row in rows]
@@ -120,7 +120,7 @@ def drawn(name: str) -> list[Case]:
 
 def write(name: str) -> None:
     """Write the impacts of one of `SEEDS`, before any of them is computed."""
-    with (_FOLDER / f"{name}.csv").open("w", newline="") as file:
+    with (_FOLDER / f"fem3d_{name}.csv").open("w", newline="") as file:
         writer = csv.DictWriter(file, [field.name for field in fields(Case)], lineterminator="\n")
         writer.writeheader()
         writer.writerows(asdict(case) for case in draw(SEEDS[name]))
@@ -145,7 +145,7 @@ def solve(case: Case) -> dict[str, Any]:
 def results(name: str) -> dict[Case, dict[str, Any]]:
     """Read the outcomes of the impacts of one of `SEEDS` that this solver has computed."""
     done = {}
-    path = _FOLDER / f"{name}.jsonl"
+    path = _FOLDER / f"fem3d_{name}.jsonl"
     for line in path.read_text().splitlines() if path.exists() else ():
         entry = json.loads(line)
         if entry["solver_version"] == impact.VERSION:
@@ -168,6 +168,6 @@ def compute(name: str) -> Iterator[tuple[Case, dict[str, Any]]]:
                 "contactlaw_version": VERSION,
                 "date": date.today().isoformat(),
             }
-            with (_FOLDER / f"{name}.jsonl").open("a") as file:
+            with (_FOLDER / f"fem3d_{name}.jsonl").open("a") as file:
                 file.write(json.dumps(line) + "\n")
         yield case, done[case]

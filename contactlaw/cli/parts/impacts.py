@@ -30,7 +30,9 @@ Array = NDArray[np.float64]
 _MOST = 1_000_000  # impacts, which take half a minute to print: 100 MB of text
 
 
-class _Column(NamedTuple):
+class Column(NamedTuple):
+    """A column of a table of impacts."""
+
     name: str
     unit: str  # SI unit, as in CSV
     title: str = ""  # name on a terminal; a column without one is not shown there
@@ -39,18 +41,18 @@ class _Column(NamedTuple):
 
 
 _COLUMNS = (
-    _Column("speed", "m/s", "speed", "m/s"),
-    _Column("radius", "m", "radius", "mm", 1e3),
-    _Column("thickness", "m", "thickness", "mm", 1e3),
-    _Column("restitution", "", "COR"),
-    _Column("contact_time", "s", "time", "us", 1e6),
-    _Column("peak_force", "N", "force", "N"),
-    _Column("peak_compression", "m"),
-    _Column("residual_compression", "m"),
-    *(_Column(f"{channel}_fraction", "", channel) for channel in Losses._fields),
-    _Column("inelasticity", ""),
-    _Column("overload", ""),
-    _Column("yield_speed", "m/s", "yield at", "m/s"),
+    Column("speed", "m/s", "speed", "m/s"),
+    Column("radius", "m", "radius", "mm", 1e3),
+    Column("thickness", "m", "thickness", "mm", 1e3),
+    Column("restitution", "", "COR"),
+    Column("contact_time", "s", "time", "us", 1e6),
+    Column("peak_force", "N", "force", "N"),
+    Column("peak_compression", "m"),
+    Column("residual_compression", "m"),
+    *(Column(f"{channel}_fraction", "", channel) for channel in Losses._fields),
+    Column("inelasticity", ""),
+    Column("overload", ""),
+    Column("yield_speed", "m/s", "yield at", "m/s"),
 )
 
 
@@ -61,8 +63,9 @@ class ImpactTable:
     Attributes
     ----------
     columns : dict of str to ndarray
-        Speed, radius, thickness, the fields of a `Rebound` except its flags, and the yield speed,
-        which is inf if nothing yields or an impact at yield is outside the table.
+        For normal impacts speed, radius, thickness, the fields of a `Rebound` except its flags,
+        and the yield speed, which is inf if nothing yields or an impact at yield is outside the
+        table.
     flags : ndarray of int64
         `Validity` limits that an impact exceeds.
     """
@@ -163,7 +166,7 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
         return np.concatenate([yield_speeds(model, r, h) for r, h in parts])
 
 
-def text(table: ImpactTable) -> Iterator[str]:
+def text(table: ImpactTable, columns: Sequence[Column] = _COLUMNS) -> Iterator[str]:
     """Lines for a terminal: names, units, a row per impact, and the meaning of the flags.
 
     Examples
@@ -177,7 +180,7 @@ def text(table: ImpactTable) -> Iterator[str]:
         1     0.9          1  0.9324  6.692  1.426
         5     0.9          1  0.9081  4.864  9.688
     """
-    shown = [column for column in _COLUMNS if column.title]
+    shown = [column for column in columns if column.title]
     cells = [
         [column.title, f"[{column.shown}]"]
         + [f"{value:.4g}" for value in table.columns[column.name] * column.scale]
@@ -221,7 +224,7 @@ def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
         yield f"{flag.name}, {count} of {total}: {words}"
 
 
-def write_csv(table: ImpactTable, out: TextIO) -> None:
+def write_csv(table: ImpactTable, out: TextIO, columns: Sequence[Column] = _COLUMNS) -> None:
     """Write rows with every digit; the header has names and SI units.
 
     Examples
@@ -237,8 +240,7 @@ def write_csv(table: ImpactTable, out: TextIO) -> None:
     60.0 0.0009 0.001 FAST_IMPACT
     """
     writer = csv.writer(out, lineterminator="\n")
-    units = (f"_{column.unit}" * bool(column.unit) for column in _COLUMNS)
-    names = [column.name + unit for column, unit in zip(_COLUMNS, units, strict=True)]
+    names = [f"{column.name}_{column.unit}" if column.unit else column.name for column in columns]
     writer.writerow([*names, "flags"])
     values = (column.tolist() for column in table.columns.values())
     flags = ("|".join(flag_names(value)) for value in table.flags)

@@ -226,7 +226,7 @@ def test_a_stopped_run_goes_on(tmp_path, monkeypatch, capsys):
     assert __main__.main(["kept_out"]) == 0
     assert computed == listed
     assert len(capsys.readouterr().out.splitlines()) == 1 + 2 + 1 + len(listed)
-    line = json.loads((tmp_path / "kept_out.jsonl").read_text().splitlines()[0])
+    line = json.loads((tmp_path / "fem3d_kept_out.jsonl").read_text().splitlines()[0])
     assert line["solver_version"] == impact.VERSION and line["command"].endswith("kept_out")
     monkeypatch.setattr(impact, "VERSION", impact.VERSION + 1)
     assert cases.results("kept_out") == {}
