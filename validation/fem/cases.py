@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import multiprocessing
 import signal
-import time
+import threading
 from collections.abc import Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -133,13 +133,17 @@ def workers(processes: int) -> Iterator[ProcessPoolExecutor]:
         try:
             yield pool
         except BaseException:
-            # cancelled work has to be forgotten before the pool breaks: its thread would report an
-            # error of its own for what is cancelled already (Python below 3.12)
-            pool.shutdown(wait=False, cancel_futures=True)
-            time.sleep(0.2)
-            for child in multiprocessing.active_children():
-                child.terminate()
+            # The workers end a moment after cancelled work was forgotten: the pool's thread would
+            # report an error of its own for it (Python below 3.12). That thread has to be waited
+            # for: the interpreter's exit wakes it, and fails where it is closing its pipe.
+            threading.Timer(0.2, _end_workers).start()
+            pool.shutdown(cancel_futures=True)
             raise
+
+
+def _end_workers() -> None:
+    for child in multiprocessing.active_children():
+        child.terminate()
 
 
 def solve_all(cases: Iterable[Case], title: str, processes: int) -> dict[str, np.ndarray]:
