@@ -1,4 +1,4 @@
-"""Compute oblique impacts: ``python -m validation.fem3d [looked_at] [kept_out]``.
+"""Compute oblique impacts: ``python -m validation.fem3d [looked_at] [kept_out] [kept_out_2]``.
 
 It goes on where it was stopped, and prints what there is; an impact takes a minute.
 """

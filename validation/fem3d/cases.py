@@ -25,7 +25,7 @@ from validation.fem3d.impact import oblique_impact
 
 RADIUS = 1e-3  # [m]
 KINDS = "elastic", "sphere", "plate"  # which body flows
-SEEDS = {"looked_at": 20261201, "kept_out": 20261202}
+SEEDS = {"looked_at": 20261201, "kept_out": 20261202, "kept_out_2": 20261203}
 COUNT = 12
 _MODULUS = 1e11  # E* [Pa]
 _DENSITY = 5000.0  # [kg/m3]
