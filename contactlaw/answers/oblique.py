@@ -15,7 +15,6 @@ from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
-from contactlaw.physical.materials import sphere_mass
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
 from contactlaw.physical.rebound import Impacts
 from contactlaw.table import lookup
@@ -90,8 +89,7 @@ class Oblique:
         bodies, impacts = self._tabulated.bodies, Impacts(v, r, h, shape)
         backend: Backend = self._tabulated if method == "table" else Solver(bodies)
         normal, changed = _answer(backend, impacts, mu, s)
-        mass = sphere_mass(bodies.pair.sphere.density, r)
-        return oblique.of(normal, impacts, mass, s, changed)
+        return oblique.of(bodies.pair, normal, impacts, mu, s, changed)
 
     def collide(
         self,

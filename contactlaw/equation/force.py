@@ -204,6 +204,16 @@ def is_hertz(law: Array) -> bool:
 
 
 @kernel(inline=True)
+def stiffening(law: Array) -> float:
+    """Return s of a loading curve that begins as q^3 (1 + s q); 0 for Hertz's and for others."""
+    row = row_of(law, 0)
+    at = int(law[row + AT])
+    same = law[row + DEGREE] == 4.0 and law[row + SCALE] == 1.0 and law[row + OFFSET] == 0.0
+    same &= law[at] == law[at + 1] == law[at + 2] == 0.0 and law[at + 3] == 1.0
+    return float(law[at + 4]) if same else 0.0
+
+
+@kernel(inline=True)
 def leaves_hertz(law: Array) -> float:
     """Compression up to which contacts follow Hertz's law and unload without a loss."""
     if not is_hertz(law):

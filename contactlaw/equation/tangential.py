@@ -12,6 +12,11 @@ If the contact unloads as F = c d^n, the shares at x, as a part of k, are propor
 with p = 1/(n - 1): Hertz's law has 2. They add up to the whole force at any load, because the
 outermost spring is only as wide as the contact.
 
+Where material flows, what it holds along the surface relaxes: the flow follows the stress, and most
+of that is normal. While a contact flows the springs lose stretch, by the rate at which it deepens
+and the part of the compression that is beyond yield (`kept`). The factor is fitted to finite
+elements in three dimensions, as is a part of `stiffness_at`; both are judged by others of these.
+
 Friction needs no number of its own: with speeds in mu V0 and tangential forces in mu m V0/T_H,
 Coulomb's coefficient is 1.
 
@@ -37,12 +42,13 @@ Array = NDArray[np.float64]
 # the centre and m R^2/I = 5/2 for the spin.
 POINT = 3.5
 SPRINGS = 64  # of a reference solution
+RELAXING = 1.5  # relative loss of stretch, over (1 - y/d) times the relative growth of d
 
 
 class Stiffness(NamedTuple):
     """The elastic part of a contact at one moment."""
 
-    normal: float  # k = dF/dd of unloading
+    normal: float  # k, in effect dF/dd of unloading
     power: float  # p of the shares of the normal force
 
 
@@ -61,14 +67,37 @@ def limited(wish: float, most: float) -> float:
 
 
 @kernel
-def stiffness_at(law: Array, y: float, largest: float, d: float, f: float) -> Stiffness:
-    """Elastic part of a contact that was loaded up to `largest`; y = inf follows Hertz's law."""
+def stiffness_at(
+    law: Array, y: float, unit: float, largest: float, d: float, f: float
+) -> Stiffness:
+    """Elastic part of a contact that was loaded up to `largest`; y = inf follows Hertz's law.
+
+    `unit` is K of Hertz's law. A finite sphere's centre approaches less than the half-spaces of
+    Hertz would let it, by a compliance that does not depend on the contact: 2/3 s/(K d_Y^0.5), with
+    s of `force.stiffening`. Together with it 1/k is that of the contact's radius, 1/(2 E* a), also
+    where a body has flowed. Along the surface a finite sphere gives way more than a half-space; in
+    finite elements in three dimensions by as much again.
+
+    Where a capped law unloads along its loading curve, k is that of the curve beside it: the radius
+    of a contact does not jump as the slope does there.
+    """
     exponent, left = 1.5, 0.0
     if largest > y * force.leaves_hertz(law):
         curve = force.unloading(law, largest / y)
         exponent, left = 0.5 * curve.exponent, curve.residual * y
     power = 2.0 if exponent == 1.5 else 1.0 / (exponent - 1.0)
-    return Stiffness(exponent * f / (d - left) if d > left else 0.0, power)
+    k = exponent * f / (d - left) if d > left else 0.0
+    missing = 2.0 * (2.0 / 3.0) * force.stiffening(law) / (unit * math.sqrt(y))
+    return Stiffness(k / (1.0 + missing * k), power)
+
+
+@kernel(inline=True)
+def kept(y: float, largest: float, d: float) -> float:
+    """Share of their stretch that springs keep while the largest compression grows to d."""
+    if not d > max(largest, y):
+        return 1.0
+    before = max(largest, y)
+    return math.exp(RELAXING * (math.log(before / d) - y / d + y / before))
 
 
 @kernel(inline=True)
@@ -81,13 +110,14 @@ def part_of(spring: int, springs: int, width: float, k: float) -> float:
 @kernel
 def pull(
     stretch: Array, width: float, kappa: float, before: float, now: Stiffness, f: float,
-    path: Array, total: Array,
+    left: float, path: Array, total: Array,
 ) -> None:  # fmt: skip
     """Move springs (springs, impacts) along the surface by each impact's path; total their force.
 
-    A spring is `width` wide in k, and `before` is k at the last call. Parts that have joined since
-    then share half the path, and those that have left take their force with them: their energy is
-    lost, and no step makes any.
+    A spring is `width` wide in k, `before` is k at the last call, and `left` is what flow has left
+    of the stretch. Parts that have joined since then share half the path, and flow relaxes half of
+    it. Parts that have parted take their force with them: their energy is lost, and no step makes
+    any.
     """
     springs, within, k = stretch.shape[0], 0.0, now.normal
     total[:] = 0.0
@@ -100,7 +130,8 @@ def pull(
         share = share_within((n * width + wide) / k, now.power)
         most = f * (share - within)
         within = share
-        old, new, per_force = kappa * held, 0.5 * kappa * (wide + held), 1.0 / (kappa * wide)
+        old, new = kappa * held * left, 0.25 * kappa * (1.0 + left) * (wide + held)
+        per_force = 1.0 / (kappa * wide)
         for i in range(path.size):
             pulled = limited(old * stretch[n, i] + new * path[i], most)
             stretch[n, i] = pulled * per_force
@@ -118,7 +149,7 @@ def slide(law: Array, y: float, kappa: float, path: History, speed: Array, stret
     time, f, d = path.time, path.force, path.compression
     peak = 0.0
     for i in range(time.size):
-        peak = max(peak, stiffness_at(law, y, d[i], d[i], f[i]).normal)
+        peak = max(peak, stiffness_at(law, y, 1.0, d[i], d[i], f[i]).normal)
     width = peak / stretch.shape[0]
     stretch[:] = 0.0
     ratio, moved = np.empty(speed.size), np.empty(speed.size)
@@ -130,10 +161,11 @@ def slide(law: Array, y: float, kappa: float, path: History, speed: Array, stret
         for n in range(speed.size):
             speed[n] -= half * ratio[n]
             moved[n] = step * speed[n]
+        left = kept(y, largest, d[i])
         largest = max(largest, d[i])
         if f[i] > 0.0:
-            now = stiffness_at(law, y, largest, d[i], f[i])
-            pull(stretch, width, kappa, before, now, f[i], moved, ratio)
+            now = stiffness_at(law, y, 1.0, largest, d[i], f[i])
+            pull(stretch, width, kappa, before, now, f[i], left, moved, ratio)
             before = now.normal
             for n in range(speed.size):
                 ratio[n] /= f[i]

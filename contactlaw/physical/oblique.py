@@ -18,12 +18,21 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import ROUGHEST, shaped
-from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.materials import sphere_mass
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.rebound import Impacts, Rebound, shaped_flags
+from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup
 from contactlaw.table.slides import change
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
+
+# Limits of `Validity.SLIDING_FLOW`.
+_TRACTION = 0.5  # mu p/sigma_Y
+_SLIDE = 0.3  # of the contact's radius
+_PRODUCT = 0.02
+_UNLOADING = 1.4  # exponent of unloading, 1.35 to 1.5 where a body has flowed
 
 FASTEST = 1e9  # psi from which the digits of a sliding speed no longer matter
 
@@ -204,10 +213,36 @@ def rebound_all(
                 velocity[i, k], spin[i, k] = v[k], omega[k]
 
 
+def flow_flags(
+    pair: Pair, normal: Rebound, impacts: Impacts, friction: Array, size: Array, after: Array
+) -> NDArray[np.int64]:
+    """`Validity.SLIDING_FLOW` where friction makes a body flow along the surface, else 0.
+
+    Finite elements in three dimensions: the loss of COR is some 0.5 of the product of the two
+    ratios, so it is below 1 % up to 0.02.
+    """
+    strength = min(body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
+    force, deepest, left, time = (
+        np.ravel(values) for values in (
+            normal.peak_force, normal.peak_compression, normal.residual_compression,
+            normal.contact_time,
+        )
+    )  # fmt: skip
+    # F ~ d^1.4 of unloading, with the slope 2 E* a
+    contact = _UNLOADING * force / (deepest - left) / (2.0 * pair.effective_modulus)
+    with np.errstate(invalid="ignore"):
+        speed = 0.5 * (size**2 + after**2) / (np.abs(size) + np.abs(after))  # 0/0: no sliding
+    slide = np.nan_to_num(speed) * time / contact
+    traction = friction * force / (math.pi * contact**2) / strength
+    beyond = (traction >= _TRACTION) | (slide > _SLIDE) | (traction * slide > _PRODUCT)
+    return np.where(beyond & (left > 0.0), int(Validity.SLIDING_FLOW), 0)
+
+
 def of(
-    normal: Rebound, impacts: Impacts, mass: Array, size: Array, changed: Array
+    pair: Pair, normal: Rebound, impacts: Impacts, friction: Array, size: Array, changed: Array
 ) -> ObliqueRebound:
     """Complete an answer: normal part, sliding speed before it and the change of that [m/s]."""
+    mass = sphere_mass(pair.sphere.density, impacts.radius)
     with np.errstate(invalid="ignore", divide="ignore"):
         part = changed / size  # NaN without sliding
     e, after = np.ravel(normal.restitution), size - changed
@@ -219,4 +254,6 @@ def of(
         "friction_energy": mass / (2.0 * POINT) * changed * (size + after),
     }
     found = {name: shaped(values, impacts.shape) for name, values in found.items()}
-    return ObliqueRebound(**vars(normal), **found)
+    flags = np.ravel(normal.flags) | flow_flags(pair, normal, impacts, friction, size, after)
+    found["flags"] = shaped_flags(flags, impacts.shape)
+    return ObliqueRebound(**vars(normal) | found)

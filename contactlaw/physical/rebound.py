@@ -84,6 +84,13 @@ class Units(NamedTuple):
     overload: Array
 
 
+def shaped_flags(
+    flags: NDArray[np.int64], shape: tuple[int, ...] | None
+) -> Validity | NDArray[np.int64]:
+    """Undo `broadcast` for flags, which of a single impact have a type of their own."""
+    return Validity(int(flags[0])) if shape is None else flags.reshape(shape)
+
+
 @kernel(cache=True)
 def _with_units(
     limits: Limits,
@@ -143,5 +150,5 @@ def rebound(
     return Rebound(
         **{name: shaped(values, shape) for name, values in named.items()},
         inelasticity=shaped(inelasticity, shape),
-        flags=Validity(int(flags[0])) if shape is None else flags.reshape(shape),
+        flags=shaped_flags(flags, impacts.shape),
     )

@@ -38,9 +38,9 @@ class Validity(enum.IntFlag):
     """Limits that an impact exceeds; 0 if it exceeds none.
 
     All but `DAMAGE` are limits of the answer's accuracy; `ACCURACY` combines those. What the model
-    leaves out altogether (oblique impact, friction, adhesion, strain rate in metals, coatings)
-    raises no flag: at 1e4 per second steels are about a third stronger than in the tensile test
-    that the catalogue quotes, and so yield at twice the speed. `explain` puts flags into words.
+    leaves out altogether (adhesion, strain rate in metals, coatings) raises no flag: at 1e4 per
+    second steels are about a third stronger than in the tensile test that the catalogue quotes, and
+    so yield at twice the speed. `explain` puts flags into words.
 
     Examples
     --------
@@ -75,8 +75,13 @@ class Validity(enum.IntFlag):
     """A brittle body may break or flow: the pressure is above 0.59 of its hardness."""
     UNTRIED_STRENGTH = 1024
     """A body yields whose E*/sigma_Y lies outside 11 to 2000, the range of "fem"."""
+    SLIDING_FLOW = 2048
+    """Friction makes a yielding body flow along the surface, which changes the normal motion, too.
+    Of oblique impacts: from mu p = 0.5 sigma_Y or a slide of 0.3 a on, with p the mean pressure and
+    a the radius of the contact at the largest force, or where the product of mu p/sigma_Y and
+    slide/a is above 0.02."""
 
-    ACCURACY = 1535
+    ACCURACY = 3583
     """All limits of accuracy."""
 
 
@@ -115,6 +120,10 @@ _WORDS = {
         "a body yields that is weaker or stronger for its stiffness than the finite elements that "
         "the law is made of",
         "take the values for estimates",
+    ),
+    Validity.SLIDING_FLOW: (
+        "friction makes a body flow along the surface",
+        "take the values for estimates: the COR is up to 5 % too high",
     ),
 }
 

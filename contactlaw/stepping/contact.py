@@ -405,7 +405,7 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
     if plate_row.law == 0:
         report_trouble(scene, Trouble.NO_MODEL, contact.wall, bead.kind + 1.0, 0.0)
         return
-    recorded = scene.status[0].impacts
+    recorded, before = scene.status[0].impacts, row.largest_compression
     if clock.advancing:
         _advance(scene, clock, bead, contact, k)
     if row.force == 0.0 and row.extra_force == 0.0:
@@ -416,8 +416,8 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         law = array_at(plate_row.law, plate_row.law_size, np.float64)
         sliding = tangential_force(
             bead.friction[k], scene.friction, plate_row.tangential, law,
-            spring_of(plate_row, bead.r), state_of(row), touch.x, row.approach_speed, n, slip,
-            clock.dt if clock.advancing else 0.0, row.extra_force,
+            spring_of(plate_row, bead.r), state_of(row), before, touch.x, row.approach_speed, n,
+            slip, clock.dt if clock.advancing else 0.0, row.extra_force,
         )  # fmt: skip
         bead.torque[0] -= bead.r * (n[1] * sliding[2] - n[2] * sliding[1])
         bead.torque[1] -= bead.r * (n[2] * sliding[0] - n[0] * sliding[2])

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
-from contactlaw.equation.tangential import Stiffness, part_of, share_within, stiffness_at
+from contactlaw.equation.tangential import Stiffness, kept, part_of, share_within, stiffness_at
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.spring import Spring, State, impact
 from contactlaw.walls.facet import Point
@@ -79,7 +79,7 @@ def _width(law: Array, spring: Spring, speed: float, k: float) -> float:
             d *= math.sqrt(energy / (0.45 * forces.loading(law, math.sqrt(d)) * d))
     f = unit * forces.loading(law, math.sqrt(d))
     d *= spring.scale
-    return stiffness_at(law, spring.scale, d, d, f).normal / SPRINGS
+    return stiffness_at(law, spring.scale, spring.stiffness, d, d, f).normal / SPRINGS
 
 
 @kernel
@@ -116,9 +116,10 @@ def _join(row: Any) -> None:
 
 @kernel
 def _pull(
-    row: Any, friction: float, kappa: float, now: Stiffness, f: float, x: float, y: float
-) -> tuple[float, float]:
-    """Move the springs by a path along both directions; return their force."""
+    row: Any, friction: float, kappa: float, now: Stiffness, f: float, x: float, y: float,
+    left: float,
+) -> tuple[float, float]:  # fmt: skip
+    """Move the springs, of whose stretch a share is left, along both directions; their force."""
     fx = fy = within = 0.0
     k, before, width = now.normal, row.stiffness, row.width
     for n in range(SPRINGS):
@@ -130,7 +131,7 @@ def _pull(
         share = share_within((n * width + wide) / k, now.power)
         most = friction * f * (share - within)
         within = share
-        old, new = kappa * held, 0.5 * kappa * (wide + held)
+        old, new = kappa * held * left, 0.25 * kappa * (1.0 + left) * (wide + held)
         px, py = old * row.stretch[n] + new * x, old * row.stretch[n + SPRINGS] + new * y
         square = px * px + py * py
         if square > most * most:
@@ -146,12 +147,13 @@ def _pull(
 @kernel
 def tangential_force(
     row: Any, friction: float, kappa: float, law: Array, spring: Spring, state: State,
-    overlap: float, speed: float, n: Point, slip: Point, dt: float, extra: float,
+    before: float, overlap: float, speed: float, n: Point, slip: Point, dt: float, extra: float,
 ) -> Point:  # fmt: skip
     """Tangential force on a bead [N], from the velocity of its surface relative to the wall.
 
-    `speed` is the approach speed and `extra` the correction of the normal force in this step; a
-    contact with `extra` alone has just ended. A step dt of 0 gives the last step's force again.
+    `before` is the largest compression before this step, `speed` the approach speed and `extra` the
+    correction of the normal force in this step; a contact with `extra` alone has just ended. A step
+    dt of 0 gives the last step's force again.
     """
     f, last = state.force, (row.force[0], row.force[1], row.force[2])
     if dt == 0.0:
@@ -162,14 +164,16 @@ def tangential_force(
     else:
         a, b = _directions(row, n, slip)
         d = overlap - state.plate_displacement
-        now = stiffness_at(law, spring.scale, state.largest_compression, d, f)
+        hertz = spring.stiffness * (state.stiffening if state.stiffening > 0.0 else 1.0)
+        now = stiffness_at(law, spring.scale, hertz, state.largest_compression, d, f)
         if not now.normal > 0.0:  # at the end of a contact its force may outlive its compression
             now = Stiffness(max(row.stiffness, f / spring.scale), now.power)
         if row.width == 0.0:
             row.width = _width(law, spring, speed, now.normal)
         while now.normal > 1.5 * SPRINGS * row.width:
             _join(row)
-        x, y = _pull(row, friction, kappa, now, f, dt * dot(slip, a), dt * dot(slip, b))
+        left = kept(spring.scale, before, state.largest_compression)
+        x, y = _pull(row, friction, kappa, now, f, dt * dot(slip, a), dt * dot(slip, b), left)
         more = -(1.0 + extra / f)
         x, y = more * x, more * y
         force = x * a[0] + y * b[0], x * a[1] + y * b[1], x * a[2] + y * b[2]

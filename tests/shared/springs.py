@@ -1,7 +1,8 @@
 """Oblique impacts by 400 springs, which share no code with contactlaw.
 
 Springs at fixed places x across the contact, in units of its incremental stiffness k = dF/dd of
-unloading, each held to its own share of the normal force, 1 - (x/k)^2 of Hertz's pressure.
+unloading, each held to its own share of the normal force, 1 - (x/k)^2 of Hertz's pressure. While a
+contact flows the stretch s of a spring relaxes as ds/s = -1.5 (1 - y/d) dd/d.
 """
 
 import math
@@ -16,25 +17,27 @@ def slide(lam, y, kappa, psi):
     """Speeds of contact points after impacts that came with psi, in mu V0; the MYC law by scipy."""
     end, _, at = contact(lam, y)
     dt = end / STEPS
-    path, top = [], 0.0
+    path, kept, top = [], [], 0.0
     for n in range(1, STEPS + 1):
         f, d = at(n * dt)
+        kept.append(1 - 1.5 * (1 - y / d) * (d - top) / d if d > top > y else 1.0)
         top = max(top, d)
         left = top - y * math.sqrt(2 * top / y - 1) if top > y else 0.0
         path.append((f, 1.5 * f / (d - left) if d > left else 0.0))
-    return follow(path, dt, kappa, psi)
+    return follow(path, dt, kappa, psi, kept=kept)
 
 
-def follow(path, dt, kappa, speed, friction=1.0, mass=1.0):
+def follow(path, dt, kappa, speed, friction=1.0, mass=1.0, kept=None):
     """Speeds of contact points after a path of normal force and stiffness, in even steps."""
     width = max(k for _, k in path) / SPRINGS
     place = (np.arange(SPRINGS) + 0.5) * width
     v = np.array(speed, dtype=float)
     stretch, pull = np.zeros((SPRINGS, v.size)), np.zeros(v.size)
-    for f, k in path:
+    for (f, k), share in zip(path, kept or [1.0] * len(path), strict=True):
+        stretch *= share
         half = v - 0.5 * dt * 3.5 * pull / mass  # 3.5: a solid sphere
-        share = np.maximum(1 - (place / k) ** 2, 0) if k > 0 else np.zeros(SPRINGS)
-        limit = friction * f * share / share.sum() if share.any() else share
+        parts = np.maximum(1 - (place / k) ** 2, 0) if k > 0 else np.zeros(SPRINGS)
+        limit = friction * f * parts / parts.sum() if parts.any() else parts
         most = limit[:, None] / (kappa * width)
         stretch = np.clip(stretch + dt * half, -most, most)
         pull = kappa * width * stretch.sum(axis=0)

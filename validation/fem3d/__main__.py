@@ -1,6 +1,7 @@
-"""Compute oblique impacts: ``python -m validation.fem3d [looked_at] [kept_out] [kept_out_2]``.
+"""Compute oblique impacts: ``python -m validation.fem3d [NAME ...]``, the names of `cases.SEEDS`.
 
-It goes on where it was stopped, and prints what there is; an impact takes a minute.
+It goes on where it was stopped, and prints what there is, the model's answer beside it; an impact
+takes a minute. In the last column is 1 where the model flags that friction makes a body flow.
 """
 
 from __future__ import annotations
@@ -8,9 +9,13 @@ from __future__ import annotations
 import argparse
 import sys
 
+import contactlaw as cl
 from validation.fem3d import cases
 
-_COLUMNS = "kind", "R/H", "mu", "psi", "psi'", "J_t/J_n", "e", "e normal", "mu p/sY", "slide/a"
+_COLUMNS = (
+    "kind", "R/H", "mu", "psi", "psi'", "J_t/J_n", "e", "e normal", "mu p/sY", "slide/a",
+    "psi' of the model", "less that of elements", "flag",
+)  # fmt: skip
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -24,11 +29,13 @@ def main(arguments: list[str] | None = None) -> int:
         for name in options.names or cases.SEEDS:
             print(name, *_COLUMNS, sep="\t")
             for case, hit in cases.compute(name):
-                pressure = hit["pressure"] / case.strength
+                pressure, model = hit["pressure"] / case.strength, cases.model(case)
+                psi = float(model.sliding_speed / (case.friction * case.speed))
                 values = (
                     case.slimness, case.friction, case.psi, hit["psi_after"], hit["impulse_ratio"],
                     hit["restitution"], hit["normal_restitution"], case.friction * pressure,
-                    hit["slide"] / hit["contact_radius"],
+                    hit["slide"] / hit["contact_radius"], psi, psi - hit["psi_after"],
+                    bool(model.flags & cl.Validity.SLIDING_FLOW),
                 )  # fmt: skip
                 row = "\t".join(f"{value:.4g}" for value in values)
                 print(f"\t{case.kind}\t{row}", flush=True)

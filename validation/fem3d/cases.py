@@ -19,13 +19,14 @@ import numpy as np
 
 import contactlaw as cl
 from contactlaw._version import VERSION
+from contactlaw.physical.oblique import ObliqueRebound
 from validation.fem import store
 from validation.fem3d import impact
 from validation.fem3d.impact import oblique_impact
 
 RADIUS = 1e-3  # [m]
 KINDS = "elastic", "sphere", "plate"  # which body flows
-SEEDS = {"looked_at": 20261201, "kept_out": 20261202, "kept_out_2": 20261203}
+SEEDS = dict(looked_at=20261201, kept_out=20261202, kept_out_2=20261203, kept_out_3=20261204)
 COUNT = 12
 _MODULUS = 1e11  # E* [Pa]
 _DENSITY = 5000.0  # [kg/m3]
@@ -140,6 +141,13 @@ def solve(case: Case) -> dict[str, Any]:
         "psi_after": hit.sliding_speed / (case.friction * case.speed),
         "normal_restitution": normal.restitution,
     }
+
+
+def model(case: Case) -> ObliqueRebound:
+    """Answer of the model, integrated."""
+    return cl.ImpactModel(case.pair).oblique(
+        case.speed, case.sliding_speed, RADIUS, case.thickness, case.friction, method="solve"
+    )
 
 
 def results(name: str) -> dict[Case, dict[str, Any]]:

@@ -134,8 +134,11 @@ def slip_of(case, slip, normal):
     after = []
     for one, speed in np.broadcast(slip, normal):
         dt, x, u, top = CYCLE * case.compression(speed) / speed / 4000, 0.0, speed, 0.0
-        path = []
+        path, kept = [], []
         for _ in range(4100):
+            # far beyond yield a spring keeps this much of its stretch while the contact flows
+            flows = case.restitution < 1.0 and x > top
+            kept.append((top / x) ** 1.5 if flows else 1.0)
             top = max(top, x)
             left = (1 - case.restitution**2) * top
             back = max((x - left) / (top - left), 0.0) ** 1.5 if x > 0.0 else 0.0
@@ -144,7 +147,7 @@ def slip_of(case, slip, normal):
             u -= dt * force / case.mass
             x += dt * u
         kappa = 2 * (1 - case.ratio) / (2 - case.ratio)
-        after.append(follow(path, dt, kappa, [one], case.friction, case.mass)[0])
+        after.append(follow(path, dt, kappa, [one], case.friction, case.mass, kept)[0])
     return np.array(after)
 
 
