@@ -57,7 +57,7 @@ class Oblique:
         friction : array_like
             Coulomb's coefficient of friction between bead and plate [-], from 0 to 1000.
         method : {"table", "solve"}, optional
-            Interpolate in a table, which takes a second or two to make, or integrate.
+            Interpolate in a table, which takes seconds to make once, or integrate.
 
         Returns
         -------

@@ -115,8 +115,8 @@ class Tabulated:
 
     @functools.cached_property
     def slides(self) -> Array:
-        """The tangential rebounds of the pair, as kernels read them; they take a second to make."""
-        return slides.build(self.table, self.bodies.pair.tangential_ratio)
+        """The tangential rebounds of the pair, as kernels read them; once they take seconds."""
+        return cache.cached_slides(self.table, self.bodies.pair.tangential_ratio)
 
     @functools.cached_property
     def restitution(self) -> Callable[[float, float, float], float]:

@@ -17,14 +17,21 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw import _atomic
 from contactlaw import table as tables
 from contactlaw._folder import folder
 from contactlaw._jit import fingerprint
 from contactlaw.laws import Law
-from contactlaw.table import file
+from contactlaw.table import file, slides
 from contactlaw.table.grid import Settings, on_demand
 from contactlaw.table.nodes import Table
 
+Array = NDArray[np.float64]
+
+_DIGEST = 32  # bytes of a checksum
 # [s]; a build takes less than one second: a process that holds a lock for so long hangs
 _PATIENCE = 60.0
 
@@ -75,6 +82,33 @@ def cached_shapes(table: Table) -> Table:
         return tables.with_shapes(found or table, progress=progress_bar)
 
     return _kept(table.law, table.settings, make, lambda found: found.states is not None)
+
+
+def cached_slides(table: Table, kappa: float) -> Array:
+    """Tangential rebounds of a pair as kernels read them, from the cache or built.
+
+    Whatever is wrong with the folder, they are returned; what cannot be kept is built again by the
+    next process.
+    """
+    packed = table.packed.tobytes()
+    key = hashlib.sha256(packed + f"{kappa!r} {fingerprint()}".encode()).hexdigest()
+    try:
+        place = folder()
+    except RuntimeError:  # the table has warned of this
+        place = None
+    path = None if place is None else place / f"slides-{key[:24]}.bin"
+    if path is not None:
+        with contextlib.suppress(OSError):
+            whole = path.read_bytes()
+            digest, content = whole[:_DIGEST], whole[_DIGEST:]
+            if digest == hashlib.sha256(content).digest():
+                return np.frombuffer(content).copy()  # kernels take no constant arrays
+    made = slides.build(table, kappa)
+    if path is not None:
+        with contextlib.suppress(OSError):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            _atomic.write(path, hashlib.sha256(made.tobytes()).digest() + made.tobytes())
+    return made
 
 
 def _kept(

@@ -19,7 +19,7 @@ import pytest
 import tqdm
 
 from contactlaw import laws, table
-from contactlaw.table import cache
+from contactlaw.table import cache, slides
 from contactlaw.table import file as store
 
 MYC = laws.law("myc")
@@ -333,3 +333,19 @@ def test_a_lock_that_is_held_for_ever(place, path, expected, monkeypatch):
 def test_progress_is_quiet_without_a_terminal(capfd):
     assert list(cache.progress_bar(iter([1, 2]), 2)) == [1, 2]
     assert capfd.readouterr() == ("", "")
+
+
+def test_tangential_rebounds_are_kept_and_made_anew_where_damaged(place, expected, monkeypatch):
+    made = cache.cached_slides(expected, 0.8)
+    (path,) = place.glob("slides-*")
+    whole = path.read_bytes()
+    calls, build = [], slides.build
+    monkeypatch.setattr(slides, "build", lambda *given: calls.append(given) or build(*given))
+    again = cache.cached_slides(expected, 0.8)
+    assert np.array_equal(again, made) and again.flags.writeable and not calls
+    path.write_bytes(whole[:-1] + bytes([whole[-1] ^ 1]))
+    assert np.array_equal(cache.cached_slides(expected, 0.8), made)
+    assert len(calls) == 1 and path.read_bytes() == whole
+    assert not np.array_equal(cache.cached_slides(expected, 0.9), made)
+    monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(path / "file"))  # no folder can be made there
+    assert np.array_equal(cache.cached_slides(expected, 0.8), made)
