@@ -77,7 +77,7 @@ class Oblique:
         >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
         >>> hit = model.oblique(3.0, [1.0, 5.0], 0.9e-3, 3e-3, friction=0.2, method="solve")
         >>> hit.sliding_speed.round(2), hit.impulse_ratio.round(3)
-        (array([-0.16,  0.83]), array([0.056, 0.2  ]))
+        (array([-0.26,  0.83]), array([0.061, 0.2  ]))
         """
         if method not in ("table", "solve"):
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")

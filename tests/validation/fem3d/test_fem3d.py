@@ -203,6 +203,21 @@ def test_stored_impacts_were_drawn_and_keep_their_energy(name):
         assert (hit["plastic"] == 0) == (case.kind == "elastic")
 
 
+@pytest.mark.parametrize("name", cases.SEEDS)
+def test_the_model_is_as_near_to_the_elements_as_the_docs_say(name):
+    """Impacts of kept_out_3 were drawn and computed when the model was settled."""
+    unflagged, flagged = [], []
+    for case, hit in cases.results(name).items():
+        model = cases.model(case)
+        error = model.sliding_speed / (case.friction * case.speed) - hit["psi_after"]
+        flag = bool(model.flags & cl.Validity.SLIDING_FLOW)
+        (flagged if flag else unflagged).append(abs(error))
+        assert flag or hit["restitution"] > 0.99 * hit["normal_restitution"]
+        assert not flag or case.kind != "elastic"
+    assert np.median(unflagged) < 0.06 and max(unflagged) < 0.09
+    assert np.median(flagged) < 0.11 and max(flagged) < 0.17
+
+
 def test_a_stopped_run_goes_on(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(cases, "_FOLDER", tmp_path)
     cases.write("kept_out")
