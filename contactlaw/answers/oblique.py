@@ -16,6 +16,7 @@ from contactlaw.answers.tabulated import Tabulated
 from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
+from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts
 from contactlaw.table import lookup
 
@@ -88,8 +89,7 @@ class Oblique:
         check(speed=v, radius=r, thickness=h, sliding_speed=s, friction=mu)
         bodies, impacts = self._tabulated.bodies, Impacts(v, r, h, shape)
         backend: Backend = self._tabulated if method == "table" else Solver(bodies)
-        normal, changed = _answer(backend, impacts, mu, s)
-        return oblique.of(bodies.pair, normal, impacts, mu, s, changed)
+        return answer(backend, bodies.pair, impacts, mu, s)
 
     def collide(
         self,
@@ -200,6 +200,14 @@ class Oblique:
             )
         known = self._tabulated
         return _jitted(known.packed, known.slides, known.c_lam, known.c_chi)
+
+
+def answer(
+    backend: Backend, pair: Pair, impacts: Impacts, friction: Array, size: Array
+) -> ObliqueRebound:
+    """Everything about impacts with these sliding speeds [m/s]."""
+    normal, changed = _answer(backend, impacts, friction, size)
+    return oblique.of(pair, normal, impacts, friction, size, changed)
 
 
 def _answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) -> Any:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import sys
-from decimal import Decimal
 from typing import Any
 
 import numpy as np
@@ -13,16 +12,11 @@ from numpy.typing import NDArray
 from contactlaw import style
 from contactlaw.cli.parts import chosen, impacts, options, plots, quantities, wording
 from contactlaw.cli.parts.impacts import Column, ImpactTable
-from contactlaw.cli.parts.quantities import Quantity
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import within
 
 Array = NDArray[np.float64]
 
-_ANGLE = Quantity(
-    "angle", {"deg": Decimal(1), "rad": Decimal(180) / Decimal(np.pi), "°": Decimal(1)}
-)
-_FRICTION = quantities.SHARE._replace(name="coefficient of friction")
 _COLUMNS = (
     Column("angle", "deg", "angle", "deg"),
     Column("friction", "", "friction"),
@@ -49,10 +43,11 @@ def add(commands: Any) -> None:
     add("--speed", required=True, metavar="V",
         type=options.reader_of(quantities.value, quantities.SPEED),
         help="speed of the bead [m/s], or with a unit")  # fmt: skip
-    add("--angle", required=True, metavar="A", type=options.reader_of(quantities.values, _ANGLE),
+    add("--angle", required=True, metavar="A",
+        type=options.reader_of(quantities.values, quantities.ANGLE),
         help="angle of incidence from the plate's normal [deg], from 0 to below 90")  # fmt: skip
     add("--friction", required=True, metavar="MU",
-        type=options.reader_of(quantities.values, _FRICTION),
+        type=options.reader_of(quantities.values, quantities.FRICTION),
         help="coefficient of friction between bead and plate")  # fmt: skip
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")

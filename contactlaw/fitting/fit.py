@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
-from contactlaw.fitting.measurements import KINDS, Measurements
+from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, notes
 from contactlaw.fitting.predictions import Predictor, Values
-from contactlaw.fitting.unknowns import UNKNOWNS, Parameter, parameters, setting
+from contactlaw.fitting.unknowns import Parameter, parameters, setting
 from contactlaw.laws import DEFAULT, Law
-from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import law_of
@@ -57,7 +57,8 @@ class Fit:
         errors of data and model, the best first; each has a note. The errors stated are those
         around `values`.
     residuals : dict of str to ndarray
-        Measured over fitted values, minus 1 [-], for each kind that was measured.
+        Measured over fitted values, minus 1 [-], for each kind that was measured; of 1 plus the
+        rotational restitution, which may be 0.
     rows : dict of str to ndarray of int
         Indices of the rebounds that the residuals of each kind belong to.
     scatter : dict of str to float
@@ -96,7 +97,11 @@ class Fit:
     _state: _State = field(repr=False)
 
     def curve(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        sliding_speed: ArrayLike | None = None,
     ) -> tuple[Rebound, dict[str, Array]]:
         """Rebounds at other speeds with the values found, and their standard errors.
 
@@ -106,6 +111,9 @@ class Fit:
             Normal approach speeds [m/s].
         radius, thickness : array_like
             Sizes of beads and plates [m]; a size that was fitted has the error of the fit.
+        sliding_speed : array_like, optional
+            Speeds of the contact point along the plate [m/s], for the oblique kinds, which are left
+            out without them; with the friction found, or the mean of that given.
 
         Returns
         -------
@@ -115,11 +123,17 @@ class Fit:
             Standard errors of the kinds that were measured, from the errors of all parameters.
         """
         state = self._state
-        v, r, h, _ = broadcast(speed=speed, radius=radius, thickness=thickness)
-        check(speed=v, radius=r, thickness=h)
-        one = np.full(v.size, 0.5)
-        kinds = {name: one for name in self.residuals}
-        data = Measurements(speed=v, radius=r, thickness=h, **kinds)
+        inputs: dict[str, Any] = {"speed": speed, "radius": radius, "thickness": thickness}
+        friction = state.predictor.setting(state.at).friction
+        if sliding_speed is not None and friction is not None:
+            inputs |= {"sliding_speed": sliding_speed, "friction": np.mean(friction)}
+        kinds = [name for name in self.residuals if name in NORMAL or "friction" in inputs]
+        if not kinds:
+            raise ValueError(
+                "sliding_speed: has to be given, since only oblique kinds were measured"
+            )
+        *flat, _ = broadcast(**inputs)
+        data = Measurements(**dict(zip(inputs, flat, strict=True)), **dict.fromkeys(kinds, 0.5))
         varied = [
             replace(p, centre=x) for p, x in zip(state.predictor.parameters, state.at, strict=True)
         ]
@@ -151,7 +165,7 @@ def fit(
     unknown : str or sequence of str
         Up to three of ``"yield_strength"``, ``"youngs_modulus"``, ``"density"`` of the bead,
         ``"plate_yield_strength"``, ``"plate_youngs_modulus"``, ``"plate_density"``,
-        ``"thickness"`` of the plate and ``"radius"`` of the bead.
+        ``"thickness"`` of the plate, ``"radius"`` of the bead and ``"friction"`` between them.
     law : str or Law, optional
         Normal force law, as in `ImpactModel`.
     priors : mapping of str to float, optional
@@ -304,10 +318,10 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     slopes = predictor.derivatives(at, fitted)  # the descent may have kept those of a point nearby
     found = errors.covariances(predictor, slopes, error, model)
     unknowns = slice(len(names))  # the unknowns come first
-    model_error = None if model is None else model.size
+    model_error = None if model is None else np.abs(model.size)
     # with as many values as unknowns there is no scatter: only the model's errors are known
     doubt = error if freedom > 0.0 or model_error is None else model_error
-    _check_strengths(predictor, at, fitted, doubt)
+    _check_strengths(predictor, at, fitted, doubt, model_error)
     widths = np.zeros(at.size)
     if freedom > 0.0:
         left = 1.0 - errors.leverages(predictor, slopes, error)
@@ -374,7 +388,7 @@ def _alternatives(
     best, *others = ended.basins
     error = ended.error
     if not ended.freedom > 0.0:  # a fit through all values has no errors but the model's
-        error, model = (error if model is None else model.size), None
+        error, model = (error if model is None else np.abs(model.size)), None
 
     def squares(one: search.Basin) -> float:
         own = _squares(predictor, predictor.predicted(one.at), ended.error)
@@ -427,46 +441,60 @@ def _nonlinearity_factors(
             if square < _LEAST_RISE:
                 end = float(at[n] * math.exp(-sign * shift[n]))
                 raise identify.UnidentifiedError(
-                    f"unknown: the data bound {one.name} on one side only: {words} {end:.3g} "
-                    f"{UNKNOWNS[one.name].unit}. Measure another quantity, or other speeds",
+                    f"unknown: the data bound {one.name} on one side only: {words} "
+                    f"{f'{end:.3g} {one.unknown.unit}'.rstrip()}. Measure another quantity, or "
+                    f"other {'angles' if one.name == 'friction' else 'speeds'}",
                     (one.name,),
                 )
     return factors
 
 
-def _check_strengths(predictor: Predictor, at: Array, fitted: Array, error: Array) -> None:
-    """Refuse a strength that might as well be any larger one.
+def _check_strengths(
+    predictor: Predictor, at: Array, fitted: Array, error: Array, model: Array | None
+) -> None:
+    """Refuse a strength or a friction that might as well be any larger one.
 
     Raises
     ------
     UnidentifiedError
     """
-
-    def squares(values: Array) -> float:
-        return _squares(predictor, values, error)
-
     for n, one in enumerate(predictor.parameters):
-        if one.is_strength and one.is_unknown and one.prior is None:
+        free = one.is_unknown and one.prior is None
+        if free and (one.is_strength or one.name == "friction"):
+            # in a contact that sticks, friction changes less than the model's errors
+            doubt = error if one.is_strength or model is None else np.hypot(error, model)
             strong = at.copy()
             strong[n] = search.limits(predictor)[1][n]
-            if squares(predictor.at_trials(strong[None])[0]) < squares(fitted) + _EXCLUDED:
-                why = _least_strength(predictor, strong, n, squares)
+            there = predictor.at_trials(strong[None])[0]
+            least = _squares(predictor, fitted, doubt)
+            if _squares(predictor, there, doubt) < least + _EXCLUDED:
+                why = _least_value(predictor, strong, n, error)
                 raise identify.UnidentifiedError(
                     f"unknown: the data do not determine {one.name}: {why}", (one.name,)
                 )
 
 
-def _least_strength(
-    predictor: Predictor, strong: Array, n: int, squares: Callable[[Array], float]
-) -> str:
-    """Say above which strength the data exclude none."""
-    trial, high = strong.copy(), squares(predictor.at_trials(strong[None])[0]) + _EXCLUDED
+def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> str:
+    """Say above which strength or friction the data exclude none."""
+
+    def squares(values: Array) -> float:
+        return _squares(predictor, predictor.at_trials(values[None])[0], error)
+
+    is_strength = predictor.parameters[n].is_strength
+    trial, high = strong.copy(), squares(strong) + _EXCLUDED
     low = search.limits(predictor)[0][n]
     for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
         trial[n] = strong[n] * factor
-        if squares(predictor.at_trials(trial[None])[0]) > high:
+        if squares(trial) > high:
+            if not is_strength:
+                return (
+                    f"any above {trial[n]:.2g} or so fits as well, since the beads stick. Measure "
+                    "at larger angles from the normal"
+                )
             return (
                 f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
                 "yield enough. Measure faster impacts"
             )
+    if not is_strength:
+        return "any fits as well. Measure at other angles"
     return f"law {predictor.law.family!r} does not depend on it with these bodies"

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.arguments import broadcast, check, within
 
 Array = NDArray[np.float64]
 
@@ -22,14 +22,26 @@ class Kind(NamedTuple):
     least: float
     largest: float
     hint: str  # the usual mistake behind a value beyond the limits
+    shift: float = 0.0  # added before ratios are taken, so that values keep one sign
 
 
-KINDS = {
+NORMAL = {
     # a measured COR may be a little above 1, from its error
     "restitution": Kind("COR", "-", 1e-3, 1.2, "in per cent?"),
     "contact_time": Kind("contact time", "s", 1e-9, 10.0, "in microseconds?"),
     "peak_force": Kind("peak force", "N", 1e-12, 1e9, "in another unit?"),
 }
+# Of beads that came without spin. Between the first and the second there is the identity
+# tangential = 1 - (2/7) (1 + rotational); 1 + rotational is what friction took of the sliding.
+OBLIQUE = {
+    "tangential_restitution": Kind("tangential restitution", "-", 1e-3, 1.2, "in per cent?"),
+    "rotational_restitution": Kind("rotational restitution", "-", -0.9999, 1.2, "signed?", 1.0),
+    "spin": Kind("spin", "rad/s", 1e-3, 1e9, "its size, without a sign; in rpm?"),
+}
+KINDS = NORMAL | OBLIQUE
+
+# What is known of each rebound, besides what was measured.
+SIZES = ("speed", "sliding_speed", "radius", "thickness", "friction")
 
 # Smallest standard error over its value. A trial is integrated to 1e-9: no comparison is finer, and
 # the weight 1/error^2 of a far smaller one overflows.
@@ -38,22 +50,32 @@ _LEAST_ERROR = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Measurements:
-    """Rebounds as they were measured: any mix of COR, contact time and peak force.
+    """Rebounds as they were measured: any mix of COR, contact time, peak force and oblique kinds.
 
     Arguments broadcast; afterwards each is a flat array of one length, or None.
 
     Parameters
     ----------
     speed : array_like
-        Normal approach speeds [m/s].
+        Normal approach speeds [m/s]; with angles, the speeds of the beads.
     radius, thickness : array_like, optional
         Sizes of beads and plates [m], one for each or one for all; ``inf`` is the half-space. A
         size that is left out has to be an unknown of the fit.
     restitution, contact_time, peak_force : array_like, optional
         Measured quantities [-, s, N], at least one; NaN where a rebound lacks it.
-    restitution_error, contact_time_error, peak_force_error : array_like, optional
-        Their standard errors, in the same units, for all rebounds that have the quantity. Without
-        them a fit takes errors of one relative size and finds it from the scatter.
+    angle : array_like, optional
+        Angles of incidence from the plate's normal [deg], 0 to below 90. Afterwards `speed` is the
+        normal part and `sliding_speed` the other one.
+    sliding_speed : array_like, optional
+        Speeds of the contact point along the plate [m/s] in place of angles; of any sign.
+    friction : array_like, optional
+        Coulomb's coefficients [-], for all rebounds with an oblique kind unless it is unknown.
+    tangential_restitution, rotational_restitution, spin : array_like, optional
+        As in `contactlaw.ImpactModel.oblique`, of beads that came without spin [-, -, rad/s].
+    restitution_error, contact_time_error, ... : array_like, optional
+        Standard errors of all these quantities, in the same units, for all rebounds that have the
+        quantity. Without them a fit takes errors of one relative size and finds it from the
+        scatter.
 
     Raises
     ------
@@ -74,9 +96,18 @@ class Measurements:
     restitution: ArrayLike | None = None
     contact_time: ArrayLike | None = None
     peak_force: ArrayLike | None = None
+    angle: ArrayLike | None = None
+    sliding_speed: ArrayLike | None = None
+    friction: ArrayLike | None = None
+    tangential_restitution: ArrayLike | None = None
+    rotational_restitution: ArrayLike | None = None
+    spin: ArrayLike | None = None
     restitution_error: ArrayLike | None = None
     contact_time_error: ArrayLike | None = None
     peak_force_error: ArrayLike | None = None
+    tangential_restitution_error: ArrayLike | None = None
+    rotational_restitution_error: ArrayLike | None = None
+    spin_error: ArrayLike | None = None
 
     def __post_init__(self) -> None:
         """Check every value and store flat arrays."""
@@ -86,18 +117,22 @@ class Measurements:
             raise ValueError(f"data: have to hold at least one of {', '.join(KINDS)}, got none")
         *arrays, _ = broadcast(**{name: _missing(values) for name, values in given.items()})
         flat: dict[str, Array] = dict(zip(given, arrays, strict=True))
-        sizes = {name: flat[name] for name in ("speed", "radius", "thickness") if name in flat}
+        sizes = {name: flat[name] for name in SIZES if name in flat}
         if flat["speed"].size == 0:
             raise ValueError("data: got no rebound, at least one is needed")
         check(**sizes)
+        _resolve_angle(flat)
         for name, kind in KINDS.items():
             _check_kind(name, kind, flat)
+            if name in OBLIQUE and name in flat:
+                _check_sliding(name, flat)
         measured = [np.isfinite(flat[name]) for name in KINDS if name in flat]
         none = ~np.any(measured, axis=0)
         if none.any():
             raise ValueError(
                 f"data: rebound {int(np.argmax(none))} has none of {', '.join(KINDS)}: leave it out"
             )
+        object.__setattr__(self, "angle", None)
         for name, values in flat.items():
             values.flags.writeable = False
             object.__setattr__(self, name, values)
@@ -105,6 +140,11 @@ class Measurements:
     def __len__(self) -> int:
         """Count the rebounds."""
         return int(np.size(self.speed))
+
+    @property
+    def is_oblique(self) -> bool:
+        """Whether anything was measured that depends on friction."""
+        return any(getattr(self, name) is not None for name in OBLIQUE)
 
     @classmethod
     def of(cls, data: Measurements | Mapping[str, ArrayLike]) -> Measurements:
@@ -137,6 +177,36 @@ def _missing(values: ArrayLike) -> ArrayLike:
     if isinstance(values, list | tuple) and any(value is None for value in values):
         return [np.nan if value is None else value for value in values]
     return values
+
+
+def _resolve_angle(flat: dict[str, Array]) -> None:
+    """Split the speeds of beads that come at angles into their normal and tangential parts."""
+    if "angle" in flat:
+        if "sliding_speed" in flat:
+            raise ValueError("angle: give angles or sliding speeds, not both")
+        angle, speed = flat.pop("angle"), flat["speed"]
+        within("angle", angle, 0.0, 89.999, "degrees from the plate's normal")
+        flat["speed"] = speed * np.cos(np.radians(angle))
+        flat["sliding_speed"] = speed * np.sin(np.radians(angle))
+        check(speed=flat["speed"])
+    elif "sliding_speed" in flat:
+        flat["sliding_speed"] = np.abs(flat["sliding_speed"])
+
+
+def _check_sliding(name: str, flat: dict[str, Array]) -> None:
+    """Refuse what friction did to beads that did not slide, or nobody knows how fast."""
+    if "sliding_speed" not in flat:
+        raise ValueError(
+            f"angle: has to be given with {name}, of incidence from the plate's normal [deg]; or "
+            "sliding_speed [m/s]"
+        )
+    still = np.isfinite(flat[name]) & (flat["sliding_speed"] == 0.0)
+    if still.any():
+        n = int(np.argmax(still))
+        raise ValueError(
+            f"{name}: got {float(flat[name][n])!r} (element {n}) of a bead that came without "
+            "sliding: give NaN there, or its angle"
+        )
 
 
 def _check_kind(name: str, kind: Kind, flat: dict[str, Array]) -> None:

@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from contactlaw._readable import percent, rounded
 from contactlaw.fitting import search
 from contactlaw.fitting.measurements import KINDS
-from contactlaw.fitting.predictions import Predictor
+from contactlaw.fitting.predictions import Predictor, columns_of
 from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import count_flags, explain
 
@@ -20,6 +21,7 @@ Array = NDArray[np.float64]
 _FAR = 4.0  # standard errors; values that are further off the fit are named
 _MISFIT = 1.5  # scatter over the scatter to be expected; a larger ratio is reported
 _AT_BOUND = 1e-3  # relative distance from a bound; a nearer value is at the bound
+_SLIDES = 1.0 - 1e-6  # share of the friction at which an impulse is that of full sliding
 _LISTED = 8  # rows or runs of rows that are listed; more are only counted
 
 
@@ -49,7 +51,7 @@ def notes(
         Relative errors of the model; None where they are not known.
     """
     values = predictor.values
-    fitted = np.array([getattr(hit, name) for name in KINDS])[values.kind, values.row]
+    fitted = columns_of(hit, predictor.setting(at))[values.kind, values.row]
     off = values.value / fitted - 1.0
     if freedom <= 0.0:
         yield (
@@ -73,6 +75,10 @@ def notes(
     if any(one.is_strength for one in predictor.parameters):
         yielded = int(np.count_nonzero(np.asarray(hit.overload) > 1.0))
         yield f"{yielded} of {len(predictor.data)} rebounds are beyond yield and give the strength"
+    friction = predictor.setting(at).friction
+    if isinstance(hit, ObliqueRebound) and friction is not None:
+        sliding = int(np.count_nonzero(np.asarray(hit.impulse_ratio) > _SLIDES * friction))
+        yield f"{sliding} of {len(predictor.data)} rebounds slide all the time"
     flags = np.asarray(hit.flags)
     for flag, _ in count_flags(flags).items():
         (words,) = explain(flag)
@@ -82,7 +88,7 @@ def notes(
 def alternative_note(names: tuple[str, ...], values: Array) -> str:
     """Say that other values fit as well."""
     what = ", ".join(
-        f"{name} {value:.4g} {UNKNOWNS[name].unit}"
+        f"{name} {value:.4g} {UNKNOWNS[name].unit}".rstrip()
         for name, value in zip(names, values.tolist(), strict=False)
     )
     return (

@@ -14,11 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.answers import oblique
 from contactlaw.answers.backend import SphereOnPlate, UnsolvedError
 from contactlaw.answers.solver import Solver
+from contactlaw.equation.tangential import POINT
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting
 from contactlaw.laws import Law
+from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
 from contactlaw.physical.scaling import law_for_pair
@@ -38,7 +41,7 @@ class Values:
     kind, row
         Number of the kind in `KINDS`, and of the rebound.
     value
-        As measured, in SI units.
+        As measured, in SI units, with the shift of its kind.
     error
         Standard errors; NaN where they have to be found.
     """
@@ -59,7 +62,8 @@ class Values:
             rows = np.flatnonzero(np.isfinite(values))
             errors: Any = getattr(data, f"{name}_error")
             known = np.full(rows.size, np.nan) if errors is None else errors[rows]
-            parts.append((np.full(rows.size, n), rows, values[rows], known))
+            shifted = values[rows] + KINDS[name].shift
+            parts.append((np.full(rows.size, n), rows, shifted, known))
         return Values(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def part(self, rows: NDArray[np.intp]) -> Values:
@@ -95,8 +99,7 @@ class Predictor:
 
     def predicted(self, values: Array) -> Array:
         """Predict the measured values."""
-        found = self.impacts(values)
-        columns = np.array([getattr(found, name) for name in KINDS])
+        columns = columns_of(self.impacts(values), self.setting(values))
         return np.asarray(columns[self.values.kind, self.values.row])
 
     def at_trials(self, trials: Array) -> Array:
@@ -108,18 +111,15 @@ class Predictor:
         speed = np.array(self.data.speed)
         try:
             settings = [self.setting(values) for values in trials]
-            together = Setting(
-                settings[0].pair,
-                np.concatenate([one.radius for one in settings]),
-                np.concatenate([one.thickness for one in settings]),
-            )
+            sizes: Any = zip(*(one[1:] for one in settings), strict=True)
+            joined: Any = (None if one[0] is None else np.concatenate(one) for one in sizes)
+            together = Setting(settings[0].pair, *joined)
             found = impacts(together, self.law, np.tile(speed, len(settings)))
         except (UnsolvedError, ValueError):
             if len(trials) == 1:
                 return np.zeros((1, self.values.value.size))
             return np.concatenate([self.at_trials(one[None]) for one in trials])
-        columns = np.array([getattr(found, name) for name in KINDS])
-        columns = columns.reshape(len(KINDS), len(settings), speed.size)
+        columns = columns_of(found, together).reshape(len(KINDS), len(settings), speed.size)
         return np.asarray(columns[self.values.kind, :, self.values.row].T)
 
     def derivatives(self, values: Array, here: Array, known: Array | None = None) -> Array:
@@ -147,5 +147,30 @@ class Predictor:
 
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
     """Integrate rebounds of any bodies, without a table."""
-    bodies = SphereOnPlate(at.pair, law_for_pair(at.pair, law))
-    return Solver(bodies, _RTOL).rebounds(Impacts(speed, at.radius, at.thickness, speed.shape))
+    solver = Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL)
+    given = Impacts(speed, at.radius, at.thickness, speed.shape)
+    if at.friction is None or at.sliding_speed is None:
+        return solver.rebounds(given)
+    return oblique.answer(solver, at.pair, given, at.friction, at.sliding_speed)
+
+
+def columns_of(hit: Rebound, at: Setting) -> Array:
+    """Values of all kinds, a row for each, with the shift of the kind; NaN: there is none."""
+    found = np.full((len(KINDS), at.radius.size), np.nan)
+    for row, (name, kind) in zip(found, KINDS.items(), strict=True):
+        if name == "spin" and isinstance(hit, ObliqueRebound):
+            row[:] = per_slide(at)[name] * (at.sliding_speed - np.asarray(hit.sliding_speed))
+        elif hasattr(hit, name):
+            row[:] = getattr(hit, name) + kind.shift
+    return found
+
+
+def per_slide(at: Setting) -> dict[str, Array]:
+    """Change of each oblique kind by a change of the sliding speed [1/(m/s), ..., 1/m]."""
+    with np.errstate(divide="ignore"):
+        one = 1.0 / np.asarray(at.sliding_speed)
+    return {
+        "tangential_restitution": -one / POINT,
+        "rotational_restitution": one,
+        "spin": (1.0 - 1.0 / POINT) / at.radius,
+    }

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.answers.backend import UnsolvedError
-from contactlaw.fitting.measurements import KINDS, Measurements
+from contactlaw.fitting.measurements import KINDS, SIZES, Measurements
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, bounds
 
@@ -31,6 +31,7 @@ _KEEP_SLOPES = 0.02  # distance in logarithms at which derivatives that need ano
 # Points of an axis on which each needs its own law, by the number of such axes: a law takes 10 ms.
 _STRENGTHS, _MODULI = (0, 14, 9, 6), (0, 7, 5, 4)
 _DENSITIES, _SLENDERNESS = 5, 22  # points of an axis of densities, and of R/H
+_FRICTIONS = (0, 41, 16, 9)  # points of an axis of friction, by the number of unknowns
 _SLENDEREST, _THICKEST = 6.0, 0.03  # R/H; a plate thinner than R/6 gives no rebound to measure
 _RADII = np.geomspace(1e-5, 0.05, 16)  # [m]
 _FINER = (0, 16, 8, 3)  # points of the fine grid per step of the coarse one, by number of unknowns
@@ -205,11 +206,11 @@ def _few(predictor: Predictor, count: int) -> Predictor:
 
 
 def _some(values: Values, data: Measurements, count: int) -> NDArray[np.intp]:
-    """Rebounds of each kind, evenly over the speeds, and over the sizes if these differ."""
+    """Rebounds of each kind, evenly over the speeds, and over what else differs."""
     chosen: set[int] = set()
-    for given in (data.speed, data.radius, data.thickness):
+    for given in (getattr(data, name) for name in SIZES):
         along = np.asarray(given, dtype=np.float64)
-        if given is not data.speed and (given is None or np.ptp(along[np.isfinite(along)]) == 0.0):
+        if given is not data.speed and np.unique(along[np.isfinite(along)]).size < 2:
             continue
         for kind in np.unique(values.kind):
             rows = values.row[values.kind == kind]
@@ -220,7 +221,7 @@ def _some(values: Values, data: Measurements, count: int) -> NDArray[np.intp]:
 
 
 def _part(data: Measurements, rows: NDArray[np.intp]) -> Measurements:
-    names = [*KINDS, *(f"{name}_error" for name in KINDS), "speed", "radius", "thickness"]
+    names = [*KINDS, *(f"{name}_error" for name in KINDS), *SIZES]
     given = {name: getattr(data, name) for name in names}
     return Measurements(**{name: v[rows] for name, v in given.items() if v is not None})
 
@@ -258,6 +259,8 @@ def _axes(predictor: Predictor) -> _Axes:
             axis = np.geomspace(low[n], high[n], _MODULI[laws or 1])
         elif one.unknown.field == "density":
             axis = np.geomspace(low[n], high[n], _DENSITIES)
+        elif one.name == "friction":
+            axis = np.geomspace(low[n], high[n], _FRICTIONS[min(3, len(scanned))])
         elif one.name == "thickness":
             radius = np.ones(1) if data.radius is None else np.asarray(data.radius)
             ends = radius.max() / _SLENDEREST, radius.min() / _THICKEST

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.fitting.measurements import Measurements
+from contactlaw.fitting.measurements import NORMAL, OBLIQUE, Measurements
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import number
 from contactlaw.physical.materials import Material
@@ -46,8 +46,10 @@ UNKNOWNS = {
 }
 UNKNOWNS["thickness"] = Unknown("thickness of the plate", "m", "", "thickness", 1e-7, 10.0)
 UNKNOWNS["radius"] = Unknown("radius of the bead", "m", "", "radius", 1e-7, 1.0)
+UNKNOWNS["friction"] = Unknown("coefficient of friction", "", "", "friction", 1e-3, 5.0)
 # E*/sigma_Y of glassy metals and of the softest lead; law fem is made for 11 to 2000.
 _RATIOS = (12.0, 1e4)
+SIZES = ("radius", "thickness", "friction")
 _SEARCH_FACTOR = 5.0  # factor by which moduli and densities may differ from the values given
 
 
@@ -81,6 +83,8 @@ class Setting(NamedTuple):
     pair: Pair
     radius: Array
     thickness: Array
+    friction: Array | None = None  # None: nothing that was measured depends on it
+    sliding_speed: Array | None = None
 
 
 def parameters(
@@ -101,7 +105,12 @@ def parameters(
                 raise ValueError(f"{argument}: got {name!r}, must be of {', '.join(UNKNOWNS)}")
     if not 1 <= len(names) <= _MOST or len(set(names)) < len(names):
         raise ValueError(f"unknown: must be one to {_MOST} different names, got {names!r}")
-    for size in ("radius", "thickness"):
+    if "friction" in [*names, *priors] and not data.is_oblique:
+        raise ValueError(
+            f"unknown: {', '.join(NORMAL)} do not depend on friction: measure one of "
+            f"{', '.join(OBLIQUE)} at an angle"
+        )
+    for size in SIZES if data.is_oblique else SIZES[:2]:
         _check_size(size, getattr(data, size), size in names, size in priors)
     found = []
     for name in [*names, *(name for name in priors if name not in names)]:
@@ -114,7 +123,8 @@ def parameters(
 def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> None:
     if values is None and not unknown:
         raise ValueError(
-            f"{name}: has to be given [m], for each rebound or one for all, or to be unknown"
+            f"{name}: has to be given [{UNKNOWNS[name].unit or '-'}], for each rebound or one for "
+            "all, or to be unknown"
         )
     if values is not None and unknown and not prior:
         raise ValueError(
@@ -162,7 +172,7 @@ def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
 def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values: Array) -> Setting:
     """Put the values of parameters into bodies and sizes."""
     bodies: dict[str, Material] = {"sphere": pair.sphere, "plate": pair.plate}
-    sizes = {"radius": data.radius, "thickness": data.thickness}
+    sizes = {name: getattr(data, name) for name in SIZES}
     for parameter, value in zip(parameters, values.tolist(), strict=True):
         body, field = parameter.unknown.body, parameter.unknown.field
         if body:
@@ -172,4 +182,6 @@ def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values:
         else:
             sizes[field] = np.asarray(sizes[field]) * (value / parameter.centre)
     # copies: for read-only arrays kernels would be compiled once more
-    return Setting(Pair(**bodies), np.array(sizes["radius"]), np.array(sizes["thickness"]))
+    wanted = SIZES if data.is_oblique else SIZES[:2]
+    found = Setting(Pair(**bodies), *(np.array(sizes[name]) for name in wanted))
+    return found._replace(sliding_speed=np.array(data.sliding_speed)) if data.is_oblique else found

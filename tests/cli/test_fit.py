@@ -136,6 +136,30 @@ def test_a_prior_with_its_unit(usual, found, capsys):
     assert own.errors["thickness"] > 1.2 * found.errors["thickness"]
 
 
+def test_friction_from_a_table_with_angles(table, capsys, tmp_path):
+    """As `contactlaw oblique` has it: angles from the normal, and the speed of the bead."""
+    rows = ("300,20,,5000", "300,60,0.95,", "300,70,0.96,2500")
+    path = table("speed_cm/s,angle_deg,Tangential restitution,spin [rpm]", *rows)
+    options = [*BODIES, "--radius", "1mm", "--thickness", "inf"]
+    plot = tmp_path / "friction.png"
+    assert main(["fit", path, *options, "--unknown", "friction", "--plot", str(plot)]) == 0
+    assert plot.read_bytes().startswith(b"\x89PNG")
+    found = re.search(r"coefficient of friction  (\S+) \+- (\S+)\n", capsys.readouterr().out)
+    angle = [20.0, 60.0, 70.0]
+    data = {"speed": 3.0, "angle": angle, "radius": 1e-3, "thickness": np.inf}
+    data["tangential_restitution"] = [np.nan, 0.95, 0.96]
+    data["spin"] = [5000 * np.pi / 30, np.nan, 2500 * np.pi / 30]
+    own = cl.fit(STEEL, data, "friction")
+    assert float(found[1]) == pytest.approx(own.values["friction"], rel=0.01)
+    assert float(found[2]) == pytest.approx(own.errors["friction"], rel=0.05)
+    wrong = [*options, "--unknown", "plate_density", "--friction", "-1"]
+    assert main(["fit", path, *wrong]) == 1
+    assert "--friction: got -1.0" in capsys.readouterr().err
+    path = table("normal speed,angle,beta", "3,60,0.1")
+    assert main(["fit", path, *options, "--unknown", "friction"]) == 1
+    assert "with angles the speed is that of the bead" in capsys.readouterr().err
+
+
 def test_columns_that_are_not_used_are_named(table, capsys):
     assert main(["fit", table("speed,COR,eror", "1,0.4497,3", "2,0.3716,3"), *FIT]) == 0
     assert "columns that are not used: eror" in capsys.readouterr().err

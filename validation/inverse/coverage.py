@@ -21,7 +21,7 @@ from tqdm import tqdm
 
 import contactlaw as cl
 from contactlaw.fitting import errors
-from contactlaw.fitting.measurements import KINDS
+from contactlaw.fitting.measurements import KINDS, NORMAL
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import UNKNOWNS, parameters
 from contactlaw.physical.scaling import law_of
@@ -29,7 +29,7 @@ from validation.inverse.model import rebounds, true
 
 Array = NDArray[np.float64]
 
-QUESTIONS = (*((name,) for name in UNKNOWNS), ("yield_strength", "thickness"),
+QUESTIONS = (*((name,) for name in UNKNOWNS if name != "friction"), ("yield_strength", "thickness"),
              ("radius", "thickness", "plate_yield_strength"))  # fmt: skip
 REGIMES = {"below": (0.02, 0.7), "across": (0.2, 8.0), "above": (3.0, 60.0)}  # V0/V_Y0
 _LEAST = 0.05  # smallest COR of a measurement
@@ -89,7 +89,7 @@ def draw(random: np.random.Generator, question: tuple[str, ...], law: str) -> Co
         count = int(random.integers(8, 31))
         speed = np.exp(np.sort(random.uniform(math.log(slowest), math.log(fastest), count)))
         least = 2 if len(question) > 1 else 1
-        kinds = tuple(random.permutation(list(KINDS))[: random.integers(least, 4)].tolist())
+        kinds = tuple(random.permutation(list(NORMAL))[: random.integers(least, 4)].tolist())
         noise = tuple(np.exp(random.uniform(math.log(0.003), math.log(0.03), len(kinds))).tolist())
         one = Configuration(
             pair, radius, thickness, speed, kinds, noise, bool(random.integers(2)), regime

@@ -14,11 +14,11 @@ import numpy as np
 
 import contactlaw as cl
 from contactlaw import Validity
-from contactlaw.fitting.measurements import KINDS
+from contactlaw.fitting.measurements import NORMAL
 from validation.inverse.model import Impact, unseen
 
 _ERROR = 0.005  # relative error of finite elements: half the mean difference of two meshes
-BY = {"COR": ("restitution",), "contact time": ("contact_time",), "all three": tuple(KINDS)}
+BY = {"COR": ("restitution",), "contact time": ("contact_time",), "all three": tuple(NORMAL)}
 SLENDERNESS = {
     "R/H above 1.4": (1.4, math.inf), "R/H 0.9 to 1.2": (0.9, 1.2),
     "R/H 0.5 to 0.9": (0.5, 0.9), "R/H below 0.5": (0.0, 0.5),

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from contactlaw import Validity, laws
-from contactlaw.fitting.measurements import KINDS
+from contactlaw.fitting.measurements import NORMAL
 from contactlaw.fitting.predictions import impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting
 from contactlaw.physical.materials import NoYieldStrengthError
@@ -77,7 +77,7 @@ def unseen() -> list[Impact]:
                     radius=float(row["radius"]),
                     thickness=float(row["thickness"]),
                     yields=bool(row["plastic_strain"] > 0.0),
-                    values={kind: float(row[kind]) for kind in KINDS},
+                    values={kind: float(row[kind]) for kind in NORMAL},
                 )
             )
     return found

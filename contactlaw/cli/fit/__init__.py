@@ -23,9 +23,11 @@ def add(commands: Any) -> None:
     add(
         "data",
         metavar="FILE",
-        help="CSV with a row per rebound: speed_m/s, at least one of COR, contact_time_us and "
-        "peak_force_N, and optionally their standard errors (COR_error), radius_mm and "
-        "thickness_mm",
+        help="CSV with a row per rebound: speed_m/s, at least one of COR, contact_time_us, "
+        "peak_force_N, tangential_restitution, rotational_restitution and spin_rad/s, and "
+        "optionally their standard errors (COR_error), radius_mm and thickness_mm; for the last "
+        "three also angle_deg from the normal, with the speed of the bead, or sliding_speed_m/s "
+        "with the normal speed",
     )
     options.add_pair(command)
     length = reader_of(quantities.value, LENGTH)
@@ -33,6 +35,8 @@ def add(commands: Any) -> None:
         help="radius of all beads [m], or with a unit")  # fmt: skip
     add("--thickness", metavar="H", type=length,
         help="thickness of all plates [m], or with a unit; inf: a half-space")  # fmt: skip
+    add("--friction", metavar="MU", type=reader_of(quantities.value, quantities.FRICTION),
+        help="coefficient of friction of all rebounds at angles, unless it is unknown")  # fmt: skip
     add("--unknown", required=True, metavar="NAME", type=_names,
         help=f"what to find, up to three: {', '.join(UNKNOWNS)}")  # fmt: skip
     add(
@@ -70,7 +74,10 @@ def _prior(text: str) -> tuple[str, float]:
         raise argparse.ArgumentTypeError(
             f"got {text!r}, expected NAME=ERROR with a NAME of {', '.join(UNKNOWNS)}"
         )
-    kinds = {"Pa": quantities.STRESS, "kg/m3": quantities.DENSITY, "m": LENGTH}
+    kinds = {
+        "Pa": quantities.STRESS, "kg/m3": quantities.DENSITY, "m": LENGTH,
+        "": quantities.FRICTION,
+    }  # fmt: skip
     error: float = reader_of(quantities.value, kinds[UNKNOWNS[name].unit])(size)
     return name, error
 
@@ -84,8 +91,9 @@ def _run(arguments: argparse.Namespace) -> None:
             f"{arguments.data}: columns that are not used: {', '.join(read.unused)}"
         )
     data = measured.completed(
-        read, arguments.data, radius=arguments.radius, thickness=arguments.thickness
-    )
+        read, arguments.data, radius=arguments.radius, thickness=arguments.thickness,
+        friction=arguments.friction,
+    )  # fmt: skip
     priors = dict(arguments.prior)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         found = fit(pair, data, arguments.unknown, arguments.law, priors)

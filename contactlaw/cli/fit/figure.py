@@ -15,6 +15,7 @@ from contactlaw.cli.fit.printed import values_in_words
 from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.plots import SUFFIXES, colour_of, length_of, plate_of
 from contactlaw.fitting import Fit
+from contactlaw.fitting.measurements import KINDS
 from contactlaw.physical.validity import Validity, limits_in_words
 
 if TYPE_CHECKING:
@@ -38,6 +39,9 @@ _KINDS = {
     "restitution": _Kind("coefficient of restitution [-]", 1.0),
     "contact_time": _Kind("contact time [µs]", 1e6),
     "peak_force": _Kind("peak force [N]", 1.0),
+    "tangential_restitution": _Kind("tangential restitution [-]", 1.0),
+    "rotational_restitution": _Kind("1 + rotational restitution [-]", 1.0),
+    "spin": _Kind("spin after [rad/s]", 1.0),
 }
 
 
@@ -80,7 +84,8 @@ def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
     """
     wording.check_suffix("path", path, SUFFIXES)
     groups = list(groups_of(found))
-    curves = [curve_of(found, group) for group in groups] if len(groups) <= _MOST_CURVES else []
+    drawn = len(groups) <= _MOST_CURVES and not found.data.is_oblique  # speed is no abscissa then
+    curves = [curve_of(found, group) for group in groups] if drawn else []
     kinds = list(found.residuals)
     with style.applied():
         width = 9.0 if len(kinds) == 1 else 1.5 + 5.6 * len(kinds)
@@ -111,6 +116,12 @@ def groups_of(found: Fit) -> Iterator[Group]:
 
 def _speeds(found: Fit) -> Array:
     return np.asarray(found.data.speed)
+
+
+def _angles(found: Fit) -> Array:
+    """Angles of incidence from the normal [deg]."""
+    along: Array = np.asarray(found.data.sliding_speed)
+    return np.asarray(np.degrees(np.arctan2(along, _speeds(found))))
 
 
 def curve_of(found: Fit, group: Group) -> FitCurve:
@@ -159,8 +170,9 @@ def _draw_values(
     rows, off = rows[chosen], off[chosen]
     if not rows.size:
         return
-    v, scale = _speeds(found)[rows], _KINDS[kind].scale
-    measured: Array = np.asarray(getattr(found.data, kind))[rows]
+    v = (_angles if found.data.is_oblique else _speeds)(found)[rows]
+    scale = _KINDS[kind].scale
+    measured: Array = np.asarray(getattr(found.data, kind))[rows] + KINDS[kind].shift
     errors: Any = getattr(found.data, f"{kind}_error")
     fitted = measured / (1.0 + off)
     inside = (found.flags[rows] & Validity.ACCURACY) == 0
@@ -185,13 +197,16 @@ def _draw_values(
 
 
 def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:
-    speed = _speeds(found)
-    low, high = speed.min() / _WIDER, speed.max() * _WIDER
     below.axhline(0.0, color=style.INK, linewidth=1.0)
     largest = 1.15 * max(abs(number) for number in below.get_ylim())
     below.set_ylim(-largest, largest)
     below.set(xlabel="impact speed [m/s]", ylabel="off the fit [%]")
     above.set_ylabel(_KINDS[kind].label)
+    if found.data.is_oblique:
+        below.set(xlabel="angle of incidence from the normal [°]", xlim=(0.0, 90.0))
+        return
+    speed = _speeds(found)
+    low, high = speed.min() / _WIDER, speed.max() * _WIDER
     above.set_xscale("log")
     above.set_xlim(low, high)
     if kind == "peak_force" and speed.max() > 10.0 * speed.min():
@@ -208,7 +223,9 @@ def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:
 def _caption(found: Fit, groups: list[Group], curves: list[FitCurve]) -> str:
     parts = [", ".join(values_in_words(found)).replace("+-", "±")]
     parts.append("band: one standard error of the fit")
-    if not curves:
+    if found.data.is_oblique:
+        parts[1] = "bars: fitted values"
+    elif not curves:
         parts[1] = f"{len(groups)} beads and plates; bars: fitted values"
     elif all(curve.yields and math.isnan(curve.yield_speed) for curve in curves):
         parts.append("yield begins below these speeds")

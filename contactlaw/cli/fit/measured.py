@@ -10,17 +10,33 @@ import numpy as np
 
 from contactlaw.cli.parts import columns
 from contactlaw.cli.parts.columns import TextColumn
-from contactlaw.cli.parts.quantities import FORCE, LENGTH, SHARE, SPEED, TIME
+from contactlaw.cli.parts.quantities import (
+    ANGLE,
+    FORCE,
+    FRICTION,
+    LENGTH,
+    SHARE,
+    SPEED,
+    SPIN,
+    TIME,
+)
 from contactlaw.fitting import Measurements
+from contactlaw.fitting.measurements import SIZES
 
 _KINDS = {
     "restitution": (("restitution", "cor", "coefficient_of_restitution", "e"), SHARE),
     "contact_time": (("contact_time", "time", "duration"), TIME),
     "peak_force": (("peak_force", "force"), FORCE),
+    "tangential_restitution": (("tangential_restitution", "tangential_cor", "e_t"), SHARE),
+    "rotational_restitution": (("rotational_restitution", "beta"), SHARE),
+    "spin": (("spin", "rebound_spin", "angular_velocity"), SPIN),
 }
 _ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
 _COLUMNS = {
     "speed": TextColumn(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
+    "angle": TextColumn(("angle", "impact_angle", "angle_of_incidence"), ANGLE),
+    "sliding_speed": TextColumn(("sliding_speed", "tangential_speed"), SPEED),
+    "friction": TextColumn(("friction", "coefficient_of_friction", "mu"), FRICTION),
     "radius": TextColumn(("radius", "bead_radius"), LENGTH),
     "thickness": TextColumn(("thickness", "plate_thickness"), LENGTH),
     **{field: TextColumn(names, quantity) for field, (names, quantity) in _KINDS.items()},
@@ -49,8 +65,10 @@ def read(path: str | os.PathLike[str]) -> Read:
         Text file with columns between commas, semicolons or tabs, and names and units in the first
         line, as in ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``; a column
         without a unit is in SI units. Required are speeds, and at least one of COR (restitution),
-        contact time and peak force. Optional are their standard errors, ``..._error``, and radius
-        and thickness. An empty cell was not measured.
+        contact time, peak force, tangential restitution, rotational restitution and spin.
+        Optional are their standard errors, ``..._error``, angles of incidence from the normal,
+        with which the speeds are those of the beads, or sliding speeds, friction, radius and
+        thickness. An empty cell was not measured.
 
     Returns
     -------
@@ -92,8 +110,13 @@ def _read(content: bytes) -> Read:
         raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s")
     if not found.keys() & _KINDS.keys():
         raise ValueError(
-            f"nothing measured in its first line, {listed!r}: call a column COR, contact_time_us "
-            "or peak_force_N"
+            f"nothing measured in its first line, {listed!r}: call a column COR, contact_time_us, "
+            "peak_force_N, tangential_restitution, rotational_restitution or spin_rad/s"
+        )
+    if "angle" in found and "normal" in names[found["speed"].place].lower():
+        raise ValueError(
+            f"{names[found['speed'].place]!r}: with angles the speed is that of the bead: call it "
+            "speed_m/s if it is, else give sliding_speed_m/s in place of the angle"
         )
     if not rows:
         raise ValueError("it has no row after the first line")
@@ -114,7 +137,7 @@ def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) 
     if twice:
         raise ValueError(f"{min(twice)}: the table has its own: leave this one out")
     for name, values in found.columns.items():
-        if name in ("speed", "radius", "thickness") and np.isnan(values).any():
+        if name in (*SIZES, "angle") and np.isnan(values).any():
             row = int(np.argmax(np.isnan(values)))
             raise ValueError(f"{path}: row {row + 1} has no {name}")
     try:

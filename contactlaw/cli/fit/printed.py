@@ -48,7 +48,7 @@ def values_in_words(found: Fit) -> list[str]:
 
 
 def _number(found: Fit, name: str) -> str:
-    return with_error(found.values[name], found.errors[name], UNKNOWNS[name].unit)
+    return with_error(found.values[name], found.errors[name], UNKNOWNS[name].unit).rstrip()
 
 
 def rows(found: Fit) -> Iterator[str]:
@@ -58,10 +58,13 @@ def rows(found: Fit) -> Iterator[str]:
     for kind in kinds:
         for row, off in zip(found.rows[kind].tolist(), found.residuals[kind].tolist(), strict=True):
             cells[kind][row] = f"{100.0 * off:+z.2f}"
+    slides = found.data.sliding_speed
+    angle = [] if slides is None else np.degrees(np.arctan2(slides, found.data.speed)).tolist()
     yield from aligned(
         [
             ["rebound", "", *(str(n) for n in range(len(found.data)))],
             ["speed", "[m/s]", *(f"{v:.4g}" for v in np.asarray(found.data.speed).tolist())],
+            *([["angle", "[deg]", *(f"{a:.4g}" for a in angle)]] if angle else []),
             *([kind.replace("_", " "), "[% off]", *cells[kind]] for kind in kinds),
             ["flags", "", *(", ".join(flag_names(flags)) for flags in found.flags.tolist())],
         ]

@@ -37,7 +37,7 @@ def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
 
 def check_quantities(arguments: argparse.Namespace) -> None:
     """Refuse values beyond their limits one by one, so that the message can name the value."""
-    for name in ("speed", "radius", "thickness"):
+    for name in ("speed", "radius", "thickness", "friction"):
         given = getattr(arguments, name, None)
         for value in () if given is None else np.atleast_1d(given).tolist():
             scalars(**{name: value})

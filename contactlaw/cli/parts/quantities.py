@@ -48,6 +48,14 @@ FORCE = Quantity(
     "force", {"N": Decimal(1), "kN": Decimal(1000), "mN": Decimal("1e-3"), "uN": Decimal("1e-6")}
 )
 SHARE = Quantity("share", {"-": Decimal(1), "1": Decimal(1), "%": Decimal("0.01")})
+ANGLE = Quantity(
+    "angle", {"deg": Decimal(1), "rad": Decimal(180) / Decimal(math.pi), "°": Decimal(1)}
+)
+FRICTION = SHARE._replace(name="coefficient of friction")
+SPIN = Quantity(
+    "spin",
+    {"rad/s": Decimal(1), "rpm": Decimal(math.pi) / 30, "deg/s": Decimal(math.pi) / 180},
+)
 STRESS = Quantity(
     "stress",
     {"Pa": Decimal(1), "kPa": Decimal(1000), "MPa": Decimal("1e6"), "GPa": Decimal("1e9")},
