@@ -384,6 +384,7 @@ COMMANDS = [
     f"contactlaw constant {BEAD} --thickness 1mm --speed 1,5 --lammps",
     f"contactlaw oblique {BEAD} --thickness 1mm --speed 5 --angle 30 --friction 0.2",
     f"contactlaw oblique {BEAD} --thickness 1mm --speed 5 --angle 9,60 --friction 1 --plot OUT.png",
+    f"contactlaw oblique {BEAD} --thickness 1mm --speed 5 --angle 9,60 --friction 1 --fluent OUT.c",
     f"contactlaw history {BEAD} --thickness 1mm --speed 5",
     f"contactlaw history {BEAD} --thickness 1mm --speed 5 --solve",
     f"contactlaw fit rebounds.csv {BEAD} --thickness 1mm --unknown yield_strength",

@@ -1,7 +1,10 @@
 """``contactlaw oblique`` against the model and the numbers that follow from its columns."""
 
 import csv
+import ctypes
 import io
+import re
+import subprocess
 
 import numpy as np
 import pytest
@@ -40,6 +43,80 @@ def test_a_table_and_a_plot(capsys, tmp_path):
     path = tmp_path / "oblique.png"
     assert main([*BEAD, "--angle", "1:80:9", "--friction", "0.1", "--plot", str(path)]) == 0
     assert path.read_bytes().startswith(b"\x89PNG")
+
+
+# What the UDF manual of Fluent says of the names that a boundary condition uses.
+UDF = """
+#include <math.h>
+typedef double real;
+typedef struct { real v[3], v0[3]; } Tracked_Particle;
+typedef void Thread;
+typedef int face_t;
+enum { PATH_ACTIVE = 7 };
+#define TP_VEL(tp) ((tp)->v)
+#define TP_VEL0(tp) ((tp)->v0)
+#define DEFINE_DPM_BC(name, tp, t, f, normal, dim) \\
+    int name(Tracked_Particle *tp, Thread *t, face_t f, real normal[], int dim)
+"""
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("angle", [0.0, 3.0, 17.3, 60.0, 89.5])
+def test_fluents_function_reflects_as_the_model_does(angle, sign, tmp_path):
+    """Compiled beside a stand-in for Fluent's header; Fluent itself is not at hand."""
+    source, library = tmp_path / "wall.c", tmp_path / "wall.so"
+    wall = ["--angle", "0:89:90", "--friction", "0.1", "--fluent", str(source)]
+    assert main([*BEAD, *wall]) == 0
+    (tmp_path / "udf.h").write_text(UDF)
+    command = ["gcc", "-std=c90", "-Wall", "-Wextra", "-Wno-unused-parameter", "-Werror", "-I"]
+    subprocess.run(
+        [*command, tmp_path, "-shared", "-fPIC", source, "-o", library, "-lm"], check=True
+    )
+    normal, along = np.array([2.0, -1.0, 2.0]) / 3.0, np.array([1.0, 2.0, 0.0]) / 5.0**0.5
+    speed, sliding = 3.9 * np.cos(np.radians(angle)), 3.9 * np.sin(np.radians(angle))
+    particle = np.array([*(speed * normal + sliding * along), 0.0, 0.0, 0.0])
+    given = (ctypes.c_double * 3)(*(sign * normal))
+    done = ctypes.CDLL(library).contactlaw_reflect(
+        particle.ctypes.data_as(ctypes.c_void_p), None, 0, given, 3
+    )
+    assert done == 7 and particle[:3].tolist() == particle[3:].tolist()
+    model = cl.ImpactModel(cl.Pair("alumina", "glass"))
+    hit = model.oblique(speed, sliding, 2.5e-3, 25e-3, 0.1, method="solve")
+    assert particle[:3] @ normal == pytest.approx(-hit.restitution * speed, rel=1e-3)
+    part = np.nan_to_num(hit.tangential_restitution)
+    assert particle[:3] @ along == pytest.approx(part * sliding, rel=4e-3, abs=1e-12)
+
+
+def test_acutrace_gets_both_coefficients_over_the_normal_speed(tmp_path):
+    path = tmp_path / "wall.inp"
+    wall = ["--angle", "60,0,30", "--friction", "0.1", "--acusolve", str(path)]
+    assert main([*BEAD, *wall]) == 0
+    text = path.read_text()
+    assert text.count("{") == text.count("}") == 3
+    model = cl.ImpactModel(cl.Pair("alumina", "glass"))
+    speed, sliding = (3.9 * part(np.radians([60, 30, 0.01])) for part in (np.cos, np.sin))
+    hit = model.oblique(speed, sliding, 2.5e-3, 25e-3, 0.1, method="solve")
+    for name, values in (("en", hit.restitution), ("et", hit.tangential_restitution)):
+        block = re.search(rf"wall_{name}_curve_fit_values = {{(.*?)}}", text, re.DOTALL)[1]
+        rows = [row.split(",") for row in block.split(";") if row.strip()]
+        expected = np.column_stack([speed, values])
+        assert np.array(rows, dtype=float) == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--friction", "0.1,0.2", "--angle", "1,80"], "--fluent: got 2 coefficients and 2 angles"),
+        (
+            ["--friction", "0.1", "--angle", "40,40"],
+            "and 1 angles; give one coefficient of friction and at least two",
+        ),
+    ],
+)
+def test_a_wall_has_one_friction_and_a_range_of_angles(options, message, tmp_path, capsys):
+    path = tmp_path / "wall.c"
+    assert main([*BEAD, *options, "--fluent", str(path)]) == 1
+    assert message in capsys.readouterr().err and not path.exists()
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import style
+from contactlaw import _atomic, style
+from contactlaw._version import VERSION
+from contactlaw.cli.oblique import tracers
 from contactlaw.cli.parts import chosen, impacts, options, plots, quantities, wording
 from contactlaw.cli.parts.impacts import Column, ImpactTable
 from contactlaw.equation.tangential import POINT
@@ -17,6 +19,7 @@ from contactlaw.physical.arguments import within
 
 Array = NDArray[np.float64]
 
+_STEEPEST = 0.01  # [deg] angle that stands for normal incidence
 _COLUMNS = (
     Column("angle", "deg", "angle", "deg"),
     Column("friction", "", "friction"),
@@ -54,6 +57,10 @@ def add(commands: Any) -> None:
     add("--plot", metavar="FILE",
         help="draw the tangential restitution over the angle into FILE (PNG, SVG, PDF), a curve "
         "per coefficient of friction")  # fmt: skip
+    for name, program in (("fluent", "Ansys Fluent"), ("acusolve", "AcuTrace (AcuSolve)")):
+        add(f"--{name}", metavar="FILE",
+            help="write the restitution of the wall over these angles into FILE, in a form that "
+            f"{program} documents; it was not tried there")  # fmt: skip
     command.epilog = (
         f"--speed is that of the bead, whose normal part is speed cos(angle). {options.UNITS} "
         "Several angles and coefficients are a list, 10,20, or a range start:stop:count."
@@ -68,6 +75,12 @@ def _run(arguments: argparse.Namespace) -> None:
         with chosen.plot_file(arguments):
             _plot(arguments, _table(arguments, angles, coefficients).columns, coefficients)
         return
+    for name in ("fluent", "acusolve"):
+        if (path := getattr(arguments, name)) is not None:
+            with wording.file_of(name, path):
+                _atomic.write(path, _traced(arguments, name, angles, coefficients).encode())
+            print(path)
+            return
     found = _table(arguments, angles, coefficients)
     if arguments.csv:
         impacts.write_csv(found, sys.stdout, _COLUMNS)
@@ -92,6 +105,29 @@ def _table(arguments: argparse.Namespace, angles: Array, coefficients: Array) ->
         ),
     }  # fmt: skip
     return ImpactTable({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
+
+
+def _traced(arguments: argparse.Namespace, program: str, angles: Array, coefficients: Array) -> str:
+    """Write a wall for a program that traces particles."""
+    angles = np.unique(angles)
+    if coefficients.size > 1 or angles.size < 2:
+        raise ValueError(
+            f"{program}: got {coefficients.size} coefficients and {angles.size} angles; give "
+            "one coefficient of friction and at least two angles, best from 0 to 89"
+        )
+    # without sliding there is no tangential restitution, but it has a limit
+    rows = _table(arguments, np.maximum(angles, _STEEPEST)[::-1], coefficients).columns
+    about = (
+        f"{arguments.sphere} on {arguments.plate}, radius {plots.length_of(arguments.radius)}, "
+        f"{plots.plate_of(arguments.thickness)}, {arguments.speed:g} m/s, friction "
+        f"{coefficients[0]:g}, law {arguments.law}, no spin before"
+    )
+    inclined = angles[::-1]
+    write, place = {
+        "fluent": (tracers.fluent, 90.0 - inclined),
+        "acusolve": (tracers.acusolve, arguments.speed * np.cos(np.radians(inclined))),
+    }[program]
+    return write(about, VERSION, place, rows["restitution"], rows["tangential_restitution"])
 
 
 def _plot(arguments: argparse.Namespace, rows: dict[str, Array], coefficients: Array) -> None:
