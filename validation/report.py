@@ -23,6 +23,7 @@ from validation.accuracy import compare, trust
 from validation.accuracy.trust import Score
 from validation.bench import census
 from validation.fem.census import pairs
+from validation.figures import fig26_oblique
 from validation.paper.verdicts import FAILS, HOLDS, LIMITED, MISPRINT, OPEN, Claim
 from validation.typeset import typeset
 
@@ -129,7 +130,22 @@ def _practice() -> dict[str, str]:
         "misses": _misses(),
         "materials": _scores("bead on plate", trust.materials()),
         **_census(),
+        "oblique": _oblique(),
     }
+
+
+def _oblique() -> str:
+    """Make a table of the measured oblique impacts of Fig. 26 beside the model."""
+    heads = ("quantity", "reading", "angle [°]#", "measured#", "model#", "model off#")
+    rows = [
+        _row(
+            (name, f"{source}"),
+            (f"{angle:.2f}", _number(value), _number(model), _signed(model / value - 1.0)),
+        )
+        for name, source, angle, value, model in fig26_oblique.points()
+    ]
+    table = _table("oblique impacts, measured and by the model", heads, rows)
+    return f"<details><summary>{len(rows)} points</summary>{table}</details>"
 
 
 def _bounds() -> str:

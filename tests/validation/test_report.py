@@ -252,6 +252,17 @@ def test_the_parts_of_the_report_come_in_order(drawn):
         assert not [alt for alt in words if re.search(r"[_<>^]", alt)]
 
 
+def test_a_table_has_the_points_of_the_oblique_figure(drawn):
+    """Its largest difference in each quantity is that of the figure's numbers."""
+    text = (drawn[1] / "index.html").read_text().partition("Oblique impacts beside")[2]
+    rows = re.findall(r"<tr><td>(tangential restitution|spin)</td>.*?([^ >]+) %</td></tr>", text)
+    assert len(rows) == 35
+    for name in ("tangential restitution", "spin"):
+        off = [float(one.replace("\N{MINUS SIGN}", "-")) for kind, one in rows if kind == name]
+        expected = drawn[0]["fig26_oblique"][f"{name}, sticking: largest error"]
+        assert max(off, key=abs) == pytest.approx(100.0 * expected, abs=0.051)
+
+
 def test_people_who_simulate_meet_no_symbols_of_the_paper(drawn):
     text = (drawn[1] / "index.html").read_text()
     part = re.search(r"<section id=\"practice\">(.*?)</section>", text, flags=re.DOTALL)[1]

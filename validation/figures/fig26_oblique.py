@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,7 @@ SLIDING = 28.0  # [deg] angle of incidence from which the bead slides all the ti
 
 _ANGLE = Axis("angle of incidence from the normal  [°]").between(0.0, 90.0)
 _ALONG = Axis("tangential restitution of the centre  v$_t$' / v$_t$").between(0.5, 1.0)
+_COLUMNS = {"tangential restitution": "tangential_restitution", "spin": "spin_rad_per_s"}
 _SPIN = Axis("spin after the impact  [rad/s]").between(0.0, 700.0)
 
 
@@ -44,10 +46,19 @@ def impacts(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
 
 
 def measured(column: str) -> NDArray[np.float64]:
-    """Angles [deg] and measured values, shape (2, n)."""
+    """Angles [deg], measured values and who read them, shape (3, n)."""
     with (store.FOLDER / "kharaz-2001.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    return np.array([(float(r["angle_deg"]), float(r[column])) for r in rows if r[column]]).T
+    names = "angle_deg", column, "source"
+    return np.array([[float(r[name]) for name in names] for r in rows if r[column]]).T
+
+
+def points() -> Iterator[tuple[str, int, float, float, float]]:
+    """Quantity, who read it, angle [deg], measured and modelled value of each point."""
+    for n, (name, column) in enumerate(_COLUMNS.items()):
+        at, value, source = measured(column)
+        for row in zip(source.astype(int), at, value, impacts(at)[n], strict=True):
+            yield name, *row
 
 
 def draw() -> chart.Drawn:
@@ -61,9 +72,8 @@ def draw() -> chart.Drawn:
     )
     numbers = {}
     angle = np.linspace(0.5, 89.5, 179)
-    columns = {"tangential restitution": "tangential_restitution", "spin": "spin_rad_per_s"}
-    for n, (name, axes, curve) in enumerate(zip(columns, every, impacts(angle), strict=True)):
-        at, value = measured(columns[name])
+    for n, (name, axes, curve) in enumerate(zip(_COLUMNS, every, impacts(angle), strict=True)):
+        at, value, _ = measured(_COLUMNS[name])
         axes.plot(angle, curve, color=BLUE, linewidth=2.4, label="model")
         axes.plot(at, value, "o", color=INK, markersize=6, markerfacecolor="none", label="measured")
         off = impacts(at)[n] / value - 1.0
