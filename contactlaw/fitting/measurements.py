@@ -35,13 +35,15 @@ NORMAL = {
 # tangential = 1 - (2/7) (1 + rotational); 1 + rotational is what friction took of the sliding.
 OBLIQUE = {
     "tangential_restitution": Kind("tangential restitution", "-", 1e-3, 1.2, "in per cent?"),
-    "rotational_restitution": Kind("rotational restitution", "-", -0.9999, 1.2, "signed?", 1.0),
+    "rotational_restitution": Kind(
+        "rotational restitution", "-", -0.9999, 1.2, "in per cent?", 1.0
+    ),
     "spin": Kind("spin", "rad/s", 1e-3, 1e9, "its size, without a sign; in rpm?"),
 }
 KINDS = NORMAL | OBLIQUE
 
 # What is known of each rebound, besides what was measured.
-SIZES = ("speed", "sliding_speed", "radius", "thickness", "friction")
+INPUTS = ("speed", "sliding_speed", "radius", "thickness", "friction")
 
 # Smallest standard error over its value. A trial is integrated to 1e-9: no comparison is finer, and
 # the weight 1/error^2 of a far smaller one overflows.
@@ -117,7 +119,7 @@ class Measurements:
             raise ValueError(f"data: have to hold at least one of {', '.join(KINDS)}, got none")
         *arrays, _ = broadcast(**{name: _missing(values) for name, values in given.items()})
         flat: dict[str, Array] = dict(zip(given, arrays, strict=True))
-        sizes = {name: flat[name] for name in SIZES if name in flat}
+        sizes = {name: flat[name] for name in INPUTS if name in flat}
         if flat["speed"].size == 0:
             raise ValueError("data: got no rebound, at least one is needed")
         check(**sizes)

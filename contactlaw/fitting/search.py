@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.answers.backend import UnsolvedError
-from contactlaw.fitting.measurements import KINDS, SIZES, Measurements
+from contactlaw.fitting.measurements import INPUTS, KINDS, Measurements
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, bounds
 
@@ -208,7 +208,7 @@ def _few(predictor: Predictor, count: int) -> Predictor:
 def _some(values: Values, data: Measurements, count: int) -> NDArray[np.intp]:
     """Rebounds of each kind, evenly over the speeds, and over what else differs."""
     chosen: set[int] = set()
-    for given in (getattr(data, name) for name in SIZES):
+    for given in (getattr(data, name) for name in INPUTS):
         along = np.asarray(given, dtype=np.float64)
         if given is not data.speed and np.unique(along[np.isfinite(along)]).size < 2:
             continue
@@ -221,7 +221,7 @@ def _some(values: Values, data: Measurements, count: int) -> NDArray[np.intp]:
 
 
 def _part(data: Measurements, rows: NDArray[np.intp]) -> Measurements:
-    names = [*KINDS, *(f"{name}_error" for name in KINDS), *SIZES]
+    names = [*KINDS, *(f"{name}_error" for name in KINDS), *INPUTS]
     given = {name: getattr(data, name) for name in names}
     return Measurements(**{name: v[rows] for name, v in given.items() if v is not None})
 

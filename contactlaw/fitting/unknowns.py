@@ -49,7 +49,7 @@ UNKNOWNS["radius"] = Unknown("radius of the bead", "m", "", "radius", 1e-7, 1.0)
 UNKNOWNS["friction"] = Unknown("coefficient of friction", "", "", "friction", 1e-3, 5.0)
 # E*/sigma_Y of glassy metals and of the softest lead; law fem is made for 11 to 2000.
 _RATIOS = (12.0, 1e4)
-SIZES = ("radius", "thickness", "friction")
+_SIZES = ("radius", "thickness", "friction")
 _SEARCH_FACTOR = 5.0  # factor by which moduli and densities may differ from the values given
 
 
@@ -110,7 +110,7 @@ def parameters(
             f"unknown: {', '.join(NORMAL)} do not depend on friction: measure one of "
             f"{', '.join(OBLIQUE)} at an angle"
         )
-    for size in SIZES if data.is_oblique else SIZES[:2]:
+    for size in _SIZES if data.is_oblique else _SIZES[:2]:
         _check_size(size, getattr(data, size), size in names, size in priors)
     found = []
     for name in [*names, *(name for name in priors if name not in names)]:
@@ -172,7 +172,7 @@ def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
 def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values: Array) -> Setting:
     """Put the values of parameters into bodies and sizes."""
     bodies: dict[str, Material] = {"sphere": pair.sphere, "plate": pair.plate}
-    sizes = {name: getattr(data, name) for name in SIZES}
+    sizes = {name: getattr(data, name) for name in _SIZES}
     for parameter, value in zip(parameters, values.tolist(), strict=True):
         body, field = parameter.unknown.body, parameter.unknown.field
         if body:
@@ -182,6 +182,6 @@ def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values:
         else:
             sizes[field] = np.asarray(sizes[field]) * (value / parameter.centre)
     # copies: for read-only arrays kernels would be compiled once more
-    wanted = SIZES if data.is_oblique else SIZES[:2]
+    wanted = _SIZES if data.is_oblique else _SIZES[:2]
     found = Setting(Pair(**bodies), *(np.array(sizes[name]) for name in wanted))
     return found._replace(sliding_speed=np.array(data.sliding_speed)) if data.is_oblique else found

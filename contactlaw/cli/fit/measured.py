@@ -8,20 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw.cli.parts import columns
+from contactlaw.cli.parts import columns, quantities
 from contactlaw.cli.parts.columns import TextColumn
-from contactlaw.cli.parts.quantities import (
-    ANGLE,
-    FORCE,
-    FRICTION,
-    LENGTH,
-    SHARE,
-    SPEED,
-    SPIN,
-    TIME,
-)
+from contactlaw.cli.parts.quantities import FORCE, LENGTH, SHARE, SPEED, TIME
 from contactlaw.fitting import Measurements
-from contactlaw.fitting.measurements import SIZES
+from contactlaw.fitting.measurements import INPUTS
 
 _KINDS = {
     "restitution": (("restitution", "cor", "coefficient_of_restitution", "e"), SHARE),
@@ -29,14 +20,14 @@ _KINDS = {
     "peak_force": (("peak_force", "force"), FORCE),
     "tangential_restitution": (("tangential_restitution", "tangential_cor", "e_t"), SHARE),
     "rotational_restitution": (("rotational_restitution", "beta"), SHARE),
-    "spin": (("spin", "rebound_spin", "angular_velocity"), SPIN),
+    "spin": (("spin", "rebound_spin", "angular_velocity"), quantities.SPIN),
 }
 _ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
 _COLUMNS = {
     "speed": TextColumn(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
-    "angle": TextColumn(("angle", "impact_angle", "angle_of_incidence"), ANGLE),
+    "angle": TextColumn(("angle", "impact_angle", "angle_of_incidence"), quantities.ANGLE),
     "sliding_speed": TextColumn(("sliding_speed", "tangential_speed"), SPEED),
-    "friction": TextColumn(("friction", "coefficient_of_friction", "mu"), FRICTION),
+    "friction": TextColumn(("friction", "coefficient_of_friction", "mu"), quantities.FRICTION),
     "radius": TextColumn(("radius", "bead_radius"), LENGTH),
     "thickness": TextColumn(("thickness", "plate_thickness"), LENGTH),
     **{field: TextColumn(names, quantity) for field, (names, quantity) in _KINDS.items()},
@@ -137,7 +128,7 @@ def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) 
     if twice:
         raise ValueError(f"{min(twice)}: the table has its own: leave this one out")
     for name, values in found.columns.items():
-        if name in (*SIZES, "angle") and np.isnan(values).any():
+        if name in (*INPUTS, "angle") and np.isnan(values).any():
             row = int(np.argmax(np.isnan(values)))
             raise ValueError(f"{path}: row {row + 1} has no {name}")
     try:
