@@ -19,8 +19,7 @@ _FLUENT = Template("""\
    $about
    A compiled user-defined function: build and load it, and choose it as the discrete-phase
    boundary condition of the wall, in place of reflect. A tracked particle has no spin here. The
-   wall is at rest, and the flow is not axisymmetric with swirl. Old releases call TP_VEL P_VEL. The
-   columns are also the points of piecewise-linear reflection coefficients. */
+   wall is at rest, and the flow is not axisymmetric with swirl. Old releases call TP_VEL P_VEL. */
 #include "udf.h"
 
 #define ROWS $rows
