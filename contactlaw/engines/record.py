@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -35,7 +36,19 @@ class Column(NamedTuple):
     description: str
 
 
-_LIMITS = ", ".join(f"{limit.value} {limit.name}".lower().replace("_", " ") for limit in Validity)
+class Kind(enum.IntEnum):
+    """What a row of the record is; a coefficient of restitution has a meaning for impacts only."""
+
+    IMPACT = 0  # a bead arrived in free flight, hit one wall or bead, and left it again
+    SLIDING_ON = 1  # it was on a wall already and slid or rolled on to this one
+    OVER_EDGE = 2  # it left because the wall ended under it
+    STRUCK = 3  # something else struck it, or pressed on it, while it was in contact
+    RESTING = 4  # it stayed in contact far longer than an impact lasts, as under its weight
+
+
+def _named(values: type[enum.IntEnum] | type[enum.IntFlag]) -> str:
+    return ", ".join(f"{one.value} {one.name}".lower().replace("_", " ") for one in values)
+
 
 COLUMNS = (
     Column("time", "f8", "s", "first touch; of an impact within one step, the end of that step"),
@@ -47,20 +60,29 @@ COLUMNS = (
     Column("z", "f8", "m", "contact point, 0 in two dimensions"),
     Column("approach_speed", "f8", "m/s", "normal speed of approach"),
     Column("restitution", "f8", "1", "coefficient of restitution"),
+    Column("sliding_speed", "f8", "m/s", "speed of the contact point along the wall before"),
+    Column("kind", "i8", "1", f"what happened: {_named(Kind)}"),
+    Column(
+        "sliding_speed_after", "f8", "m/s", "the same afterwards; below 0 if it has turned round"
+    ),
+    *(Column(f"spin_{axis}", "f8", "rad/s", "spin of the bead afterwards") for axis in "xyz"),
     Column("contact_time", "f8", "s", "duration of the contact"),
     Column("peak_force", "f8", "N", "largest contact force"),
     *(
         Column(f"{channel}_energy", "f8", "J", f"energy {what}")
         for channel, what in DESCRIPTIONS._asdict().items()
     ),
+    Column("friction_energy", "f8", "J", "energy taken by friction, of translation and spin"),
     Column("wall_work", "f8", "J", "work of a moving wall on the bead during the contact"),
     Column("triangle", "i8", "1", "number of the mesh's triangle, -1: the plate is no mesh"),
-    Column("flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_LIMITS}"),
+    Column(
+        "flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_named(Validity)}"
+    ),
 )
 IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
 _NAMES = tuple(column.name for column in COLUMNS)
 # The columns of a record whose model gives a COR and nothing else.
-OBSERVED = _NAMES[: _NAMES.index("contact_time")]
+OBSERVED = _NAMES[: _NAMES.index("sliding_speed_after")]
 
 
 def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) -> None:
