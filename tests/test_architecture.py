@@ -53,8 +53,8 @@ FILES = {
     "cli/constant": ["records", "walls", "lines"],
     "cli/cor": ["curves", "figure"],
     "cli/fit": ["measured", "printed", "figure"],
-    "physical": ["arguments", "materials", "pair", "scaling", "measured", "history", "validity",
-                 "rebound", "oblique"],
+    "physical": ["arguments", "kind", "materials", "pair", "scaling", "measured", "history",
+                 "validity", "rebound", "oblique"],
 }  # fmt: skip
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from contactlaw import Validity
 from contactlaw.equation.losses import DESCRIPTIONS
+from contactlaw.physical.kind import Kind as Kind  # for readers of a record
 
 if TYPE_CHECKING:
     from contactlaw import Rebound
@@ -34,16 +35,6 @@ class Column(NamedTuple):
     kind: str
     unit: str
     description: str
-
-
-class Kind(enum.IntEnum):
-    """What a row of the record is; a coefficient of restitution has a meaning for impacts only."""
-
-    IMPACT = 0  # a bead arrived in free flight, hit one wall or bead, and left it again
-    SLIDING_ON = 1  # it was on a wall already and slid or rolled on to this one
-    OVER_EDGE = 2  # it left because the wall ended under it
-    STRUCK = 3  # something else struck it, or pressed on it, while it was in contact
-    RESTING = 4  # it stayed in contact far longer than an impact lasts, as under its weight
 
 
 def _named(values: type[enum.IntEnum] | type[enum.IntFlag]) -> str:

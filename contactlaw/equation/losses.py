@@ -32,8 +32,7 @@ class Losses(NamedTuple):
 DESCRIPTIONS = Losses(
     plastic="lost to plastic flow at the contact",
     wave="carried off by the bending wave in the plate",
-    other="that the normal impact leaves in vibration and locked-in stress (law fem); the "
-    "work of sliding friction is in no column",
+    other="that the normal impact leaves in vibration and locked-in stress (law fem)",
 )
 """How records of impacts describe the energy of each channel."""
 

@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.equation.corrections import CONTACT_TIME
-from contactlaw.physical.oblique import surface_velocity
+from contactlaw.equation.tangential import POINT
+from contactlaw.physical.kind import Kind
+from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.validity import flags_of
 from contactlaw.stepping import energy
 from contactlaw.stepping.energy import dot
@@ -26,6 +28,7 @@ from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, impact
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.facet import Point, Touch, nearest, velocity
 from contactlaw.walls.memory import array_at
+from contactlaw.walls.surface import wall_ends
 
 Array = NDArray[np.float64]
 
@@ -53,6 +56,8 @@ CONTACT = np.dtype(
         ("disturbance", "f8"),  # ALONE, UNEVEN or SHARING
         ("wall_power", "f8"),  # power of the normal force at the wall's velocity [W]
         ("push", "f8", 3),  # force on the bead without friction [N]
+        ("sliding_speed", "f8"),  # of the contact point along the wall at first touch [m/s]
+        ("arrival", "f8"),  # FREE, ON_EDGE or SLIDING
     ]
 )
 NO_CONTACT = np.zeros(1, CONTACT)
@@ -60,6 +65,10 @@ NO_CONTACT = np.zeros(1, CONTACT)
 # A contact is ALONE on one smooth surface, UNEVEN if it crossed a kink or another one pressed at
 # the same time, and SHARING if it has shared its force with another one.
 ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
+# A bead arrives FREE on a surface or ON_EDGE of it, or SLIDING while another wall presses on it.
+FREE, ON_EDGE, SLIDING = 0.0, 1.0, 2.0
+_LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest plates take 23
+_WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
 
 
 class Trouble(enum.IntEnum):
@@ -184,15 +193,29 @@ def _check_step(scene: WallScene, clock: Clock, wall: int, spring: Spring, u: fl
 
 
 @kernel
+def _over_edge(scene: WallScene, bead: Bead, contact: Contact) -> bool:
+    """Whether the wall ends at a contact's point."""
+    return not contact.touch.face and wall_ends(
+        scene.frames, scene.facets, contact.facet, contact.point, bead.r
+    )
+
+
+@kernel
 def _begin(
-    scene: WallScene, clock: Clock, bead: Bead, contact: Contact, row: Any, spring: Spring, u: float
+    scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int, spring: Spring, u: float
 ) -> None:
     """Start an impact: of a new contact, or of a bead that returns before it has left the wall."""
-    wall, x = contact.wall, contact.touch.x
+    row, wall, touch, x = bead.contacts[k], contact.wall, contact.touch, contact.touch.x
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     first = u > 0.0 and row.largest_compression == 0.0
     row.duration = min(x / u, clock.dt) if first else 0.0
     row.approach_speed, row.wave_energy, row.work, row.wall_work = u, 0.0, 0.0, 0.0
+    n = touch.nx, touch.ny, touch.nz
+    row.sliding_speed = sliding(contact.v, bead.omega, n, (0.0, 0.0, 0.0), bead.r).size
+    row.arrival = ON_EDGE if _over_edge(scene, bead, contact) else FREE
+    for j in range(len(bead.contacts) if contact.touching else 0):
+        if j != k and bead.contacts[j].force > 0.0:
+            row.arrival = SLIDING
     if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
         report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
@@ -237,6 +260,38 @@ def _normal_jumped(held: Point, n: Point, v: Point, dt: float, distance: float) 
 
 
 @kernel
+def _kind_of(
+    scene: WallScene,
+    bead: Bead,
+    contact: Contact,
+    row: Any,
+    lost: float,
+    leaves: float,
+    long: float,
+) -> int:
+    """Say what a contact was that has ended; several may hold, and the first one counts.
+
+    `lost` is the energy that the record says is lost, `leaves` the speed away from the wall, and
+    `long` the time that no impact lasts.
+    """
+    # Another wall pressed on the bead when it came to this one.
+    if row.arrival == SLIDING:
+        return Kind.SLIDING_ON.value
+    # The wall ends under the bead, and did not at first touch.
+    if row.arrival == FREE and _over_edge(scene, bead, contact):
+        return Kind.OVER_EDGE.value
+    # It has lasted far longer than an impact with this speed.
+    if row.duration > long:
+        return Kind.RESTING.value
+    # Another contact shared the force, or the losses do not explain the speed: others did work.
+    came = 0.5 * bead.mass * row.approach_speed * row.approach_speed
+    others = lost + 0.5 * bead.mass * leaves * abs(leaves) - came
+    if row.disturbance == SHARING or not abs(others) <= _WORK * came:
+        return Kind.STRUCK.value
+    return Kind.IMPACT.value
+
+
+@kernel
 def _end(
     law: Array,
     scene: WallScene,
@@ -264,15 +319,18 @@ def _end(
         to.wave_energy += row.wave_energy
         to.work += row.work
         to.wall_work += row.wall_work
+        if len(bead.friction) > 0:
+            bead.friction[contact.merged_into].work += bead.friction[k].work
         return 0.0, 0.0, 0.0
     reported, row.reported_loss = row.reported_loss, lost
     if not row.approach_speed > 0.0:  # the bead did not arrive: it was put down in contact
         return 0.0, 0.0, 0.0
     missing = reported - lost - row.wave_energy - row.work
     steps, sharing = row.duration / clock.dt, _sharing_row(bead, k)
-    extra, leaves = (0.0, 0.0, 0.0), -u
+    extra, leaves, size = (0.0, 0.0, 0.0), -u, 0.0
     if sharing >= 0:  # the other contact has the energy that this one lacks
         bead.contacts[sharing].work -= missing
+        missing = 0.0
     elif row.disturbance != ALONE:
         more = energy.settling_share(missing, bead.mass, v, _power(bead, k, v), clock.dt, steps)
         size = more * bead.mass / clock.dt
@@ -281,6 +339,8 @@ def _end(
         size = energy.settling_force(missing, bead.mass, u, row.approach_speed, clock.dt, steps)
         extra = size * touch.nx, size * touch.ny, size * touch.nz
         leaves = size * clock.dt / bead.mass - u
+    if size != 0.0:
+        missing = 0.0
     if not touch.face and u < 0.0 and row.disturbance == ALONE:
         around = energy.tangential_square(bead.r, row.overlap, touch.x, u, clock.dt)
         leaves = energy.free_speed(leaves, around, bead.r, touch.x)
@@ -304,12 +364,17 @@ def _end(
     # earlier impacts of the same contact have reported a part of the loss already
     share = 1.0 - other / lost if lost > 0.0 else 0.0
     record.plastic_energy, record.wave_energy = share * (lost - reported), row.wave_energy
-    record.other_energy = (1.0 - share) * (lost - reported)
-    record.wall_work = row.wall_work  # `apply_contact` adds the work of this step
+    # what is still missing is an error of the steps; with it, the energies of a run add up
+    record.other_energy = (1.0 - share) * (lost - reported) + missing
+    record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
+    expected = impact(spring, row.approach_speed)
+    record.kind = _kind_of(
+        scene, bead, contact, row, lost - reported + row.wave_energy + missing, leaves,
+        _LASTING * CONTACT_TIME * expected.time,
+    )  # fmt: skip
     record.flags = flags_of(
-        limits_of(plate_row), bead.r, plate_row.thickness,
-        impact(spring, record.approach_speed).compression, record.contact_time,
-        last.largest_compression, record.peak_force,
+        limits_of(plate_row), bead.r, plate_row.thickness, expected.compression,
+        record.contact_time, last.largest_compression, record.peak_force,
     )  # fmt: skip
     return extra
 
@@ -356,7 +421,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         if row.extra_force == 0.0 and _normal_jumped(held, n, v, clock.dt, bead.r - touch.x):
             row.disturbance = max(row.disturbance, UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
-        _begin(scene, clock, bead, contact, row, spring, u)
+        _begin(scene, clock, bead, contact, k, spring, u)
         if len(bead.friction) > 0:  # of a bead that returns before it has left the wall
             clear_friction(bead.friction[k])
     else:
@@ -389,12 +454,55 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     row.facet, row.overlap = side, touch.x
     if touch.x <= 0.0:
         bead.contacts[k] = NO_CONTACT[0]
-        if extra == 0.0:
-            clear_contact(bead, k)
     if extra != 0.0:
         row.facet = side  # kept after parting too, because a set-up asks for this force again
     row.extra_force, row.wall_power = extra, power
     row.push[0], row.push[1], row.push[2] = pushes
+
+
+@kernel
+def _complete(
+    record: Any, clock: Clock, bead: Bead, contact: Contact, k: int, drag: Point, torque: Point
+) -> None:
+    """Complete a row of the record with what follows from the forces of the contact's last step."""
+    row, touch, v, omega = bead.contacts[k], contact.touch, contact.v, bead.omega
+    per = clock.dt / bead.mass
+    turn = per / (0.4 * bead.r * bead.r)  # of a solid sphere
+    v = (
+        v[0] + per * (row.push[0] + drag[0]), v[1] + per * (row.push[1] + drag[1]),
+        v[2] + per * (row.push[2] + drag[2]),
+    )  # fmt: skip
+    spin = omega[0] + turn * torque[0], omega[1] + turn * torque[1], omega[2] + turn * torque[2]
+    left = sliding(v, spin, (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), bead.r)
+    record.spin_x, record.spin_y, record.spin_z = spin
+    record.sliding_speed_after, record.friction_energy = left.size, 0.0
+    if len(bead.friction) > 0:
+        slid = bead.friction[k]
+        if record.sliding_speed > 0.0:
+            along = slid.along[0], slid.along[1], slid.along[2]
+            record.sliding_speed_after = dot(left.along, along)
+        # The second half of the last step's force acts in the next step.
+        after = POINT * per * dot(drag, drag) + dot(
+            drag, surface_velocity(bead.v, omega, bead.r, (touch.nx, touch.ny, touch.nz))
+        )
+        record.friction_energy = -slid.work - 0.5 * clock.dt * after
+
+
+@kernel
+def _finish_work(clock: Clock, bead: Bead, k: int) -> None:
+    """Add the work of friction's last force in this step, by the velocity and normal before it."""
+    row, slid = bead.contacts[k], bead.friction[k]
+    push, drag = (
+        (row.push[0], row.push[1], row.push[2]),
+        (slid.force[0], slid.force[1], slid.force[2]),
+    )
+    size = math.sqrt(dot(push, push))
+    if size > 0.0:
+        n = push[0] / size, push[1] / size, push[2] / size
+        slip = surface_velocity(bead.v, bead.omega, bead.r, n)
+        slid.work += energy.work(
+            bead.mass / POINT, drag, (0.0, 0.0, 0.0), slip, 0.0, 0.0, clock.dt, clock.before
+        )
 
 
 @kernel
@@ -405,29 +513,42 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
     if plate_row.law == 0:
         report_trouble(scene, Trouble.NO_MODEL, contact.wall, bead.kind + 1.0, 0.0)
         return
-    recorded, before = scene.status[0].impacts, row.largest_compression
+    recorded, rough = scene.status[0].impacts, len(bead.friction) > 0
+    before = row.largest_compression
     if clock.advancing:
+        if rough and (row.force > 0.0 or row.extra_force != 0.0):
+            _finish_work(clock, bead, k)
         _advance(scene, clock, bead, contact, k)
-    if row.force == 0.0 and row.extra_force == 0.0:
-        return
-    n, sliding = (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0)
-    if len(bead.friction) > 0:
-        slip = surface_velocity(contact.v, bead.omega, bead.r, n)
-        law = array_at(plate_row.law, plate_row.law_size, np.float64)
-        sliding = tangential_force(
-            bead.friction[k], scene.friction, plate_row.tangential, law,
-            spring_of(plate_row, bead.r), state_of(row), before, touch.x, row.approach_speed, n,
-            slip, clock.dt if clock.advancing else 0.0, row.extra_force,
-        )  # fmt: skip
-        bead.torque[0] -= bead.r * (n[1] * sliding[2] - n[2] * sliding[1])
-        bead.torque[1] -= bead.r * (n[2] * sliding[0] - n[0] * sliding[2])
-        bead.torque[2] -= bead.r * (n[0] * sliding[1] - n[1] * sliding[0])
-    work = 0.0
-    for i in range(3):
-        both = row.push[i] + sliding[i]
-        bead.force[i] += both
-        work += both * contact.w[i]
-    if clock.advancing:
-        row.wall_work += clock.dt * work
-        if scene.status[0].impacts > recorded:  # the impact was recorded without this step's work
-            scene.impacts[recorded].wall_work += clock.dt * work
+    ended = scene.status[0].impacts > recorded
+    n, drag, torque = (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
+    if row.force != 0.0 or row.extra_force != 0.0:
+        if rough:
+            slip = surface_velocity(contact.v, bead.omega, bead.r, n)
+            law = array_at(plate_row.law, plate_row.law_size, np.float64)
+            drag = tangential_force(
+                bead.friction[k], scene.friction, plate_row.tangential, law,
+                spring_of(plate_row, bead.r), state_of(row), before, touch.x, row.approach_speed, n,
+                slip, clock.dt if clock.advancing else 0.0, row.extra_force,
+            )  # fmt: skip
+            torque = (
+                -bead.r * (n[1] * drag[2] - n[2] * drag[1]),
+                -bead.r * (n[2] * drag[0] - n[0] * drag[2]),
+                -bead.r * (n[0] * drag[1] - n[1] * drag[0]),
+            )
+            if clock.advancing:
+                slip = surface_velocity(bead.v, bead.omega, bead.r, n)
+                bead.friction[k].work += clock.dt * (0.5 * dot(drag, slip) - dot(drag, contact.w))
+        work = 0.0
+        for i in range(3):
+            both = row.push[i] + drag[i]
+            bead.force[i] += both
+            bead.torque[i] += torque[i]
+            work += both * contact.w[i]
+        if clock.advancing:
+            row.wall_work += clock.dt * work
+            if ended:  # the row of the record has been written without this step's work
+                scene.impacts[recorded].wall_work += clock.dt * work
+    if ended:
+        _complete(scene.impacts[recorded], clock, bead, contact, k, drag, torque)
+    if clock.advancing and rough and row.facet == 0.0:
+        clear_friction(bead.friction[k])

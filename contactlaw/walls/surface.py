@@ -254,6 +254,26 @@ def on_listed_facet(frames: Any, facets: Any, row: Any, point: Point, r: float) 
 
 
 @kernel
+def wall_ends(frames: Any, facets: Any, number: int, point: Point, r: float) -> bool:
+    """Whether a wall ends at a point on the rim of a facet: no other facet goes on smoothly."""
+    facet = facets[number]
+    frame, n = frames[facet.frame], facet.normal
+    p, cells = to_frame(frame, point), frame.cells
+    i, j, k = cell_of(frame, 0, p[0]), cell_of(frame, 1, p[1]), cell_of(frame, 2, p[2])
+    if not (0 <= i < cells[0] and 0 <= j < cells[1] and 0 <= k < cells[2]):
+        return True
+    starts, entries = entries_of(frame)
+    at = (i * cells[1] + j) * cells[2] + k
+    for e in range(starts[at], starts[at + 1]):
+        other = facets[entries[e]]
+        m = other.normal
+        smooth = abs(n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) > _SMOOTH
+        if smooth and entries[e] != number and contains(other, p, _SEAM * r):
+            return False
+    return True
+
+
+@kernel
 def _search(found: Any, count: int, start: int, r: float) -> None:
     """Find the pass of largest overlap to a deeper facet: the widest path, by Dijkstra's search."""
     for n in range(count):

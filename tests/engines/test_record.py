@@ -30,15 +30,16 @@ def register_of(model, radii, plates):
 def test_every_column_has_a_unit_and_a_description():
     assert IMPACT.names == (
         "time", "bead", "plate", "other", "x", "y", "z", "approach_speed", "restitution",
+        "sliding_speed", "kind", "sliding_speed_after", "spin_x", "spin_y", "spin_z",
         "contact_time", "peak_force", "plastic_energy", "wave_energy", "other_energy",
-        "wall_work", "triangle", "flags",
+        "friction_energy", "wall_work", "triangle", "flags",
     )  # fmt: skip
     assert tuple(column.name for column in COLUMNS) == IMPACT.names
-    units = {"1", "s", "m", "m/s", "N", "J"}
+    units = {"1", "s", "m", "m/s", "rad/s", "N", "J"}
     for column in COLUMNS:
         assert column.unit in units, column
         assert len(column.description) > 10, column
-        whole = column.name in ("bead", "plate", "other", "triangle", "flags")
+        whole = column.name in ("bead", "plate", "other", "kind", "triangle", "flags")
         assert IMPACT[column.name] == (np.int64 if whole else np.float64), column
 
 

@@ -94,6 +94,44 @@ def test_beads_struck_in_mid_contact_gain_no_energy():
     assert (energy() < 0.9 * held).sum() > 20
 
 
+@pytest.mark.parametrize("motion", [None, box.Vibration((2e-4, 1e-4, 5e-5), 500.0)])
+def test_the_record_accounts_for_all_energy(motion):
+    """Spinning beads that hit a plate at 45 to 85 degrees, one impact each."""
+    model, count, generator = MODELS["fem"], 96, np.random.default_rng(1)
+    angle, turn = np.radians(generator.uniform((45.0, 0.0), (85.0, 360.0), (count, 2))).T
+    start = 5.0 * np.column_stack(
+        (np.sin(angle) * np.cos(turn), np.sin(angle) * np.sin(turn), -np.cos(angle))
+    )
+    places = [
+        above(2e-6, x=0.01 * (n % 10) - 0.045, y=0.01 * (n // 10) - 0.045) for n in range(count)
+    ]
+    lmp, plates = scene(model, [flat(1e-3, motion=motion)], places, start, friction=0.3, dt=5e-8)
+    lmp.commands_string(f"set group all density {model.pair.sphere.density}\nrun 0")
+    spin = lmp.numpy.extract_atom("omega")[:count]
+    spin[:] = generator.normal(size=(count, 3)) * 3.0 / R
+    mass = lmp.numpy.extract_atom("rmass")[0]
+
+    def energy():
+        now = state(lmp)
+        return 0.5 * mass * ((now["v"] ** 2).sum(1) + 0.4 * R**2 * (now["omega"] ** 2).sum(1))
+
+    before = energy()
+    came = state(lmp)
+    lmp.command("run 1500")
+    rows, now, lost = np.sort(plates.collisions(), order="bead"), state(lmp), before - energy()
+    assert (rows["bead"] == np.arange(1, count + 1)).all() and (rows["kind"] == 0).all()
+    recorded = box.lost(rows) + rows["friction_energy"] - rows["wall_work"]
+    assert rows["friction_energy"].sum() > 0.4 * lost.sum()
+    assert lost == pytest.approx(recorded, abs=1e-10 * before.min())
+    assert now["omega"] == pytest.approx(np.stack([rows[f"spin_{x}"] for x in "xyz"], 1), rel=1e-9)
+    if motion is None:
+        slides = [b["v"][:, :2] - R * b["omega"][:, 1::-1] * (1, -1) for b in (came, now)]
+        size = np.linalg.norm(slides[0], axis=1)
+        assert rows["sliding_speed"] == pytest.approx(size, rel=1e-9)
+        after = (slides[0] * slides[1]).sum(axis=1) / size
+        assert rows["sliding_speed_after"] == pytest.approx(after, abs=1e-9)
+
+
 def test_friction_at_most_doubles_the_memory_of_a_contact():
     # without micro-slip a contact with friction had three numbers more than one without
     assert FIRST + WIDTH + SLIDING <= 2 * (FIRST + WIDTH + 3)

@@ -1,0 +1,119 @@
+"""What the rows of the record are: impacts, and contacts whose COR has no meaning."""
+
+import math
+
+import numba
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw.engines.record import IMPACT, Kind
+from contactlaw.stepping import Bead, Clock, WallContacts, interact
+from contactlaw.walls import Mesh, Plate, move
+
+pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
+
+R = 1e-3
+MODEL = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+MASS = 4 / 3 * math.pi * R**3 * MODEL.pair.sphere.density
+DT = 1e-7
+WIDE = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)
+
+
+@numba.njit
+def fly(scene, contacts, friction, x, v, gravity, kick, when, mass, radius, dt, steps):
+    """Move a bead by velocity Verlet; `kick` is added to its velocity at step `when`."""
+    force, torque, omega = np.zeros(3), np.zeros(3), np.zeros(3)
+    for step in range(steps):
+        move(scene.frames, step * dt, dt)
+        v += 0.5 * dt * (force / mass + gravity)
+        omega += 0.5 * dt / (0.4 * mass * radius**2) * torque
+        x += dt * v
+        force[:] = torque[:] = 0.0
+        interact(scene, Clock(step * dt, dt, dt, True),
+                 Bead(0, 0, (x[0], x[1], x[2]), (v[0], v[1], v[2]),
+                      (omega[0], omega[1], omega[2]), radius, mass, force, torque, contacts,
+                      friction))  # fmt: skip
+        v += 0.5 * dt * (force / mass + gravity)
+        omega += 0.5 * dt / (0.4 * mass * radius**2) * torque
+        if step == when:
+            v += kick
+
+
+def kinds(walls, x, v, *, slope=None, kick=(0.0, 0.0, 0.0), when=-1, friction=0.2, steps=2000):
+    """Kinds in the record of a bead at x with a velocity v, and the record.
+
+    With a slope [degrees] there is gravity, and x points down the slope.
+    """
+    gravity = np.zeros(3)
+    if slope is not None:
+        angle = math.radians(slope)
+        gravity[:] = 9.81 * math.sin(angle), 0.0, -9.81 * math.cos(angle)
+    contacts = WallContacts(walls, MODEL, R, np.zeros(999, IMPACT), friction=friction)
+    (rows,), (springs,) = contacts.memory(1)
+    x, v, kick = (np.array(vector, dtype=float) for vector in (x, v, kick))
+    fly(contacts.scene, rows, springs, x, v, gravity, kick, when, MASS, R, DT, steps)
+    found = contacts.collisions()
+    return [Kind(kind).name for kind in found["kind"]], found
+
+
+LINE = np.linspace(-0.02, 0.02, 401)
+CORNERS = np.array([(x, y, 0.0) for x in LINE for y in (-0.02, 0.02)])
+STRIPS = Mesh(CORNERS, [(n, n + 1, n + 2) for n in range(2 * LINE.size - 2)], 1e-3)
+DRUM = Mesh.cylinder((0, -0.02, 0), (0, 0.02, 0), 0.02, 1e-3, facets=72)
+SHEET = Plate((-0.05, -0.05, 0.0), (0.05, 0.0, 0.0), (0.0, 0.1, 0.0), 0.3e-3)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.2])
+@pytest.mark.parametrize("slide", [0.0, 5.0])
+@pytest.mark.parametrize("speed", [1.0, 10.0])
+@pytest.mark.parametrize(
+    ("wall", "x", "z"),
+    [(WIDE, 0.0, R), (WIDE, -0.05 - 0.2 * R, R), (STRIPS, 0.0, R), (DRUM, 0.0, 0.02 + 1.1 * R),
+     (DRUM, 0.0, -0.02 + 1.1 * R)],
+)  # fmt: skip
+def test_a_bead_that_hits_one_surface(wall, x, z, speed, slide, friction):
+    """Plate, its edge, a sheet of narrow triangles, and a drum from outside and inside."""
+    found, rows = kinds([wall], (x, 0.0, z + 1e-6), (slide, 0.0, -speed), friction=friction)
+    assert found == ["IMPACT"]
+    assert rows["restitution"] == pytest.approx(MODEL.restitution(speed, R, 1e-3), abs=0.01)
+    if x == 0.0:
+        turned = abs(z) > 0.01  # the facet's normal is not that of the place under the bead
+        assert rows["sliding_speed"] == pytest.approx(slide, abs=0.5 if turned else 1e-9)
+
+
+@pytest.mark.parametrize("slope", [10.0, 30.0, 60.0])
+def test_a_bead_that_slides_over_an_edge(slope):
+    """Its COR has no meaning: that of a bead in a chute was 317."""
+    found, rows = kinds([SHEET], (-R, 0, R + 1e-9), (0.05, 0, -1e-4), slope=slope, steps=300_000)
+    assert found[-1] == "OVER_EDGE" and rows["restitution"][-1] > 10.0
+    assert rows["sliding_speed_after"][-1] > 0.0
+
+
+def test_a_bead_that_slides_on_to_another_wall():
+    rising = Plate((0.0, -0.05, 0.0), (0.03, 0.0, 0.03), (0.0, 0.1, 0.0), 1e-3)
+    start = (-2 * R, 0.0, R + 1e-9)
+    found, rows = kinds([SHEET, rising], start, (0.5, 0, -1e-4), slope=0.0, steps=60_000)
+    assert found[list(rows["plate"]).index(1)] == "SLIDING_ON"
+
+
+@pytest.mark.parametrize("kick", [-0.5, 0.5])
+@pytest.mark.parametrize("when", range(6, 60, 9))
+def test_a_bead_that_is_struck_in_contact(when, kick):
+    start, kick = (0.0, 0.0, R + 1e-9), (0.0, 0.0, kick)
+    found, _ = kinds([WIDE], start, (1.0, 0.0, -1.0), kick=kick, when=when)
+    assert found == ["STRUCK"]
+
+
+def test_a_bead_in_a_groove_presses_on_both_sides():
+    sides = [Plate((0, -0.05, 0), (x, 0, 0.03), (0, 0.1, 0), 1e-3) for x in (-0.02, 0.02)]
+    found, _ = kinds(sides, (0.0, 0.0, 1.9 * R), (1e-3, 0.0, -1.0))
+    assert found and "IMPACT" not in found
+
+
+def test_a_bead_that_rests_and_is_taken_away():
+    start, lift = (-0.02, 0.0, R + 1e-9), (0.0, 0.0, 0.1)
+    found, rows = kinds(
+        [SHEET], start, (0, 0, -1e-3), slope=0.0, kick=lift, when=50_000, steps=60_000
+    )
+    assert found[-1] == "RESTING" and rows["restitution"][-1] > 100.0
