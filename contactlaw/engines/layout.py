@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.engines import hdf5
-from contactlaw.engines.record import COLUMNS, IMPACT
+from contactlaw.engines.record import COLUMNS, IMPACT, only_impacts
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
@@ -33,6 +33,7 @@ class Hits(NamedTuple):
     thickness: NDArray[np.float64]
     pair: Pair
     law: str
+    left_out: str  # which rows are no impacts
 
 
 def write(group: h5py.Group, name: str, values: object, units: str, description: str) -> None:
@@ -95,7 +96,9 @@ def materials(file: h5py.File) -> tuple[Material, Material]:
 
 
 def hits(file: h5py.File) -> Hits:
-    """Read impacts on plates with the sizes of bead and plate; those of bead on bead are left out.
+    """Read impacts on plates with the sizes of bead and plate.
+
+    Left out are those of bead on bead, and rows that are no impacts.
 
     Raises
     ------
@@ -118,17 +121,21 @@ def hits(file: h5py.File) -> Hits:
     plate = hdf5.indices(table, "plate", thickness.size, speed.size)
     bead = hdf5.indices(table, "bead", radius.size, speed.size)
     on_plates = plate >= 0
+    kind = hdf5.numbers(table, "kind", speed.size) if "kind" in table else np.zeros(speed.size)
+    impact, left_out = only_impacts(kind[on_plates])
     if (bead[on_plates] < 0).any():  # numpy would take the last bead
         raise ValueError(
             "dataset collisions/bead has -1, no bead, in a row that hits a plate; expected a "
             f"number from 0 to {radius.size - 1}"
         )
+    on_plates[on_plates] = impact
     return Hits(
         speed[on_plates],
         radius[bead[on_plates]],
         thickness[plate[on_plates]],
         Pair(*materials(file)),
         hdf5.attribute(file, "law", str),
+        left_out,
     )
 
 

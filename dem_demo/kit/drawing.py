@@ -52,7 +52,7 @@ class Drawing(ABC, Generic[S]):
         axes.set(xlabel="x [mm]", ylabel="height [mm]")
         axes.label_outer()
         axes.grid(visible=False)
-        rows = run.collisions
+        rows = run.impacts
         end = rows["time"] + rows["contact_time"]
         order = np.argsort(end, kind="stable")  # the last impact of a bead comes last
         self._end, self._last = end[order], rows[["bead", "restitution"]][order]

@@ -119,8 +119,9 @@ def restitution(
     rows, radius = run.collisions, run.scene.radius
     rng = np.random.default_rng(0)
     speeds = np.geomspace(_SLOWEST, max(2.0, float(rows["approach_speed"].max(initial=0.0))), 200)
-    _scatter(axes, rows[~flat], rng, style.PALE)
-    lowest, highest = 1.0, float(np.quantile(rows["restitution"], 0.98)) if rows.size else 1.0
+    flat, cors = flat & run.impact, run.impacts["restitution"]
+    _scatter(axes, rows[~flat & run.impact], rng, style.PALE)
+    lowest, highest = 1.0, float(np.quantile(cors, 0.98)) if cors.size else 1.0
     for (name, which), colour in zip(kinds, (style.ORANGE, style.BLUE), strict=True):
         _scatter(axes, rows[flat & which[rows["bead"]]], rng, colour)
         sizes = sorted({radius[which].min(initial=np.inf), radius[which].max(initial=0.0)})

@@ -69,6 +69,6 @@ def curve(run: Run[Any], speed: Floats, radius: float) -> Floats:
 
 def restitution_range(run: Run[Any]) -> tuple[float, float]:
     """Range of the colour scale: from the 2 % quantile of the COR, at most 0.9, to 1."""
-    found = run.collisions["restitution"]
+    found = run.impacts["restitution"]
     low = float(np.quantile(found, 0.02)) if found.size else 0.9
     return max(0.0, min(low, 0.9)), 1.0

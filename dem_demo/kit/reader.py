@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.engines import layout
+from contactlaw.engines.record import only_impacts
 from dem_demo.kit.beads import Floats
 
 
@@ -52,6 +54,28 @@ class Recorded:
     position: NDArray[np.float32]
     velocity: NDArray[np.float32]
     status: NDArray[np.uint8]
+
+    @property
+    def impact(self) -> NDArray[np.bool_]:
+        """Mask of the collisions that are impacts; COR and speed of the others mean nothing."""
+        return self._impacts[0]
+
+    @property
+    def left_out(self) -> str:
+        """Which collisions are no impacts, for reports; "" if all are."""
+        return self._impacts[1]
+
+    @property
+    def impacts(self) -> NDArray[np.void]:
+        """Collisions that are impacts."""
+        rows: NDArray[np.void] = self.collisions[self.impact]
+        return rows
+
+    @cached_property
+    def _impacts(self) -> tuple[NDArray[np.bool_], str]:
+        rows = self.collisions
+        known = "kind" in (rows.dtype.names or ())
+        return only_impacts(rows["kind"] if known else np.zeros(rows.size))
 
 
 def checked(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:

@@ -58,6 +58,7 @@ def summary(tale: Tale, runs: Runs[Any]) -> str:
         for name in columns[0]
     ]
     lines += ["", "Friction and bead on bead are the engine's own, not recorded impact by impact"]
+    lines += [f"{run.name}: {run.left_out}" for run in runs.every if run.left_out]
     lines += limits_lines(limits(tale, runs.law))
     if runs.reason:
         lines += ["", f"Partial, {progress(runs)}: {runs.reason}"]
@@ -75,9 +76,11 @@ def title(tale: Tale, runs: Runs[Any]) -> tuple[str, str]:
 
 def facts(tale: Tale, run: Run[Any]) -> Facts:
     """Names and values of all facts of a run."""
-    words, flat = tale.flat[0], run.collisions[tale.flat[1](run)]
+    words, flat = tale.flat[0], run.collisions[tale.flat[1](run) & run.impact]
     energy = account(run)
-    found = [("", run.name), (f"impacts on the {tale.wall}", f"{run.collisions.size}")]
+    found = [("", run.name), (f"impacts on the {tale.wall}", f"{run.impacts.size}")]
+    if run.left_out:
+        found.append(("  contacts that are none, left out", f"{(~run.impact).sum()}"))
     if flat.size:
         low, middle, high = np.quantile(flat["restitution"], [0.05, 0.5, 0.95])
         found += [
@@ -108,7 +111,7 @@ def _energy(energy: float) -> str:
 
 def limits(tale: Tale, run: Run[Any]) -> list[Limit]:
     """List the limits of the model that impacts exceed."""
-    return exceeded(run.collisions["flags"], tale.near_edge(run))
+    return exceeded(run.impacts["flags"], tale.near_edge(run)[run.impact])
 
 
 def progress(runs: Runs[Any]) -> str:

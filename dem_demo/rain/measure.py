@@ -58,14 +58,14 @@ class PlateRow:
 
 
 def on_plate(run: Run, plate: int) -> NDArray[np.void]:
-    """Collisions on one plate."""
-    rows: NDArray[np.void] = run.collisions[run.collisions["plate"] == plate]
+    """Impacts on one plate."""
+    rows: NDArray[np.void] = run.impacts[run.impacts["plate"] == plate]
     return rows
 
 
 def bead_on_bead(run: Run) -> NDArray[np.void]:
-    """Collisions of two beads."""
-    rows: NDArray[np.void] = run.collisions[run.collisions["other"] >= 0]
+    """Impacts of two beads."""
+    rows: NDArray[np.void] = run.impacts[run.impacts["other"] >= 0]
     return rows
 
 
@@ -120,8 +120,8 @@ def constant_beside_model(run: Run) -> tuple[Floats, Floats]:
 
 def restitution_range(run: Run) -> tuple[float, float]:
     """Range of the colour scale: from the lowest COR on a plate, at most 0.99, to 1."""
-    on = run.collisions["plate"] >= 0
-    return float(run.collisions["restitution"][on].min(initial=0.99)), 1.0
+    on = run.impacts["plate"] >= 0
+    return float(run.impacts["restitution"][on].min(initial=0.99)), 1.0
 
 
 def limits(run: Run) -> list[Limit]:
@@ -170,7 +170,7 @@ def first_rebounds(run: Run, plate: int) -> Rebounds:
     index = np.tile(np.arange(rows.size), 2)[order]
     bead, time = bead[order], time[order]
     first = np.flatnonzero(np.r_[True, bead[1:] != bead[:-1]] & (bead >= 0))
-    first = first[rows["plate"][index[first]] == plate]
+    first = first[((rows["plate"] == plate) & run.impact)[index[first]]]
     after = np.r_[np.where(bead[1:] == bead[:-1], time[1:], math.inf), math.inf][first]
     frame = np.searchsorted(run.time, time[first], side="right")
     ok = (frame < run.time.size) & (run.time[np.minimum(frame, run.time.size - 1)] < after)
@@ -178,7 +178,7 @@ def first_rebounds(run: Run, plate: int) -> Rebounds:
     flying = run.status[frame, n] == FLYING
     n, frame, row = n[flying], frame[flying], row[flying]
     far = np.zeros(rows.size, dtype=bool)
-    far[rows["plate"] >= 0] = outside(run)
+    far[(rows["plate"] >= 0) & run.impact] = outside(run)
     speed = rows["approach_speed"][row]
     surface = run.scene.plates[plate].y + run.scene.beads.radius[n]
     upwards = run.velocity[frame, n, 1].astype(float)

@@ -127,7 +127,7 @@ class Run(Recorded):
         They are as recorded if the record has flags. If it has none, as in the baseline, the model
         fills the missing columns for the same impacts; the COR stays that of the run.
         """
-        recorded = self.collisions[self.collisions["plate"] >= 0]
+        recorded = self.impacts[self.impacts["plate"] >= 0]
         names = recorded.dtype.names or ()
         if "flags" in names:
             return recorded

@@ -33,6 +33,7 @@ def summary(run: Run) -> str:
     lines = [*title(run), "", _HEAD]
     lines += [_plate_line(row) for row in plate_rows(run)]
     lines += ["", _bead_line(run), *limits_lines(limits(run))]
+    lines += [run.left_out] if run.left_out else []
     if run.reason:
         lines += ["", f"Partial, {progress(run)}: {run.reason}"]
     return "\n".join(lines)

@@ -68,11 +68,41 @@ def test_a_record_of_an_engine(tmp_path):
     assert found.plate.tolist() == [1, 0]
 
 
+def recorded(path, kinds):
+    """An engine's record, a row for each kind, in a file of numpy or of text."""
+    rows = np.zeros(len(kinds), IMPACT)
+    rows["approach_speed"], rows["kind"] = 1.0 + np.arange(len(kinds)), kinds
+    rows["restitution"] = 0.9
+    if path.suffix == ".npy":
+        np.save(path, rows)
+    else:
+        np.savetxt(path, rows, fmt="%g", delimiter=",", header=",".join(IMPACT.names))
+
+
+@pytest.mark.parametrize("name", ["a.npy", "a.csv"])
+def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
+    recorded(tmp_path / name, [0, 2, 0, 4, 2, 0])
+    assert read(tmp_path / name).speed.tolist() == [1.0, 3.0, 6.0]
+    words = "3 of 6 rows are no impacts and left out: 2 over edge, 1 resting"
+    pair = ["--sphere", "gamma-alumina", "--plate", "glass", "--radius", "1mm"]
+    command = ["constant", *pair, "--thickness", "1mm", "--record", str(tmp_path / name)]
+    assert cli_of_contactlaw.main(command) == 0
+    assert words in capsys.readouterr().err
+    recorded(tmp_path / name, [0, 0])
+    assert cli_of_contactlaw.main(command) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_a_column_called_kind_in_another_table(tmp_path):
+    (tmp_path / "a.csv").write_text("speed_m/s,kind\n1,glass\n2,steel\n")
+    assert read(tmp_path / "a.csv").speed.tolist() == [1.0, 2.0]
+
+
 def test_a_rain_of_the_demo(tmp_path, empty_pictures):
     rain = ["rain", "--beads", "12", "--plates", "0.5e-3,inf", "--duration", "0.2", "--seed", "3"]
     assert cli.main([*rain, "--out", str(tmp_path / "rain")]) == 0
     found, run = read(tmp_path / "rain/rain.h5"), reader.read(tmp_path / "rain/rain.h5")
-    rows = run.collisions[run.collisions["plate"] >= 0]
+    rows = run.impacts[run.impacts["plate"] >= 0]
     assert rows.size > 5
     assert found.speed.tolist() == rows["approach_speed"].tolist()
     assert found.radius.tolist() == run.scene.beads.radius[rows["bead"]].tolist()
@@ -172,6 +202,16 @@ def test_what_the_damaged_rains_are_made_of_is_read(rain, pair, tmp_path):
     assert found.radius.tolist() == [0.9e-3, 1.1e-3, 1e-3]
     assert found.thickness.tolist() == [0.5e-3, math.inf, 0.5e-3]
     assert (found.pair, found.law) == (pair, "hertz")
+
+
+def test_rows_of_a_rain_that_are_no_impacts(rain, tmp_path):
+    (tmp_path / "rain.h5").write_bytes(rain)
+    with h5py.File(tmp_path / "rain.h5", "r+") as file:
+        file["collisions/kind"] = [1, 0, 3, 0]
+    found = read(tmp_path / "rain.h5")
+    assert found.speed.tolist() == [2.0, 3.0]
+    assert found.thickness.tolist() == [math.inf, 0.5e-3]
+    assert found.left_out == "1 of 3 rows are no impacts and left out: 1 sliding on"
 
 
 def absent(file, name):

@@ -102,7 +102,7 @@ def test_the_record_explains_itself(folder):
 @pytest.mark.parametrize("name", ["drum.h5", "constant.h5"])
 def test_the_record_gives_a_constant_for_each_wall(name, folder, runs, capsys):
     run = runs.law if name == "drum.h5" else runs.constant
-    found, rows = records.read(folder / name), run.collisions
+    found, rows = records.read(folder / name), run.impacts
     assert np.array_equal(found.speed, rows["approach_speed"])
     assert np.array_equal(found.radius, run.scene.radius[rows["bead"]])
     assert set(found.thickness) == {run.scene.thickness}

@@ -67,7 +67,7 @@ def test_the_record_gives_a_constant(name, folder, capsys):
     """The record gives the same constant as the impacts with the radii of the scene."""
     run = read_one(folder / name, Sieve)
     found = records.read(folder / name)
-    rows = run.collisions
+    rows = run.impacts
     assert rows.size > 3
     assert np.array_equal(found.speed, rows["approach_speed"])
     assert np.array_equal(found.radius, run.scene.radius[rows["bead"]])
@@ -250,7 +250,7 @@ def test_the_dump_has_the_last_cor_of_each_bead(folder, runs):
     head = next(n for n, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     columns = lines[head].split()[2:]
     rows = np.array([line.split() for line in lines[head + 1 :]], dtype=float)
-    impacts, last = runs.law.collisions, dict.fromkeys(range(12), 0.0)
+    impacts, last = runs.law.impacts, dict.fromkeys(range(12), 0.0)
     for bead in set(impacts["bead"].tolist()):
         where = np.flatnonzero(impacts["bead"] == bead)
         one_by_one = np.diff(impacts["time"][where]).min(initial=1.0) > 1e-4  # not so at a rim

@@ -8,7 +8,7 @@ from typing import Any
 
 from contactlaw import laws
 from contactlaw.cli.constant import lines, records, walls
-from contactlaw.cli.parts import chosen, options, quantities
+from contactlaw.cli.parts import chosen, options, quantities, wording
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import SPEED
 from contactlaw.model import ImpactModel
@@ -73,4 +73,7 @@ def _recorded(arguments: argparse.Namespace) -> records.PlannedImpacts:
     sizes = (arguments.radius, arguments.thickness)
     if arguments.record is None:
         return records.combined(arguments.speed, *sizes)
-    return records.completed(records.read(arguments.record), *sizes)
+    found = records.read(arguments.record)
+    if found.left_out:
+        wording.print_warning(f"{arguments.record}: {found.left_out}")
+    return records.completed(found, *sizes)

@@ -16,6 +16,7 @@ from contactlaw.cli.parts import columns
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import LENGTH, SPEED
 from contactlaw.engines import hdf5, layout
+from contactlaw.engines.record import only_impacts
 from contactlaw.physical.arguments import check
 from contactlaw.physical.pair import Pair
 
@@ -35,6 +36,8 @@ class Recorded(NamedTuple):
         Number of the plate that is hit.
     pair, law
         Materials and name of the law of the run.
+    left_out
+        Which rows of a record are left out, because they are no impacts.
     """
 
     speed: Array
@@ -44,6 +47,7 @@ class Recorded(NamedTuple):
     plate: NDArray[np.int64] | None = None
     pair: Pair | None = None
     law: str | None = None
+    left_out: str = ""
 
 
 class PlannedImpacts(NamedTuple):
@@ -67,7 +71,7 @@ _COLUMNS = {
 
 
 def read(path: str | os.PathLike[str]) -> Recorded:
-    r"""Read impacts on plates; those of bead on bead are left out.
+    r"""Read impacts on plates; bead on bead, and what is no impact in a record, are left out.
 
     Parameters
     ----------
@@ -230,7 +234,9 @@ def _text(content: bytes) -> Recorded:
 
 def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Recorded:
     """Pick the columns that are known by their names, and give them SI units."""
-    found = columns.locate(heads, _COLUMNS)
+    # Only in an engine's record does a column of this name say what is an impact.
+    kind = {"kind": TextColumn(("kind",), None)} if "sliding_speed" in heads else {}
+    found = columns.locate(heads, _COLUMNS | kind)
     if "speed" not in found:
         raise ValueError(
             f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s"
@@ -248,4 +254,8 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
         on_plates = plate >= 0
         picked = {field: values[on_plates] for field, values in picked.items()}
         picked["plate"] = picked["plate"].astype(np.int64)
-    return Recorded(**picked)
+    if "kind" not in picked:
+        return Recorded(**picked)
+    impact, left_out = only_impacts(picked.pop("kind"))
+    picked = {field: values[impact] for field, values in picked.items()}
+    return Recorded(**picked, left_out=left_out)

@@ -37,7 +37,7 @@ from contactlaw.engines.lammps.memory import (
     running,
     thermo,
 )
-from contactlaw.engines.record import IMPACT
+from contactlaw.engines.record import IMPACT, Kind
 from contactlaw.stepping import Bead, Clock, Trouble, interact
 from contactlaw.stepping.bead import touches
 from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
@@ -237,8 +237,9 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
             if sliding > 0:
                 for k in range(3):
                     torque[i, k] += loads[1, k] * seconds**2 / (shared.mass * length**2)
-            if status.impacts > recorded:
-                last[i] = scene.impacts[status.impacts - 1].restitution
+            for n in range(recorded, status.impacts):
+                if scene.impacts[n].kind == Kind.IMPACT.value:  # other kinds have no COR
+                    last[i] = scene.impacts[n].restitution
             if status.trouble != 0:
                 mark_error(shared, step, tags[i], head, status.trouble, status.wall, status.value,
                          status.limit)  # fmt: skip

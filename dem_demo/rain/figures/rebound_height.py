@@ -30,7 +30,7 @@ def draw(run: Run) -> Figure:
         f"(right){ringed(np.concatenate([far for _, _, far in columns]))}",
     )
     axes = figure.add_subplot()
-    fastest = float(np.max(run.collisions["approach_speed"], initial=1.0))
+    fastest = float(np.max(run.impacts["approach_speed"], initial=1.0))
     for n, column in enumerate(columns):
         _column(axes, run, n, column, fastest)
     _constant_line(axes, run)
@@ -68,10 +68,10 @@ def _constant_line(axes: Axes, run: Run) -> None:
     if run.constant_cor is not None:
         cor, text = run.constant_cor, "constant COR {:.2f}"
     else:
-        on_plates = run.collisions["plate"] >= 0
+        on_plates = run.impacts["plate"] >= 0
         if not on_plates.any():
             return
-        cor = float(run.collisions["restitution"][on_plates].mean())
+        cor = float(run.impacts["restitution"][on_plates].mean())
         text = "one COR for all: the run's mean, {:.2f}"
     axes.axhline(
         cor**2, color=style.VERMILION, linestyle="--", linewidth=2.0, label=text.format(cor)

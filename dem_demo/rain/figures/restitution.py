@@ -87,5 +87,5 @@ def _yield_speed(run: Run, radius: float, thickness: float) -> float:
 
 
 def _fastest(run: Run) -> float:
-    rows = run.collisions[run.collisions["plate"] >= 0]
+    rows = run.impacts[run.impacts["plate"] >= 0]
     return float(rows["approach_speed"].max(initial=1.0))
