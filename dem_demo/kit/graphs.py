@@ -29,7 +29,8 @@ _PARTS = (
     ("wave", "bending wave in the plate", style.BLUE),
     ("plastic", "lost at the contact", style.ORANGE),
     ("vibration", "micro-slip and vibration at the contact", style.VERMILION),
-    ("others", "bead on bead, sliding friction", style.GREEN),
+    ("friction", "friction on the walls", style.SKY),
+    ("others", "bead on bead", style.GREEN),
 )
 
 

@@ -27,8 +27,10 @@ class Account(NamedTuple):
     plastic: Floats
     vibration: Floats
     """Lost to friction within the contact and to vibration of the bodies."""
+    friction: Floats
+    """Lost to friction on the walls."""
     others: Floats
-    """The rest: bead on bead, sliding friction, and energy stored in open contacts."""
+    """The rest: bead on bead, and energy stored in open contacts."""
 
 
 def account(run: Run[Any]) -> Account:
@@ -39,15 +41,17 @@ def account(run: Run[Any]) -> Account:
     until = np.searchsorted(end[order], run.time, side="right")
 
     def so_far(column: str) -> Floats:
+        if column not in (rows.dtype.names or ()):  # a record of an older version
+            return np.zeros_like(run.time)
         sums: Floats = np.r_[0.0, np.cumsum(rows[column][order])][until]
         return sums
 
     moving = run.kinetic + run.rotational
     start, gravity = np.full_like(moving, moving[0]), run.potential[0] - run.potential
     walls, wave, plastic = (so_far(name) for name in ("wall_work", "wave_energy", "plastic_energy"))
-    vibration = so_far("other_energy")
-    rest = start + gravity + walls - moving - wave - plastic - vibration
-    return Account(start, gravity, walls, moving, wave, plastic, vibration, rest)
+    vibration, friction = so_far("other_energy"), so_far("friction_energy")
+    rest = start + gravity + walls - moving - wave - plastic - vibration - friction
+    return Account(start, gravity, walls, moving, wave, plastic, vibration, friction, rest)
 
 
 def kept(run: Run[Any], rows: NDArray[np.void]) -> float:

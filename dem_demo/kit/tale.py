@@ -57,7 +57,7 @@ def summary(tale: Tale, runs: Runs[Any]) -> str:
         "".join([f"{name:{_WIDTH}}", *(f"{column.get(name, '-'):>18}" for column in columns)])
         for name in columns[0]
     ]
-    lines += ["", "Friction and bead on bead are the engine's own, not recorded impact by impact"]
+    lines += ["", "Bead on bead is the engine's own, not recorded impact by impact"]
     lines += [f"{run.name}: {run.left_out}" for run in runs.every if run.left_out]
     lines += limits_lines(limits(tale, runs.law))
     if runs.reason:
@@ -96,7 +96,8 @@ def facts(tale: Tale, run: Run[Any]) -> Facts:
         ("  bending wave in the plate", _energy(energy.wave[-1])),
         ("  lost at the contact", _energy(energy.plastic[-1])),
         (f"work of the {tale.wall} on the beads", _energy(energy.walls[-1])),
-        ("beads on beads, sliding friction", _energy(energy.others[-1])),
+        (f"friction on the {tale.wall}", _energy(energy.friction[-1])),
+        ("beads on beads", _energy(energy.others[-1])),
         ("kinetic energy at the start", _energy(energy.start[-1])),
         ("kinetic energy at the end", _energy(energy.moving[-1])),
         *tale.own(run),

@@ -63,7 +63,7 @@ def _plate_line(row: PlateRow) -> str:
     if not row.impacts:
         return head
     cor = f"{row.restitution:.3f}   {row.lowest:.3f} - {row.highest:.3f}"
-    shares = "".join("       -" if math.isnan(s) else f"{s:8.1%}" for s in row.shares)
+    shares = "".join("       -" if math.isnan(s) else f"{s:z8.1%}" for s in row.shares)
     return f"{head} {row.speed:6.2f} m/s      {cor}  {shares} {row.outside:8d}"
 
 

@@ -41,8 +41,8 @@ Motion
     the same bits in one run or many. `attach` starts this clock at LAMMPS's own time, and
     ``reset_timestep`` does not change it (a restart after that starts at the reset time). Speeds in
     the record are relative to the wall, and ``wall_work`` is the work of the wall's motion on the
-    bead: the kinetic energy after an impact is that before, plus this work, less the losses and,
-    with friction, less the work of sliding, which is not in the record.
+    bead: the kinetic energy after an impact, with that of the spin, is that before, plus this work,
+    less the energies that the record says are lost.
 Several ranks
     Every rank makes its LAMMPS object, attaches the same plates and gives the same commands. Beads
     that touch plates alone follow the same path, to the last bit, on 1 and 2 ranks and in one run
