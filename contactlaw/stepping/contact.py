@@ -261,14 +261,9 @@ def _normal_jumped(held: Point, n: Point, v: Point, dt: float, distance: float) 
 
 @kernel
 def _kind_of(
-    scene: WallScene,
-    bead: Bead,
-    contact: Contact,
-    row: Any,
-    lost: float,
-    leaves: float,
+    scene: WallScene, bead: Bead, contact: Contact, row: Any, lost: float, leaves: float,
     long: float,
-) -> int:
+) -> int:  # fmt: skip
     """Say what a contact was that has ended; several may hold, and the first one counts.
 
     `lost` is the energy that the record says is lost, `leaves` the speed away from the wall, and
@@ -465,15 +460,13 @@ def _complete(
     record: Any, clock: Clock, bead: Bead, contact: Contact, k: int, drag: Point, torque: Point
 ) -> None:
     """Complete a row of the record with what follows from the forces of the contact's last step."""
-    row, touch, v, omega = bead.contacts[k], contact.touch, contact.v, bead.omega
-    per = clock.dt / bead.mass
+    push, v, omega, per = bead.contacts[k].push, contact.v, bead.omega, clock.dt / bead.mass
     turn = per / (0.4 * bead.r * bead.r)  # of a solid sphere
-    v = (
-        v[0] + per * (row.push[0] + drag[0]), v[1] + per * (row.push[1] + drag[1]),
-        v[2] + per * (row.push[2] + drag[2]),
-    )  # fmt: skip
+    x, y, z = v[0] + per * push[0], v[1] + per * push[1], v[2] + per * push[2]
+    v = x + per * drag[0], y + per * drag[1], z + per * drag[2]
     spin = omega[0] + turn * torque[0], omega[1] + turn * torque[1], omega[2] + turn * torque[2]
-    left = sliding(v, spin, (touch.nx, touch.ny, touch.nz), (0.0, 0.0, 0.0), bead.r)
+    n = contact.touch.nx, contact.touch.ny, contact.touch.nz
+    left = sliding(v, spin, n, (0.0, 0.0, 0.0), bead.r)
     record.spin_x, record.spin_y, record.spin_z = spin
     record.sliding_speed_after, record.friction_energy = left.size, 0.0
     if len(bead.friction) > 0:
@@ -482,9 +475,8 @@ def _complete(
             along = slid.along[0], slid.along[1], slid.along[2]
             record.sliding_speed_after = dot(left.along, along)
         # The second half of the last step's force acts in the next step.
-        after = POINT * per * dot(drag, drag) + dot(
-            drag, surface_velocity(bead.v, omega, bead.r, (touch.nx, touch.ny, touch.nz))
-        )
+        slip = surface_velocity(bead.v, omega, bead.r, n)
+        after = dot(drag, slip) + POINT * per * dot(drag, drag)
         record.friction_energy = -slid.work - 0.5 * clock.dt * after
 
 
@@ -492,10 +484,8 @@ def _complete(
 def _finish_work(clock: Clock, bead: Bead, k: int) -> None:
     """Add the work of friction's last force in this step, by the velocity and normal before it."""
     row, slid = bead.contacts[k], bead.friction[k]
-    push, drag = (
-        (row.push[0], row.push[1], row.push[2]),
-        (slid.force[0], slid.force[1], slid.force[2]),
-    )
+    push = row.push[0], row.push[1], row.push[2]
+    drag = slid.force[0], slid.force[1], slid.force[2]
     size = math.sqrt(dot(push, push))
     if size > 0.0:
         n = push[0] / size, push[1] / size, push[2] / size

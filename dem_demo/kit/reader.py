@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any, Literal
 
@@ -37,6 +36,10 @@ class Recorded:
     collisions : structured ndarray
         One row per impact, as in `contactlaw.engines.record`. With a constant COR in an engine that
         resolves an impact in one step, the columns after the COR are missing.
+    impact : ndarray of bool
+        Mask of the collisions that are impacts.
+    left_out : str
+        Which collisions are none; empty if all are impacts.
     time, position, velocity, status : ndarray
         Frames: shapes (T,) [s], (T, N, 2 or 3) [m], (T, N, 2 or 3) [m/s] and (T, N).
     """
@@ -50,32 +53,18 @@ class Recorded:
     versions: dict[str, str]
     reason: str
     collisions: NDArray[np.void]
+    impact: NDArray[np.bool_]
+    left_out: str
     time: Floats
     position: NDArray[np.float32]
     velocity: NDArray[np.float32]
     status: NDArray[np.uint8]
 
     @property
-    def impact(self) -> NDArray[np.bool_]:
-        """Mask of the collisions that are impacts; COR and speed of the others mean nothing."""
-        return self._impacts[0]
-
-    @property
-    def left_out(self) -> str:
-        """Which collisions are no impacts, for reports; "" if all are."""
-        return self._impacts[1]
-
-    @property
     def impacts(self) -> NDArray[np.void]:
-        """Collisions that are impacts."""
+        """Collisions that are impacts; COR and speed of the others mean nothing."""
         rows: NDArray[np.void] = self.collisions[self.impact]
         return rows
-
-    @cached_property
-    def _impacts(self) -> tuple[NDArray[np.bool_], str]:
-        rows = self.collisions
-        known = "kind" in (rows.dtype.names or ())
-        return only_impacts(rows["kind"] if known else np.zeros(rows.size))
 
 
 def checked(file: h5py.File, path: Path, name: str, schema: int) -> dict[str, Any]:
@@ -100,10 +89,15 @@ def common(file: h5py.File) -> dict[str, Any]:
         for name, text in attributes.items()
         if name.startswith("version_")
     }
+    rows = layout.impacts(file)
+    known = "kind" in (rows.dtype.names or ())
+    impact, left_out = only_impacts(rows["kind"] if known else np.zeros(rows.size))
     return {
         **{name: attributes[name] for name in names},
         "constant_cor": attributes.get("constant_cor"),
         "versions": versions,
-        "collisions": layout.impacts(file),
+        "collisions": rows,
+        "impact": impact,
+        "left_out": left_out,
         **{name: dataset[()] for name, dataset in file["trajectories"].items()},
     }

@@ -4,6 +4,7 @@ import argparse
 import csv
 import io
 import re
+import shutil
 import signal
 
 import h5py
@@ -23,11 +24,12 @@ from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
 from dem_demo import cli  # noqa: E402
 from dem_demo.drum import figures  # noqa: E402
 from dem_demo.drum.scene import Drum, drum  # noqa: E402
-from dem_demo.drum.tale import near_edge, on_faces  # noqa: E402
+from dem_demo.drum.tale import TALE, near_edge, on_faces  # noqa: E402
 from dem_demo.kit import comparison, lammps  # noqa: E402
 from dem_demo.kit.measure import account  # noqa: E402
 from dem_demo.kit.runs import read  # noqa: E402
 from dem_demo.kit.signals import Interrupted  # noqa: E402
+from dem_demo.kit.tale import summary  # noqa: E402
 
 # Few beads that never meet; the law's table comes with the package.
 SMALL = ["drum", "--beads", "4", "--duration", "0.16", "--friction", "0", "--speed", "1.5"]
@@ -97,6 +99,23 @@ def test_the_record_explains_itself(folder):
             for group in ("beads", "plates", "trajectories"):
                 for dataset in file[group].values():
                     assert dataset.attrs["units"] and dataset.attrs["description"]
+
+
+def test_what_is_no_impact_is_left_out_and_said(folder, tmp_path):
+    with h5py.File(shutil.copy(folder / "drum.h5", tmp_path), "r+") as file:
+        kinds = file["collisions/kind"]
+        kinds[:], count = 0, len(kinds)
+        kinds[1] = 2
+    runs = read(tmp_path, Drum)
+    assert runs.law.impacts.size == count - 1
+    text = summary(TALE, runs)
+    assert f"1 of {count} rows are no impacts and left out: 1 over edge" in text
+    assert re.search(rf"^impacts on the drum +{count - 1}$", text, re.MULTILINE)
+    with h5py.File(tmp_path / "drum.h5", "r+") as file:  # as older versions wrote it
+        del file["collisions/kind"], file["collisions/friction_energy"]
+    older = read(tmp_path, Drum).law
+    assert older.impacts.size == count and older.left_out == ""
+    assert (account(older).friction == 0.0).all()
 
 
 @pytest.mark.parametrize("name", ["drum.h5", "constant.h5"])
