@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from contactlaw import Pair, Rebound
+    from contactlaw.physical.oblique import ObliqueRebound
 
 Array = NDArray[np.float64]
 CorBySpeed = Callable[[float], float]  # COR [-] by normal speed of approach [m/s]
@@ -31,6 +32,20 @@ class BeadModel(RestitutionModel, Protocol):
 
     def sphere_sphere_curve(self, radius: float, other_radius: float, /) -> CorBySpeed:
         """COR by speed of two beads of these radii [m]."""
+        ...
+
+
+class ObliqueModel(RestitutionModel, Protocol):
+    """A model that knows friction on plates, too.
+
+    An adapter asks `contactlaw.ImpactModel.collide_kernel` where a model has it, which is faster.
+    """
+
+    def oblique(
+        self, speed: float, sliding_speed: float, radius: float, thickness: float,
+        friction: float, /,
+    ) -> ObliqueRebound:  # fmt: skip
+        """Everything about an oblique impact; an adapter reads its ``sliding_speed``."""
         ...
 
 
@@ -56,6 +71,11 @@ class ReboundModel(BeadModel, Protocol):
 def knows_beads(model: object) -> TypeGuard[BeadModel]:
     """Whether a model knows the COR of two beads."""
     return hasattr(model, "sphere_sphere_curve")
+
+
+def knows_friction(model: object) -> TypeGuard[ObliqueModel]:
+    """Whether a model knows friction."""
+    return hasattr(model, "oblique")
 
 
 def knows_rebounds(model: object) -> TypeGuard[ReboundModel]:

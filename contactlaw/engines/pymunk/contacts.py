@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
+from contactlaw.engines.pymunk.friction import LOOSE, Rubbing, belt, check_moment, sliding
 from contactlaw.engines.pymunk.handlers import Callback, Hook, overridden
 from contactlaw.engines.pymunk.lookahead import tunnelling
 from contactlaw.engines.pymunk.record import Record
 from contactlaw.engines.pymunk.registry import BeadShape, PlateShape, changed, unregistered
 from contactlaw.engines.pymunk.seams import belongs_to_neighbour
+from contactlaw.engines.record import Kind
+from contactlaw.equation.tangential import POINT
 
 if TYPE_CHECKING:
     import pymunk
@@ -19,6 +23,7 @@ RESTING = 2.0
 # Speeds below this many smallest radii per step are rounding errors. Without gravity this is the
 # only limit.
 ROUNDING = 1e-12
+IMPACT, STRUCK = int(Kind.IMPACT), int(Kind.STRUCK)
 
 
 class Contacts:
@@ -36,6 +41,8 @@ class Contacts:
         Number of contacts too slow for an impact.
     error : BaseException or None
         The first error in this step; an interrupt takes precedence over others.
+    stranger : str or None
+        Description of the last contact of a bead that stopped at a shape not registered.
     """
 
     def __init__(self) -> None:
@@ -46,13 +53,24 @@ class Contacts:
         self.steps = 0
         self.resting = 0
         self.error: BaseException | None = None
+        self.stranger: str | None = None
         self._resting_speed = 0.0
+        self._fall = 0.0, 0.0  # change of the velocity in free fall in this step [m/s]
+        self._rubbing: dict[int, Rubbing] = {}  # by row of the record
 
-    def begin(self, dt: float, gravity: float, reach: float) -> None:
+    def begin(self, dt: float, gravity: tuple[float, float], reach: float) -> None:
         """Prepare for a step of length dt [s] under gravity [m/s2]; reach: least radius [m]."""
-        self._resting_speed = max(RESTING * gravity * dt, ROUNDING * reach / dt)
+        gx, gy = gravity
+        self._fall = gx * dt, gy * dt
+        self._resting_speed = max(RESTING * math.hypot(gx, gy) * dt, ROUNDING * reach / dt)
         self.time += dt
         self.steps += 1
+
+    def end(self) -> None:
+        """Complete the impacts of this step whose sliding the engine has decided."""
+        for row, rubbing in self._rubbing.items():
+            self.record.settle(row, abs(rubbing.before), rubbing.outcome())
+        self._rubbing.clear()
 
     # The two callbacks run for every contact in every step, and a pile has many contacts. So
     # attributes are looked up once, and few functions are called.
@@ -68,8 +86,9 @@ class Contacts:
                     raise unregistered(circle if bead is None else shape)
                 if bead.ceded:
                     self._resume(arbiter, bead, plate)
+                friction = plate.friction
                 if hooks:
-                    _call(hooks, arbiter, space)
+                    _call(hooks, arbiter, space, friction is not None)
                 if not arbiter.process_collision or circle.sensor or shape.sensor:
                     return
                 body: Any = circle.body
@@ -86,9 +105,22 @@ class Contacts:
                     raise tunnelling(bead.index, plate.index, self.time, abs(speed), None)
                 if speed <= self._resting_speed + RESTING * plate.shake:
                     self._rest(arbiter, speed)
+                    if friction is not None:
+                        arbiter.friction = friction
                     return
                 cor = self._answer(arbiter, bead, plate, circle, shape, speed)
-                record((self.time, bead.index, plate.index, -1, x, y, 0.0, speed, cor))
+                kind = IMPACT if arbiter.is_first_contact else STRUCK
+                spin = body.angular_velocity
+                slip = nx * (vy - uy) - ny * (vx - ux) + bead.radius * spin
+                after, work = abs(slip), 0.0
+                if friction is not None:
+                    slip, after, spin, work = self._slide(arbiter, bead, plate, slip, speed)
+                elif arbiter.friction > 0.0:
+                    self._rub(arbiter, circle, shape, len(self.record))
+                record((
+                    self.time, bead.index, plate.index, -1, x, y, 0.0, speed, cor, abs(slip), kind,
+                    after, spin, work,
+                ))  # fmt: skip
             except BaseException as error:
                 self.keep(error, arbiter)
 
@@ -117,9 +149,18 @@ class Contacts:
                     self._rest(arbiter, speed)
                     return
                 cor = self._answer(arbiter, bead, other, circle, shape, speed)
+                kind = IMPACT if arbiter.is_first_contact else STRUCK
                 x, y = body.position
                 x, y = x + bead.radius * nx, y + bead.radius * ny
-                record((self.time, bead.index, -1, other.index, x, y, 0.0, speed, cor))
+                spin = body.angular_velocity
+                turning = bead.radius * spin + other.radius * other_body.angular_velocity
+                slip = nx * (vy - uy) - ny * (vx - ux) + turning
+                if arbiter.friction > 0.0:
+                    self._rub(arbiter, circle, shape, len(self.record))
+                record((
+                    self.time, bead.index, -1, other.index, x, y, 0.0, speed, cor, abs(slip), kind,
+                    abs(slip), spin, 0.0,
+                ))  # fmt: skip
             except BaseException as error:
                 self.keep(error, arbiter)
 
@@ -141,6 +182,59 @@ class Contacts:
         if speed > 0.0:  # at other speeds the bodies separate or stay together
             self.resting += 1
 
+    def _slide(
+        self, arbiter: pymunk.Arbiter, bead: BeadShape, plate: PlateShape, along: float,
+        speed: float,
+    ) -> tuple[float, float, float, float]:  # fmt: skip
+        """Sliding speed before and after, spin and work of friction by the model.
+
+        The engine's solver gives the contact the ``surface_velocity`` as far as its friction allows
+        it. Along the plate, gravity moves the bead in this step as in any other.
+        """
+        circle, shape = arbiter.shapes
+        body: Any = circle.body
+        friction, carried, change = plate.friction or 0.0, belt(arbiter), 0.0
+        slip = along - carried
+        if friction:
+            check_moment(body, bead.radius)
+            try:
+                change = plate.slide(bead)(speed, slip) - slip
+            except Exception as error:
+                error.add_note(self._describe(bead, plate, speed))
+                raise
+        (nx, ny), (gx, gy) = arbiter.normal, self._fall
+        arbiter.friction = LOOSE * friction
+        target = along + change + nx * gy - ny * gx
+        if not plate.mount.still:
+            target += sliding(arbiter) - along  # between the surfaces, which overlap
+            if plate.mount.free:
+                # A light plate is pushed along, and falls with the bead.
+                self._rubbing[len(self.record)] = Rubbing(circle, shape, slip, carried)
+                arbiter.friction = friction
+                target -= nx * gy - ny * gx
+        arbiter.surface_velocity = -ny * target, nx * target
+        spin = body.angular_velocity + (1.0 - 1.0 / POINT) * change / bead.radius
+        after = math.copysign(1.0, slip) * (slip + change)
+        return slip, after, spin, -change * (slip + 0.5 * change) / POINT
+
+    def _rub(self, arbiter: pymunk.Arbiter, circle: Any, shape: Any, row: int) -> None:
+        """Note an impact of a row of the record with the engine's friction."""
+        carried = belt(arbiter)
+        self._rubbing[row] = Rubbing(circle, shape, sliding(arbiter) - carried, carried)
+
+    def meet_stranger(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+        """Note a contact with a shape that nobody registered, if pymunk stops the bead there."""
+        circle, shape = arbiter.shapes
+        bead = self.beads.get(id(circle))
+        if bead is not None and not arbiter.restitution:
+            left, bottom, right, top = shape.bb
+            self.stranger = (
+                f"{bead} hits a {type(shape).__name__} between ({left:.4g}, {bottom:.4g}) and "
+                f"({right:.4g}, {top:.4g}) m that nobody registered, and stops dead, because its "
+                "restitution in pymunk is 0: call add_plate or add_bead with it; or give both "
+                "shapes an elasticity; or let beads pass by a pymunk.ShapeFilter or shape.sensor"
+            )
+
     def is_ours(self, arbiter: pymunk.Arbiter) -> bool:
         """Whether both shapes of a contact are registered."""
         keys = [id(shape) for shape in arbiter.shapes]
@@ -148,13 +242,32 @@ class Contacts:
 
     def undo(self, arbiter: pymunk.Arbiter) -> None:
         """Remove the impact of a contact that a user's handler has switched off since."""
+        if self._is_last(arbiter):
+            self.record.undo()
+            self._rubbing.pop(len(self.record), None)
+
+    def rub(self, arbiter: pymunk.Arbiter) -> None:
+        """Heed the friction that a user's handler has set since the model's answer."""
+        one, two = arbiter.shapes
+        for shape in one, two:
+            plate = self.plates.get(id(shape))
+            if plate is not None and plate.friction is not None:
+                raise overridden(_types(arbiter), "friction", arbiter.friction)
+        if self._is_last(arbiter):
+            bead = self.beads.get(id(one))
+            first = bead is not None and bead.index == self.record.last()[1]
+            self._rub(arbiter, *((one, two) if first else (two, one)), len(self.record) - 1)
+
+    def _is_last(self, arbiter: pymunk.Arbiter) -> bool:
+        """Whether the last impact of the record is in this contact."""
         keys = [id(shape) for shape in arbiter.shapes]  # in the order of that handler's types
         beads = [self.beads[key].index for key in keys if key in self.beads]
         plates = [self.plates[key].index for key in keys if key in self.plates]
         bead, other = beads if len(beads) == 2 else (beads[0], -1)
         plate = plates[0] if plates else -1
-        for one, two in ((bead, other), (other, bead)):
-            self.record.undo(self.time, one, plate, two)
+        return self.record.last() in (
+            (self.time, bead, plate, other), (self.time, other, plate, bead)
+        )  # fmt: skip
 
     def _answer(
         self,
@@ -192,11 +305,22 @@ class Contacts:
             self.error = error
 
 
-def _call(hooks: list[Hook], arbiter: pymunk.Arbiter, space: pymunk.Space) -> None:
-    """Call the user's ``pre_solve``, before the model sets the restitution."""
-    before = arbiter.restitution
+def _call(
+    hooks: list[Hook], arbiter: pymunk.Arbiter, space: pymunk.Space, answered: bool = False
+) -> None:
+    """Call the user's ``pre_solve``, before the model sets the restitution.
+
+    `answered` says whether the model answers for friction, too, in place of the engine.
+    """
+    before, friction = arbiter.restitution, arbiter.friction
     for callback, data in hooks:
         callback(arbiter, space, data)
     if arbiter.restitution != before:
-        one, two = arbiter.shapes
-        raise overridden((one.collision_type, two.collision_type), arbiter.restitution)
+        raise overridden(_types(arbiter), "restitution", arbiter.restitution)
+    if answered and arbiter.friction != friction:
+        raise overridden(_types(arbiter), "friction", arbiter.friction)
+
+
+def _types(arbiter: pymunk.Arbiter) -> tuple[int, int]:
+    one, two = arbiter.shapes
+    return one.collision_type, two.collision_type

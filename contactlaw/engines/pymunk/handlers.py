@@ -33,8 +33,11 @@ class Handlers:
         Called with an error of a late callback.
     is_ours : callable
         Whether the adapter answers a contact.
-    undo : callable
-        Called with a contact that a late callback has switched off.
+    undo, rub : callable
+        Called with a contact that a late callback has switched off, or whose friction or
+        ``surface_velocity`` it has changed.
+    stranger : callable
+        Called as a ``post_solve`` with a contact of a bead and a shape that is not registered.
     """
 
     def __init__(
@@ -45,9 +48,14 @@ class Handlers:
         keep: Callable[[BaseException], None],
         is_ours: Callable[[pymunk.Arbiter], bool],
         undo: Callable[[pymunk.Arbiter], None],
+        rub: Callable[[pymunk.Arbiter], None],
+        stranger: Callback | None,
     ) -> None:
         self._space = space
-        self._keep, self._is_ours, self._undo = keep, is_ours, undo
+        self._keep, self._is_ours, self._undo, self._rub = keep, is_ours, undo, rub
+        self._stranger = stranger
+        self._keys = 0  # keys of the space whose types are watched
+        self._strange: set[int] = set()
         self._late = late
         self._watched: dict[Key, Hook] = {}
         self._replaced = vars(space).get("on_collision")
@@ -93,11 +101,38 @@ class Handlers:
 
     def check(self) -> None:
         """Make hooks of handlers that ``pymunk.Space.on_collision(space, ...)`` has set."""
+        if self._stranger is not None and len(self._space._handlers) != self._keys:
+            self._watch_strangers(self._stranger)
         for key, handler, callback in self._installed:
             found = handler.pre_solve
             if found is not callback:
                 self._hooks[key][:] = [] if found is None else [(found, handler.data["pre_solve"])]
                 handler.pre_solve = callback
+
+    def _watch_strangers(self, stranger: Callback) -> None:
+        """Watch beads at shapes of type 0 and of all types for which there are handlers.
+
+        A handler for two types costs nothing in other contacts, as one for any type would.
+        """
+        bead = next(iter(self._own))[0]
+        own = {kind for key in self._own for kind in key}
+        kinds = {0, *(kind for key in self._space._handlers for kind in key)} - own - {None}
+        for kind in kinds - self._strange:
+            known = self._space._handlers.get((bead, kind))
+            if known is None or known.post_solve is None:
+                self._engine(bead, kind, post_solve=stranger)
+            self._strange.add(kind)
+        self._keys = len(self._space._handlers)
+
+    def ignore_strangers(self) -> None:
+        """Stop watching for shapes that are not registered."""
+        import pymunk
+
+        bead = next(iter(self._own))[0]
+        for kind in self._strange:
+            if self._space._handlers[bead, kind].post_solve == self._stranger:
+                self._engine(bead, kind, post_solve=pymunk.empty_callback)
+        self._stranger = None
 
     def replaced(self) -> bool:
         """Whether the user has replaced ``space.on_collision``."""
@@ -111,6 +146,7 @@ class Handlers:
         del state["on_collision"]
         if self._replaced:
             state["on_collision"] = self._replaced
+        self.ignore_strangers()
         for key, hooks in self._hooks.items():
             callback, data = hooks[0] if hooks else (pymunk.empty_callback, None)
             self._engine(*key, pre_solve=callback, data=data)
@@ -123,22 +159,29 @@ class Handlers:
         def pre_solve(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
             try:
                 processed, restitution = arbiter.process_collision, arbiter.restitution
+                rubbing = arbiter.friction, arbiter.surface_velocity
                 callback(arbiter, space, data)
                 if arbiter.restitution != restitution and self._is_ours(arbiter):
                     given, arbiter.restitution = arbiter.restitution, restitution
-                    raise overridden(key, given)
+                    raise overridden(key, "restitution", given)
                 if processed and not arbiter.process_collision and self._is_ours(arbiter):
                     self._undo(arbiter)
+                elif rubbing != (arbiter.friction, arbiter.surface_velocity):
+                    if self._is_ours(arbiter):
+                        self._rub(arbiter)
             except BaseException as error:
                 self._keep(error)
 
         return pre_solve
 
 
-def overridden(key: Key, restitution: float) -> RuntimeError:
-    """Make the error for a handler that sets a restitution in place of the model."""
+def overridden(key: Key, name: str, value: float) -> RuntimeError:
+    """Make the error for a handler that sets a restitution or friction in place of the model."""
+    remedy = {
+        "restitution": "a model of its own: add_plate(..., model=...), any object with curve()",
+        "friction": "a friction of its own: add_plate(..., friction=...), None for the engine's",
+    }[name]
     return RuntimeError(
-        f"pre_solve of {key}: sets arbiter.restitution to {restitution!r} where a bead hits, but "
-        "there the model answers; do not set it, and give a plate that differs a model of its own: "
-        "add_plate(..., model=...), any object with curve()"
+        f"pre_solve of {key}: sets arbiter.{name} to {value!r} where a bead hits, but there the "
+        f"model answers; do not set it, and give a plate that differs {remedy}"
     )

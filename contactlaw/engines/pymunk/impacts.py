@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import sys
 import threading
+import warnings
 from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
@@ -15,11 +16,12 @@ from weakref import KeyedRef, ref
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines.needs import RestitutionModel
+from contactlaw.engines.needs import RestitutionModel, knows_friction
 from contactlaw.engines.pymunk.contacts import Contacts
+from contactlaw.engines.pymunk.friction import check_moment
 from contactlaw.engines.pymunk.handlers import Handlers
 from contactlaw.engines.pymunk.lookahead import LookAhead
-from contactlaw.engines.pymunk.models import Models
+from contactlaw.engines.pymunk.models import Models, ModelsByBead
 from contactlaw.engines.pymunk.record import Register
 from contactlaw.engines.pymunk.registry import (
     BeadShape,
@@ -29,6 +31,7 @@ from contactlaw.engines.pymunk.registry import (
     body_of,
     check_mass,
     ends,
+    may_meet,
     radius_of,
     scalar,
 )
@@ -67,7 +70,7 @@ class PymunkImpacts:
         self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
         self._register = Register(models)
         self._seams = Seams()
-        self._attached = True
+        self._attached, self._warned = True, False
         self._lookahead = LookAhead(space, self._bodies, self._contacts.plates, self._mounts)
         self._slop = space.collision_slop
         # Bounded: a thousand different beads make half a million pairs.
@@ -86,6 +89,8 @@ class PymunkImpacts:
             keep=self._contacts.keep,
             is_ours=self._contacts.is_ours,
             undo=self._contacts.undo,
+            rub=self._contacts.rub,
+            stranger=self._contacts.meet_stranger,
         )
 
     @property
@@ -106,6 +111,7 @@ class PymunkImpacts:
         circle : pymunk.Circle
             A circle of collision type 0, centred on a dynamic body of its own. The body's mass
             should be the sphere's, ``4/3 pi radius**3 density`` [kg]; a warning says if it is not.
+            Its moment must be ``2/5 mass radius**2`` where the bead meets plates with friction.
         material : Material or str, optional
             Material of spheres in one of the attached models; by default that of the first model.
 
@@ -118,7 +124,8 @@ class PymunkImpacts:
         ------
         TypeError, ValueError, RuntimeError
             If the circle is no such circle, is registered already, or has a radius above 1 m, as
-            in pixels; if no attached model is for the material; after `detach`.
+            in pixels; if no attached model is for the material; if a plate with friction is there
+            and the moment is not a sphere's; after `detach`.
 
         Examples
         --------
@@ -164,6 +171,9 @@ class PymunkImpacts:
         if body.id in self._bodies:
             raise ValueError(f"circle.body: carries bead {self._bodies[body.id].index} already")
         check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
+        for plate in self._contacts.plates.values():
+            if plate.friction:
+                self._check_moment(circle, radius, plate.shape())
         key, kind = id(circle), (radius, number)
         noted = self._gone.append
         shape, owner = KeyedRef(circle, noted, key), KeyedRef(body, noted, key)
@@ -183,6 +193,7 @@ class PymunkImpacts:
         *,
         material: Material | str | None = None,
         model: RestitutionModel | Sequence[RestitutionModel] | None = None,
+        friction: float | None = None,
     ) -> int:
         """Register a plate; its body may be static, kinematic (a sieve) or dynamic.
 
@@ -199,6 +210,10 @@ class PymunkImpacts:
             Material of plates in one of the attached models; by default that of the first model.
         model : RestitutionModel or list of them, optional
             Model for this plate in place of the attached ones, or one for each material of beads.
+        friction : float, optional
+            Coulomb's coefficient between beads and this plate [-]: tangential rebound and spin are
+            the model's. By default pymunk's own friction acts, as on other shapes: of rigid bodies,
+            with the product of the two shapes' ``friction``, which is 0 unless set.
 
         Returns
         -------
@@ -208,7 +223,8 @@ class PymunkImpacts:
         Raises
         ------
         TypeError, ValueError, RuntimeError
-            As `add_bead`; also if the shape has no length or the thickness is no positive number.
+            As `add_bead`; also if the shape has no length, the thickness is no positive number, or
+            a model without ``oblique`` is asked for friction.
         """
         import pymunk
 
@@ -219,12 +235,15 @@ class PymunkImpacts:
         if model is not None and material is not None:
             raise ValueError("material: a plate with a model of its own has that one's material")
         chosen = self._models.plate(material) if model is None else self._models.own_models(model)
+        if friction is not None:
+            friction = self._check_friction(friction, chosen, shape)
         key = id(shape)
         index = self._register.plate(chosen, thickness)
         mount = self._mounts.get(id(body))
         if mount is None or mount.body() is not body:
             mount = self._mounts[id(body)] = Mount(id(body), ref(body))
-        plate = PlateShape(index, KeyedRef(shape, self._gone.append, key), mount, thickness, chosen)
+        noted = KeyedRef(shape, self._gone.append, key)
+        plate = PlateShape(index, noted, mount, thickness, chosen, friction)
         mount.plates[index] = plate
         self._contacts.plates[key] = plate
         self._seams.join(plate, shape, body)
@@ -340,6 +359,25 @@ class PymunkImpacts:
             raise ValueError(f"{shape!r} is registered already")
         return body_of(shape, kinds, self._space, collision_type)
 
+    def _check_friction(self, friction: float, models: ModelsByBead, shape: Any) -> float:
+        """Coefficient of friction of a new plate, if its models and all beads are fit for it."""
+        friction = scalar(friction=friction)
+        for model in models.values():
+            if not knows_friction(model):
+                raise TypeError(
+                    f"friction: {model!r} knows none, it has no oblique(); leave friction=None, "
+                    "which is pymunk's own, or give an ImpactModel"
+                )
+        if friction:
+            for bead in self._contacts.beads.values():
+                self._check_moment(bead.shape(), bead.radius, shape)
+        return friction
+
+    def _check_moment(self, circle: Any, radius: float, shape: Any) -> None:
+        """Refuse a bead that may meet a plate with friction, but has not a sphere's moment."""
+        if None not in (circle, shape) and may_meet(circle, shape):
+            check_moment(circle.body, radius)
+
     def _clean(self) -> None:
         """Forget beads and plates whose shape or body no longer exists.
 
@@ -370,6 +408,7 @@ class PymunkImpacts:
             del self._kinds[bead.kind]
             for plate in self._contacts.plates.values():
                 plate.curves.pop(bead.kind, None)
+                plate.slides.pop(bead.kind, None)
             if bead.radius == self._lookahead.reach:
                 self._lookahead.reach = min((r for r, _ in self._kinds), default=math.inf)
 
@@ -381,7 +420,7 @@ class PymunkImpacts:
         self._clean()
         self._handlers.check()
         self._lookahead.check(dt, self._contacts.time)
-        self._contacts.begin(dt, self._space.gravity.length, self._lookahead.reach)
+        self._contacts.begin(dt, self._space.gravity, self._lookahead.reach)
         # cffi passes exceptions in callbacks to this hook: those of the user's own handlers, and a
         # Ctrl-C, which usually arrives in pymunk's Python code around a callback and not in ours.
         # It is set in the main thread only, because that gets the signals and the hook is global.
@@ -393,9 +432,14 @@ class PymunkImpacts:
                 sys.unraisablehook = self._hook
         else:
             self._engine_step(dt)
+        self._contacts.end()
         error, self._contacts.error = self._contacts.error, None
         if error is not None:
             raise error
+        if self._contacts.stranger is not None and not self._warned:
+            self._warned = True
+            self._handlers.ignore_strangers()
+            warnings.warn(self._contacts.stranger, stacklevel=2)
 
     def _unraisable(self, report: sys.UnraisableHookArgs) -> None:
         here = threading.current_thread() is threading.main_thread()

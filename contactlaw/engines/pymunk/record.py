@@ -15,6 +15,10 @@ from contactlaw.engines.pymunk.models import Models, ModelsByBead
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
 from contactlaw.physical.materials import sphere_mass
 
+# What a run gives of each impact; of friction_energy that over the mass [m2/s2]
+SEEN = (*OBSERVED, "sliding_speed_after", "spin_z", "friction_energy")
+WIDTH = len(SEEN)
+
 
 class Register:
     """All beads and plates ever registered, by index, because the record outlives the shapes."""
@@ -74,15 +78,27 @@ class Record:
     """Impacts, added one by one and read as one array."""
 
     def __init__(self) -> None:
-        self._seen = array("d")  # 72 bytes per impact; a list of tuples takes five times that
-        self.add = self._seen.extend  # takes one tuple in the order of OBSERVED
+        self._seen = array("d")  # 112 bytes per impact; a list of tuples takes five times that
+        self.add = self._seen.extend  # takes one tuple in the order of SEEN
         self._rows = np.empty(0, IMPACT)  # rows of the impacts that have been read
 
-    def undo(self, time: float, bead: int, plate: int, other: int) -> None:
-        """Remove the last impact if it is this one."""
-        if self._seen[-len(OBSERVED) : -len(OBSERVED) + 4].tolist() == [time, bead, plate, other]:
-            del self._seen[-len(OBSERVED) :]
-            self._rows = self._rows[: len(self._seen) // len(OBSERVED)]
+    def __len__(self) -> int:
+        return len(self._seen) // WIDTH
+
+    def last(self) -> tuple[float, ...]:
+        """Time, bead, plate and other of the last impact."""
+        return tuple(self._seen[-WIDTH : -WIDTH + 4])
+
+    def undo(self) -> None:
+        """Remove the last impact."""
+        del self._seen[-WIDTH:]
+        self._rows = self._rows[: len(self)]
+
+    def settle(self, row: int, before: float, outcome: tuple[float, float, float]) -> None:
+        """Set the sliding speed before an impact, and the last columns of SEEN."""
+        self._seen[row * WIDTH + SEEN.index("sliding_speed")] = before
+        self._seen[row * WIDTH + len(OBSERVED) : (row + 1) * WIDTH] = array("d", outcome)
+        self._rows = self._rows[:row]
 
     def read(self, register: Register) -> NDArray[np.void]:
         """Structured array of all impacts; each is looked up when it is first read, and not again.
@@ -94,10 +110,10 @@ class Record:
             model is a `ReboundModel`, there are only the columns of OBSERVED.
         """
         whole = all(knows_rebounds(model) for model in register.every_model())
-        seen = np.array(self._seen[len(self._rows) * len(OBSERVED) :]).reshape(-1, len(OBSERVED))
+        seen = np.array(self._seen[len(self._rows) * WIDTH :]).reshape(-1, WIDTH)
         if len(seen):
             rows = np.zeros(len(seen), IMPACT)
-            for name, column in zip(OBSERVED, seen.T, strict=True):
+            for name, column in zip(SEEN, seen.T, strict=True):
                 rows[name] = column
             if whole:
                 _complete(rows, register)
@@ -113,6 +129,7 @@ def _complete(rows: NDArray[np.void], register: Register) -> None:
     mass = sphere_mass(density[material], beads["radius"])
     on_bead = rows["other"] >= 0
     bead, other = rows["bead"], rows["other"]
+    rows["friction_energy"] *= mass[bead]
     radius = beads["radius"]
     target = np.where(
         on_bead, radius[other], np.append(plates["thickness"], math.nan)[rows["plate"]]

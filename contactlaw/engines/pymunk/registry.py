@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from contactlaw.engines.needs import CorBySpeed
+from contactlaw.engines.pymunk.friction import Slide, slide_of
 from contactlaw.engines.pymunk.models import ModelsByBead
 from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.materials import sphere_mass
@@ -70,8 +71,10 @@ class PlateShape:
     mount: Mount
     thickness: float
     models: ModelsByBead
+    friction: float | None = None  # None: the engine's own
     joints: list[Joint] = field(default_factory=list)  # ends shared with other plates
     curves: dict[Kind, CorBySpeed] = field(default_factory=dict)
+    slides: dict[Kind, Slide] = field(default_factory=dict)
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)  # at the last step [m/s], [rad/s]
     change: float = 0.0  # change of that velocity in the last step [m/s]
     shake: float = 0.0  # the change per step of a plate that keeps changing, else about 0 [m/s]
@@ -87,6 +90,16 @@ class PlateShape:
             curve = self.models[material].curve(radius, self.thickness)
             self.curves[bead.kind] = curve
         return curve
+
+    def slide(self, bead: BeadShape) -> Slide:
+        """Sliding speed after impacts of beads of this kind on a plate with friction; made once."""
+        slide = self.slides.get(bead.kind)
+        if slide is None:
+            radius, material = bead.kind
+            model: Any = self.models[material]
+            slide = slide_of(model, radius, self.thickness, self.friction or 0.0)
+            self.slides[bead.kind] = slide
+        return slide
 
     def velocity_at(self, shape: pymunk.Shape, x: float, y: float) -> Vector:
         """Return the plate's velocity [m/s] at the point [m] where a bead touches it."""
@@ -137,6 +150,7 @@ class Mount:
     # Whether the body has no velocity; None for a static body, until that is looked up. To ask
     # pymunk for the velocity of a point takes a tenth of the time of a collision.
     still: bool | None = False
+    free: bool = False  # whether impacts move the body
     frame: tuple[float, float, float, float] | None = None  # origin [m], cosine and sine of angle
 
     def watch(self, dt: float) -> float:
@@ -152,6 +166,7 @@ class Mount:
             self.still = None
             return 0.0
         self.still = False
+        self.free = body.body_type == pymunk.Body.DYNAMIC
         return max((plate.watch(body, dt) for plate in self.plates.values()), default=0.0)
 
     def local(self, x: float, y: float) -> Vector:

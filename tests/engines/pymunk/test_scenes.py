@@ -70,7 +70,8 @@ def test_a_removed_plate_is_an_ordinary_segment():
     (plate,) = space.static_body.shapes
     impacts.remove_plate(plate)
     assert plate.collision_type == 0
-    space.step(DT)
+    with pytest.warns(UserWarning, match="nobody registered"):
+        space.step(DT)
     assert body.velocity.y == pytest.approx(0.0, abs=EXACT) and len(impacts.collisions()) == 0
     assert impacts.add_plate(plate, 2e-3) == 1
     assert impacts.plates()["thickness"].tolist() == [1e-3, 2e-3]
@@ -119,9 +120,9 @@ def test_memory_of_beads_that_left_is_released():
     space.step(DT)
     after, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    # 72 bytes for each impact in the record and 16 for each bead, in arrays that grow by an eighth;
-    # with the shapes kept it was 2800 and more.
-    assert (after - before) / 1000 < 150
+    # 112 bytes for each impact in the record and 16 for each bead, in arrays that grow by an
+    # eighth; with the shapes kept it was 2800 and more.
+    assert (after - before) / 1000 < 200
     rows = impacts.collisions()
     assert rows["bead"].tolist() == list(range(1200))
     assert len(impacts.beads()) == 1200

@@ -1,0 +1,103 @@
+"""Friction of beads: the model's on plates with a coefficient, the engine's own elsewhere."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from contactlaw.engines.needs import ObliqueModel
+from contactlaw.equation.tangential import POINT
+
+if TYPE_CHECKING:
+    import pymunk
+
+# Sliding speed afterwards by normal and sliding speed before [m/s]
+Slide = Callable[[float, float], float]
+
+SOLID = 2.0 / 5.0  # moment of inertia of a solid sphere over m R^2
+SAME_MOMENT = 1e-3
+# Coulomb's limit, which the model's answer has in it, is this many times looser for the engine. Its
+# normal impulse has a step's gravity in it, which is half of the slowest impact's.
+LOOSE = 2.0
+
+
+def slide_of(model: ObliqueModel, radius: float, thickness: float, friction: float) -> Slide:
+    """Sliding speed after impacts of beads of a radius [m] on a plate of a thickness [m].
+
+    One impact takes below a microsecond by the model's ``collide_kernel``. Without one, and for
+    impacts that it does not know, ``oblique`` answers, or says what is wrong.
+    """
+    try:
+        collide: Any = getattr(model, "collide_kernel", None)
+    except RuntimeError:  # numba is switched off
+        collide = None
+    rest, up = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+
+    def slide(speed: float, sliding_speed: float) -> float:
+        if collide is not None:
+            before = (sliding_speed, 0.0, -speed)
+            (centre, _, _), _ = collide(before, rest, up, radius, thickness, friction, rest)
+            if centre == centre:
+                return sliding_speed - POINT * (sliding_speed - float(centre))
+        found = model.oblique(speed, sliding_speed, radius, thickness, friction)
+        return float(found.sliding_speed)
+
+    return slide
+
+
+def check_moment(body: Any, radius: float) -> None:
+    """Refuse to let friction act on a bead whose moment of inertia is not a solid sphere's."""
+    sphere = SOLID * body.mass * radius**2
+    if not abs(body.moment - sphere) <= SAME_MOMENT * sphere:
+        raise ValueError(
+            f"body.moment: {body.moment:.6g} kg m2, but the model's friction is that of solid "
+            f"spheres, here of {sphere:.6g} kg m2: set "
+            "body.moment = 2/5*body.mass*radius**2 (pymunk.moment_for_circle is for discs)"
+        )
+
+
+def sliding(arbiter: pymunk.Arbiter) -> float:
+    """Speed of one surface along the other [m/s], counter-clockwise round its body.
+
+    It is the same with the two in the other order, and does not have `belt` in it.
+    """
+    one, two = arbiter.bodies
+    points = arbiter.contact_point_set
+    (nx, ny), point = points.normal, points.points[0]
+    vx, vy = one.velocity_at_world_point(point.point_a)
+    ux, uy = two.velocity_at_world_point(point.point_b)
+    return float(nx * (vy - uy) - ny * (vx - ux))
+
+
+def belt(arbiter: pymunk.Arbiter) -> float:
+    """Sliding speed that the ``surface_velocity`` of the shapes takes away [m/s]."""
+    (nx, ny), (x, y) = arbiter.normal, arbiter.surface_velocity
+    return float(nx * y - ny * x)
+
+
+class Rubbing(NamedTuple):
+    """An impact whose sliding the engine decides, so that it is known after the step."""
+
+    circle: Any
+    shape: Any
+    before: float  # sliding speed before [m/s]
+    belt: float  # [m/s]
+
+    def outcome(self) -> tuple[float, float, float]:
+        """Sliding speed [m/s], spin [rad/s], and work of friction over the bead's mass [m2/s2].
+
+        The first is below 0 if it has turned round. Where the bead or what it hit has left the
+        space within the step, the speed and the work are NaN.
+        """
+        body, found = self.circle.body, [(math.nan, math.nan)]
+
+        def look(arbiter: pymunk.Arbiter) -> None:
+            if self.shape in arbiter.shapes:
+                (nx, ny), (jx, jy) = arbiter.normal, arbiter.total_impulse  # on this body
+                found.append((sliding(arbiter) - self.belt, nx * jy - ny * jx))
+
+        body.each_arbiter(look)
+        after, impulse = found[-1]
+        work = -impulse * (self.before + after) / 2.0 / body.mass
+        return math.copysign(1.0, self.before) * after, body.angular_velocity, work
