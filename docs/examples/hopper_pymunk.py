@@ -1,4 +1,4 @@
-"""Beads run through a funnel of sheet metal whose two walls differ in thickness, and so in COR."""
+"""Beads run down a funnel of sheet metal, whose walls differ in thickness and have friction."""
 
 import math
 
@@ -10,11 +10,17 @@ from contactlaw.engines.pymunk import attach
 
 RADIUS = 1.5e-3  # [m]
 WALLS = (1e-3, 4e-3)  # thickness of the left and the right wall [m]
+FRICTION = 0.2  # Coulomb's coefficient, as of dry steel
 STEP = 1e-5  # [s]
 
 
+def loss(hits):
+    """Energy that impacts have lost [J]."""
+    return sum(hits[name].sum() for name in hits.dtype.names if name.endswith("_energy"))
+
+
 def main(beads=20, duration=0.4):
-    """Let steel beads fall into a funnel; print the range of the COR on each wall."""
+    """Let steel beads fall into a funnel; print the COR and the work of friction on each wall."""
     space = pymunk.Space()
     space.gravity = (0.0, -9.81)
     model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "stainless-steel-304"))
@@ -24,13 +30,13 @@ def main(beads=20, duration=0.4):
     for side, thickness in zip((-1.0, 1.0), WALLS, strict=True):
         wall = pymunk.Segment(space.static_body, (side * 0.08, 0.1), (side * 0.006, 0.0), 0.0)
         space.add(wall)
-        impacts.add_plate(wall, thickness=thickness)
+        impacts.add_plate(wall, thickness=thickness, friction=FRICTION)
         walls.append(wall)
 
     mass = 4.0 / 3.0 * math.pi * RADIUS**3 * model.pair.sphere.density
     random = np.random.default_rng(3)
     for n in range(beads):
-        body = pymunk.Body(mass, moment=float("inf"))
+        body = pymunk.Body(mass, moment=2.0 / 5.0 * mass * RADIUS**2)  # of a solid sphere
         body.position = float(random.uniform(-0.05, 0.05)), 0.12 + 4.0 * RADIUS * n
         bead = pymunk.Circle(body, RADIUS)
         space.add(body, bead)
@@ -45,7 +51,8 @@ def main(beads=20, duration=0.4):
         cor, speed = hits["restitution"], hits["approach_speed"].mean()
         print(
             f"{1e3 * thickness:.0f} mm: {hits.size} impacts at {speed:.2f} m/s on average, "
-            f"COR {cor.min():.3f} to {cor.max():.3f}"
+            f"COR {cor.min():.3f} to {cor.max():.3f}, friction took "
+            f"{hits['friction_energy'].sum() / loss(hits):.0%} of the energy"
         )
     return found
 

@@ -17,13 +17,24 @@ Beads and plates
     first registered: a floor of many pieces is one surface. The attachment keeps no shape alive: it
     forgets shapes that neither the space nor the user holds any more. `remove_bead` and
     `remove_plate` forget others. An index in the record is never given again.
+Friction
+    ``add_plate(..., friction=0.2)`` gives impacts the tangential rebound and spin of the model's
+    ``collide``, for beads with the moment of a solid sphere. The solver is given the sliding speed
+    after the impact as the surface velocity; contacts that rest have Coulomb's friction of the
+    engine with that coefficient. Elsewhere, and between beads, friction is the engine's: of rigid
+    bodies, with the product of the shapes' ``friction``, 0 unless set.
 Materials
     ``attach(space, [model, ...])`` takes a model for each pair of materials; ``material=`` gives
     the material of a bead or a plate. `beads` and `plates` list the materials by index.
 Handlers of the user
     Handlers for `bead_type` and `plate_type`, for any type (``None``) and for other types are
-    called as before. A ``pre_solve`` may change friction, or switch a contact off so that it is no
-    impact. The restitution is the model's: a handler that sets it is an error.
+    called as before. A ``pre_solve`` may change the engine's friction, or switch a contact off so
+    that it is no impact. The restitution is the model's, as is friction on a plate with
+    ``friction=``: a handler that sets it is an error.
+Strangers
+    A bead that hits a shape nobody registered stops dead unless both have an elasticity or a
+    handler sets a restitution. The first time, a warning names the shape. Only shapes of the
+    collision type 0, and of types for which there are handlers, are watched.
 Time
     The time in the record is the sum of all steps since `attach`, including that of the impact.
 Errors
@@ -38,7 +49,8 @@ Settings
     come to rest stay in each other by that length. With a thousand falling beads pymunk's default
     tree takes 0.5 to 6 ms a step, ``space.use_spatial_hash`` (cells of some radii) 0.14 ms.
 What pymunk cannot express
-    The simulation is two-dimensional and has no force history. A bead in a corner hits both plates.
+    The simulation is two-dimensional and has no force history. A bead in a corner hits both plates,
+    and each row of the record is about one of them. A step's gravity has no part in a rebound.
     Beads that jump over each other are not detected. Gravity by a ``velocity_func`` does not count
     in the speed of resting contacts, nor motion by a ``position_func`` in the search for
     tunnelling. Plates that overlap, or meet elsewhere than at their ends, are hit separately.

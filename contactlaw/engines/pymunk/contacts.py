@@ -62,6 +62,7 @@ class Contacts:
         """Prepare for a step of length dt [s] under gravity [m/s2]; reach: least radius [m]."""
         gx, gy = gravity
         self._fall = gx * dt, gy * dt
+        self._rubbing.clear()
         self._resting_speed = max(RESTING * math.hypot(gx, gy) * dt, ROUNDING * reach / dt)
         self.time += dt
         self.steps += 1
@@ -70,7 +71,6 @@ class Contacts:
         """Complete the impacts of this step whose sliding the engine has decided."""
         for row, rubbing in self._rubbing.items():
             self.record.settle(row, abs(rubbing.before), rubbing.outcome())
-        self._rubbing.clear()
 
     # The two callbacks run for every contact in every step, and a pile has many contacts. So
     # attributes are looked up once, and few functions are called.
@@ -114,9 +114,12 @@ class Contacts:
                 slip = nx * (vy - uy) - ny * (vx - ux) + bead.radius * spin
                 after, work = abs(slip), 0.0
                 if friction is not None:
-                    slip, after, spin, work = self._slide(arbiter, bead, plate, slip, speed)
+                    slip, after, spin, work = self._slide(
+                        arbiter, bead, plate, body, (nx, ny), speed, slip
+                    )
                 elif arbiter.friction > 0.0:
                     self._rub(arbiter, circle, shape, len(self.record))
+                    after = spin = work = math.nan
                 record((
                     self.time, bead.index, plate.index, -1, x, y, 0.0, speed, cor, abs(slip), kind,
                     after, spin, work,
@@ -155,11 +158,13 @@ class Contacts:
                 spin = body.angular_velocity
                 turning = bead.radius * spin + other.radius * other_body.angular_velocity
                 slip = nx * (vy - uy) - ny * (vx - ux) + turning
+                after, work = abs(slip), 0.0
                 if arbiter.friction > 0.0:
                     self._rub(arbiter, circle, shape, len(self.record))
+                    after = spin = work = math.nan
                 record((
                     self.time, bead.index, -1, other.index, x, y, 0.0, speed, cor, abs(slip), kind,
-                    abs(slip), spin, 0.0,
+                    after, spin, work,
                 ))  # fmt: skip
             except BaseException as error:
                 self.keep(error, arbiter)
@@ -183,18 +188,23 @@ class Contacts:
             self.resting += 1
 
     def _slide(
-        self, arbiter: pymunk.Arbiter, bead: BeadShape, plate: PlateShape, along: float,
+        self,
+        arbiter: pymunk.Arbiter,
+        bead: BeadShape,
+        plate: PlateShape,
+        body: Any,
+        normal: tuple[float, float],
         speed: float,
-    ) -> tuple[float, float, float, float]:  # fmt: skip
-        """Sliding speed before and after, spin and work of friction by the model.
+        along: float,
+    ) -> tuple[float, ...]:
+        """Let the model answer for friction: sliding speed before and after, spin, and work.
 
-        The engine's solver gives the contact the ``surface_velocity`` as far as its friction allows
-        it. Along the plate, gravity moves the bead in this step as in any other.
+        The engine's solver gives the contact the ``surface_velocity``, as far as its friction can.
+        Gravity moves the bead along the plate as in any step. `along` is without a `belt` [m/s].
         """
-        circle, shape = arbiter.shapes
-        body: Any = circle.body
-        friction, carried, change = plate.friction or 0.0, belt(arbiter), 0.0
-        slip = along - carried
+        (nx, ny), (gx, gy), mount = normal, self._fall, plate.mount
+        friction, carried = plate.friction or 0.0, belt(arbiter, nx, ny)
+        slip, change = along - carried, 0.0
         if friction:
             check_moment(body, bead.radius)
             try:
@@ -202,25 +212,25 @@ class Contacts:
             except Exception as error:
                 error.add_note(self._describe(bead, plate, speed))
                 raise
-        (nx, ny), (gx, gy) = arbiter.normal, self._fall
-        arbiter.friction = LOOSE * friction
-        target = along + change + nx * gy - ny * gx
-        if not plate.mount.still:
+        target = along + change
+        if not mount.still:
             target += sliding(arbiter) - along  # between the surfaces, which overlap
-            if plate.mount.free:
-                # A light plate is pushed along, and falls with the bead.
-                self._rubbing[len(self.record)] = Rubbing(circle, shape, slip, carried)
-                arbiter.friction = friction
-                target -= nx * gy - ny * gx
+        if mount.free:  # it falls as the bead does, and a light one limits the impulses
+            arbiter.friction = friction
+            self._rubbing[len(self.record)] = Rubbing(body, arbiter.shapes, slip, carried)
+        else:
+            arbiter.friction = LOOSE * friction
+            target += nx * gy - ny * gx
         arbiter.surface_velocity = -ny * target, nx * target
-        spin = body.angular_velocity + (1.0 - 1.0 / POINT) * change / bead.radius
         after = math.copysign(1.0, slip) * (slip + change)
+        spin = body.angular_velocity + (1.0 - 1.0 / POINT) * change / bead.radius
         return slip, after, spin, -change * (slip + 0.5 * change) / POINT
 
     def _rub(self, arbiter: pymunk.Arbiter, circle: Any, shape: Any, row: int) -> None:
-        """Note an impact of a row of the record with the engine's friction."""
-        carried = belt(arbiter)
-        self._rubbing[row] = Rubbing(circle, shape, sliding(arbiter) - carried, carried)
+        """Note an impact with the engine's friction, in a row of the record."""
+        carried = belt(arbiter, *arbiter.normal)
+        before = sliding(arbiter) - carried
+        self._rubbing[row] = Rubbing(circle.body, (circle, shape), before, carried)
 
     def meet_stranger(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         """Note a contact with a shape that nobody registered, if pymunk stops the bead there."""

@@ -70,17 +70,17 @@ def sliding(arbiter: pymunk.Arbiter) -> float:
     return float(nx * (vy - uy) - ny * (vx - ux))
 
 
-def belt(arbiter: pymunk.Arbiter) -> float:
+def belt(arbiter: pymunk.Arbiter, nx: float, ny: float) -> float:
     """Sliding speed that the ``surface_velocity`` of the shapes takes away [m/s]."""
-    (nx, ny), (x, y) = arbiter.normal, arbiter.surface_velocity
+    x, y = arbiter.surface_velocity
     return float(nx * y - ny * x)
 
 
 class Rubbing(NamedTuple):
     """An impact whose sliding the engine decides, so that it is known after the step."""
 
-    circle: Any
-    shape: Any
+    body: Any  # of the bead
+    shapes: tuple[Any, Any]  # the bead, and what it hits
     before: float  # sliding speed before [m/s]
     belt: float  # [m/s]
 
@@ -90,11 +90,11 @@ class Rubbing(NamedTuple):
         The first is below 0 if it has turned round. Where the bead or what it hit has left the
         space within the step, the speed and the work are NaN.
         """
-        body, found = self.circle.body, [(math.nan, math.nan)]
+        body, found = self.body, [(math.nan, math.nan)]
 
         def look(arbiter: pymunk.Arbiter) -> None:
-            if self.shape in arbiter.shapes:
-                (nx, ny), (jx, jy) = arbiter.normal, arbiter.total_impulse  # on this body
+            if arbiter.shapes == self.shapes:  # those of this body come first
+                (nx, ny), (jx, jy) = arbiter.normal, arbiter.total_impulse
                 found.append((sliding(arbiter) - self.belt, nx * jy - ny * jx))
 
         body.each_arbiter(look)

@@ -16,12 +16,11 @@ from weakref import KeyedRef, ref
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.engines.needs import RestitutionModel, knows_friction
+from contactlaw.engines.needs import RestitutionModel
 from contactlaw.engines.pymunk.contacts import Contacts
-from contactlaw.engines.pymunk.friction import check_moment
 from contactlaw.engines.pymunk.handlers import Handlers
 from contactlaw.engines.pymunk.lookahead import LookAhead
-from contactlaw.engines.pymunk.models import Models, ModelsByBead
+from contactlaw.engines.pymunk.models import Models
 from contactlaw.engines.pymunk.record import Register
 from contactlaw.engines.pymunk.registry import (
     BeadShape,
@@ -30,8 +29,9 @@ from contactlaw.engines.pymunk.registry import (
     PlateShape,
     body_of,
     check_mass,
+    check_solid,
     ends,
-    may_meet,
+    friction_of,
     radius_of,
     scalar,
 )
@@ -70,7 +70,7 @@ class PymunkImpacts:
         self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
         self._register = Register(models)
         self._seams = Seams()
-        self._attached, self._warned = True, False
+        self._attached = True
         self._lookahead = LookAhead(space, self._bodies, self._contacts.plates, self._mounts)
         self._slop = space.collision_slop
         # Bounded: a thousand different beads make half a million pairs.
@@ -173,7 +173,7 @@ class PymunkImpacts:
         check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
         for plate in self._contacts.plates.values():
             if plate.friction:
-                self._check_moment(circle, radius, plate.shape())
+                check_solid(circle, radius, plate.shape())
         key, kind = id(circle), (radius, number)
         noted = self._gone.append
         shape, owner = KeyedRef(circle, noted, key), KeyedRef(body, noted, key)
@@ -236,7 +236,7 @@ class PymunkImpacts:
             raise ValueError("material: a plate with a model of its own has that one's material")
         chosen = self._models.plate(material) if model is None else self._models.own_models(model)
         if friction is not None:
-            friction = self._check_friction(friction, chosen, shape)
+            friction = friction_of(friction, chosen, shape, self._contacts.beads.values())
         key = id(shape)
         index = self._register.plate(chosen, thickness)
         mount = self._mounts.get(id(body))
@@ -307,12 +307,12 @@ class PymunkImpacts:
         Returns
         -------
         structured array
-            A copy with columns of `contactlaw.engines.record.COLUMNS`, where their units are: time,
-            bead, plate, other, x, y, z (0), approach_speed and restitution; if every model is a
-            `ReboundModel`, also contact_time, peak_force, plastic_energy, wave_energy,
-            other_energy, wall_work (0, unknown to the engine), triangle (-1) and flags. Energies
-            are those of solid spheres (bead on bead: of the relative motion, with the reduced
-            mass), without the work of friction.
+            A copy with columns of `contactlaw.engines.record.COLUMNS`, where their units are; z,
+            spin_x and spin_y are 0, wall_work is 0 (unknown to the engine), triangle -1, and kind
+            an impact, or 3 if the bead was struck while it touched. Without a `ReboundModel` for
+            every contact the columns end with kind. Energies are those of solid spheres, bead on
+            bead of the relative motion. What friction took of a bead that has left the space
+            within the step, and how it slides on, is NaN where the engine's friction acted.
         """
         return self._contacts.record.read(self._register)
 
@@ -358,25 +358,6 @@ class PymunkImpacts:
         if id(shape) in self._contacts.beads or id(shape) in self._contacts.plates:
             raise ValueError(f"{shape!r} is registered already")
         return body_of(shape, kinds, self._space, collision_type)
-
-    def _check_friction(self, friction: float, models: ModelsByBead, shape: Any) -> float:
-        """Coefficient of friction of a new plate, if its models and all beads are fit for it."""
-        friction = scalar(friction=friction)
-        for model in models.values():
-            if not knows_friction(model):
-                raise TypeError(
-                    f"friction: {model!r} knows none, it has no oblique(); leave friction=None, "
-                    "which is pymunk's own, or give an ImpactModel"
-                )
-        if friction:
-            for bead in self._contacts.beads.values():
-                self._check_moment(bead.shape(), bead.radius, shape)
-        return friction
-
-    def _check_moment(self, circle: Any, radius: float, shape: Any) -> None:
-        """Refuse a bead that may meet a plate with friction, but has not a sphere's moment."""
-        if None not in (circle, shape) and may_meet(circle, shape):
-            check_moment(circle.body, radius)
 
     def _clean(self) -> None:
         """Forget beads and plates whose shape or body no longer exists.
@@ -427,19 +408,22 @@ class PymunkImpacts:
         if threading.current_thread() is threading.main_thread():
             self._hook, sys.unraisablehook = sys.unraisablehook, self._unraisable
             try:
-                self._engine_step(dt)
+                self._advance(dt)
             finally:
                 sys.unraisablehook = self._hook
         else:
-            self._engine_step(dt)
-        self._contacts.end()
+            self._advance(dt)
         error, self._contacts.error = self._contacts.error, None
         if error is not None:
             raise error
-        if self._contacts.stranger is not None and not self._warned:
-            self._warned = True
+        stranger, self._contacts.stranger = self._contacts.stranger, None
+        if stranger is not None:
             self._handlers.ignore_strangers()
-            warnings.warn(self._contacts.stranger, stacklevel=2)
+            warnings.warn(stranger, stacklevel=2)
+
+    def _advance(self, dt: float) -> None:
+        self._engine_step(dt)
+        self._contacts.end()
 
     def _unraisable(self, report: sys.UnraisableHookArgs) -> None:
         here = threading.current_thread() is threading.main_thread()

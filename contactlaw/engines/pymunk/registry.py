@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 import warnings
 import weakref
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from contactlaw.engines.needs import CorBySpeed
-from contactlaw.engines.pymunk.friction import Slide, slide_of
+from contactlaw.engines.needs import CorBySpeed, knows_friction
+from contactlaw.engines.pymunk.friction import Slide, check_moment, slide_of
 from contactlaw.engines.pymunk.models import ModelsByBead
 from contactlaw.physical.arguments import broadcast, check
 from contactlaw.physical.materials import sphere_mass
@@ -163,7 +163,7 @@ class Mount:
             if self.still is False:
                 for plate in self.plates.values():
                     plate.shake = plate.change = 0.0
-            self.still = None
+            self.still, self.free = None, False
             return 0.0
         self.still = False
         self.free = body.body_type == pymunk.Body.DYNAMIC
@@ -259,6 +259,28 @@ def check_mass(mass: float, radius: float, density: float | None, name: str) -> 
             "body.mass = 4/3*pi*radius**3*density",
             stacklevel=3,
         )
+
+
+def check_solid(circle: Any, radius: float, shape: Any) -> None:
+    """Refuse a bead that may meet a plate with friction, but has not a sphere's moment."""
+    if None not in (circle, shape) and may_meet(circle, shape):
+        check_moment(circle.body, radius)
+
+
+def friction_of(
+    friction: float, models: ModelsByBead, shape: Any, beads: Iterable[BeadShape]
+) -> float:
+    """Coefficient of friction of a new plate, if its models and all beads are fit for it."""
+    friction = scalar(friction=friction)
+    for model in models.values():
+        if not knows_friction(model):
+            raise TypeError(
+                f"friction: {model!r} knows none, it has no oblique(); leave friction=None, which "
+                "is pymunk's own, or give an ImpactModel"
+            )
+    for bead in beads if friction else ():
+        check_solid(bead.shape(), bead.radius, shape)
+    return friction
 
 
 def unregistered(shape: Any) -> ValueError:
