@@ -171,9 +171,8 @@ class PymunkImpacts:
         if body.id in self._bodies:
             raise ValueError(f"circle.body: carries bead {self._bodies[body.id].index} already")
         check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
-        for plate in self._contacts.plates.values():
-            if plate.friction:
-                check_solid(circle, radius, plate.shape())
+        plates = self._contacts.plates.values()
+        check_solid(circle, radius, (plate.shape() for plate in plates if plate.friction))
         key, kind = id(circle), (radius, number)
         noted = self._gone.append
         shape, owner = KeyedRef(circle, noted, key), KeyedRef(body, noted, key)

@@ -261,10 +261,13 @@ def check_mass(mass: float, radius: float, density: float | None, name: str) -> 
         )
 
 
-def check_solid(circle: Any, radius: float, shape: Any) -> None:
-    """Refuse a bead that may meet a plate with friction, but has not a sphere's moment."""
-    if None not in (circle, shape) and may_meet(circle, shape):
+def check_solid(circle: Any, radius: float, rough: Iterable[Any]) -> None:
+    """Refuse a bead without a sphere's moment that may meet a plate with friction."""
+    try:
         check_moment(circle.body, radius)
+    except ValueError:
+        if any(shape is not None and may_meet(circle, shape) for shape in rough):
+            raise
 
 
 def friction_of(
@@ -279,7 +282,9 @@ def friction_of(
                 "is pymunk's own, or give an ImpactModel"
             )
     for bead in beads if friction else ():
-        check_solid(bead.shape(), bead.radius, shape)
+        circle = bead.shape()
+        if circle is not None:
+            check_solid(circle, bead.radius, [shape])
     return friction
 
 
