@@ -285,10 +285,11 @@ def test_the_engines_own_friction_is_recorded(friction, by):
     assert row["friction_energy"] * 0.879 == pytest.approx(lost, rel=1e-9)
 
 
-def test_beads_have_the_engines_friction():
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_beads_have_the_engines_friction(friction):
     space, both, impacts = room.meet(Full(0.8), radii=(R, 2 * R))
     one, two = bodies = [circle.body for circle in both]
-    both[0].friction = both[1].friction = 0.5
+    both[0].friction = both[1].friction = friction
     one.angular_velocity, two.angular_velocity = 500.0, -200.0
     before = energy(*bodies)
     room.steps(space, 300, 1e-6)
@@ -297,7 +298,8 @@ def test_beads_have_the_engines_friction():
     assert row["spin_z"] == bodies[int(row["bead"])].angular_velocity
     reduced = one.mass * two.mass / (one.mass + two.mass)
     lost = before - energy(*bodies) - 0.5 * reduced * 2.0**2 * (1.0 - 0.8**2)
-    assert row["friction_energy"] * 0.879 == pytest.approx(lost, rel=1e-6)
+    assert row["friction_energy"] * 0.879 == pytest.approx(lost, rel=1e-6, abs=1e-18)
+    assert (row["friction_energy"] > 0.0) == (friction > 0.0)
 
 
 def test_without_friction_sliding_and_spin_are_as_they_were():
@@ -363,7 +365,9 @@ def test_a_shape_that_does_not_stop_beads_is_not_told(how):
     elif how == "handler":
         space.on_collision(impacts.bead_type, 0, pre_solve=handler, post_solve=handler)
     else:
+        space.step(1e-9)
         impacts.detach()
+        space.copy()  # pickles all handlers; the adapter's own cannot be
     room.steps(space, 5, DT)
-    assert (bead.velocity.y > 0.0) == (how in ("elasticity", "handler"))
+    assert (bead.velocity.y > 0.1) == (how in ("elasticity", "handler"))
     assert bool(calls) == (how == "handler")
