@@ -35,7 +35,7 @@ def test_the_whole_record_needs_all_three(missing):
     assert not knows_rebounds(model)
     space, _, impacts = drop(model)
     space.step(DT)
-    assert impacts.collisions().dtype.names[-1] == "restitution"
+    assert impacts.collisions().dtype.names[-1] == "kind"
 
 
 def test_a_model_that_passes_questions_on():

@@ -27,6 +27,11 @@ def register_of(model, radii, plates):
     return register
 
 
+def add(record, *observed):
+    """Add an impact, up to its restitution, of a bead that slides at 0.5 m/s, then at 0.25."""
+    record.add((*observed, 0.5, 0, 0.25, 7.0, 0.125))
+
+
 def test_every_column_has_a_unit_and_a_description():
     assert IMPACT.names == (
         "time", "bead", "plate", "other", "x", "y", "z", "approach_speed", "restitution",
@@ -69,13 +74,13 @@ def test_record_without_lookup_has_no_derived_columns():
     half.lookup = Full().lookup
     for main, own in ((Stub(), Full()), (Full(), Stub()), (half, Full())):
         record = Record()
-        record.add((0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6))
+        add(record, 0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6)
         rows = record.read(register_of(main, [R], [(own, 1e-3)]))
-        assert rows.dtype.names[-1] == "restitution"
-        assert rows[0].tolist() == (0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6)
+        assert rows.dtype.names[-1] == "kind"
+        assert rows[0].tolist() == (0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6, 0.5, 0)
         assert all(rows.dtype[name] == IMPACT[name] for name in rows.dtype.names)
     record = Record()
-    record.add((0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6))
+    add(record, 0.5, 0, 0, -1, 0.1, 0.2, 0.0, 3.0, 0.6)
     rows = record.read(register_of(Full(), [R], [(Full(), 1e-3)]))
     assert rows.dtype.names[-2:] == ("triangle", "flags")
     assert rows.dtype == IMPACT
@@ -85,9 +90,9 @@ def test_record_asks_each_model_for_its_own_rows():
     main, other = Full(0.25), Full(0.5)
     main.flags, other.flags = 3, 4
     record = Record()
-    record.add((1.0, 1, 0, -1, 0, 0, 0, 2.0, 0.6))
-    record.add((2.0, 0, 1, -1, 0, 0, 0, 3.0, 0.6))
-    record.add((3.0, 0, -1, 1, 0, 0, 0, 4.0, 0.6))
+    add(record, 1.0, 1, 0, -1, 0, 0, 0, 2.0, 0.6)
+    add(record, 2.0, 0, 1, -1, 0, 0, 0, 3.0, 0.6)
+    add(record, 3.0, 0, -1, 1, 0, 0, 0, 4.0, 0.6)
     rows = record.read(register_of(main, [R, 2 * R], [(main, 1e-3), (other, math.inf)]))
     mass = 4 / 3 * math.pi * R**3 * 1000
     kinetic = 0.5 * mass * np.array([8 * 2.0**2, 3.0**2, 8 / 9 * 4.0**2])
@@ -103,8 +108,8 @@ def test_record_asks_each_model_for_its_own_rows():
 def test_an_impact_is_looked_up_once():
     model, record, seen = Full(), Record(), []
     for n in range(1, 4):
-        record.add((n, 0, 0, -1, 0, 0, 0, 10.0 + n, 0.6))
-        record.add((n, 0, -1, 0, 0, 0, 0, 20.0 + n, 0.6))
+        add(record, n, 0, 0, -1, 0, 0, 0, 10.0 + n, 0.6)
+        add(record, n, 0, -1, 0, 0, 0, 0, 20.0 + n, 0.6)
         for _ in range(2):
             seen.append(record.read(register_of(model, [R], [(model, 1e-3)])))
     assert sum(model.speeds, []) == [11.0, 21.0, 12.0, 22.0, 13.0, 23.0]
@@ -115,14 +120,14 @@ def test_an_impact_is_looked_up_once():
 
 def test_rows_that_were_given_away_are_not_the_record():
     model, record = Full(), Record()
-    record.add((1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6))
+    add(record, 1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6)
     record.read(register_of(model, [R], [(model, 1e-3)]))["bead"] = 7
     assert record.read(register_of(model, [R], [(model, 1e-3)]))["bead"].tolist() == [0]
 
 
 def test_a_lookup_that_fails_is_asked_again():
     model, record = Full(), Record()
-    record.add((1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6))
+    add(record, 1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6)
 
     def fail(*arguments):
         raise ValueError("outside the table")
@@ -137,10 +142,10 @@ def test_a_lookup_that_fails_is_asked_again():
 
 def test_a_plate_without_lookup_that_comes_later_takes_the_columns_away():
     model, record = Full(), Record()
-    record.add((1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6))
+    add(record, 1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6)
     assert record.read(register_of(model, [R], [(model, 1e-3)])).dtype == IMPACT
     plates = [(model, 1e-3), (Stub(), 1e-3)]
-    record.add((2.0, 0, 1, -1, 0, 0, 0, 3.0, 0.6))
+    add(record, 2.0, 0, 1, -1, 0, 0, 0, 3.0, 0.6)
     rows = record.read(register_of(model, [R], plates))
-    assert rows.dtype.names[-1] == "restitution"
+    assert rows.dtype.names[-1] == "kind"
     assert rows["approach_speed"].tolist() == [2.0, 3.0]
