@@ -206,8 +206,8 @@ class Contacts:
         friction, carried = plate.friction or 0.0, belt(arbiter, nx, ny)
         slip, change = along - carried, 0.0
         if friction:
-            check_moment(body, bead.radius)
             try:
+                check_moment(body, bead.radius)
                 change = plate.slide(bead)(speed, slip) - slip
             except Exception as error:
                 error.add_note(self._describe(bead, plate, speed))

@@ -228,8 +228,9 @@ def test_a_moment_that_is_no_spheres_is_refused(model, moment):
     bead.body.moment = right
     impacts.add_bead(bead)
     bead.body.moment = wrong
-    with pytest.raises(ValueError, match=message):
+    with pytest.raises(ValueError, match=message) as caught:
         room.steps(space, 100, 1e-5)
+    assert "for bead 1 on plate 0" in caught.value.__notes__[0]
     assert len(impacts.collisions()) == 0
 
 
