@@ -98,5 +98,32 @@ def one_by_one(model: cl.ImpactModel, v: np.ndarray, r: np.ndarray, h: np.ndarra
     )  # fmt: skip
     double = ctypes.c_double
     pointer = ctypes.CFUNCTYPE(double, double, double, double)(model.address)
+    yield oblique(model, v, r, h, inside)
     through = per_call(lambda: pointer(5.0, 0.9e-3, 1e-3))
     yield Row("model.address, through ctypes", through * 1e6, "us", note="ctypes' own overhead")
+
+
+def oblique(
+    model: cl.ImpactModel, v: np.ndarray, r: np.ndarray, h: np.ndarray, normal: float
+) -> Row:
+    """Time that the tangential rebound adds to that of the normal answer, on one core."""
+    collide = model.collide_kernel
+
+    @numba.njit
+    def loop(v: np.ndarray, s: np.ndarray, r: np.ndarray, h: np.ndarray, out: np.ndarray) -> None:
+        up, still = (0.0, 0.0, 1.0), (0.0, 0.0, 0.0)
+        for i in range(v.size):
+            after, _ = collide((s[i], 0.0, -v[i]), still, up, r[i], h[i], 0.3, still)
+            out[i] = after[0]
+
+    slides = np.random.default_rng(1).uniform(0.0, 8.0, N) * 0.3 * v
+    out = np.empty_like(v)
+    with_friction = seconds(lambda: loop(v, slides, r, h, out)) / N
+    some = slice(0, N, 1000)
+    given = v[some], slides[some], r[some], h[some], 0.3
+    integrated = seconds(lambda: model.oblique(*given, method="solve"), 3) / (N / 1000)
+    added = with_friction - normal
+    return Row(
+        "model.collide_kernel, beyond model.kernel", added * 1e9, "ns", 60,
+        "integration", integrated / added,
+    )  # fmt: skip
