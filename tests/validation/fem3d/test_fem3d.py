@@ -168,6 +168,16 @@ def test_a_sliding_impact_loses_what_coulombs_force_takes(sliding):
     assert sliding.sliding_speed / (FRICTION * SPEED) == pytest.approx(after, abs=0.15)
 
 
+def test_full_sliding_is_coulombs_where_the_common_surface_does_not_tilt(sliding):
+    """Tractions mu p tilt the surface of like bodies by (1 - 2 nu) mu p/(2 G)."""
+    soft = cl.Material("nearly incompressible", 210e9, 0.45, 7850.0)
+    along = 20 * FRICTION * SPEED
+    hit = oblique_impact(cl.Pair(soft, soft), SPEED, along, R, math.inf, FRICTION, across=3)
+    assert hit.impulse_ratio == pytest.approx(FRICTION, rel=1e-3)
+    tilt = (1 - 2 * 0.3) * sliding.pressure / (2 * 210e9 / 2.6)
+    assert 0.3 * tilt < 1 - sliding.impulse_ratio / FRICTION < tilt
+
+
 def test_energy_and_momentum_are_kept(sliding):
     assert sliding.balance < 0.003
     shares = sliding.translation + sliding.rotation + sliding.friction + sliding.contact
