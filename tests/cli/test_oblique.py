@@ -43,6 +43,19 @@ def test_a_table_and_a_plot(capsys, tmp_path):
     path = tmp_path / "oblique.png"
     assert main([*BEAD, "--angle", "1:80:9", "--friction", "0.1", "--plot", str(path)]) == 0
     assert path.read_bytes().startswith(b"\x89PNG")
+    sorted_too = tmp_path / "sorted.svg", tmp_path / "unsorted.svg"
+    for file, angles, frictions in zip(
+        sorted_too, ("0,30,60", "60,0,30,30"), ("0.1,0.2", "0.2,0.1,0.2"), strict=True
+    ):
+        options = ["--angle", angles, "--friction", frictions, "--plot", str(file)]
+        assert main([*BEAD, *options]) == 0
+    paths = [re.findall(r'<path d="[^"]*"', file.read_text()) for file in sorted_too]
+    assert paths[0] == paths[1]
+    capsys.readouterr()
+    empty = tmp_path / "empty.png"
+    assert main([*BEAD, "--angle", "0,30", "--friction", "0.1", "--plot", str(empty)]) == 1
+    assert "--plot: give at least two angles above 0" in capsys.readouterr().err
+    assert not empty.exists()
 
 
 # What the UDF manual of Fluent says of the names that a boundary condition uses.

@@ -73,7 +73,7 @@ def _run(arguments: argparse.Namespace) -> None:
     within("angle", angles, 0.0, 89.999, "degrees from the normal")
     if arguments.plot is not None:
         with chosen.plot_file(arguments):
-            _plot(arguments, _table(arguments, angles, coefficients).columns, coefficients)
+            _plot(arguments, angles, coefficients)
         return
     for name in ("fluent", "acusolve"):
         if (path := getattr(arguments, name)) is not None:
@@ -130,7 +130,11 @@ def _traced(arguments: argparse.Namespace, program: str, angles: Array, coeffici
     return write(about, VERSION, place, rows["restitution"], rows["tangential_restitution"])
 
 
-def _plot(arguments: argparse.Namespace, rows: dict[str, Array], coefficients: Array) -> None:
+def _plot(arguments: argparse.Namespace, angles: Array, coefficients: Array) -> None:
+    angles, coefficients = np.unique(angles), np.unique(coefficients)
+    if np.count_nonzero(angles) < 2:  # at an angle of 0 there is no tangential restitution
+        raise ValueError("plot: give at least two angles above 0, best from 1 to 89")
+    rows = _table(arguments, angles, coefficients).columns
     with style.applied():
         figure = style.figure(
             8.0, 5.2, "Tangential restitution over the angle of impact",
