@@ -7,7 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactlaw.cli.parts.quantities import LENGTH, SPEED, formatted, value, values
+from contactlaw.cli.parts.quantities import (
+    ANGLE,
+    FRICTION,
+    LENGTH,
+    SPEED,
+    formatted,
+    value,
+    values,
+)
 
 POWERS = {"m": 0, "cm": -2, "mm": -3, "um": -6, "µm": -6, "μm": -6, "nm": -9}
 SPEEDS = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6}
@@ -29,6 +37,8 @@ SPEEDS = {"m/s": 1.0, "cm/s": 1e-2, "mm/s": 1e-3, "km/h": 1 / 3.6}
         ("0.1:10:3log", SPEED, [0.1, 1.0, 10.0]),
         ("1mm:1cm:2,inf", LENGTH, [1e-3, 1e-2, math.inf]),
         ("100:1000:2 log, 5", SPEED, [100.0, 1000.0, 5.0]),
+        ("30%, 5 %", FRICTION, [0.3, 0.05]),
+        ("10°:60°:2", ANGLE, [10.0, 60.0]),
         ("-1", SPEED, [-1.0]),  # the model refuses it, not the parser
     ],
 )
@@ -70,6 +80,7 @@ def test_a_range_has_its_ends_and_even_steps(start, stop, count, log):
         ("1,,5", SPEED, "expected a speed"),
         ("5m", SPEED, "'m' is no unit of speed; take m/s, cm/s, mm/s or km/h, or none for m/s"),
         ("5 inches", LENGTH, "'inches' is no unit of length"),
+        ("fast", FRICTION, "expected a coefficient of friction such as 0.5 or 0.5%"),
         ("5MM", LENGTH, "'MM' is no unit of length"),
         ("0.5,1mm", LENGTH, "'0.5' has no unit and others have: write 0.5mm, or 0.5m"),
         ("0.5:2mm:3", LENGTH, "'0.5' has no unit"),

@@ -16,7 +16,7 @@ import numpy as np
 _MOST = 100_000  # values of one range
 _NUMBER = re.compile(
     r"\s*(?P<number>[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|[-+]?inf|nan)"
-    r"\s*(?P<unit>[^\W\d](?:.*\S)?)?\s*"
+    r"\s*(?P<unit>[^\W\d](?:.*\S)?|[%°])?\s*"
 )
 _COUNT = re.compile(r"\s*[0-9]{1,9}\s*(log)?\s*")
 
