@@ -91,6 +91,10 @@ def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
     recorded(tmp_path / name, [0, 0])
     assert cli_of_contactlaw.main(command) == 0
     assert capsys.readouterr().err == ""
+    recorded(tmp_path / name, [1, 1])
+    assert cli_of_contactlaw.main(command) == 1
+    words = "it has no impact on a plate: 2 of 2 rows are no impacts and left out: 2 sliding on"
+    assert words in capsys.readouterr().err
 
 
 def test_a_column_called_kind_in_another_table(tmp_path):

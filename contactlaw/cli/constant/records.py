@@ -114,7 +114,8 @@ def read(path: str | os.PathLike[str]) -> Recorded:
 
 def _check(found: Recorded) -> None:
     if found.speed.size == 0:
-        raise ValueError("it has no impact on a plate")
+        why = f": {found.left_out}" if found.left_out else ""
+        raise ValueError(f"it has no impact on a plate{why}")
     sizes = {name: getattr(found, name) for name in ("speed", "radius", "thickness")}
     check(**{name: values for name, values in sizes.items() if values is not None})
 
