@@ -115,6 +115,12 @@ def test_acutrace_gets_both_coefficients_over_the_normal_speed(tmp_path):
         expected = np.column_stack([speed, values])
         assert np.array(rows, dtype=float) == pytest.approx(expected, rel=1e-5)
 
+    # Close to the normal, the normal speeds of two angles differ by 3e-7 of them.
+    wall = ["--angle", "0,0.0445,80", "--friction", "0.1", "--acusolve", str(path)]
+    assert main([*BEAD, *wall]) == 0
+    block = re.search(r"wall_en_curve_fit_values = {(.*?)}", path.read_text(), re.DOTALL)[1]
+    assert len({row.split(",")[0] for row in block.split(";") if row.strip()}) == 3
+
 
 @pytest.mark.parametrize(
     ("options", "message"),

@@ -79,14 +79,14 @@ $tangential
 def fluent(about: str, version: str, angle: Array, normal: Array, tangential: Array) -> str:
     """Write a user-defined function; angles rise and are from the wall [deg]."""
     rows = zip(angle, normal, tangential, strict=True)
-    table = ",\n".join(f"    {{{a:.6g}, {n:.6g}, {t:.6g}}}" for a, n, t in rows)
+    table = ",\n".join(f"    {{{a:.10g}, {n:.6g}, {t:.6g}}}" for a, n, t in rows)
     return _FLUENT.substitute(about=about, version=version, rows=angle.size, table=table)
 
 
 def acusolve(about: str, version: str, speed: Array, normal: Array, tangential: Array) -> str:
     """Write a boundary condition; normal speeds rise [m/s]."""
     columns = {
-        name: "\n".join(f"        {v:.6g}, {e:.6g} ;" for v, e in zip(speed, values, strict=True))
+        name: "\n".join(f"        {v:.10g}, {e:.6g} ;" for v, e in zip(speed, values, strict=True))
         for name, values in (("normal", normal), ("tangential", tangential))
     }
     return _ACUSOLVE.substitute(about=about, version=version, **columns)
