@@ -44,7 +44,12 @@ def add(commands: Any) -> None:
         default=options.text(defaults.RADIUS), help="bead radii [m], or with units")  # fmt: skip
     add("--speed", type=options.speeds, metavar="MIN,MAX",
         default=options.text(defaults.SPEED),
-        help="speeds at which beads are thrown down [m/s], or with units")  # fmt: skip
+        help="speeds at which beads leave the nozzles [m/s], or with units")  # fmt: skip
+    add("--friction", type=float, metavar="MU", default=0.0,
+        help="coefficient of friction on the plates; beads on each other have none")  # fmt: skip
+    add("--tilt", type=float, metavar="DEG", default=argparse.SUPPRESS,
+        help="angle between nozzles and the vertical, to the left and to the right in turn "
+        f"[degrees] (default: {defaults.TILT:g} with friction, else 0)")  # fmt: skip
     add("--duration", type=float, metavar="T", default=argparse.SUPPRESS,
         help=f"simulated time [s] (default: {durations})")  # fmt: skip
     add("--seed", type=int, metavar="S", default=defaults.SEED,
@@ -113,6 +118,11 @@ def _plan(
     with options.refusing(arguments):
         if engine.NO_CONSTANT_COR is not None and "constant_cor" in arguments:
             raise ValueError(f"constant_cor: {engine.NO_CONSTANT_COR}; leave it out")
+        if "constant_cor" in arguments and arguments.friction:
+            raise ValueError(
+                "friction: a constant COR says nothing about sliding; leave out --friction or "
+                "--constant-cor"
+            )
         scene = rain(
             beads=arguments.beads,
             thicknesses=arguments.plates,
@@ -124,6 +134,8 @@ def _plan(
             plate=arguments.plate,
             dimensions=engine.DIMENSIONS,
             frame_rate=engine.FRAME_RATE,
+            friction=arguments.friction,
+            tilt=getattr(arguments, "tilt", defaults.TILT if arguments.friction else 0.0),
         )
         pair = Pair(scene.sphere_material, scene.plate_material)
         law = getattr(arguments, "law", laws.DEFAULT)

@@ -10,5 +10,6 @@ SPEED = (0.5, 15.0)  # [m/s], downwards; gamma-alumina on glass yields from 7.4 
 DURATION = 2.4  # [s], of engines without a default of their own
 FRAME_RATE = 200.0  # [1/s], likewise
 SEED = 1
+TILT = 40.0  # [degrees], of the nozzles of a rain with friction
 SPHERE, PLATE = "gamma-alumina", "glass"
 ENGINE = "pymunk"

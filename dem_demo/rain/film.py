@@ -13,7 +13,7 @@ from PIL import Image
 from contactlaw import style
 from dem_demo.kit.film import encoded
 from dem_demo.rain import paths
-from dem_demo.rain.figures._rain import Picture, instants
+from dem_demo.rain.figures._rain import TURNING, Picture, instants
 from dem_demo.rain.record import Run
 from dem_demo.rain.report import title
 
@@ -40,8 +40,9 @@ def gif(run: Run) -> bytes:
         figure = Figure(figsize=_SIZE, dpi=100, layout="constrained")
         canvas: Any = FigureCanvasAgg(figure)  # its methods are untyped
         axes = figure.add_subplot()
+        hands = f"\nhands: spin, {SLOWER * TURNING:g} times slower" if run.scene.friction else ""
         beads, *_, plates = title(run)[0].split(", ")
-        axes.set_title(f"{beads} {plates}, {SLOWER} times slower")
+        axes.set_title(f"{beads} {plates}, {SLOWER} times slower{hands}")
         picture = Picture(axes, run, made)
         bar = figure.colorbar(picture.circles, ax=axes, pad=0.01, fraction=0.03)
         bar.set_label("COR of the last impact (grey: none yet)")

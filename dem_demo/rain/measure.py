@@ -20,6 +20,8 @@ _NOTHING = math.nan, math.nan, math.nan, math.nan
 class Shares(NamedTuple):
     """Shares of the impact energy, which sum to 1.
 
+    Without friction it is the kinetic energy of the normal motion, with friction that of the
+    contact point, m v_n^2/2 + m v_s^2/7 with the sliding speed v_s: an impact changes no other.
     In the baseline all but `kept` are NaN: a constant COR does not say where the energy went.
     """
 
@@ -27,6 +29,7 @@ class Shares(NamedTuple):
     wave: float
     plastic: float
     other: float
+    friction: float
 
 
 @dataclass(frozen=True)
@@ -42,7 +45,7 @@ class PlateRow:
     speed, restitution, lowest, highest : float
         Mean normal speed [m/s]; mean, smallest and largest COR.
     shares : Shares
-        Shares of the total kinetic energy of the impacts' normal motion.
+        Shares of the total energy of the impacts.
     outside : int
         Number of impacts that exceed a limit of the model.
     """
@@ -78,7 +81,7 @@ def _plate_row(run: Run, plate: int) -> PlateRow:
     rows = on_plate(run, plate)
     thickness = run.scene.plates[plate].thickness
     if not rows.size:
-        return PlateRow(thickness, 0, *_NOTHING, Shares(*_NOTHING), 0)
+        return PlateRow(thickness, 0, *_NOTHING, Shares(*[math.nan] * 5), 0)
     energy, cor = run.energy(rows), rows["restitution"]
     kept = float((cor**2 * energy).sum() / energy.sum())
     return PlateRow(
@@ -88,7 +91,7 @@ def _plate_row(run: Run, plate: int) -> PlateRow:
         restitution=float(cor.mean()),
         lowest=float(cor.min()),
         highest=float(cor.max()),
-        shares=Shares(kept, *[math.nan] * 3) if run.baseline else model_shares(run, plate),
+        shares=Shares(kept, *[math.nan] * 4) if run.baseline else model_shares(run, plate),
         outside=int(outside(run)[run.modelled["plate"] == plate].sum()),
     )
 
@@ -97,10 +100,61 @@ def model_shares(run: Run, plate: int) -> Shares:
     """Shares of the energy by the model, also for the impacts of the baseline."""
     rows = run.modelled[run.modelled["plate"] == plate]
     total = run.energy(rows).sum()
-    wave, plastic, other = (
-        float(rows[f"{name}_energy"].sum() / total) for name in ("wave", "plastic", "other")
+    if run.scene.friction:
+        total += (_masses(run)[rows["bead"]] * rows["sliding_speed"] ** 2).sum() / 7.0
+    lost = [float(rows[f"{name}_energy"].sum() / total) for name in Shares._fields[1:]]
+    return Shares(1.0 - sum(lost), *lost)
+
+
+class Balance(NamedTuple):
+    """Energy of all beads from their nozzles to the last frame that shows them [J]."""
+
+    given: float
+    """Kinetic energy at the nozzles, and work of gravity."""
+    moving: float
+    """Kinetic energy of translation at the end."""
+    spinning: float
+    """Kinetic energy of rotation at the end."""
+    wave: float
+    plastic: float
+    other: float
+    friction: float
+    beads: float
+    """Lost where beads hit each other, if that is recorded."""
+
+    @property
+    def rest(self) -> float:
+        """Energy that nothing here accounts for."""
+        return self.given - sum(self[1:])
+
+
+def balance(run: Run) -> Balance:
+    """Sum up the energies of a rain with friction."""
+    assert run.spin is not None
+    beads, mass, rows = run.scene.beads, _masses(run), run.collisions
+    seen = np.flatnonzero((run.status == FLYING).any(axis=0))
+    last = run.time.size - 1 - np.argmax(run.status[::-1, seen] == FLYING, axis=0)
+    mass, began = mass[seen], (beads.velocity[seen] ** 2).sum(axis=1)
+    fallen = beads.position[seen, 1] - run.position[last, seen, 1]
+    ended = (run.velocity[last, seen].astype(float) ** 2).sum(axis=1)
+    turning = 0.4 * (beads.radius[seen] * run.spin[last, seen]) ** 2  # of solid spheres
+    until = np.full(beads.radius.size, -1.0)
+    until[seen] = run.time[last]
+    rows = rows[rows["time"] <= until[rows["bead"]]]
+    on, pairs = rows[rows["plate"] >= 0], rows[rows["other"] >= 0]
+    one, two = (_masses(run)[pairs[name]] for name in ("bead", "other"))
+    normal = 0.5 * one * two / (one + two) * pairs["approach_speed"] ** 2
+    return Balance(
+        float(mass @ (0.5 * began + GRAVITY * fallen)),
+        float(0.5 * mass @ ended),
+        float(0.5 * mass @ turning),
+        **{name: float(on[f"{name}_energy"].sum()) for name in Shares._fields[1:]},
+        beads=float(normal @ (1.0 - pairs["restitution"] ** 2)),
     )
-    return Shares(1.0 - wave - plastic - other, wave, plastic, other)
+
+
+def _masses(run: Run) -> Floats:
+    return run.scene.beads.mass(run.scene.sphere_material.density)
 
 
 def constant_beside_model(run: Run) -> tuple[Floats, Floats]:

@@ -18,6 +18,7 @@ DEPTH = 0.060  # [m], depth of a plate in three dimensions
 _LARGEST = 0.05  # [m], largest radius of a bead that suits plates of this size
 MARGIN = 0.012  # [m]: nozzles keep off the edges, whose reflected waves the model leaves out
 HEIGHT = 0.2  # [m], height of the nozzles above the plates
+_STEEPEST = 75.0  # [degrees], largest tilt: such nozzles are already 0.7 m beside the plates
 SIDEWAYS = 0.05  # [m/s], largest sideways speed: beads wander over to the next plate or the gap
 EMISSION = 0.75  # share of the duration in which beads are emitted; the rest is for bounces
 
@@ -38,6 +39,8 @@ def rain(
     plate: Material | str = defaults.PLATE,
     dimensions: int = 2,
     frame_rate: float = defaults.FRAME_RATE,
+    friction: float = 0.0,
+    tilt: float = 0.0,
 ) -> Scene:
     """Draw a rain of beads on a row of plates.
 
@@ -48,7 +51,7 @@ def rain(
     thicknesses : sequence of float, optional
         Thickness of each plate [m]; ``inf`` is a half-space.
     radius, speed : tuple of float, optional
-        Smallest and largest radius [m] and downward emission speed [m/s], drawn uniformly.
+        Smallest and largest radius [m] and emission speed [m/s], drawn uniformly.
     duration : float, optional
         Simulated time [s]; beads are emitted during its first three quarters.
     seed : int, optional
@@ -59,6 +62,10 @@ def rain(
         Dimensions of the engine, 2 or 3; in 3 there are as many rows of nozzles as fit.
     frame_rate : float, optional
         Recorded frames per second [1/s].
+    friction : float, optional
+        Coefficient of friction on the plates [-].
+    tilt : float, optional
+        Angle between nozzles and the vertical [degrees].
 
     Returns
     -------
@@ -87,11 +94,15 @@ def rain(
     plates = tuple(Plate(h, i * pitch, i * pitch + WIDTH) for i, h in enumerate(thicknesses))
     sphere_material = sphere if isinstance(sphere, Material) else material(sphere)
     plate_material = plate if isinstance(plate, Material) else material(plate)
+    if not 0.0 <= tilt <= _STEEPEST:
+        raise ValueError(f"tilt: must lie between 0 and {_STEEPEST:g} degrees, got {tilt!r}")
     if not 0.0 < duration < math.inf:
         raise ValueError(f"duration: must be positive and finite [s], got {duration!r}")
     rows = max(1, int((DEPTH - 2.0 * MARGIN) / (2.2 * radius[1]))) if dimensions == 3 else 1
-    drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed, rows)
-    return Scene(drops, plates, sphere_material, plate_material, duration, seed, frame_rate, rows)
+    drops = _draw(beads, len(plates), radius, speed, EMISSION * duration, seed, rows, tilt)
+    return Scene(
+        drops, plates, sphere_material, plate_material, duration, seed, frame_rate, rows, friction
+    )
 
 
 def depths(scene: Scene) -> Floats:
@@ -127,18 +138,29 @@ def _draw(
     period: float,
     seed: int,
     rows: int,
+    tilt: float,
 ) -> Beads:
-    """Draw times, places, sizes and speeds of beads, none of which is emitted into another."""
-    _check_crowd(n, plates, radius[1], speed[0], period, rows)
+    """Draw times, places, sizes and speeds of beads.
+
+    None is emitted into another, of tilted nozzles hardly any. These point to the left and to the
+    right in turn, and are moved sideways so that a bead lands where it does without tilt.
+    """
+    down, aside = math.cos(math.radians(tilt)), math.sin(math.radians(tilt))
+    _check_crowd(n, plates, radius[1], speed[0] * down, period, rows)
     rng = np.random.default_rng(seed)
     time = (np.arange(n) + rng.random(n)) * (period / n)
     # Multiples of the golden ratio: beads that are close in time are far apart in space.
     place = (rng.random() + GOLDEN * (np.arange(n) // rows)) % 1.0 * plates
     plate = np.minimum(np.floor(place), plates - 1)
     x = plate * (WIDTH + GAP) + MARGIN + (place - plate) * (WIDTH - 2.0 * MARGIN)
-    down = rng.uniform(*speed, n)
-    velocity = np.column_stack((rng.uniform(-SIDEWAYS, SIDEWAYS, n), -down))
+    thrown = rng.uniform(*speed, n)
+    velocity = np.column_stack((rng.uniform(-SIDEWAYS, SIDEWAYS, n), -down * thrown))
     size: Floats = rng.uniform(*radius, n)
+    if tilt:
+        along = aside * thrown * np.where(np.arange(n) // rows % 2, -1.0, 1.0)
+        fall = velocity[:, 1] + np.sqrt(velocity[:, 1] ** 2 + 2.0 * GRAVITY * (HEIGHT - size))
+        velocity[:, 0] += along
+        x = x - along * fall / GRAVITY
     return Beads(size, time, np.column_stack((x, np.full(n, HEIGHT))), velocity)
 
 

@@ -60,7 +60,8 @@ def page(run: Run, pictures: Mapping[str, Picture]) -> str:
         partial=common.partial(progress(run), run.reason),
         sample=_sample(run),
         other=_other(run),
-        rows="".join(_row(row) for row in plate_rows(run)),
+        rows="".join(_row(row, run.scene.friction > 0.0) for row in plate_rows(run)),
+        **_words(run),
         limits=common.exceeded(limits(run), ", and ringed in the animation and in the figures"),
         figures=common.shown(figures.module, pictures),
         command=html.escape(run.command),
@@ -78,16 +79,19 @@ def _sample(run: Run) -> str:
 def _data(run: Run) -> dict[str, object]:
     """Collect what the player draws, in metres and seconds."""
     made = paths.pieces(run)
-    columns = [run.scene.beads.radius[made["bead"]], *(made[name] for name in _FIELDS)]
+    fields = [*_FIELDS, *(("angle", "spin") if run.scene.friction else ())]
+    columns = [run.scene.beads.radius[made["bead"]], *(made[name] for name in fields)]
     low, high = restitution_range(run)
     map_ = colormaps["viridis"]
     return {
-        "fields": ["radius", *_FIELDS],
+        "fields": ["radius", *fields],
         "pieces": base64.b64encode(np.column_stack(columns).astype("<f4").tobytes()).decode(),
         "window": _rain.window(run.scene),
         "duration": float(run.time[-1]) if run.time.size else 0.0,
-        "magnified": _rain.MAGNIFIED,
+        "magnified": _rain.magnified(run),
         "exposure": _rain.EXPOSURE,
+        "turning": _rain.TURNING,
+        "hand": _rain.HAND,
         "plates": [
             {
                 "x0": plate.x0,
@@ -146,7 +150,25 @@ def _other(run: Run) -> str:
     return f"where one constant COR, {constant[0]:.2f}, would send them" if constant.size else ""
 
 
-def _row(row: PlateRow) -> str:
+def _words(run: Run) -> dict[str, str]:
+    """Words of the page that depend on friction."""
+    left = "left in micro-slip and vibration of the bodies (<i>other</i>)"
+    if not run.scene.friction:
+        return {
+            "friction": "",
+            "spin": "",
+            "sliding": f"and {left}, without the friction of sliding.",
+        }
+    return {
+        "friction": "<th>friction</th>",
+        "spin": " The hand on a bead turns with it, "
+        f"{_rain.TURNING:g} times slower than the bead moves.",
+        "sliding": f"{left}, and taken by <i>friction</i> along the plate. It is the kinetic "
+        "energy at the contact, of the normal motion and of sliding.",
+    }
+
+
+def _row(row: PlateRow, friction: bool) -> str:
     cells = [("plate", label(row.thickness)), ("impacts", f"{row.impacts}")]
     if row.impacts:
         cells += [
@@ -155,9 +177,8 @@ def _row(row: PlateRow) -> str:
             ("COR range", f"{row.lowest:.3f} &ndash; {row.highest:.3f}"),
             *(
                 (name, "&ndash;" if math.isnan(share) else f"{share:.1%}")
-                for name, share in zip(
-                    ("kept", "wave", "plastic", "other"), row.shares, strict=True
-                )
+                for name, share in row.shares._asdict().items()
+                if friction or name != "friction"
             ),
             ("outside limits", f"{row.outside}"),
         ]

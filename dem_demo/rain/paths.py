@@ -19,6 +19,8 @@ PIECE = np.dtype(
     [
         ("bead", "i4"),
         *[(name, "f8") for name in ("start", "end", "x", "y", "u", "v", "fall")],
+        ("spin", "f8"),  # 0 without friction
+        ("angle", "f8"),  # at the start, counterclockwise [rad]
         ("restitution", "f8"),  # of the last impact on a plate so far, NaN before the first
         ("other_v", "f8"),  # v with the other COR; NaN if no impact on a plate began it
         ("outside", "i4"),  # 1: the last impact exceeds a limit of the model
@@ -29,7 +31,7 @@ _MOST = 3000  # most beads on a page; a thousand take some 0.2 MB
 _PLACE = 5e-5  # [m], invisible difference of two positions
 # A bead at rest is slower than this many times the speed that gravity adds in a frame.
 _STILL = 2.0
-_UNMARKED = math.nan, math.nan, 0
+_UNMARKED = 0.0, math.nan, math.nan, 0
 
 
 @functools.lru_cache(maxsize=1)  # shared by snapshot, film and page
@@ -52,6 +54,8 @@ def pieces(run: Run) -> NDArray[np.void]:
     for bead in drawn(run).tolist():
         found += _flight(run, bead, hits[bead])
     made = np.array(found, dtype=PIECE) if found else np.empty(0, PIECE)
+    turned = np.r_[0.0, np.cumsum(made["spin"] * (made["end"] - made["start"]))]
+    made["angle"] = turned[:-1] - turned[np.searchsorted(made["bead"], made["bead"])]
     _mark(made, run)
     return made
 
@@ -95,12 +99,14 @@ class _Free(NamedTuple):
     u: float
     v: float
     fall: float
+    spin: float
 
     def later(self, time: float) -> _Free:
         """State at another time of the same flight."""
         t = time - self.time
         y = self.y + self.v * t - 0.5 * self.fall * t * t
-        return _Free(time, self.x + self.u * t, y, self.u, self.v - self.fall * t, self.fall)
+        v = self.v - self.fall * t
+        return self._replace(time=time, x=self.x + self.u * t, y=y, v=v)
 
     def meets(self, other: _Free, slow: float) -> bool:
         """Whether another state at the same time is part of the same flight."""
@@ -132,17 +138,18 @@ def _flight(run: Run, bead: int, hits: Floats) -> list[tuple[float, ...]]:
 
 def _states(run: Run, bead: int) -> list[_Free]:
     frames = np.flatnonzero(run.status[:, bead] == FLYING)
-    columns = run.time[frames], run.position[frames, bead], run.velocity[frames, bead]
+    spin = np.zeros(frames.size) if run.spin is None else run.spin[frames, bead]
+    columns = run.time[frames], run.position[frames, bead], run.velocity[frames, bead], spin
     return [
-        _Free(time, x, y, u, v, GRAVITY)
-        for time, (x, y), (u, v) in zip(*(column.tolist() for column in columns), strict=True)
+        _Free(time, x, y, u, v, GRAVITY, turn)
+        for time, (x, y), (u, v), turn in zip(*(one.tolist() for one in columns), strict=True)
     ]
 
 
 def _straight(old: _Free, new: _Free, between: list[float]) -> _Free:
     a, b = old.later(between[0]), new.later(between[-1])
     t = max(b.time - a.time, 1e-9)
-    return _Free(a.time, a.x, a.y, (b.x - a.x) / t, (b.y - a.y) / t, 0.0)
+    return _Free(a.time, a.x, a.y, (b.x - a.x) / t, (b.y - a.y) / t, 0.0, b.spin)
 
 
 def _mark(made: NDArray[np.void], run: Run) -> None:

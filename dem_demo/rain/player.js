@@ -88,6 +88,15 @@ function drawRain(pen, width, tall) {
       pen.lineWidth = 1.5;
       pen.stroke();
     }
+    if (piece.spin !== undefined) {
+      const angle = (piece.angle + piece.spin * age) / data.turning, reach = data.hand * radius;
+      pen.strokeStyle = INK;
+      pen.lineWidth = 1.5;
+      pen.beginPath();
+      pen.moveTo(x, y);
+      pen.lineTo(x + reach * Math.cos(angle), y - reach * Math.sin(angle));
+      pen.stroke();
+    }
     if (byId("others").checked && piece.other_v >= 0) {
       const other = height(piece, piece.other_v, age);
       if (other < piece.y) continue; // the bead would have fallen back by now

@@ -45,7 +45,9 @@ def rain_recorder(
     bead_on_bead : str, optional
         How the report describes bead-on-bead contacts, if the engine does not record them.
     """
-    attributes = {name: getattr(scene, name) for name in ("seed", "duration", "frame_rate")}
+    attributes = {
+        name: getattr(scene, name) for name in ("seed", "duration", "frame_rate", "friction")
+    }
     attributes["schema"] = SCHEMA
     if bead_on_bead is not None:
         attributes["bead_on_bead"] = bead_on_bead
@@ -55,7 +57,7 @@ def rain_recorder(
         making,
         attributes=attributes,
         write_scene=lambda file: _write_scene(file, scene),
-        trajectories=_trajectories(dimensions),
+        trajectories=_trajectories(dimensions, scene.friction > 0.0),
         frame_rate=scene.frame_rate,
         axes=_AXES,
     )
@@ -81,13 +83,15 @@ def _write_scene(file: h5py.File, scene: Scene) -> None:
         layout.write(beads, name, getattr(scene.beads, name), units, description)
 
 
-def _trajectories(dimensions: int) -> list[Dataset]:
+def _trajectories(dimensions: int, friction: bool) -> list[Dataset]:
+    spin = [Dataset("spin", "f4", "rad/s", "counterclockwise seen from the front; 0 once gone")]
     depth = [Dataset("depth", "f4", "m", "third coordinate of the centre")]
     return [
         Dataset("position", "f4", "m", "centre (x, y); of a bead that is gone: where it left"),
         Dataset("velocity", "f4", "m/s", "velocity (x, y); of a bead that is gone: 0"),
         Dataset("status", "u1", "1", "0 waiting for its emission, 1 flying, 2 gone"),
         *depth[: dimensions - 2],
+        *(spin if friction else []),
     ]
 
 
@@ -103,11 +107,14 @@ class Run(Recorded):
         How the report describes bead-on-bead contacts, if the engine does not record them.
     depth : ndarray or None
         Third coordinate (T, N) [m], if the engine has one.
+    spin : ndarray or None
+        Spins (T, N) [rad/s], counterclockwise in the figures, if there is friction.
     """
 
     scene: Scene
     bead_on_bead: str | None
     depth: NDArray[np.float32] | None = None
+    spin: NDArray[np.float32] | None = None
 
     @cached_property
     def model(self) -> ImpactModel:
@@ -195,4 +202,5 @@ def _scene(file: h5py.File) -> Scene:
         duration=float(file.attrs["duration"]),
         seed=int(file.attrs["seed"]),
         frame_rate=float(file.attrs["frame_rate"]),
+        friction=float(file.attrs.get("friction", 0.0)),
     )

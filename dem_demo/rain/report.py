@@ -5,15 +5,16 @@ from __future__ import annotations
 import math
 
 from dem_demo.kit.report import label, limits_lines
-from dem_demo.rain.measure import PlateRow, bead_on_bead, limits, plate_rows
+from dem_demo.rain.measure import PlateRow, balance, bead_on_bead, limits, plate_rows
 from dem_demo.rain.record import Run
 
 _HEAD = (
     "                         speed        COR                  energy of the impacts"
-    "             outside\n"
+    "             {gap}outside\n"
     "   plate     impacts      mean       mean    range         kept    wave  plastic   other"
-    "   limits"
+    "{name}   limits"
 )
+_FRICTION = "  friction"
 
 
 def summary(run: Run) -> str:
@@ -30,9 +31,12 @@ def summary(run: Run) -> str:
         Title, one line per plate, beads on beads, and limits of the model that were exceeded.
         Speeds are normal speeds [m/s]; energy shares are weighted by energy.
     """
-    lines = [*title(run), "", _HEAD]
-    lines += [_plate_line(row) for row in plate_rows(run)]
-    lines += ["", _bead_line(run), *limits_lines(limits(run))]
+    more = _FRICTION if run.scene.friction else ""
+    lines = [*title(run), "", _HEAD.format(gap=" " * len(more), name=more)]
+    lines += [_plate_line(row, len(more)) for row in plate_rows(run)]
+    lines += ["", _bead_line(run)]
+    lines += [_balance_line(run)] if run.scene.friction else []
+    lines += limits_lines(limits(run))
     lines += [run.left_out] if run.left_out else []
     if run.reason:
         lines += ["", f"Partial, {progress(run)}: {run.reason}"]
@@ -51,6 +55,8 @@ def title(run: Run) -> tuple[str, str]:
     law = f"law {run.law}"
     if run.baseline:
         law = f"COR {run.constant_cor:g} everywhere, limits by {law}"
+    elif scene.friction:
+        law = f"{law}, friction {scene.friction:g}"
     return (
         f"{radius.size} beads of {scene.sphere_material.name}, radius {radius.min():.2f} to "
         f"{radius.max():.2f} mm, on {scene.plate_material.name}",
@@ -58,12 +64,14 @@ def title(run: Run) -> tuple[str, str]:
     )
 
 
-def _plate_line(row: PlateRow) -> str:
+def _plate_line(row: PlateRow, width: int) -> str:
     head = f"{label(row.thickness):>10} {row.impacts:9d}"
     if not row.impacts:
         return head
     cor = f"{row.restitution:.3f}   {row.lowest:.3f} - {row.highest:.3f}"
-    shares = "".join("       -" if math.isnan(s) else f"{s:z8.1%}" for s in row.shares)
+    *shown, friction = row.shares
+    shares = "".join("       -" if math.isnan(s) else f"{s:z8.1%}" for s in shown)
+    shares += f"{friction:z{width}.1%}" if width else ""
     return f"{head} {row.speed:6.2f} m/s      {cor}  {shares} {row.outside:8d}"
 
 
@@ -78,3 +86,17 @@ def _bead_line(run: Run) -> str:
         f"Bead on bead: {rows.size} impacts, {speed.mean():.2f} m/s on average, "
         f"COR {cor.min():.3f} - {cor.max():.3f}"
     )
+
+
+def _balance_line(run: Run) -> str:
+    """Say where the energy of all beads went, translation and rotation."""
+    found = balance(run)
+    names = "moving", "spinning", "wave", "plastic", "other", "friction"
+    parts = [f"{name} {getattr(found, name) / found.given:z.1%}" for name in names]
+    rest, beads = found.rest / found.given, found.beads / found.given
+    if run.bead_on_bead is None:
+        parts += [f"bead on bead {beads:z.1%}", f"unaccounted {rest:z.2%}"]
+    else:
+        parts += [f"bead on bead and unaccounted {rest:z.1%}"]
+    given = f"Energy of all beads, by throw and fall: {found.given * 1e3:.3g} mJ, of which"
+    return f"{given}\n  {', '.join(parts)}"

@@ -116,6 +116,8 @@ class Scene:
         Recorded frames per second [1/s].
     rows : int, optional
         Rows of nozzles, one behind the other.
+    friction : float, optional
+        Coulomb's coefficient of friction of beads on plates [-]; beads on each other have none.
     """
 
     beads: Beads
@@ -126,6 +128,7 @@ class Scene:
     seed: int
     frame_rate: float = defaults.FRAME_RATE
     rows: int = 1
+    friction: float = 0.0
 
     def __post_init__(self) -> None:
         """Refuse a scene without plates or time."""
@@ -136,6 +139,8 @@ class Scene:
                 f"duration: must be finite and at least one frame, {1.0 / self.frame_rate:g} s, "
                 f"got {self.duration!r}"
             )
+        if not 0.0 <= self.friction < math.inf:
+            raise ValueError(f"friction: must be finite and not negative, got {self.friction!r}")
 
     @property
     def frames(self) -> int:

@@ -2,6 +2,7 @@
 
 import re
 
+import numpy as np
 import pytest
 
 from dem_demo import cli
@@ -10,6 +11,7 @@ from dem_demo.rain.record import read
 
 RAIN = ["rain", "--beads", "60", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.4"]
 RAIN += ["--law", "myc"]
+MORE = {"model": [], "baseline": ["--constant-cor", "0.9"], "oblique": ["--friction", "0.2"]}
 PICTURE = "document.getElementById('rain').toDataURL()"
 CONTACT = "document.getElementById('contact').toDataURL()"
 # Elements that reach beyond the screen, and what would have to be scrolled sideways.
@@ -19,10 +21,10 @@ WIDE = """[...document.querySelectorAll("*")]
   .map((e) => e.outerHTML.slice(0, 80))"""
 
 
-@pytest.fixture(scope="module", params=[[], ["--constant-cor", "0.9"]], ids=["model", "baseline"])
+@pytest.fixture(scope="module", params=MORE)
 def folder(request, tmp_path_factory):
     out = tmp_path_factory.mktemp("page") / "out"
-    assert cli.main([*RAIN, *request.param, "--out", str(out)]) == 0
+    assert cli.main([*RAIN, *MORE[request.param], "--out", str(out)]) == 0
     return out
 
 
@@ -79,7 +81,18 @@ def test_the_animation_goes_where_the_beads_went(folder):
         off = abs(paths.places(now, time + 1e-9) - where)[flying]
         assert off.max(initial=0.0) < 1e-4  # [m]; the smallest radius is 5e-4
         seen += off.size
+        if run.spin is not None:
+            assert (now["spin"] == run.spin[n, now["bead"]])[flying].all()
     assert seen > 1000
+
+
+def test_a_bead_turns_on_from_piece_to_piece(folder):
+    made = paths.pieces(read(folder / "rain.h5"))
+    one, two = made[:-1], made[1:]
+    turned = one["angle"] + one["spin"] * (one["end"] - one["start"])
+    np.testing.assert_allclose(
+        two["angle"], np.where(one["bead"] == two["bead"], turned, 0.0), atol=1e-6
+    )
 
 
 def test_a_page_of_an_empty_rain(tmp_path, page):

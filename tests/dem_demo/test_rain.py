@@ -15,7 +15,7 @@ from contactlaw.engines.record import COLUMNS, IMPACT
 from dem_demo import cli
 from dem_demo.kit.beads import GRAVITY
 from dem_demo.rain import figures, nozzles
-from dem_demo.rain.measure import limits, model_shares, plate_rows
+from dem_demo.rain.measure import balance, limits, model_shares, plate_rows
 from dem_demo.rain.record import read
 
 # Numbers are those of the paper's law, whichever is the default.
@@ -36,6 +36,14 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def run(folder):
     return read(folder / "rain.h5")
+
+
+@pytest.fixture(scope="module")
+def oblique(tmp_path_factory):
+    """A rain with friction, from tilted nozzles."""
+    out = tmp_path_factory.mktemp("oblique") / "out"
+    assert cli.main([*SMALL, "--friction", "0.2", "--out", str(out)]) == 0
+    return out
 
 
 @pytest.fixture(scope="module")
@@ -218,7 +226,68 @@ def test_baseline_is_compared_with_the_model_on_the_same_impacts(baseline):
             (energy * share[here]).sum() / energy.sum()
             for share in (rebound.wave_fraction, rebound.plastic_fraction, rebound.other_fraction)
         ]
-        assert model_shares(run, n) == pytest.approx((1 - sum(lost), *lost))
+        assert model_shares(run, n) == pytest.approx((1 - sum(lost), *lost, 0.0))
+
+
+def test_friction_spins_beads_and_takes_energy(oblique):
+    run = read(oblique / "rain.h5")
+    rows = run.collisions[run.collisions["plate"] >= 0]
+    mass = run.scene.beads.mass(run.scene.sphere_material.density)[rows["bead"]]
+    before, after = (
+        mass * (0.5 * normal**2 + rows[sliding] ** 2 / 7)
+        for normal, sliding in (
+            (rows["approach_speed"], "sliding_speed"),
+            (rows["restitution"] * rows["approach_speed"], "sliding_speed_after"),
+        )
+    )
+    names = "wave", "plastic", "other", "friction"
+    lost = sum(rows[f"{name}_energy"] for name in names)
+    np.testing.assert_allclose((after + lost) / before, 1.0, rtol=0, atol=1e-5)
+    assert (rows["friction_energy"] > 0).mean() > 0.9
+    _, first = np.unique(run.collisions["bead"], return_index=True)
+    hits = run.collisions[first][run.collisions["plate"][first] >= 0]
+    thrown = run.scene.beads.velocity[hits["bead"], 0]
+    assert hits.size > 20 and (thrown < 0).any() and (thrown > 0).any()
+    assert (np.sign(hits["spin_z"]) == -np.sign(thrown)).all()  # to the right: clockwise
+    for n, row in enumerate(plate_rows(run)):
+        here = rows["plate"] == n
+        shares = [rows[f"{name}_energy"][here].sum() / before[here].sum() for name in names]
+        kept = after[here].sum() / before[here].sum()
+        assert row.shares == pytest.approx((kept, *shares), abs=1e-5)
+        assert f"{row.shares.other:8.1%}{row.shares.friction:10.1%}" in summary(oblique)
+    found = balance(run)
+    assert found.spinning > 0.05 * found.given < 20 * found.friction
+    assert abs(found.rest) < 1e-4 * found.given
+    assert f"friction {found.friction / found.given:.1%}, bead on bead" in summary(oblique)
+
+
+def summary(folder):
+    return (folder / "summary.txt").read_text()
+
+
+def test_without_friction_nothing_tells_of_it(folder, run):
+    with h5py.File(folder / "rain.h5") as file:
+        assert "spin" not in file["trajectories"]
+    assert not run.collisions["spin_z"].any() and not run.collisions["friction_energy"].any()
+    assert "friction" not in summary(folder)
+    assert '"spin"' not in (folder / "index.html").read_text()
+
+
+def test_beads_of_tilted_nozzles_land_on_plates():
+    scene = nozzles.rain(beads=300, friction=0.2, tilt=40.0)
+    beads, upright = scene.beads, nozzles.rain(beads=300).beads
+    angle = np.degrees(np.arctan2(beads.velocity[:, 0], -beads.velocity[:, 1]))
+    fast = -beads.velocity[:, 1] > 2.0
+    assert abs(np.abs(angle[fast]) - 40.0).max() < 2.0
+    assert (angle > 0).sum() == (angle < 0).sum()
+    height = nozzles.HEIGHT - beads.radius
+    down = -beads.velocity[:, 1]
+    fall = (np.sqrt(down**2 + 2 * GRAVITY * height) - down) / GRAVITY
+    lands = beads.position[:, 0] + fall * beads.velocity[:, 0]
+    aside = np.abs(lands - upright.position[:, 0])
+    assert (aside <= nozzles.SIDEWAYS * fall + 1e-12).all()
+    speed = np.hypot(*(beads.velocity - [[1, 0]] * (upright.velocity[:, :1])).T)
+    np.testing.assert_allclose(speed, -upright.velocity[:, 1], rtol=1e-12)
 
 
 @pytest.mark.parametrize("more", [[], ["--constant-cor", "0.9"]], ids=["model", "baseline"])
@@ -230,7 +299,7 @@ def test_a_rain_that_never_lands(more, tmp_path):
 
 
 @pytest.mark.parametrize("narrow", [False, True])
-@pytest.mark.parametrize("which", ["folder", "baseline"])
+@pytest.mark.parametrize("which", ["folder", "baseline", "oblique"])
 @pytest.mark.parametrize("name", figures.names())
 def test_no_label_runs_into_the_title(request, name, which, narrow):
     run = read(request.getfixturevalue(which) / "rain.h5")
@@ -275,6 +344,10 @@ def test_figures_are_pictures(request, which, name):
         (["--beads", "100000"], "emitted into each other"),
         (["--seed", "-1"], "seed"),
         (["--duration", "-1"], "duration"),
+        (["--friction", "-0.1"], "--friction: must be finite and not negative, got -0.1"),
+        (["--friction", "nan"], "--friction: must be finite and not negative, got nan"),
+        (["--friction", "0.2", "--constant-cor", "0.9"], "leave out --friction or --constant-cor"),
+        (["--tilt", "80"], "--tilt: must lie between 0 and 75 degrees, got 80.0"),
         (["--constant-cor", "1.5"], "--constant-cor: must lie between 0 and 1, got 1.5"),
         (["--constant-cor", "nan"], "--constant-cor: must lie between 0 and 1, got nan"),
     ],

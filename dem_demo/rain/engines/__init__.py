@@ -62,7 +62,10 @@ class Engine(Protocol):
         model: ImpactModel | ConstantRestitution,
         recorder: Recorder | None,
     ) -> None:
-        """Simulate the rain; frames and collisions go to the recorder, None on all ranks but 0."""
+        """Simulate the rain; frames and collisions go to the recorder, None on all ranks but 0.
+
+        If the scene has friction, frames have the spins of the beads.
+        """
 
 
 def names() -> list[str]:

@@ -64,7 +64,7 @@ class _Rain:
             Plate((p.x0, -0.5 * DEPTH, p.y), (p.x1 - p.x0, 0, 0), (0, DEPTH, 0), p.thickness)
             for p in scene.plates
         ]
-        self.plates = attach(self.lmp, model, plates)
+        self.plates = attach(self.lmp, model, plates, friction=scene.friction)
         self.lmp.command(f"dump rain all custom {self.steps} {dump} {COLUMNS}")
         self.lmp.command("dump_modify rain sort id first yes")
         n = scene.beads.radius.size
@@ -78,14 +78,16 @@ class _Rain:
             scene.beads.velocity.copy(),
             np.full(n, WAITING, np.uint8),
             self.depth.copy(),
+            np.zeros(n),
         )
 
     def _input(self, model: ImpactModel) -> str:
         from contactlaw.engines.lammps import pair_coeff
 
         scene, radius = self.scene, self.scene.beads.radius
-        left = min(plate.x0 for plate in scene.plates) - _AROUND
-        right = max(plate.x1 for plate in scene.plates) + _AROUND
+        nozzles = scene.beads.position[:, 0]
+        left = min(nozzles.min(), *(plate.x0 for plate in scene.plates)) - _AROUND
+        right = max(nozzles.max(), *(plate.x1 for plate in scene.plates)) + _AROUND
         top = float(scene.beads.position[:, 1].max()) + _AROUND
         size = float(radius.max())
         bead_on_bead = pair_coeff(
@@ -145,17 +147,19 @@ class _Rain:
 
     def look(self) -> Frame | None:
         """Gather the beads of all ranks: on rank 0, None on the others."""
-        rows = gathered(self.lmp, self.comm, "id", "x", "v")
+        rows = gathered(self.lmp, self.comm, "id", "x", "v", "omega")
         if rows is None:
             return None
         bead, now = rows[:, 0].astype(int) - 1, self.now
         gone = now.status != WAITING
         gone[bead] = False
         now.status[gone] = GONE
-        now.velocity[gone] = 0.0
-        now.position[bead], now.velocity[bead] = rows[:, [1, 3]], rows[:, [4, 6]]
         assert now.depth is not None
+        assert now.spin is not None
+        now.velocity[gone] = now.spin[gone] = 0.0
+        now.position[bead], now.velocity[bead] = rows[:, [1, 3]], rows[:, [4, 6]]
         now.depth[bead] = rows[:, 2]
+        now.spin[bead] = -rows[:, 8]  # LAMMPS's y points into the picture
         return now
 
     def collisions(self) -> NDArray[np.void] | None:
@@ -163,6 +167,9 @@ class _Rain:
         rows = self.impacts.take()
         if rows is not None:
             rows["y"], rows["z"] = rows["z"].copy(), rows["y"].copy()
+            # The exchange is a reflection, which also turns spins round.
+            rows["spin_x"] = -rows["spin_x"]
+            rows["spin_y"], rows["spin_z"] = -rows["spin_z"], -rows["spin_y"]
         return rows
 
 

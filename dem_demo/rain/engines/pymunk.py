@@ -70,7 +70,7 @@ class Rain:
             ends = (plate.x0, plate.y), (plate.x1, plate.y)
             segment = pymunk.Segment(self.space.static_body, *ends, radius=0.0)
             self.space.add(segment)
-            self.impacts.add_plate(segment, plate.thickness)
+            self.impacts.add_plate(segment, plate.thickness, friction=scene.friction or None)
         self.mass = scene.beads.mass(scene.sphere_material.density)
         # First step of each bead: the one that begins after its emission.
         self.first_step = np.ceil(scene.beads.emission_time / scene.time_step).astype(int).tolist()
@@ -79,8 +79,9 @@ class Rain:
         self.emitted = 0
         n = scene.beads.radius.size
         self.now = Frame(
-            scene.beads.position.copy(), scene.beads.velocity.copy(), np.full(n, WAITING, np.uint8)
-        )
+            scene.beads.position.copy(), scene.beads.velocity.copy(), np.full(n, WAITING, np.uint8),
+            spin=np.zeros(n),
+        )  # fmt: skip
 
     def advance(self, steps: int) -> None:
         """Step the engine, emitting beads when their time has come."""
@@ -109,12 +110,14 @@ class Rain:
 
     def look(self) -> Frame:
         """Read the bodies, and take those below the floor out of the space."""
+        assert self.now.spin is not None
         for n, (body, circle) in list(self.flying.items()):
             self.now.position[n] = body.position
             self.now.velocity[n] = body.velocity
+            self.now.spin[n] = body.angular_velocity
             if self.now.position[n, 1] < self.scene.floor:
                 self.now.status[n] = GONE
-                self.now.velocity[n] = 0.0
+                self.now.velocity[n] = self.now.spin[n] = 0.0
                 self.space.remove(circle, body)
                 del self.flying[n]
         return self.now

@@ -16,6 +16,7 @@ def source(run: Run) -> str:
     """Subtitle: materials, engine, law, and how far a partial run came."""
     scene = run.scene
     law = f"COR {run.constant_cor:g} everywhere" if run.baseline else f"law {run.law}"
+    law += f", friction {scene.friction:g}" if scene.friction else ""
     part = f", partial: {progress(run)}" if run.reason else ""
     return f"{scene.sphere_material.name} on {scene.plate_material.name}, {run.engine}, {law}{part}"
 

@@ -18,7 +18,10 @@ from dem_demo.rain.scene import Scene
 
 MM = 1e3
 MAGNIFIED = 3.0  # beads are drawn this many times as large, to be visible
+_TURNING_MAGNIFIED = 5.0  # likewise with friction, to show that they turn
 PLATES_MAGNIFIED = 4.0  # plates are drawn this many times as thick, to look different
+TURNING = 20.0  # spins are drawn this many times slower than paths: they are 1000 turns a second
+HAND = 1.6  # [drawn radius], length of the hand that turns with a bead
 EXPOSURE = 2e-3  # [s]; a streak is the path of a bead in this time
 _HALF_SPACE = 3e-3  # [m], drawn depth of a plate of infinite thickness
 _SIDES, _BELOW = 0.01, 0.016  # [m] beside and below the plates
@@ -32,6 +35,11 @@ def window(scene: Scene) -> tuple[float, float, float, float]:
     deepest = max(drawn_depth(plate.thickness) - plate.y for plate in scene.plates)
     bottom = min(scene.floor, -deepest - _BELOW)
     return left, right, bottom, _ABOVE * float(scene.beads.position[:, 1].max())
+
+
+def magnified(run: Run) -> float:
+    """How many times their size beads are drawn."""
+    return _TURNING_MAGNIFIED if run.scene.friction else MAGNIFIED
 
 
 def drawn_depth(thickness: float) -> float:
@@ -71,17 +79,19 @@ class Picture:
         axes.add_collection(self.streaks)
         self.circles = style.circles(axes, style.MUTED)
         self.circles.set_clim(*restitution_range(run))
+        self.hands = LineCollection([], linewidths=1.0, colors=style.INK, zorder=4)
+        axes.add_collection(self.hands)
 
     @property
-    def moving(self) -> tuple[LineCollection, EllipseCollection]:
+    def moving(self) -> tuple[LineCollection, EllipseCollection, LineCollection]:
         """The parts of the picture that move."""
-        return self.streaks, self.circles
+        return self.streaks, self.circles, self.hands
 
     def show(self, time: float) -> None:
         """Show the beads at a time [s]."""
         now = paths.at(self.made, time)
         place = paths.places(now, time)
-        size = 2.0 * MAGNIFIED * self.run.scene.beads.radius[now["bead"]] * MM
+        size = 2.0 * magnified(self.run) * self.run.scene.beads.radius[now["bead"]] * MM
         colour = np.ma.masked_invalid(now["restitution"])
         self.circles.set(offsets=place * MM, widths=size, heights=size, angles=0.0 * size)
         self.circles.set_array(colour)
@@ -90,6 +100,10 @@ class Picture:
         tail = paths.places(now, np.maximum(time - EXPOSURE, now["start"]))
         self.streaks.set_segments(list(np.stack((tail, place), axis=1) * MM))
         self.streaks.set_color(list(self.circles.to_rgba(colour)))
+        if self.run.scene.friction:
+            angle = (now["angle"] + now["spin"] * (time - now["start"])) / TURNING
+            hand = np.column_stack((np.cos(angle), np.sin(angle))) * (0.5 * HAND * size)[:, None]
+            self.hands.set_segments(list(np.stack((place * MM, place * MM + hand), axis=1)))
 
 
 def _draw_plates(axes: Axes, scene: Scene) -> None:

@@ -20,23 +20,27 @@ _PARTS = _KEPT, *_ = (
     ("bending wave in the plate", style.BLUE),
     ("plastic flow at the contact", style.ORANGE),
     ("micro-slip and vibration", style.GREEN),
+    ("friction along the plate", style.SKY),
 )
 _LOST = ("lost, nobody knows where", style.MUTED)
 _ROOM = 4.5  # [%], the height of a number; smaller shares have theirs beside the bar
 _READABLE = {style.BLUE: style.BLUE, style.ORANGE: "#9A6700", style.GREEN: "#00694D",
-             style.PALE: style.INK, style.MUTED: style.INK}  # fmt: skip
+             style.SKY: "#1F6E9C", style.PALE: style.INK, style.MUTED: style.INK}  # fmt: skip
 
 
 def draw(run: Run) -> Figure:
     """Draw a stacked bar per plate; for the baseline, beside the model's answer for its impacts."""
     constant = run.baseline
+    energy = "normal kinetic energy"
+    if run.scene.friction:
+        energy = "kinetic energy at the contact, normal and sliding,"
     figure = style.figure(
         10.5,
         6.2,
         "A constant COR takes the same share from every impact"
         if constant
         else "Where the energy of the impacts went",
-        f"{source(run)}; shares of the normal kinetic energy of all impacts on each plate"
+        f"{source(run)}; shares of the {energy} of all impacts on each plate"
         + ("; left: the run, right: contactlaw for the same impacts" if constant else ""),
     )
     axes = figure.add_subplot()
@@ -83,8 +87,9 @@ def _legend(axes: Axes) -> None:
     """One entry per part, above the bars."""
     handles, names = axes.get_legend_handles_labels()
     unique = dict(zip(names, handles, strict=True))
+    columns = len(unique) if len(unique) < 5 else 3
     if unique:
         axes.legend(
             unique.values(), unique.keys(), loc="lower center", bbox_to_anchor=(0.5, 1.0),
-            ncols=style.pick(len(unique), 2), columnspacing=1.4, handlelength=1.2,
+            ncols=style.pick(columns, 2), columnspacing=1.4, handlelength=1.2,
         )  # fmt: skip

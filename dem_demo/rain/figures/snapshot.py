@@ -8,7 +8,13 @@ from matplotlib.figure import Figure
 from contactlaw import style
 from dem_demo.rain import paths
 from dem_demo.rain.figures._labels import ringed, source
-from dem_demo.rain.figures._rain import EXPOSURE, MAGNIFIED, PLATES_MAGNIFIED, Picture, instants
+from dem_demo.rain.figures._rain import (
+    EXPOSURE,
+    PLATES_MAGNIFIED,
+    Picture,
+    instants,
+    magnified,
+)
 from dem_demo.rain.record import Run
 
 
@@ -17,13 +23,14 @@ def draw(run: Run) -> Figure:
     made = paths.pieces(run)
     times, counts = instants(run, made)
     time = float(times[np.argmax(counts)]) if counts.size else 0.0
+    hands = "; hands turn with the beads" if run.scene.friction else ""
     figure = style.figure(
         12.0,
         style.pick(6.6, 5.0),
         "Beads rain on plates of different thickness",
-        f"{source(run)}; t = {time * 1e3:.0f} ms, beads drawn {MAGNIFIED:g} times their size, "
+        f"{source(run)}; t = {time * 1e3:.0f} ms, beads drawn {magnified(run):g} times their size, "
         f"plates {PLATES_MAGNIFIED:g} times as thick, streaks: the last {EXPOSURE * 1e3:g} ms"
-        f"{ringed(paths.at(made, time)['outside'] > 0)}",
+        f"{hands}{ringed(paths.at(made, time)['outside'] > 0)}",
     )
     axes = figure.add_subplot()
     picture = Picture(axes, run, made)
