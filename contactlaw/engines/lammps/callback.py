@@ -183,9 +183,9 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     kind = array_at(extract(shared, shared.type), n, np.int32)
     history = matrix_at(history_address, n, shared.columns)
     last = array_at(extract(shared, shared.last), n, np.float64)
-    omega, torque, sliding = v, v, 0
+    omega = matrix_at(extract(shared, shared.omega), n, 3)
+    torque, sliding = v, 0
     if shared.friction > 0.0:
-        omega = matrix_at(extract(shared, shared.omega), n, 3)
         torque = matrix_at(extract(shared, shared.torque), n, 3)
         sliding = shared.places
     if step % _EVERY == 0:

@@ -287,6 +287,17 @@ def test_sliding_friction_of_an_oblique_impact(model):
     assert abs(spin[[0, 2]]).max() < 1e-9 * spin[1]
 
 
+def test_without_friction_a_bead_keeps_its_spin(model):
+    lmp, walls = scene(model, None, above(), (3, 0, -5))
+    lmp.command("set group all omega 100 200 300")
+    lmp.command("run 700")
+    (row,) = walls.collisions()
+    assert [row[f"spin_{axis}"] for axis in "xyz"] == [100, 200, 300]
+    slip = math.hypot(3 - 200 * R, 100 * R)
+    assert row["sliding_speed"] == pytest.approx(slip, rel=1e-9)
+    assert row["sliding_speed_after"] == pytest.approx(slip, rel=1e-9)
+
+
 def test_a_sliding_bead_ends_rolling(model):
     """It rolls at 5/7 of its first speed, whatever the friction (Lamb, Dynamics)."""
     lmp, _ = scene(model, [flat(0.5e-3)], above(1e-8), (0.1, 0, 0), friction=0.5, gravity=1e4)
