@@ -14,6 +14,7 @@ from dem_demo import cli
 from dem_demo.kit.beads import FLYING, GRAVITY
 from dem_demo.rain import figures
 from dem_demo.rain import record as reader
+from dem_demo.rain.measure import balance
 
 # thickness [m], speed [m/s]: below and above yield (7.4 m/s on a half-space), lambda to 1.2
 DROPS = [(math.inf, 3.0), (math.inf, 12.0), (3e-3, 5.0), (3e-3, 15.0), (1e-3, 1.0), (1e-3, 5.0)]
@@ -113,6 +114,20 @@ def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path, empty_pictur
     start, speed = one.scene.beads.position[bead], one.scene.beads.velocity[bead]
     fallen = start + speed * age - [0, 0.5 * GRAVITY * age**2]
     assert one.position[frame, bead] == pytest.approx(fallen, rel=1e-6)
+
+
+def test_the_demo_rains_with_friction(tmp_path, empty_pictures):
+    given = "--friction", "0.2", "--tilt", "50", "--duration", "0.06", "--out", str(tmp_path)
+    assert cli.main([*box.RAIN, *given]) == 0
+    run = reader.read(tmp_path / "rain.h5")
+    rows, found = run.collisions, balance(run)
+    thrown = run.scene.beads.velocity[rows["bead"], 0]
+    assert len(rows) > 8 and (thrown > 0).any() and (thrown < 0).any()
+    assert (np.sign(rows["spin_z"]) == -np.sign(thrown)).all()  # to the right: clockwise
+    rows = rows[rows["time"] < 0.055]
+    later = run.spin[run.time.searchsorted(rows["time"] + 1e-3), rows["bead"]]
+    assert later == pytest.approx(rows["spin_z"], rel=1e-6)
+    assert abs(found.rest) < 1e-4 * found.given < found.friction
 
 
 def test_the_dump_is_one_that_ovito_opens(two_ranks):
