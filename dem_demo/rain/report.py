@@ -91,6 +91,8 @@ def _bead_line(run: Run) -> str:
 def _balance_line(run: Run) -> str:
     """Say where the energy of all beads went, translation and rotation."""
     found = balance(run)
+    if not found.given:
+        return "Energy of all beads: none has been thrown yet"
     names = "moving", "spinning", "wave", "plastic", "other", "friction"
     parts = [f"{name} {getattr(found, name) / found.given:z.1%}" for name in names]
     rest, beads = found.rest / found.given, found.beads / found.given

@@ -1,5 +1,6 @@
 """`dem-demo rain`: its file, its physics, its figures, and what it leaves when it fails."""
 
+import dataclasses
 import math
 import subprocess
 import sys
@@ -14,7 +15,7 @@ from contactlaw import style
 from contactlaw.engines.record import COLUMNS, IMPACT
 from dem_demo import cli
 from dem_demo.kit.beads import GRAVITY
-from dem_demo.rain import figures, nozzles
+from dem_demo.rain import figures, nozzles, report
 from dem_demo.rain.measure import balance, limits, model_shares, plate_rows
 from dem_demo.rain.record import read
 
@@ -290,7 +291,17 @@ def test_beads_of_tilted_nozzles_land_on_plates():
     np.testing.assert_allclose(speed, -upright.velocity[:, 1], rtol=1e-12)
 
 
-@pytest.mark.parametrize("more", [[], ["--constant-cor", "0.9"]], ids=["model", "baseline"])
+def test_the_balance_of_a_rain_that_was_stopped_at_once(oblique):
+    run = read(oblique / "rain.h5")
+    text = report.summary(dataclasses.replace(run, status=np.zeros_like(run.status)))
+    assert "Energy of all beads: none has been thrown yet" in text
+
+
+@pytest.mark.parametrize(
+    "more",
+    [[], ["--constant-cor", "0.9"], ["--friction", "1"]],
+    ids=["model", "baseline", "oblique"],
+)
 def test_a_rain_that_never_lands(more, tmp_path):
     few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01", *more]
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
