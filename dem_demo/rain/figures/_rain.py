@@ -17,10 +17,10 @@ from dem_demo.rain.record import Run
 from dem_demo.rain.scene import Scene
 
 MM = 1e3
-MAGNIFIED = 3.0  # beads are drawn this many times as large, to be visible
-_TURNING_MAGNIFIED = 5.0  # likewise with friction, to show that they turn
+# Beads are drawn this many times as large, to be visible, and with friction to show that they turn.
+_MAGNIFIED, _TURNING_MAGNIFIED = 3.0, 5.0
 PLATES_MAGNIFIED = 4.0  # plates are drawn this many times as thick, to look different
-TURNING = 20.0  # spins are drawn this many times slower than paths: they are 1000 turns a second
+TURNING = 20.0  # spins, of a thousand turns a second, are drawn this many times slower than paths
 HAND = 1.6  # [drawn radius], length of the hand that turns with a bead
 EXPOSURE = 2e-3  # [s]; a streak is the path of a bead in this time
 _HALF_SPACE = 3e-3  # [m], drawn depth of a plate of infinite thickness
@@ -39,7 +39,7 @@ def window(scene: Scene) -> tuple[float, float, float, float]:
 
 def magnified(run: Run) -> float:
     """How many times their size beads are drawn."""
-    return _TURNING_MAGNIFIED if run.scene.friction else MAGNIFIED
+    return _TURNING_MAGNIFIED if run.scene.friction else _MAGNIFIED
 
 
 def drawn_depth(thickness: float) -> float:

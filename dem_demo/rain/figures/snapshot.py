@@ -8,13 +8,7 @@ from matplotlib.figure import Figure
 from contactlaw import style
 from dem_demo.rain import paths
 from dem_demo.rain.figures._labels import ringed, source
-from dem_demo.rain.figures._rain import (
-    EXPOSURE,
-    PLATES_MAGNIFIED,
-    Picture,
-    instants,
-    magnified,
-)
+from dem_demo.rain.figures._rain import EXPOSURE, PLATES_MAGNIFIED, Picture, instants, magnified
 from dem_demo.rain.record import Run
 
 
