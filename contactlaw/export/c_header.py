@@ -35,6 +35,7 @@ from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import factors
 from contactlaw.physical.validity import Limits, Validity
 from contactlaw.softsphere import unit_spring
+from contactlaw.stepping import friction as stepping_friction
 from contactlaw.stepping import spring as stepping_spring
 from contactlaw.table import Table, lookup
 from contactlaw.table.nodes import thinned
@@ -53,6 +54,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     creep: "SLOW",
     tangential: "POINT RELAXING",
     solver: "RTOL",
+    stepping_friction: "SPRINGS",
     stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED",
     validity: "TRANSITS",
 }

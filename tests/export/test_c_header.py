@@ -30,10 +30,12 @@ from contactlaw.export import c_header
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
 from contactlaw.physical import validity
+from contactlaw.physical.oblique import surface_velocity
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.physical.validity import flags_of
-from contactlaw.softsphere import Contacts, State, resized, unit_spring
+from contactlaw.softsphere import PARTED, Contacts, State, advance, resized, unit_spring
+from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
 from contactlaw.stepping.spring import RELAXATION
 from contactlaw.table import Settings, lookup, nodes
 from contactlaw.table.nodes import POINTS
@@ -105,6 +107,38 @@ CALLED double step(const contactlaw_spring *spring, contactlaw_state *state, dou
 CALLED contactlaw_spring spring_of(double radius, double thickness)
 {
     return contactlaw_spring_of(radius, thickness);
+}
+
+/* Friction on beads in each step; the wall rocks, and another bead strikes them in the middle. */
+CALLED void slides(int n, int steps, const double *v, const double *spin, const double *r,
+                   const double *h, const double *dt, const double *mu, double *out)
+{
+    int i, j, k;
+    for (k = 0; k < n; ++k) {
+        const contactlaw_spring spring = contactlaw_spring_of(r[k], h[k]);
+        contactlaw_state state = CONTACTLAW_APART;
+        contactlaw_sliding sliding = CONTACTLAW_STILL;
+        double u[3] = { v[3 * k], v[3 * k + 1], v[3 * k + 2] }, x = 0.3 * dt[k] * u[2];
+        for (i = 0; i < steps; ++i) {
+            const double turn = 0.2 * sin(0.3 * i), normal[3] = { sin(turn), 0.0, cos(turn) };
+            double point[3];
+            x -= dt[k] * u[2];
+            contactlaw_step(&spring, &state, x, dt[k]);
+            for (j = 0; j < 3; ++j) {
+                const int a = (j + 1) % 3, b = (j + 2) % 3;
+                const double *w = spin + 3 * k;
+                point[j] = u[j] - r[k] * (w[a] * normal[b] - w[b] * normal[a]);
+            }
+            contactlaw_friction_step(&spring, &state, &sliding, x, dt[k], normal, point, mu[k]);
+            u[2] += dt[k] * state.force / spring.mass;
+            for (j = 0; j < 3; ++j) {
+                u[j] += dt[k] * sliding.force[j] / spring.mass;
+                out[3 * (k * steps + i) + j] = sliding.force[j];
+            }
+            if (i == steps / 2)
+                u[2] = 0.7 * v[3 * k + 2];
+        }
+    }
 }
 
 CALLED void drops(int n, const double *v, const double *r, const double *h, const double *dt,
@@ -322,6 +356,58 @@ def test_an_oblique_impact_is_that_of_the_integration(compiled):
     assert out[:, 6].tolist() == [1.0, 0.0, -1.0, -1.0]
     assert np.array_equal(out[1, :6], [0, 0, 1, 0, 0, 0])
     assert np.isnan(out[2:, :6]).all()
+
+
+@kernel(entry=True)
+def slides(law, spring, kappa, steps, v, spin, r, dt, mu, row, out):
+    """Friction on a bead in `contactlaw.stepping`, in each step of what `slides` does in C."""
+    u, x, state, speed = v.copy(), 0.3 * dt * v[2], PARTED, 0.0
+    for i in range(steps):
+        turn = 0.2 * math.sin(0.3 * i)
+        n = (math.sin(turn), 0.0, math.cos(turn))
+        x -= dt * u[2]
+        before, last = state.largest_compression, state.force
+        state = advance(law, spring, state, x, dt)
+        slip = surface_velocity((u[0], u[1], u[2]), (spin[0], spin[1], spin[2]), r, n)
+        if last == 0.0:
+            clear_friction(row)
+            speed = -(slip[0] * n[0] + slip[2] * n[2])
+        force = (0.0, 0.0, 0.0)
+        if state.force > 0.0:
+            force = tangential_force(
+                row, mu, kappa, law, spring, state, before, x, speed, n, slip, dt, 0.0
+            )
+        u[2] += dt * state.force / spring.mass
+        for j in range(3):
+            u[j] += dt * force[j] / spring.mass
+            out[i, j] = force[j]
+        if i == steps // 2:
+            u[2] = 0.7 * v[2]
+
+
+def test_friction_by_steps_is_that_of_stepping(compiled):
+    """In every step of some 200 impacts, of which a blow repeats most."""
+    model, library, _ = compiled
+    v, r, h = impacts(200, seed=7)
+    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
+    keep = units.inelasticity < 2.0
+    v, r, h, count, steps = v[keep], r[keep], h[keep], keep.sum(), 120
+    rng = np.random.default_rng(8)
+    mu, dt = rng.uniform(0.0, 0.6, count), 3.2 * units.time[keep] / rng.uniform(15.0, 80.0, count)
+    velocity = rng.normal(size=(count, 3)) * v[:, None] * (1, 1, 0) - np.outer(v, (0, 0, 1))
+    spin = rng.normal(size=(count, 3)) * (v / r)[:, None]
+    found, expected = np.empty((count, steps, 3)), np.empty((count, steps, 3))
+    given = (velocity, spin, r, h, dt, mu)
+    library.slides(ctypes.c_int(count), ctypes.c_int(steps), *map(pointer, given), pointer(found))
+    kappa, law = model.pair.tangential_ratio, model.force_law.data
+    for n in range(count):
+        spring = resized(unit_spring(model, h[n]), r[n])
+        row = np.recarray(1, FRICTION)[0]
+        given = velocity[n], spin[n], r[n], dt[n], mu[n], row, expected[n]
+        slides(law, spring, kappa, steps, *given)
+    largest = np.abs(expected).max(axis=(1, 2))
+    assert (largest > 0.0).all()
+    assert (np.abs(found - expected).max(axis=(1, 2)) < 1e-9 * largest).all()
 
 
 def test_flags_are_those_of_the_solver(compiled):
