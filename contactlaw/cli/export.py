@@ -26,7 +26,7 @@ def add(commands: Any) -> None:
                         help="with a table of COR, or without: law and integration alone "
                         "(default: %(default)s)")  # fmt: skip
     liggghts = options.command(
-        kinds, "liggghts", "a normal model for the walls of LIGGGHTS, with a build script",
+        kinds, "liggghts", "contact models for the walls of LIGGGHTS, with a build script",
         _liggghts,
     )  # fmt: skip
     options.add_pair(liggghts)

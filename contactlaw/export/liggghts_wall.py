@@ -1,7 +1,7 @@
-"""A normal model for the walls of LIGGGHTS: its header, and the files to build a library of it.
+"""Contact models for the walls of LIGGGHTS: headers, and the files to build a library of them.
 
-The force of each contact is that of `contactlaw.export.header`, step by step. Walls, their motion,
-friction and ranks are LIGGGHTS's.
+Force and friction of each contact are those of `contactlaw.export.header`, step by step. Walls,
+their motion and ranks are LIGGGHTS's.
 """
 
 from __future__ import annotations
@@ -20,11 +20,14 @@ from contactlaw.model import ImpactModel
 from contactlaw.stepping.spring import FEWEST_STEPS
 from contactlaw.table import lookup
 
-_FILES = "normal_model_contactlaw.h.in", "wall_contactlaw.cpp", "build.sh", "README.txt.in"
+_FILES = (
+    "normal_model_contactlaw.h.in", "tangential_model_contactlaw.h.in", "wall_contactlaw.cpp",
+    "build.sh", "README.txt.in",
+)  # fmt: skip
 
 
 def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
-    """Write a pair of materials as a normal model of LIGGGHTS 3.8, for ``fix wall/gran``.
+    """Write a pair of materials as contact models of LIGGGHTS 3.8, for ``fix wall/gran``.
 
     Parameters
     ----------
@@ -44,12 +47,11 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     Notes
     -----
     ``README.txt`` says how it is built and used. ``build.sh`` makes a library that Debian's binary
-    loads; the headers ``contactlaw.h`` and ``normal_model_contactlaw.h`` also go into the sources
-    of LIGGGHTS. The thickness is a property of a wall's atom type, so walls of one pair may differ
-    in thickness.
+    loads; the three headers also go into the sources of LIGGGHTS. The
+    thickness is a property of a wall's atom type, so walls of one pair may differ in thickness.
 
-    Normal forces are those of `contactlaw.softsphere`, friction is LIGGGHTS's ``tangential
-    history``. Contacts between beads are LIGGGHTS's own.
+    Normal forces are those of `contactlaw.softsphere`, friction is that of `contactlaw.stepping` or
+    LIGGGHTS's ``tangential history``. Contacts between beads are LIGGGHTS's own.
 
     Examples
     --------
@@ -58,7 +60,8 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     >>> folder = getfixture("tmp_path") / "liggghts"
     >>> cl.export.liggghts(folder, model)
     >>> sorted(path.name for path in folder.iterdir())  # doctest: +NORMALIZE_WHITESPACE
-    ['README.txt', 'build.sh', 'contactlaw.h', 'normal_model_contactlaw.h', 'wall_contactlaw.cpp']
+    ['README.txt', 'build.sh', 'contactlaw.h', 'normal_model_contactlaw.h',
+     'tangential_model_contactlaw.h', 'wall_contactlaw.cpp']
     """
     folder = Path(os.path.realpath(folder))  # the temporary folder has to be on its file system
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as made:

@@ -33,7 +33,7 @@ MODELS = {
 THICKNESS = 0.5e-3, 1e-3, 3e-3, 1e3  # of atom types 2 to 5; the last one is a half-space
 SPEEDS = 1.0, 2.0, 5.0, 10.0, 20.0
 GAP = 1.03e-5  # [m]; no whole number of steps
-COLUMNS = "id", "x", "y", "z", "vx", "vy", "vz", "fz", "omegay"
+COLUMNS = "id", "x", "y", "z", "vx", "vy", "vz", "fz", "omegax", "omegay"
 SCRIPT = """
 units si
 atom_style granular
@@ -54,7 +54,7 @@ pair_coeff * *
 timestep {step}
 {walls}
 fix move all nve/sphere
-dump d all custom {every} {dump} id x y z vx vy vz fz omegay
+dump d all custom {every} {dump} id x y z vx vy vz fz omegax omegay
 dump_modify d sort id format "%d{digits}"
 """
 PROPERTIES = "\n".join(
@@ -146,10 +146,9 @@ class Scene:
         return dict(zip(COLUMNS, np.stack(rows).transpose(2, 0, 1), strict=True))
 
 
-def zplane(kind=3):
-    return (
-        f"fix wall all wall/gran model contactlaw tangential history primitive type {kind} zplane 0"
-    )
+def zplane(kind=3, tangential="contactlaw"):
+    model = f"model contactlaw tangential {tangential}"
+    return f"fix wall all wall/gran {model} primitive type {kind} zplane 0"
 
 
 def meshes(**kinds):
@@ -157,7 +156,7 @@ def meshes(**kinds):
     lines = [
         f"fix {name} all mesh/surface file {name}.stl type {kind}" for name, kind in kinds.items()
     ]
-    wall = "fix wall all wall/gran model contactlaw tangential history mesh"
+    wall = "fix wall all wall/gran model contactlaw tangential contactlaw mesh"
     return "\n".join([*lines, f"{wall} n_meshes {len(kinds)} meshes {' '.join(kinds)}"])
 
 
@@ -326,7 +325,8 @@ def moved_in_contact(path):
 @pytest.mark.parametrize("law", MODELS)
 def test_a_run_in_parts_and_a_restart_in_contact_change_no_digit(law, wall, libraries, tmp_path):
     scene = Scene(tmp_path, *libraries[law])
-    start, walls = shower(scene), zplane() if wall == "primitive" else meshes(sheet=3)
+    own = wall == "mesh"
+    start, walls = shower(scene), meshes(sheet=3) if own else zplane(tangential="history")
     options = {"friction": FRICTION, "step": scene.step(9.0), "every": 20}
     whole = scene.run(scene.script(start, walls, **options) + "run 400")
     text = scene.script(start, walls, **options)
@@ -335,7 +335,7 @@ def test_a_run_in_parts_and_a_restart_in_contact_change_no_digit(law, wall, libr
     assert (whole["fz"][6] > 0.0).sum() > 3  # step 120
     for other in (parts, again):
         # LIGGGHTS reads a sliding force off its spring again: the last digit of what friction moves
-        sliding = ("x", "y", "vx", "vy", "omegay")
+        sliding = () if own else ("x", "y", "vx", "vy", "omegax", "omegay")
         for name in COLUMNS:
             ours, theirs = other[name][-1], whole[name][-1]
             if name in sliding:
@@ -345,26 +345,75 @@ def test_a_run_in_parts_and_a_restart_in_contact_change_no_digit(law, wall, libr
 
 
 @both_laws
-def test_a_sliding_bead_has_coulombs_friction(law, libraries, tmp_path):
+@pytest.mark.parametrize(("tangential", "arm"), [("contactlaw", 1e-9), ("history", 0.01)])
+def test_a_sliding_bead_has_coulombs_friction(law, tangential, arm, libraries, tmp_path):
     """It slides from first touch to last: the tangential impulse is mu times the normal one."""
     scene = Scene(tmp_path, *libraries[law])
     start = scene.beads([(0.0, 0.0, scene.radius + GAP)], (20.0, 0.0, -4.0))
-    last = scene.run(scene.script(start, zplane(), friction=FRICTION, every=200) + "run 200")
-    normal, tangential = last["vz"][-1, 0] + 4.0, 20.0 - last["vx"][-1, 0]
+    walls = zplane(tangential=tangential)
+    last = scene.run(scene.script(start, walls, friction=FRICTION, every=200) + "run 200")
+    normal, along = last["vz"][-1, 0] + 4.0, 20.0 - last["vx"][-1, 0]
     cor = scene.model.restitution(4.0, scene.radius, THICKNESS[1])
     assert normal == pytest.approx(4.0 * (1.0 + cor), abs=2e-3)
-    assert tangential == pytest.approx(0.2 * normal, rel=1e-9)
-    # torque m r dv; LIGGGHTS takes an arm shorter by half the overlap
-    assert last["omegay"][-1, 0] == pytest.approx(2.5 * tangential / scene.radius, rel=0.01)
+    assert along == pytest.approx(0.2 * normal, rel=1e-9)
+    # torque m r dv; LIGGGHTS's own model takes an arm shorter by half the overlap
+    assert last["omegay"][-1, 0] == pytest.approx(2.5 * along / scene.radius, rel=arm)
+
+
+PSI = np.array([0.1, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0])
+
+
+@needs_liggghts
+@pytest.mark.parametrize("law", MODELS)
+@pytest.mark.parametrize(("kind", "thickness"), [(3, 1e-3), (5, math.inf)])
+def test_sliding_speed_is_that_of_the_integration(law, kind, thickness, libraries, tmp_path):
+    """And all forces act at the contact point, 50 steps a contact."""
+    scene = Scene(tmp_path, *libraries[law])
+    r, mu, v = scene.radius, 0.2, 3.0
+    step = float(scene.model.solve(v, r, thickness).contact_time) / 50
+    places = [(0.008 * n - 0.036, 0.0, r + 3.3 * v * step) for n in range(PSI.size)]
+    angle = np.linspace(0.0, 6.0, PSI.size)
+    way = np.column_stack((np.cos(angle), np.sin(angle), 0 * angle))
+    start = scene.beads(places, (PSI * mu * v)[:, None] * way - (0.0, 0.0, v))
+    script = scene.script(start, zplane(kind), friction=FRICTION, step=step, every=70)
+    last = {name: values[-1] for name, values in scene.run(script + "run 70").items()}
+    velocity = np.column_stack([last[name] for name in ("vx", "vy")])
+    spin = np.column_stack([last[name] for name in ("omegax", "omegay")])
+    point = velocity - r * spin[:, ::-1] * (1, -1)
+    hit = scene.model.oblique(v, PSI * mu * v, r, thickness, mu, method="solve")
+    error = (point * way[:, :2]).sum(axis=1) - hit.sliding_speed
+    assert (last["vz"] > 0.0).all()
+    assert np.abs(error).max() < 0.012 * mu * v
+    gained = velocity - (PSI * mu * v)[:, None] * way[:, :2]
+    assert 0.4 * r * spin == pytest.approx(gained[:, ::-1] * (1, -1), abs=1e-9)
+
+
+@needs_liggghts
+@pytest.mark.parametrize("share", [0.5, 0.97, 1.03])
+def test_a_bead_that_cannot_roll_rests_on_an_incline_or_slides(share, scene):
+    """`fix nve` moves a bead without turning it."""
+    mu, g, steps, step = 0.2, 9.81, 50_000, 2e-7
+    slope = math.atan(mu * share)
+    start = scene.beads([(0.0, 0.0, scene.radius)], (0.0, 0.0, 0.0))
+    script = scene.script(start, zplane(), friction=FRICTION, step=step, every=steps)
+    tilt = f"fix tilt all gravity {g} vector {math.sin(slope)!r} 0 {-math.cos(slope)!r}\n"
+    script = script.replace("nve/sphere", "nve") + tilt
+    last = scene.run(script + f"run {steps}")
+    if share > 1.0:
+        pulled = g * (math.sin(slope) - mu * math.cos(slope)) * steps * step
+        assert last["vx"][-1, 0] == pytest.approx(pulled, rel=0.08)
+    else:
+        assert abs(last["x"][-1, 0]) < 1e-5 * scene.radius
+        assert abs(last["vx"][-1, 0]) < 1e-3 * g * steps * step
 
 
 @needs_liggghts
 def test_a_bead_that_sticks_has_mindlins_spring(scene):
     """Without slip a spring of stiffness 8 G* sqrt(r d) acts on 2/7 of the mass."""
     r, step, steps, sideways = scene.radius, 1e-7, 200, 1.0
-    start = scene.beads([(0.0, 0.0, r + GAP)], (sideways, 0.0, -5.0))
+    start, walls = scene.beads([(0.0, 0.0, r + GAP)], (sideways, 0.0, -5.0)), zplane(5, "history")
     rough = " ".join(["1e6"] * 25)
-    found = scene.run(scene.script(start, zplane(5), friction=rough, every=1) + f"run {steps}")
+    found = scene.run(scene.script(start, walls, friction=rough, every=1) + f"run {steps}")
     pair = scene.model.pair
     compliance = [
         2 * (2 - one.poissons_ratio) * (1 + one.poissons_ratio) / one.youngs_modulus
@@ -399,11 +448,11 @@ WRONG = {
     "a scalar": ((SOUND[SOUND.index("perat") :], "scalar 0.001"), "vector style required"),
     "beads": (("model hertz", "model contactlaw"), "Unknown normal model"),
     "tangential": (
-        ("contactlaw tangential history", "contactlaw tangential no_history"),
+        ("contactlaw tangential contactlaw", "contactlaw tangential no_history"),
         "Unknown normal model",
     ),
     "option": (
-        ("tangential history primitive", "tangential history damping on primitive"),
+        ("tangential contactlaw primitive", "tangential contactlaw damping on primitive"),
         "damping",
     ),
     "units": (("units si", "units cgs"), "Normal model contactlaw is in SI units: take units si"),
@@ -458,7 +507,8 @@ def test_the_rain_comes_back_from_the_thick_sheet_faster(scene):
 
 PLAIN = ["export", "liggghts", "--sphere", "gamma-alumina", "--plate", "glass"]
 FILES = {
-    "README.txt", "build.sh", "contactlaw.h", "normal_model_contactlaw.h", "wall_contactlaw.cpp",
+    "README.txt", "build.sh", "contactlaw.h", "normal_model_contactlaw.h",
+    "tangential_model_contactlaw.h", "wall_contactlaw.cpp",
 }  # fmt: skip
 
 

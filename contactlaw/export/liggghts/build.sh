@@ -13,7 +13,7 @@ list() {
     printf '#include "%s"\n' "$@" > "$styles/style_${kind}_model.h"
 }
 list normal normal_model_contactlaw.h
-list tangential tangential_model_history.h
+list tangential tangential_model_history.h tangential_model_contactlaw.h
 list surface surface_model_default.h
 : > "$styles/style_cohesion_model.h"
 : > "$styles/style_rolling_model.h"

@@ -1,5 +1,5 @@
-// Adds the normal model contactlaw to walls of LIGGGHTS as the library is loaded. A LIGGGHTS that
-// is built with normal_model_contactlaw.h among its sources does not need it.
+// Adds the models contactlaw, normal and tangential, to walls of LIGGGHTS as the library is loaded.
+// A LIGGGHTS that is built with their headers among its sources does not need it.
 
 #include "fix_wall_gran_base.h"
 
@@ -28,8 +28,10 @@ struct Registration {
     Registration()
     {
         Factory::instance().addNormalModel("contactlaw", CONTACTLAW);
+        Factory::instance().addTangentialModel("contactlaw", TANGENTIAL_CONTACTLAW);
         add_wall<TANGENTIAL_OFF>();
         add_wall<TANGENTIAL_HISTORY>();
+        add_wall<TANGENTIAL_CONTACTLAW>();
     }
 };
 
