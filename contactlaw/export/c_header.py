@@ -54,7 +54,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     creep: "SLOW",
     tangential: "POINT RELAXING",
     solver: "RTOL",
-    stepping_friction: "SPRINGS",
+    stepping_friction: "SPRINGS _LEAST_SPEED _DEEPEST",
     stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED",
     validity: "TRANSITS",
 }
