@@ -95,7 +95,7 @@ def _count(law: Array, at: int, most: int, x: float) -> int:
     """Count the starts that are not above x; to compare them all is faster than a search."""
     count, first = 0, np.uint64(at)
     for k in range(np.uint64(most)):
-        count += x >= law[first + k]
+        count += x >= law[first + np.uint64(k)]
     return count
 
 
