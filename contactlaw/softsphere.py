@@ -3,13 +3,13 @@
 Soft-sphere engines (LAMMPS, YADE, a loop of one's own) resolve a contact in some tens of steps. In
 each one they know how deep the sphere is in the undeformed plate, the overlap; `Contacts` gives the
 force for arrays of contacts, `advance` within a compiled loop, and `time_step` a step that is short
-enough. `contactlaw.stepping.spring` has the scheme.
+enough. `contactlaw.stepping` has the schemes, in `spring` and `friction`.
 """
 
 from __future__ import annotations
 
 import math
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,13 @@ from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.scaling import scales, sphere_on_plate
+from contactlaw.stepping.energy import dot
+from contactlaw.stepping.friction import (
+    FRICTION,
+    check_friction,
+    clear_friction,
+    tangential_force,
+)
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     PARTED,
@@ -50,6 +57,53 @@ Array = NDArray[np.float64]
 _ERROR = 0.9
 
 
+@kernel(inline=True)
+def _spring_at(springs: Spring, n: int) -> Spring:
+    return Spring(
+        springs.mass[n],
+        springs.stiffness[n],
+        springs.mobility[n],
+        springs.scale[n],
+        springs.relaxation[n],
+        springs.ratio[n],
+        springs.plate,
+    )
+
+
+@kernel(inline=True)
+def _state_at(states: State, n: int) -> State:
+    return State(
+        states.plate_displacement[n],
+        states.largest_compression[n],
+        states.force[n],
+        states.mobility[n],
+        states.stiffening[n],
+    )
+
+
+@kernel(cache=True)
+def _slide_all(
+    law: Array, kappa: float, springs: Spring, states: State, rows: Any, deepest: Array,
+    friction: float, overlap: Array, normal: Array, velocity: Array, step: float, force: Array,
+) -> None:  # fmt: skip
+    """Friction of arrays of contacts; `deepest` is their largest compression in the last step."""
+    for n in range(overlap.size):
+        state, out = _state_at(states, n), (0.0, 0.0, 0.0)
+        if state.force > 0.0:
+            at = normal[n, 0], normal[n, 1], normal[n, 2]
+            slip = velocity[n, 0], velocity[n, 1], velocity[n, 2]
+            up = dot(slip, at)
+            slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
+            out = tangential_force(
+                rows[n], friction, kappa, law, _spring_at(springs, n), state, deepest[n],
+                overlap[n], -up, at, slip, step, 0.0,
+            )  # fmt: skip
+        else:
+            clear_friction(rows[n])
+        force[n, 0], force[n, 1], force[n, 2] = out
+        deepest[n] = state.largest_compression
+
+
 @kernel(cache=True)
 def _advance_all(
     law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float
@@ -62,23 +116,7 @@ def _advance_all(
         if not -math.inf < overlap[n] <= deepest[n] + states.plate_displacement[n]:
             return n
     for n in range(overlap.size):
-        spring = Spring(
-            springs.mass[n],
-            springs.stiffness[n],
-            springs.mobility[n],
-            springs.scale[n],
-            springs.relaxation[n],
-            springs.ratio[n],
-            springs.plate,
-        )
-        state = State(
-            states.plate_displacement[n],
-            states.largest_compression[n],
-            states.force[n],
-            states.mobility[n],
-            states.stiffening[n],
-        )
-        state = advance(law, spring, state, overlap[n], step)
+        state = advance(law, _spring_at(springs, n), _state_at(states, n), overlap[n], step)
         states.plate_displacement[n] = state.plate_displacement
         states.largest_compression[n] = state.largest_compression
         states.force[n] = state.force
@@ -104,8 +142,8 @@ class Contacts:
 
     Notes
     -----
-    Normal force of a sphere on a large plate: no friction, adhesion or rolling. Second order in the
-    step; `time_step` gives a step that is short enough.
+    Normal force of a sphere on a large plate, by `advance`, and friction, by `slide`; no adhesion
+    or rolling. Second order in the step; `time_step` gives a step that is short enough.
 
     Examples
     --------
@@ -145,6 +183,10 @@ class Contacts:
         )
         self._longest = float(self._springs.relaxation.min(initial=math.inf))
         self._states = State(*(np.zeros(r.size) for _ in State._fields))
+        self._tangential = model.pair.tangential_ratio
+        self._rows = np.zeros(r.size, FRICTION)
+        self._deepest, self._overlap, self._step = np.zeros(r.size), np.zeros(r.size), 0.0
+        self._sliding = np.zeros((r.size, 3))
 
     @property
     def mass(self) -> Array:
@@ -210,7 +252,44 @@ class Contacts:
         wrong = _advance_all(self._law, self._springs, self._states, self._diameters, overlap, step)
         if wrong >= 0:
             self._refuse(overlap[wrong], wrong)
+        self._overlap[:], self._step = overlap, step
         return self.force
+
+    def slide(self, normal: ArrayLike, velocity: ArrayLike, friction: float) -> Array:
+        """Friction in the step that `advance` has just taken; call it in every step, once.
+
+        Parameters
+        ----------
+        normal : array_like, shape (N, 3) or (3,)
+            Unit vectors from the plates to the beads.
+        velocity : array_like, shape (N, 3)
+            Of the beads' surfaces at the contacts, ``v - r cross(spin, normal)``, less those of the
+            plates [m/s]; with velocity Verlet or leapfrog that half a step before.
+        friction : float
+            Coulomb's coefficient [-].
+
+        Returns
+        -------
+        ndarray, shape (N, 3)
+            Force on each bead along its plate [N]; the same array every time. The torque is
+            ``-r cross(normal, force)``.
+
+        Raises
+        ------
+        TypeError, ValueError
+            If a shape is wrong, or the friction is no finite number of 0 or more.
+        """
+        check_friction(friction)
+        shape = self._sliding.shape
+        normals, velocities = (
+            np.ascontiguousarray(np.broadcast_to(one, shape), np.float64)
+            for one in (normal, velocity)
+        )
+        _slide_all(
+            self._law, self._tangential, self._springs, self._states, self._rows, self._deepest,
+            float(friction), self._overlap, normals, velocities, self._step, self._sliding,
+        )  # fmt: skip
+        return self._sliding
 
     def _refuse(self, overlap: float, n: int) -> NoReturn:
         if not math.isfinite(overlap):

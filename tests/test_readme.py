@@ -141,12 +141,13 @@ def test_examples_run(script):
         needs.lammps()
     if script.stem == "own_loop":
         return  # its loop takes half a minute to compile: tests/stepping runs it, beside LAMMPS
-    command = [sys.executable, script]
+    command, environment = [sys.executable, script], os.environ
     if "yade" in script.stem:
         if not shutil.which("yade") or "CONTACTLAW_PATH" not in os.environ:
             pytest.skip("no YADE on PATH, or no CONTACTLAW_PATH to what it needs for contactlaw")
         command = ["yade", "-x", "-n", script]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+        environment = os.environ | {"PYTHONPATH": os.environ["CONTACTLAW_PATH"]}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stderr
     assert len(done.stdout.splitlines()) >= 2
 

@@ -176,6 +176,28 @@ def test_arrays_are_the_kernel_for_each(model, law):
     )
 
 
+def test_a_bead_that_slides_is_that_of_the_integration(model):
+    """In two directions and with spin; 50 steps a contact."""
+    mu, v, psi = 0.3, 3.0, np.array([0.2, 1.0, 2.0, 4.0, 8.0])
+    contacts, n = Contacts(model, np.full(5, R), 1e-3), np.array([0.0, 0.0, 1.0])
+    dt = float(model.solve(v, R, 1e-3).contact_time) / 50
+    way = np.column_stack((np.cos(psi), np.sin(psi), 0.0 * psi))
+    velocity, spin = 0.4 * psi[:, None] * mu * v * way - v * n, np.cross(way, n)
+    spin *= (0.6 * psi * mu * v / R)[:, None]
+    mass, depth = contacts.mass[:, None], np.full(5, -0.4 * v * dt)
+    for _ in range(70):
+        depth -= dt * velocity[:, 2]
+        point = velocity - R * np.cross(spin, n)
+        force = contacts.advance(depth, dt)[:, None] * n + contacts.slide(n, point, mu)
+        velocity += dt / mass * force
+        spin += dt / (0.4 * mass * R**2) * -R * np.cross(n, force)
+    hit = model.oblique(v, psi * mu * v, R, 1e-3, mu, method="solve")
+    assert (velocity[:, 2] > 0.0).all()
+    assert (contacts.slide(n, point, mu) == 0.0).all()
+    point = ((velocity - R * np.cross(spin, n)) * way).sum(axis=1)
+    assert np.abs(point - hit.sliding_speed).max() < 0.012 * mu * v
+
+
 def test_an_elastic_law_needs_no_yield_strength():
     model = cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")
     contacts = Contacts(model, R, math.inf)
@@ -206,6 +228,8 @@ def test_the_advised_step_keeps_its_promise(model, law, error):
         (lambda m: Contacts(m, R, 1e-3).advance([0.0], 1e-7), "overlap"),
         (lambda m: Contacts(m, R, 1e-3).advance(np.zeros(1), 0.0), "step"),
         (lambda m: Contacts(m, R, 1e-3).advance(np.zeros(1), math.inf), "step"),
+        (lambda m: Contacts(m, R, 1e-3).slide((0, 0, 1), (1, 0, 0), -0.1), "friction"),
+        (lambda m: Contacts(m, R, 1e-3).slide((0, 0, 1), (1, 0), 0.1), "broadcast"),
     ],
 )
 def test_bad_input_is_named(model, call, words):
