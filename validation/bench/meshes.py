@@ -22,7 +22,7 @@ from contactlaw import style
 from contactlaw.engines.lammps import Mesh, Plate, Rotation, attach
 from contactlaw.engines.lammps.memory import FIRST
 from contactlaw.walls.grid import FacetGrid
-from validation.bench.row import Row, on_ranks
+from validation.bench.row import Row, in_turns, on_ranks
 
 from lammps import lammps  # isort: skip
 
@@ -30,7 +30,7 @@ FIGURE = Path(__file__).with_name("meshes.png")
 BEADS, FEW = 100_000, 2000
 RADIUS, THICKNESS, PITCH, LAYERS = 0.9e-3, 1e-3, 2.5e-3, 10  # [m]
 STEP = 1e-7  # [s]
-STEPS, ROUNDS = 40, 9  # the simulations take turns, so that all see the same noise
+STEPS, ROUNDS = 40, 9
 CELLS = (1, 10, 71, 224)  # along each side of the square wall: 2 to 1e5 triangles
 CLOUDS = (1000, 10_000, 100_000)
 PLATES = (8, 64, 512, 2048)
@@ -174,16 +174,9 @@ def _floor(width: float) -> Plate:
 
 def _times(simulations: dict[str, lammps]) -> dict[str, float]:
     """Median time of a step of each [us]."""
-    times: dict[str, list[float]] = {name: [] for name in simulations}
     for lmp in simulations.values():
         lmp.command("run 50 post no")
-    for _ in range(ROUNDS):
-        for name, lmp in simulations.items():
-            MPI.COMM_WORLD.Barrier()
-            start = time.perf_counter()
-            lmp.command(f"run {STEPS} pre no post no")
-            MPI.COMM_WORLD.Barrier()
-            times[name].append((time.perf_counter() - start) / STEPS * 1e6)
+    times = in_turns(simulations, STEPS, ROUNDS)
     for lmp in simulations.values():
         lmp.close()
     return {name: float(np.median(values)) for name, values in times.items()}

@@ -53,6 +53,21 @@ def per_call(function: Callable[[], object], calls: int = 20_000) -> float:
     return seconds(loop, repeat=5) / calls
 
 
+def in_turns(simulations: dict[str, Any], steps: int, rounds: int) -> dict[str, list[float]]:
+    """Time of a step of each LAMMPS in every round [us]; they take turns, to see the same noise."""
+    from mpi4py import MPI
+
+    times: dict[str, list[float]] = {name: [] for name in simulations}
+    for _ in range(rounds):
+        for name, lmp in simulations.items():
+            MPI.COMM_WORLD.Barrier()
+            start = time.perf_counter()
+            lmp.command(f"run {steps} pre no post no")
+            MPI.COMM_WORLD.Barrier()
+            times[name].append((time.perf_counter() - start) / steps * 1e6)
+    return times
+
+
 def on_ranks(module: str, ranks: int, *arguments: object) -> Any:
     """Run a module on some ranks of MPI, and read the JSON that it prints."""
     mpirun = Path(sys.executable).with_name("mpirun")
