@@ -51,7 +51,7 @@ class Beads:
         table: Callable[[Law], Table] = lambda law: table_for(law, None),
     ) -> None:
         pair = Pair(sphere, other)
-        weak, strong = (one.yield_strength or math.inf for one in (pair.plate, pair.sphere))
+        weak, strong = (one.strength or math.inf for one in (pair.plate, pair.sphere))
         self._swapped = weak < strong
         self.pair = Pair(pair.plate, pair.sphere) if self._swapped else pair
         self.law = law_of(self.pair, law)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.physical.arguments import refuse_units
+from contactlaw.physical.flow import Flow, from_hardness
 
 # Two bounds of ours that detect values in other units, but allow the softened beads of DEM.
 _SOFTEST = 2e3  # [Pa]: above diamond in GPa (1100), below a hydrogel bead (1e4 Pa)
@@ -24,6 +25,7 @@ _WEAKEST = 1e-12  # yield strain sigma_Y/E
 # Plastics without fibres have up to 5 GPa, with 30 % of glass 10; PTFE is the densest, with 2200
 # kg/m3. Of metals only the alkalis are as soft and light; for porous ceramics give the kind.
 _STIFFEST_POLYMER, _DENSEST_POLYMER = 10e9, 2300.0  # [Pa, kg/m3]
+_STEEPEST_RATE = 0.5  # C; of published metals up to 0.1
 
 KINDS = ("metal", "ceramic", "glass", "polymer")
 _LABELS = {
@@ -100,7 +102,7 @@ class NoYieldStrengthError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """An isotropic, elastic-perfectly plastic material.
+    """An isotropic, elastic-plastic material.
 
     Parameters
     ----------
@@ -114,15 +116,25 @@ class Material:
         Density of the bead or plate itself [kg/m3], positive; for a porous bead with its pores.
     yield_strength : float, optional
         Uniaxial yield strength [Pa], positive; None if the material is brittle or the value
-        unknown. Without it a body is elastic, and only ``law="fem"`` and ``"hertz"`` take it.
+        unknown. Without it (and a metal's hardness) a body is elastic, and only ``law="fem"`` and
+        ``"hertz"`` take it.
     source : str, optional
         Where the numbers come from.
     kind : str, optional
         ``"metal"``, ``"ceramic"``, ``"glass"`` or ``"polymer"``; None if that is not known: it is
         taken for a polymer then if it is as soft and light as one, up to 10 GPa and 2300 kg/m3.
     hardness : float, optional
-        Indentation hardness [Pa], Vickers or Knoop, positive: what limits the contact pressure on
-        a brittle material, which has no yield strength. None if it is unknown.
+        Indentation hardness [Pa], Vickers or Knoop, positive; None if it is unknown. For a brittle
+        material, which has no yield strength, it limits the contact pressure. For a metal it is
+        three times the flow stress at 8 % of strain (Tabor 1951), used where no yield strength or
+        only the exponent of hardening is given.
+    hardening : (float, float) or float, optional
+        B [Pa] and n [-] of the flow stress A + B strain^n, in which A is the yield strength,
+        0 < n <= 1. Or n alone: the hardness gives B then, and A too if there is no yield strength.
+        Only ``law="fem"`` takes hardening.
+    rate : (float, float), optional
+        C [-], 0 to 0.5, and rate0 [1/s], positive: the flow stress grows by the factor
+        1 + C ln(rate/rate0) (Johnson & Cook 1983). Only ``law="fem"`` takes it.
 
     Raises
     ------
@@ -145,6 +157,8 @@ class Material:
     source: str = ""
     kind: str | None = None
     hardness: float | None = None
+    hardening: tuple[float, float] | float | None = None
+    rate: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         """Check every value and store it as float."""
@@ -179,6 +193,41 @@ class Material:
         object.__setattr__(self, "density", density)
         object.__setattr__(self, "yield_strength", strength)
         object.__setattr__(self, "hardness", hardness)
+        object.__setattr__(self, "hardening", _hardening(self))
+        object.__setattr__(self, "rate", _rate(self))
+
+    @property
+    def flow(self) -> Flow | None:
+        """Constants of the flow stress; None if the body is elastic.
+
+        Examples
+        --------
+        >>> from contactlaw import Material
+        >>> Material("lead", 16e9, 0.44, 11340, kind="metal", hardness=39e6).flow.strength
+        13000000.0
+        """
+        strength, (hardening, exponent) = self.yield_strength, (0.0, 1.0)
+        if isinstance(self.hardening, tuple):
+            hardening, exponent = self.hardening
+        elif self.hardness is not None and (self.strength_from_hardness or self.hardening):
+            exponent = self.hardening or exponent
+            strength, hardening = from_hardness(
+                self.hardness, self.youngs_modulus, strength, self.hardening
+            )
+        if strength is None:
+            return None
+        return Flow(strength, hardening, exponent, *(self.rate or ()))
+
+    @property
+    def strength(self) -> float | None:
+        """Stress [Pa] at which flow begins: the yield strength, or what a metal's hardness says."""
+        return None if self.flow is None else self.flow.strength
+
+    @property
+    def strength_from_hardness(self) -> bool:
+        """Whether it is a metal of which no yield strength is known, but a hardness."""
+        metal = self.kind == "metal" and self.hardness is not None
+        return metal and self.yield_strength is None
 
     @property
     def plane_modulus(self) -> float:
@@ -223,9 +272,9 @@ class Material:
         >>> material("gamma-alumina").require_yield_strength("myc")
         472500000.0
         """
-        if self.yield_strength is None:
+        if self.strength is None:
             raise NoYieldStrengthError(law, self.name)
-        return self.yield_strength
+        return self.strength
 
 
 def material(name: str) -> Material:
@@ -320,6 +369,58 @@ def _positive(name: str, field: str, value: object, unit: str) -> float:
     if not (number > 0.0):
         raise ValueError(f"{field} of {name!r} must be positive [{unit}], got {value!r}")
     return number
+
+
+def _hardening(body: Material) -> tuple[float, float] | float | None:
+    """Check the hardening of a material; None if it has none."""
+    given, what = body.hardening, f"hardening of {body.name!r}"
+    if given is None:
+        return None
+    if not isinstance(given, tuple | list):
+        exponent = _finite(body.name, "hardening", given, "-")
+        if not (0.0 < exponent < 1.0):
+            raise ValueError(f"{what}: n must be above 0 and below 1, got {given!r}")
+        if body.hardness is None:
+            raise ValueError(
+                f"{what} is the exponent {exponent:g} alone: give (B, n) with B in Pa, or the "
+                "hardness, from which B follows"
+            )
+        if body.yield_strength is not None and body.hardness < 3.0 * body.yield_strength:
+            raise ValueError(
+                f"{what}: a hardness of {body.hardness:g} Pa is below three times the yield "
+                f"strength {body.yield_strength:g} Pa, as if the material softened"
+            )
+        return exponent
+    if len(given) != 2:
+        raise ValueError(f"{what} must be (B, n), B in Pa, or n alone, got {given!r}")
+    if body.yield_strength is None:
+        raise ValueError(f"{what} needs a yield_strength A in Pa, of A + B strain^n")
+    hardening = _finite(body.name, "hardening", given[0], "Pa")
+    if not (0.0 <= hardening < body.youngs_modulus):
+        raise ValueError(
+            f"{what}: B must be from 0 to below youngs_modulus {body.youngs_modulus!r}, in Pa, got "
+            f"{given[0]!r}"
+        )
+    exponent = _finite(body.name, "hardening", given[1], "-")
+    if not (0.0 < exponent <= 1.0):
+        raise ValueError(f"{what}: n must be above 0 and up to 1, got {given[1]!r}")
+    return (hardening, exponent) if hardening else None
+
+
+def _rate(body: Material) -> tuple[float, float] | None:
+    """Check what a material's strength has of the rate; None if it has nothing."""
+    given, what = body.rate, f"rate of {body.name!r}"
+    if given is None:
+        return None
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        raise ValueError(f"{what} must be (C, rate0), rate0 in 1/s, got {given!r}")
+    if body.strength is None:
+        raise ValueError(f"{what} needs a yield_strength in Pa: an elastic body has no flow stress")
+    slope = _finite(body.name, "rate", given[0], "-")
+    if not (0.0 <= slope <= _STEEPEST_RATE):
+        raise ValueError(f"{what}: C must be from 0 to {_STEEPEST_RATE:g}, got {given[0]!r}")
+    rate0 = _positive(body.name, "rate", given[1], "1/s")
+    return (slope, rate0) if slope else None
 
 
 def _check_units(name: str, modulus: float, density: float) -> None:

@@ -221,7 +221,7 @@ def flow_flags(
     Finite elements in three dimensions: the loss of COR is some 0.5 of the product of the two
     ratios, so it is below 1 % up to 0.02.
     """
-    strength = min(body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
+    strength = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
     force, deepest, left, time = (
         np.ravel(values) for values in (
             normal.peak_force, normal.peak_compression, normal.residual_compression,

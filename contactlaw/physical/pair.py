@@ -112,7 +112,7 @@ class Pair:
         >>> round(cl.Pair("gamma-alumina", "glass").yield_share(), 5)
         0.01248
         """
-        strength = min(body.yield_strength or math.inf for body in (self.sphere, self.plate))
+        strength = min(body.strength or math.inf for body in (self.sphere, self.plate))
         return coefficient * (math.pi * strength / self.effective_modulus) ** 2
 
 

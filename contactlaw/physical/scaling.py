@@ -103,7 +103,7 @@ def pair_numbers(pair: Pair, law: str) -> dict[str, float]:
 
 def _modulus_ratio(pair: Pair, body: Material) -> float:
     """E*/sigma_Y of a body; 0 for one that does not yield."""
-    return 0.0 if body.yield_strength is None else pair.effective_modulus / body.yield_strength
+    return 0.0 if body.strength is None else pair.effective_modulus / body.strength
 
 
 def _transit(plate: Material, thickness: Array) -> Array:

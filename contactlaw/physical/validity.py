@@ -182,7 +182,7 @@ class Limits(NamedTuple):
 
 def limits(pair: Pair, law: Law) -> Limits:
     """Limits of the model for a pair."""
-    sphere, plate = (body.yield_strength or math.inf for body in (pair.sphere, pair.plate))
+    sphere, plate = (body.strength or math.inf for body in (pair.sphere, pair.plate))
     rate = (pair.sphere.is_polymer or pair.plate.is_polymer) * Validity.RATE_DEPENDENT
     common = {
         # one criterion of yield for all thin-plate laws, which differ in theirs
@@ -229,10 +229,10 @@ def _damage(pair: Pair) -> float:
     """
     least = math.inf
     for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
-        if body.hardness is None or body.yield_strength is not None:
+        if body.hardness is None or body.strength is not None:
             continue
         pressure = _FLOW * body.hardness
-        if (other.yield_strength or math.inf) * _HARDNESS > pressure / 1.5:
+        if (other.strength or math.inf) * _HARDNESS > pressure / 1.5:
             least = min(least, math.pi**3 * pressure**3 / (6.0 * pair.effective_modulus**2))
     return least
 

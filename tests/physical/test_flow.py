@@ -1,0 +1,63 @@
+"""The flow stress of metals: Johnson and Cook's formula, and what a hardness says about it."""
+
+import dataclasses
+
+import pytest
+
+import contactlaw as cl
+
+STEEL = cl.Material("steel", 207e9, 0.3, 7850, yield_strength=350e6, kind="metal")
+
+
+def with_flow(**numbers):
+    return dataclasses.replace(STEEL, **numbers)
+
+
+def test_flow_stress_is_johnson_and_cooks():
+    # by hand: 350 + 275 * 0.1^0.36 = 470.041, times 1 + 0.022 ln 1000 = 1.15197
+    flow = with_flow(hardening=(275e6, 0.36), rate=(0.022, 1.0)).flow
+    assert flow.stress(0.1, 1000.0) == pytest.approx(541.473e6, rel=1e-5)
+    assert flow.stress(0.1, 0.5) == flow.stress(0.1, 1.0)  # rates below rate0 count as rate0
+    assert flow.stress(0.0) == 350e6
+
+
+def test_hardness_fixes_the_flow_stress_at_tabors_strain():
+    hard = dataclasses.replace(STEEL, yield_strength=None, hardness=1.5e9)
+    assert hard.strength_from_hardness
+    assert hard.strength == pytest.approx(0.5e9)
+    bent = dataclasses.replace(hard, hardening=0.2)
+    assert bent.flow.stress(0.08) == pytest.approx(0.5e9)
+    # the flow stress begins on the elastic line, on a power of the strain through that point
+    strain = bent.strength / STEEL.youngs_modulus
+    assert bent.strength == pytest.approx(0.5e9 * (strain / 0.08) ** 0.2)
+    known = with_flow(hardness=1.5e9, hardening=0.2)
+    assert known.strength == 350e6
+    assert known.flow.stress(0.08) == pytest.approx(0.5e9)
+    assert not known.strength_from_hardness
+
+
+def test_no_hardening_and_no_rate_are_none():
+    assert with_flow(hardening=(0.0, 0.3), rate=(0.0, 1.0)) == STEEL
+    assert STEEL.flow == (350e6, 0.0, 1.0, 0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "message"),
+    [
+        ({"hardening": 0.3}, "give (B, n) with B in Pa, or the hardness"),
+        ({"hardening": (2e8, 0.3, 1.0)}, "must be (B, n)"),
+        ({"hardening": (-1.0, 0.3)}, "B must be from 0"),
+        ({"hardening": (2e8, 1.5)}, "n must be above 0 and up to 1"),
+        ({"hardening": (2e8, 0.3), "yield_strength": None}, "needs a yield_strength"),
+        ({"hardening": 0.3, "hardness": 0.9e9}, "as if the material softened"),
+        ({"hardening": 1.5, "hardness": 3e9}, "n must be above 0 and below 1"),
+        ({"rate": 0.02}, "must be (C, rate0)"),
+        ({"rate": (0.9, 1.0)}, "C must be from 0 to 0.5"),
+        ({"rate": (0.02, 0.0)}, "must be positive"),
+        ({"rate": (0.02, 1.0), "yield_strength": None}, "an elastic body has no flow stress"),
+    ],
+)
+def test_wrong_constants_are_refused(numbers, message):
+    with pytest.raises(ValueError, match="of 'steel'") as caught:
+        with_flow(**numbers)
+    assert message in str(caught.value)
