@@ -53,7 +53,7 @@ FILES = {
     "cli/constant": ["records", "walls", "lines"],
     "cli/cor": ["curves", "figure"],
     "cli/fit": ["measured", "printed", "figure"],
-    "physical": ["arguments", "kind", "flow", "materials", "pair", "scaling", "measured", "history",
+    "physical": ["arguments", "kind", "flow", "materials", "pair", "rate", "scaling", "measured", "history",
                  "validity", "rebound", "oblique"],
 }  # fmt: skip
 KERNELS = [
