@@ -63,11 +63,21 @@ class Case:
 def material(name: str) -> cl.Material:
     """Look a material up; "glass, yield strength x 0.5" is glass with half its strength.
 
+    "glass, flow 3e8 2e8 0.3 0.02 1" is glass with these constants of the flow stress.
+
     Examples
     --------
     >>> material("gamma-alumina, yield strength x 0.5").yield_strength
     236250000.0
+    >>> material("glass, flow 3e8 2e8 0.3 0.02 1").hardening
+    (200000000.0, 0.3)
     """
+    name, flowing, numbers = name.partition(", flow ")
+    if flowing:
+        a, b, n, c, rate0 = map(float, numbers.split())
+        return replace(
+            cl.material(name), yield_strength=a, hardening=(b, n), rate=(c, rate0), hardness=None
+        )
     name, weaker, factor = name.partition(", yield strength x ")
     found = cl.material(name)
     if not weaker:

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from validation.fem.flow_stress import FlowStress, returned, slow_stress
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -37,7 +38,7 @@ class Body(NamedTuple):
     bulk: float  # Lame's lambda [Pa]
     shear: float  # [Pa]
     bending: Array  # (m,), stiffness of the hourglass modes [Pa]
-    strength: float  # yield strength [Pa]; inf: elastic
+    flow: FlowStress
 
 
 @kernel(entry=True)
@@ -76,18 +77,19 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         mean = (s_rr + s_zz + s_tt) / 3.0
         d_r, d_z, d_t = s_rr - mean, s_zz - mean, s_tt - mean
         mises = 1.5 * (d_r * d_r + d_z * d_z + d_t * d_t) + 3.0 * s_rz * s_rz
-        if mises > body.strength * body.strength:
+        strength = slow_stress(body.flow, body.plastic_strain[e])
+        if mises > strength * strength:
             mises = math.sqrt(mises)
-            keep = body.strength / mises
+            strain, strength = returned(body.flow, mises, body.plastic_strain[e], body.shear, dt)
+            keep = strength / mises
             s_rr, s_zz, s_tt, s_rz = (
                 mean + keep * d_r,
                 mean + keep * d_z,
                 mean + keep * d_t,
                 keep * s_rz,
             )
-            strain = (mises - body.strength) / (3.0 * body.shear)
             body.plastic_strain[e] += strain
-            plastic += body.strength * strain * area * r
+            plastic += strength * strain * area * r
         body.stress[e, 0], body.stress[e, 1] = s_rr, s_zz
         body.stress[e, 2], body.stress[e, 3] = s_tt, s_rz
 

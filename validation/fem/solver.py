@@ -16,6 +16,7 @@ from contactlaw.physical.materials import Material
 from validation.fem import contact, elements
 from validation.fem.contact import Surfaces
 from validation.fem.elements import Body
+from validation.fem.flow_stress import flow_stress
 from validation.fem.mesh import Mesh
 
 Array = NDArray[np.float64]
@@ -88,7 +89,7 @@ def body(mesh: Mesh, material: Material, first: int, bending: float | Array, yie
         bulk=2.0 * shear * ratio / (1.0 - 2.0 * ratio),
         shear=shear,
         bending=np.full(m, bending) * material.plane_modulus,
-        strength=material.require_yield_strength("fem") if yields else math.inf,
+        flow=flow_stress(material.flow if yields else None),
     )
 
 

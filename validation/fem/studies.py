@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from tqdm import tqdm
 
 import contactlaw as cl
-from validation.fem import calculix, campaign, cases, census, store
+from validation.fem import calculix, campaign, cases, census, metals, store
 from validation.fem.cases import Case
 from validation.fem.impact import expect, free_width, impact
 from validation.fem.indentation import BLOCK, Indentation, indent
@@ -340,4 +340,5 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "campaign_indentation": campaign.indentations,
     "campaign_impact": campaign.blows,
     **{name: functools.partial(census.compute, name) for name in census.SEEDS},
+    **{name: functools.partial(metals.compute, name) for name in metals.SEEDS},
 }

@@ -1,0 +1,120 @@
+"""Impacts of metals that harden and are stronger at rate: those of the fit, and those kept out.
+
+The impacts of the fit have random constants of the flow stress; those kept out are of metals whose
+constants Johnson and Cook published (Proc. 7th Int. Symp. Ballistics, 1983, table 1).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+import contactlaw as cl
+from validation.fem import journal
+from validation.fem.cases import Case
+
+SEEDS = {"metals": 20261128, "metals_kept_out": 20261129}
+# The catalogue's metal of like modulus and density, and A [Pa], B [Pa], n, C, rate0 [1/s].
+PUBLISHED = {
+    "OFHC copper": "copper-c11000, flow 90e6 292e6 0.31 0.025 1",
+    "cartridge brass": "brass-c26000, flow 112e6 505e6 0.42 0.009 1",
+    "Armco iron": "carbon-steel-1020, flow 175e6 380e6 0.32 0.060 1",
+    "Carpenter electrical iron": "carbon-steel-1020, flow 290e6 339e6 0.40 0.055 1",
+    "1006 steel": "carbon-steel-1020, flow 350e6 275e6 0.36 0.022 1",
+    "2024-T351 aluminium": "aluminium-2024-t3, flow 265e6 426e6 0.34 0.015 1",
+    "7039 aluminium": "aluminium-2024-t3, flow 337e6 343e6 0.41 0.010 1",
+    "4340 steel": "carbon-steel-1020, flow 792e6 510e6 0.26 0.014 1",
+}
+_RIGID = ("glass", "alumina", "tungsten-carbide")  # bodies that do not yield
+_BASES = ("carbon-steel-1020", "copper-c11000", "aluminium-6061-t6", "titanium-ti-6al-4v")
+_RADII = (0.3e-3, 3e-3)  # [m], drawn by its logarithm, as all below
+_SPEEDS = (0.3, 30.0), (0.5, 15.0)  # [m/s], of the fit and kept out
+_SLENDERNESS = (0.1, 1.4)  # R/H
+_RATIOS = (30.0, 1500.0)  # E*/A
+_DEEPEST = 0.35  # radius of the contact over that of the sphere, by a rough estimate
+_SHALLOWEST = 3.0  # speed over the yield speed
+
+
+def draw(name: str) -> list[Case]:
+    """List the impacts of one of `SEEDS`."""
+    generator = np.random.default_rng(SEEDS[name])
+    if name == "metals":
+        listed: list[Case] = []
+        while len(listed) < 56:
+            case = _of_fit(generator, with_rate=len(listed) % 2 == 1)
+            if _fits(case):
+                listed.append(case)
+        return listed
+    return [_published(generator) for _ in range(40)]
+
+
+def _log_uniform(generator: np.random.Generator, limits: tuple[float, float]) -> float:
+    return float(f"{np.exp(generator.uniform(*np.log(limits))):.4g}")
+
+
+def _sizes(
+    generator: np.random.Generator, speeds: tuple[float, float]
+) -> tuple[float, float, float]:
+    """Speed, thickness and radius, in the order of `Case`."""
+    speed, radius = _log_uniform(generator, speeds), _log_uniform(generator, _RADII)
+    thickness = float(f"{radius / _log_uniform(generator, _SLENDERNESS):.4g}")
+    return speed, thickness, radius
+
+
+def _of_fit(generator: np.random.Generator, *, with_rate: bool) -> Case:
+    """Random constants of sphere, plate or both; the other body is elastic."""
+    bodies = [str(generator.choice(_BASES)), str(generator.choice(_BASES))]
+    modulus = cl.Pair(*bodies).effective_modulus
+    yields, plate_yields = ((True, False), (False, True), (True, True))[generator.integers(3)]
+    strength = modulus / _log_uniform(generator, _RATIOS)
+    hardening = generator.uniform(0.0, 4.0)
+    exponent = generator.uniform(0.2, 0.7)
+    rate = generator.uniform(0.01, 0.08) if with_rate else 0.0
+    for n, flows in enumerate((yields, plate_yields)):
+        # where both flow, the other one is stronger by up to 2
+        own = strength * (generator.uniform(1.0, 2.0) if n and yields else 1.0)
+        flow = f"{own:.4g} {hardening * own:.4g} {exponent:.3f} {rate:.3f} 1"
+        if flows:
+            bodies[n] += f", flow {flow}"
+    return Case(
+        *_sizes(generator, _SPEEDS[0]), *bodies, yields=yields, plate_yields=plate_yields,
+        meshes=1,
+    )  # fmt: skip
+
+
+def _fits(case: Case) -> bool:
+    """Whether a body flows, and no deeper than elements bear, by a half-space of its strength."""
+    pair = case.pair
+    flows = [
+        body.flow.stress(0.015, 100.0)
+        for body, may in ((pair.sphere, case.yields), (pair.plate, case.plate_yields))
+        if may and body.flow is not None
+    ]
+    strength = min(flows)
+    # the kinetic energy is spent at a pressure of three strengths: m V^2/2 = 3 sigma pi a^4/(4 R)
+    width = (8.0 / 9.0 * pair.sphere.density * case.speed**2 / strength) ** 0.25
+    ideal = dataclasses.replace(pair.sphere, yield_strength=strength, hardening=None, rate=None)
+    return width < _DEEPEST and case.speed > _SHALLOWEST * cl.Pair(ideal, pair.plate).yield_speed
+
+
+def _published(generator: np.random.Generator) -> Case:
+    """Bead and plate of published metals, or one of them of a body that does not yield."""
+    known = list(PUBLISHED.values())
+    sphere, plate = (known[generator.integers(len(known))] for _ in range(2))
+    which = generator.integers(4)  # twice as often as plate alone, the sphere alone or both
+    if which < 2:
+        plate = str(generator.choice(_RIGID))
+    elif which == 2:
+        sphere = str(generator.choice(_RIGID))
+    return Case(
+        *_sizes(generator, _SPEEDS[1]), sphere, plate,
+        yields=", flow " in sphere, plate_yields=", flow " in plate,
+    )  # fmt: skip
+
+
+def compute(name: str, processes: int) -> None:
+    """Compute the impacts of one of `SEEDS`."""
+    listed = draw(name)
+    about = f"{len(listed)} impacts of metals with hardening and rate, seed {SEEDS[name]}"
+    journal.impacts(name, about, listed, processes)
