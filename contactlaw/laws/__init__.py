@@ -7,7 +7,8 @@ into the array that everything else reads. A new law is a new module here that d
 nothing else has to be touched. Files that begin with ``_`` are no laws.
 
 A law whose scaled form depends on more than the compression defines ``PARAMETERS``, the names of
-its numbers, and a function ``law`` of them. A `Law` holds their values by name. Users may also type
+its numbers, and a function ``law`` of them; ``DEFAULTS`` holds the values of the last of them that
+may be left out. A `Law` holds their values by name. Users may also type
 the values in brackets, ``"kogut_etsion(0.3)"``, which only `law` reads.
 
 Users give laws of their own to `contactlaw.ImpactModel`: `Law.of` makes them from formulas,
@@ -40,6 +41,10 @@ _RANGES = {  # lowest and highest value of each parameter that a law may have
     "plate_ratio": (0.0, 1e13),
     "modulus_share": (0.0, 1.0),
     "plate_poissons_ratio": (0.0, 0.5),
+    "sphere_hardening": (0.0, 1e12),
+    "plate_hardening": (0.0, 1e12),
+    "sphere_exponent": (0.0, 1.0),
+    "plate_exponent": (0.0, 1.0),
 }
 _BRACKETS = re.compile(r"\([-+.,0-9e]+\)")
 
@@ -71,7 +76,9 @@ def parameters(name: str) -> tuple[str, ...]:
     tuple of str
         Some of ``"modulus_ratio"``, the sphere's E*/sigma_Y; ``"sphere_ratio"`` and
         ``"plate_ratio"``, E*/sigma_Y of each body, 0 if it does not yield; ``"modulus_share"``,
-        the sphere's E1'/(E1' + E2'); ``"poissons_ratio"`` (sphere), ``"plate_poissons_ratio"``.
+        the sphere's E1'/(E1' + E2'); ``"poissons_ratio"`` (sphere), ``"plate_poissons_ratio"``;
+        ``"sphere_hardening"``, ``"sphere_exponent"`` and the plate's, B/A and n of the flow stress
+        A + B strain^n.
 
     Examples
     --------
@@ -110,7 +117,11 @@ def law(name: str, **numbers: float) -> Law:
     """
     family, typed = _typed(name)
     module = _module(family)
-    wanted: tuple[str, ...] = getattr(module, "PARAMETERS", ())
+    wanted = every = getattr(module, "PARAMETERS", ())
+    defaults: dict[str, float] = getattr(module, "DEFAULTS", {})
+    if len(typed) == len(every) - len(defaults):
+        wanted = tuple(name for name in every if name not in defaults)
+    numbers = {**defaults, **numbers}
     if typed and not wanted:
         raise ValueError(f"law: {name!r} takes no numbers; name it as {family!r}")
     if not wanted:
@@ -121,7 +132,7 @@ def law(name: str, **numbers: float) -> Law:
     if len(given) != len(wanted):
         raise ValueError(f"law: {name!r} needs a value for each parameter: name it as {form}")
     made: Law = module.law(*(_rounded(*one, form) for one in zip(wanted, given, strict=True)))
-    return made if typed else dataclasses.replace(made, from_pair=wanted)
+    return made if typed else dataclasses.replace(made, from_pair=every)
 
 
 def exact(name: str, **numbers: float) -> Law:
@@ -142,6 +153,7 @@ def exact(name: str, **numbers: float) -> Law:
     (True, False)
     """
     module = _module(name)
+    numbers = {**getattr(module, "DEFAULTS", {}), **numbers}
     made: Law = module.law(*(numbers[parameter] for parameter in module.PARAMETERS))
     return made
 

@@ -48,7 +48,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
-from contactlaw.laws._branches import Loading, Unloading
+from contactlaw.laws._branches import Loading, Unloading, bisect
 from contactlaw.laws._law import Law
 
 Array = NDArray[np.float64]
@@ -56,6 +56,9 @@ Array = NDArray[np.float64]
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by similarity
 _FLOWN = (20.0, 10.0)  # q at which flow is complete: the first for all sums but v, the second for v
 _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # two E*/sigma_Y, each with its deepest contacts, d/R
+_TYPICAL = 0.1  # sqrt(d/R) at which bodies that harden are compared with each other
+_WIDEST = 1.0  # sqrt(d/R) below which every body that yields has yielded
+_STEP = 1e-6  # of the root compression [sqrt(d_Y)], see `HardeningCurves._nearer`
 _SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiffening negligible
 _EARLIEST = 0.01  # [d_Y]; the law's range begins here at the latest: tables begin before yield
 SHIFT = 2.0  # 2 in t = (q - 1)/(q + 2)
@@ -125,6 +128,25 @@ class Given(NamedTuple):
     modulus_share: float  # the sphere's, E1'/(E1' + E2')
     poissons_ratio: float
     plate_poissons_ratio: float
+    sphere_hardening: float = 0.0  # B/A of the flow stress A + B strain^n
+    plate_hardening: float = 0.0
+    sphere_exponent: float = 1.0  # n
+    plate_exponent: float = 1.0
+
+    @property
+    def hardens(self) -> bool:
+        """Whether the strength of a body that yields grows with the depth of the contact."""
+        return (
+            self.sphere_ratio * self.sphere_hardening + self.plate_ratio * self.plate_hardening
+            > 0.0
+        )
+
+    def ratios(self, strain: Any) -> tuple[Any, Any]:
+        """E*/sigma of sphere and plate at a representative strain, or at an array of them."""
+        return (
+            self.sphere_ratio / (1.0 + self.sphere_hardening * strain**self.sphere_exponent),
+            self.plate_ratio / (1.0 + self.plate_hardening * strain**self.plate_exponent),
+        )
 
     @property
     def ratio(self) -> float:
@@ -182,6 +204,7 @@ class Given(NamedTuple):
 
 
 PARAMETERS = Given._fields
+DEFAULTS = Given._field_defaults  # of the numbers of hardening
 
 
 class _Works(NamedTuple):
@@ -230,9 +253,17 @@ class Curves:
             self._terms[name] = np.pad(usual + moved, [(0, 1), (0, 0)])
             self._terms[name][1:] -= moved
 
+    def _own(self, q: Array) -> Array:
+        """Root compression in units of the root of d_Y that the strength at q stands for."""
+        return q
+
+    def _nearer(self, q: Array) -> Array | float:
+        """Way from yield of the `_own` compression over that of q, in their roots."""
+        return 1.0
+
     def _sum(self, name: str, q: Array) -> Array:
         """Sum of the powers of t and w of one of the functions."""
-        known, w = self._similar_q(q, _FLOWN[name == "impact"]), self._width * q
+        known, w = self._similar_q(self._own(q), _FLOWN[name == "impact"]), self._width * q
         t = (known - 1.0) / (known + SHIFT)
         return np.asarray(np.polynomial.polynomial.polyval2d(t, w, self._terms[name]))
 
@@ -250,7 +281,8 @@ class Curves:
         if not self.ratio:
             return np.ones_like(q)
         above = np.maximum(q, 1.0)
-        return 1.0 + (above - 1.0) ** 2 / (above + SHIFT) * self._sum(name, above)
+        own = self._own(above)
+        return 1.0 + (own - 1.0) ** 2 / (own + SHIFT) * self._sum(name, above)
 
     def force(self, q: Array) -> Array:
         """Force while the compression grows."""
@@ -267,8 +299,10 @@ class Curves:
 
     def residual(self, q: Array) -> Array:
         """Residual compression after loading to q^2, over (q^2 - 1)^2; from yield on."""
-        over = (self._sum("residual", q)) / (q + SHIFT)
-        return q**2 * over / ((1.0 + (q - 1.0) ** 2 * over) * (q + 1.0) ** 2)
+        own = self._own(q)
+        over = (self._sum("residual", q)) / (own + SHIFT)
+        near = q**2 * over / ((1.0 + (own - 1.0) ** 2 * over) * (q + 1.0) ** 2)
+        return near * self._nearer(q) ** 2
 
     def recovery(self, q: Array) -> Array:
         """Share of the loading work that unloading gives back."""
@@ -280,7 +314,8 @@ class Curves:
         if not self.ratio:
             return np.zeros_like(q)
         above = np.maximum(q, 1.0)
-        return np.asarray(((above - 1.0) / (above + SHIFT)) ** 2 * self._sum("impact", above))
+        own = self._own(above)
+        return np.asarray(((own - 1.0) / (own + SHIFT)) ** 2 * self._sum("impact", above))
 
     def plastic(self, q: Array, recovery: Array) -> Array:
         """Plastic work over the loading work, from the share that unloading gives back."""
@@ -302,6 +337,47 @@ class Curves:
         )
 
 
+class HardeningCurves(Curves):
+    """Curves of bodies that harden: at each depth those of the strength that they have there.
+
+    The strength at a depth is the flow stress at the representative strain there, a share of
+    sqrt(d/R). Which body flows, and how both share the flow, is taken at one typical depth, so that
+    no curve has a kink where the stronger body becomes the weaker one.
+    """
+
+    def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
+        found = found or numbers()
+        self._given, self._strain = given, float(found["strain"])
+        typical = Given(*given.ratios(self._strain * _TYPICAL), *given[2:5])
+        super().__init__(typical, found)
+        self._typical, self._flow = typical, typical.flow(float(found["blend"]))
+        root = math.sqrt(self.scale)
+        # yield begins where the compression passes that of the strength there
+        first = float(bisect(lambda w: w < root * self._stronger(w), 0.0, _WIDEST))
+        self.scale = first**2
+        self.stiffening *= first / root
+        self._width *= first / root
+        self._first = first, first / root
+
+    def _stronger(self, w: Any) -> Any:
+        """Strength at w = sqrt(d/R) over that at the typical depth; both bodies' by their flow."""
+        ratios = self._given.ratios(self._strain * w)
+        factor = 1.0
+        for share, then, now in zip(self._flow.values(), self._typical, ratios, strict=False):
+            if share:
+                factor = factor * (then / now) ** share
+        return factor
+
+    def _own(self, q: Array) -> Array:
+        first, wider = self._first
+        return np.asarray(wider * q / self._stronger(first * q))
+
+    def _nearer(self, q: Array) -> Array:
+        # at yield both ways are zero: a step beyond it their ratio is that of the limit
+        off = np.maximum(q, 1.0 + _STEP)
+        return np.asarray((self._own(off) - 1.0) / (off - 1.0))
+
+
 @functools.lru_cache(maxsize=64)  # a fit to measurements makes a law for every trial
 def law(*given: float) -> Law:
     """Law of a pair, from the numbers of `PARAMETERS`."""
@@ -310,7 +386,7 @@ def law(*given: float) -> Law:
 
 def law_of(given: Given, found: dict[str, Any]) -> Law:
     """Law of a pair from the numbers of a fit."""
-    curves = Curves(given, found)
+    curves = (HardeningCurves if given.hardens else Curves)(given, found)
     if curves.ratio and curves.scale > _ELASTIC_BEYOND * deepest(curves.ratio):
         # the bodies are so strong that they would yield only where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
@@ -347,7 +423,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         )
     return Law.of(
         name="fem",
-        parameters=given._asdict(),
+        parameters=dict(zip(PARAMETERS, given if given.hardens else given[:5], strict=False)),
         source="finite elements of contactlaw, validation.fem.campaign",
         yield_coefficient=curves.scale * (curves.ratio / math.pi) ** 2 if curves.ratio else None,
         loading=loading,

@@ -96,6 +96,10 @@ def pair_numbers(pair: Pair, law: str) -> dict[str, float]:
         "plate_ratio": _modulus_ratio(pair, pair.plate),
         "modulus_share": pair.effective_modulus / pair.plate.plane_modulus,
     }
+    for role, body in (("sphere", pair.sphere), ("plate", pair.plate)):
+        if body.flow is not None and body.flow.hardening:
+            numbers[f"{role}_hardening"] = body.flow.hardening / body.flow.strength
+            numbers[f"{role}_exponent"] = body.flow.exponent
     if "modulus_ratio" in laws.parameters(law):
         numbers["modulus_ratio"] = pair.effective_modulus / pair.sphere.require_yield_strength(law)
     return numbers

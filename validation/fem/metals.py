@@ -77,9 +77,10 @@ def _of_fit(generator: np.random.Generator, *, with_rate: bool) -> Case:
         flow = f"{own:.4g} {hardening * own:.4g} {exponent:.3f} {rate:.3f} 1"
         if flows:
             bodies[n] += f", flow {flow}"
+    sphere, plate = bodies
     return Case(
-        *_sizes(generator, _SPEEDS[0]), *bodies, yields=yields, plate_yields=plate_yields,
-        meshes=1,
+        *_sizes(generator, _SPEEDS[0]), sphere, plate,
+        yields=yields, plate_yields=plate_yields, meshes=1,
     )  # fmt: skip
 
 
