@@ -49,6 +49,9 @@ class Law:
     scale : float, optional
         d_Y/R* of a law made for one pair, whichever body yields. 1 if neither yields: the law's
         compressions are then in R*. None: d_Y follows from `yield_coefficient`.
+    onset : float, optional
+        Compression over R* at which flow begins, where that is before d_Y: bodies that harden flow
+        so little at first that the law has none of it. None: flow begins at d_Y.
     range : tuple of float, optional
         Compressions [d_Y] from which on the law differs from Hertz's, and up to which it holds.
     waves : tuple of float, optional
@@ -68,6 +71,7 @@ class Law:
     scale: float | None = None
     range: tuple[float, float] = (1.0, math.inf)
     waves: tuple[float, float, float, float] | None = None
+    onset: float | None = None
 
     @staticmethod
     def of(
@@ -82,6 +86,7 @@ class Law:
         scale: float | None = None,
         range: tuple[float, float] = (1.0, math.inf),
         waves: tuple[float, float, float, float] | None = None,
+        onset: float | None = None,
     ) -> Law:
         """Make a law from its formulas.
 
@@ -89,7 +94,7 @@ class Law:
         ----------
         name : str
             Its `family`.
-        source, yield_coefficient, parameters, yield_strains, scale, range, waves
+        source, yield_coefficient, parameters, yield_strains, scale, range, waves, onset
             As in `Law`.
         loading : sequence of Loading
             Branches of the loading curve. They have to meet, and to rise.
@@ -148,6 +153,7 @@ class Law:
             scale=scale,
             range=range,
             waves=waves,
+            onset=onset,
         )
 
     @property

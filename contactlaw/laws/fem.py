@@ -58,7 +58,6 @@ _FLOWN = (20.0, 10.0)  # q at which flow is complete: the first for all sums but
 _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # two E*/sigma_Y, each with its deepest contacts, d/R
 _TYPICAL = 0.1  # sqrt(d/R) at which bodies that harden are compared with each other
 _WIDEST = 1.0  # sqrt(d/R) below which every body that yields has yielded
-_STEP = 1e-6  # of the root compression [sqrt(d_Y)], see `HardeningCurves._nearer`
 _SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiffening negligible
 _EARLIEST = 0.01  # [d_Y]; the law's range begins here at the latest: tables begin before yield
 SHIFT = 2.0  # 2 in t = (q - 1)/(q + 2)
@@ -231,6 +230,7 @@ class Curves:
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or numbers()
+        self.onset: float | None = None
         self.ratio = given.ratio
         blend = float(found["blend"])
         self.scale = given.yield_scale(blend) if self.ratio else 1.0
@@ -340,42 +340,60 @@ class Curves:
 class HardeningCurves(Curves):
     """Curves of bodies that harden: at each depth those of the strength that they have there.
 
-    The strength at a depth is the flow stress at the representative strain there, a share of
-    sqrt(d/R). Which body flows, and how both share the flow, is taken at one typical depth, so that
-    no curve has a kink where the stronger body becomes the weaker one.
+    That is the flow stress at a representative strain, c (w - b w_Y) with w = sqrt(d/R) and w_Y its
+    value where flow begins. Which body flows, and how both share the flow, is taken at one typical
+    depth, so that no curve has a kink where the stronger body becomes the weaker one.
     """
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or numbers()
-        self._given, self._strain = given, float(found["strain"])
-        typical = Given(*given.ratios(self._strain * _TYPICAL), *given[2:5])
+        blend, (slope, late) = float(found["blend"]), found["strain"]
+        onset = Given(*given[:5]).yield_scale(blend)
+        late *= math.sqrt(onset)
+
+        def ratios(w: Any) -> tuple[Any, Any]:
+            return given.ratios(slope * np.maximum(w - late, 0.0))
+
+        typical = Given(*ratios(_TYPICAL), *given[2:5])
         super().__init__(typical, found)
-        self._typical, self._flow = typical, typical.flow(float(found["blend"]))
+        flow = typical.flow(blend).values()
+        self.onset = onset
         root = math.sqrt(self.scale)
+
+        def stronger(w: Any) -> Any:
+            """Strength over that at the typical depth; both bodies' by their share of the flow."""
+            known = [one for one in zip(flow, typical, ratios(w), strict=False) if one[0]]
+            return np.prod([(then / now) ** share for share, then, now in known], axis=0)
+
         # yield begins where the compression passes that of the strength there
-        first = float(bisect(lambda w: w < root * self._stronger(w), 0.0, _WIDEST))
+        first = float(bisect(lambda w: w < root * stronger(w), 0.0, _WIDEST))
         self.scale = first**2
         self.stiffening *= first / root
         self._width *= first / root
-        self._first = first, first / root
+        self._rise = first / (first - late)  # of ln(strain) with ln(w) at yield
+        self._hardening = []
+        hardening = (given.sphere_hardening, given.plate_hardening)
+        exponents = (given.sphere_exponent, given.plate_exponent)
+        for share, times, n in zip(flow, hardening, exponents, strict=True):
+            part = times * (slope * (first - late)) ** n
+            self._hardening.append((share, part / (1.0 + part), n))
 
-    def _stronger(self, w: Any) -> Any:
-        """Strength at w = sqrt(d/R) over that at the typical depth; both bodies' by their flow."""
-        ratios = self._given.ratios(self._strain * w)
-        factor = 1.0
-        for share, then, now in zip(self._flow.values(), self._typical, ratios, strict=False):
-            if share:
-                factor = factor * (then / now) ** share
-        return factor
+    def _log_own(self, q: Array) -> Array:
+        """Logarithm of the `_own` compression, accurate next to yield, where it is zero."""
+        beyond = np.maximum(q - 1.0, 0.0)
+        own, strain = np.log1p(beyond), np.log1p(self._rise * beyond)
+        for share, part, n in self._hardening:
+            own = own - share * np.log1p(part * np.expm1(n * strain))
+        return own
 
     def _own(self, q: Array) -> Array:
-        first, wider = self._first
-        return np.asarray(wider * q / self._stronger(first * q))
+        return np.exp(self._log_own(q))
 
     def _nearer(self, q: Array) -> Array:
-        # at yield both ways are zero: a step beyond it their ratio is that of the limit
-        off = np.maximum(q, 1.0 + _STEP)
-        return np.asarray((self._own(off) - 1.0) / (off - 1.0))
+        limit = 1.0 - self._rise * sum(share * part * n for share, part, n in self._hardening)
+        beyond = q > 1.0
+        way = np.where(beyond, q - 1.0, 1.0)
+        return np.where(beyond, np.expm1(self._log_own(q)) / way, limit)
 
 
 @functools.lru_cache(maxsize=64)  # a fit to measurements makes a law for every trial
@@ -431,4 +449,5 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         scale=curves.scale,
         range=(start, end),
         waves=tuple(found["plate"]),
+        onset=curves.onset,
     )

@@ -14,13 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.laws import Law
+from contactlaw.laws.fem import numbers
 from contactlaw.physical.flow import Flow
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
 
-SHARE = 0.05  # representative rate over V0/R
+SHARE: float = numbers()["rate"]  # representative rate over V0/R
 _FASTEST = 1e7  # V0/R [1/s] up to which tables reach: 100 m/s at 10 micrometres
 
 

@@ -150,7 +150,7 @@ def _yield_share(pair: Pair, coefficient: float, law: str) -> float:
 def yield_share(pair: Pair, law: Law) -> float:
     """d_Y/R of the body that yields first, by the law's criterion or MYC's; inf if none does."""
     if law.scale is not None:
-        return law.scale if law.yields else math.inf
+        return (law.onset or law.scale) if law.yields else math.inf
     return pair.yield_share(law.yield_coefficient or C_YIELD)
 
 

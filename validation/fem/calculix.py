@@ -40,6 +40,7 @@ _SOFTER = 10.0  # ... and in an impact, where nodes of a stiffer contact chatter
 _STICK = 0.1  # stiffness of sticking, over that of the contact
 _TENSION = 0.1  # on nodes far from faces [MPa]; ccx needs one; a thousandth of the pressures
 _REACH = 1.0  # how far from the axis the surfaces may touch [R]: contacts have less than 0.3
+_STRAINS = np.geomspace(1e-5, 1.0, 60).tolist()  # of the polygon that hardening is given as
 _HARDENING = 1e-4  # slope over Young's modulus; the iterations need one
 _HOLE = 0.02  # radius, over the smallest element
 _FLIGHT = 3  # increments that set the sphere in motion ...
@@ -337,19 +338,26 @@ def _surface(name: str, body: Mesh, first: int, reach: float) -> str:
 
 def _material(name: str, material: cl.Material) -> str:
     modulus, ratio = material.youngs_modulus * _MPA, material.poissons_ratio
-    strength = (material.yield_strength or 0.0) * _MPA  # a body that has none is elastic
-    return (
-        f"*SOLID SECTION, ELSET={name}, MATERIAL={name}\n*MATERIAL, NAME={name}\n"
-        f"*ELASTIC\n{modulus:.6e}, {ratio:g}\n*DENSITY\n{material.density:.6e}\n"
-        + f"*PLASTIC\n{strength:.6e}, 0.\n{strength + _HARDENING * modulus:.6e}, 1.\n"
-        * bool(strength)
-    )
+    lines = [
+        f"*SOLID SECTION, ELSET={name}, MATERIAL={name}", f"*MATERIAL, NAME={name}",
+        f"*ELASTIC\n{modulus:.6e}, {ratio:g}", f"*DENSITY\n{material.density:.6e}",
+    ]  # fmt: skip
+    flow = material.flow
+    if flow is not None:  # a body that has none is elastic
+        strains = (0.0, *_STRAINS) if flow.hardening else (0.0, 1.0)
+        lines.append("*PLASTIC")
+        lines += [
+            f"{flow.stress(strain) * _MPA + _HARDENING * modulus * strain:.6e}, {strain:.6g}"
+            for strain in strains
+        ]
+    return "\n".join(lines) + "\n"
 
 
 def _stated(material: cl.Material) -> str:
-    strength = material.yield_strength
+    strength = material.strength
     return (
         f"{material.name}: E {material.youngs_modulus:g} Pa, nu {material.poissons_ratio:g}, "
         f"{material.density:g} kg/m^3, "
         + (f"yield strength {strength:g} Pa" if strength else "elastic")
+        + (f", hardening {material.hardening}" if material.hardening else "")
     )

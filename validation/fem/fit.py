@@ -292,7 +292,7 @@ def pair_of(row: dict[str, Any]) -> cl.Pair:
 def numbers_of(pair: cl.Pair) -> fem.Given:
     """Numbers that the law takes from a pair."""
     found = pair_numbers(pair, "fem")
-    return fem.Given(*(float(f"{found[name]:.6g}") for name in fem.PARAMETERS))
+    return fem.Given(**{n: float(f"{found[n]:.6g}") for n in fem.PARAMETERS if n in found})
 
 
 def solved(blow: Blow, law: Law) -> tuple[Solution, Numbers]:
@@ -448,6 +448,8 @@ def numbers() -> dict[str, Any]:
         "stiffening": stiff,
         "friction": [friction],
         "blend": 1.0,
+        # fitted by `metals.fit` to what is left, and too slow to be found again with the rest
+        **{name: fem.numbers()[name] for name in ("strain", "rate")},
         "plate": [0.0, 0.0, 0.0, 0.0],
         "curves": {**curves, "impact": dict.fromkeys(YIELDING, none)},
     }

@@ -18,7 +18,17 @@ from validation.fem.cases import Case
 from validation.fem.impact import expect, free_width, impact
 from validation.fem.indentation import BLOCK, Indentation, indent
 from validation.fem.solver import SETTINGS
-from validation.fem.yielding import BOTH, BOTH_DEPTH, BOTH_SIZE, JOBS, SOFT, press
+from validation.fem.yielding import (
+    BOTH,
+    BOTH_DEPTH,
+    BOTH_SIZE,
+    HARDENING,
+    HARDENING_DEPTH,
+    HARDENING_SIZE,
+    JOBS,
+    SOFT,
+    press,
+)
 from validation.paper.closed_form import eta
 from validation.paper.setting import ETA, PAIR, RADIUS, YIELD_COMPRESSION
 
@@ -163,13 +173,30 @@ def calculix_block(_: int) -> None:
     _by_calculix("calculix_block", what, BOTH, BOTH_DEPTH, BOTH_SIZE)
 
 
-def _by_calculix(name: str, what: str, pair: cl.Pair, depth: float, size: float) -> None:
+@_where_installed
+def calculix_hardening(_: int) -> None:
+    """Press a sphere that hardens into an elastic block with CalculiX."""
+    what = "an indentation in which the sphere hardens, and the same by this solver (own_),"
+    own = indent(HARDENING, RADIUS, HARDENING_DEPTH, size=HARDENING_SIZE)
+    pressed = {"own_compression": own.compression, "own_force": own.force}
+    _by_calculix("calculix_hardening", what, HARDENING, HARDENING_DEPTH, HARDENING_SIZE, pressed)
+
+
+def _by_calculix(
+    name: str,
+    what: str,
+    pair: cl.Pair,
+    depth: float,
+    size: float,
+    own: dict[str, NDArray[Any]] | None = None,
+) -> None:
+    own = own or {}
     compression, force = calculix.run(pair, RADIUS, depth, size)
     store.write(
         name,
         f"{what} by CalculiX: CAX4 elements, surface-to-surface contact",
-        {"compression": compression, "force": force},
-        {"compression": "m", "force": "N"},
+        {"compression": compression, "force": force, **own},
+        {"compression": "m", "force": "N", **dict(zip(own, ("m", "N"), strict=False))},
         mesh=f"element size {size:g} R, block of {BLOCK:g} R",
         elements=calculix.elements(calculix.deck(pair, RADIUS, depth, size)),
         **calculix.SETTINGS,
@@ -330,6 +357,7 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "yielding": yielding,
     "calculix": calculix_indentation,
     "calculix_block": calculix_block,
+    "calculix_hardening": calculix_hardening,
     "calculix_impact": calculix_impact,
     "matrix": matrix,
     "paper": paper,

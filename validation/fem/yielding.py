@@ -34,6 +34,8 @@ _WEAK = replace(SOFT, yield_strength=0.5 * SOFT.require_yield_strength("fem"))
 EQUAL, MIRRORED = cl.Pair(SOFT, SOFT), cl.Pair(SOFT, MIRROR)
 BOTH = cl.Pair(PAIR.sphere, cl.material("aluminium-6061-t6"))  # for CalculiX: both flow
 BOTH_DEPTH, BOTH_SIZE = 10.0 * YIELD_COMPRESSION, 0.03  # [m], [R]
+HARDENING = cl.Pair(replace(SOFT, hardening=(500e6, 0.3)), cl.Material("block", 200e9, 0.3, 8000.0))
+HARDENING_DEPTH, HARDENING_SIZE = 0.03 * RADIUS, 0.03  # [m], [R]
 FULLY_PLASTIC = 0.15  # a/R from which the flow is full: E* a/(sigma_Y R) is 66, on the mirror more
 _SMALL = 2e-3 * RADIUS  # depth of a small contact: a/R is 0.045 [m]
 _BLOCK: dict[str, Any] = {
