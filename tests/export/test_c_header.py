@@ -920,8 +920,8 @@ def test_the_soft_sphere_example_is_pythons(tmp_path):
     assert -u / v == pytest.approx(model.solve(v, 0.9e-3, 1e-3).restitution, abs=2e-4)
 
 
-# The table of steel on carbide has the most columns: ln chi runs from -7 to 8.6. All 484 pairs are
-# tried by `python -m validation.hostile headers`.
+# The table of steel on carbide has the most columns: ln chi runs from -7 to 8.6. All pairs of the
+# catalogue are tried by `python -m validation.hostile headers`.
 @pytest.mark.parametrize(
     "pair", [("stainless-steel-316", "tungsten-carbide"), ("hdpe", "polycarbonate")]
 )

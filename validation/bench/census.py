@@ -1,7 +1,7 @@
 """The everyday pairs: how many impacts a law answers, and how many of its answers carry a flag.
 
-Every metal, ceramic and glass of the catalogue falls on every other, as `validation.fem.census`
-says; speed and thickness are drawn anew for each pair.
+Metals, ceramics and glasses of the catalogue fall on each other, as `validation.fem.census` says;
+speed and thickness are drawn anew for each pair.
 """
 
 from __future__ import annotations

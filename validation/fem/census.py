@@ -1,7 +1,7 @@
 """Everyday impacts: their materials, speeds and thicknesses, and those kept out of the fits.
 
-Every metal, ceramic and glass of the catalogue falls on every other, as a bead of 1 mm radius, at
-0.5 to 10 m/s onto plates of 0.6 to 10 mm.
+Sixteen metals, ceramics and glasses of the catalogue fall on each other, as beads of 1 mm radius,
+at 0.5 to 10 m/s onto plates of 0.6 to 10 mm.
 """
 
 from __future__ import annotations
@@ -19,6 +19,13 @@ from validation.fem.cases import Case
 RADIUS = 1e-3  # [m]
 SPEED = (0.5, 10.0)  # [m/s], drawn by its logarithm
 THICKNESS = (0.6e-3, 10e-3)  # [m], likewise
+# What the catalogue had when the first impacts were drawn; with more, each seed would draw others.
+LISTED = (
+    "alumina", "aluminium-2024-t3", "aluminium-6061-t6", "bearing-steel-52100", "brass-c26000",
+    "carbon-steel-1020", "copper-c11000", "gamma-alumina", "glass", "silicon-nitride",
+    "soda-lime-glass", "stainless-steel-304", "stainless-steel-316", "titanium-ti-6al-4v",
+    "tungsten-carbide", "zirconia",
+)  # fmt: skip
 # The impacts of the first four seeds were kept out of the first four fits of the law, and judged
 # them; later fits have seen them. Those of the fifth judged the last fit: they moved no number of
 # it, but the limit R/H = 1.4 of its answers was placed with them. The last were drawn later.
@@ -35,8 +42,7 @@ COUNT = 80
 
 def pairs() -> list[tuple[str, str]]:
     """Sphere and plate of every everyday pair."""
-    listed = [name for name in cl.materials() if cl.material(name).kind != "polymer"]
-    return list(itertools.permutations(listed, 2))
+    return list(itertools.permutations(LISTED, 2))
 
 
 def draw(seed: int, count: int) -> list[Case]:

@@ -25,6 +25,7 @@ from contactlaw.fitting.measurements import KINDS, NORMAL
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import UNKNOWNS, parameters
 from contactlaw.physical.scaling import law_of
+from validation.fem.census import LISTED
 from validation.inverse.model import rebounds, true
 
 Array = NDArray[np.float64]
@@ -66,9 +67,8 @@ class Outcome(NamedTuple):
 
 def draw(random: np.random.Generator, question: tuple[str, ...], law: str) -> Configuration:
     """Draw a configuration whose data depend on the unknowns of a question."""
-    names = [name for name in cl.materials() if cl.material(name).kind not in (None, "polymer")]
     while True:
-        sphere, plate = (cl.material(str(random.choice(names))) for _ in range(2))
+        sphere, plate = (cl.material(str(random.choice(LISTED))) for _ in range(2))
         pair = cl.Pair(*(_of_other_strength(random, body) for body in (sphere, plate)))
         strengths = [body.yield_strength or math.inf for body in (pair.sphere, pair.plate)]
         regime = str(random.choice(list(REGIMES)))
