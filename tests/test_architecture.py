@@ -53,8 +53,8 @@ FILES = {
     "cli/constant": ["records", "walls", "lines"],
     "cli/cor": ["curves", "figure"],
     "cli/fit": ["measured", "printed", "figure"],
-    "physical": ["arguments", "kind", "flow", "materials", "pair", "rate", "scaling", "measured",
-                 "history", "validity", "rebound", "oblique"],
+    "physical": ["arguments", "kind", "hardness", "flow", "materials", "pair", "rate", "scaling",
+                 "measured", "history", "validity", "rebound", "oblique"],
 }  # fmt: skip
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),

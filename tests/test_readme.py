@@ -1,5 +1,6 @@
 """What the README shows is what the code does."""
 
+import dataclasses
 import os
 import re
 import shlex
@@ -29,7 +30,7 @@ PAGES["README"] = (ROOT / "README.md").read_text()
 NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 # How many lines of a page state numbers, which are compared.
 STATED = {
-    "README": 5, "constants": 2, "fit": 4, "lammps": 1, "laws": 4, "materials": 1, "oblique": 4
+    "README": 5, "constants": 2, "fit": 4, "lammps": 1, "laws": 4, "materials": 4, "oblique": 4
 }  # fmt: skip
 SAID = " ".join(PAGES["tables"].split())
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.py"))
@@ -114,6 +115,17 @@ def test_the_stated_rows_of_a_speed_table():
     model = cl.ImpactModel(cl.Pair("glass", "carbon-steel-1020"))
     assert "by no more than the error: 14 for 1e-3 here" in PAGES["speed_tables"]
     assert len(model.speed_table(1e-3, 1e-3, 1e-3, 0.1, 10).speed) == 14
+
+
+def test_the_readme_says_how_wrong_a_specified_minimum_is():
+    sheet = cl.material("stainless-steel-304")
+    for strength in (205e6, 820e6):
+        pair = cl.Pair(dataclasses.replace(sheet, yield_strength=strength), "glass")
+        assert f"{cl.ImpactModel(pair).restitution(3.0, 1e-3, 5e-3):.3f}" in PAGES["README"]
+
+
+def test_materials_lists_the_catalogue():
+    assert set(cl.materials()) <= set(re.findall(r"[a-z0-9-]+", PAGES["materials"]))
 
 
 def test_the_readme_is_a_screen_or_two():

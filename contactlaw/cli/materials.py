@@ -8,7 +8,19 @@ from dataclasses import asdict
 from typing import Any
 
 from contactlaw.cli.parts import options
-from contactlaw.physical.materials import material, materials
+from contactlaw.physical.materials import Material, material, materials
+
+# Heading, width and places of each column, and what one of its unit is in SI units.
+_COLUMNS = {
+    "E [GPa]": (9, 3, 1e9),
+    "nu [-]": (7, 3, 1.0),
+    "rho [kg/m3]": (12, 0, 1.0),
+    "sigma_Y [MPa]": (14, 1, 1e6),
+    "H [GPa]": (8, 3, 1e9),
+    "B [MPa]": (8, 0, 1e6),
+    "n [-]": (6, 2, 1.0),
+    "C [-]": (6, 3, 1.0),
+}
 
 
 def add(commands: Any) -> None:
@@ -24,14 +36,22 @@ def _run(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print(json.dumps([asdict(entry) for entry in entries], indent=2))
         return
-    print(
-        f"{'name':24s} {'E [GPa]':>9s} {'nu [-]':>7s} {'rho [kg/m3]':>12s} {'sigma_Y [MPa]':>14s}"
-    )
+    headings = (f"{heading:>{width}s}" for heading, (width, *_) in _COLUMNS.items())
+    print(f"{'name':25s}", *headings)
     for entry in entries:
-        strength = "-" if entry.yield_strength is None else f"{entry.yield_strength / 1e6:.1f}"
-        print(
-            f"{entry.name:24s} {entry.youngs_modulus / 1e9:9.3f} {entry.poissons_ratio:7.3f} "
-            f"{entry.density:12.0f} {strength:>14s}"
-        )
+        print(f"{entry.name:25s}", *_cells(entry))
     if arguments.name:
         print(entries[0].source)
+
+
+def _cells(entry: Material) -> list[str]:
+    """Numbers of a material, each as wide as its column; a dash for those that it lacks."""
+    hardening = entry.hardening if isinstance(entry.hardening, tuple) else (None, entry.hardening)
+    numbers = (
+        entry.youngs_modulus, entry.poissons_ratio, entry.density, entry.yield_strength,
+        entry.hardness, *hardening, entry.rate and entry.rate[0],
+    )  # fmt: skip
+    return [
+        f"{'-':>{width}s}" if number is None else f"{number / unit:{width}.{places}f}"
+        for number, (width, places, unit) in zip(numbers, _COLUMNS.values(), strict=True)
+    ]

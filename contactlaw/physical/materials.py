@@ -5,7 +5,7 @@ import functools
 import math
 import re
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.resources import files
 from numbers import Real
 from typing import Any, TypeVar
@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from contactlaw.physical.arguments import refuse_units
 from contactlaw.physical.flow import Flow, from_hardness
+from contactlaw.physical.hardness import pascals
 
 # Two bounds of ours that detect values in other units, but allow the softened beads of DEM.
 _SOFTEST = 2e3  # [Pa]: above diamond in GPa (1100), below a hydrogel bead (1e4 Pa)
@@ -34,7 +35,12 @@ _LABELS = {
     "density": ("density", " kg/m3"),
     "yield_strength": ("yield strength", " Pa"),
     "hardness": ("hardness", " Pa"),
+    "hardening": ("hardening B [Pa] and n", ""),
+    "rate": ("rate C and rate0 [1/s]", ""),
 }
+# What an entry of the catalogue takes from the one that it is `like`: the same metal in another
+# temper, in which these hardly differ.
+_ALIKE = ("kind", "youngs_modulus", "poissons_ratio", "density")
 
 
 T = TypeVar("T", float, NDArray[np.float64])
@@ -123,8 +129,10 @@ class Material:
     kind : str, optional
         ``"metal"``, ``"ceramic"``, ``"glass"`` or ``"polymer"``; None if that is not known: it is
         taken for a polymer then if it is as soft and light as one, up to 10 GPa and 2300 kg/m3.
-    hardness : float, optional
-        Indentation hardness [Pa], Vickers or Knoop, positive; None if it is unknown. For a brittle
+    hardness : float or str, optional
+        Indentation hardness [Pa], Vickers or Knoop, positive, or a text such as "62 HRC", "800 HV"
+        or "200 HBW", which is stored in Pa (`contactlaw.physical.hardness` has the sources of the
+        conversion); None if it is unknown. For a brittle
         material, which has no yield strength, it limits the contact pressure. For a metal it is
         three times the flow stress at 8 % of strain (Tabor 1951), used where no yield strength or
         only the exponent of hardening is given.
@@ -156,7 +164,7 @@ class Material:
     yield_strength: float | None = None
     source: str = ""
     kind: str | None = None
-    hardness: float | None = None
+    hardness: float | str | None = None
     hardening: tuple[float, float] | float | None = None
     rate: tuple[float, float] | None = None
 
@@ -182,6 +190,8 @@ class Material:
         if strength is not None:
             strength = _positive(self.name, "yield_strength", strength, "Pa")
         hardness = self.hardness
+        if isinstance(hardness, str):
+            hardness = pascals(f"hardness of {self.name!r}", hardness)
         if hardness is not None:
             hardness = _positive(self.name, "hardness", hardness, "Pa")
         _check_units(self.name, modulus, density)
@@ -209,7 +219,7 @@ class Material:
         strength, (hardening, exponent) = self.yield_strength, (0.0, 1.0)
         if isinstance(self.hardening, tuple):
             hardening, exponent = self.hardening
-        elif self.hardness is not None and (self.strength_from_hardness or self.hardening):
+        elif isinstance(self.hardness, float) and (self.strength_from_hardness or self.hardening):
             exponent = self.hardening or exponent
             strength, hardening = from_hardness(
                 self.hardness, self.youngs_modulus, strength, self.hardening
@@ -332,22 +342,33 @@ def _catalogue() -> tuple[dict[str, Material], dict[str, str]]:
         files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8")
     )
     references = tables.pop("references")
-    by_name = {name: _from_table(name, table, references) for name, table in tables.items()}
+    by_name = {name: _from_table(name, tables, references) for name in tables}
     canonical = {name: name for name in by_name}
     for name, table in tables.items():
         canonical.update(dict.fromkeys(table.get("aliases", ()), name))
     return by_name, canonical
 
 
-def _from_table(name: str, table: dict[str, Any], references: dict[str, str]) -> Material:
+def _from_table(name: str, tables: dict[str, Any], references: dict[str, str]) -> Material:
+    table, source = tables[name], tables[name]["source"]
+    if "like" in table:
+        other = tables[table["like"]]
+        table = {field: other[field] for field in _ALIKE} | table
+        source = {field: other["source"][field] for field in _ALIKE[1:]} | source
+    # Hardening and rate are of the same fit as the yield strength A.
+    fitted = {"hardening", "rate"} & set(table)
+    source = source | {field: source["yield_strength"] for field in fitted}
     values = {field: table[field] for field in _LABELS if field in table}
+    body = Material(name, **values, kind=table["kind"])
     parts = [table["grade"]]
     for field, (label, unit) in _LABELS.items():
-        if field not in table["source"]:
+        if field not in source:
             continue  # as the hardness of a material that has a yield strength
-        number = f" {values[field]:g}{unit}" if field in values else ""
-        parts.append(f"{label}{number}: {table['source'][field].format_map(references)}")
-    return Material(name, **values, source="; ".join(parts), kind=table["kind"])
+        stored = getattr(body, field)
+        numbers = stored if isinstance(stored, tuple) else () if stored is None else (stored,)
+        shown = ",".join(f" {number:g}{unit}" for number in numbers)
+        parts.append(f"{label}{shown}: {source[field].format_map(references)}")
+    return replace(body, source="; ".join(parts))
 
 
 def _finite(name: str, field: str, value: object, unit: str) -> float:
@@ -380,7 +401,7 @@ def _hardening(body: Material) -> tuple[float, float] | float | None:
         exponent = _finite(body.name, "hardening", given, "-")
         if not (0.0 < exponent < 1.0):
             raise ValueError(f"{what}: n must be above 0 and below 1, got {given!r}")
-        if body.hardness is None:
+        if not isinstance(body.hardness, float):
             raise ValueError(
                 f"{what} is the exponent {exponent:g} alone: give (B, n) with B in Pa, or the "
                 "hardness, from which B follows"

@@ -229,7 +229,7 @@ def _damage(pair: Pair) -> float:
     """
     least = math.inf
     for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
-        if body.hardness is None or body.strength is not None:
+        if not isinstance(body.hardness, float) or body.strength is not None:
             continue
         pressure = _FLOW * body.hardness
         if (other.strength or math.inf) * _HARDNESS > pressure / 1.5:

@@ -17,6 +17,7 @@ import pytest
 from contactlaw.physical.materials import Material, material, materials
 
 NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength", "hardness")
+FLOW = ("hardening", "rate")
 REQUIRED = {
     "gamma-alumina",
     "glass",
@@ -47,7 +48,31 @@ BRITTLE = {
     "silicon-nitride",
     "polystyrene",
 }
-# Those of them whose hardness is citable.
+# Metals of which the hardness is known and no yield strength.
+BALLS = {
+    "bearing-steel-52100-ball",
+    "cast-steel-shot",
+    "stainless-steel-304-ball",
+    "stainless-steel-440c",
+}
+# Johnson & Cook 1983, Table 1: A, B [MPa], n and C, at 1 per second.
+JOHNSON_COOK = {
+    "alloy-steel-4340": (792, 510, 0.26, 0.014),
+    "aluminium-2024-t351": (265, 426, 0.34, 0.015),
+    "brass-c26000-annealed": (112, 505, 0.42, 0.009),
+    "carbon-steel-1006": (350, 275, 0.36, 0.022),
+    "copper-ofhc-annealed": (90, 292, 0.31, 0.025),
+}
+# From soft to hard, at 8 % of strain.
+ORDERS = [
+    ("stainless-steel-304", "stainless-steel-304-2b", "stainless-steel-304-ball",
+     "stainless-steel-420", "cast-steel-shot", "stainless-steel-440c", "bearing-steel-52100-ball"),
+    ("lead", "aluminium-5754-h111", "aluminium-6082-t6", "aluminium-2024-t351", "tungsten"),
+    ("copper-ofhc-annealed", "copper-c11000"),
+    ("brass-c26000-annealed", "brass-c26000"),
+    ("steel-dc01", "steel-s235", "ductile-iron-80-55-06", "alloy-steel-4340"),
+]  # fmt: skip
+# Those of the brittle ones whose hardness is citable.
 HARD = {"soda-lime-glass", "alumina", "zirconia", "silicon-nitride"}
 # Longitudinal sound speeds [m/s] of ASTM E494, Tables X3.1 and X3.2: measured by ultrasound, so
 # they know nothing of the tensile tests and handbooks behind the catalogue. Polymers are absent:
@@ -62,6 +87,9 @@ ULTRASONIC = {
     "titanium-ti-6al-4v": 6240.0,
     "copper-c11000": 4700.0,
     "brass-c26000": 4370.0,
+    "lead": 2160.0,
+    "stainless-steel-440c": 5900.0,
+    "tungsten": 5180.0,
     "alumina": 10200.0,
     "zirconia": 7040.0,
     "silicon-nitride": 10800.0,
@@ -99,17 +127,22 @@ def test_catalogue_has_what_users_need() -> None:
 @pytest.mark.parametrize("name", materials())
 def test_every_number_has_its_own_source(name: str) -> None:
     table, source = raw_catalogue()[name], material(name).source
-    # What yields needs no hardness, and so no line that says why it has none.
-    needed = set(NUMBERS if "yield_strength" not in table else NUMBERS[:-1])
-    assert needed <= set(table["source"]) <= set(NUMBERS)  # type: ignore[call-overload]
-    assert ("hardness" in table) <= ("hardness" in table["source"])  # type: ignore[operator]
-    assert set(table) <= {*NUMBERS, "grade", "kind", "aliases", "source"}
+    # What yields needs no hardness, and so no line that says why it has none. What is known by its
+    # hardness needs no line that says why it has no yield strength.
+    given = {"yield_strength"} & set(table) or {"hardness"} & set(table)
+    metal = "like" in table or table["kind"] == "metal"
+    needed = {*(() if "like" in table else NUMBERS[:3])}
+    needed |= given if metal else set(NUMBERS if "yield_strength" not in table else NUMBERS[:-1])
+    sourced = set(table["source"])  # type: ignore[call-overload]
+    assert needed | {"hardness"} & set(table) <= sourced <= set(NUMBERS)
+    assert ({*FLOW} & set(table) != set()) <= ("of the same fit" in source)
+    assert set(table) <= {*NUMBERS, *FLOW, "grade", "kind", "aliases", "source", "like"}
     assert "{" not in source, "a reference key was not expanded"
     for number, own in table["source"].items():  # type: ignore[attr-defined]
         if number in table:
             # Without a {reference} key the text itself must be long enough to be a citation.
             assert "{" in own or len(own) > 20
-            assert f" {table[number]:g}" in source
+            assert f" {getattr(material(name), number):g}" in source
         else:
             assert own.startswith("none")
 
@@ -129,8 +162,9 @@ def test_entry_is_physically_plausible(name: str) -> None:
         # Lead and pure aluminium yield near 2e-4; a perfect crystal, the limit, near 0.1.
         assert 1e-4 < entry.yield_strength / entry.youngs_modulus < 0.1
     if entry.hardness is not None:
-        # Far above the metals' yield strain; a perfect crystal, three times its 0.1, is the limit.
-        assert 0.02 < entry.hardness / entry.youngs_modulus < 0.3
+        # A perfect crystal, three times its 0.1, is the limit. Brittle bodies are far above metals.
+        least = 3e-4 if entry.kind == "metal" else 0.02
+        assert least < entry.hardness / entry.youngs_modulus < 0.3
 
 
 @pytest.mark.parametrize("name", sorted(HARD))
@@ -156,12 +190,63 @@ def test_tungsten_carbide_returns_the_speeds_it_was_computed_from() -> None:
 
 def test_brittle_materials_have_no_yield_strength() -> None:
     without = {name for name in materials() if material(name).yield_strength is None}
-    assert without == BRITTLE
+    assert without == BRITTLE | BALLS
+    assert {name for name in without if material(name).strength_from_hardness} == BALLS
 
 
 def test_hardness_is_given_where_there_is_no_yield_strength() -> None:
-    assert {name for name in materials() if material(name).hardness is not None} == HARD
-    assert HARD < BRITTLE
+    known = {name for name in materials() if material(name).hardness is not None}
+    assert {name for name in known if material(name).kind != "metal"} == HARD
+    assert HARD < BRITTLE and BALLS < known
+
+
+@pytest.mark.parametrize("name", [name for name in materials() if material(name).kind == "metal"])
+def test_hardness_of_a_metal_is_what_its_source_prints(name: str) -> None:
+    table = raw_catalogue()[name]
+    if "hardness" not in table:
+        return
+    printed = re.search(r"([\d.]+)(?: to (\d+))? (HRC|HBW)$", table["source"]["hardness"])  # type: ignore[index]
+    assert printed is not None
+    ends = [float(end) for end in (printed[1], printed[2] or printed[1])]
+    assert table["hardness"] == f"{sum(ends) / 2:g} {printed[3]}"
+
+
+@pytest.mark.parametrize(("name", "printed"), JOHNSON_COOK.items())
+def test_hardening_and_rate_are_johnson_and_cooks(name: str, printed: tuple[float, ...]) -> None:
+    flow = material(name).flow
+    assert flow is not None
+    strength, hardening, exponent, rate = printed
+    assert flow == pytest.approx((strength * 1e6, hardening * 1e6, exponent, rate, 1.0))
+    words = f"n {hardening * 1e6:g}, {exponent:g}: Johnson & Cook", f"[1/s] {rate:g}, 1: Johnson"
+    assert all(word in material(name).source for word in words)
+
+
+def test_only_those_metals_harden() -> None:
+    assert {name for name in materials() if material(name).rate} == set(JOHNSON_COOK)
+    assert {name for name in materials() if material(name).hardening} == set(JOHNSON_COOK)
+
+
+def test_johnson_and_cooks_4340_is_as_hard_as_they_print() -> None:
+    """Their table has 30 HRC beside it: two measurements that Tabor's rule relates."""
+    flow = material("alloy-steel-4340").flow
+    hard = steel(kind="metal", hardness="30 HRC").flow
+    assert flow is not None and hard is not None
+    assert flow.stress(0.08) == pytest.approx(hard.strength, rel=0.1)
+
+
+@pytest.mark.parametrize("names", ORDERS, ids=lambda names: names[0])
+def test_metals_are_in_the_order_of_their_hardness(names: tuple[str, ...]) -> None:
+    flows = [material(name).flow for name in names]
+    stresses = [flow.stress(0.08) for flow in flows if flow is not None]
+    assert len(stresses) == len(names) and stresses == sorted(stresses)
+
+
+def test_a_metal_in_another_temper_is_as_stiff_and_dense() -> None:
+    sheet, ball = material("stainless-steel-304"), material("stainless-steel-304-ball")
+    for number in ("youngs_modulus", "poissons_ratio", "density", "kind"):
+        assert getattr(sheet, number) == getattr(ball, number)
+    assert sheet.source.split("; ")[1:4] == ball.source.split("; ")[1:4]
+    assert "stainless-steel-304-ball" in sheet.source and "minimum" in sheet.source
 
 
 @pytest.mark.parametrize(
@@ -181,6 +266,9 @@ def test_hardness_is_given_where_there_is_no_yield_strength() -> None:
         ("Nylon 6,6", "nylon-66"),
         ("polyethylene", "hdpe"),
         ("GLASS", "glass"),
+        ("304 ball", "stainless-steel-304-ball"),
+        ("S235JR", "steel-s235"),
+        ("cast iron", "ductile-iron-80-55-06"),
     ],
 )
 def test_names_are_found_however_they_are_typed(alias: str, name: str) -> None:
