@@ -129,6 +129,20 @@ def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
     return kind(value)
 
 
+def number_or_list(parent: h5py.Group, name: str) -> float | list[float]:
+    """Read an attribute that is a number or a list of numbers.
+
+    Raises
+    ------
+    ValueError
+        If there is none of that name, or of another kind.
+    """
+    value = parent.attrs.get(name)
+    if isinstance(value, np.ndarray) and value.dtype.kind in "iuf" and value.ndim == 1:
+        return [float(number) for number in value]
+    return float(attribute(parent, name, float))
+
+
 def _member(parent: h5py.Group, name: str, kind: type, expected: str) -> Any:
     path = f"{parent.name}/{name}".replace("//", "/")[1:]
     found = parent.get(name)

@@ -21,7 +21,9 @@ from contactlaw.physical.pair import Pair
 
 FORMAT = "contactlaw-"  # the attribute "format" is this and the name of the scene that has run
 _BODIES = "sphere", "plate"
-_TEXTS = "name", "source", "kind"  # of a material; its other fields are numbers
+# Fields of a material that are texts, and lists of numbers; the others are numbers.
+_TEXTS = "name", "source", "kind"
+_LISTS = "hardening", "rate"
 _REQUIRED = "name", "source", "youngs_modulus", "poissons_ratio", "density"
 
 
@@ -140,9 +142,12 @@ def hits(file: h5py.File) -> Hits:
 
 
 def _material(group: h5py.Group) -> Material:
+    names = [one.name for one in fields(Material)]
     stored: dict[str, Any] = {
-        field.name: hdf5.attribute(group, field.name, str if field.name in _TEXTS else float)
-        for field in fields(Material)
-        if field.name in _REQUIRED or field.name in group.attrs
+        name: hdf5.number_or_list(group, name)
+        if name in _LISTS
+        else hdf5.attribute(group, name, str if name in _TEXTS else float)
+        for name in names
+        if name in _REQUIRED or name in group.attrs
     }
     return Material(**stored)

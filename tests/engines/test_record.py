@@ -49,8 +49,9 @@ def test_every_column_has_a_unit_and_a_description():
 
 
 def test_a_record_keeps_every_field_of_a_material(tmp_path):
-    sphere = dataclasses.replace(cl.material("gamma-alumina"), hardness=1e9)
-    plate = cl.Material("brittle", 70e9, 0.2, 2500)
+    more = {"hardness": 2e9, "hardening": (5e6, 0.3), "rate": (0.02, 1.0)}
+    sphere = dataclasses.replace(cl.material("gamma-alumina"), **more)
+    plate = cl.Material("steel", 207e9, 0.3, 7850, kind="metal", hardness="62 HRC", hardening=0.1)
     assert None not in dataclasses.astuple(sphere)
     with h5py.File(tmp_path / "run.h5", "w") as file:
         layout.write_materials(file, sphere, plate)
