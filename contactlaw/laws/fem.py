@@ -32,6 +32,10 @@ A body softer than the campaign's flows completely in contacts that are shallowe
 Up to complete flow, similarity makes g, h and k functions of q; beyond, they are functions of w,
 those of the softest body that was pressed (`Curves`).
 
+Where a body hardens, its flow stress is A + B strain^n at a representative strain, c (w - b w_Y),
+with w_Y the w at which flow begins. The curves at a depth are those of ideal bodies of the strength
+there (`HardeningCurves`). `validation.fem.metals` has the impacts to which c was fitted.
+
 Legend: compressions in units of the yield compression d_Y of the weaker body, or of R where
 none yields; forces in K d_Y^1.5.
 """

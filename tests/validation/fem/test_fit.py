@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from contactlaw.laws import fem
-from validation.fem import campaign, census, fit, journal, store
+from validation.fem import campaign, census, fit, journal, metals, store
 from validation.fem.campaign import Press
 
 
@@ -28,6 +28,13 @@ def test_the_fit_gives_the_numbers_that_are_shipped():
     np.testing.assert_allclose(ours, shipped, rtol=1e-3, atol=1e-3)
 
 
+def test_the_constants_of_hardening_and_rate_are_where_their_fit_ends():
+    """A step of Gauss and Newton from the constants that are shipped leads hardly anywhere."""
+    strain, rate = fem.numbers()["strain"][0], fem.numbers()["rate"]
+    assert metals.step(strain, rate) == pytest.approx((1.0, 1.0), abs=0.02)
+    assert np.sqrt(np.mean(metals.errors(strain, rate) ** 2)) < 0.0125
+
+
 def test_no_fit_reads_the_set_kept_out(monkeypatch):
     read = []
 
@@ -38,6 +45,9 @@ def test_no_fit_reads_the_set_kept_out(monkeypatch):
     monkeypatch.setattr(fit, "store", type("Store", (), {"read": staticmethod(noted)}))
     assert len(fit.blows()) > 400
     assert "kept_out" not in read and "everyday" in read
+    monkeypatch.setattr(metals, "store", fit.store)
+    metals.errors(*fem.numbers()["strain"][:1], fem.numbers()["rate"])
+    assert "metals_kept_out" not in read and "metals" in read
 
 
 @pytest.mark.parametrize("name", census.SEEDS)

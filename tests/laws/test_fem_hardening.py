@@ -1,0 +1,92 @@
+"""The law fem for bodies that harden: limits, and its curves beside those of ideal bodies."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw.laws import fem, law
+
+IDEAL = cl.Material("steel", 207e9, 0.3, 7850, yield_strength=350e6)
+PLATE = cl.Material("plate", 70e9, 0.22, 2500)
+SHARE, LATE = fem.numbers()["strain"]
+
+
+def model(sphere, plate=PLATE):
+    return cl.ImpactModel(cl.Pair(sphere, plate))
+
+
+def hardening(b, n, body=IDEAL):
+    return dataclasses.replace(body, hardening=(b, n))
+
+
+@pytest.mark.parametrize("speed", [0.05, 1.0, 8.0])
+def test_without_any_rise_the_answers_are_those_of_an_ideal_body(speed):
+    """B = 1 Pa changes nothing; with n near 0 the flow stress is A + B at any strain but none."""
+    impact = speed, 1e-3, 4e-3
+    ideal = model(IDEAL).solve(*impact)
+    slight = model(hardening(1.0, 0.3)).solve(*impact)
+    step = model(hardening(300e6, 1e-9)).solve(*impact)
+    stronger = model(dataclasses.replace(IDEAL, yield_strength=650e6)).solve(*impact)
+    for name in ("restitution", "contact_time", "peak_force", "plastic_fraction"):
+        assert getattr(slight, name) == pytest.approx(getattr(ideal, name), rel=1e-6, abs=1e-9)
+        assert getattr(step, name) == pytest.approx(getattr(stronger, name), rel=1e-5, abs=1e-9)
+
+
+@pytest.mark.parametrize("role", ["sphere", "plate"])
+@pytest.mark.parametrize("depth", [1e-3, 1e-2, 5e-2])
+def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
+    """Force and residual compression, by the flow stress at c (w - b w_Y)."""
+    ratio, times, n = 400.0, 2.0, 0.4
+    numbers = {"modulus_share": 0.4, "poissons_ratio": 0.3, "plate_poissons_ratio": 0.22}
+    none = {"sphere_ratio": 0.0, "plate_ratio": 0.0}
+    hard = law(
+        "fem", **numbers, **{**none, f"{role}_ratio": ratio},
+        **{f"{role}_hardening": times, f"{role}_exponent": n},
+    )  # fmt: skip
+    onset = law("fem", **numbers, **{**none, f"{role}_ratio": ratio}).scale
+    assert hard.onset == pytest.approx(onset)
+    strain = SHARE * (math.sqrt(depth) - LATE * math.sqrt(onset))
+    there = {**none, f"{role}_ratio": ratio / (1.0 + times * strain**n)}
+    ideal = fem.law(*{**there, **numbers}.values())
+    for one in (hard, ideal):
+        assert one.scale < depth < one.range[1] * one.scale
+    ours, expected = (
+        (
+            one.loading(math.sqrt(depth / one.scale)) * one.scale**1.5,
+            one.residual(depth / one.scale) * one.scale,
+        )
+        for one in (hard, ideal)
+    )
+    assert ours == pytest.approx(expected, rel=1e-9)
+
+
+def test_restitution_rises_with_hardening_and_flow_begins_at_the_yield_strength():
+    speeds = np.array([0.3, 1.0, 3.0, 10.0])
+    answers = [model(hardening(b, 0.3)) for b in (1e6, 100e6, 400e6, 1600e6)]
+    cors = np.array([one.restitution(speeds, 1e-3, 4e-3) for one in answers])
+    assert (np.diff(cors, axis=0) > 0.0).all()
+    onset = model(IDEAL).yield_speed(1e-3, 4e-3)
+    # tables know the elastic compression of impacts that reach the law's own yield, a little later
+    assert [one.yield_speed(1e-3, 4e-3) for one in answers] == pytest.approx([onset] * 4, rel=3e-3)
+
+
+def test_nothing_jumps_where_the_other_body_becomes_the_weaker_one():
+    """Bodies of equal strength and unequal hardening, 0.01 % about equality."""
+
+    def cor(strength):
+        plate = dataclasses.replace(IDEAL, yield_strength=strength, hardening=(100e6, 0.5))
+        return model(hardening(400e6, 0.2), plate).solve(3.0, 1e-3, 4e-3).restitution
+
+    below, equal, above = (cor(x * 350e6) for x in (0.9999, 1.0, 1.0001))
+    assert below == pytest.approx(equal, rel=1e-4)
+    assert above == pytest.approx(equal, rel=1e-4)
+
+
+def test_the_name_holds_the_numbers_of_hardening_and_gives_the_same_law():
+    made = model(hardening(275e6, 0.36)).force_law
+    assert law(made.name).follows(made)
+    assert len(made.parameters) == 9
+    assert len(model(IDEAL).force_law.parameters) == 5
