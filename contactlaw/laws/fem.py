@@ -345,19 +345,22 @@ class HardeningCurves(Curves):
     """Curves of bodies that harden: at each depth those of the strength that they have there.
 
     That is the flow stress at a representative strain, c (w - b w_Y) with w = sqrt(d/R) and w_Y its
-    value where flow begins. Which body flows, and how both share the flow, is taken at one typical
-    depth, so that no curve has a kink where the stronger body becomes the weaker one.
+    value where flow begins; less where both bodies share the flow. Which body flows, and how both
+    share the flow, is taken at one typical depth, so that no curve has a kink where the stronger
+    body becomes the weaker one.
     """
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or numbers()
-        blend, (slope, late) = float(found["blend"]), found["strain"]
+        blend, (slope, late, both) = float(found["blend"]), found["strain"]
         onset = Given(*given[:5]).yield_scale(blend)
         late *= math.sqrt(onset)
 
         def ratios(w: Any) -> tuple[Any, Any]:
             return given.ratios(slope * np.maximum(w - late, 0.0))
 
+        typical = Given(*ratios(_TYPICAL), *given[2:5])
+        slope *= 1.0 - both * typical.share_both(blend)  # bodies that share the flow flow less
         typical = Given(*ratios(_TYPICAL), *given[2:5])
         super().__init__(typical, found)
         flow = typical.flow(blend).values()

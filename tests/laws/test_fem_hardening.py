@@ -11,7 +11,7 @@ from contactlaw.laws import fem, law
 
 IDEAL = cl.Material("steel", 207e9, 0.3, 7850, yield_strength=350e6)
 PLATE = cl.Material("plate", 70e9, 0.22, 2500)
-SHARE, LATE = fem.numbers()["strain"]
+SHARE, LATE, _ = fem.numbers()["strain"]
 
 
 def model(sphere, plate=PLATE):

@@ -7,7 +7,7 @@ constants Johnson and Cook published (Proc. 7th Int. Symp. Ballistics, 1983, tab
 from __future__ import annotations
 
 import dataclasses
-import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,6 @@ from contactlaw.physical import rate as rates
 from contactlaw.physical.scaling import pair_numbers
 from validation.fem import fit, journal, store
 from validation.fem.cases import Case
-from validation.fem.fit import numbers_of
 
 Array = NDArray[np.float64]
 
@@ -51,6 +50,7 @@ _SPEEDS = (0.3, 30.0), (0.5, 15.0)  # [m/s], of the fit and kept out
 _SLENDERNESS = (0.1, 1.4)  # R/H
 _RATIOS = (30.0, 1500.0)  # E*/A
 _DEEPEST = 0.35  # radius of the contact over that of the sphere, by a rough estimate
+_STEP = 0.05  # relative, of the differences of a fit
 _SHALLOWEST = 3.0  # speed over the yield speed
 
 
@@ -136,20 +136,34 @@ def _published(generator: np.random.Generator) -> Case:
     )  # fmt: skip
 
 
-def errors(strain: float, rate: float, name: str = "metals") -> Array:
+class Constants(NamedTuple):
+    """Constants that are fitted to the impacts of `FITTED`."""
+
+    strain: float  # representative strain over sqrt(d/R) ...
+    both: float  # ... less by this share where both bodies flow alike
+    rate: float  # representative rate over V0/R
+
+
+def shipped() -> Constants:
+    """Constants of the law."""
+    strain, _, both = fem.numbers()["strain"]
+    return Constants(strain, both, fem.numbers()["rate"])
+
+
+def errors(name: str, constants: Constants) -> Array:
     """Errors in COR of the law with other constants; below 0.3 over 0.3, 0 where it is flagged."""
     data = store.read(name).data
-    found = {**fem.numbers(), "strain": [strain, fem.numbers()["strain"][1]]}
+    late = fem.numbers()["strain"][1]
+    found = {**fem.numbers(), "strain": [constants.strain, late, constants.both]}
     off = np.zeros(data["speed"].size)
     for n, case in enumerate(draw(name)):
-        pair = law_pair(case)
+        pair = fit.pair_of(dataclasses.asdict(case))
         flow = rates.rated(pair, laws.law("fem", **pair_numbers(pair, "fem")))
         if flow is not None:
-            flow = flow._replace(rate0=flow.rate0 * rates.SHARE / rate)
+            flow = flow._replace(rate0=flow.rate0 * rates.SHARE / constants.rate)
             factor = rates.factors(flow, np.array(case.speed), np.array(case.radius)).item()
             pair = rates.strengthened(pair, factor)
-        given = numbers_of(pair)
-        law = fem.law_of(given, found)
+        law = fem.law_of(fit.numbers_of(pair), found)
         hit = cl.ImpactModel(pair, law).solve(case.speed, case.radius, case.thickness, rtol=1e-7)
         measured = float(data["restitution"][n])
         if not hit.flags & cl.Validity.ACCURACY:
@@ -157,24 +171,15 @@ def errors(strain: float, rate: float, name: str = "metals") -> Array:
     return off
 
 
-def step(strain: float, rate: float) -> tuple[float, float]:
-    """Next step of the fit, by Gauss and Newton: factors on both constants, 1 at the optimum."""
-    logs = 0.05
-    here = errors(strain, rate)
-    slopes = np.stack(
-        [
-            (errors(strain * math.exp(logs), rate) - here) / logs,
-            (errors(strain, rate * math.exp(logs)) - here) / logs,
-        ],
-        axis=1,
-    )
-    moved = np.exp(np.linalg.lstsq(slopes, -here, rcond=None)[0])
-    return float(moved[0]), float(moved[1])
-
-
-def law_pair(case: Case) -> cl.Pair:
-    """Materials of a case, without a strength where a body is held elastic."""
-    return fit.pair_of(dataclasses.asdict(case))
+def step(constants: Constants) -> Constants:
+    """Step of the fit from some constants, by Gauss and Newton; zeros at the optimum."""
+    here = np.concatenate([errors(name, constants) for name in FITTED])
+    slopes = []
+    for n, value in enumerate(constants):
+        moved = constants._replace(**{Constants._fields[n]: (1.0 + _STEP) * value})
+        there = np.concatenate([errors(name, moved) for name in FITTED])
+        slopes.append((there - here) / (_STEP * value))
+    return Constants(*np.linalg.lstsq(np.stack(slopes, axis=1), -here, rcond=None)[0].tolist())
 
 
 def compute(name: str, processes: int) -> None:
