@@ -3,12 +3,13 @@
 A flowing contact's strength is that at a representative rate, a share of V0/R: at the deepest
 point, which decides about the rebound, the flow has nearly come to rest. Both the yield strength
 and the hardening of a body grow by its factor 1 + C ln(rate/rate0). Where both bodies have one, the
-factor of the weaker body serves for both.
+factor is that of the weaker body; the other body's follows from the rate that it stands for.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,11 +28,7 @@ _FASTEST = 1e7  # V0/R [1/s] up to which tables reach: 100 m/s at 10 micrometres
 
 def rated(pair: Pair, law: Law) -> Flow | None:
     """Flow whose rate strengthens a pair in a law; None if nothing does."""
-    if "sphere_ratio" not in law.from_pair:
-        return None
-    known = [body.flow for body in (pair.sphere, pair.plate) if body.flow is not None]
-    with_rate = [flow for flow in known if flow.rate]
-    return min(with_rate, key=lambda flow: flow.strength) if with_rate else None
+    return _leading(pair) if "sphere_ratio" in law.from_pair else None
 
 
 def factors(flow: Flow, speed: Array, radius: Array) -> Array:
@@ -46,14 +43,27 @@ def largest_factor(flow: Flow) -> float:
 
 
 def strengthened(pair: Pair, factor: float) -> Pair:
-    """Pair without rate, whose bodies that have one are stronger by a factor."""
-    return Pair(*(_strengthened(body, factor) for body in (pair.sphere, pair.plate)))
+    """Pair without rate, with the strengths that its bodies have where the factor is this one.
+
+    A factor of 1 stands for rate0 of the body whose factor it is.
+    """
+    flow = _leading(pair)
+    rate = flow.rate0 * math.exp((factor - 1.0) / flow.rate) if flow else 0.0
+    return Pair(*(_strengthened(body, rate) for body in (pair.sphere, pair.plate)))
 
 
-def _strengthened(body: Material, factor: float) -> Material:
+def _leading(pair: Pair) -> Flow | None:
+    """Flow of the weakest body that has a rate."""
+    known = [body.flow for body in (pair.sphere, pair.plate) if body.flow is not None]
+    with_rate = [flow for flow in known if flow.rate]
+    return min(with_rate, key=lambda flow: flow.strength) if with_rate else None
+
+
+def _strengthened(body: Material, rate: float) -> Material:
     flow = body.flow
     if flow is None or not flow.rate:
         return body
+    factor = flow.factor(rate)
     hardening = (factor * flow.hardening, flow.exponent) if flow.hardening else None
     return dataclasses.replace(
         body, yield_strength=factor * flow.strength, hardening=hardening, rate=None

@@ -1,0 +1,52 @@
+"""The strength of a pair at the rate of an impact."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw.physical import rate
+from contactlaw.physical.scaling import law_of
+
+IRON = cl.Material(
+    "iron", 207e9, 0.3, 7850, yield_strength=175e6, hardening=(380e6, 0.32), rate=(0.06, 1.0)
+)
+ALLOY = cl.Material("alloy", 72e9, 0.33, 2770, yield_strength=265e6, rate=(0.015, 10.0))
+GLASS = cl.Material("glass", 73e9, 0.21, 2500)
+
+
+def flow_of(pair):
+    return rate.rated(pair, law_of(pair, "fem"))
+
+
+def test_each_body_has_its_own_strength_at_the_rate_of_the_impact():
+    pair = cl.Pair(ALLOY, IRON)
+    flow = flow_of(pair)
+    assert flow == IRON.flow  # the weaker body's
+    speed, radius = np.array([2.0]), np.array([1e-3])
+    factor = rate.factors(flow, speed, radius).item()
+    at = rate.SHARE * 2000.0  # representative rate [1/s]
+    assert factor == pytest.approx(1.0 + 0.06 * math.log(at))
+    stronger = rate.strengthened(pair, factor)
+    assert stronger.plate.yield_strength == pytest.approx(175e6 * factor)
+    assert stronger.plate.hardening == pytest.approx((380e6 * factor, 0.32))
+    assert stronger.sphere.yield_strength == pytest.approx(
+        265e6 * (1.0 + 0.015 * math.log(at / 10.0))
+    )
+    assert stronger.sphere.rate is None and flow_of(stronger) is None
+
+
+def test_slow_impacts_have_the_strength_of_a_slow_test():
+    pair = cl.Pair(IRON, GLASS)
+    slow = rate.factors(flow_of(pair), np.array([1e-3]), np.array([1e-3]))
+    assert slow.tolist() == [1.0]
+    assert rate.strengthened(pair, 1.0).sphere == dataclasses.replace(IRON, rate=None)
+    assert rate.strengthened(pair, 1.5).plate is pair.plate
+
+
+def test_other_laws_have_no_rate():
+    pair = cl.Pair(IRON, GLASS)
+    assert rate.rated(pair, law_of(pair, "myc")) is None
+    assert flow_of(cl.Pair(dataclasses.replace(IRON, rate=None), GLASS)) is None
