@@ -367,6 +367,6 @@ STUDIES: dict[str, Callable[[int], None]] = {
     "edge": edge,
     "campaign_indentation": campaign.indentations,
     "campaign_impact": campaign.blows,
-    **{name: functools.partial(census.compute, name) for name in census.SEEDS},
+    **{name: functools.partial(census.compute, name) for name in (*census.SEEDS, census.THIN)},
     **{name: functools.partial(metals.compute, name) for name in metals.SEEDS},
 }

@@ -56,6 +56,10 @@ def test_everyday_impacts_are_those_of_their_seed(name):
     assert census.drawn(name) == census.draw(census.SEEDS[name], census.COUNT)
 
 
+def test_thin_plates_are_those_of_their_seed():
+    assert census.drawn(census.THIN) == census.draw_thin(census.THIN_SEED)
+
+
 def test_the_campaign_covers_what_it_says():
     jobs = campaign.presses()
     ratios = {max(j.sphere if j.sphere < math.inf else 0, j.plate if j.plate < math.inf else 0)
