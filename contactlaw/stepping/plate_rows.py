@@ -120,5 +120,5 @@ def limits_of(row: Any) -> Limits:
     """Limits of the model behind a plate row."""
     return Limits(
         row.slender, row.slowness, row.always, row.flags_when_yielded, row.least_yield_ratio,
-        row.fastest, row.swiftest, row.share, row.deepest, row.bending, row.damage, row.untried,
+        row.fastest, row.swiftest, row.share, row.deepest, row.bending, row.damage, row.on_yield,
     )  # fmt: skip

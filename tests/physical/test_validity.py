@@ -73,6 +73,23 @@ def test_other_law(model):
     assert metal.solve(3.0 * model.pair.yield_speed, R, 2e-3).flags & Validity.OTHER_LAW
 
 
+@pytest.mark.parametrize("law", ["fem", "myc"])
+def test_a_strength_from_hardness_is_flagged_where_such_a_body_yields(law):
+    """Plates of 0.35 and 0.37 of its strength: next to the first such a bead does not yield."""
+    ball = cl.Material("ball", 207e9, 0.3, 7850, hardness=1.8e9, kind="metal")
+    known = cl.Material("ball", 207e9, 0.3, 7850, hardness=1.8e9, kind="metal", hardening=0.2)
+    plates = [
+        cl.Material("plate", 70e9, 0.33, 2700, yield_strength=share * ball.strength)
+        for share in (2.0, 0.37, 0.35)
+    ]
+    hardened = [(known, plates[0])] if law == "fem" else []  # other laws refuse hardening
+    for bodies in [*((ball, plate) for plate in plates), *hardened]:
+        model, first = cl.ImpactModel(cl.Pair(*bodies), law), cl.Pair(*bodies).yield_speed
+        flagged = Validity.FROM_HARDNESS * (bodies[0] is ball and bodies[1] is not plates[2])
+        for speed, expected in ((0.9 * first, 0), (1.1 * first, flagged)):
+            assert model.solve(speed, R, 1.0).flags & Validity.FROM_HARDNESS == expected
+
+
 def test_two_beads_have_the_flags_of_their_own_yield_speed(model):
     """V^2 goes as R*^3/m*; a bead as large as a wall is a half-space."""
     beads = cl.ImpactModel(cl.Pair(model.pair.sphere, model.pair.sphere), law="myc")

@@ -25,9 +25,10 @@ from contactlaw import Validity
 from contactlaw.laws.fem import ALONE
 from contactlaw.physical.rebound import Rebound
 from validation.accuracy import halfspace
-from validation.fem import fit, store
+from validation.fem import census, fit, store
 
 LAW = "fem"
+STORED = "matrix", "pairs", "strengths", "limits", "campaign_impact", *census.SEEDS
 ENOUGH = 0.95  # share of the impacts that has to be within the bound of each number
 YIELDING = ("none", "sphere", "plate", "both")
 
@@ -197,6 +198,22 @@ def members(target: Target, law: str = LAW) -> tuple[Member, ...]:
         if one.slenderness <= target.slenderness * (1.0 + 1e-9)
         and one.speed_ratio <= target.speed_ratio * (1.0 + 1e-9)
     )
+
+
+def differences(law: str, flag: Validity, beside: Validity) -> list[float]:
+    """COR of a law less that of all stored finite elements, of impacts with a flag, in order.
+
+    Impacts count that carry no further flag of accuracy but those of `beside`.
+
+    Examples
+    --------
+    >>> found = differences("myc", Validity.THIN_PLATE, Validity.FAST_IMPACT)
+    >>> len(found), round(found[-1], 3)
+    (6, 0.028)
+    """
+    others = Validity.ACCURACY & ~(flag | beside)
+    every = (one for study in STORED for one in _of_study(study, law, 0.0))
+    return sorted(one.law - one.fem for one in every if one.flags & flag and not one.flags & others)
 
 
 def _of_study(study: str, law: str, least: float) -> list[Member]:

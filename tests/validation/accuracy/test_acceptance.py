@@ -21,6 +21,17 @@ MEASURED = {
     # the one impact beyond a bound has a peak force 6.003 % too high, for 6 %
     "metals": (40, 1, 1, (1.0, 1.0, 0.975, 1.0), 0.01047),
 }
+# Where `explain` says how wrong the COR is: law, flag, flags beside it, impacts, ends of its error.
+WRONG = [
+    ("fem", Validity.FAST_IMPACT, 0, 44, -0.031, 0.021),
+    ("myc", Validity.FAST_IMPACT, 0, 6, -0.012, 0.026),
+    ("myc", Validity.THICK_PLATE, 0, 23, -0.022, 0.074),
+    ("myc", Validity.SOFT_PLATE, 0, 10, 0.004, 0.049),
+    ("myc", Validity.SOFT_PLATE, 38, 104, -0.155, 0.476),
+    ("myc", Validity.OTHER_LAW, 6, 279, -0.237, 0.146),
+    ("fem", Validity.DEEP_CONTACT, 2, 4, -0.067, 0.046),
+    ("fem", Validity.BENT_PLATE, 1, 5, 0.003, 0.031),
+]
 MOST_FLAGGED = 0.1  # largest share of everyday impacts with a flag
 
 
@@ -39,6 +50,15 @@ def test_the_law_reaches_what_was_measured(rows, name):
     assert row.rms == pytest.approx(rms, rel=0.02)
     assert row.enough
     assert row.holds == (not silent)
+
+
+@pytest.mark.parametrize(("law", "flag", "beside", "count", "least", "largest"), WRONG)
+def test_flags_say_how_wrong_the_cor_is(law, flag, beside, count, least, largest):
+    found = acceptance.differences(law, flag, Validity(beside))
+    assert (len(found), found[0], found[-1]) == pytest.approx((count, least, largest), abs=6e-4)
+    (words,) = cl.explain(flag)
+    ends = (f"{abs(end):.2f}" for end in (found[0], found[-1]) if abs(end) >= 0.025)
+    assert all(end in words for end in ends)
 
 
 def test_bounds_are_those_that_were_agreed():
