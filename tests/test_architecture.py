@@ -54,7 +54,7 @@ FILES = {
     "cli/cor": ["curves", "figure"],
     "cli/fit": ["measured", "printed", "figure"],
     "physical": ["arguments", "kind", "hardness", "flow", "materials", "pair", "rate", "scaling",
-                 "measured", "history", "validity", "rebound", "oblique"],
+                 "measured", "validity", "history", "rebound", "oblique"],
 }  # fmt: skip
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),

@@ -65,11 +65,10 @@ class Solver:
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        contact = self.bodies.contact(impacts)
-        units = scales(contact, impacts.speed)
-        found = within(self.bodies.law, units, self.rtol, self.extent)
+        normal, found = self._solved(impacts)
+        units = scales(self.bodies.contact(impacts), impacts.speed)
         contacts = histories(self.bodies.law, found, samples)
-        return with_units(contacts, units, found.inelasticity, impacts.shape)
+        return with_units(contacts, units, found.inelasticity, impacts.shape, normal.flags)
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""

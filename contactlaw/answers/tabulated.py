@@ -172,11 +172,10 @@ class Tabulated:
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        contact = self.bodies.contact(impacts)
-        units = scales(contact, impacts.speed)
-        found, _ = self.border.look_up(self.bodies.law, self.packed, units)
+        normal, found = self._rebounds(impacts)
+        units = scales(self.bodies.contact(impacts), impacts.speed)
         contacts = self._shapes(found, samples)
-        return with_units(contacts, units, found.inelasticity, impacts.shape)
+        return with_units(contacts, units, found.inelasticity, impacts.shape, normal.flags)
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""

@@ -12,7 +12,7 @@ from contactlaw import style
 from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
 from contactlaw.cli.parts.quantities import LENGTH, formatted
 from contactlaw.physical.history import ForceHistory
-from contactlaw.physical.validity import explain
+from contactlaw.physical.validity import explain, limits_in_words
 
 
 def add(commands: Any) -> None:
@@ -44,8 +44,7 @@ def _contact(arguments: argparse.Namespace) -> ForceHistory:
     model = chosen.model(arguments)
     with wording.naming_impact(*impact):
         found = model.force_history(*impact, arguments.samples, method)
-        rebound = model.solve(*impact) if arguments.solve else model.lookup(*impact)
-    flags = int(rebound.flags)
+    flags = int(found.flags)
     for name, words in zip(impacts.flag_names(flags), explain(flags), strict=True):
         wording.print_warning(f"{name}: {words}")
     return found
@@ -66,10 +65,9 @@ def _plot_history(arguments: argparse.Namespace) -> None:
 def _draw(contact: ForceHistory, title: str, path: str) -> None:
     """Draw force over time, and over compression; matplotlib is loaded here."""
     with style.applied():
-        from matplotlib.figure import Figure
-
-        figure = Figure(figsize=(10.0, 4.6), layout="constrained")
-        figure.suptitle(title, x=0.012, ha="left", fontsize=13, fontweight="bold")
+        limits = "; ".join(limits_in_words(int(contact.flags)))
+        caption = f"Beyond a limit: {limits}" if limits else "Inside every limit of the model"
+        figure = style.figure(10.0, 5.2, title, caption)
         left, right = figure.subplots(1, 2, sharey=True)
         top = int(np.argmax(contact.force))
         parts = (

@@ -33,7 +33,7 @@ from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import factors
-from contactlaw.physical.validity import Limits, Validity
+from contactlaw.physical.validity import Limits, Validity, explain
 from contactlaw.softsphere import unit_spring
 from contactlaw.stepping import friction as stepping_friction
 from contactlaw.stepping import spring as stepping_spring
@@ -210,11 +210,15 @@ def _enumerators(module: ModuleType, names: str) -> str:
 
 
 def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
-    """Lines of the first comment: law, pair, certificate."""
-    law, pair = model.force_law, model.pair
+    """Lines of the first comment: law, pair, flags that the pair alone decides, certificate."""
+    law, pair, limits = model.force_law, model.pair, model.limits
     yield from _comment(f"law {law.family}: {law.source}")
     yield from _comment(f"sphere {_body(pair.sphere)}")
     yield from _comment(f"plate {_body(pair.plate)}")
+    on_yield = limits.on_yield | limits.flags_when_yielded
+    for when, flags in (("every impact", limits.always), ("a body that yields", on_yield)):
+        said = (f"{one.name}: {explain(one)[0]}" for one in Validity(flags))
+        yield from _comment(f"flags of {when}: {'; '.join(said) or 'none'}")
     if table is None:
         yield from _comment("no table")
         return

@@ -9,11 +9,20 @@ from numpy.typing import NDArray
 
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History
+from contactlaw.physical.validity import Validity
 
 Array = NDArray[np.float64]
 
 
-class ForceHistory(NamedTuple):
+class _Samples(NamedTuple):
+    time: Array
+    force: Array
+    compression: Array
+    impulse: Array
+    plate_displacement: Array
+
+
+class ForceHistory(_Samples):
     """Contacts at even times from first touch to separation.
 
     Arrays of one shape: the broadcast shape of the arguments, and the samples along a last axis.
@@ -33,17 +42,20 @@ class ForceHistory(NamedTuple):
         Displacement of the plate at the contact point [m]: its mobility times the impulse, with the
         mobility that the law has for this impact. An infinite plate does not come back; a real one
         does when the bending wave returns.
+    flags
+        `Validity` limits that an impact exceeds, as in `Rebound`; no member of the tuple, since
+        they have no samples.
     """
 
-    time: Array
-    force: Array
-    compression: Array
-    impulse: Array
-    plate_displacement: Array
+    flags: Validity | NDArray[np.int64]
 
 
 def with_units(
-    contacts: History, units: Numbers, inelasticity: Array, shape: tuple[int, ...] | None
+    contacts: History,
+    units: Numbers,
+    inelasticity: Array,
+    shape: tuple[int, ...] | None,
+    flags: Validity | NDArray[np.int64],
 ) -> ForceHistory:
     """Give contacts (n, samples) their units and the shape of the answer.
 
@@ -56,6 +68,8 @@ def with_units(
     whole = (*(shape or ()), time.shape[1])
     # with the mobility that the equation had, lambda T_H/m
     displacement = (inelasticity * units.compression)[:, None] * contacts.impulse
-    return ForceHistory(
+    found = ForceHistory(
         *(values.reshape(whole) for values in (time, force, compression, impulse, displacement))
     )
+    found.flags = flags
+    return found

@@ -8,6 +8,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import contactlaw as cl
+from contactlaw.cli import main
 from contactlaw.cli.cor import curves
 from contactlaw.cli.cor.figure import save_restitution
 
@@ -81,6 +82,31 @@ def test_the_range_with_a_flag_is_dashed_and_first_yield_marked(model, drawn):
         assert words in shown
     assert (axes.get_xlabel(), axes.get_xscale()) == ("impact speed [m/s]", "log")
     assert axes.get_ylabel() == "coefficient of restitution [-]"
+
+
+@pytest.mark.parametrize(
+    ("sizes", "said"),
+    [("0.9mm --thickness 0.3mm --speed 60", "Beyond a limit: plate thinner than R/1.8"),
+     ("0.9mm --thickness 1mm --speed 5", "Inside every limit")],
+)  # fmt: skip
+def test_a_history_says_its_limits(drawn, sizes, said, tmp_path):
+    picked = f"history --sphere gamma-alumina --plate glass --law myc --radius {sizes} --plot"
+    main([*picked.split(), str(tmp_path / "contact.png")])
+    assert drawn[0].texts[1].get_text().startswith(said)
+
+
+def test_oblique_impacts_with_a_flag_are_dashed(drawn, tmp_path):
+    bead = "--sphere stainless-steel-304 --plate glass --radius 1mm --thickness 1mm --speed 3"
+    asked = f"oblique {bead} --angle 5:85:9 --friction 0.1 --plot"
+    main([*asked.split(), str(tmp_path / "oblique.png")])
+    (axes,) = drawn[0].axes
+    assert "Dashed: friction makes a body flow" in drawn[0].texts[1].get_text().replace("\n", " ")
+    model = cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"))
+    angle = np.radians(np.linspace(5, 85, 9))
+    hit = model.oblique(3 * np.cos(angle), 3 * np.sin(angle), 1e-3, 1e-3, 0.1, method="solve")
+    first = 5.0 + 10.0 * np.argmax(hit.flags & cl.Validity.ACCURACY > 0)
+    assert [line.get_xdata()[0] for line in lines(axes, "--")] == [first] and first > 5.0
+    assert [text.get_text() for text in axes.get_legend().get_texts()] == ["friction 0.1"]
 
 
 def test_nothing_is_explained_that_is_not_there(model, drawn):

@@ -666,17 +666,32 @@ def exported(folder, model, **options):
 def test_the_first_lines_say_what_it_is(tmp_path):
     model = model_of("fem, metals")
     text = exported(tmp_path, model)
-    first = " ".join(line.strip(" *") for line in text.splitlines()[:14])
+    first = " ".join(line.strip(" *") for line in text.splitlines()[:18])
     assert f"contactlaw {VERSION}" in first
     assert f"law fem: {model.force_law.source}" in first
     assert "sphere bearing-steel-52100: E 2.034e+11 Pa, nu 0.296, rho 7833 kg/m3" in first
     assert "plate aluminium-6061-t6: E 6.89e+10 Pa" in first
+    assert "flags of every impact: none flags of a body that yields: none table" in first
     error = thinned(model.table, c_header.ERROR).certificate.largest["restitution"]
     assert f"within {error:.1e} of the integrated equation" in first
     assert "SPDX-License-Identifier: BSD-3-Clause" in first
     licence = [line.removeprefix(" *").strip() for line in text.splitlines()[-40:]]
     for line in (ROOT / "LICENSE").read_text().splitlines():
         assert line.strip() in licence
+
+
+@pytest.mark.parametrize(
+    ("sphere", "law", "words"),
+    [
+        ("POM", "fem", "every impact: RATE_DEPENDENT: a polymer, or as soft and light"),
+        ("stainless-steel-304", "myc", "a body that yields: OTHER_LAW: finite elements favour"),
+    ],
+)
+def test_the_first_lines_say_which_flags_the_pair_has(sphere, law, words, tmp_path):
+    pom = cl.Material("POM", 2.9e9, 0.37, 1410, yield_strength=65e6)
+    pair = cl.Pair(pom if sphere == "POM" else sphere, "glass")
+    text = exported(tmp_path, cl.ImpactModel(pair, law), table="none")
+    assert f" * flags of {words}" in text.partition("SPDX")[0]
 
 
 def test_the_data_are_those_that_python_reads(compiled):

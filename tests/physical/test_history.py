@@ -1,6 +1,7 @@
 """Force histories: the solver against scipy, the table against the solver, both against laws."""
 
 import math
+import pickle
 
 import numpy as np
 import oracle
@@ -166,6 +167,14 @@ def test_shapes_of_the_answer(model, method):
     assert two.force.tolist() == [0.0, 0.0]
     assert two.time.tolist() == [0.0, pytest.approx(one.time[-1], rel=1e-6)]
     assert model.force_history([], R, 1e-3, method=method).force.shape == (0, 256)
+
+
+@pytest.mark.parametrize("method", ["table", "solve"])
+def test_flags_are_those_of_the_rebound(model, method):
+    many = [5.0, 60.0], R, [[1e-3], [0.3e-3]]
+    assert np.array_equal(model.force_history(*many, 5, method).flags, model.lookup(*many).flags)
+    one = model.force_history(60.0, R, 0.3e-3, 5, method)
+    assert one.flags == pickle.loads(pickle.dumps(one)).flags == cl.Validity(3)
 
 
 def test_nothing_pulls(model):

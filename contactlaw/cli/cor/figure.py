@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 
 from contactlaw import style
 from contactlaw.cli.cor.curves import CorCurve, is_logarithmic
-from contactlaw.cli.parts import wording
+from contactlaw.cli.parts import plots, wording
 from contactlaw.cli.parts.plots import SUFFIXES, colour_of, length_of, plate_of
-from contactlaw.physical.validity import Validity, limits_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -88,10 +87,9 @@ def _caption(panels: list[list[CorCurve]], by_radius: bool) -> str:
         parts.append(f"first yield {'' if max(yields) < least else 'of some '}below {least:g} m/s")
     if any(least <= speed <= largest for speed in yields):
         parts.append("triangle: first yield")
-    flags = int(np.bitwise_or.reduce(np.concatenate([curve.flags for curve in curves])))
-    reasons = limits_in_words(flags & Validity.ACCURACY)
+    reasons = plots.limits_of(np.concatenate([curve.flags for curve in curves]))
     if reasons:
-        parts.append(f"dashed: {'; or '.join(reasons)}")
+        parts.append(f"dashed: {reasons}")
     return ". ".join(part[0].upper() + part[1:] for part in parts)
 
 
@@ -102,17 +100,7 @@ def _names(curves: list[CorCurve], by_radius: bool, short: bool) -> list[str]:
 
 
 def _draw(axes: Axes, curve: CorCurve, colour: Any) -> None:
-    """Draw a curve: dashed where it has flags of `Validity.ACCURACY`, otherwise solid."""
-    flagged = (curve.flags & Validity.ACCURACY) != 0
-    changes = np.flatnonzero(np.diff(flagged)) + 1
-    for part in np.split(np.arange(flagged.size), changes):
-        # Each part goes to the first point of the next one, because otherwise there is a gap.
-        to = min(part[-1] + 2, flagged.size)
-        line = (0, (3.0, 1.6)) if flagged[part[0]] else "-"
-        axes.plot(
-            curve.speed[part[0] : to], curve.restitution[part[0] : to],
-            linestyle=line, color=colour, linewidth=2.4,
-        )  # fmt: skip
+    plots.curve(axes, curve.speed, curve.restitution, curve.flags, colour)
     if curve.at_yield == curve.at_yield:  # not NaN
         axes.plot(
             curve.yield_speed, curve.at_yield, "v", color=colour, markersize=10,

@@ -134,19 +134,23 @@ def _plot(arguments: argparse.Namespace, angles: Array, coefficients: Array) -> 
     angles, coefficients = np.unique(angles), np.unique(coefficients)
     if np.count_nonzero(angles) < 2:  # at an angle of 0 there is no tangential restitution
         raise ValueError("plot: give at least two angles above 0, best from 1 to 89")
-    rows = _table(arguments, angles, coefficients).columns
+    found = _table(arguments, angles, coefficients)
+    rows, reasons = found.columns, plots.limits_of(found.flags)
+    caption = (
+        f"{arguments.sphere} on {arguments.plate}, radius {plots.length_of(arguments.radius)}, "
+        f"{plots.plate_of(arguments.thickness)}, {arguments.speed:g} m/s, no spin before"
+    )
     with style.applied():
         figure = style.figure(
             8.0, 5.2, "Tangential restitution over the angle of impact",
-            f"{arguments.sphere} on {arguments.plate}, radius {plots.length_of(arguments.radius)}, "
-            f"{plots.plate_of(arguments.thickness)}, {arguments.speed:g} m/s, no spin before",
+            f"{caption}. Dashed: {reasons}" if reasons else caption,
         )  # fmt: skip
         axes = figure.add_subplot()
         for n, friction in enumerate(coefficients):
             part = rows["friction"] == friction
-            axes.plot(rows["angle"][part], rows["tangential_restitution"][part], linewidth=2.4,
-                      color=plots.colour_of(n, coefficients.size),
-                      label=f"friction {friction:g}")  # fmt: skip
+            plots.curve(axes, rows["angle"][part], rows["tangential_restitution"][part],
+                        found.flags[part], plots.colour_of(n, coefficients.size),
+                        label=f"friction {friction:g}")  # fmt: skip
         axes.set(xlabel="angle of incidence from the normal [°]", xlim=(0, 90),
                  ylabel="tangential restitution $v_t'/v_t$ [-]")  # fmt: skip
         axes.set_ylim(top=1.0)
