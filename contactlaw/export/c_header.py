@@ -177,7 +177,6 @@ def _definitions() -> dict[str, str]:
     constants = ((module, name) for module, names in _CONSTANTS.items() for name in names.split())
     return {
         **{name: repr(getattr(module, name)) for module, name in constants},
-        "THINNEST_ELASTIC": repr(validity.SLENDER),
         "law_offsets": _enumerators(force, _IN_LAW),
         "table_offsets": _enumerators(lookup, _IN_TABLE),
     }

@@ -49,7 +49,7 @@ Integers = NDArray[np.int32]
 R_MIN, R_MAX, V_MAX = 1e-9, 1e3, 1e5
 V_MIN = 1e-30
 # Smallest H/R, whatever the law and the speed. A plate thinner than that is a foil, and nothing is
-# known of impacts on it: finite elements reach R/H = 4.5, the flags begin at 1.4. For materials of
+# known of impacts on it: finite elements reach R/H = 5.8, the flags begin there. For materials of
 # the catalogue at 0.01 to 100 m/s lambda exceeds 6 on thicker plates already, from R/H = 1.4 to 60.
 THINNEST = 0.01
 

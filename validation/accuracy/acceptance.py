@@ -1,9 +1,9 @@
 """Acceptance of the law ``"fem"``: its errors beside finite elements, impact by impact.
 
-Three sets are judged: impacts of the paper's kind, to which the law was also fitted, everyday
-impacts that no fit has seen, and impacts of metals with hardening and rate that none has seen. A
-set holds if at least 95 % of its impacts are within the bound of each number, if its rms error in
-COR is within its bound, and if every impact beyond a bound carries a flag of
+Four sets are judged: impacts of the paper's kind, to which the law was also fitted, and everyday
+impacts, those on thin plates, and those of metals with hardening and rate, which no fit has seen. A
+set holds if enough of its impacts, 95 % as a rule, are within the bound of each number, if its rms
+error in COR is within its bound, and if every impact beyond a bound carries a flag of
 `contactlaw.Validity.ACCURACY`.
 
 The reference is finite elements of our own, the mean of two meshes that differ by 0.8 % in COR
@@ -28,7 +28,7 @@ from validation.accuracy import halfspace
 from validation.fem import census, fit, store
 
 LAW = "fem"
-STORED = "matrix", "pairs", "strengths", "limits", "campaign_impact", *census.SEEDS
+STORED = "matrix", "pairs", "strengths", "limits", "campaign_impact", census.THIN, *census.SEEDS
 ENOUGH = 0.95  # share of the impacts that has to be within the bound of each number
 YIELDING = ("none", "sphere", "plate", "both")
 
@@ -52,6 +52,7 @@ class Target(NamedTuple):
     least: float = 0.0  # the error of a lower COR is relative to this one
     slenderness: float = math.inf  # largest R/H
     speed_ratio: float = math.inf  # largest V0/V_Y0
+    enough: float = ENOUGH
 
 
 TARGETS = {
@@ -75,6 +76,14 @@ TARGETS = {
         Errors(0.03, 0.04, 0.06, math.inf),
         rms=0.015,
         least=0.3,
+    ),
+    "thin plates": Target(
+        "everyday impacts on plates of R/H 1.4 to 5.8, errors of COR absolute",
+        (census.THIN,),
+        Errors(0.01, 0.05, 0.05, 0.03),
+        rms=0.006,
+        least=1.0,
+        enough=0.9,  # the fastest are drawn beyond the limit of BENT_PLATE
     ),
 }
 
@@ -146,7 +155,7 @@ class Row(NamedTuple):
     @property
     def enough(self) -> bool:
         """Whether enough impacts are within each bound, and the rms error within its own."""
-        return min(self.shares) >= ENOUGH and self.rms <= self.target.rms
+        return min(self.shares) >= self.target.enough and self.rms <= self.target.rms
 
     @property
     def holds(self) -> bool:
@@ -212,7 +221,7 @@ def differences(law: str, flag: Validity, beside: Validity) -> list[float]:
     (6, 0.028)
     """
     others = Validity.ACCURACY & ~(flag | beside)
-    every = (one for study in STORED for one in _of_study(study, law, 0.0))
+    every = (one for study in STORED for one in _of_study(study, law, 1.0))
     return sorted(one.law - one.fem for one in every if one.flags & flag and not one.flags & others)
 
 
@@ -354,7 +363,7 @@ def _row(row: Row) -> list[str]:
     ):
         lines.append(
             f"    {name.replace('_', ' '):14s} within {100 * bound:g} %: {100 * share:5.1f} % "
-            f"(at least {100 * ENOUGH:g}); largest without a flag {100 * largest:+.2f} %"
+            f"(at least {100 * target.enough:g}); largest without a flag {100 * largest:+.2f} %"
         )
     most = "" if math.isinf(target.rms) else f" (at most {100 * target.rms:g})"
     return [*lines, f"    rms error of COR {100 * row.rms:.2f} %{most}"]

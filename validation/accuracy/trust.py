@@ -12,7 +12,7 @@ from validation.fem import census
 
 LAWS = "fem", "myc"
 PAPER = TARGETS["paper"]
-# No fit has seen these two sets; the first placed the limit R/H = 1.4 of the law's answers.
+# No fit has seen these two sets.
 EVERYDAY = TARGETS["kept out"]._replace(studies=("everyday_5", "kept_out"))
 _WORDS = {"restitution": "COR"}
 

@@ -29,8 +29,8 @@ LISTED = (
     "tungsten-carbide", "zirconia",
 )  # fmt: skip
 # The impacts of the first four seeds were kept out of the first four fits of the law, and judged
-# them; later fits have seen them. Those of the fifth judged the last fit: they moved no number of
-# it, but the limit R/H = 1.4 of its answers was placed with them. The last were drawn later.
+# them; later fits have seen them. Those of the fifth judged the last fit and moved no number of it;
+# the last were drawn later.
 SEEDS = {
     "everyday": 20261122,
     "everyday_2": 20261123,

@@ -132,6 +132,8 @@ def answers(pair: cl.Pair, speed: Array, thickness: float) -> Iterator[str]:
         yields = np.asarray(hit.plastic_fraction) > 0.0
         untried = (np.asarray(hit.flags) & Validity.UNTRIED_STRENGTH) != 0
         known = all(RATIOS[0] <= ratio <= RATIOS[1] for ratio in ratios)
+        stiffness = pair.sphere.plane_modulus / pair.plate.plane_modulus
+        known &= len(flowing) < 2 or 1.0 / 12.0 <= stiffness <= 12.0
         if (untried != (yields & (not known))).any():
             yield f"flags {hit.flags} with E*/sigma_Y {ratios}"
 
