@@ -33,7 +33,8 @@ def test_every_result_says_what_made_it(name):
     attributes = store.read(name).attributes
     assert {"about", "command", "date", "mesh"} <= set(attributes)
     assert attributes["command"] == f"python -m validation.fem {name}"
-    made = dict.fromkeys(("calculix", "calculix_block"), calculix.SETTINGS)
+    pressed = "calculix", "calculix_block", "calculix_hardening"
+    made = dict.fromkeys(pressed, calculix.SETTINGS)
     made["calculix_impact"] = calculix.IMPACT_SETTINGS
     settings = made.get(name, solver.SETTINGS)  # as they are now
     assert {key: attributes[key] for key in settings} == settings
