@@ -20,7 +20,8 @@ from contactlaw.answers.solver import RTOL, solved
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
-from contactlaw.physical.scaling import scales, sphere_on_plate
+from contactlaw.physical.rate import factors, rated, strengthened
+from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import (
     FRICTION,
@@ -34,10 +35,12 @@ from contactlaw.stepping.spring import (
     Spring,
     State,
     advance,
+    nearest_level,
     relaxation,
     resized,
     unit_spring,
 )
+from contactlaw.stepping.strength import levels_of
 
 __all__ = [
     "PARTED",
@@ -67,6 +70,7 @@ def _spring_at(springs: Spring, n: int) -> Spring:
         springs.relaxation[n],
         springs.ratio[n],
         springs.plate,
+        springs.levels,
     )
 
 
@@ -79,6 +83,15 @@ def _state_at(states: State, n: int) -> State:
         states.mobility[n],
         states.stiffening[n],
     )
+
+
+@kernel
+def _for_friction(
+    law: Array, levels: Array | None, spring: Spring, state: State
+) -> tuple[Array, Spring, State]:
+    if levels is None:
+        return law, spring, state
+    return nearest_level(law, levels, spring, state)
 
 
 @kernel(cache=True)
@@ -94,9 +107,10 @@ def _slide_all(
             slip = velocity[n, 0], velocity[n, 1], velocity[n, 2]
             up = dot(slip, at)
             slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
+            own, spring, pressed = _for_friction(law, springs.levels, _spring_at(springs, n), state)
             out = tangential_force(
-                rows[n], friction, kappa, law, _spring_at(springs, n), state, deepest[n],
-                overlap[n], -up, at, slip, step, 0.0,
+                rows[n], friction, kappa, own, spring, pressed, deepest[n], overlap[n], -up, at,
+                slip, step, 0.0,
             )  # fmt: skip
         else:
             clear_friction(rows[n])
@@ -180,6 +194,7 @@ class Contacts:
             relaxation=relaxation(contact.mass, contact.stiffness),
             ratio=contact.ratio,
             plate=contact.plate,
+            levels=levels_of(model.pair, law),
         )
         self._longest = float(self._springs.relaxation.min(initial=math.inf))
         self._states = State(*(np.zeros(r.size) for _ in State._fields))
@@ -346,11 +361,15 @@ def time_step(
     if not 2e-5 <= error <= 1e-2:
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
-    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
+    pair, law = model.pair, model.force_law
+    if flow := rated(pair, law):  # the stronger the pair, the shorter the contact
+        pair = strengthened(pair, float(factors(flow, v, r)[0]))
+        law = law_of(pair, law.family)
+    units = scales(sphere_on_plate(pair, law, r, h), v)
     lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
     if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
         raise OutsideTableError(0, too_thin(lam, largest))
-    found = solved(model.force_law, units.inelasticity, units.yield_ratio, RTOL, few=True)
+    found = solved(law, units.inelasticity, units.yield_ratio, RTOL, few=True)
     time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
     steps: float = (_ERROR / error) ** 0.4
     # Six digits only, so that a script has the same steps whether or not the kernels were compiled.

@@ -41,7 +41,7 @@ FILES = {
     "answers": ["backend", "solver", "tabulated", "beads", "compiled", "constant", "loads",
                 "oblique", "sensitivity", "speed_table"],
     "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
-    "stepping": ["spring", "energy", "friction", "plate_rows", "contact", "bead"],
+    "stepping": ["strength", "spring", "energy", "friction", "plate_rows", "contact", "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
                 "fit"],
     "export": ["c_header", "liggghts_wall"],

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation import force
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
@@ -23,8 +22,15 @@ from contactlaw.physical.validity import flags_of
 from contactlaw.stepping import energy
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
-from contactlaw.stepping.plate_rows import limits_of, spring_of
-from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, impact
+from contactlaw.stepping.plate_rows import limits_of, spring_of, with_levels
+from contactlaw.stepping.spring import (
+    FEWEST_STEPS,
+    Spring,
+    State,
+    at_largest,
+    impact,
+    nearest_level,
+)
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.facet import Point, Touch, nearest, velocity
 from contactlaw.walls.memory import array_at
@@ -304,10 +310,14 @@ def _end(
     """
     row, scale, v, touch = bead.contacts[k], spring.scale, contact.v, contact.touch
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
-    if last.stiffening > 0.0:
-        unit *= last.stiffening
-    dm = last.largest_compression / scale
-    lost, other = force.loss(law, dm) * unit * scale, force.other_loss(law, dm) * unit * scale
+    plate_row = scene.plate_rows[bead.kind, contact.plate_row]
+    if plate_row.levels_size > 0:
+        ended = at_largest(law, with_levels(plate_row, spring), last)
+    else:
+        ended = at_largest(law, spring, last)
+    if ended.stiffening > 0.0:
+        unit *= ended.stiffening
+    lost, other = ended.lost * unit * scale, ended.other * unit * scale
     if contact.merged_into >= 0:
         to = bead.contacts[contact.merged_into]
         to.reported_loss += row.reported_loss - lost
@@ -346,16 +356,16 @@ def _end(
     scene.status[0].impacts = n + 1
     since = 0.0
     if u < 0.0:  # time since the compression fell to the residual one, within this step
-        gap = force.residual(law, dm) * scale + last.plate_displacement - touch.x
+        gap = ended.residual * scale + last.plate_displacement - touch.x
         since = min(max(gap / -u, 0.0), clock.dt)
-    record, plate_row = scene.impacts[n], scene.plate_rows[bead.kind, contact.plate_row]
+    record = scene.impacts[n]
     record.time = clock.now - row.duration
     record.bead, record.other = bead.number, -1
     record.plate, record.triangle = contact.wall, contact.triangle
     record.x, record.y, record.z = contact.point
     record.approach_speed, record.restitution = row.approach_speed, leaves / row.approach_speed
     record.contact_time = row.duration - since
-    record.peak_force = force.loading(law, math.sqrt(dm)) * unit
+    record.peak_force = ended.peak * unit
     # earlier impacts of the same contact have reported a part of the loss already
     share = 1.0 - other / lost if lost > 0.0 else 0.0
     record.plastic_energy, record.wave_energy = share * (lost - reported), row.wave_energy
@@ -409,7 +419,11 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r)
     last = state_of(row)
-    state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before)
+    if plate_row.levels_size > 0:
+        rated = with_levels(plate_row, spring)
+        state, extra = energy.step(law, rated, last, touch.x, u, clock.dt, clock.before)
+    else:
+        state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
         held, power_0 = (row.push[0], row.push[1], row.push[2]), row.wall_power
@@ -515,10 +529,14 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         if rough:
             slip = surface_velocity(contact.v, bead.omega, bead.r, n)
             law = array_at(plate_row.law, plate_row.law_size, np.float64)
+            spring, state = spring_of(plate_row, bead.r), state_of(row)
+            if plate_row.levels_size > 0:
+                levels = array_at(plate_row.levels, plate_row.levels_size, np.float64)
+                law, spring, state = nearest_level(law, levels, spring, state)
             drag = tangential_force(
-                bead.friction[k], scene.friction, plate_row.tangential, law,
-                spring_of(plate_row, bead.r), state_of(row), before, touch.x, row.approach_speed, n,
-                slip, clock.dt if clock.advancing else 0.0, row.extra_force,
+                bead.friction[k], scene.friction, plate_row.tangential, law, spring, state, before,
+                touch.x, row.approach_speed, n, slip, clock.dt if clock.advancing else 0.0,
+                row.extra_force,
             )  # fmt: skip
             torque = (
                 -bead.r * (n[1] * drag[2] - n[2] * drag[1]),

@@ -19,7 +19,9 @@ from contactlaw.equation.numbers import PlateConstants
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Limits
 from contactlaw.stepping.spring import Spring, resized, unit_spring
+from contactlaw.stepping.strength import levels_of
 from contactlaw.walls.frame import Wall
+from contactlaw.walls.memory import array_at
 from contactlaw.walls.plate import by_type
 
 Rows = NDArray[np.void]
@@ -29,7 +31,7 @@ PLATE_ROW = np.dtype(
         (name, "f8")
         for name in (
             "tangential",
-            *Spring._fields[:-1],
+            *Spring._fields[:-2],
             *PlateConstants._fields[:-1],
             *PlateCorrections._fields,
         )
@@ -42,16 +44,17 @@ PLATE_ROW = np.dtype(
     ]
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates
     + [("largest", "f8"), ("alike", "i8")]
-    # address and size of the law; 0: there is no model for beads of this type
-    + [("law", "i8"), ("law_size", "i8")],
+    # addresses and sizes of the law (0: there is no model for beads of this type), and of the laws
+    # by strength of a pair with a rate
+    + [("law", "i8"), ("law_size", "i8"), ("levels", "i8"), ("levels_size", "i8")],
     align=True,
 )
 
 
 def plate_rows(
     walls: Sequence[Wall], models: Mapping[int, ImpactModel], types: int
-) -> tuple[Rows, list[NDArray[np.intp]], list[ImpactModel]]:
-    """Plate rows by bead type and number, their numbers for each wall's facets, and the models."""
+) -> tuple[Rows, list[NDArray[np.intp]], list[Any]]:
+    """Plate rows by bead type and number, their numbers for each wall's facets, what they need."""
     table: dict[Any, int] = {}
     numbers = []
     by_id = {id(model): model for model in models.values()}
@@ -63,21 +66,26 @@ def plate_rows(
         found = [table.setdefault((keys, float(value)), len(table)) for value in values]
         numbers.append(np.array(found)[which.ravel()])
     rows = np.zeros((types, len(table)), PLATE_ROW)
-    laws = [[""] * len(table) for _ in range(types)]
+    laws: list[list[Any]] = [[""] * len(table) for _ in range(types)]
+    held: list[Any] = list(by_id.values())
     for (kinds, thickness), number in table.items():
         for kind, model in kinds:
             _fill(rows[kind - 1, number], by_id[model], thickness)
             laws[kind - 1][number] = by_id[model].force_law.key
+            if (levels := levels_of(by_id[model].pair, by_id[model].force_law)) is not None:
+                row = rows[kind - 1, number]
+                row["levels"], row["levels_size"] = levels.ctypes.data, levels.size
+                laws[kind - 1][number], held = levels.tobytes(), [*held, levels]
     rows["alike"] = _first_alike(rows, laws)[:, None]
-    return rows, numbers, list(by_id.values())
+    return rows, numbers, held
 
 
-def _first_alike(rows: Any, laws: list[list[str]]) -> NDArray[np.intp]:
+def _first_alike(rows: Any, laws: list[list[Any]]) -> NDArray[np.intp]:
     """First bead type, from 0, with equal rows and laws on all plates, for each bead type.
 
-    Laws are compared by their keys, because equal models hold their data at different addresses.
+    Laws are compared by what they are, because equal models hold their data at different addresses.
     """
-    numbers = [name for name in PLATE_ROW.names or () if name != "law"]
+    numbers = [name for name in PLATE_ROW.names or () if name not in ("law", "levels")]
     said = [(row[numbers].tolist(), keys) for row, keys in zip(rows, laws, strict=True)]
     return np.array([said.index(one) for one in said])
 
@@ -88,6 +96,7 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     parts: dict[str, Any] = spring._asdict() | model.limits._asdict()
     parts |= parts.pop("plate")._asdict()
     parts |= parts.pop("corrections")._asdict()
+    del parts["levels"]
     for name, value in parts.items():
         row[name] = value
     law = model.force_law.data
@@ -110,9 +119,18 @@ def spring_of(row: Any, r: float) -> Spring:
     )  # fmt: skip
     unit = Spring(
         row.mass, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio,
-        plate,
+        plate, None,
     )  # fmt: skip
     return resized(unit, r)
+
+
+@kernel
+def with_levels(row: Any, spring: Spring) -> Spring:
+    """Spring of a pair with a rate."""
+    return Spring(
+        spring.mass, spring.stiffness, spring.mobility, spring.scale, spring.relaxation,
+        spring.ratio, spring.plate, array_at(row.levels, row.levels_size, np.float64),
+    )  # fmt: skip
 
 
 @kernel

@@ -23,7 +23,8 @@ Legend, as in `contactlaw.equation`: scaled by d_Y and F_Y inside the kernels,
     dr  residual compression           f   contact force
 
 Where a law corrects the mobility of a thin plate (`contactlaw.equation.corrections`), it depends on
-the contact time, and so on the approach speed, which is first known in the second step.
+the contact time, and so on the approach speed, which is first known in the second step. So does the
+strength of a pair with a rate (`contactlaw.stepping.strength`).
 
 An infinite plate recedes for ever under a lasting force such as a bead's weight. A real one has
 edges: here u2 relaxes within 1e5 contact times, too slowly to change an impact, and a bead at rest
@@ -46,6 +47,7 @@ from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import sphere_on_plate
+from contactlaw.stepping import strength
 
 Array = NDArray[np.float64]
 
@@ -65,7 +67,9 @@ class State(NamedTuple):
     largest_compression: Any  # dm [m]
     force: Any  # F [N]
     mobility: Any = 0.0  # of the plate in this contact [m/(s N)]; 0 where the spring's holds
-    stiffening: Any = 0.0  # stiffness of the contact over the spring's; 0 where the spring's holds
+    # stiffness of the contact over the spring's; 0 where the spring's holds; of a pair with a rate
+    # it holds the strength, too
+    stiffening: Any = 0.0
 
 
 class Spring(NamedTuple):
@@ -78,6 +82,17 @@ class Spring(NamedTuple):
     relaxation: Any  # time in which the plate's displacement relaxes [s]
     ratio: Any  # R/H
     plate: PlateConstants
+    levels: Any = None  # laws by strength of a pair with a rate, an array
+
+
+class Largest(NamedTuple):
+    """A contact from its largest compression on, in units of the spring's d_Y and F_Y."""
+
+    stiffening: float
+    lost: float
+    other: float  # part of the loss that is not plastic work
+    residual: float
+    peak: float
 
 
 PARTED = State(0.0, 0.0, 0.0, 0.0, 0.0)
@@ -97,6 +112,7 @@ def unit_spring(model: ImpactModel, thickness: float) -> Spring:
         relaxation=relaxation(mass, stiffness),
         ratio=float(contact.ratio),
         plate=contact.plate,
+        levels=strength.levels_of(model.pair, model.force_law),
     )
 
 
@@ -116,6 +132,7 @@ def resized(unit: Spring, radius: float) -> Spring:
         unit.relaxation * radius,
         unit.ratio * radius,
         unit.plate,
+        unit.levels,
     )
 
 
@@ -128,29 +145,60 @@ def impact(spring: Spring, speed: float) -> Numbers:
 
 
 @kernel
-def _plate_corrections(
-    spring: Spring, state: State, overlap: float, step: float
-) -> tuple[float, float]:
-    """Mobility and stiffening of a contact in its second step, when the speed is first known."""
-    if not state.largest_compression > 0.0 or state.stiffening > 0.0:
-        return state.mobility, state.stiffening
-    speed = (overlap - state.plate_displacement - state.largest_compression) / step
-    if not speed > 0.0:
-        return spring.mobility, 1.0
-    found = impact(spring, speed)
-    stiffer = found.stiffer
-    return found.inelasticity * found.time / spring.mass, stiffer * stiffer * math.sqrt(stiffer)
+def strengthened(spring: Spring, place: float) -> Spring:
+    """Spring whose plate knows that a stronger contact yields later; its scale stays."""
+    plate = spring.plate
+    later = strength.yield_growth(spring.levels, place) ** 0.25
+    return Spring(
+        spring.mass, spring.stiffness, spring.mobility, spring.scale, spring.relaxation,
+        spring.ratio,
+        PlateConstants(
+            plate.inelasticity, plate.transit, plate.x_at_one, later * plate.saturated,
+            plate.corrections,
+        ),
+        spring.levels,
+    )  # fmt: skip
 
 
 @kernel
-def _force(law: Array, loading: bool, q: float, curve: UnloadingCurve) -> float:
-    return forces.loading(law, q) if loading else forces.unloading_force(law, curve, q)
+def _first_known(
+    levels: Array | None, spring: Spring, state: State, overlap: float, step: float
+) -> tuple[float, float, float]:
+    """Mobility, stiffening and place of a contact in its second step, when the speed is known."""
+    stiffening, place = state.stiffening, 0.0
+    if levels is not None:
+        stiffening, place = strength.split(stiffening)
+    if not state.largest_compression > 0.0 or stiffening > 0.0:
+        return state.mobility, stiffening, place
+    speed = (overlap - state.plate_displacement - state.largest_compression) / step
+    if not speed > 0.0:
+        return spring.mobility, 1.0, place
+    if levels is not None:
+        place = strength.place_at(levels, speed, spring.scale)
+        spring = strengthened(spring, place)
+    found = impact(spring, speed)
+    stiffer = found.stiffer
+    return (
+        found.inelasticity * found.time / spring.mass,
+        stiffer * stiffer * math.sqrt(stiffer),
+        place,
+    )
+
+
+@kernel
+def _force(
+    law: Array, levels: Array | None, place: float, loading: bool, q: float, curve: UnloadingCurve
+) -> float:
+    if loading or curve.stiffness == 0.0:
+        return strength.loading(law, levels, place, q)
+    return forces.unloading_force(law, curve, q)
 
 
 @kernel
 def _balance(
-    law: Array, loading: bool, curve: UnloadingCurve, b: float, r: float
-) -> tuple[float, float]:
+    law: Array, levels: Array | None, place: float, loading: bool, curve: UnloadingCurve, b: float,
+    r: float,
+) -> tuple[float, float]:  # fmt: skip
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
     The left side is convex, so the secant method comes down to the root from the right and cannot
@@ -159,7 +207,7 @@ def _balance(
     if not r > 0.0:
         return 0.0, 0.0
     q = math.sqrt(r)
-    f = _force(law, loading, q, curve)
+    f = _force(law, levels, place, loading, q, curve)
     if b == 0.0:
         return q, f
     gap = b * f
@@ -167,7 +215,7 @@ def _balance(
     for _ in range(MOST_ITERATIONS):
         change = gap / slope
         q = max(q - change, 0.0)
-        f = _force(law, loading, q, curve)
+        f = _force(law, levels, place, loading, q, curve)
         if not abs(change) > CONVERGED * q:
             break
         last, gap = gap, q * q + b * f - r
@@ -186,13 +234,16 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     """
     if not overlap > 0.0:
         return PARTED
-    scale = spring.scale
+    scale, levels = spring.scale, spring.levels
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     leak = 0.5 * step / spring.relaxation
-    before = unit * state.stiffening if state.stiffening > 0.0 else unit
-    own, stiffening, mobility = 0.0, 0.0, spring.mobility
+    before = state.stiffening
+    if levels is not None:
+        before, _ = strength.split(before)
+    before = unit * before if before > 0.0 else unit
+    own, stiffening, mobility, place = 0.0, 0.0, spring.mobility, 0.0
     if not is_thin(spring.plate.corrections):
-        own, stiffening = _plate_corrections(spring, state, overlap, step)
+        own, stiffening, place = _first_known(levels, spring, state, overlap, step)
         if stiffening > 0.0:
             mobility, unit = own, unit * stiffening
     moved = 0.5 * step * mobility / (1.0 + leak)  # motion of the plate per force at either end
@@ -202,15 +253,16 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     r = (overlap - known - rule_error * state.force) / scale
     dm = state.largest_compression / scale
     # Whether the contact is at compression dm, on the loading curve.
-    top = state.force >= ON_LOADING_CURVE * forces.loading(law, math.sqrt(dm)) * before
+    highest = strength.loading(law, levels, place, math.sqrt(dm))
+    top = state.force >= ON_LOADING_CURVE * highest * before
     loading, q, f = True, 0.0, 0.0
-    least = forces.lossless(law)
+    least = strength.lossless(law, levels)
     if dm > least and not top:
-        curve = forces.unloading(law, dm)
-        q, f = _balance(law, False, curve, b, r - curve.residual)
+        curve = strength.unloading(law, levels, place, dm)
+        q, f = _balance(law, levels, place, False, curve, b, r - curve.residual)
         loading = q * q + curve.residual > dm
     if loading:
-        q, f = _balance(law, True, NO_CURVE, b, r)
+        q, f = _balance(law, levels, place, True, NO_CURVE, b, r)
         d = q * q
         fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
         if top and fall > 0.0:
@@ -218,8 +270,50 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
             if vertex < 1.0:
                 dm = max(d, dm + 0.5 * fall * max(vertex, 0.0) ** 2)
                 if dm > least:
-                    curve = forces.unloading(law, dm)
-                    q, f = _balance(law, False, curve, b, r - curve.residual)
+                    curve = strength.unloading(law, levels, place, dm)
+                    q, f = _balance(law, levels, place, False, curve, b, r - curve.residual)
         dm = max(d, dm)
     force = f * unit
+    if levels is not None and stiffening > 0.0:
+        stiffening = strength.with_place(stiffening, place)
     return State(known + moved * force, dm * scale, force, own, stiffening)
+
+
+@kernel
+def at_largest(law: Array, spring: Spring, state: State) -> Largest:
+    """Say what the largest compression of a contact means for its unloading."""
+    stiffening, place, levels = state.stiffening, 0.0, spring.levels
+    if levels is not None:
+        stiffening, place = strength.split(stiffening)
+    dm = state.largest_compression / spring.scale
+    lost, other = strength.losses(law, levels, place, dm)
+    residual = strength.unloading(law, levels, place, dm).residual
+    return Largest(
+        stiffening, lost, other, residual, strength.loading(law, levels, place, math.sqrt(dm))
+    )
+
+
+@kernel
+def nearest_level(
+    law: Array, levels: Array, spring: Spring, state: State
+) -> tuple[Array, Spring, State]:
+    """Law of the level that is nearest to a contact's place, with spring and state for it.
+
+    The state is shifted so that its compression is as far above the residual one as in the contact.
+    """
+    stiffening, place = strength.split(state.stiffening)
+    own, growth = strength.nearest(levels, place)
+    dm = state.largest_compression / spring.scale
+    left = strength.unloading(law, levels, place, dm).residual
+    shift = spring.scale * (left - growth * forces.residual(own, dm / growth))
+    return (
+        own,
+        Spring(
+            spring.mass, spring.stiffness, spring.mobility, growth * spring.scale,
+            spring.relaxation, spring.ratio, spring.plate, spring.levels,
+        ),
+        State(
+            state.plate_displacement + shift, state.largest_compression, state.force,
+            state.mobility, stiffening,
+        ),
+    )  # fmt: skip

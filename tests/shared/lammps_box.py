@@ -85,15 +85,16 @@ def above(gap=1e-4, x=0.0, y=0.0, radius=R):
 ABOVE = above()
 
 
-def make(position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, processors="* * *"):
-    """Beads of gamma-alumina in a box that nothing leaves."""
+def make(position, velocity=(0, 0, -5), radius=R, *, gravity=0.0, dt=DT, density=DENSITY,
+         processors="* * *"):  # fmt: skip
+    """Beads in a box that nothing leaves, by default of gamma-alumina."""
     lmp = quiet(BOX.format(processors=processors) + MOTION.format(dt=dt, gravity=gravity))
     position = np.atleast_2d(np.asarray(position, dtype=float))
     n = len(position)
     velocity = np.broadcast_to(np.asarray(velocity, dtype=float), (n, 3)).copy()
     lmp.create_atoms(n, np.arange(1, n + 1), [1] * n, position.ravel(), velocity.ravel())
     for number, size in enumerate(np.broadcast_to(radius, n), start=1):
-        lmp.command(f"set atom {number} diameter {2 * float(size)!r} density {DENSITY}")
+        lmp.command(f"set atom {number} diameter {2 * float(size)!r} density {density}")
     return lmp
 
 

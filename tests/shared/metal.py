@@ -1,0 +1,18 @@
+"""A pair whose metal has a rate of strain, and its impacts by the solver, each at its strength."""
+
+import dataclasses
+
+import contactlaw as cl
+from contactlaw.physical import rate
+
+PLAIN = cl.Pair("stainless-steel-304", "glass")
+PAIR = cl.Pair(dataclasses.replace(PLAIN.sphere, rate=(0.07, 1.0)), "glass")
+MODEL = cl.ImpactModel(PAIR)
+# radius, thickness and speed: factors of 1.05 to 1.43, COR 0.33 to 0.94
+DROPS = [(r, h, v) for r, h in ((1e-3, 5e-3), (0.2e-3, 1e-3)) for v in (0.1, 2.0, 15.0)]
+
+
+def at_strength(speed, radius):
+    """Model of the pair without a rate that is as strong as this impact makes it."""
+    flow = rate.rated(PAIR, MODEL.force_law)
+    return cl.ImpactModel(rate.strengthened(PAIR, float(rate.factors(flow, speed, radius))))

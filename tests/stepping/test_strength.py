@@ -1,0 +1,101 @@
+"""Contacts of a pair with a rate of strain, step by step: each has the strength of its impact."""
+
+import dataclasses
+
+import metal
+import numpy as np
+import pytest
+from verlet import drop
+
+import contactlaw as cl
+from contactlaw.softsphere import PARTED, Contacts, advance, resized, time_step, unit_spring
+from contactlaw.stepping import strength
+
+LAW = metal.MODEL.force_law.data
+
+
+@pytest.mark.parametrize(("radius", "thickness", "speed"), metal.DROPS)
+def test_an_impact_is_that_of_the_pair_at_its_strength(radius, thickness, speed):
+    hit = metal.at_strength(speed, radius).solve(speed, radius, thickness)
+    plain = cl.ImpactModel(metal.PLAIN).solve(speed, radius, thickness)
+    spring = resized(unit_spring(metal.MODEL, thickness), radius)
+    phases = (0.1, 0.5, 0.9)
+    found = [drop(LAW, spring, speed, hit.contact_time / 50, phase) for phase in phases]
+    assert found == pytest.approx([hit.restitution] * 3, rel=1e-3)
+    assert hit.restitution > 1.01 * plain.restitution
+
+
+@pytest.mark.parametrize("strength_of_steel", [25e6, 205e6, 1500e6])
+def test_levels_stand_for_all_strengths_between_them(strength_of_steel):
+    """The force is linear between two levels, and was wrong by 1 % at the nearest one."""
+    steel = dataclasses.replace(metal.PAIR.sphere, yield_strength=strength_of_steel)
+    pair = cl.Pair(steel, "glass")
+    law = cl.ImpactModel(pair).force_law
+    levels = strength.levels_of(pair, law)
+    growth = levels[strength.STEP]
+    for place in (0.5, 3.5):
+        one = cl.ImpactModel(metal.rate.strengthened(pair, np.exp(place * growth))).force_law
+        c = one.scale / law.scale
+        for dm in np.array([1.5, 30.0, 1e3]) * c:
+            curve = strength.unloading(law.data, levels, place, dm)
+            exact = one.unloading_curve(dm / c)
+            peak, lost = strength.loading(law.data, levels, place, dm**0.5), one.dissipation(dm / c)
+            assert peak == pytest.approx(c**1.5 * one.loading((dm / c) ** 0.5), rel=2e-3)
+            span = dm - c * exact.residual
+            assert dm - curve.residual == pytest.approx(span, rel=2e-3)
+            assert curve.exponent == pytest.approx(exact.exponent, rel=2e-3)
+            losses = strength.losses(law.data, levels, place, dm)
+            assert losses[0] == pytest.approx(c**2.5 * lost, abs=1e-3 * peak * dm)
+
+
+def test_below_its_rate0_a_pair_is_as_without_a_rate():
+    slow = cl.Pair(dataclasses.replace(metal.PAIR.sphere, rate=(0.07, 1e5)), "glass")
+    slow = cl.ImpactModel(slow)
+    plain = cl.ImpactModel(metal.PLAIN)
+    assert unit_spring(plain, 1e-3).levels is None
+    overlaps = np.concatenate((np.linspace(0.0, 1e-5, 40), np.linspace(1e-5, -1e-6, 40)))
+    for thickness in (1e-3, np.inf):
+        states = [PARTED, PARTED]
+        springs = [resized(unit_spring(one, thickness), 1e-3) for one in (slow, plain)]
+        for overlap in overlaps:
+            states = [
+                advance(LAW, spring, state, overlap, 1e-8)
+                for spring, state in zip(springs, states, strict=True)
+            ]
+            np.testing.assert_allclose(states[0], states[1], rtol=1e-11)
+
+
+def test_a_contact_keeps_its_strength():
+    """A bead that comes back slowly into its dent finds it as it has left it."""
+    spring = resized(unit_spring(metal.MODEL, np.inf), 1e-3)
+    state, x, dt, held = PARTED, 0.0, 2e-8, []
+    for way in (5.0, -1.0, 1e-3):
+        for _ in range(60 if way > 0.0 else 140):
+            x += way * dt
+            state = advance(LAW, spring, state, x, dt)
+            held.append(strength.split(state.stiffening))
+    assert state.largest_compression > 5e-6
+    assert held[0] == (0.0, 0.0)
+    assert len(set(held[1:])) == 1
+    assert 0.9 < held[-1][0] < 1.1
+    factor = np.exp(held[-1][1] * spring.levels[strength.STEP])
+    flow = metal.PAIR.sphere.flow
+    assert factor == pytest.approx(metal.rate.factors(flow, 5.0, 1e-3), rel=1e-4)
+
+
+def test_friction_is_that_of_the_pair_at_its_strength():
+    r, v, mu, psi = 1e-3, 3.0, 0.2, np.array([0.5, 2.0, 6.0])
+    contacts, n = Contacts(metal.MODEL, np.full(3, r), 5e-3), np.array([0.0, 0.0, 1.0])
+    hit = metal.at_strength(v, r).oblique(v, psi * mu * v, r, 5e-3, mu, method="solve")
+    dt = time_step(metal.MODEL, v, r, 5e-3)
+    velocity, spin = np.column_stack((psi * mu * v, 0.0 * psi, -v + 0.0 * psi)), np.zeros((3, 3))
+    mass, depth = contacts.mass[:, None], np.full(3, -0.4 * v * dt)
+    for _ in range(200):
+        depth -= dt * velocity[:, 2]
+        force = contacts.advance(depth, dt)[:, None] * n
+        force = force + contacts.slide(n, velocity - r * np.cross(spin, n), mu)
+        velocity += dt / mass * force
+        spin += dt / (0.4 * mass * r**2) * -r * np.cross(n, force)
+    point = (velocity - r * np.cross(spin, n))[:, 0]
+    assert np.abs(point - hit.sliding_speed).max() < 0.015 * mu * v
+    assert velocity[:, 2] == pytest.approx(v * hit.restitution, rel=2e-3)
