@@ -31,20 +31,26 @@ from contactlaw.equation import corrections, creep, force, integrator, tangentia
 from contactlaw.model import ImpactModel
 from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
+from contactlaw.physical.rate import largest_factor, rated, strengthened
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import factors
 from contactlaw.physical.validity import Limits, Validity, explain
 from contactlaw.softsphere import unit_spring
 from contactlaw.stepping import friction as stepping_friction
 from contactlaw.stepping import spring as stepping_spring
+from contactlaw.stepping import strength
+from contactlaw.stepping.strength import levels_of
 from contactlaw.table import Table, lookup
 from contactlaw.table.nodes import thinned
 
 Array = NDArray[np.float64]
 
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
+NODES = 4  # tables of a pair with a rate, through which COR is a cubic in ln(strength)
+_ERROR_OF_NODE = 1e-4  # of one of these; together they err by less than 1e-3
 ERROR = 4e-6  # largest of COR against the model's table, to be within 1e-5 of the equation
 _WIDTH = 96
+_STEP = 0.15  # of ln(factor) between two laws of a pair with a rate: COR within 1.2e-3 of itself
 # Constants that have the same names in the template as in their modules.
 _CONSTANTS: dict[ModuleType, str] = {
     corrections: "LENGTHENING LENGTHENING_3 LONGEST H_0 WIDEST DEEPEST BROADEST SATURATION "
@@ -56,6 +62,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     solver: "RTOL",
     stepping_friction: "SPRINGS _LEAST_SPEED _DEEPEST",
     stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED",
+    strength: "_STRIDE _FINE",
     validity: "TRANSITS",
 }
 # Offsets into the arrays, which become enumerators of C.
@@ -69,7 +76,7 @@ _IN_TABLE = (
     "PER_LOG CELLS COLUMN GRADED LINE BLOCK"
 )
 _ATTRIBUTES = re.compile(r"^(\w+(?:, \w+)*)\n((?: {4}.+\n?)+)", re.MULTILINE)
-_SECTION = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
+_SECTION = re.compile(r"^@(table|rate|plain)\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 
 
 def header(
@@ -88,14 +95,15 @@ def header(
     table : {"cor", "none"}, optional
         Whether the header has a table, and with it ``contactlaw_restitution``. The table is coarser
         than the model's: its COR is within 1e-5 of the integrated equation, or as near as the
-        model's own table.
+        model's own table. A pair with a rate of strain has four, with which it is within 2e-3.
 
     Raises
     ------
     TypeError
         If the model is no ImpactModel.
     ValueError
-        If the kind of table is unknown, or a large table would make the header exceed 500 kB.
+        If the kind of table is unknown, or a large table would make the header exceed 500 kB; if
+        another body may come to yield, because only one of two that yield has a rate.
     OSError
         If the file cannot be written; nothing is left behind then.
 
@@ -118,7 +126,7 @@ def header(
         raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
     if table not in ("cor", "none"):
         raise ValueError(f"table: must be 'cor' or 'none', got {table!r}")
-    content = _text(model, thinned(model.table, ERROR) if table == "cor" else None).encode()
+    content = _text(model, _nodes(model) if table == "cor" else {}).encode()
     if len(content) > LARGEST:
         raise ValueError(
             f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
@@ -133,17 +141,40 @@ def packed(model: ImpactModel, table: Table) -> Array:
     return whole[: int(whole[lookup.OTHERS_AT])]
 
 
-def _text(model: ImpactModel, table: Table | None) -> str:
+def _nodes(model: ImpactModel) -> dict[float, tuple[ImpactModel, Table]]:
+    """Tables of a pair, by the logarithm of its strength; a pair without a rate has one."""
+    flow = rated(model.pair, model.force_law)
+    if flow is None:
+        return {0.0: (model, thinned(model.table, ERROR))}
+    bodies = model.pair.sphere, model.pair.plate
+    if all(one.flow for one in bodies) and not all(one.rate for one in bodies):
+        raise ValueError(
+            "table: as the strength grows, another body may yield, which needs more tables than a "
+            "header has room for: take 'none', and contactlaw_rebound"
+        )
+    found = {}
+    for n in range(NODES):
+        at = n / (NODES - 1) * math.log(largest_factor(flow))
+        one = ImpactModel(strengthened(model.pair, math.exp(at)), model.force_law.family)
+        found[at] = one, thinned(one.table, _ERROR_OF_NODE)
+    return found
+
+
+def _text(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> str:
     """Fill the template."""
     template = resources.files("contactlaw.export").joinpath("contactlaw.h.in").read_text("utf-8")
-    template = _SECTION.sub("" if table is None else r"\1", template)
+    levels = levels_of(model.pair, model.force_law, _STEP)
+    parts = {"table": bool(nodes), "rate": levels is not None, "plain": levels is None}
+    template = _SECTION.sub(lambda one: one[2] if parts[one[1]] else "", template)
     spring = unit_spring(model, 1.0)
     made = factors(model.pair, model.force_law)
     transit = made.plate.transit * made.time  # time of a shear wave through a plate of H = 1 m
     plate, groups = made.plate, list(_impact())
+    tables = [packed(*one) for one in nodes.values()]
+    numbers = [value for one in tables for value in (one if levels is None else _rounded(one))]
     values = {
         "version": VERSION,
-        "about": "\n".join(_about(model, table)),
+        "about": "\n".join(_about(model, nodes)),
         "mass": _number(spring.mass),
         "stiffness": _number(spring.stiffness),
         "mobility": _number(spring.mobility),
@@ -156,9 +187,17 @@ def _text(model: ImpactModel, table: Table | None) -> str:
         "plate_values": _array(plate[:-1]),
         "corrections": ", ".join(plate.corrections._fields),
         "corrections_values": _array(plate.corrections),
-        "law": _array(model.force_law.data),
+        "law": _array(model.force_law.data) if levels is None else _array(_rounded(levels)),
+        "law_is": "The law, laid out as contactlaw.equation.force says."
+        if levels is None
+        else "Laws by strength, laid out as contactlaw.stepping.strength says.",
+        "first_law": "" if levels is None else " + contactlaw_LEVELS + 1",
+        "also": "" if levels is None else ", and the strength",
         "c_chi": _number(made.log_overload),
-        "table": "" if table is None else _array(packed(model, table)),
+        "table": _array(numbers),
+        "nodes": len(nodes),
+        "node": ", ".join(map(repr, nodes)),
+        "node_at": ", ".join(str(sum(map(len, tables[:n]))) for n in range(len(tables))),
         **_definitions(),
         "impact": "\n".join(_members(names, text) for names, text in groups),
         "nothing": ", ".join("none" for names, _ in groups for _ in names),
@@ -179,6 +218,7 @@ def _definitions() -> dict[str, str]:
         **{name: repr(getattr(module, name)) for module, name in constants},
         "law_offsets": _enumerators(force, _IN_LAW),
         "table_offsets": _enumerators(lookup, _IN_TABLE),
+        "strength_offsets": _enumerators(strength, "COUNT ROOM COEFFICIENT PER_SPEED STEP LEVELS"),
     }
 
 
@@ -208,7 +248,7 @@ def _enumerators(module: ModuleType, names: str) -> str:
     return ",\n".join(f"    contactlaw_{name} = {getattr(module, name)}" for name in names.split())
 
 
-def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
+def _about(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> Iterable[str]:
     """Lines of the first comment: law, pair, flags that the pair alone decides, certificate."""
     law, pair, limits = model.force_law, model.pair, model.limits
     yield from _comment(f"law {law.family}: {law.source}")
@@ -218,22 +258,28 @@ def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
     for when, flags in (("every impact", limits.always), ("a body that yields", on_yield)):
         said = (f"{one.name}: {explain(one)[0]}" for one in Validity(flags))
         yield from _comment(f"flags of {when}: {'; '.join(said) or 'none'}")
-    if table is None:
+    if not nodes:
         yield from _comment("no table")
-        return
-    certificate, settings = table.certificate, table.settings
-    assert certificate is not None
-    yield from _comment(
-        f"table of COR, lambda to {settings.largest_inelasticity:g} and chi to "
-        f"{settings.largest_overload:g}; certificate: at {certificate.points} random points, seed "
-        f"{certificate.seed}, within {certificate.largest['restitution']:.1e} of the integrated "
-        f"equation, 99 % of them within {certificate.percentile_99['restitution']:.1e}"
-    )
+    for at, (_, table) in nodes.items():
+        certificate, settings = table.certificate, table.settings
+        assert certificate is not None
+        yield from _comment(
+            f"table of COR{f' at {math.exp(at):.4g} of the strength' if len(nodes) > 1 else ''}, "
+            f"lambda to {settings.largest_inelasticity:g} and chi to "
+            f"{settings.largest_overload:g}; certificate: at {certificate.points} random points, "
+            f"seed {certificate.seed}, within {certificate.largest['restitution']:.1e} of the "
+            "integrated equation, 99 % of them within "
+            f"{certificate.percentile_99['restitution']:.1e}"
+        )
 
 
 def _body(material: Material) -> str:
-    strength = material.yield_strength
-    limit = "no yield strength" if strength is None else f"yield strength {strength:.6g} Pa"
+    flow = material.flow
+    limit = "no yield strength" if flow is None else f"yield strength {flow.strength:.6g} Pa"
+    if flow is not None and flow.hardening:
+        limit += f", hardening {flow.hardening:.6g} Pa and {flow.exponent:.6g}"
+    if flow is not None and flow.rate:
+        limit += f", rate {flow.rate:.6g} above {flow.rate0:.6g} 1/s"
     return (
         f"{material.name}: E {material.youngs_modulus:.6g} Pa, nu {material.poissons_ratio:.6g}, "
         f"rho {material.density:.6g} kg/m3, {limit}"
@@ -255,6 +301,11 @@ def _number(value: float) -> str:
     if math.isinf(value):
         return "HUGE_VAL" if value > 0.0 else "-HUGE_VAL"
     return repr(float(value))
+
+
+def _rounded(values: Array) -> list[float]:
+    """Nine digits of numbers: laws and tables of several strengths are long."""
+    return [float(f"{value:.9g}") for value in values]
 
 
 def _array(values: Iterable[float]) -> str:

@@ -33,9 +33,9 @@ Array = NDArray[np.float64]
 # Largest step of ln(factor) between two levels: the COR is within 3e-4 of itself of that of a law
 # made for the factor, measured for E*/sigma_Y 70 to 2700.
 _STEP = 0.07
-# header: number of levels, room of each, C, representative rate over rate0 of an impact at one d_Y
-# per second, step of ln(factor)
-COUNT, ROOM, COEFFICIENT, PER_SPEED, STEP, HEADER = range(6)
+# A header, then the levels: number of levels, room of each, C, representative rate over rate0 of an
+# impact at one d_Y per second, step of ln(factor).
+COUNT, ROOM, COEFFICIENT, PER_SPEED, STEP, LEVELS = range(6)
 # A contact's place is kept in the whole part of `State.stiffening` over _STRIDE, so that a contact
 # needs no more memory than that of a pair without a rate. A stiffening is a small number; it is
 # above _STRIDE, and then cut, on foils alone that are far too thin for the model.
@@ -43,21 +43,21 @@ _STRIDE, _FINE = 4096.0, 4096.0
 
 
 @functools.lru_cache(maxsize=16)
-def levels_of(pair: Pair, law: Law) -> Array | None:
-    """Levels of a pair for kernels; None for a pair without a rate."""
+def levels_of(pair: Pair, law: Law, step: float = _STEP) -> Array | None:
+    """Levels of a pair for kernels, at most this step apart; None for a pair without a rate."""
     flow = rated(pair, law)
     if flow is None or largest_factor(flow) == 1.0:
         return None
     most = math.log(largest_factor(flow))
-    steps = math.ceil(most / _STEP)
+    steps = math.ceil(most / step)
     pairs = [strengthened(pair, math.exp(n / steps * most)) for n in range(steps + 1)]
     made = [law_of(one, law.family) for one in pairs]
     scales = [one.scale or 1.0 for one in made]
     room = 1 + max(one.data.size for one in made)
-    found = np.zeros(HEADER + len(made) * room)
-    found[:HEADER] = len(made), room, flow.rate, SHARE / flow.rate0 * scales[0], most / steps
+    found = np.zeros(LEVELS + len(made) * room)
+    found[:LEVELS] = len(made), room, flow.rate, SHARE / flow.rate0 * scales[0], most / steps
     for n, one in enumerate(made):
-        at = HEADER + n * room
+        at = LEVELS + n * room
         found[at] = scales[n] / scales[0]
         found[at + 1 : at + 1 + one.data.size] = one.data
     return found
@@ -98,7 +98,7 @@ def _beside(levels: Array, place: float) -> tuple[int, int, float]:
     """Where the two levels beside a place begin, and the share of the upper one."""
     n = min(int(place), int(levels[COUNT]) - 2)
     room = int(levels[ROOM])
-    at = HEADER + n * room
+    at = LEVELS + n * room
     return at, at + room, place - n
 
 
@@ -136,7 +136,7 @@ def lossless(law: Array, levels: Array | None) -> float:
     """Largest compression from which a contact unloads without a loss."""
     if levels is None:
         return force.lossless(law)
-    return force.lossless(_law_at(levels, HEADER)[1])
+    return force.lossless(_law_at(levels, LEVELS)[1])
 
 
 @kernel

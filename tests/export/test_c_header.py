@@ -469,14 +469,14 @@ def test_a_field_of_an_impact_adds_itself_to_the_header(monkeypatch):
         slip_fraction: float = 0.0
 
     monkeypatch.setattr(c_header, "Rebound", Longer)
-    text = c_header._text(model_of("myc"), None)
+    text = c_header._text(model_of("myc"), {})
     assert "    /* Lost to slip [-]. */\n    double slip_fraction;\n" in text
     none = re.search(r"contactlaw_impact impact = { (.*) };", text)[1]
     assert none.count("none") == len(FIELDS) + 1
 
 
 def test_a_state_in_c_is_softspheres():
-    text = c_header._text(model_of("myc"), None)
+    text = c_header._text(model_of("myc"), {})
     inside = re.search(r"struct contactlaw_state {(.*?)}", text, re.DOTALL)[1]
     assert re.findall(r"double (\w+);", inside) == list(State._fields)
 

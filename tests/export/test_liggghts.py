@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import metal
 import numpy as np
 import pytest
 from places import ROOT
@@ -166,14 +167,18 @@ def libraries(tmp_path_factory):
     made = {}
     for name, (pair, radius) in MODELS.items():
         folder, model = tmp_path_factory.mktemp(name) / "wall", cl.ImpactModel(pair, law=name)
-        cl.export.liggghts(folder, model)
-        done = subprocess.run(
-            ["sh", folder / "build.sh"], env=os.environ | {"CXXFLAGS": WARNINGS},
-            capture_output=True, text=True,
-        )  # fmt: skip
-        assert (done.returncode, done.stderr) == (0, "")
-        made[name] = (folder / "wall_contactlaw.so", model, radius)
+        made[name] = built(folder, model), model, radius
     return made
+
+
+def built(folder, model):
+    cl.export.liggghts(folder, model)
+    done = subprocess.run(
+        ["sh", folder / "build.sh"], env=os.environ | {"CXXFLAGS": WARNINGS},
+        capture_output=True, text=True,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    return folder / "wall_contactlaw.so"
 
 
 @pytest.fixture
@@ -204,6 +209,21 @@ def test_drops_have_the_restitution_of_the_table(law, libraries, tmp_path):
     assert (last["fz"][-1] == 0.0).all()
     assert np.abs(last["vz"][-1] / speed - expected.restitution).max() < 5e-4
     assert expected.restitution.min() < 0.6 < 0.84 < expected.restitution.max()
+
+
+@needs_liggghts
+def test_a_metal_is_as_strong_as_each_impact_makes_it(tmp_path):
+    """One plate for beads of three speeds."""
+    r, h, speeds = 1e-3, 3e-3, np.array([0.5, 2.0, 15.0])
+    scene = Scene(tmp_path, built(tmp_path / "wall", metal.MODEL), metal.MODEL, r)
+    scene.sheet("sheet0", (-0.02, -0.02), (0.02, 0.02))
+    centres = [(0.006 * n - 0.007, 0.003, r + 1e-6 * v) for n, v in enumerate(speeds)]
+    start = scene.beads(centres, [(0, 0, -v) for v in speeds])
+    step = time_step(metal.MODEL, speeds[-1], r, h, 1e-4)
+    script = scene.script(start, meshes(sheet0=4), step=step, every=600)
+    last = scene.run(script + "run 600")
+    hits = [metal.at_strength(v, r).solve(v, r, h).restitution for v in speeds]
+    assert last["vz"][-1] / speeds == pytest.approx(hits, rel=2e-3)
 
 
 @needs_liggghts

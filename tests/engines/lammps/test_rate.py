@@ -1,5 +1,7 @@
 """A pair with a rate of strain in LAMMPS: the record, moving plates and friction."""
 
+import dataclasses
+
 import lammps_box as box
 import metal
 import numpy as np
@@ -60,7 +62,8 @@ def test_friction_is_that_of_the_pair_at_its_strength():
 
 def test_a_type_of_beads_is_another_with_another_rate():
     """A bead that changes its type in contact was taken for the same."""
-    other = cl.ImpactModel(metal.PLAIN)
+    steel = dataclasses.replace(metal.PAIR.sphere, rate=(0.0701, 1.0))
+    other = cl.ImpactModel(cl.Pair(steel, "glass"))
     lmp = box.quiet(box.BOX.format(processors="* * *").replace("create_box 1", "create_box 2"))
     contacts = box.attach(lmp, {1: metal.MODEL, 2: other}, [box.flat(1e-3)])
     rows = contacts._contacts.scene.plate_rows
