@@ -18,10 +18,10 @@ from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
 from contactlaw.answers.oblique import Oblique
+from contactlaw.answers.rated import solver, tabulated
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
-from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
-from contactlaw.answers.tabulated import Border, Outside, TableArgument, Tabulated
+from contactlaw.answers.tabulated import Border, Outside, TableArgument
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.history import ForceHistory
@@ -82,7 +82,7 @@ class ImpactModel(Compiled, Oblique):
             raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
         self._border = Border(outside)
         self._bodies = SphereOnPlate(pair, law_of(pair, law))
-        self._tabulated = Tabulated(self._bodies, table, self._border)
+        self._tabulated = tabulated(self._bodies, table, self._border)
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
         enable_caching()
         if not isinstance(table, Settings | None):
@@ -243,7 +243,7 @@ class ImpactModel(Compiled, Oblique):
         """
         if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
             raise ValueError(f"rtol: must be a float between 1e-13 and 1e-6, got {rtol!r}")
-        return Solver(self._bodies, rtol).rebounds(Impacts.on_plates(speed, radius, thickness))
+        return solver(self._bodies, rtol).rebounds(Impacts.on_plates(speed, radius, thickness))
 
     def lookup_sphere_sphere(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike, other: Other = None
@@ -312,7 +312,7 @@ class ImpactModel(Compiled, Oblique):
             raise ValueError(f"samples: must be an integer from 2 to 1 000 000, got {samples!r}")
         if method not in ("table", "solve"):
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
-        backend: Backend = self._tabulated if method == "table" else Solver(self._bodies)
+        backend: Backend = self._tabulated if method == "table" else solver(self._bodies)
         return backend.histories(Impacts.on_plates(speed, radius, thickness), samples)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | NDArray[np.float64]:

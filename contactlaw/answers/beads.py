@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
+from contactlaw.answers import rated
+from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.solver import RTOL, within
 from contactlaw.answers.tabulated import Border, Tabulated, curve, extent, table_for
 from contactlaw.laws import DEFAULT, Law
@@ -55,6 +57,7 @@ class Beads:
         self._swapped = weak < strong
         self.pair = Pair(pair.plate, pair.sphere) if self._swapped else pair
         self.law = law_of(self.pair, law)
+        self._bodies = SphereOnPlate(self.pair, self.law)
         self._border, self._table_of = border, table
 
     @functools.cached_property
@@ -67,13 +70,22 @@ class Beads:
         """Limits of the model."""
         return limits(self.pair, self.law)
 
+    @functools.cached_property
+    def _nodes(self) -> rated.Nodes | None:
+        """Tables of several strengths, for materials with a rate of strain."""
+        if rated.flow_of(self._bodies) is None:
+            return None
+        return rated.Nodes(self._bodies, None, self._border, on_plates=False)
+
     def rebounds(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Rebound:
         """Everything about impacts; radii [m] in the order in which the materials were given."""
         v, r, o, shape = _checked(speed, radius, other_radius)
+        impacts = Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape)
+        if self._nodes:
+            return self._nodes.rebounds(self._contacts(r, o), impacts)[0]
         contact = self._contact(r, o)
         units = scales(contact, v)
         found, flags = self._border.look_up(self.law, self.table.packed, units)
-        impacts = Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape)
         unclamped = units.inelasticity, units.yield_ratio
         return rebound(
             self.law.data, self.limits, impacts, units.time, contact.mass, unclamped, found, flags
@@ -83,6 +95,8 @@ class Beads:
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
     ) -> float | Array:
         """COR of impacts, as in `rebounds`."""
+        if self._nodes:
+            return self.rebounds(speed, radius, other_radius).restitution
         v, r, o, shape = _checked(speed, radius, other_radius)
         units = scales(self._contact(r, o), v)
         found, _ = self._border.look_up(self.law, self.table.packed, units)
@@ -94,19 +108,42 @@ class Beads:
         """COR of impacts as in `rebounds`, integrated to nine digits; a few need no table."""
         enable_caching()
         v, r, o, shape = _checked(speed, radius, other_radius)
+        if self._nodes:
+            impacts, e = (
+                Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape),
+                np.empty(v.size),
+            )
+            contact, most = self._contacts(r, o), extent(self.law)
+            for one in rated.solved(self._bodies, contact, impacts, extent=most, few=True):
+                e[one.some] = one.outcome.restitution
+            return shaped(e, shape)
         found = within(self.law, scales(self._contact(r, o), v), RTOL, extent(self.law), few=True)
         return shaped(found.restitution, shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
         """COR of beads of these radii [m] as a function of speed [m/s]."""
-        contact = self._contact(*scalars(radius=radius, other_radius=other_radius))
+        r, o = scalars(radius=radius, other_radius=other_radius)
+        contact = self._contact(r, o)
         c_chi = -math.log(scales(contact, np.ones(1)).yield_ratio.item())
+        if self._nodes:
+            reduced = (r * o / (r + o)).item()
+            return rated.curve(
+                (self._nodes.packed, 0.0, c_chi), (reduced, 0.0),
+                lambda v: self.rebounds(v, radius, other_radius),
+            )  # fmt: skip
         look_up = functools.partial(self._border.look_up, self.law)
         return curve((self.table.packed, 0.0, c_chi, 0.0), lambda: contact, look_up)
 
-    def _contact(self, radius: Array, other_radius: Array) -> ContactConstants:
+    def _contact(
+        self, radius: Array, other_radius: Array, bodies: SphereOnPlate | None = None
+    ) -> ContactConstants:
         radii = (other_radius, radius) if self._swapped else (radius, other_radius)
-        return sphere_on_sphere(self.pair, self.law, *radii)
+        bodies = bodies or self._bodies
+        return sphere_on_sphere(bodies.pair, bodies.law, *radii)
+
+    def _contacts(self, radius: Array, other_radius: Array) -> rated.Contact:
+        """Contacts of stronger materials."""
+        return lambda bodies, some: self._contact(radius[some], other_radius[some], bodies)
 
 
 def beads_of(tabulated: Tabulated, other: Other) -> Beads:

@@ -15,7 +15,6 @@ from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.beads import Beads, Other
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.physical.arguments import scalars
-from contactlaw.table import lookup
 
 
 class Compiled:
@@ -93,7 +92,7 @@ class Compiled:
         [0.925, 4.483]
         """
         known = self._tabulated
-        return _jitted(known.packed, known.c_lam, known.c_chi)
+        return _jitted(known.on_plate, known.packed, known.c_lam, known.c_chi)
 
     @functools.cached_property
     def _c_function(self) -> Any:
@@ -120,10 +119,10 @@ class Compiled:
 
 
 def _jitted(
-    table: NDArray[np.float64], c_lam: float, c_chi: float
+    on_plate: Callable[..., float], table: NDArray[np.float64], c_lam: float, c_chi: float
 ) -> Callable[[float, float, float], float]:
     """COR as a jitted function of speed, radius and thickness, which belongs to one table."""
-    on_plate, packed = lookup.restitution_on_plate, in_memory(table)
+    packed = in_memory(table)
 
     @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float) -> float:

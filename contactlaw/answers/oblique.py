@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import in_memory, kernel, switched_off
 from contactlaw.answers.backend import Backend
-from contactlaw.answers.solver import Solver
+from contactlaw.answers.rated import solver
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
@@ -88,7 +88,7 @@ class Oblique:
         )  # fmt: skip
         check(speed=v, radius=r, thickness=h, sliding_speed=s, friction=mu)
         bodies, impacts = self._tabulated.bodies, Impacts(v, r, h, shape)
-        backend: Backend = self._tabulated if method == "table" else Solver(bodies)
+        backend: Backend = self._tabulated if method == "table" else solver(bodies)
         return answer(backend, bodies.pair, impacts, mu, s)
 
     def collide(

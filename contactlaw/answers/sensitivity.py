@@ -18,6 +18,8 @@ the impacts are integrated. No answer depends on the units of length, time and m
 the eight elasticities follow from the others:
 
     R = -H    E1 + E2 + sigma_Y = -V0/2    rho1 + rho2 = V0/2
+
+but for bodies with a rate of strain or hardening, whose other constants have units, too.
 """
 
 from __future__ import annotations
@@ -31,12 +33,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
+from contactlaw.answers import rated
+from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.solver import solved
 from contactlaw.answers.tabulated import Border, Tabulated
 from contactlaw.equation import outcome
 from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import shaped
+from contactlaw.physical.flow import Flow
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts
 from contactlaw.physical.scaling import law_for_pair, pair_numbers, scales, sphere_on_plate
@@ -95,10 +100,13 @@ class Sensitivity:
 def sensitivity(tabulated: Tabulated, impacts: Impacts) -> Sensitivity:
     """Differentiate the COR of impacts inside the table, by the method that suits the law."""
     pair, law = tabulated.bodies.pair, tabulated.bodies.law
+    if rated.flow_of(tabulated.bodies):
+        hit = rated.Rated(tabulated.bodies, tabulated.given, Border("raise")).rebounds(impacts)
+        return by_inputs(pair, law, impacts, np.ravel(hit.overload) > 1.0)
     units = scales(tabulated.bodies.contact(impacts), impacts.speed)
     found, _ = Border("raise").look_up(law, tabulated.packed, units)
     if not law.thin_plate:
-        return by_inputs(pair, law, impacts, found)
+        return by_inputs(pair, law, impacts, _yields(found))
     if follows(tabulated.table):
         by_lam, by_y = by_table(tabulated.packed, found)
     else:
@@ -176,29 +184,29 @@ def by_modulus_ratio(pair: Pair, law: Law, found: Outcome) -> Array:
     return np.where(_yields(found), np.log(above / below) / math.log(high / low), 0.0)
 
 
-def by_inputs(pair: Pair, law: Law, impacts: Impacts, found: Outcome) -> Sensitivity:
+def by_inputs(pair: Pair, law: Law, impacts: Impacts, yields: NDArray[np.bool_]) -> Sensitivity:
     """Differentiate ln e with respect to the inputs themselves, by integration.
 
     If the law takes numbers from the pair, they change with the inputs.
     """
     speed, radius, thickness = impacts.speed, impacts.radius, impacts.thickness
+    bodies = pair.sphere, pair.plate
 
-    def by(move: Callable[[float], tuple[Pair, Array, Array]]) -> Array:
+    def by(move: Callable[[float], tuple[Pair, Array, Array, Array]]) -> Array:
         ends = (move(math.exp(step)) for step in (-_STEP, _STEP))
-        low, high = (_moved(one, law, v, radius, h).restitution for one, v, h in ends)
+        low, high = (_moved(one, law, *sizes) for one, *sizes in ends)
         with np.errstate(invalid="ignore", divide="ignore"):  # ln(0/0)
             quotient = np.log(high / low) / (2.0 * _STEP)
         return np.where(np.isfinite(quotient), quotient, 0.0)
 
-    def changed(number: str, x: float, *roles: str) -> tuple[Pair, Array, Array]:
-        return _changed(pair, number, x, roles), speed, thickness
+    def by_number(number: str, *roles: str) -> Array:
+        return by(lambda x: (_changed(pair, number, x, roles), speed, radius, thickness))
 
-    by_speed = by(lambda x: (pair, x * speed, thickness))
-    by_thickness = by(lambda x: (pair, speed, x * thickness))
-    by_density = by(lambda x: changed("density", x, "sphere"))
-    by_modulus = by(lambda x: changed("youngs_modulus", x, "sphere"))
-    by_strength = by(lambda x: changed("yield_strength", x, "sphere", "plate"))
-    by_strength = np.where(_yields(found), by_strength, 0.0)
+    by_speed = by(lambda x: (pair, x * speed, radius, thickness))
+    by_thickness = by(lambda x: (pair, speed, radius, x * thickness))
+    by_density = by_number("density", "sphere")
+    by_modulus = by_number("youngs_modulus", "sphere")
+    by_strength = np.where(yields, by_number("yield_strength", "sphere", "plate"), 0.0)
     named = {
         "speed": by_speed,
         "radius": -by_thickness,
@@ -209,6 +217,11 @@ def by_inputs(pair: Pair, law: Law, impacts: Impacts, found: Outcome) -> Sensiti
         "plate_modulus": -0.5 * by_speed - by_modulus - by_strength,
         "yield_strength": by_strength,
     }
+    if not all(body.flow in (None, (body.yield_strength, *Flow(0.0)[1:])) for body in bodies):
+        # more inputs with a unit, which are held: the rate at which a strength is known, hardening
+        named["radius"] = by(lambda x: (pair, speed, x * radius, thickness))
+        named["plate_density"] = by_number("density", "plate")
+        named["plate_modulus"] = by_number("youngs_modulus", "plate")
     return Sensitivity(**{name: shaped(values, impacts.shape) for name, values in named.items()})
 
 
@@ -222,11 +235,17 @@ def _changed(pair: Pair, number: str, factor: float, roles: tuple[str, ...]) -> 
     return Pair(**bodies)
 
 
-def _moved(pair: Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Outcome:
-    """Integrate impacts of other bodies, with the law's numbers for those bodies."""
+def _moved(pair: Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Array:
+    """COR of impacts of other bodies, integrated, with the law's numbers for those bodies."""
+    bodies = SphereOnPlate(pair, law)
+    if rated.flow_of(bodies):
+        impacts, e = Impacts(speed, radius, thickness, speed.shape), np.empty(speed.size)
+        for one in rated.solved(bodies, rated.on_plates(impacts), impacts, rtol=_RTOL):
+            e[one.some] = one.outcome.restitution
+        return e
     law = law_for_pair(pair, law)
     units = scales(sphere_on_plate(pair, law, radius, thickness), speed)
-    return solved(law, units.inelasticity, units.yield_ratio, _RTOL)
+    return np.asarray(solved(law, units.inelasticity, units.yield_ratio, _RTOL).restitution)
 
 
 def _yields(found: Outcome) -> NDArray[np.bool_]:

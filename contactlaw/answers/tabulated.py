@@ -9,7 +9,7 @@ import os
 import threading
 import warnings
 from collections.abc import Callable
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,6 +96,8 @@ class Border:
 
 class Tabulated:
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
+
+    on_plate: ClassVar[Callable[..., float]] = staticmethod(lookup.restitution_on_plate)
 
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
         self.bodies, self.given, self.border = bodies, given, border

@@ -7,6 +7,7 @@ too.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 
 from contactlaw.answers import oblique
 from contactlaw.answers.backend import SphereOnPlate, UnsolvedError
-from contactlaw.answers.solver import Solver
+from contactlaw.answers.rated import solver
 from contactlaw.equation.tangential import POINT
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting
@@ -147,11 +148,12 @@ class Predictor:
 
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
     """Integrate rebounds of any bodies, without a table."""
-    solver = Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL)
+    own = dataclasses.replace(law_for_pair(at.pair, law), from_pair=law.from_pair)
+    backend = solver(SphereOnPlate(at.pair, own), _RTOL)
     given = Impacts(speed, at.radius, at.thickness, speed.shape)
     if at.friction is None or at.sliding_speed is None:
-        return solver.rebounds(given)
-    return oblique.answer(solver, at.pair, given, at.friction, at.sliding_speed)
+        return backend.rebounds(given)
+    return oblique.answer(backend, at.pair, given, at.friction, at.sliding_speed)
 
 
 def columns_of(hit: Rebound, at: Setting) -> Array:

@@ -22,7 +22,7 @@ from contactlaw.physical.materials import sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound, shaped_flags
 from contactlaw.physical.validity import Validity
-from contactlaw.table import lookup
+from contactlaw.table import lookup, strengths
 from contactlaw.table.slides import change
 
 Array = NDArray[np.float64]
@@ -135,11 +135,17 @@ def tangential(
         return math.nan, math.nan
     if not size <= lookup.V_MAX:
         return math.nan, math.nan
+    psi = min(size / limit, FASTEST) if limit > 0.0 else 0.0
+    if strengths.is_rated(table):
+        place = strengths.place_of(table, c_lam, c_chi, speed, radius, radius / thickness)
+        if not place.inside:
+            return math.nan, math.nan
+        e = strengths.cor_at(table, place)
+        return e, limit * strengths.change_at(table, slides, place, e, psi)
     x, log_chi = lookup.place_of(table, c_lam, c_chi, speed, radius / thickness)
     if x != x:
         return math.nan, math.nan
     e = lookup.cor_at(table, x, log_chi)
-    psi = min(size / limit, FASTEST) if limit > 0.0 else 0.0
     return e, limit * change(slides, x, log_chi, e, psi)
 
 

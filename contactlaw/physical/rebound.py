@@ -137,10 +137,24 @@ def rebound(
     `unclamped` has inelasticities and yield ratios of the impacts. Those of the outcomes differ
     where impacts were clamped to the table's border, which the flags say already.
     """
-    inelasticity, yield_ratio = unclamped
-    out = Units(*np.empty((len(Units._fields), time.size)))
     found = outcomes.extremes(time.size)
     zener.extremes(law, outcome, found)
+    return completed(limits, impacts, time, mass, unclamped, outcome, found, flags)
+
+
+def completed(
+    limits: Limits,
+    impacts: Impacts,
+    time: Array,
+    mass: Array,
+    unclamped: tuple[Array, Array],
+    outcome: Outcome,
+    found: Extremes,
+    flags: NDArray[np.int64],
+) -> Rebound:
+    """`rebound` where the law's share of the answer, `found`, is known; that is changed."""
+    inelasticity, yield_ratio = unclamped
+    out = Units(*np.empty((len(Units._fields), time.size)))
     _with_units(
         limits, impacts.speed, impacts.radius, impacts.thickness, time, mass, yield_ratio,
         outcome, found, out, flags,

@@ -73,7 +73,7 @@ def with_plate(table: Array, plate: PlateConstants) -> Array:
 
 
 @kernel
-def _plate(table: Array, c_lam: float) -> PlateConstants:
+def plate_of(table: Array, c_lam: float) -> PlateConstants:
     """Read the constants of the plate."""
     w, k = table, WAVES
     corrections = PlateCorrections(
@@ -110,7 +110,7 @@ _ROOTS_OF_TWO = 2.0 ** (np.arange(-1024, 3072) / 5)  # 2^(k/5), for any 12 bits 
 
 
 @kernel
-def _log_and_root(v: float) -> tuple[float, float]:
+def log_and_root(v: float) -> tuple[float, float]:
     """Logarithm and fifth root of V_MIN <= v <= V_MAX, to rounding; garbage for other v, no crash.
 
     v = 2^k m with m within [sqrt(1/2), sqrt(2)) and z = (m - 1)/(m + 1), |z| < 0.172: the series of
@@ -141,8 +141,8 @@ def _log_and_root(v: float) -> tuple[float, float]:
 
 
 @kernel
-def _exp(x: float) -> float:
-    """Exponential of x within 1e-15, for |x| < 700; without a call, as `_log_and_root`.
+def exp(x: float) -> float:
+    """Exponential of x within 1e-15, for |x| < 700; without a call, as `log_and_root`.
 
     x = k ln 2 + r, |r| < 0.35: the series of exp(r), and k into the bits of the exponent.
     """
@@ -177,7 +177,7 @@ def weights(t: float) -> tuple[float, float, float, float]:
 
 
 @kernel
-def _power_series(table: Array, k: int) -> tuple[float, ...]:
+def series_at(table: Array, k: int) -> tuple[float, ...]:
     """Coefficients that begin at k, as a tuple: no later write to an array can change them."""
     c = table
     return (
@@ -188,7 +188,7 @@ def _power_series(table: Array, k: int) -> tuple[float, ...]:
 
 
 @kernel
-def _evaluate(c: tuple[float, ...], t: float) -> float:
+def evaluate(c: tuple[float, ...], t: float) -> float:
     """Power series of degree 20 by Estrin's scheme: 7 products deep where Horner's has 20."""
     t2 = t * t
     t4 = t2 * t2
@@ -202,15 +202,15 @@ def _evaluate(c: tuple[float, ...], t: float) -> float:
 
 
 @kernel
-def _log_elastic(table: Array, x: float) -> float:
+def log_elastic(table: Array, x: float) -> float:
     """Logarithm of w_m at x."""
-    return _evaluate(_power_series(table, HEADER), 2.0 / table[X_MAX] * x - 1.0)
+    return evaluate(series_at(table, HEADER), 2.0 / table[X_MAX] * x - 1.0)
 
 
 @kernel(cache=True)
 def log_elastic_compression(table: Array, lam: float) -> float:
     """Logarithm of w_m at an inelasticity inside the table."""
-    return _log_elastic(table, lam / (lam + table[STRETCH]))
+    return log_elastic(table, lam / (lam + table[STRETCH]))
 
 
 @kernel(inline=True)
@@ -224,7 +224,7 @@ def _along(log_chi: float, low: float, per_log: float, cells: float, graded: flo
 def _start(table: Array, block: int, t: float) -> float:
     """Ln chi of the kink at which a segment begins, at t = 2 x/x_max - 1."""
     line = int(table[block + LINE])
-    return table[block + START] if line == 0 else _evaluate(_power_series(table, line), t)
+    return table[block + START] if line == 0 else evaluate(series_at(table, line), t)
 
 
 @kernel
@@ -250,7 +250,7 @@ def locate(table: Array, x: float, log_chi: float) -> tuple[int, int, float, flo
 
 
 @kernel
-def _locate_all(
+def locate_all(
     table: Array, x: Array, log_chi: Array, first: Integers, along: Array, low: Array, high: Array
 ) -> None:
     """`locate` for many places, in loops of one operation that become vector instructions.
@@ -266,17 +266,17 @@ def _locate_all(
         column = np.int32(table[block + COLUMN])
         line = int(table[block + LINE])
         if line > 0:
-            series = _power_series(table, line)
+            series = series_at(table, line)
             for i in range(n):
-                low[i] = _evaluate(series, scale * x[i] - 1.0)
+                low[i] = evaluate(series, scale * x[i] - 1.0)
         else:
             for i in range(n):
                 low[i] = start
         next_line = int(table[block + BLOCK + LINE]) if k + 1 < int(table[SEGMENTS]) else 0
         if next_line > 0:
-            series = _power_series(table, next_line)
+            series = series_at(table, next_line)
             for i in range(n):
-                high[i] = cells / (_evaluate(series, scale * x[i] - 1.0) - low[i])
+                high[i] = cells / (evaluate(series, scale * x[i] - 1.0) - low[i])
         elif line > 0:
             for i in range(n):
                 high[i] = cells / (table[block + END] - low[i])
@@ -306,7 +306,7 @@ def _locate_all(
 
 
 @kernel(inline=True)
-def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
+def spline_cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
     """COR from its 16 coefficients, which begin at p; four along ln chi share each instruction.
 
     Indices are unsigned: no test for a negative one.
@@ -365,7 +365,9 @@ def _write_fields(
 ) -> None:
     """Write the fields of impact n, from the 4 x 4 coefficients that begin at `first`."""
     step = int(table[COLUMNS])
-    out.restitution[n] = _cor(table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t)
+    out.restitution[n] = spline_cor(
+        table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t
+    )
     others = _other_fields(table, np.uint64(int(table[OTHERS_AT]) + 3 * first), s, t)
     out.contact_time[n] = others.contact_time
     out.wave_rate[n] = others.wave_rate
@@ -395,17 +397,17 @@ def place_of(
     """Place of an impact in the table, x and ln chi; NaN as in `restitution`."""
     if not V_MIN <= speed <= V_MAX:
         return math.nan, math.nan
-    log_speed, root = _log_and_root(speed)
-    plate, stiffer = _plate(table, c_lam), 1.0
+    log_speed, root = log_and_root(speed)
+    plate, stiffer = plate_of(table, c_lam), 1.0
     if not is_thin(plate.corrections):
         eta = plate_stiffening(plate, root, ratio)
-        stiffer = _exp(eta)
+        stiffer = exp(eta)
         c_chi -= eta
     lam = inelasticity_of(plate, root, ratio, stiffer)
     x = lam / (lam + table[STRETCH])
     if not 0.0 <= x <= table[X_MAX]:
         return math.nan, math.nan
-    log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
+    log_chi = c_chi + 0.8 * log_speed + log_elastic(table, x)
     if not log_chi <= table[LOG_CHI_MAX]:
         return math.nan, math.nan
     return x, log_chi
@@ -417,7 +419,7 @@ def cor_at(table: Array, x: float, log_chi: float) -> float:
     row, column, s, t = locate(table, x, log_chi)
     step = int(table[COLUMNS])
     first = int(table[COR_AT]) + row * step + column
-    return _cor(table, np.uint64(first), np.uint64(step), s, t)
+    return spline_cor(table, np.uint64(first), np.uint64(step), s, t)
 
 
 @kernel(cache=True)
@@ -455,10 +457,10 @@ def _coordinates(
     Returns whether all of the impacts are valid and in the table.
     """
     stretch, x_max, scale = table[STRETCH], table[X_MAX], 2.0 / table[X_MAX]
-    power_series, log_chi_max = _power_series(table, HEADER), table[LOG_CHI_MAX]
+    power_series, log_chi_max = series_at(table, HEADER), table[LOG_CHI_MAX]
     for i in range(x.size):
-        log_chi[i], root[i] = _log_and_root(speed[i])
-    plate = _plate(table, c_lam)
+        log_chi[i], root[i] = log_and_root(speed[i])
+    plate = plate_of(table, c_lam)
     if is_thin(plate.corrections):
         for i in range(x.size):
             # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
@@ -468,13 +470,13 @@ def _coordinates(
         for i in range(x.size):
             ratio = radius[i] / thickness[i]
             eta = plate_stiffening(plate, root[i], ratio)
-            stiffer = _exp(eta)
+            stiffer = exp(eta)
             lam = inelasticity_of(plate, root[i], ratio, stiffer)
             root[i] *= stiffer
             x[i] = lam / (lam + stretch)
             log_chi[i] -= 1.25 * eta  # times 0.8 below, as ln V is
     for i in range(x.size):
-        log_w[i] = _evaluate(power_series, scale * x[i] - 1.0)
+        log_w[i] = evaluate(power_series, scale * x[i] - 1.0)
         log_chi[i] = c_chi + 0.8 * log_chi[i] + log_w[i]
     good = 0
     for i in range(x.size):
@@ -536,9 +538,9 @@ def restitutions(
         inside = _coordinates(table, c_lam, c_chi, v, r, h, log_chi, x, a, b)
         if not inside:
             _move_inside(table, v, r, h, log_chi, x, outside)
-        _locate_all(table, x, log_chi, first[:n], along, a, b)
+        locate_all(table, x, log_chi, first[:n], along, a, b)
         for i in range(n):
-            values[i] = _cor(table, np.uint64(cor_at + first[i]), step, x[i], along[i])
+            values[i] = spline_cor(table, np.uint64(cor_at + first[i]), step, x[i], along[i])
         if not inside:
             for i in range(n):
                 values[i] += outside[i]
@@ -563,7 +565,7 @@ def outcomes(
     """
     scratch, first = np.empty((7, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
     cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
-    others_at, plate = int(table[OTHERS_AT]), _plate(table, c_lam)
+    others_at, plate = int(table[OTHERS_AT]), plate_of(table, c_lam)
     lowest, y_1 = table[BLOCKS + START], math.exp(-c_chi)
     bad = 0
     for start in range(0, speed.size, _CHUNK):
@@ -576,7 +578,7 @@ def outcomes(
         if not is_thin(plate.corrections):
             for i in range(n):  # x = lam/(lam + stretch), chi = w_m/y
                 out.inelasticity[start + i] = table[STRETCH] * x[i] / (1.0 - x[i])
-                out.yield_ratio[start + i] = _exp(log_w[i] - log_chi[i])
+                out.yield_ratio[start + i] = exp(log_w[i] - log_chi[i])
         else:
             for i in range(n):
                 out.inelasticity[start + i] = inelasticity_of(plate, roots[i], r[i] / h[i], 1.0)
@@ -585,19 +587,19 @@ def outcomes(
         outside = _row(scratch, 6, n)
         if not inside:
             _move_inside(table, v, r, h, log_chi, x, outside)
-        _locate_all(table, x, log_chi, first[:n], along, a, b)
+        locate_all(table, x, log_chi, first[:n], along, a, b)
         # no call of `_write_fields`: passing a tuple of arrays on costs reference counts each time
         for i in range(n):
             at, s, t = int(first[i]), x[i], along[i]
-            out.restitution[start + i] = _cor(table, np.uint64(cor_at + at), step, s, t)
+            out.restitution[start + i] = spline_cor(table, np.uint64(cor_at + at), step, s, t)
             others = _other_fields(table, np.uint64(others_at + 3 * at), s, t)
             out.contact_time[start + i] = others.contact_time
             out.wave_rate[start + i] = others.wave_rate
             log_chi[i] = (others.growth - 1.0) * max(log_chi[i], lowest)
         for i in range(n):
-            out.elastic_compression[start + i] = _exp(log_w[i])
+            out.elastic_compression[start + i] = exp(log_w[i])
         for i in range(n):
-            out.compression_ratio[start + i] = _exp(log_chi[i])
+            out.compression_ratio[start + i] = exp(log_chi[i])
         if not inside:
             for i in range(n):
                 if outside[i] != 0.0:
@@ -617,7 +619,7 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     for n in range(out.inelasticity.size):
         x = out.inelasticity[n] / (out.inelasticity[n] + table[STRETCH])
         inside_x = min(x, table[X_MAX])
-        log_w = _log_elastic(table, inside_x)
+        log_w = log_elastic(table, inside_x)
         log_chi = log_w - math.log(out.yield_ratio[n])
         inside_chi = min(log_chi, table[LOG_CHI_MAX])
         if not (inside_x == x and inside_chi == log_chi):
@@ -638,7 +640,7 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
 
     d(ln chi)/d(ln V) lies between 2/3 and 4/5, so a step with slope 3/4 contracts by 0.12 at least.
     """
-    plate = _plate(table, c_lam)
+    plate = plate_of(table, c_lam)
     for n in range(out.size):
         log_speed = -1.25 * c_chi
         for _ in range(30):  # 0.12^30 is far below rounding
@@ -648,5 +650,5 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
             x = lam / (lam + table[STRETCH])
             if not 0.0 <= x <= table[X_MAX]:
                 break
-            log_speed -= (c_chi - eta + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
+            log_speed -= (c_chi - eta + 0.8 * log_speed + log_elastic(table, x)) / 0.75
         out[n] = math.exp(log_speed) if 0.0 <= x <= table[X_MAX] else math.nan

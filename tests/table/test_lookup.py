@@ -20,7 +20,7 @@ def compiled(inner):
 
 
 log_and_root, exp, evaluate, weights = map(
-    compiled, (lookup._log_and_root, lookup._exp, lookup._evaluate, lookup.weights)
+    compiled, (lookup.log_and_root, lookup.exp, lookup.evaluate, lookup.weights)
 )
 
 
