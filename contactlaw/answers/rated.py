@@ -275,7 +275,7 @@ class Nodes:
         if min(table[lookup.LOG_CHI_MAX] for table in tables) < min(lengths):
             lengths = [1.0] * len(lengths)  # no table reaches the end of the law's range
         nodes = [
-            strengths.Node(table, length, one.c_chi)
+            strengths.Node(one.table, table, length, one.c_chi)
             for table, length, one in zip(tables, lengths, self.tabulated, strict=True)
         ]
         log_share = math.log(rate.SHARE / self.flow.rate0)

@@ -202,7 +202,7 @@ def evaluate(c: tuple[float, ...], t: float) -> float:
 
 
 @kernel
-def log_elastic(table: Array, x: float) -> float:
+def _log_elastic(table: Array, x: float) -> float:
     """Logarithm of w_m at x."""
     return evaluate(series_at(table, HEADER), 2.0 / table[X_MAX] * x - 1.0)
 
@@ -210,7 +210,7 @@ def log_elastic(table: Array, x: float) -> float:
 @kernel(cache=True)
 def log_elastic_compression(table: Array, lam: float) -> float:
     """Logarithm of w_m at an inelasticity inside the table."""
-    return log_elastic(table, lam / (lam + table[STRETCH]))
+    return _log_elastic(table, lam / (lam + table[STRETCH]))
 
 
 @kernel(inline=True)
@@ -306,7 +306,7 @@ def locate_all(
 
 
 @kernel(inline=True)
-def spline_cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
+def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
     """COR from its 16 coefficients, which begin at p; four along ln chi share each instruction.
 
     Indices are unsigned: no test for a negative one.
@@ -365,9 +365,7 @@ def _write_fields(
 ) -> None:
     """Write the fields of impact n, from the 4 x 4 coefficients that begin at `first`."""
     step = int(table[COLUMNS])
-    out.restitution[n] = spline_cor(
-        table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t
-    )
+    out.restitution[n] = _cor(table, np.uint64(int(table[COR_AT]) + first), np.uint64(step), s, t)
     others = _other_fields(table, np.uint64(int(table[OTHERS_AT]) + 3 * first), s, t)
     out.contact_time[n] = others.contact_time
     out.wave_rate[n] = others.wave_rate
@@ -407,7 +405,7 @@ def place_of(
     x = lam / (lam + table[STRETCH])
     if not 0.0 <= x <= table[X_MAX]:
         return math.nan, math.nan
-    log_chi = c_chi + 0.8 * log_speed + log_elastic(table, x)
+    log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
     if not log_chi <= table[LOG_CHI_MAX]:
         return math.nan, math.nan
     return x, log_chi
@@ -419,7 +417,7 @@ def cor_at(table: Array, x: float, log_chi: float) -> float:
     row, column, s, t = locate(table, x, log_chi)
     step = int(table[COLUMNS])
     first = int(table[COR_AT]) + row * step + column
-    return spline_cor(table, np.uint64(first), np.uint64(step), s, t)
+    return _cor(table, np.uint64(first), np.uint64(step), s, t)
 
 
 @kernel(cache=True)
@@ -540,7 +538,7 @@ def restitutions(
             _move_inside(table, v, r, h, log_chi, x, outside)
         locate_all(table, x, log_chi, first[:n], along, a, b)
         for i in range(n):
-            values[i] = spline_cor(table, np.uint64(cor_at + first[i]), step, x[i], along[i])
+            values[i] = _cor(table, np.uint64(cor_at + first[i]), step, x[i], along[i])
         if not inside:
             for i in range(n):
                 values[i] += outside[i]
@@ -591,7 +589,7 @@ def outcomes(
         # no call of `_write_fields`: passing a tuple of arrays on costs reference counts each time
         for i in range(n):
             at, s, t = int(first[i]), x[i], along[i]
-            out.restitution[start + i] = spline_cor(table, np.uint64(cor_at + at), step, s, t)
+            out.restitution[start + i] = _cor(table, np.uint64(cor_at + at), step, s, t)
             others = _other_fields(table, np.uint64(others_at + 3 * at), s, t)
             out.contact_time[start + i] = others.contact_time
             out.wave_rate[start + i] = others.wave_rate
@@ -619,7 +617,7 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     for n in range(out.inelasticity.size):
         x = out.inelasticity[n] / (out.inelasticity[n] + table[STRETCH])
         inside_x = min(x, table[X_MAX])
-        log_w = log_elastic(table, inside_x)
+        log_w = _log_elastic(table, inside_x)
         log_chi = log_w - math.log(out.yield_ratio[n])
         inside_chi = min(log_chi, table[LOG_CHI_MAX])
         if not (inside_x == x and inside_chi == log_chi):
@@ -650,5 +648,5 @@ def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Ar
             x = lam / (lam + table[STRETCH])
             if not 0.0 <= x <= table[X_MAX]:
                 break
-            log_speed -= (c_chi - eta + 0.8 * log_speed + log_elastic(table, x)) / 0.75
+            log_speed -= (c_chi - eta + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
         out[n] = math.exp(log_speed) if 0.0 <= x <= table[X_MAX] else math.nan
