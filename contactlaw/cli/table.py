@@ -11,6 +11,7 @@ from typing import Any
 from contactlaw import laws, table
 from contactlaw._jit import enable_caching
 from contactlaw.cli.parts import chosen, options, wording
+from contactlaw.physical.rate import rated
 from contactlaw.physical.scaling import law_of
 from contactlaw.table import cache, file
 
@@ -93,7 +94,14 @@ def _law(arguments: argparse.Namespace) -> laws.Law:
         raise wording.Refused(
             f"--law: {arguments.law!r} takes numbers from a pair: give --sphere and --plate too"
         )
-    return law_of(chosen.pair(arguments), arguments.law)
+    pair = chosen.pair(arguments)
+    law = law_of(pair, arguments.law)
+    if rated(pair, law):
+        raise wording.Refused(
+            "--sphere, --plate: a pair with a rate of strain has several tables, of several "
+            "strengths, which cl.ImpactModel builds when they are first needed"
+        )
+    return law
 
 
 def _print_certificate(certificate: table.Certificate | None, limits: dict[str, float]) -> None:
