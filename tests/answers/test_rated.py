@@ -45,7 +45,7 @@ def factors(name, speed, radius):
 def impacts(name, count=80):
     """Random impacts inside the tables, from below yield to deep contacts."""
     rng = np.random.default_rng(5)
-    speed = PAIRS[name].yield_speed * np.exp(rng.uniform(-1.0, 5.0, 10 * count))
+    speed = PAIRS[name].yield_speed * np.exp(rng.uniform(-1.0, 8.0, 10 * count))
     radius = np.exp(rng.uniform(math.log(2e-5), math.log(1e-2), speed.size))
     thickness = np.where(rng.random(speed.size) < 0.1, np.inf, radius / rng.uniform(0.05, 2.0))
     look_up = model(name).kernel
@@ -98,7 +98,8 @@ def test_all_entries_have_one_cor(name):
     # slow impacts know no rate, and 600 impacts are more than one chunk
     slow = cl.ImpactModel(rate.strengthened(PAIRS[name], 1.0)).restitution(1e-3, R, R)
     assert one.restitution(np.full(600, 1e-3), R, R) == pytest.approx(slow, abs=2e-6)
-    assert pickle.loads(pickle.dumps(one)).restitution(*given[0]) == one.restitution(*given[0])
+    again = pickle.loads(pickle.dumps(one)).restitution(*given[0])
+    assert again == pytest.approx(one.restitution(*given[0]), rel=1e-12)
 
 
 def test_outside_the_tables():
