@@ -45,7 +45,7 @@ def factors(name, speed, radius):
 def impacts(name, count=80):
     """Random impacts inside the tables, from below yield to deep contacts."""
     rng = np.random.default_rng(5)
-    speed = PAIRS[name].yield_speed * np.exp(rng.uniform(-1.0, 8.0, 10 * count))
+    speed = PAIRS[name].yield_speed * np.exp(rng.uniform(-1.0, 10.0, 10 * count))
     radius = np.exp(rng.uniform(math.log(2e-5), math.log(1e-2), speed.size))
     thickness = np.where(rng.random(speed.size) < 0.1, np.inf, radius / rng.uniform(0.05, 2.0))
     look_up = model(name).kernel
@@ -87,7 +87,7 @@ def test_tables_are_certified(name):
 @pytest.mark.parametrize("name", ["sphere", "both"])
 def test_all_entries_have_one_cor(name):
     one, (v, r, h) = model(name), impacts(name)
-    expected = pytest.approx(one.lookup(v, r, h).restitution, abs=1e-7)
+    expected = pytest.approx(one.lookup(v, r, h).restitution, abs=1e-6)
     given = list(zip(v.tolist(), r.tolist(), h.tolist(), strict=True))
     double = ctypes.c_double
     pointer = ctypes.CFUNCTYPE(double, double, double, double)(one.address)
