@@ -29,7 +29,7 @@ from contactlaw.answers.tabulated import Border, TableArgument, Tabulated
 from contactlaw.equation import outcome, zener
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import Extremes, Outcome
-from contactlaw.laws import Law
+from contactlaw.laws import Law, fem
 from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.arguments import check, scalars, shaped
@@ -48,6 +48,7 @@ Contact = Callable[[SphereOnPlate, Some], ContactConstants]
 
 _WIDEST = 0.36  # piece of ln k, our choice: the COR errs by less than 5e-6 for it
 _DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
+_TRIED = 513  # places of ln k between which corners are looked for
 _NEAR = 5e-3  # in ln k: nearer to the ends there are no corners
 _PASSES = 100  # in which a yield speed converges; each leaves a tenth of the error, or less
 _CONVERGED = 1e-11
@@ -182,12 +183,21 @@ class RatedSolver(Solver):
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
         columns = np.empty((len(ForceHistory._fields), impacts.speed.size, samples))
+        parts = []
         for one in self._parts(impacts):
-            contacts = histories(one.bodies.law, one.outcome, samples)
-            lam = one.outcome.inelasticity
-            columns[:, one.some] = with_units(contacts, one.units, lam, one.impacts.shape)
+            normal = one.rebound()
+            parts.append((one.some, normal))
+            contacts, lam = (
+                histories(one.bodies.law, one.outcome, samples),
+                one.outcome.inelasticity,
+            )
+            columns[:, one.some] = with_units(
+                contacts, one.units, lam, one.impacts.shape, normal.flags
+            )
         whole = *(impacts.shape or ()), samples
-        return ForceHistory(*(values.reshape(whole) for values in columns))
+        found = ForceHistory(*(values.reshape(whole) for values in columns))
+        found.flags = merged(parts, impacts).flags
+        return found
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
@@ -235,7 +245,7 @@ class Nodes:
         It is not where the bodies' strengths are alike, where the stronger one begins to yield, and
         where a formula of the law's has a corner.
         """
-        pair, last = self.bodies.pair, math.log(rate.largest_factor(self.flow))
+        last = math.log(rate.largest_factor(self.flow))
         if not stronger(self.bodies, math.exp(last)).law.yields:  # where does that begin?
             low = 0.0
             while last - low > _NEAR:
@@ -243,20 +253,31 @@ class Nodes:
                 yields = stronger(self.bodies, math.exp(middle)).law.yields
                 low, last = (middle, last) if yields else (low, middle)
             last = low
-        numbers = pair_numbers(pair, self.bodies.law.family)
-        has = {role: getattr(pair, role).rate is not None for role in ("sphere", "plate")}
-        ratios = {role: numbers[f"{role}_ratio"] for role in has}
-        corners = [ratios[role] / at for role in has if has[role] for at in (*RATIOS, *_DEEPEST)]
-        for role, other in (("sphere", "plate"), ("plate", "sphere")):
-            if has[role] and ratios[other] and not has[other]:
-                corners += [ratios[role] / ratios[other] * z for z in (ALONE, 1.0, 1.0 / ALONE)]
-        inner = sorted(math.log(one) for one in corners if one > 1.0)
-        ends = [0.0, *(one for one in inner if _NEAR < one < last - _NEAR), last]
+        logs = np.linspace(0.0, last, _TRIED)
+        inner: list[float] = []
+        for values in np.array([self._corners(one) for one in logs]).T:
+            (before,) = np.nonzero(values[:-1] * values[1:] < 0.0)
+            share = values[before] / (values[before] - values[before + 1])
+            inner += (logs[before] + share * (logs[1] - logs[0])).tolist()
+        ends = [0.0, *(one for one in sorted(inner) if _NEAR < one < last - _NEAR), last]
         knots = [0.0]
         for low, high in itertools.pairwise(ends):
             if high - low > _NEAR or high == last:
                 knots += np.linspace(low, high, math.ceil((high - low) / _WIDEST) + 1)[1:].tolist()
         return knots
+
+    def _corners(self, log_factor: float) -> list[float]:
+        """Numbers that change their signs at corners of the law."""
+        pair = rate.strengthened(self.bodies.pair, math.exp(log_factor))
+        numbers = pair_numbers(pair, self.bodies.law.family)
+        given = fem.Given(**{n: numbers[n] for n in fem.PARAMETERS if n in numbers})
+        found = []
+        for one in fem.comparable(given):
+            ratios = [ratio for ratio in one[:2] if ratio]
+            found += [math.log(ratio / at) for ratio in ratios for at in (*RATIOS, *_DEEPEST)]
+            if len(ratios) == 2:
+                found += [math.log(ratios[0] / ratios[1] / z) for z in (ALONE, 1.0, 1.0 / ALONE)]
+        return found
 
     @functools.cached_property
     def tabulated(self) -> list[Tabulated]:
@@ -391,7 +412,8 @@ class Nodes:
             shapes.sample(node.bodies.law.data, packed, found, one)
             for values, more in zip(total, one, strict=True):
                 values[some] += weight[:, None] * more
-        return with_units(total, units, places.inelasticity, impacts.shape)
+        flags = self.rebounds(contact, impacts)[0].flags
+        return with_units(total, units, places.inelasticity, impacts.shape, flags)
 
 
 def _length(law: Law) -> float:

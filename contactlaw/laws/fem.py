@@ -60,6 +60,7 @@ Array = NDArray[np.float64]
 RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by similarity
 _FLOWN = (20.0, 10.0)  # q at which flow is complete: the first for all sums but v, the second for v
 _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # two E*/sigma_Y, each with its deepest contacts, d/R
+_USUAL = 0.3  # Poisson's ratio of the yield compression from which strains are counted
 _TYPICAL = 0.1  # sqrt(d/R) at which bodies that harden are compared with each other
 _WIDEST = 1.0  # sqrt(d/R) below which every body that yields has yielded
 _SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiffening negligible
@@ -341,6 +342,36 @@ class Curves:
         )
 
 
+class Strains(NamedTuple):
+    """Representative strain of the flow stress: slope (w - start), with w = sqrt(d/R)."""
+
+    slope: float
+    start: float
+
+    def ratios(self, given: Given, w: Any) -> tuple[Any, Any]:
+        """E*/sigma of sphere and plate at a depth, or at an array of them."""
+        return given.ratios(self.slope * np.maximum(w - self.start, 0.0))
+
+    def typical(self, given: Given) -> Given:
+        """Bodies without hardening, with the strengths that these have at a typical depth."""
+        return Given(*self.ratios(given, _TYPICAL), *given[2:5])
+
+
+def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
+    """Strains of bodies that flow alone, and of these, which may share the flow and flow less."""
+    slope, late, both = found["strain"]
+    alone = Strains(slope, late * math.sqrt(yield_scale(given.ratio, _USUAL)))
+    share = alone.typical(given).share_both(float(found["blend"]))
+    return alone, alone._replace(slope=slope * (1.0 - both * share))
+
+
+def comparable(given: Given) -> list[Given]:
+    """Bodies whose strengths are compared in the law: it has corners where one becomes weaker."""
+    if not given.hardens:
+        return [given]
+    return [given, *(one.typical(given) for one in strains(given, numbers()))]
+
+
 class HardeningCurves(Curves):
     """Curves of bodies that harden: at each depth those of the strength that they have there.
 
@@ -352,24 +383,18 @@ class HardeningCurves(Curves):
 
     def __init__(self, given: Given, found: dict[str, Any] | None = None) -> None:
         found = found or numbers()
-        blend, (slope, late, both) = float(found["blend"]), found["strain"]
-        onset = Given(*given[:5]).yield_scale(blend)
-        late *= math.sqrt(onset)
-
-        def ratios(w: Any) -> tuple[Any, Any]:
-            return given.ratios(slope * np.maximum(w - late, 0.0))
-
-        typical = Given(*ratios(_TYPICAL), *given[2:5])
-        slope *= 1.0 - both * typical.share_both(blend)  # bodies that share the flow flow less
-        typical = Given(*ratios(_TYPICAL), *given[2:5])
+        blend, (_, taken) = float(found["blend"]), strains(given, found)
+        typical = taken.typical(given)
         super().__init__(typical, found)
         flow = typical.flow(blend).values()
-        self.onset = onset
+        self.onset = Given(*given[:5]).yield_scale(blend)
         root = math.sqrt(self.scale)
 
         def stronger(w: Any) -> Any:
             """Strength over that at the typical depth; both bodies' by their share of the flow."""
-            known = [one for one in zip(flow, typical, ratios(w), strict=False) if one[0]]
+            known = [
+                one for one in zip(flow, typical, taken.ratios(given, w), strict=False) if one[0]
+            ]
             return np.prod([(then / now) ** share for share, then, now in known], axis=0)
 
         # yield begins where the compression passes that of the strength there
@@ -377,12 +402,12 @@ class HardeningCurves(Curves):
         self.scale = first**2
         self.stiffening *= first / root
         self._width *= first / root
-        self._rise = first / (first - late)  # of ln(strain) with ln(w) at yield
+        self._rise = first / (first - taken.start)  # of ln(strain) with ln(w) at yield
         self._hardening = []
         hardening = (given.sphere_hardening, given.plate_hardening)
         exponents = (given.sphere_exponent, given.plate_exponent)
         for share, times, n in zip(flow, hardening, exponents, strict=True):
-            part = times * (slope * (first - late)) ** n
+            part = times * (taken.slope * (first - taken.start)) ** n
             self._hardening.append((share, part / (1.0 + part), n))
 
     def _log_own(self, q: Array) -> Array:
