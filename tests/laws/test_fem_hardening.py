@@ -48,7 +48,7 @@ def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
     )  # fmt: skip
     onset = law("fem", **numbers, **{**none, f"{role}_ratio": ratio}).scale
     assert hard.onset == pytest.approx(onset)
-    strain = SHARE * (math.sqrt(depth) - LATE * math.sqrt(onset))
+    strain = SHARE * (math.sqrt(depth) - LATE * math.sqrt(fem.yield_scale(ratio, 0.3)))
     there = {**none, f"{role}_ratio": ratio / (1.0 + times * strain**n)}
     ideal = fem.law(*{**there, **numbers}.values())
     for one in (hard, ideal):
