@@ -41,8 +41,8 @@ from contactlaw.equation import outcome
 from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import shaped
-from contactlaw.physical.flow import Flow
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.rate import scaled
 from contactlaw.physical.rebound import Impacts
 from contactlaw.physical.scaling import law_for_pair, pair_numbers, scales, sphere_on_plate
 from contactlaw.table import lookup
@@ -72,7 +72,8 @@ class Sensitivity:
     sphere_modulus, plate_modulus
         Young's moduli, at fixed Poisson's ratios.
     yield_strength
-        Of the sphere; with the law ``"fem"`` of all bodies that yield, changed together.
+        Of the sphere; with the law ``"fem"`` of all bodies that yield, changed together, and with
+        it the hardening: the whole flow stress, also where it follows from a hardness.
 
     Notes
     -----
@@ -206,7 +207,8 @@ def by_inputs(pair: Pair, law: Law, impacts: Impacts, yields: NDArray[np.bool_])
     by_thickness = by(lambda x: (pair, speed, radius, x * thickness))
     by_density = by_number("density", "sphere")
     by_modulus = by_number("youngs_modulus", "sphere")
-    by_strength = np.where(yields, by_number("yield_strength", "sphere", "plate"), 0.0)
+    stronger = by(lambda x: (Pair(*(scaled(one, x) for one in bodies)), speed, radius, thickness))
+    by_strength = np.where(yields, stronger, 0.0)
     named = {
         "speed": by_speed,
         "radius": -by_thickness,
@@ -217,8 +219,8 @@ def by_inputs(pair: Pair, law: Law, impacts: Impacts, yields: NDArray[np.bool_])
         "plate_modulus": -0.5 * by_speed - by_modulus - by_strength,
         "yield_strength": by_strength,
     }
-    if not all(body.flow in (None, (body.yield_strength, *Flow(0.0)[1:])) for body in bodies):
-        # more inputs with a unit, which are held: the rate at which a strength is known, hardening
+    if any(body.rate or isinstance(body.hardening, float) for body in bodies):
+        # other inputs with a unit are held: rate0, or the hardness from which two strengths follow
         named["radius"] = by(lambda x: (pair, speed, x * radius, thickness))
         named["plate_density"] = by_number("density", "plate")
         named["plate_modulus"] = by_number("youngs_modulus", "plate")

@@ -59,12 +59,16 @@ def _leading(pair: Pair) -> Flow | None:
     return min(with_rate, key=lambda flow: flow.strength) if with_rate else None
 
 
-def _strengthened(body: Material, rate: float) -> Material:
+def scaled(body: Material, factor: float) -> Material:
+    """Body whose whole flow stress is larger by a factor, also where it is from a hardness."""
     flow = body.flow
-    if flow is None or not flow.rate:
+    if flow is None:
         return body
-    factor = flow.factor(rate)
     hardening = (factor * flow.hardening, flow.exponent) if flow.hardening else None
-    return dataclasses.replace(
-        body, yield_strength=factor * flow.strength, hardening=hardening, rate=None
-    )
+    return dataclasses.replace(body, yield_strength=factor * flow.strength, hardening=hardening)
+
+
+def _strengthened(body: Material, rate: float) -> Material:
+    if body.flow is None or not body.flow.rate:
+        return body
+    return dataclasses.replace(scaled(body, body.flow.factor(rate)), rate=None)

@@ -266,6 +266,34 @@ def test_fem_with_numbers_in_its_name_holds_them_fixed(pair, monkeypatch):
     assert fixed.sphere_modulus != pytest.approx(ours.sphere_modulus, abs=1e-3)
 
 
+@pytest.mark.parametrize(
+    "flow",
+    [
+        {"yield_strength": 300e6, "hardening": (500e6, 0.3)},
+        {"hardness": 1.2e9},
+        {"hardness": 1.2e9, "hardening": 0.3},
+    ],
+)
+def test_the_strength_is_the_whole_flow_stress(flow):
+    """A factor on A and B, whether they are given or follow from a hardness."""
+    metal = cl.Material("metal", 200e9, 0.3, 7800, kind="metal", **flow)
+    plate = cl.Material("plate", 70e9, 0.22, 2500)
+    impact = 3.0, 1e-3, 4e-3
+
+    def cor(factor):
+        known = metal.flow
+        body = cl.Material(
+            "metal", 200e9, 0.3, 7800, yield_strength=factor * known.strength,
+            hardening=(factor * known.hardening, known.exponent), kind="metal",
+        )  # fmt: skip
+        return cl.ImpactModel(cl.Pair(body, plate)).solve(*impact).restitution
+
+    expected = math.log(cor(1.01) / cor(0.99)) / math.log(1.01 / 0.99)
+    found = cl.ImpactModel(cl.Pair(metal, plate)).sensitivity(*impact)
+    assert found.yield_strength == pytest.approx(expected, rel=1e-3)
+    assert expected > 0.1
+
+
 def test_every_input_is_compared(moved):
     assert set(INPUTS) == {field.name for field in dataclasses.fields(moved)}
 
