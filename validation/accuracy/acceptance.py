@@ -218,7 +218,7 @@ def differences(law: str, flag: Validity, beside: Validity) -> list[float]:
     --------
     >>> found = differences("myc", Validity.THIN_PLATE, Validity.FAST_IMPACT)
     >>> len(found), round(found[-1], 3)
-    (6, 0.028)
+    (9, 0.028)
     """
     others = Validity.ACCURACY & ~(flag | beside)
     every = (one for study in STORED for one in _of_study(study, law, 1.0))

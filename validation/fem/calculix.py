@@ -347,7 +347,7 @@ def _material(name: str, material: cl.Material) -> str:
         strains = (0.0, *_STRAINS) if flow.hardening else (0.0, 1.0)
         lines.append("*PLASTIC")
         lines += [
-            f"{flow.stress(strain) * _MPA + _HARDENING * modulus * strain:.6e}, {strain:.6g}"
+            f"{flow.stress(strain) * _MPA + _HARDENING * modulus * strain:.6e}, {strain:#.6g}"
             for strain in strains
         ]
     return "\n".join(lines) + "\n"

@@ -40,7 +40,7 @@ _WIDEST = 5.0  # [%]; a larger error is drawn here, with its value
 
 def draw() -> chart.Drawn:
     """Draw COR over COR, and the errors of both rows."""
-    rows = acceptance.rows()
+    rows = acceptance.rows(_TITLES)
     others = {name: acceptance.members(row.target, "myc") for name, row in rows.items()}
     figure = style.figure(
         14.0,
