@@ -118,7 +118,7 @@ _WORDS = {
     Validity.OTHER_LAW: (
         "finite elements favour another law for these materials",
         "take law fem, by law myc the COR is up to 0.24 too low, or 0.15 too high for a sphere of "
-        "E/sigma_Y below 20",
+        "a modulus below 20 strengths",
     ),
     Validity.DEEP_CONTACT: (
         "compressed deeper than the finite elements that the law is made of",
