@@ -49,6 +49,7 @@ Contact = Callable[[SphereOnPlate, Some], ContactConstants]
 _WIDEST = 0.3  # piece of ln k, our choice: the COR errs by less than 5e-6 for it
 _DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
 _TRIED = 513  # places of ln k between which corners are looked for
+_CLOSE = 1e-6  # in ln k: how closely the strength is found at which no body yields
 _NEAR = 5e-3  # in ln k: nearer to the ends there are no corners
 _PASSES = 100  # in which a yield speed converges; each leaves a tenth of the error, or less
 _CONVERGED = 1e-11
@@ -170,10 +171,14 @@ class RatedSolver(Solver):
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
+        if not impacts.speed.size:
+            return super().rebounds(impacts)
         return merged(((one.some, one.rebound()) for one in self._parts(impacts)), impacts)
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
+        if not impacts.speed.size:
+            return super().oblique(impacts, psi)
         changes, parts = np.empty_like(psi), []
         for one in self._parts(impacts):
             parts.append((one.some, one.rebound()))
@@ -182,6 +187,8 @@ class RatedSolver(Solver):
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
+        if not impacts.speed.size:
+            return super().histories(impacts, samples)
         columns = np.empty((len(ForceHistory._fields), impacts.speed.size, samples))
         parts = []
         for one in self._parts(impacts):
@@ -248,7 +255,7 @@ class Nodes:
         last = math.log(rate.largest_factor(self.flow))
         if not stronger(self.bodies, math.exp(last)).law.yields:  # where does that begin?
             low = 0.0
-            while last - low > _NEAR:
+            while last - low > _CLOSE:
                 middle = 0.5 * (low + last)
                 yields = stronger(self.bodies, math.exp(middle)).law.yields
                 low, last = (middle, last) if yields else (low, middle)
@@ -463,6 +470,8 @@ class Rated(Tabulated):
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
+        if not impacts.speed.size:
+            return Solver(self.bodies).rebounds(impacts)
         return self.nodes.rebounds(on_plates(impacts), impacts)[0]
 
     @functools.cached_property
@@ -474,6 +483,8 @@ class Rated(Tabulated):
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
+        if not impacts.speed.size:
+            return Solver(self.bodies).oblique(impacts, psi)
         contact = on_plates(impacts)
         normal, places = self.nodes.rebounds(contact, impacts)
         v, r, h = impacts.speed, impacts.radius, impacts.thickness
@@ -494,6 +505,8 @@ class Rated(Tabulated):
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
+        if not impacts.speed.size:
+            return Solver(self.bodies).histories(impacts, samples)
         return self.nodes.histories(on_plates(impacts), impacts, samples)
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:

@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from contactlaw.fitting.measurements import NORMAL, OBLIQUE, Measurements
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import number
-from contactlaw.physical.materials import Material
+from contactlaw.physical.flow import CONSTRAINT
 from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
@@ -163,20 +163,32 @@ def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
     low, high = unknown.least, unknown.largest
     if parameter.is_strength:
         low, high = (pair.effective_modulus / ratio for ratio in reversed(_RATIOS))
+        body = getattr(pair, unknown.body)
+        if _by_hardness(body):
+            high = min(high, body.hardness / CONSTRAINT)  # no metal softens
     elif unknown.body:
         low = max(low, parameter.centre / _SEARCH_FACTOR)
         high = min(high, parameter.centre * _SEARCH_FACTOR)
     return low, high
 
 
+def _by_hardness(body: Any) -> bool:
+    """Whether a body's hardening follows from its hardness and an exponent."""
+    return isinstance(body.hardening, float)
+
+
 def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values: Array) -> Setting:
     """Put the values of parameters into bodies and sizes."""
-    bodies: dict[str, Material] = {"sphere": pair.sphere, "plate": pair.plate}
+    bodies: dict[str, Any] = {"sphere": pair.sphere, "plate": pair.plate}
     sizes = {name: getattr(data, name) for name in _SIZES}
     for parameter, value in zip(parameters, values.tolist(), strict=True):
         body, field = parameter.unknown.body, parameter.unknown.field
         if body:
-            bodies[body] = dataclasses.replace(bodies[body], **{field: value})
+            changed = {field: value}
+            if field == "yield_strength" and _by_hardness(bodies[body]):
+                # a search may try a strength above that of the hardness: without hardening then
+                changed["hardness"] = max(bodies[body].hardness, CONSTRAINT * value)
+            bodies[body] = dataclasses.replace(bodies[body], **changed)
         elif sizes[field] is None:
             sizes[field] = np.full(len(data), value)
         else:

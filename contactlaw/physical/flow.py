@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 # Tabor, The Hardness of Metals (1951): the pressure under an indenter is three times the flow
 # stress at 8 % of strain.
-_CONSTRAINT, _TABOR = 3.0, 0.08
+CONSTRAINT, _TABOR = 3.0, 0.08
 
 
 class Flow(NamedTuple):
@@ -56,7 +56,7 @@ def from_hardness(
     >>> round(strength / 1e6, 1), round((strength + hardening * 0.08**0.3) / 1e6, 1)
     (38.1, 200.0)
     """
-    at_tabor = hardness / _CONSTRAINT
+    at_tabor = hardness / CONSTRAINT
     if exponent is None:
         return at_tabor, 0.0
     if strength is None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.physical.arguments import refuse_units
-from contactlaw.physical.flow import Flow, from_hardness
+from contactlaw.physical.flow import CONSTRAINT, Flow, from_hardness
 from contactlaw.physical.hardness import pascals
 
 # Two bounds of ours that detect values in other units, but allow the softened beads of DEM.
@@ -26,6 +26,8 @@ _WEAKEST = 1e-12  # yield strain sigma_Y/E
 # Plastics without fibres have up to 5 GPa, with 30 % of glass 10; PTFE is the densest, with 2200
 # kg/m3. Of metals only the alkalis are as soft and light; for porous ceramics give the kind.
 _STIFFEST_POLYMER, _DENSEST_POLYMER = 10e9, 2300.0  # [Pa, kg/m3]
+_STEEPEST_ALONE = 0.6  # n of a metal known by its hardness; annealed copper and brass have 0.5
+_LEAST_HARDENING = 1e-6  # B over Young's modulus; below, it is in MPa
 _STEEPEST_RATE = 0.5  # C; of published metals up to 0.1
 
 KINDS = ("metal", "ceramic", "glass", "polymer")
@@ -131,11 +133,11 @@ class Material:
         taken for a polymer then if it is as soft and light as one, up to 10 GPa and 2300 kg/m3.
     hardness : float or str, optional
         Indentation hardness [Pa], Vickers or Knoop, positive, or a text such as "62 HRC", "800 HV"
-        or "200 HBW", which is stored in Pa (`contactlaw.physical.hardness` has the sources of the
-        conversion); None if it is unknown. For a brittle
-        material, which has no yield strength, it limits the contact pressure. For a metal it is
-        three times the flow stress at 8 % of strain (Tabor 1951), used where no yield strength or
-        only the exponent of hardening is given.
+        or "200 HBW", which is stored in Pa; HRC and HB imply a metal
+        (`contactlaw.physical.hardness` has the sources of the conversion); None if it is unknown.
+        For a brittle material, which has no yield strength, it limits the contact pressure. For a
+        metal it is three times the flow stress at 8 % of strain (Tabor 1951), used where no yield
+        strength or only the exponent of hardening is given.
     hardening : (float, float) or float, optional
         B [Pa] and n [-] of the flow stress A + B strain^n, in which A is the yield strength,
         0 < n <= 1. Or n alone: the hardness gives B then, and A too if there is no yield strength.
@@ -191,6 +193,8 @@ class Material:
             strength = _positive(self.name, "yield_strength", strength, "Pa")
         hardness = self.hardness
         if isinstance(hardness, str):
+            if self.kind is None and "HV" not in hardness.upper():
+                object.__setattr__(self, "kind", "metal")  # of which alone these scales are
             hardness = pascals(f"hardness of {self.name!r}", hardness)
         if hardness is not None:
             hardness = _positive(self.name, "hardness", hardness, "Pa")
@@ -284,6 +288,9 @@ class Material:
         """
         if self.strength is None:
             raise NoYieldStrengthError(law, self.name)
+        if self.strength_from_hardness and law.partition("(")[0] != "fem":
+            # a law without hardening takes the flow stress that the hardness stands for
+            return from_hardness(float(self.hardness or 0.0), self.youngs_modulus, None, None)[0]
         return self.strength
 
 
@@ -397,16 +404,24 @@ def _hardening(body: Material) -> tuple[float, float] | float | None:
     given, what = body.hardening, f"hardening of {body.name!r}"
     if given is None:
         return None
+    if isinstance(given, np.ndarray):
+        given = given.tolist()
     if not isinstance(given, tuple | list):
         exponent = _finite(body.name, "hardening", given, "-")
         if not (0.0 < exponent < 1.0):
             raise ValueError(f"{what}: n must be above 0 and below 1, got {given!r}")
+        if body.yield_strength is None and exponent > _STEEPEST_ALONE:
+            raise ValueError(
+                f"{what}: with a hardness and no yield_strength, n must be up to "
+                f"{_STEEPEST_ALONE:g}, got {given!r}: flow would begin at next to no stress; give "
+                "yield_strength, too"
+            )
         if not isinstance(body.hardness, float):
             raise ValueError(
                 f"{what} is the exponent {exponent:g} alone: give (B, n) with B in Pa, or the "
                 "hardness, from which B follows"
             )
-        if body.yield_strength is not None and body.hardness < 3.0 * body.yield_strength:
+        if body.yield_strength is not None and body.hardness < CONSTRAINT * body.yield_strength:
             raise ValueError(
                 f"{what}: a hardness of {body.hardness:g} Pa is below three times the yield "
                 f"strength {body.yield_strength:g} Pa, as if the material softened"
@@ -422,6 +437,8 @@ def _hardening(body: Material) -> tuple[float, float] | float | None:
             f"{what}: B must be from 0 to below youngs_modulus {body.youngs_modulus!r}, in Pa, got "
             f"{given[0]!r}"
         )
+    if 0.0 < hardening < _LEAST_HARDENING * body.youngs_modulus:
+        raise ValueError(f"{what}: B {given[0]!r} is next to nothing: give it in Pa")
     exponent = _finite(body.name, "hardening", given[1], "-")
     if not (0.0 < exponent <= 1.0):
         raise ValueError(f"{what}: n must be above 0 and up to 1, got {given[1]!r}")

@@ -27,8 +27,9 @@ _FASTEST = 1e7  # V0/R [1/s] up to which tables reach: 100 m/s at 10 micrometres
 
 
 def rated(pair: Pair, law: Law) -> Flow | None:
-    """Flow whose rate strengthens a pair in a law; None if nothing does."""
-    return _leading(pair) if "sphere_ratio" in law.from_pair else None
+    """Flow whose rate strengthens a pair in a law; None if nothing does at rates of impacts."""
+    flow = _leading(pair) if "sphere_ratio" in law.from_pair else None
+    return flow if flow and largest_factor(flow) > 1.0 else None
 
 
 def factors(flow: Flow, speed: Array, radius: Array) -> Array:

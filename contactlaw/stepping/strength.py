@@ -75,12 +75,6 @@ def place_at(levels: Array, speed: float, scale: float) -> float:
 
 
 @kernel
-def yield_growth(levels: Array, place: float) -> float:
-    """Yield compression at a place, over that of the first level."""
-    return math.exp(2.0 * levels[STEP] * place)
-
-
-@kernel
 def with_place(stiffening: float, place: float) -> float:
     """Hold a contact's stiffening and place in one number."""
     return min(stiffening, _STRIDE - 1.0) + _STRIDE * (_FINE * place)
@@ -100,6 +94,17 @@ def _beside(levels: Array, place: float) -> tuple[int, int, float]:
     room = int(levels[ROOM])
     at = LEVELS + n * room
     return at, at + room, place - n
+
+
+@kernel
+def yield_growth(levels: Array, place: float) -> float:
+    """Yield compression at a place, over that of the first level.
+
+    It is not quite the square of the strength: bodies that harden have hardened by more where they
+    yield later.
+    """
+    low, high, share = _beside(levels, place)
+    return math.pow(levels[low], 1.0 - share) * math.pow(levels[high], share)
 
 
 @kernel

@@ -229,3 +229,18 @@ def test_other_laws_know_no_rate():
     for law in ("myc", "jackson_green", "fem(500,0,0.4,0.3,0.2)"):
         with_rate, without = (cl.ImpactModel(one, law) for one in (PAIRS["sphere"], plain))
         assert (with_rate.solve(*given).restitution == without.solve(*given).restitution).all()
+
+
+def test_a_rate0_that_no_impact_reaches_is_no_rate():
+    slow = dataclasses.replace(STEEL, rate=(0.05, 5.9e5))
+    one = cl.ImpactModel(cl.Pair(slow, "glass"))
+    plain = cl.ImpactModel(cl.Pair(dataclasses.replace(STEEL, rate=None), "glass"))
+    assert one.restitution(3.0, R, 5 * R) == plain.restitution(3.0, R, 5 * R) > 0.5
+
+
+def test_no_impacts_have_empty_answers():
+    one = model("sphere")
+    assert one.lookup([], R, R).restitution.shape == (0,)
+    assert one.force_history([], R, R, samples=3).force.shape == (0, 3)
+    assert one.sensitivity([], R, R).speed.shape == (0,)
+    assert one.solve([], R, R).flags.shape == (0,)

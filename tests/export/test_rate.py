@@ -83,8 +83,8 @@ def test_an_impact_is_that_of_the_pair_at_its_strength(radius, thickness, speed,
 def test_it_says_what_it_is(library):
     text = library[1]
     assert len(text) < 500_000
-    said = " ".join(line.strip(" *") for line in text.splitlines()[:12])
-    assert "yield strength 2.05e+08 Pa, rate 0.07 above 1 1/s" in said
+    said = " ".join(line.strip(" *") for line in text.splitlines()[:14])
+    assert "2.05e+08 Pa, hardening 3e+08 Pa and 0.4, rate 0.07 above 1 1/s" in said
     assert text.count("table of COR at") == 4
     assert np.isnan(called(library, "looked_up", 1.0, 1e-3, 1e-5))
 

@@ -51,6 +51,8 @@ def test_no_hardening_and_no_rate_are_none():
         ({"hardening": (2e8, 0.3), "yield_strength": None}, "needs a yield_strength"),
         ({"hardening": 0.3, "hardness": 0.9e9}, "as if the material softened"),
         ({"hardening": 1.5, "hardness": 3e9}, "n must be above 0 and below 1"),
+        ({"hardening": 0.7, "hardness": 3e9, "yield_strength": None}, "n must be up to 0.6"),
+        ({"hardening": (275.0, 0.36)}, "give it in Pa"),
         ({"rate": 0.02}, "must be (C, rate0)"),
         ({"rate": (0.9, 1.0)}, "C must be from 0 to 0.5"),
         ({"rate": (0.02, 0.0)}, "must be positive"),
@@ -61,3 +63,22 @@ def test_wrong_constants_are_refused(numbers, message):
     with pytest.raises(ValueError, match="of 'steel'") as caught:
         with_flow(**numbers)
     assert message in str(caught.value)
+
+
+def test_hardness_scales_of_metals_imply_a_metal():
+    kinds = [
+        cl.Material("ball", 200e9, 0.3, 7850, hardness=text).kind
+        for text in ("62 HRC", "200 HB", "800 HV")
+    ]
+    assert kinds == ["metal", "metal", None]
+
+
+def test_laws_without_hardening_take_the_flow_stress_of_the_hardness():
+    known = dataclasses.replace(STEEL, yield_strength=None, hardness=600e6)
+    hardening = dataclasses.replace(known, hardening=0.3)
+    one, other = (
+        cl.ImpactModel(cl.Pair(body, "glass"), law="thornton").solve(3.0, 1e-3, 5e-3)
+        for body in (known, hardening)
+    )
+    assert one.restitution == other.restitution
+    assert hardening.require_yield_strength("fem") < hardening.require_yield_strength("myc")

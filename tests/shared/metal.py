@@ -5,8 +5,9 @@ import dataclasses
 import contactlaw as cl
 from contactlaw.physical import rate
 
-PLAIN = cl.Pair("stainless-steel-304", "glass")
-PAIR = cl.Pair(dataclasses.replace(PLAIN.sphere, rate=(0.07, 1.0)), "glass")
+METAL = dataclasses.replace(cl.material("stainless-steel-304"), hardening=(300e6, 0.4))
+PLAIN = cl.Pair(METAL, "glass")
+PAIR = cl.Pair(dataclasses.replace(METAL, rate=(0.07, 1.0)), "glass")
 MODEL = cl.ImpactModel(PAIR)
 # radius, thickness and speed: factors of 1.05 to 1.43, COR 0.33 to 0.94
 DROPS = [(r, h, v) for r, h in ((1e-3, 5e-3), (0.2e-3, 1e-3)) for v in (0.1, 2.0, 15.0)]
