@@ -171,14 +171,10 @@ class RatedSolver(Solver):
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
-        if not impacts.speed.size:
-            return super().rebounds(impacts)
         return merged(((one.some, one.rebound()) for one in self._parts(impacts)), impacts)
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        if not impacts.speed.size:
-            return super().oblique(impacts, psi)
         changes, parts = np.empty_like(psi), []
         for one in self._parts(impacts):
             parts.append((one.some, one.rebound()))
@@ -187,8 +183,6 @@ class RatedSolver(Solver):
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        if not impacts.speed.size:
-            return super().histories(impacts, samples)
         columns = np.empty((len(ForceHistory._fields), impacts.speed.size, samples))
         parts = []
         for one in self._parts(impacts):

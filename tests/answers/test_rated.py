@@ -244,3 +244,4 @@ def test_no_impacts_have_empty_answers():
     assert one.force_history([], R, R, samples=3).force.shape == (0, 3)
     assert one.sensitivity([], R, R).speed.shape == (0,)
     assert one.solve([], R, R).flags.shape == (0,)
+    assert one.force_history([], R, R, samples=3, method="solve").force.shape == (0, 3)

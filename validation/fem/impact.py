@@ -26,7 +26,7 @@ _IMBALANCE = 0.1  # largest relative change of the total energy; collapsing elem
 _FINEST = 0.01  # R, the paper's smallest element, and at least ...
 _ACROSS = 15.0  # ... so many in the expected contact's radius
 _SOFT = 3.0  # radius in which a plate may flow, over the width of its finest part
-_TYPICAL = 0.015, 100.0  # strain, and rate [1/s], at which estimates take the flow stress
+TYPICAL = 0.015, 100.0  # strain, and rate [1/s], at which estimates take the flow stress
 _RIM = 0.55  # half of the distance that a pressure wave runs in a plate, and a tenth more
 
 
@@ -225,7 +225,7 @@ def expect(
         if may:
             body.require_yield_strength("fem")
             assert body.flow is not None
-            strengths.append(body.flow.stress(*_TYPICAL))
+            strengths.append(body.flow.stress(*TYPICAL))
     if strengths:
         sphere = dataclasses.replace(pair.sphere, yield_strength=min(strengths))
         pair = cl.Pair(sphere, pair.plate)

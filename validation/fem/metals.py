@@ -19,6 +19,7 @@ from contactlaw.physical import rate as rates
 from contactlaw.physical.scaling import pair_numbers
 from validation.fem import fit, journal, store
 from validation.fem.cases import Case
+from validation.fem.impact import TYPICAL
 
 Array = NDArray[np.float64]
 
@@ -110,7 +111,7 @@ def _fits(case: Case) -> bool:
     """Whether a body flows, and no deeper than elements bear, by a half-space of its strength."""
     pair = case.pair
     flows = [
-        body.flow.stress(0.015, 100.0)
+        body.flow.stress(*TYPICAL)
         for body, may in ((pair.sphere, case.yields), (pair.plate, case.plate_yields))
         if may and body.flow is not None
     ]
