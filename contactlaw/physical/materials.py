@@ -29,6 +29,7 @@ _STIFFEST_POLYMER, _DENSEST_POLYMER = 10e9, 2300.0  # [Pa, kg/m3]
 _STEEPEST_ALONE = 0.6  # n of a metal known by its hardness; annealed copper and brass have 0.5
 _LEAST_HARDENING = 1e-6  # B over Young's modulus; below, it is in MPa
 _STEEPEST_RATE = 0.5  # C; of published metals up to 0.1
+_LARGEST_LOSS = 1.0  # tan delta; rubber at its glass transition has 1 to 2, and no one modulus
 
 KINDS = ("metal", "ceramic", "glass", "polymer")
 _LABELS = {
@@ -39,6 +40,7 @@ _LABELS = {
     "hardness": ("hardness", " Pa"),
     "hardening": ("hardening B [Pa] and n", ""),
     "rate": ("rate C and rate0 [1/s]", ""),
+    "loss_factor": ("loss factor and its frequency [Hz]", ""),
 }
 # What an entry of the catalogue takes from the one that it is `like`: the same metal in another
 # temper, in which these hardly differ.
@@ -145,6 +147,11 @@ class Material:
     rate : (float, float), optional
         C [-], 0 to 0.5, and rate0 [1/s], positive: the flow stress grows by the factor
         1 + C ln(rate/rate0) (Johnson & Cook 1983). Only ``law="fem"`` takes it.
+    loss_factor : (float, float), optional
+        tan delta [-], 0 to 1, and the frequency [Hz] at which it and Young's modulus were measured:
+        that of an impact, 1/(2 contact times), or near it. From there the modulus is carried to
+        each impact's frequency as that of a body whose loss factor is the same at all of them.
+        Only ``law="fem"`` takes it.
 
     Raises
     ------
@@ -169,6 +176,7 @@ class Material:
     hardness: float | str | None = None
     hardening: tuple[float, float] | float | None = None
     rate: tuple[float, float] | None = None
+    loss_factor: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         """Check every value and store it as float."""
@@ -209,6 +217,7 @@ class Material:
         object.__setattr__(self, "hardness", hardness)
         object.__setattr__(self, "hardening", _hardening(self))
         object.__setattr__(self, "rate", _rate(self))
+        object.__setattr__(self, "loss_factor", _loss_factor(self))
 
     @property
     def flow(self) -> Flow | None:
@@ -459,6 +468,22 @@ def _rate(body: Material) -> tuple[float, float] | None:
         raise ValueError(f"{what}: C must be from 0 to {_STEEPEST_RATE:g}, got {given[0]!r}")
     rate0 = _positive(body.name, "rate", given[1], "1/s")
     return (slope, rate0) if slope else None
+
+
+def _loss_factor(body: Material) -> tuple[float, float] | None:
+    """Check the loss factor of a material; None if it loses nothing."""
+    given, what = body.loss_factor, f"loss_factor of {body.name!r}"
+    if given is None:
+        return None
+    if not isinstance(given, tuple | list) or len(given) != 2:
+        raise ValueError(
+            f"{what} must be (tan delta, frequency), the frequency in Hz, got {given!r}"
+        )
+    loss = _finite(body.name, "loss_factor", given[0], "-")
+    if not (0.0 <= loss <= _LARGEST_LOSS):
+        raise ValueError(f"{what}: tan delta must be from 0 to {_LARGEST_LOSS:g}, got {given[0]!r}")
+    frequency = _positive(body.name, "loss_factor", given[1], "Hz")
+    return (loss, frequency) if loss else None
 
 
 def _check_units(name: str, modulus: float, density: float) -> None:
