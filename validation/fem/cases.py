@@ -63,7 +63,8 @@ class Case:
 def material(name: str) -> cl.Material:
     """Look a material up; "glass, yield strength x 0.5" is glass with half its strength.
 
-    "glass, flow 3e8 2e8 0.3 0.02 1" is glass with these constants of the flow stress.
+    "glass, flow 3e8 2e8 0.3 0.02 1" is glass with these constants of the flow stress, and
+    "glass, loss 0.1 1e4" glass with that loss factor, and its modulus, at that frequency.
 
     Examples
     --------
@@ -71,7 +72,13 @@ def material(name: str) -> cl.Material:
     236250000.0
     >>> material("glass, flow 3e8 2e8 0.3 0.02 1").hardening
     (200000000.0, 0.3)
+    >>> material("gamma-alumina, yield strength x 0.5, loss 0.1 1e4").loss_factor
+    (0.1, 10000.0)
     """
+    name, lossy, numbers = name.partition(", loss ")
+    if lossy:
+        loss, frequency = map(float, numbers.split())
+        return replace(material(name), loss_factor=(loss, frequency))
     name, flowing, numbers = name.partition(", flow ")
     if flowing:
         a, b, n, c, rate0 = map(float, numbers.split())

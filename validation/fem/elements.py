@@ -1,5 +1,8 @@
 """Axisymmetric 4-node quadrilateral with one integration point, for large deformations.
 
+The stress of a body with losses is that of a spring and of branches of spring and dashpot, see
+`validation.fem.prony`; all of them turn and flow together.
+
 Mean velocity gradient and hourglass modes as in Flanagan & Belytschko, Int. J. Numer. Methods Eng.
 17 (1981) 679, whose orthogonal hourglass base makes rigid and linear fields free of hourglass
 forces. The stiffness of an hourglass mode is that of the bending it stands for (Belytschko &
@@ -34,17 +37,51 @@ class Body(NamedTuple):
     stress: Array  # (m, 4) [Pa]
     hourglass: Array  # (m, 2), forces h_r and h_z [N]
     plastic_strain: Array  # (m,), equivalent
-    work: Array  # (2,), plastic and hourglass work so far [J]
-    bulk: float  # Lame's lambda [Pa]
+    work: Array  # (3,), plastic, hourglass and viscous work so far [J]
+    bulk: float  # Lame's lambda [Pa], of all springs together
     shear: float  # [Pa]
     bending: Array  # (m,), stiffness of the hourglass modes [Pa]
     flow: FlowStress
+    branches: Array  # (m, k, 4), stresses of the branches [Pa]
+    shares: Array  # (k,), their moduli over those of all springs together
+    times: Array  # (k,), their relaxation times [s]
+
+
+@kernel
+def _relaxed(
+    body: Body, e: int, dt: float, spin: float, strain: tuple[float, float, float, float]
+) -> tuple[float, float, float, float, float]:
+    """Turn, strain and relax the branches of an element.
+
+    Returns the stresses that are gone, and the work that they lose per volume. `spin` is twice the
+    rotation of the step, `strain` what it adds to the stress of all springs together.
+    """
+    rr = zz = tt = rz = lost = 0.0
+    bulk = body.bulk + 2.0 / 3.0 * body.shear
+    for k in range(body.shares.size):
+        s, share = body.branches[e, k], body.shares[k]
+        swap, turn = spin * s[3], 0.5 * spin * (s[1] - s[0])
+        s[0] += swap + share * strain[0]
+        s[1] += -swap + share * strain[1]
+        s[2] += share * strain[2]
+        s[3] += turn + share * strain[3]
+        if share > 0.0:
+            mean = (s[0] + s[1] + s[2]) / 3.0
+            squares = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * s[3] * s[3]
+            squares -= 3.0 * mean * mean
+            stored = squares / (4.0 * share * body.shear) + mean * mean / (2.0 * share * bulk)
+            lost -= stored * math.expm1(-2.0 * dt / body.times[k])
+        gone = -math.expm1(-dt / body.times[k])
+        rr, zz, tt, rz = rr + gone * s[0], zz + gone * s[1], tt + gone * s[2], rz + gone * s[3]
+        for n in range(4):
+            s[n] -= gone * s[n]
+    return rr, zz, tt, rz, lost
 
 
 @kernel(entry=True)
 def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
     """Advance the stress by a step of velocities v, and add what it does to the nodes."""
-    plastic, hourglass = 0.0, 0.0
+    plastic, hourglass, viscous = 0.0, 0.0, 0.0
     for e in range(body.elements.shape[0]):
         n0, n1 = body.elements[e, 0], body.elements[e, 1]
         n2, n3 = body.elements[e, 2], body.elements[e, 3]
@@ -68,10 +105,18 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         swap = spin * s_rz
         turn = 0.5 * spin * (s_zz - s_rr)
         pressure, double = body.bulk * dt * (u_r + w_z + u_t), 2.0 * body.shear * dt
-        s_rr += swap + pressure + double * u_r
-        s_zz += -swap + pressure + double * w_z
-        s_tt += pressure + double * u_t
-        s_rz += turn + 0.5 * double * (u_z + w_r)
+        strain_r, strain_z = pressure + double * u_r, pressure + double * w_z
+        strain_t, slip = pressure + double * u_t, 0.5 * double * (u_z + w_r)
+        s_rr += swap + strain_r
+        s_zz += -swap + strain_z
+        s_tt += strain_t
+        s_rz += turn + slip
+        if body.shares.size:
+            f_rr, f_zz, f_tt, f_rz, lost = _relaxed(
+                body, e, dt, spin, (strain_r, strain_z, strain_t, slip)
+            )
+            s_rr, s_zz, s_tt, s_rz = s_rr - f_rr, s_zz - f_zz, s_tt - f_tt, s_rz - f_rz
+            viscous += lost * area * r
 
         # radial return
         mean = (s_rr + s_zz + s_tt) / 3.0
@@ -82,6 +127,12 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
             mises = math.sqrt(mises)
             strain, strength = returned(body.flow, mises, body.plastic_strain[e], body.shear, dt)
             keep = strength / mises
+            for k in range(body.shares.size):
+                back = body.shares[k] * (1.0 - keep)
+                body.branches[e, k, 0] -= back * d_r
+                body.branches[e, k, 1] -= back * d_z
+                body.branches[e, k, 2] -= back * d_t
+                body.branches[e, k, 3] -= back * s_rz
             s_rr, s_zz, s_tt, s_rz = (
                 mean + keep * d_r,
                 mean + keep * d_z,
@@ -123,6 +174,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         force[n3, 1] -= -mode - g_1
     body.work[0] += plastic
     body.work[1] += hourglass
+    body.work[2] += viscous
 
 
 def lumped_mass(elements: Indices, x: Array, density: float) -> Array:
@@ -160,10 +212,14 @@ def strain_energy(body: Body, x: Array) -> float:
     Its volumetric part is that of the law in use, p = -K ln J, at any compression J: a tenth of the
     volume is squeezed out under a contact at 7 V_Y0.
     """
-    s = body.stress
     bulk = body.bulk + 2.0 / 3.0 * body.shear
-    pressure = -s[:, :3].mean(axis=1)
-    squares = (s[:, :3] ** 2).sum(axis=1) + 2.0 * s[:, 3] ** 2 - 3.0 * pressure**2
-    p = pressure / bulk
-    density = squares / (4.0 * body.shear) + bulk * (np.expm1(p) - p)
+    springs = np.moveaxis(body.branches, 1, 0), body.stress - body.branches.sum(axis=1)
+    shares = np.append(body.shares, 1.0 - body.shares.sum())
+    density = np.zeros(len(body.stress))
+    for s, share in zip([*springs[0], springs[1]], shares.tolist(), strict=True):
+        if share > 0.0:
+            pressure = -s[:, :3].mean(axis=1)
+            squares = (s[:, :3] ** 2).sum(axis=1) + 2.0 * s[:, 3] ** 2 - 3.0 * pressure**2
+            p = pressure / (share * bulk)
+            density += squares / (4.0 * share * body.shear) + share * bulk * (np.expm1(p) - p)
     return float(density @ volumes(body.elements, x))

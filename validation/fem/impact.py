@@ -43,10 +43,11 @@ class Impact:
     peak_force, peak_compression, residual_compression : float
         Largest force [N]; largest displacement of the sphere's centre of mass towards the
         plate's lower face below it, and the displacement left at separation [m].
-    plastic, wave, vibration, friction, hourglass, contact : float
+    plastic, wave, vibration, friction, hourglass, contact, viscous : float
         Shares of the energy: plastic work; energy in the plate; elastic and kinetic energy in the
         sphere beyond that of its mean motion; losses of friction and of touching; work of the
-        hourglass modes of both bodies, which is in `wave` and `vibration` too [-].
+        hourglass modes of both bodies, which is in `wave` and `vibration` too; loss within the
+        bodies by their loss factors [-].
     balance : float
         Largest deviation of the sum of all energies from the first, over the whole impact [-].
     plastic_strain : float
@@ -75,6 +76,7 @@ class Impact:
     friction: float
     hourglass: float
     contact: float
+    viscous: float
     balance: float
     plastic_strain: float
     time: Array
@@ -166,7 +168,7 @@ def impact(
     materials = pair.sphere, pair.plate
     soft = _SOFT * mesh.CORE * guess.contact
     system = solver.assemble(
-        meshes, materials, friction, yields, plate_yields, hourglass_stiffness, soft
+        meshes, materials, friction, yields, plate_yields, hourglass_stiffness, soft, guess.time
     )
     step = solver.time_step(system, materials)
     system.v[: _sphere_nodes(system), 1] = -speed
@@ -271,7 +273,7 @@ def energy(system: System) -> tuple[float, ...]:
     """List the energies [J per radian].
 
     Kinetic of the sphere as a whole and within itself, and of the plate; elastic of both; plastic;
-    hourglass of both; losses of touching and of friction.
+    hourglass of both; losses of touching and of friction; viscous.
     """
     n = _sphere_nodes(system)
     kinetic = 0.5 * system.mass * (system.v**2).sum(axis=1)
@@ -286,6 +288,7 @@ def energy(system: System) -> tuple[float, ...]:
         system.sphere.work[1],
         system.plate.work[1],
         *system.surfaces.work,
+        system.sphere.work[2] + system.plate.work[2],
     )
 
 
@@ -318,6 +321,7 @@ def _outcome(
         friction=share[9],
         hourglass=share[6] + share[7],
         contact=share[8],
+        viscous=share[10],
         balance=float(np.abs(np.sum(energies, axis=1) / first - 1.0).max()),
         plastic_strain=float(
             max(body.plastic_strain.max() for body in (system.sphere, system.plate))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.physical.materials import Material
-from validation.fem import contact, elements
+from validation.fem import contact, elements, prony
 from validation.fem.contact import Surfaces
 from validation.fem.elements import Body
 from validation.fem.flow_stress import flow_stress
@@ -75,21 +75,34 @@ def advance(system: System, load: Array, dt: float, steps: int) -> tuple[float, 
     return total / steps, touched
 
 
-def body(mesh: Mesh, material: Material, first: int, bending: float | Array, yields: bool) -> Body:
-    """Elements of a mesh, at rest; `first` is the number of the mesh's first node."""
+def body(
+    mesh: Mesh,
+    material: Material,
+    first: int,
+    bending: float | Array,
+    yields: bool,
+    contact_time: float = math.inf,
+) -> Body:
+    """Elements of a mesh, at rest; `first` is the number of the mesh's first node.
+
+    The losses of a material are followed about the frequency of a contact of the length given.
+    """
     m = len(mesh.elements)
-    ratio = material.poissons_ratio
-    shear = 0.5 * material.youngs_modulus / (1.0 + ratio)
+    ratio, lossy = material.poissons_ratio, prony.series(material, contact_time)
+    shear = 0.5 * lossy.whole * material.youngs_modulus / (1.0 + ratio)
     return Body(
         elements=mesh.elements + first,
         stress=np.zeros((m, 4)),
         hourglass=np.zeros((m, 2)),
         plastic_strain=np.zeros(m),
-        work=np.zeros(2),
+        work=np.zeros(3),
         bulk=2.0 * shear * ratio / (1.0 - 2.0 * ratio),
         shear=shear,
         bending=np.full(m, bending) * material.plane_modulus,
         flow=flow_stress(material.flow if yields else None),
+        branches=np.zeros((m, lossy.times.size, 4)),
+        shares=lossy.moduli / lossy.whole,
+        times=lossy.times,
     )
 
 
@@ -101,6 +114,7 @@ def assemble(
     plate_yields: bool = False,
     hourglass: float | None = None,
     soft: float = math.inf,
+    contact_time: float = math.inf,
 ) -> System:
     """Put a sphere upon a plate, both at rest.
 
@@ -119,6 +133,8 @@ def assemble(
         it does not yield.
     soft : float, optional
         Distance from the first contact [m] up to which a plate that yields has 0.05, too.
+    contact_time : float, optional
+        About how long the contact will last [s]; bodies with losses need it.
 
     Returns
     -------
@@ -142,9 +158,12 @@ def assemble(
     first = len(above.nodes)
     x = np.concatenate([above.nodes, below.nodes])
     bodies = (
-        body(above, materials[0], 0, hourglass, yields),
-        body(below, materials[1], first, _plate_hourglass(below, soft, plate_yields), plate_yields),
-    )
+        body(above, materials[0], 0, hourglass, yields, contact_time),
+        body(
+            below, materials[1], first, _plate_hourglass(below, soft, plate_yields), plate_yields,
+            contact_time,
+        ),
+    )  # fmt: skip
     mass = np.zeros(len(x))
     for one, material in zip(bodies, materials, strict=True):
         mass += elements.lumped_mass(one.elements, x, material.density)
