@@ -6,6 +6,7 @@ The columns of ``/collisions`` are those of `contactlaw.engines.record`.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from dataclasses import asdict, fields
 from typing import Any, NamedTuple
@@ -22,8 +23,8 @@ from contactlaw.physical.pair import Pair
 FORMAT = "contactlaw-"  # the attribute "format" is this and the name of the scene that has run
 _BODIES = "sphere", "plate"
 # Fields of a material that are texts, and lists of numbers; the others are numbers.
-_TEXTS = "name", "source", "kind"
-_LISTS = "hardening", "rate"
+_TEXTS = "name", "source", "kind", "uncertainty"
+_LISTS = "hardening", "rate", "loss_factor"
 _REQUIRED = "name", "source", "youngs_modulus", "poissons_ratio", "density"
 
 
@@ -66,7 +67,8 @@ def write_plates(file: h5py.File, thickness: Iterable[float]) -> h5py.Group:
 def write_materials(file: h5py.File, sphere: Material, plate: Material) -> None:
     """Write all that is known of the two materials."""
     for body, material in zip(_BODIES, (sphere, plate), strict=True):
-        values = asdict(material) | {"units": "Pa (moduli, strength, hardness), kg/m3"}
+        values = asdict(material) | {"uncertainty": json.dumps(dict(material.uncertainty))}
+        values |= {"units": "Pa (moduli, strength, hardness), kg/m3"}
         group = file.create_group(f"materials/{body}")
         group.attrs.update({name: value for name, value in values.items() if value is not None})
 
@@ -150,4 +152,5 @@ def _material(group: h5py.Group) -> Material:
         for name in names
         if name in _REQUIRED or name in group.attrs
     }
+    stored["uncertainty"] = json.loads(stored.get("uncertainty", "{}"))
     return Material(**stored)

@@ -50,6 +50,7 @@ def test_every_column_has_a_unit_and_a_description():
 
 def test_a_record_keeps_every_field_of_a_material(tmp_path):
     more = {"hardness": 2e9, "hardening": (5e6, 0.3), "rate": (0.02, 1.0)}
+    more |= {"loss_factor": (0.05, 1e4), "uncertainty": {"yield_strength": 0.15}}
     sphere = dataclasses.replace(cl.material("gamma-alumina"), **more)
     plate = cl.Material("steel", 207e9, 0.3, 7850, kind="metal", hardness="62 HRC", hardening=0.1)
     assert None not in dataclasses.astuple(sphere)
