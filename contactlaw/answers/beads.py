@@ -22,7 +22,7 @@ from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
 from contactlaw.physical.scaling import ContactConstants, law_of, scales, sphere_on_sphere
 from contactlaw.physical.validity import Limits, limits
-from contactlaw.table import Table
+from contactlaw.table import Table, lookup
 
 Array = NDArray[np.float64]
 Other = Material | str | None  # material of the other bead; None: that of the first
@@ -126,13 +126,20 @@ class Beads:
         contact = self._contact(r, o)
         c_chi = -math.log(scales(contact, np.ones(1)).yield_ratio.item())
         if self._nodes:
+            if contact.plate.growth.modulus_power:
+                return lambda v: float(self.rebounds(v, radius, other_radius).restitution)
             reduced = (r * o / (r + o)).item()
             return rated.curve(
                 (self._nodes.packed, 0.0, c_chi), (reduced, 0.0),
                 lambda v: self.rebounds(v, radius, other_radius),
             )  # fmt: skip
         look_up = functools.partial(self._border.look_up, self.law)
-        return curve((self.table.packed, 0.0, c_chi, 0.0), lambda: contact, look_up)
+        table, growth = self.table.packed, contact.plate.growth
+        if growth.modulus_power:
+            time = (contact.mass / contact.stiffness).item() ** 0.4
+            table = lookup.with_growth(table, growth, math.log(time))
+            c_chi = math.log(time / contact.yield_compression.item())
+        return curve((table, 0.0, c_chi, 1.0, 0.0), lambda: contact, look_up)
 
     def _contact(
         self, radius: Array, other_radius: Array, bodies: SphereOnPlate | None = None

@@ -307,9 +307,14 @@ class Nodes:
         """Places of impacts among the tables, and their units."""
         v, at = impacts.speed, contact(self.bodies, np.arange(impacts.speed.size))
         at_one = (at.mass / at.stiffness) ** 0.4
-        out = strengths.empty(v.size)
+        out, radius = strengths.empty(v.size), impacts.radius
+        growth, faster = at.plate.growth, np.ones_like(v)
+        if growth.modulus_power and not self.on_plates:
+            # E* larger by g is as a speed, at the same rate of strain, that is g^2 larger
+            shorter = growth.log_time - np.log(at_one) + 0.2 * np.log(v)
+            faster = np.exp(2.0 * growth.modulus_power * shorter)
         c_lam, c_chi = at.plate.inelasticity, np.log(at_one / at.yield_compression)
-        strengths.locate(self.packed, c_lam, c_chi, v, impacts.radius, at.ratio, out)
+        strengths.locate(self.packed, c_lam, c_chi, faster * v, faster * radius, at.ratio, out)
         time = at_one / out.root
         y = out.elastic_compression / out.overload
         return out, Numbers(out.inelasticity, y, time, v * time, at.mass * v / time, out.root)

@@ -185,7 +185,7 @@ class Tabulated:
         share = yield_share(self.bodies.pair, self.bodies.law)
         if share < math.inf:
             c_chi = log_overload(self.bodies.factors, share)
-            lookup.yield_speeds(self.packed, self.c_lam, c_chi, radius / thickness, out)
+            lookup.yield_speeds(self.packed, self.c_lam, c_chi, radius, radius / thickness, out)
             if np.isnan(out).any():
                 refuse_to_yield(radius, thickness, np.isnan(out), lookup.lam_max(self.packed))
         return out
@@ -193,12 +193,13 @@ class Tabulated:
     def curve(self, radius: Array, thickness: Array) -> Callable[[float], float]:
         """COR of one sphere on one plate, as a function of speed [m/s]."""
         at_one = Impacts(np.ones(1), radius, thickness, None)
-        constants = self.packed, self.c_lam, self.c_chi, radius.item() / thickness.item()
+        r = radius.item()
+        constants = self.packed, self.c_lam, self.c_chi, r, r / thickness.item()
         contact = functools.partial(self.bodies.contact, at_one)
         return curve(constants, contact, functools.partial(self.border.look_up, self.bodies.law))
 
     def _outcomes(self, impacts: Impacts) -> tuple[Outcome, Flags, tuple[Array, Array], Array]:
-        """Outcomes, their flags, inelasticity and yield ratio before clamping, V^(1/5) exp(eta)."""
+        """Outcomes, their flags, inelasticity and yield ratio before clamping, and T_H's root."""
         v, r, h = impacts.speed, impacts.radius, impacts.thickness
         found, root = outcome.empty(v.size), np.empty(v.size)
         flags = np.zeros(v.size, dtype=np.int64)
@@ -245,22 +246,22 @@ def python_entries() -> tuple[Callable[..., float], Callable[..., float]]:
     """Python's entries of `restitution_on_plate` and `restitution`; each argument a float."""
     return (
         direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8, f8)"),
-        direct(lookup.restitution, "float64(float64[::1], f8, f8, f8, f8)"),
+        direct(lookup.restitution, "float64(float64[::1], f8, f8, f8, f8, f8)"),
     )
 
 
 def curve(
-    constants: tuple[Array, float, float, float],
+    constants: tuple[Array, float, float, float, float],
     contact: Callable[[], ContactConstants],
     look_up: Callable[[Array, Numbers], tuple[Outcome, Flags]],
 ) -> Callable[[float], float]:
-    """COR as a function of speed [m/s], from a packed table, constants of two bodies, and R/H."""
-    (table, c_lam, c_chi, ratio), at = constants, python_entries()[1]
+    """COR as a function of speed [m/s], from a packed table, constants of two bodies, R and R/H."""
+    (table, c_lam, c_chi, radius, ratio), at = constants, python_entries()[1]
 
     def restitution(speed: float) -> float:
         if not isinstance(speed, float):  # the entry would take "5" and True for numbers
             speed = scalars(speed=speed)[0].item()
-        value = at(table, c_lam, c_chi, speed, ratio)
+        value = at(table, c_lam, c_chi, speed, radius, ratio)
         if value != value:  # NaN; half the time of a call of isnan
             (v,) = scalars(speed=speed)
             return float(look_up(table, scales(contact(), v))[0].restitution[0])

@@ -9,6 +9,9 @@ values at 1 m/s and R = H. For a thin plate
 Another plate (`contactlaw.equation.corrections`) makes the contact stiffer: T_H is divided by
 exp(eta), and r multiplied by it in lambda and h. From about 17 times the yield speed on
 (`saturated`) x is constant in eta. A bulk impact, as of two spheres, has R/H = 0 and c_lam = 0.
+
+Moduli of bodies with losses grow with the frequency of the impact (`ModulusGrowth`). They make the
+contact stiffer, too: E* grows by g, and r by g^(2/5).
 """
 
 from __future__ import annotations
@@ -25,6 +28,26 @@ from contactlaw.equation.corrections import PlateCorrections, eta_of, is_thin, w
 Array = NDArray[np.float64]
 
 
+class ModulusGrowth(NamedTuple):
+    """How moduli grow with the frequency of an impact; all zero for bodies without losses.
+
+    With T the T_H of an impact without this growth, E* grows by the factor
+    g = (exp(log_time)/T)^modulus_power.
+    """
+
+    log_time: float  # ln T_H [s] of impacts in which the moduli are those of the pair
+    modulus_power: float
+    plate_power: float  # the same of the plate's modulus
+    yield_power: float  # of g, by which d_Y grows: -2, or 0 if no body yields
+    # ln of the factor by which losses change lambda, at lambda = 0 and its slope over lambda
+    wave: float
+    wave_slope: float
+
+
+ELASTIC = ModulusGrowth(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+"""Bodies whose moduli are the same at any frequency."""
+
+
 class PlateConstants(NamedTuple):
     """Constants of a pair for impacts on its plates, at 1 m/s and R = H."""
 
@@ -33,6 +56,7 @@ class PlateConstants(NamedTuple):
     x_at_one: float  # x, from which the stiffening eta follows
     saturated: float  # V^(1/5) from which on x is constant in eta; inf: nowhere
     corrections: PlateCorrections
+    growth: ModulusGrowth
 
 
 class Numbers(NamedTuple):
@@ -43,7 +67,13 @@ class Numbers(NamedTuple):
     time: Any  # T_H [s]
     compression: Any  # V0 T_H [m]
     force: Any  # m V0/T_H [N]
-    stiffer: Any  # exp(eta), the factor by which the plate shortens the contact
+    stiffer: Any  # factor by which plate and frequency shorten the contact, exp(eta) g^(2/5)
+
+
+@kernel(inline=True)
+def relaxes(plate: PlateConstants) -> bool:
+    """Whether moduli depend on the frequency of an impact."""
+    return plate.growth.modulus_power > 0.0
 
 
 @kernel(inline=True)
@@ -64,7 +94,28 @@ def inelasticity_of(plate: PlateConstants, root: float, ratio: float, stiffer: f
     root *= stiffer
     thin, h = plate.inelasticity * root * (ratio * ratio), plate.transit * root
     bulk = plate.inelasticity * root * (h * h)
-    return with_corrections(plate.corrections, thin, h / ratio, bulk, plastic)
+    lam = with_corrections(plate.corrections, thin, h / ratio, bulk, plastic)
+    if relaxes(plate):
+        lam *= math.exp(plate.growth.wave + plate.growth.wave_slope * min(lam, 1.0))
+    return lam
+
+
+@kernel(inline=True)
+def relaxed(
+    plate: PlateConstants, root: float, log_time: float
+) -> tuple[PlateConstants, float, float]:
+    """Plate and V^(1/5) with the moduli of an impact, from ln T_H without their growth; ln g.
+
+    What is given for V^(1/5) is V^(1/5) g^(2/5): T_H is that of a faster impact.
+    """
+    known = plate.growth
+    shorter = known.log_time - log_time
+    growth, slower = known.modulus_power * shorter, math.exp(-0.5 * known.plate_power * shorter)
+    plate = PlateConstants(
+        plate.inelasticity * slower, plate.transit * slower, plate.x_at_one * math.exp(-growth),
+        plate.saturated, plate.corrections, known,
+    )  # fmt: skip
+    return plate, root * math.exp(0.4 * growth), growth
 
 
 @kernel(entry=True)
@@ -77,11 +128,15 @@ def numbers(
     ratio: float,
 ) -> Numbers:
     """Numbers of an impact, from m [kg], K [N/m^1.5], d_Y [m], V [m/s] and R/H."""
-    root, time = speed**0.2, (mass / stiffness) ** 0.4
+    root, time, growth = speed**0.2, (mass / stiffness) ** 0.4, 0.0
+    if relaxes(plate):
+        plate, root, growth = relaxed(plate, root, math.log(time / root))
+        yield_compression *= math.exp(plate.growth.yield_power * growth)
     stiffer = 1.0 if is_thin(plate.corrections) else math.exp(plate_stiffening(plate, root, ratio))
     unit = time / (root * stiffer)
     length = speed * unit
     lam = inelasticity_of(plate, root, ratio, stiffer)
+    stiffer *= math.exp(0.4 * growth)
     return Numbers(lam, yield_compression / length, unit, length, mass * speed / unit, stiffer)
 
 

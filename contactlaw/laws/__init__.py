@@ -45,6 +45,7 @@ _RANGES = {  # lowest and highest value of each parameter that a law may have
     "plate_hardening": (0.0, 1e12),
     "sphere_exponent": (0.0, 1.0),
     "plate_exponent": (0.0, 1.0),
+    "loss_factor": (0.0, 1.0),
 }
 _BRACKETS = re.compile(r"\([-+.,0-9e]+\)")
 
@@ -78,7 +79,7 @@ def parameters(name: str) -> tuple[str, ...]:
         ``"plate_ratio"``, E*/sigma_Y of each body, 0 if it does not yield; ``"modulus_share"``,
         the sphere's E1'/(E1' + E2'); ``"poissons_ratio"`` (sphere), ``"plate_poissons_ratio"``;
         ``"sphere_hardening"``, ``"sphere_exponent"`` and the plate's, B/A and n of the flow stress
-        A + B strain^n.
+        A + B strain^n; ``"loss_factor"``, tan delta of the two bodies.
 
     Examples
     --------

@@ -36,6 +36,13 @@ Where a body hardens, its flow stress is A + B strain^n at a representative stra
 with w_Y the w at which flow begins. The curves at a depth are those of ideal bodies of the strength
 there (`HardeningCurves`). `validation.fem.metals` has the impacts to which c was fitted.
 
+A body with losses gives back less of the work and is left compressed, which it recovers from later:
+
+    W -> W exp(-a b(a)),    dm - dr -> (dm - dr) exp(-a c(a)),    a = 2 delta/pi
+
+as in a Hertz impact of a body whose loss factor tan delta is the same at all frequencies
+(`validation.fem.viscoelastic`).
+
 Legend: compressions in units of the yield compression d_Y of the weaker body, or of R where
 none yields; forces in K d_Y^1.5.
 """
@@ -136,6 +143,7 @@ class Given(NamedTuple):
     plate_hardening: float = 0.0
     sphere_exponent: float = 1.0  # n
     plate_exponent: float = 1.0
+    loss_factor: float = 0.0  # tan delta of both bodies together
 
     @property
     def hardens(self) -> bool:
@@ -207,8 +215,10 @@ class Given(NamedTuple):
         }
 
 
+_RATIOS = Given._fields[:2]
+_HARDENING = Given._fields[5:9]
 PARAMETERS = Given._fields
-DEFAULTS = Given._field_defaults  # of the numbers of hardening
+DEFAULTS = Given._field_defaults  # of the numbers of hardening and losses
 
 
 class _Works(NamedTuple):
@@ -218,7 +228,7 @@ class _Works(NamedTuple):
     loading: Array  # loading work
     recovery: Array  # share of it that unloading gives back
     plastic: Array  # share of it that is plastic work
-    residual: Array  # over (q^2 - 1)^2; 0 if no body yields
+    residual: Array  # over (q^2 - 1)^2, but for bodies with losses; 0 if no body yields
     span: Array  # compression that unloading gives back, dm - dr
 
 
@@ -244,6 +254,12 @@ class Curves:
         constant, slope = found["stiffening"]
         self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
         self.friction = friction_loss(given, found["friction"])
+        a = 2.0 / math.pi * math.atan(given.loss_factor)
+        # shares of the work, and of the compression, that a body with losses gives back
+        self.returned, self.recovered = (
+            math.exp(-a * float(np.polynomial.polynomial.polyval(a, powers)))
+            for powers in found["losses"]
+        )
         self._terms: dict[str, Array] = {}
         if not self.ratio:
             return
@@ -331,15 +347,13 @@ class Curves:
 
     def works(self, q: Array) -> _Works:
         """All quantities at once, each computed only once."""
-        recovery = self.recovery(q)
-        return _Works(
-            force=self.force(q),
-            loading=self.work(q),
-            recovery=recovery,
-            plastic=self.plastic(q, recovery),
-            residual=self.residual(q) if self.ratio else np.zeros_like(q),
-            span=q**2 / self._over("residual", q),
-        )
+        recovery, span = self.recovery(q), q**2 / self._over("residual", q)
+        residual = self.residual(q) if self.ratio else np.zeros_like(q)
+        plastic = self.plastic(q, recovery)
+        if self.recovered < 1.0:
+            recovery, span = self.returned * recovery, self.recovered * span
+            residual = q**2 - span
+        return _Works(self.force(q), self.work(q), recovery, plastic, residual, span)
 
 
 class Strains(NamedTuple):
@@ -354,7 +368,8 @@ class Strains(NamedTuple):
 
     def typical(self, given: Given) -> Given:
         """Bodies without hardening, with the strengths that these have at a typical depth."""
-        return Given(*self.ratios(given, _TYPICAL), *given[2:5])
+        usual = given._replace(**{name: Given._field_defaults[name] for name in _HARDENING})
+        return usual._replace(**dict(zip(_RATIOS, self.ratios(given, _TYPICAL), strict=True)))
 
 
 def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
@@ -460,20 +475,24 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         at = works(dm)
         return (1.0 - at.recovery - at.plastic) * at.loading
 
+    more = given.hardens or given.loss_factor > 0.0
     first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
     start = min(_SMALLEST / curves.scale, _EARLIEST)
     end = deepest(curves.ratio) / curves.scale
     loading = [Loading(0.0, first)]
+    order = 2.0 if curves.recovered == 1.0 else 0.0
+
+    def residual(dm: Array) -> Array:
+        return works(dm).residual
+
     # tables begin at `start`; the loss begins below, so that no contact in a table is lossless
-    unloading = [Unloading(0.1 * start, np.zeros_like, exponent, loss=loss, other=other)]
+    unloading = [Unloading(0.1 * start, residual, exponent, loss=loss, other=other, order=0.0)]
     if curves.ratio:
         loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))
-        unloading.append(
-            Unloading(1.0, lambda dm: works(dm).residual, exponent, loss, other, order=2.0)
-        )
+        unloading.append(Unloading(1.0, residual, exponent, loss, other, order=order))
     return Law.of(
         name="fem",
-        parameters=dict(zip(PARAMETERS, given if given.hardens else given[:5], strict=False)),
+        parameters=dict(zip(PARAMETERS, given if more else given[:5], strict=False)),
         source="finite elements of contactlaw, validation.fem.campaign",
         yield_coefficient=curves.scale * (curves.ratio / math.pi) ** 2 if curves.ratio else None,
         loading=loading,

@@ -266,6 +266,43 @@ class Material:
         return self.youngs_modulus / (1.0 - self.poissons_ratio**2)
 
     @property
+    def loss_angle(self) -> float:
+        """Angle delta by which strain lags behind stress [rad]; 0 without a loss factor."""
+        return math.atan(self.loss_factor[0]) if self.loss_factor else 0.0
+
+    @property
+    def relaxation(self) -> float:
+        """Exponent 2 delta/pi with which the modulus grows with frequency [-].
+
+        Where tan delta is the same at all frequencies, the complex modulus is a power of i times
+        the frequency (Lakes, Viscoelastic Materials, Cambridge 2009, section 2.6).
+        """
+        return 2.0 / math.pi * self.loss_angle
+
+    def at_frequency(self, frequency: float) -> "Material":
+        """Return the same material with its modulus at another frequency [Hz].
+
+        Parameters
+        ----------
+        frequency : float
+            Where Young's modulus shall be known; a material without a loss factor stays as it is.
+
+        Examples
+        --------
+        >>> from contactlaw import Material
+        >>> bead = Material("bead", 3e9, 0.35, 1200, loss_factor=(0.1, 1e3))
+        >>> round(bead.at_frequency(1e4).youngs_modulus / 1e9, 3)
+        3.471
+        """
+        if self.loss_factor is None:
+            return self
+        loss, known = self.loss_factor
+        growth = (frequency / known) ** self.relaxation
+        return replace(
+            self, youngs_modulus=growth * self.youngs_modulus, loss_factor=(loss, frequency)
+        )
+
+    @property
     def is_polymer(self) -> bool:
         """Whether it is a polymer, or of unknown kind and as soft and light as one.
 

@@ -142,7 +142,7 @@ def tangential(
             return math.nan, math.nan
         e = strengths.cor_at(table, place)
         return e, limit * strengths.change_at(table, slides, place, e, psi)
-    x, log_chi = lookup.place_of(table, c_lam, c_chi, speed, radius / thickness)
+    x, log_chi = lookup.place_of(table, c_lam, c_chi, speed, radius, radius / thickness)
     if x != x:
         return math.nan, math.nan
     e = lookup.cor_at(table, x, log_chi)

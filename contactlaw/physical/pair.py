@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 
 from contactlaw.laws.myc import C_YIELD
@@ -15,7 +16,8 @@ class Pair:
     ----------
     sphere, plate : Material or str
         Materials, or names from the catalogue (see `contactlaw.materials`). A body can yield if it
-        has a yield strength and the law provides for it: in most laws only the sphere yields.
+        has a yield strength and the law provides for it: in most laws only the sphere yields. If
+        both have a loss factor, the plate's is carried to the frequency of the sphere's.
 
     Raises
     ------
@@ -40,6 +42,8 @@ class Pair:
     def __init__(self, sphere: Material | str, plate: Material | str) -> None:
         self.sphere = _resolve("sphere", sphere)
         self.plate = _resolve("plate", plate)
+        if self.sphere.loss_factor and self.plate.loss_factor:
+            self.plate = self.plate.at_frequency(self.sphere.loss_factor[1])
 
     def __repr__(self) -> str:
         return f"Pair({self.sphere.name!r}, {self.plate.name!r})"
@@ -82,6 +86,28 @@ class Pair:
         0.883
         """
         return 4.0 * self.effective_shear_modulus / self.effective_modulus
+
+    @property
+    def loss_factor(self) -> float:
+        """Loss factor tan delta of a contact [-]: the bodies' compliances, complex, add up.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> bead = cl.Material("bead", 3e9, 0.35, 1200, loss_factor=(0.1, 1e4))
+        >>> round(cl.Pair(bead, "glass").loss_factor, 4), round(cl.Pair(bead, bead).loss_factor, 4)
+        (0.0956, 0.1)
+        """
+        compliance = sum(
+            cmath.exp(-1j * one.loss_angle) / one.plane_modulus for one in (self.sphere, self.plate)
+        )
+        return -compliance.imag / compliance.real
+
+    @property
+    def frequency(self) -> float | None:
+        """Frequency at which the moduli are known [Hz]; None for bodies without losses."""
+        lossy = self.sphere.loss_factor or self.plate.loss_factor
+        return lossy[1] if lossy else None
 
     @property
     def yield_speed(self) -> float:

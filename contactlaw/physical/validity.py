@@ -69,8 +69,8 @@ class Validity(enum.IntFlag):
     BENT_PLATE = 128
     """The force bends the plate plastically; in the law it stays elastic except at the contact."""
     RATE_DEPENDENT = 256
-    """A body is a polymer, or of unknown kind and as soft and light as one: its modulus and
-    strength depend on the rate, and it loses energy by viscosity."""
+    """A body is a polymer, or of unknown kind and as soft and light as one, without a loss factor
+    that the law takes: it loses energy by viscosity, and its modulus depends on the rate."""
     DAMAGE = 512
     """A brittle body may break or flow: the pressure is above 0.59 of its hardness."""
     UNTRIED_STRENGTH = 1024
@@ -129,9 +129,10 @@ _WORDS = {
         "take a thicker plate, or the COR for an upper bound, up to 0.03 too high",
     ),
     Validity.RATE_DEPENDENT: (
-        "a polymer, or as soft and light as one, whose modulus and strength depend on the rate",
-        "take those at the rate of the impact, and give the kind of what is no polymer; the COR is "
-        "too high if no body flows, else too high or too low, by how much is not known",
+        "a polymer, or as soft and light as one, without a loss factor that the law takes",
+        "give its loss_factor and modulus at the frequency of the impact, take law fem, and give "
+        "the kind of what is no polymer; the COR is too high if no body flows, else too high or "
+        "too low, by how much is not known",
     ),
     Validity.DAMAGE: (
         "a brittle body may break or flow",
@@ -210,7 +211,9 @@ def limits(pair: Pair, law: Law) -> Limits:
     """Limits of the model for a pair."""
     bodies = pair.sphere, pair.plate
     sphere, plate = strengths = [body.strength or math.inf for body in bodies]
-    rate = (pair.sphere.is_polymer or pair.plate.is_polymer) * Validity.RATE_DEPENDENT
+    taken = bool(law.parameters.get("loss_factor"))  # whether the law has the pair's losses
+    unknown = any(body.is_polymer and not (taken and body.loss_factor) for body in bodies)
+    rate = unknown * Validity.RATE_DEPENDENT
     flowing = [body for body in bodies if min(strengths) > ALONE * (body.strength or math.inf)]
     bound = any(body.strength_from_hardness and body.hardening is None for body in flowing)
     on_yield = bound * Validity.FROM_HARDNESS

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections
-from contactlaw.equation.numbers import PlateConstants
+from contactlaw.equation.numbers import ModulusGrowth, PlateConstants
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Limits
 from contactlaw.stepping.spring import Spring, resized, unit_spring
@@ -32,8 +32,9 @@ PLATE_ROW = np.dtype(
         for name in (
             "tangential",
             *Spring._fields[:-2],
-            *PlateConstants._fields[:-1],
+            *PlateConstants._fields[:-2],
             *PlateCorrections._fields,
+            *ModulusGrowth._fields,
         )
     ]
     # the flags of an impact need the thickness and the fields of Limits
@@ -95,7 +96,7 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     spring = unit_spring(model, thickness)
     parts: dict[str, Any] = spring._asdict() | model.limits._asdict()
     parts |= parts.pop("plate")._asdict()
-    parts |= parts.pop("corrections")._asdict()
+    parts |= parts.pop("corrections")._asdict() | parts.pop("growth")._asdict()
     del parts["levels"]
     for name, value in parts.items():
         row[name] = value
@@ -115,7 +116,11 @@ def spring_of(row: Any, r: float) -> Spring:
         row.p1, row.p2, row.p3, row.p4, row.p5,
     )  # fmt: skip
     plate = PlateConstants(
-        row.inelasticity, row.transit, row.x_at_one, row.saturated, corrections
+        row.inelasticity, row.transit, row.x_at_one, row.saturated, corrections,
+        ModulusGrowth(
+            row.log_time, row.modulus_power, row.plate_power, row.yield_power, row.wave,
+            row.wave_slope,
+        ),
     )  # fmt: skip
     unit = Spring(
         row.mass, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio,

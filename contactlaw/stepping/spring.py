@@ -44,7 +44,14 @@ from contactlaw.equation import force as forces
 from contactlaw.equation.corrections import CONTACT_TIME, is_thin
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
-from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
+from contactlaw.equation.numbers import (
+    ModulusGrowth,
+    Numbers,
+    PlateConstants,
+    numbers,
+    relaxed,
+    relaxes,
+)
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import sphere_on_plate
 from contactlaw.stepping import strength
@@ -123,17 +130,30 @@ def relaxation(mass: Any, stiffness: Any) -> Any:
 
 @kernel(cache=True)
 def resized(unit: Spring, radius: float) -> Spring:
-    """Spring of a bead of this radius [m], from that of radius 1 m on the same plate."""
+    """Spring of a bead of this radius [m], from that of radius 1 m on the same plate.
+
+    Moduli that depend on the frequency are those of an impact at 1 m/s.
+    """
+    mass, stiffness = unit.mass * (radius * radius * radius), unit.stiffness * math.sqrt(radius)
+    mobility, scale, plate = unit.mobility, unit.scale * radius, unit.plate
+    if relaxes(plate):
+        own, faster, growth = relaxed(plate, 1.0, 0.4 * math.log(mass / stiffness))
+        stiffness *= math.exp(growth)
+        scale *= math.exp(plate.growth.yield_power * growth)
+        mobility *= own.inelasticity / plate.inelasticity if plate.inelasticity > 0.0 else 1.0
+        plate = PlateConstants(
+            own.inelasticity * faster, own.transit * faster, own.x_at_one * (faster * faster),
+            own.saturated / faster, own.corrections,
+            ModulusGrowth(
+                0.4 * math.log(mass / stiffness), plate.growth.modulus_power,
+                plate.growth.plate_power, plate.growth.yield_power, plate.growth.wave,
+                plate.growth.wave_slope,
+            ),
+        )  # fmt: skip
     return Spring(
-        unit.mass * (radius * radius * radius),
-        unit.stiffness * math.sqrt(radius),
-        unit.mobility,
-        unit.scale * radius,
-        unit.relaxation * radius,
-        unit.ratio * radius,
-        unit.plate,
+        mass, stiffness, mobility, scale, unit.relaxation * radius, unit.ratio * radius, plate,
         unit.levels,
-    )
+    )  # fmt: skip
 
 
 @kernel(entry=True)
@@ -154,10 +174,20 @@ def strengthened(spring: Spring, place: float) -> Spring:
         spring.ratio,
         PlateConstants(
             plate.inelasticity, plate.transit, plate.x_at_one, later * plate.saturated,
-            plate.corrections,
+            plate.corrections, plate.growth,
         ),
         spring.levels,
     )  # fmt: skip
+
+
+@kernel
+def _slow_scale(spring: Spring) -> float:
+    """Yield compression with the moduli that the pair was given, as `relaxation` has them."""
+    if not relaxes(spring.plate):
+        return float(spring.scale)
+    time = RELAXATION * CONTACT_TIME * (spring.mass / spring.stiffness) ** 0.4
+    growth = (spring.relaxation / time) ** 2.5
+    return float(spring.scale * growth**-spring.plate.growth.yield_power)
 
 
 @kernel
@@ -174,7 +204,7 @@ def _first_known(
     if not speed > 0.0:
         return spring.mobility, 1.0, place
     if levels is not None:
-        place = strength.place_at(levels, speed, spring.scale)
+        place = strength.place_at(levels, speed, _slow_scale(spring))
         spring = strengthened(spring, place)
     found = impact(spring, speed)
     stiffer = found.stiffer

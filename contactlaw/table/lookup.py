@@ -14,7 +14,7 @@ numbers is called from Python in a third of a microsecond. The array begins with
     X_MAX        x of the largest lambda  CURVED     1 if there are curved kinks
     LOG_CHI_MAX  largest ln chi           COR_AT     where the coefficients of COR begin
     NODES_PER_X  1/(distance of nodes)    OTHERS_AT  where those of the other fields begin
-    COLUMNS      coefficients in a row    TRANSIT to WAVES  of the plate, see `PlateConstants`
+    COLUMNS      coefficients in a row    TRANSIT on   of the plate, see `PlateConstants`
 
 then, at HEADER, the polynomial's coefficients, n blocks and the polynomials of curved kinks:
 
@@ -37,7 +37,14 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections, is_thin
-from contactlaw.equation.numbers import PlateConstants, inelasticity_of, plate_stiffening
+from contactlaw.equation.numbers import (
+    ModulusGrowth,
+    PlateConstants,
+    inelasticity_of,
+    plate_stiffening,
+    relaxed,
+    relaxes,
+)
 from contactlaw.equation.outcome import Outcome
 
 Array = NDArray[np.float64]
@@ -55,7 +62,8 @@ THINNEST = 0.01
 
 STRETCH, X_MAX, LOG_CHI_MAX, NODES_PER_X, COLUMNS = range(5)
 SEGMENTS, CURVED, COR_AT, OTHERS_AT, TRANSIT, REACH, SATURATED, WAVES = range(5, 13)
-HEADER = WAVES + len(PlateCorrections._fields)  # where the series of ln w_m begins
+GROWTH = WAVES + len(PlateCorrections._fields)
+HEADER = GROWTH + len(ModulusGrowth._fields)  # where the series of ln w_m begins
 DEGREE = 20  # degree of ln w_m in x: within 4e-12 at the nodes
 START, END, PER_LOG, CELLS, COLUMN, GRADED, LINE, BLOCK = range(8)
 BLOCKS = HEADER + DEGREE + 1
@@ -68,19 +76,28 @@ def with_plate(table: Array, plate: PlateConstants) -> Array:
         return table
     table = table.copy()
     table[TRANSIT:WAVES] = plate.transit, plate.x_at_one, plate.saturated
-    table[WAVES:HEADER] = plate.corrections
+    table[WAVES:GROWTH] = plate.corrections
+    # x_at_one is the root of T_H of a sphere of 1 m at 1 m/s
+    return with_growth(table, plate.growth, 2.0 * math.log(plate.x_at_one))
+
+
+def with_growth(table: Array, growth: ModulusGrowth, log_time: float) -> Array:
+    """Copy a table and put in the growth of moduli, and ln T_H at 1 m/s of a radius of 1."""
+    table = table.copy()
+    table[GROWTH:HEADER] = growth._replace(log_time=growth.log_time - log_time)
     return table
 
 
 @kernel
 def plate_of(table: Array, c_lam: float) -> PlateConstants:
-    """Read the constants of the plate."""
-    w, k = table, WAVES
+    """Read the constants of the plate; `log_time` is for T_H of a sphere of 1 m at 1 m/s as 1."""
+    w, k, r = table, WAVES, GROWTH
     corrections = PlateCorrections(
         w[k], w[k + 1], w[k + 2], w[k + 3], w[k + 4], w[k + 5],
         w[k + 6], w[k + 7], w[k + 8], w[k + 9], w[k + 10],
     )  # fmt: skip
-    return PlateConstants(c_lam, w[TRANSIT], w[REACH], w[SATURATED], corrections)
+    growth = ModulusGrowth(w[r], w[r + 1], w[r + 2], w[r + 3], w[r + 4], w[r + 5])
+    return PlateConstants(c_lam, w[TRANSIT], w[REACH], w[SATURATED], corrections, growth)
 
 
 def lam_max(table: Array) -> float:
@@ -390,13 +407,16 @@ def is_valid(speed: float, radius: float, thickness: float) -> bool:
 
 @kernel
 def place_of(
-    table: Array, c_lam: float, c_chi: float, speed: float, ratio: float
+    table: Array, c_lam: float, c_chi: float, speed: float, radius: float, ratio: float
 ) -> tuple[float, float]:
     """Place of an impact in the table, x and ln chi; NaN as in `restitution`."""
     if not V_MIN <= speed <= V_MAX:
         return math.nan, math.nan
     log_speed, root = log_and_root(speed)
     plate, stiffer = plate_of(table, c_lam), 1.0
+    if relaxes(plate):
+        plate, root, growth = relaxed(plate, root, log_and_root(radius)[0] - 0.2 * log_speed)
+        c_chi -= (0.4 + plate.growth.yield_power) * growth
     if not is_thin(plate.corrections):
         eta = plate_stiffening(plate, root, ratio)
         stiffer = exp(eta)
@@ -421,9 +441,11 @@ def cor_at(table: Array, x: float, log_chi: float) -> float:
 
 
 @kernel(cache=True)
-def restitution(table: Array, c_lam: float, c_chi: float, speed: float, ratio: float) -> float:
+def restitution(
+    table: Array, c_lam: float, c_chi: float, speed: float, radius: float, ratio: float
+) -> float:
     """COR for a ratio R/H; NaN where the speed is no positive number and outside the table."""
-    x, log_chi = place_of(table, c_lam, c_chi, speed, ratio)
+    x, log_chi = place_of(table, c_lam, c_chi, speed, radius, ratio)
     return cor_at(table, x, log_chi) if x == x else math.nan
 
 
@@ -434,7 +456,7 @@ def restitution_on_plate(
     """COR of one sphere on a plate; NaN for bad input and outside the table."""
     if not is_valid(speed, radius, thickness):
         return math.nan
-    return restitution(table, c_lam, c_chi, speed, radius / thickness)
+    return restitution(table, c_lam, c_chi, speed, radius, radius / thickness)
 
 
 @kernel
@@ -450,7 +472,7 @@ def _coordinates(
     log_w: Array,
     root: Array,
 ) -> bool:
-    """Coordinates ln chi and x of impacts, ln w_m, and the fifth root of the speed times exp(eta).
+    """Coordinates ln chi and x of impacts, ln w_m, and V^(1/5) exp(eta) g^(2/5).
 
     Returns whether all of the impacts are valid and in the table.
     """
@@ -464,6 +486,16 @@ def _coordinates(
             # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
             above = c_lam * root[i] * radius[i] * radius[i]
             x[i] = above / (above + stretch * (thickness[i] * thickness[i]))
+    elif relaxes(plate):
+        stronger = 0.5 + 1.25 * plate.growth.yield_power  # times 0.8 below
+        for i in range(x.size):
+            ratio, log_time = radius[i] / thickness[i], log_and_root(radius[i])[0]
+            own, faster, growth = relaxed(plate, root[i], log_time - 0.2 * log_chi[i])
+            eta = plate_stiffening(own, faster, ratio)
+            lam = inelasticity_of(own, faster, ratio, exp(eta))
+            root[i] = faster * exp(eta)
+            x[i] = lam / (lam + stretch)
+            log_chi[i] -= 1.25 * eta + stronger * growth
     else:
         for i in range(x.size):
             ratio = radius[i] / thickness[i]
@@ -559,7 +591,7 @@ def outcomes(
 ) -> int:
     """Write all fields of valid impacts on plates; return how many are NaN, being outside.
 
-    V^(1/5) exp(eta) goes into root.
+    V^(1/5) exp(eta) g^(2/5) goes into root.
     """
     scratch, first = np.empty((7, _CHUNK)), np.empty(_CHUNK, dtype=np.int32)
     cor_at, step = int(table[COR_AT]), np.uint64(int(table[COLUMNS]))
@@ -633,20 +665,27 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
 
 
 @kernel(cache=True)
-def yield_speeds(table: Array, c_lam: float, c_chi: float, ratio: Array, out: Array) -> None:
+def yield_speeds(
+    table: Array, c_lam: float, c_chi: float, radius: Array, ratio: Array, out: Array
+) -> None:
     """Write the speeds at which chi = 1 into out; NaN where lambda leaves the table before.
 
-    d(ln chi)/d(ln V) lies between 2/3 and 4/5, so a step with slope 3/4 contracts by 0.12 at least.
+    d(ln chi)/d(ln V) lies between 2/3 and 4/5, so a step with slope 3/4 contracts by 0.12 at least;
+    with losses it is up to 1, and a step contracts by 0.33.
     """
-    plate = plate_of(table, c_lam)
+    given = plate_of(table, c_lam)
     for n in range(out.size):
         log_speed = -1.25 * c_chi
-        for _ in range(30):  # 0.12^30 is far below rounding
-            root = math.exp(0.2 * log_speed)
+        for _ in range(60):  # 0.12^30 and 0.33^60 are far below rounding
+            root, plate, growth = math.exp(0.2 * log_speed), given, 0.0
+            if relaxes(given):
+                log_time = math.log(radius[n]) - 0.2 * log_speed
+                plate, root, growth = relaxed(given, root, log_time)
             eta = 0.0 if is_thin(plate.corrections) else plate_stiffening(plate, root, ratio[n])
             lam = inelasticity_of(plate, root, ratio[n], math.exp(eta))
             x = lam / (lam + table[STRETCH])
             if not 0.0 <= x <= table[X_MAX]:
                 break
-            log_speed -= (c_chi - eta + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
+            stiffer = eta + (0.4 + given.growth.yield_power) * growth
+            log_speed -= (c_chi - stiffer + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
         out[n] = math.exp(log_speed) if 0.0 <= x <= table[X_MAX] else math.nan

@@ -38,7 +38,13 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation import outcome
 from contactlaw.equation.corrections import is_thin
-from contactlaw.equation.numbers import PlateConstants, inelasticity_of, plate_stiffening
+from contactlaw.equation.numbers import (
+    PlateConstants,
+    inelasticity_of,
+    plate_stiffening,
+    relaxed,
+    relaxes,
+)
 from contactlaw.table import lookup, splines
 from contactlaw.table.lookup import LOG_CHI_MAX, STRETCH, X_MAX
 from contactlaw.table.nodes import Table
@@ -115,7 +121,7 @@ class Place(NamedTuple):
     x: float  # the nearest inside
     log_chi: float
     length: float
-    root: float  # V^(1/5) exp(eta)
+    root: float  # V^(1/5) exp(eta) g^(2/5)
 
 
 @kernel(inline=True)
@@ -182,7 +188,13 @@ def place_of(
     known, stiffer = lookup.plate_of(node, c_lam), 1.0
     log_chi = c_chi + _sum(w, _entries(table, first + SHIFT)) + 0.8 * log_speed
     saturated = _sum(w, _entries(table, first + SATURATED))
-    plate = PlateConstants(c_lam, known.transit, known.x_at_one, saturated, known.corrections)
+    plate = PlateConstants(
+        c_lam, known.transit, known.x_at_one, saturated, known.corrections, known.growth
+    )
+    if relaxes(plate):
+        log_time = lookup.log_and_root(radius)[0] - 0.2 * log_speed
+        plate, root, growth = relaxed(plate, root, log_time)
+        log_chi -= (0.4 + plate.growth.yield_power) * growth
     if not is_thin(plate.corrections):
         eta = plate_stiffening(plate, root, ratio)
         stiffer = lookup.exp(eta)
@@ -381,21 +393,38 @@ def _cubic(v: Four) -> Four:
 @kernel
 def _coordinates(
     table: Array, c_lam: float, c_chi: float, first: int, log_speed: Array, root: Array, t: Array,
-    ratio: Array, x: Array, log_chi: Array, length: Array, eta: Array,
+    radius: Array, ratio: Array, x: Array, log_chi: Array, length: Array, eta: Array,
 ) -> None:  # fmt: skip
     """Coordinates of impacts as `place_of` has them, in loops with one array that is written."""
     node = _head(table, first)
     saturated = _cubic(_entries(table, first + SATURATED))
     known, stretch = lookup.plate_of(node, c_lam), node[STRETCH]
-    for i in range(x.size):
-        at = _at(saturated, t[i])
-        plate = PlateConstants(c_lam, known.transit, known.x_at_one, at, known.corrections)
-        eta[i] = plate_stiffening(plate, root[i], ratio[i])
-    for i in range(x.size):
-        at = _at(saturated, t[i])
-        plate = PlateConstants(c_lam, known.transit, known.x_at_one, at, known.corrections)
-        lam = inelasticity_of(plate, root[i], ratio[i], lookup.exp(eta[i]))
-        x[i] = lam / (lam + stretch)
+    if relaxes(known):
+        for i in range(x.size):
+            log_time = lookup.log_and_root(radius[i])[0] - 0.2 * log_speed[i]
+            at = _at(saturated, t[i])
+            plate = PlateConstants(
+                c_lam, known.transit, known.x_at_one, at, known.corrections, known.growth
+            )
+            plate, faster, growth = relaxed(plate, root[i], log_time)
+            stiffer = plate_stiffening(plate, faster, ratio[i])
+            lam = inelasticity_of(plate, faster, ratio[i], lookup.exp(stiffer))
+            x[i] = lam / (lam + stretch)
+            eta[i] = stiffer + (0.4 + known.growth.yield_power) * growth
+    else:
+        for i in range(x.size):
+            at = _at(saturated, t[i])
+            plate = PlateConstants(
+                c_lam, known.transit, known.x_at_one, at, known.corrections, known.growth
+            )
+            eta[i] = plate_stiffening(plate, root[i], ratio[i])
+        for i in range(x.size):
+            at = _at(saturated, t[i])
+            plate = PlateConstants(
+                c_lam, known.transit, known.x_at_one, at, known.corrections, known.growth
+            )
+            lam = inelasticity_of(plate, root[i], ratio[i], lookup.exp(eta[i]))
+            x[i] = lam / (lam + stretch)
     shifts = _cubic(_entries(table, first + SHIFT))
     for i in range(x.size):
         log_chi[i] = c_chi + _at(shifts, t[i]) + (0.8 * log_speed[i] - eta[i])
@@ -459,7 +488,7 @@ def restitutions(
             row = KNOTS + pieces + 1 + PIECE * k
             node = _head(table, row)
             x_max = node[X_MAX]
-            _coordinates(table, c_lam, c_chi, row, log_v, root, t, ratio, x, log_chi, length, a)
+            _coordinates(table, c_lam, c_chi, row, log_v, root, t, r, ratio, x, log_chi, length, a)
             whole = _are_inside(v, r, h, t, x, log_chi, length, x_max, edge)
             for i in range(n):
                 outside[i] = 0.0
