@@ -20,6 +20,7 @@ _COLUMNS = {
     "B [MPa]": (8, 0, 1e6),
     "n [-]": (6, 2, 1.0),
     "C [-]": (6, 3, 1.0),
+    "tan delta [-]": (13, 3, 1.0),
 }
 
 
@@ -50,6 +51,7 @@ def _cells(entry: Material) -> list[str]:
     numbers = (
         entry.youngs_modulus, entry.poissons_ratio, entry.density, entry.yield_strength,
         entry.hardness, *hardening, entry.rate and entry.rate[0],
+        entry.loss_factor and entry.loss_factor[0],
     )  # fmt: skip
     return [
         f"{'-':>{width}s}" if number is None else f"{number / unit:{width}.{places}f}"

@@ -416,6 +416,8 @@ def _from_table(name: str, tables: dict[str, Any], references: dict[str, str]) -
         other = tables[table["like"]]
         table = {field: other[field] for field in _ALIKE} | table
         source = {field: other["source"][field] for field in _ALIKE[1:]} | source
+        alike = {field: e for field, e in other.get("uncertainty", {}).items() if field in _ALIKE}
+        table["uncertainty"] = alike | table.get("uncertainty", {})
     # Hardening and rate are of the same fit as the yield strength A.
     fitted = {"hardening", "rate"} & set(table)
     source = source | {field: source["yield_strength"] for field in fitted}
@@ -434,7 +436,7 @@ def _from_table(name: str, tables: dict[str, Any], references: dict[str, str]) -
         shown = ",".join(f" {value:g}{unit}" for value in numbers)
         parts.append(f"{label}{shown}: {source[number].format_map(references)}")
         if number in errors:
-            error, reason = errors[number]
+            error, reason = errors[number][0], errors[number][1].format_map(references)
             parts.append(f"standard error of it {100.0 * error:g} %: {reason}")
     return replace(body, source="; ".join(parts))
 

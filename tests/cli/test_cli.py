@@ -280,9 +280,9 @@ def test_materials(capsys):
     assert main(["materials", "glass"]) == 0
     assert "Table 1" in capsys.readouterr().out
     shown = {line.split()[0]: line.split()[4:] for line in lines[1:]}
-    assert shown["glass"] == 5 * ["-"]
-    assert shown["stainless-steel-304-ball"] == ["-", "3.119", "-", "-", "-"]
-    assert shown["copper-ofhc-annealed"] == ["90.0", "-", "292", "0.31", "0.025"]
+    assert shown["glass"] == 6 * ["-"]
+    assert shown["stainless-steel-304-ball"] == ["-", "3.119", "-", "-", "-", "-"]
+    assert shown["copper-ofhc-annealed"] == ["90.0", "-", "292", "0.31", "0.025", "-"]
     assert len({len(line) for line in lines}) == 1
 
 

@@ -215,7 +215,8 @@ def test_every_bead_of_the_catalogue_runs_with_the_law_fem(sphere, tmp_path, mon
     if sphere != "glass":  # draw for one pair only, of bodies that do not yield: drawing is slow
         monkeypatch.setattr("dem_demo.kit.session.make", lambda show, run, folder: {})
     few = ["rain", "--law", "fem", "--beads", "15", "--duration", "0.2", "--plates", "1e-3,3e-3"]
-    if sphere == "lead":  # so weak that it flows deeper than its table reaches
+    # lead is so weak, and rubber so soft, that they are compressed deeper than their tables reach
+    if sphere in ("lead", "natural-rubber", "epdm"):
         few += ["--outside", "solve"]
     few += ["--sphere", sphere, "--out", str(tmp_path / "out")]
     assert cli.main(few) == 0, capsys.readouterr().err
