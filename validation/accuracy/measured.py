@@ -62,25 +62,14 @@ def band(
     """
     middle = np.asarray(model.restitution(speed, radius, thickness))
     squares = (MODEL_ERRORS["fem"][0][0] * middle) ** 2
-    bodies = {"sphere": model.pair.sphere, "plate": model.pair.plate}
+    bodies: dict[str, Any] = {"sphere": model.pair.sphere, "plate": model.pair.plate}
     for body, material in bodies.items():
         for name, error in material.uncertainty.items():
-            low, high = (
-                cl.ImpactModel(
-                    cl.Pair(**bodies | {body: _scaled(material, name, factor)})
-                ).restitution(speed, radius, thickness)
-                for factor in (1.0 - error, 1.0 + error)
-            )
-            squares = squares + (0.5 * (np.asarray(high) - low)) ** 2
+            more: Any = {name: getattr(material, name) * (1.0 + error)}
+            changed = cl.ImpactModel(cl.Pair(**bodies | {body: replace(material, **more)}))
+            change = np.asarray(changed.restitution(speed, radius, thickness)) - middle
+            squares = squares + change**2
     return middle - np.sqrt(squares), np.minimum(middle + np.sqrt(squares), 1.0)
-
-
-def _scaled(material: cl.Material, name: str, factor: float) -> cl.Material:
-    value: Any = getattr(material, name)
-    # Of a pair of numbers, as (B, n) of hardening, the first one is uncertain.
-    pair = isinstance(value, tuple)
-    changed: Any = {name: (value[0] * factor, value[1]) if pair else value * factor}
-    return replace(material, **changed)
 
 
 def _read(path: Path) -> Source:

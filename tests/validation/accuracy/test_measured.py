@@ -38,8 +38,3 @@ def test_a_band_grows_with_each_uncertainty():
     middle = cl.ImpactModel(cl.Pair(bead, glass)).restitution(3.0, 1e-3, 5e-3)
     assert widths[1][1] == pytest.approx(0.12 * middle, rel=0.1)
     assert np.all(np.diff(widths, axis=0) > 0.0)
-
-
-def test_a_pair_of_numbers_is_uncertain_in_its_first():
-    metal = cl.Material("m", 200e9, 0.3, 7800, 500e6, hardening=(300e6, 0.3))
-    assert measured._scaled(metal, "hardening", 1.5).hardening == (450e6, 0.3)
