@@ -83,7 +83,7 @@ def test_the_stated_error_of_the_sliding_speed_is_the_rms_beside_finite_elements
 @pytest.mark.parametrize(("column", "kind"), [(1, "tangential_restitution"), (2, "spin")])
 def test_friction_of_the_measurements_of_kharaz_and_others(column, kind):
     """Points beyond 28 degrees, where the beads slide all the time; the paper states 0.092."""
-    with (ROOT / "validation/data/kharaz-2001.csv").open(encoding="utf-8") as file:
+    with (ROOT / "validation/measured/kharaz-2001.csv").open(encoding="utf-8") as file:
         rows = [row[1:] for row in csv.reader(file) if row[0] in "12"]
     rows = [row for row in rows if row[column] and float(row[0]) > 28.0]
     angle, values = np.array([(row[0], row[column]) for row in rows], dtype=float).T

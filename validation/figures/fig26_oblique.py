@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw.style import BLUE, INK
 from validation import figures
-from validation.fem import store
+from validation.accuracy.measured import FOLDER
 from validation.figures import chart
 from validation.figures.chart import Axis, Panel
 
@@ -47,7 +47,7 @@ def impacts(angle: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np
 
 def measured(column: str) -> NDArray[np.float64]:
     """Angles [deg], measured values and who read them, shape (3, n)."""
-    with (store.FOLDER / "kharaz-2001.csv").open(encoding="utf-8") as file:
+    with (FOLDER / "kharaz-2001.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
     names = "angle_deg", column, "source"
     return np.array([[float(r[name]) for name in names] for r in rows if r[column]]).T
