@@ -19,7 +19,7 @@ the eight elasticities follow from the others:
 
     R = -H    E1 + E2 + sigma_Y = -V0/2    rho1 + rho2 = V0/2
 
-but for bodies with a rate of strain or hardening, whose other constants have units, too.
+but for bodies with a rate of strain, hardening or losses, whose other constants have units, too.
 """
 
 from __future__ import annotations
@@ -219,8 +219,9 @@ def by_inputs(pair: Pair, law: Law, impacts: Impacts, yields: NDArray[np.bool_])
         "plate_modulus": -0.5 * by_speed - by_modulus - by_strength,
         "yield_strength": by_strength,
     }
-    if any(body.rate or isinstance(body.hardening, float) for body in bodies):
-        # other inputs with a unit are held: rate0, or the hardness from which two strengths follow
+    if any(body.rate or body.loss_factor or isinstance(body.hardening, float) for body in bodies):
+        # other inputs with a unit are held: rate0, the frequency at which moduli are known, or the
+        # hardness from which two strengths follow
         named["radius"] = by(lambda x: (pair, speed, x * radius, thickness))
         named["plate_density"] = by_number("density", "plate")
         named["plate_modulus"] = by_number("youngs_modulus", "plate")

@@ -213,6 +213,21 @@ def stiffening(law: Array) -> float:
     return float(law[at + 4]) if same else 0.0
 
 
+@kernel
+def returned(law: Array) -> tuple[float, float]:
+    """Shares of compression and work that bodies with losses give back, 1 and 1 without losses.
+
+    They are those of the shallowest contacts, whose loss-free unloading would be Hertz's.
+    """
+    dm = 2.0 * lossless(law)
+    row = _unloading_row(law, dm) if dm < 1.0 else 0
+    left = _function(law, row, RESIDUAL, dm) / dm if row > 0 else 0.0
+    if left == 0.0:
+        return 1.0, 1.0
+    exponent = _function(law, row, EXPONENT, dm)
+    return 1.0 - left, 2.5 * (1.0 - left) / (0.5 * exponent + 1.0)
+
+
 @kernel(inline=True)
 def leaves_hertz(law: Array) -> float:
     """Compression up to which contacts follow Hertz's law and unload without a loss."""

@@ -78,6 +78,9 @@ def stiffness_at(
     where a body has flowed. Along the surface a finite sphere gives way more than a half-space; in
     finite elements in three dimensions by as much again.
 
+    Bodies with losses unload along a steeper curve than the radius of their contact says: k is that
+    of the curve along which they would unload without losses.
+
     Where a capped law unloads along its loading curve, k is that of the curve beside it: the radius
     of a contact does not jump as the slope does there.
     """
@@ -85,8 +88,11 @@ def stiffness_at(
     if largest > y * force.leaves_hertz(law):
         curve = force.unloading(law, largest / y)
         exponent, left = 0.5 * curve.exponent, curve.residual * y
+    span, work = force.returned(law)
+    if work < 1.0:
+        exponent = (exponent + 1.0) * work / span - 1.0
     power = 2.0 if exponent == 1.5 else 1.0 / (exponent - 1.0)
-    k = exponent * f / (d - left) if d > left else 0.0
+    k = span * exponent * f / (d - left) if d > left else 0.0
     missing = 2.0 * (2.0 / 3.0) * force.stiffening(law) / (unit * math.sqrt(y))
     return Stiffness(k / (1.0 + missing * k), power)
 

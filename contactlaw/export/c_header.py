@@ -61,7 +61,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     tangential: "POINT RELAXING",
     solver: "RTOL",
     stepping_friction: "SPRINGS _LEAST_SPEED _DEEPEST",
-    stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED",
+    stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED USUAL_SPEED",
     strength: "_STRIDE _FINE",
     validity: "TRANSITS",
 }
@@ -170,6 +170,7 @@ def _text(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> 
     made = factors(model.pair, model.force_law)
     transit = made.plate.transit * made.time  # time of a shear wave through a plate of H = 1 m
     plate, groups = made.plate, list(_impact())
+    span, work = force.returned(model.force_law.data)
     tables = [packed(*one) for one in nodes.values()]
     numbers = [value for one in tables for value in (one if levels is None else _rounded(one))]
     values = {
@@ -182,6 +183,8 @@ def _text(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> 
         "relaxation": _number(spring.relaxation),
         "transit": _number(transit),
         "tangential_ratio": _number(model.pair.tangential_ratio),
+        "span": _number(span),
+        "work": _number(work),
         "stiffening": _number(force.stiffening(model.force_law.data)),
         "plate": ", ".join(plate._fields[:4]),
         "plate_values": _array(plate[:4]),
@@ -280,6 +283,9 @@ def _body(material: Material) -> str:
     limit = "no yield strength" if flow is None else f"yield strength {flow.strength:.6g} Pa"
     if flow is not None and flow.hardening:
         limit += f", hardening {flow.hardening:.6g} Pa and {flow.exponent:.6g}"
+    if material.loss_factor:
+        loss, frequency = material.loss_factor
+        limit += f", loss factor {loss:.6g} at {frequency:.6g} Hz"
     if flow is not None and flow.rate:
         limit += f", rate {flow.rate:.6g} above {flow.rate0:.6g} 1/s"
     return (

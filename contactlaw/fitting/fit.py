@@ -15,7 +15,7 @@ from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, notes
 from contactlaw.fitting.predictions import Predictor, Values
-from contactlaw.fitting.unknowns import Parameter, parameters, setting
+from contactlaw.fitting.unknowns import Parameter, parameters, setting, with_loss_factors
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.pair import Pair
@@ -210,6 +210,7 @@ def fit(
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     search.optimizer()
     data = Measurements.of(data)
+    pair = with_loss_factors(pair, data, unknown)
     varied = parameters(pair, data, unknown, priors or {})
     predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))
     descent = search.Descent(predictor)

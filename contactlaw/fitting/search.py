@@ -257,7 +257,7 @@ def _axes(predictor: Predictor) -> _Axes:
             axis = np.geomspace(low[n], max(top, 2.0 * low[n]), _STRENGTHS[laws or 1])
         elif one.unknown.field == "youngs_modulus":
             axis = np.geomspace(low[n], high[n], _MODULI[laws or 1])
-        elif one.unknown.field == "density":
+        elif one.unknown.field in ("density", "loss_factor"):
             axis = np.geomspace(low[n], high[n], _DENSITIES)
         elif one.name == "friction":
             axis = np.geomspace(low[n], high[n], _FRICTIONS[min(3, len(scanned))])

@@ -11,11 +11,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.fitting.measurements import NORMAL, OBLIQUE, Measurements
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import number
 from contactlaw.physical.flow import CONSTRAINT
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.scaling import unit_time
 
 Array = NDArray[np.float64]
 
@@ -38,6 +40,7 @@ _MATERIAL = {
     "yield_strength": ("yield strength", "Pa", 0.0, math.inf),
     "youngs_modulus": ("Young's modulus", "Pa", 1e5, 2e12),
     "density": ("density", "kg/m3", 1.0, 3e4),
+    "loss_factor": ("loss factor", "", 1e-4, 1.0),
 }
 UNKNOWNS = {
     prefix + field: Unknown(f"{title} of the {name}", unit, body, field, least, largest)
@@ -49,6 +52,7 @@ UNKNOWNS["radius"] = Unknown("radius of the bead", "m", "", "radius", 1e-7, 1.0)
 UNKNOWNS["friction"] = Unknown("coefficient of friction", "", "", "friction", 1e-3, 5.0)
 # E*/sigma_Y of glassy metals and of the softest lead; law fem is made for 11 to 2000.
 _RATIOS = (12.0, 1e4)
+_USUAL_LOSS = 0.05  # tan delta with which a search begins if none is given
 _SIZES = ("radius", "thickness", "friction")
 _SEARCH_FACTOR = 5.0  # factor by which moduli and densities may differ from the values given
 
@@ -74,7 +78,8 @@ class Parameter:
 
     def changes(self, law: Law) -> bool:
         """Whether the law changes with it."""
-        return bool(law.from_pair) and self.unknown.field in ("yield_strength", "youngs_modulus")
+        fields = "yield_strength", "youngs_modulus", "loss_factor"
+        return bool(law.from_pair) and self.unknown.field in fields
 
 
 class Setting(NamedTuple):
@@ -120,6 +125,32 @@ def parameters(
     return found
 
 
+def with_loss_factors(pair: Pair, data: Measurements, unknown: str | Iterable[str]) -> Pair:
+    """Give bodies whose loss factor is unknown one, at the frequency of the impacts.
+
+    Raises
+    ------
+    ValueError
+        If that frequency is not known, because the radius is unknown, too.
+    """
+    names = {unknown} if isinstance(unknown, str) else set(unknown)
+    bodies = {"sphere": pair.sphere, "plate": pair.plate}
+    for name in names & UNKNOWNS.keys():
+        one = UNKNOWNS[name]
+        if one.field != "loss_factor" or bodies[one.body].loss_factor:
+            continue
+        if data.radius is None:
+            raise ValueError(
+                f"unknown: {name} needs the frequency of the impacts, and so their radius: give "
+                f"radius, or Material(..., loss_factor=(a guess, frequency)) of the {one.body}"
+            )
+        sizes = np.asarray(data.radius) / np.asarray(data.speed) ** 0.2
+        time = CONTACT_TIME * unit_time(pair) * np.median(sizes)
+        loss_factor = _USUAL_LOSS, float(0.5 / time)
+        bodies[one.body] = dataclasses.replace(bodies[one.body], loss_factor=loss_factor)
+    return Pair(**bodies)
+
+
 def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> None:
     if values is None and not unknown:
         raise ValueError(
@@ -138,6 +169,7 @@ def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> 
 def _centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
     if unknown.body:
         value = getattr(getattr(pair, unknown.body), unknown.field)
+        value = value[0] if isinstance(value, tuple) else value
         return math.nan if value is None else float(value)
     sizes = getattr(data, unknown.field)
     return math.nan if sizes is None else float(np.median(sizes))
@@ -166,7 +198,7 @@ def bounds(parameter: Parameter, pair: Pair) -> tuple[float, float]:
         body = getattr(pair, unknown.body)
         if _by_hardness(body):
             high = min(high, body.hardness / CONSTRAINT)  # no metal softens
-    elif unknown.body:
+    elif unknown.body and unknown.field != "loss_factor":
         low = max(low, parameter.centre / _SEARCH_FACTOR)
         high = min(high, parameter.centre * _SEARCH_FACTOR)
     return low, high
@@ -184,7 +216,9 @@ def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values:
     for parameter, value in zip(parameters, values.tolist(), strict=True):
         body, field = parameter.unknown.body, parameter.unknown.field
         if body:
-            changed = {field: value}
+            changed: dict[str, Any] = {field: value}
+            if field == "loss_factor":
+                changed[field] = value, bodies[body].loss_factor[1]
             if field == "yield_strength" and _by_hardness(bodies[body]):
                 # a search may try a strength above that of the hardness: without hardening then
                 changed["hardness"] = max(bodies[body].hardness, CONSTRAINT * value)

@@ -120,8 +120,8 @@ def law(name: str, **numbers: float) -> Law:
     module = _module(family)
     wanted = every = getattr(module, "PARAMETERS", ())
     defaults: dict[str, float] = getattr(module, "DEFAULTS", {})
-    if len(typed) == len(every) - len(defaults):
-        wanted = tuple(name for name in every if name not in defaults)
+    if len(every) - len(defaults) <= len(typed) <= len(every):
+        wanted = every[: len(typed)]
     numbers = {**defaults, **numbers}
     if typed and not wanted:
         raise ValueError(f"law: {name!r} takes no numbers; name it as {family!r}")

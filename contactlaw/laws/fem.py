@@ -475,24 +475,25 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         at = works(dm)
         return (1.0 - at.recovery - at.plastic) * at.loading
 
-    more = given.hardens or given.loss_factor > 0.0
+    named = 10 if given.loss_factor else 9 if given.hardens else 5
     first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
     start = min(_SMALLEST / curves.scale, _EARLIEST)
     end = deepest(curves.ratio) / curves.scale
     loading = [Loading(0.0, first)]
-    order = 2.0 if curves.recovered == 1.0 else 0.0
 
     def residual(dm: Array) -> Array:
         return works(dm).residual
 
+    lossy = curves.recovered < 1.0
+    left, order = (residual, 0.0) if lossy else (np.zeros_like, 2.0)
     # tables begin at `start`; the loss begins below, so that no contact in a table is lossless
-    unloading = [Unloading(0.1 * start, residual, exponent, loss=loss, other=other, order=0.0)]
+    unloading = [Unloading(0.1 * start, left, exponent, loss=loss, other=other)]
     if curves.ratio:
         loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))
         unloading.append(Unloading(1.0, residual, exponent, loss, other, order=order))
     return Law.of(
         name="fem",
-        parameters=dict(zip(PARAMETERS, given if more else given[:5], strict=False)),
+        parameters=dict(zip(PARAMETERS, given[:named], strict=False)),
         source="finite elements of contactlaw, validation.fem.campaign",
         yield_coefficient=curves.scale * (curves.ratio / math.pi) ** 2 if curves.ratio else None,
         loading=loading,

@@ -203,7 +203,7 @@ def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -
 def plate_constants(pair: Pair, law: Law) -> PlateConstants:
     """Constants of a pair's plates, at 1 m/s and R = H; they are the same for all sizes."""
     one = np.ones(())
-    mass, time = sphere_mass(pair.sphere.density, one).item(), _unit_time(pair)
+    mass, time = sphere_mass(pair.sphere.density, one).item(), unit_time(pair)
     corrections = THIN
     if law.waves is not None:
         share = pair.effective_modulus / pair.plate.plane_modulus
@@ -249,7 +249,7 @@ def modulus_growth(pair: Pair, law: Law) -> ModulusGrowth:
     )
 
 
-def _unit_time(pair: Pair) -> float:
+def unit_time(pair: Pair) -> float:
     """T_H of a sphere of radius 1 m at 1 m/s [s]."""
     return float((math.pi * pair.sphere.density / pair.effective_modulus) ** 0.4)
 
@@ -269,7 +269,7 @@ def scales(contact: ContactConstants, speed: Array) -> Numbers:
 def factors(pair: Pair, law: Law) -> PairConstants:
     """Constants of a pair for impacts of spheres on plates."""
     one = np.ones(())
-    time = _unit_time(pair)
+    time = unit_time(pair)
     return PairConstants(
         plate=plate_constants(pair, law),
         log_overload=-math.log(_yield_compression(pair, one, law).item() / time),

@@ -59,6 +59,9 @@ from contactlaw.stepping import strength
 Array = NDArray[np.float64]
 
 RELAXATION = 1e5  # [contact times]; within an impact, u2 relaxes by 1e-5 of itself
+# Of impacts at whose frequency springs have their moduli [m/s]; slower ones flow little, so that the
+# yield compression, which stays, matters less to them.
+USUAL_SPEED = 3.0
 FEWEST_STEPS = 20  # of a contact; with fewer the error does not follow the order of the method
 
 # A force of at least this share of the loading curve's is on that curve.
@@ -132,12 +135,14 @@ def relaxation(mass: Any, stiffness: Any) -> Any:
 def resized(unit: Spring, radius: float) -> Spring:
     """Spring of a bead of this radius [m], from that of radius 1 m on the same plate.
 
-    Moduli that depend on the frequency are those of an impact at 1 m/s.
+    Moduli that depend on the frequency are those of an impact at `USUAL_SPEED`. In the second step
+    of a contact they become those of its own speed, but the yield compression stays.
     """
     mass, stiffness = unit.mass * (radius * radius * radius), unit.stiffness * math.sqrt(radius)
     mobility, scale, plate = unit.mobility, unit.scale * radius, unit.plate
     if relaxes(plate):
-        own, faster, growth = relaxed(plate, 1.0, 0.4 * math.log(mass / stiffness))
+        usual = 0.2 * math.log(USUAL_SPEED)
+        own, faster, growth = relaxed(plate, 1.0, 0.4 * math.log(mass / stiffness) - usual)
         stiffness *= math.exp(growth)
         scale *= math.exp(plate.growth.yield_power * growth)
         mobility *= own.inelasticity / plate.inelasticity if plate.inelasticity > 0.0 else 1.0
@@ -145,7 +150,7 @@ def resized(unit: Spring, radius: float) -> Spring:
             own.inelasticity * faster, own.transit * faster, own.x_at_one * (faster * faster),
             own.saturated / faster, own.corrections,
             ModulusGrowth(
-                0.4 * math.log(mass / stiffness), plate.growth.modulus_power,
+                0.4 * math.log(mass / stiffness) - usual, plate.growth.modulus_power,
                 plate.growth.plate_power, plate.growth.yield_power, plate.growth.wave,
                 plate.growth.wave_slope,
             ),

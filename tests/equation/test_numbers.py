@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import polymer
 import pytest
 
 import contactlaw as cl
@@ -15,7 +16,7 @@ from contactlaw.stepping.spring import impact
 
 STEEL = cl.Pair("stainless-steel-304", "stainless-steel-304")
 PAIRS = [cl.Pair("gamma-alumina", "glass"), STEEL, cl.Pair("glass", "carbon-steel-1020"),
-         cl.Pair("aluminium-6061-t6", "pmma")]  # fmt: skip
+         cl.Pair("aluminium-6061-t6", "pmma"), *polymer.PAIRS[:2]]  # fmt: skip
 COUNT = 25_000  # of each pair
 # These flags are decided before the impact is integrated.
 BEFOREHAND = (
