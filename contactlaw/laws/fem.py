@@ -38,10 +38,12 @@ there (`HardeningCurves`). `validation.fem.metals` has the impacts to which c wa
 
 A body with losses gives back less of the work and is left compressed, which it recovers from later:
 
-    W -> W exp(-a b(a)),    dm - dr -> (dm - dr) exp(-a c(a)),    a = 2 delta/pi
+    W -> W exp(-a b(a)) (1 + l)/(1 + l r),    dm - dr -> (dm - dr) exp(-a c(a)),    a = 2 delta/pi
 
 as in a Hertz impact of a body whose loss factor tan delta is the same at all frequencies
-(`validation.fem.viscoelastic`).
+(`validation.fem.viscoelastic`), where r, the share W/W_l without losses, is 1. A share l of the
+energy that is left at the largest compression is lost before. Bodies that flow have lost less when
+they turn; they flow less, too, as if they were stronger by a factor exp(p a).
 
 Legend: compressions in units of the yield compression d_Y of the weaker body, or of R where
 none yields; forces in K d_Y^1.5.
@@ -215,7 +217,7 @@ class Given(NamedTuple):
         }
 
 
-_RATIOS = Given._fields[:2]
+_STRENGTHS = Given._fields[:2]
 _HARDENING = Given._fields[5:9]
 PARAMETERS = Given._fields
 DEFAULTS = Given._field_defaults  # of the numbers of hardening and losses
@@ -256,10 +258,9 @@ class Curves:
         self.friction = friction_loss(given, found["friction"])
         a = 2.0 / math.pi * math.atan(given.loss_factor)
         # shares of the work, and of the compression, that a body with losses gives back
-        self.returned, self.recovered = (
-            math.exp(-a * float(np.polynomial.polynomial.polyval(a, powers)))
-            for powers in found["losses"]
-        )
+        polynomials = [np.polynomial.polynomial.polyval(a, one) for one in found["losses"]]
+        self.returned, self.recovered = (math.exp(-a * float(one)) for one in polynomials[:2])
+        self.lost_before = a * float(polynomials[2])
         self._terms: dict[str, Array] = {}
         if not self.ratio:
             return
@@ -351,7 +352,10 @@ class Curves:
         residual = self.residual(q) if self.ratio else np.zeros_like(q)
         plastic = self.plastic(q, recovery)
         if self.recovered < 1.0:
-            recovery, span = self.returned * recovery, self.recovered * span
+            less = 1.0 / (1.0 + self.lost_before * recovery)
+            plastic = plastic * less
+            recovery = recovery * less * self.returned * (1.0 + self.lost_before)
+            span = self.recovered * span
             residual = q**2 - span
         return _Works(self.force(q), self.work(q), recovery, plastic, residual, span)
 
@@ -369,7 +373,7 @@ class Strains(NamedTuple):
     def typical(self, given: Given) -> Given:
         """Bodies without hardening, with the strengths that these have at a typical depth."""
         usual = given._replace(**{name: Given._field_defaults[name] for name in _HARDENING})
-        return usual._replace(**dict(zip(_RATIOS, self.ratios(given, _TYPICAL), strict=True)))
+        return usual._replace(**dict(zip(_STRENGTHS, self.ratios(given, _TYPICAL), strict=True)))
 
 
 def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
@@ -451,6 +455,11 @@ def law(*given: float) -> Law:
 
 def law_of(given: Given, found: dict[str, Any]) -> Law:
     """Law of a pair from the numbers of a fit."""
+    named = given[: 10 if given.loss_factor else 9 if given.hardens else 5]
+    if given.loss_factor:
+        weaker = math.exp(-found["pressure"] * 2.0 / math.pi * math.atan(given.loss_factor))
+        ratios = {name: weaker * getattr(given, name) for name in _STRENGTHS}
+        given = given._replace(**ratios)
     curves = (HardeningCurves if given.hardens else Curves)(given, found)
     if curves.ratio and curves.scale > _ELASTIC_BEYOND * deepest(curves.ratio):
         # the bodies are so strong that they would yield only where the law ends
@@ -475,7 +484,6 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         at = works(dm)
         return (1.0 - at.recovery - at.plastic) * at.loading
 
-    named = 10 if given.loss_factor else 9 if given.hardens else 5
     first = Polynomial([0.0, 0.0, 0.0, 1.0, curves.stiffening])
     start = min(_SMALLEST / curves.scale, _EARLIEST)
     end = deepest(curves.ratio) / curves.scale
@@ -493,7 +501,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
         unloading.append(Unloading(1.0, residual, exponent, loss, other, order=order))
     return Law.of(
         name="fem",
-        parameters=dict(zip(PARAMETERS, given[:named], strict=False)),
+        parameters=dict(zip(PARAMETERS, named, strict=False)),
         source="finite elements of contactlaw, validation.fem.campaign",
         yield_coefficient=curves.scale * (curves.ratio / math.pi) ** 2 if curves.ratio else None,
         loading=loading,

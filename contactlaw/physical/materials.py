@@ -157,7 +157,8 @@ class Material:
     uncertainty : mapping of str to float, optional
         Relative standard errors of the numbers above, by their names, for
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
-        of B, of ``rate`` of C, of ``loss_factor`` of tan delta.
+        of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
+        lacks are left out.
 
     Raises
     ------
@@ -553,15 +554,14 @@ def _uncertainty(body: Material) -> dict[str, float]:
             near = difflib.get_close_matches(str(name), _LABELS, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise ValueError(f"{what}: unknown {name!r}; {hint}known: {', '.join(_LABELS)}")
-        if getattr(body, name) is None:
-            raise ValueError(f"{what}: it has an error of {name}, which {body.name!r} has none of")
         error = _finite(body.name, f"uncertainty[{name!r}]", value, "-")
         if not (0.0 <= error <= _LARGEST_ERROR):
             raise ValueError(
                 f"{what}: {name} must be a relative standard error from 0 to {_LARGEST_ERROR:g}, "
                 f"got {value!r}"
             )
-        found[name] = error
+        if getattr(body, name) is not None:
+            found[name] = error
     return found
 
 
