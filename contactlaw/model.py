@@ -35,7 +35,7 @@ from contactlaw.table import Settings, Table
 class ImpactModel(Compiled, Oblique):
     """The modified Zener model of one pair of materials, ready to answer per collision.
 
-    Adhesion, viscosity, heating, rolling and drilling friction are outside it (see `Validity`).
+    Adhesion, heating, rolling and drilling friction are outside it (see `Validity`).
 
     Parameters
     ----------

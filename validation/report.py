@@ -35,6 +35,7 @@ _DERIVATIONS = {
     "turning-point": "turning_point",
     "fem-law": "fem_law",
     "mobility": "mobility",
+    "losses": "losses",
 }
 _COLOURS = {
     HOLDS: "#007A5A",
