@@ -53,14 +53,14 @@ def _case(generator: np.random.Generator, n: int, *, thick: bool, meshes: int) -
     sphere_is, plate_is = ((True, False), (False, True), (True, True))[n % 3]
     flows = n // 3 % 2 == 1 and not thick
     radius, slenderness = _log(generator, _RADII), _log(generator, _SLENDERNESS[n // 6 % 2])
-    bodies = [
+    sphere, plate = (
         _polymer(generator, flows=flows) if polymer else str(generator.choice(_OTHERS))
         for polymer in (sphere_is, plate_is)
-    ]
+    )
     return Case(
         _log(generator, _SPEEDS),
         float(f"{radius / (_THICK if thick else slenderness):.4g}"),
-        radius, *bodies,
+        radius, sphere, plate,
         yields=flows and sphere_is, plate_yields=flows and plate_is, meshes=meshes,
     )  # fmt: skip
 

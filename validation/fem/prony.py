@@ -19,8 +19,8 @@ from contactlaw.physical.materials import Material
 
 Array = NDArray[np.float64]
 
-_BRANCHES = 9
-_WIDTH = 100.0  # frequencies followed, over that of the impact and its inverse
+_BRANCHES = 6
+_WIDTH = 50.0  # frequencies followed, over that of the impact and its inverse
 
 
 class Prony(NamedTuple):
@@ -63,7 +63,8 @@ def series(body: Material, contact_time: float) -> Prony:
     columns = np.hstack([branches, 1.0 / abs(wanted)[:, None]])
     target = wanted / abs(wanted)
     found, _ = nnls(np.vstack([columns.real, columns.imag]), np.append(target.real, target.imag))
-    return Prony(found[:-1], times, float(found.sum()))
+    used = found[:-1] > 0.0
+    return Prony(found[:-1][used], times[used], float(found.sum()))
 
 
 def response(found: Prony, omega: Array) -> Array:
