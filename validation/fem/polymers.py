@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 import contactlaw as cl
-from validation.fem import journal
+from validation.fem import journal, metals
 from validation.fem.cases import Case, material
 from validation.fem.impact import expect
 
@@ -25,6 +25,7 @@ _RATES = 0.02, 0.06  # C of the flow stress, per e-fold of a rate in 1/s
 _SPEEDS, _RADII = (0.5, 8.0), (0.5e-3, 4e-3)  # [m/s], [m], by the logarithm, as R/H is
 _SLENDERNESS, _THICK = ((0.1, 0.5), (0.5, 1.5)), 0.1  # R/H
 _WIDEST = 0.3  # radius of the contact over that of the sphere
+_SHALLOWEST = 2.0  # speed over the yield speed, where a body may flow
 _SLOWEST = 0.2  # COR without any loss but the plate's waves; below, a lossy sphere may stay
 
 
@@ -78,8 +79,16 @@ def _log(generator: np.random.Generator, limits: tuple[float, float]) -> float:
 
 
 def _fits(case: Case) -> bool:
-    """Whether the contact is no wider than elements bear, and the sphere bound to rebound."""
+    """Whether a contact is no wider than elements bear, a body flows that may, and the bead leaves.
+
+    All is estimated without losses.
+    """
     pair, sizes = case.pair, (case.speed, case.radius, case.thickness)
+    may_flow = case.yields or case.plate_yields
     found = expect(pair, *sizes, case.yields, case.plate_yields)
     elastic = cl.ImpactModel(pair, law="hertz", outside="solve").lookup(*sizes)
-    return found.contact < _WIDEST * case.radius and float(elastic.restitution) > _SLOWEST
+    return (
+        found.contact < _WIDEST * case.radius
+        and float(elastic.restitution) > _SLOWEST
+        and not (may_flow and case.speed < _SHALLOWEST * metals.ideal(case).yield_speed)
+    )
