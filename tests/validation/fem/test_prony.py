@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contactlaw as cl
-from validation.fem import elements, prony, solver
+from validation.fem import elements, prony, solver, store
 from validation.fem.cases import material
 from validation.fem.impact import impact
 from validation.fem.viscoelastic import ELASTIC_PEAK, ELASTIC_TIME, rebound
@@ -139,3 +139,12 @@ def test_constant_loss_of_a_hertz_impact():
             return (found.whole - found.moduli.sum()) * t + found.moduli * found.times @ branches
 
         assert rebound(relaxed, 1000).restitution == pytest.approx(cor, rel=2e-3)
+
+
+@pytest.mark.parametrize("name", ["polymers"])
+def test_stored_impacts_account_for_their_energy(name):
+    data = store.read(name).data
+    parts = "plastic", "wave", "vibration", "friction_loss", "touching_loss", "viscous"
+    total = data["restitution"] ** 2 + sum(data[part] for part in parts)
+    assert data["balance"].max() < 5e-3
+    assert total == pytest.approx(1.0, abs=5e-3)
