@@ -29,8 +29,8 @@ _UNITS = {
 _DEFAULTED = "size", "width", "hourglass_stiffness"  # by `impact`, where a case has NaN
 _MEASURED = (
     "restitution", "contact_time", "peak_force", "peak_compression", "residual_compression",
-    "plastic", "wave", "vibration", "friction_loss", "hourglass", "touching_loss", "balance",
-    "plastic_strain",
+    "plastic", "wave", "vibration", "friction_loss", "hourglass", "touching_loss", "viscous",
+    "balance", "plastic_strain",
 )  # fmt: skip
 OUTCOMES = *_MEASURED, "steps", "step", "elements"
 _HALF = 1.027  # element sizes of two meshes whose contacts differ by half an element

@@ -49,32 +49,30 @@ class Body(NamedTuple):
 
 @kernel
 def _relaxed(
-    body: Body, e: int, dt: float, spin: float, strain: tuple[float, float, float, float]
+    body: Body, e: int, fading: Array, spin: float, strain: tuple[float, float, float, float]
 ) -> tuple[float, float, float, float, float]:
     """Turn, strain and relax the branches of an element.
 
-    Returns the stresses that are gone, and the work that they lose per volume. `spin` is twice the
-    rotation of the step, `strain` what it adds to the stress of all springs together.
+    Returns the stresses that are gone, and the work that they lose per volume. `fading` has the
+    share of its stress that each branch loses in a step, and that of its energy over the branch's
+    share of the moduli; `spin` is twice the rotation of the step, `strain` what it adds to the
+    stress of all springs together.
     """
     rr = zz = tt = rz = lost = 0.0
-    bulk = body.bulk + 2.0 / 3.0 * body.shear
+    shape = 0.25 / body.shear
+    size = 0.5 / (body.bulk + 2.0 / 3.0 * body.shear)
     for k in range(body.shares.size):
-        s, share = body.branches[e, k], body.shares[k]
-        swap, turn = spin * s[3], 0.5 * spin * (s[1] - s[0])
-        s[0] += swap + share * strain[0]
-        s[1] += -swap + share * strain[1]
-        s[2] += share * strain[2]
-        s[3] += turn + share * strain[3]
-        if share > 0.0:
-            mean = (s[0] + s[1] + s[2]) / 3.0
-            squares = s[0] * s[0] + s[1] * s[1] + s[2] * s[2] + 2.0 * s[3] * s[3]
-            squares -= 3.0 * mean * mean
-            stored = squares / (4.0 * share * body.shear) + mean * mean / (2.0 * share * bulk)
-            lost -= stored * math.expm1(-2.0 * dt / body.times[k])
-        gone = -math.expm1(-dt / body.times[k])
-        rr, zz, tt, rz = rr + gone * s[0], zz + gone * s[1], tt + gone * s[2], rz + gone * s[3]
-        for n in range(4):
-            s[n] -= gone * s[n]
+        s, share, gone, weight = body.branches[e, k], body.shares[k], fading[k, 0], fading[k, 1]
+        s_rr = s[0] + spin * s[3] + share * strain[0]
+        s_zz = s[1] - spin * s[3] + share * strain[1]
+        s_tt = s[2] + share * strain[2]
+        s_rz = s[3] + 0.5 * spin * (s[1] - s[0]) + share * strain[3]
+        mean = (s_rr + s_zz + s_tt) / 3.0
+        squares = s_rr * s_rr + s_zz * s_zz + s_tt * s_tt + 2.0 * s_rz * s_rz
+        lost += weight * (shape * (squares - 3.0 * mean * mean) + size * mean * mean)
+        rr, zz, tt, rz = rr + gone * s_rr, zz + gone * s_zz, tt + gone * s_tt, rz + gone * s_rz
+        kept = 1.0 - gone
+        s[0], s[1], s[2], s[3] = kept * s_rr, kept * s_zz, kept * s_tt, kept * s_rz
     return rr, zz, tt, rz, lost
 
 
@@ -82,6 +80,10 @@ def _relaxed(
 def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
     """Advance the stress by a step of velocities v, and add what it does to the nodes."""
     plastic, hourglass, viscous = 0.0, 0.0, 0.0
+    fading = np.empty((body.times.size, 2))
+    for k in range(body.times.size):
+        fading[k, 0] = -math.expm1(-dt / body.times[k])
+        fading[k, 1] = fading[k, 0] * (2.0 - fading[k, 0]) / body.shares[k]
     for e in range(body.elements.shape[0]):
         n0, n1 = body.elements[e, 0], body.elements[e, 1]
         n2, n3 = body.elements[e, 2], body.elements[e, 3]
@@ -113,7 +115,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         s_rz += turn + slip
         if body.shares.size:
             f_rr, f_zz, f_tt, f_rz, lost = _relaxed(
-                body, e, dt, spin, (strain_r, strain_z, strain_t, slip)
+                body, e, fading, spin, (strain_r, strain_z, strain_t, slip)
             )
             s_rr, s_zz, s_tt, s_rz = s_rr - f_rr, s_zz - f_zz, s_tt - f_tt, s_rz - f_rz
             viscous += lost * area * r

@@ -107,19 +107,25 @@ def _of_fit(generator: np.random.Generator, *, with_rate: bool, alike: bool) -> 
     )  # fmt: skip
 
 
-def _fits(case: Case) -> bool:
-    """Whether a body flows, and no deeper than elements bear, by a half-space of its strength."""
+def ideal(case: Case) -> cl.Pair:
+    """Pair whose sphere has the lowest flow stress of the bodies that flow, as a constant."""
     pair = case.pair
     flows = [
         body.flow.stress(*TYPICAL)
         for body, may in ((pair.sphere, case.yields), (pair.plate, case.plate_yields))
         if may and body.flow is not None
     ]
-    strength = min(flows)
+    sphere = dataclasses.replace(pair.sphere, yield_strength=min(flows), hardening=None, rate=None)
+    return cl.Pair(sphere, pair.plate)
+
+
+def _fits(case: Case) -> bool:
+    """Whether a body flows, and no deeper than elements bear, by a half-space of its strength."""
+    pair = ideal(case)
+    strength = pair.sphere.require_yield_strength("fem")
     # the kinetic energy is spent at a pressure of three strengths: m V^2/2 = 3 sigma pi a^4/(4 R)
     width = (8.0 / 9.0 * pair.sphere.density * case.speed**2 / strength) ** 0.25
-    ideal = dataclasses.replace(pair.sphere, yield_strength=strength, hardening=None, rate=None)
-    return width < _DEEPEST and case.speed > _SHALLOWEST * cl.Pair(ideal, pair.plate).yield_speed
+    return width < _DEEPEST and case.speed > _SHALLOWEST * pair.yield_speed
 
 
 def _published(generator: np.random.Generator) -> Case:
