@@ -59,8 +59,8 @@ from contactlaw.stepping import strength
 Array = NDArray[np.float64]
 
 RELAXATION = 1e5  # [contact times]; within an impact, u2 relaxes by 1e-5 of itself
-# Speed of the impacts at whose frequency springs have their moduli [m/s]. Slower ones flow little, so
-# that the yield compression, which stays, matters less to them.
+# Speed of the impacts at whose frequency springs have their moduli [m/s]. Slower ones flow little,
+# so that the yield compression, which stays, matters less to them.
 USUAL_SPEED = 3.0
 FEWEST_STEPS = 20  # of a contact; with fewer the error does not follow the order of the method
 

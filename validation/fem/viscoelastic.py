@@ -32,7 +32,25 @@ class Rebound(NamedTuple):
     last_approach: float  # at which the force ends
 
 
-def rebound(relaxed: Callable[[Array], Array], steps: int = 4000) -> Rebound:
+def power_law(loss: float, time: float = ELASTIC_TIME) -> Callable[[Array], Array]:
+    """Integral of a relaxation modulus with a constant tan delta; |E| is 1 at 1/(2 times)."""
+    alpha = 2.0 / math.pi * math.atan(loss)
+    factor = (math.pi / time) ** -alpha / math.gamma(2.0 - alpha)
+    return lambda t: np.asarray(factor * t ** (1.0 - alpha))
+
+
+def wave(mobility: float, loss: float = 0.0) -> Callable[[Array], Array]:
+    """Displacement of a thin plate after a unit impulse; its mobility goes as the modulus^-0.5."""
+    beta = math.atan(loss) / math.pi
+    factor = mobility * (math.pi / ELASTIC_TIME) ** beta / math.gamma(1.0 + beta)
+    return lambda t: np.asarray(factor * t**beta)
+
+
+def rebound(
+    relaxed: Callable[[Array], Array],
+    steps: int = 4000,
+    plate: Callable[[Array], Array] = np.zeros_like,
+) -> Rebound:
     """Let a unit mass hit at unit speed; the force is F = d^1.5 if the relaxation modulus is 1.
 
     Parameters
@@ -41,7 +59,9 @@ def rebound(relaxed: Callable[[Array], Array], steps: int = 4000) -> Rebound:
         Integral of the relaxation modulus over time, from zero to each of the times given.
     steps : int, optional
         Number of time steps in the contact time of an elastic impact. Errors fall with its square,
-        or in proportion if the modulus has a dashpot without a spring.
+        or in proportion if the modulus has a dashpot without a spring, or the plate moves.
+    plate : callable, optional
+        Displacement of the plate at times after a unit impulse; by default it is held.
 
     Returns
     -------
@@ -55,11 +75,14 @@ def rebound(relaxed: Callable[[Array], Array], steps: int = 4000) -> Rebound:
     """
     dt = ELASTIC_TIME / steps
     weight = np.diff(relaxed(dt * np.arange(10 * steps))) / dt  # mean modulus of a step, by its age
-    approach = np.zeros(weight.size)
+    moved = dt * plate(dt * (0.5 + np.arange(weight.size)))
+    approach, forces = np.zeros(weight.size), np.zeros(weight.size)
+    place = 0.0
     speed, force, peak, first = 1.0, 0.0, 0.0, 1.0
     for n in range(1, weight.size):
         speed -= dt * force
-        approach[n] = approach[n - 1] + dt * speed
+        place += dt * speed
+        approach[n] = place - moved[:n][::-1] @ forces[:n]
         aged, way = weight[:n][::-1], approach[: n + 1].copy()
         # Each step of the growing contact has added a ring. This is the present pressure in each.
         pressure = np.cumsum((aged * np.diff(way))[::-1])[::-1]
@@ -73,6 +96,7 @@ def rebound(relaxed: Callable[[Array], Array], steps: int = 4000) -> Rebound:
             way[last + 1 :] = way[last]
         force = float(aged @ np.diff(way**1.5))
         peak = max(peak, force)
+        forces[n] = force
     share = before / (before - first)
     end = approach[n - 1] + share * (approach[n] - approach[n - 1])
     return Rebound(-speed, (n - 1 + share) * dt, peak, float(approach.max()), float(end))

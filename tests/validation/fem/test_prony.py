@@ -10,18 +10,12 @@ import contactlaw as cl
 from validation.fem import elements, prony, solver, store
 from validation.fem.cases import material
 from validation.fem.impact import impact
-from validation.fem.viscoelastic import ELASTIC_PEAK, ELASTIC_TIME, rebound
+from validation.fem.viscoelastic import ELASTIC_PEAK, ELASTIC_TIME, power_law, rebound
 
 from .test_solver import block
 
 NU, LOSS, TIME = 0.35, 0.2, 5e-5
 LOSSY = cl.Material("lossy", 3e9, NU, 1200.0, loss_factor=(LOSS, 1e4))
-
-
-def power_law(loss, time=ELASTIC_TIME):
-    """Integral of the relaxation modulus whose complex one is (i omega time/pi)^alpha."""
-    alpha = 2.0 / math.pi * math.atan(loss)
-    return lambda t: (math.pi / time) ** -alpha * t ** (1.0 - alpha) / math.gamma(2.0 - alpha)
 
 
 @pytest.mark.parametrize("frequency", [1e4, 4e4])

@@ -1,0 +1,55 @@
+"""Law fem of bodies with losses, beside the impact of a body with memory, which shares no code."""
+
+import math
+from dataclasses import replace
+
+import pytest
+
+import contactlaw as cl
+from contactlaw.equation import zener
+from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.physical.scaling import modulus_growth
+from validation.fem.viscoelastic import ELASTIC_TIME, power_law, rebound, wave
+
+SOFT = cl.Material("soft", 3e6, 0.35, 1200.0, kind="polymer")
+HARD = cl.Material("hard", 3e11, 0.35, 9000.0)
+
+
+def solved(loss, lam, plate_loss):
+    """Impact of a body with losses on a plate of this lambda, by the law."""
+    sphere = replace(SOFT, loss_factor=(loss, 1e3))
+    pair = cl.Pair(sphere, sphere if plate_loss else HARD)
+    law = cl.ImpactModel(pair).force_law
+    growth = modulus_growth(pair, law)
+    lam *= math.exp(growth.wave + growth.wave_slope * min(lam, 1.0))
+    # so shallow that the stiffening of a finite sphere does not matter
+    return zener.solve(law.data, lam, 1e6, 1e-9)
+
+
+@pytest.mark.parametrize("loss", [0.02, 0.1, 0.2, 0.4, 0.6])
+def test_a_rebound_is_that_of_a_body_with_memory(loss):
+    ours, memory = solved(loss, 0.0, 0.0), rebound(power_law(loss), 2000)
+    assert ours.restitution == pytest.approx(memory.restitution, rel=5e-3)  # friction takes 3e-3
+    assert ours.contact_time / CONTACT_TIME == pytest.approx(
+        memory.contact_time / ELASTIC_TIME, rel=5e-3
+    )
+    left = memory.last_approach / memory.peak_approach
+    assert ours.residual_compression / ours.peak_compression == pytest.approx(left, abs=2e-3)
+
+
+@pytest.mark.parametrize("loss", [0.1, 0.2, 0.4])
+@pytest.mark.parametrize("lossy_plate", [False, True])
+def test_a_plate_takes_as_much_as_of_a_body_with_memory(loss, lossy_plate):
+    for lam in (0.1, 0.3, 0.6):
+        plate_loss = loss * lossy_plate
+        memory = rebound(power_law(loss), 1000, wave(lam, plate_loss)).restitution
+        held, without = (rebound(power_law(x), 1000, wave(lam)).restitution for x in (loss, 1e-6))
+        ours = solved(loss, lam, plate_loss).restitution
+        assert ours == pytest.approx(memory, rel=0.015, abs=0.006)
+        assert memory < 0.97 * without and (held > memory) == lossy_plate
+
+
+def test_given_and_typed_numbers_make_the_same_law():
+    law = cl.ImpactModel(cl.Pair(replace(SOFT, loss_factor=(0.1, 1e3)), "glass")).force_law
+    assert cl.laws.law(law.name).follows(law)
+    assert law.parameters["loss_factor"] == pytest.approx(0.1, rel=1e-3)
