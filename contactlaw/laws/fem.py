@@ -256,11 +256,13 @@ class Curves:
         constant, slope = found["stiffening"]
         self.stiffening = (constant + slope * given.modulus_share) * math.sqrt(self.scale)
         self.friction = friction_loss(given, found["friction"])
-        a = 2.0 / math.pi * math.atan(given.loss_factor)
-        # shares of the work, and of the compression, that a body with losses gives back
-        polynomials = [np.polynomial.polynomial.polyval(a, one) for one in found["losses"]]
-        self.returned, self.recovered = (math.exp(-a * float(one)) for one in polynomials[:2])
-        self.lost_before = a * float(polynomials[2])
+        # shares of the work and of the compression that come back, and of the energy lost before
+        self.returned, self.recovered, self.lost_before = 1.0, 1.0, 0.0
+        if given.loss_factor:
+            a = 2.0 / math.pi * math.atan(given.loss_factor)
+            sums = [a * float(np.polynomial.polynomial.polyval(a, x)) for x in found["losses"]]
+            self.returned, self.recovered = math.exp(-sums[0]), math.exp(-sums[1])
+            self.lost_before = sums[2]
         self._terms: dict[str, Array] = {}
         if not self.ratio:
             return

@@ -448,8 +448,8 @@ def numbers() -> dict[str, Any]:
         "stiffening": stiff,
         "friction": [friction],
         "blend": 1.0,
-        # fitted by `metals.fit` to what is left, and too slow to be found again with the rest
-        **{name: fem.numbers()[name] for name in ("strain", "rate")},
+        # fitted by `metals`, `viscoelastic` and `polymers`, and too slow to be found with the rest
+        **{name: fem.numbers()[name] for name in ("strain", "rate", "losses", "pressure")},
         "plate": [0.0, 0.0, 0.0, 0.0],
         "curves": {**curves, "impact": dict.fromkeys(YIELDING, none)},
     }

@@ -157,6 +157,16 @@ def shipped() -> Constants:
     return Constants(strain, both, fem.numbers()["rate"])
 
 
+def at_rate(pair: cl.Pair, case: Case, share: float = rates.SHARE) -> cl.Pair:
+    """Pair without rate, as strong as an impact makes it whose rate is this share of V0/R."""
+    flow = rates.rated(pair, laws.law("fem", **pair_numbers(pair, "fem")))
+    if flow is None:
+        return pair
+    flow = flow._replace(rate0=flow.rate0 * rates.SHARE / share)
+    factor = rates.factors(flow, np.array(case.speed), np.array(case.radius)).item()
+    return rates.strengthened(pair, factor)
+
+
 def errors(name: str, constants: Constants) -> Array:
     """Errors in COR of the law with other constants; below 0.3 over 0.3, 0 where it is flagged."""
     data = store.read(name).data
@@ -164,12 +174,7 @@ def errors(name: str, constants: Constants) -> Array:
     found = {**fem.numbers(), "strain": [constants.strain, late, constants.both]}
     off = np.zeros(data["speed"].size)
     for n, case in enumerate(draw(name)):
-        pair = fit.pair_of(dataclasses.asdict(case))
-        flow = rates.rated(pair, laws.law("fem", **pair_numbers(pair, "fem")))
-        if flow is not None:
-            flow = flow._replace(rate0=flow.rate0 * rates.SHARE / constants.rate)
-            factor = rates.factors(flow, np.array(case.speed), np.array(case.radius)).item()
-            pair = rates.strengthened(pair, factor)
+        pair = at_rate(fit.pair_of(dataclasses.asdict(case)), case, constants.rate)
         law = fem.law_of(fit.numbers_of(pair), found)
         hit = cl.ImpactModel(pair, law).solve(case.speed, case.radius, case.thickness, rtol=1e-7)
         measured = float(data["restitution"][n])

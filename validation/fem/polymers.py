@@ -6,14 +6,19 @@ catalogue, and a random loss factor, frequency and effect of rate.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 import contactlaw as cl
-from validation.fem import journal, metals
+from contactlaw.laws import fem
+from validation.fem import fit, journal, metals, store
 from validation.fem.cases import Case, material
 from validation.fem.impact import expect
+
+Array = NDArray[np.float64]
 
 SEEDS = {"polymers": 20261202, "polymers_kept_out": 20261203}
 NUMBERS = {"polymers": (16, 4), "polymers_kept_out": (24, 0)}  # and elastic ones on thick plates
@@ -47,6 +52,21 @@ def compute(name: str, processes: int) -> None:
     listed = draw(name)
     about = f"{len(listed)} impacts of polymers with a constant loss factor, seed {SEEDS[name]}"
     journal.impacts(name, about, listed, processes)
+
+
+def errors(name: str, pressure: float) -> Array:
+    """Errors in COR with another strength of bodies with losses; below 0.3 over 0.3."""
+    data = store.read(name).data
+    found = {**fem.numbers(), "pressure": pressure}
+    off = np.zeros(data["speed"].size)
+    for n, case in enumerate(draw(name)):
+        pair = fit.pair_of(dataclasses.asdict(case))
+        pair = metals.at_rate(pair, case)
+        law = fem.law_of(fit.numbers_of(pair), found)
+        hit = cl.ImpactModel(pair, law).solve(case.speed, case.radius, case.thickness, rtol=1e-7)
+        measured = float(data["restitution"][n])
+        off[n] = (float(hit.restitution) - measured) / max(measured, 0.3)
+    return off
 
 
 def _case(generator: np.random.Generator, n: int, *, thick: bool, meshes: int) -> Case:
