@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from contactlaw.answers.beads import restitution_sphere_sphere
     from contactlaw.answers.loads import LoadSignal, load_signal
     from contactlaw.answers.sensitivity import Sensitivity
+    from contactlaw.answers.uncertainty import Uncertainty
     from contactlaw.fitting.fit import Fit, fit
     from contactlaw.fitting.identify import UnidentifiedError
     from contactlaw.fitting.measurements import Measurements
@@ -44,6 +45,7 @@ __all__ = [
     "Pair",
     "Rebound",
     "Sensitivity",
+    "Uncertainty",
     "UnidentifiedError",
     "Validity",
     "__version__",
@@ -72,6 +74,7 @@ _MODULES = {
     "physical.rebound": "Rebound",
     "physical.validity": "Validity edge_distance explain",
     "answers.sensitivity": "Sensitivity",
+    "answers.uncertainty": "Uncertainty",
     "answers.beads": "restitution_sphere_sphere",
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names.split()}

@@ -22,6 +22,7 @@ from contactlaw.answers.rated import solver, tabulated
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.speed_table import SpeedTable, speed_table
 from contactlaw.answers.tabulated import Border, Outside, TableArgument
+from contactlaw.answers.uncertainty import Uncertain
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.history import ForceHistory
@@ -32,7 +33,7 @@ from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
 
 
-class ImpactModel(Compiled, Oblique):
+class ImpactModel(Compiled, Oblique, Uncertain):
     """The modified Zener model of one pair of materials, ready to answer per collision.
 
     Adhesion, heating, rolling and drilling friction are outside it (see `Validity`).
@@ -166,8 +167,7 @@ class ImpactModel(Compiled, Oblique):
         Notes
         -----
         Within 1e-5 of `solve`, at kinks of the law too, and within 1e-6 as a rule; a table that
-        errs more warns when it is made. For gamma-alumina on glass the largest errors are 4e-7
-        (``"stronge"``), 2e-7 (the other laws) and 5e-8 (``"myc"``).
+        errs more warns when it is made. For gamma-alumina on glass errors are within 4e-7.
 
         Examples
         --------

@@ -30,7 +30,8 @@ PAGES["README"] = (ROOT / "README.md").read_text()
 NUMBER = re.compile(r"-?\d+\.\d+(?:e-?\d+)?")
 # How many lines of a page state numbers, which are compared.
 STATED = {
-    "README": 5, "constants": 2, "fit": 4, "lammps": 1, "laws": 5, "materials": 4, "oblique": 4
+    "README": 5, "constants": 2, "fit": 4, "lammps": 1, "laws": 5, "materials": 4, "oblique": 4,
+    "uncertainty": 5,
 }  # fmt: skip
 SAID = " ".join(PAGES["tables"].split())
 EXAMPLES = sorted((ROOT / "docs/examples").glob("*.py"))
@@ -83,7 +84,7 @@ def test_the_pymunk_section():
 # A block of commands, and what they print if the page shows it: the first block after it, with one
 # line of text between them at most.
 CONSOLE = re.compile(r"```sh\n(.*?)```\n+(?:[^\n`]+\n+)?(?:```text\n(.*?)```)?", re.DOTALL)
-SHOWN = {"README": 1, "command_line": 1}  # blocks of output of a page, which are compared
+SHOWN = {"README": 1, "command_line": 2}  # blocks of output of a page, which are compared
 
 
 def commands(block):
@@ -122,6 +123,10 @@ def test_the_readme_says_how_wrong_a_specified_minimum_is():
     for strength in (205e6, 820e6):
         pair = cl.Pair(dataclasses.replace(sheet, yield_strength=strength), "glass")
         assert f"{cl.ImpactModel(pair).restitution(3.0, 1e-3, 5e-3):.3f}" in PAGES["README"]
+    known = dataclasses.replace(sheet, uncertainty={"yield_strength": 0.2})
+    band = cl.ImpactModel(cl.Pair(known, "glass")).uncertainty(3.0, 1e-3, 5e-3).restitution
+    assert f"[{band.low:.2f} to {band.high:.2f}]" in PAGES["README"]
+    assert f"error of the law of {band.causes['model']:.3f};" in PAGES["README"]
 
 
 def test_materials_lists_the_catalogue():

@@ -129,7 +129,8 @@ def solved(
     assert flow is not None
     among = np.arange(impacts.speed.size) if among is None else among
     factor = rate.factors(flow, impacts.speed[among], impacts.radius[among])
-    each, which = np.unique(factor, return_inverse=True)
+    # factors that differ in their last digits alone share a law
+    each, which = np.unique(np.round(factor, 12), return_inverse=True)
     groups = np.split(among[np.argsort(which, kind="stable")], np.cumsum(np.bincount(which))[:-1])
     for one, some in zip(each.tolist(), groups, strict=True) if each.size else [(1.0, among)]:
         here = stronger(bodies, one)

@@ -16,27 +16,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.answers.law_errors import law_errors
 from contactlaw.fitting.measurements import NORMAL
-from contactlaw.fitting.predictions import Predictor, columns_of, per_slide
+from contactlaw.fitting.predictions import Predictor, per_slide
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.validity import Validity
 
 Array = NDArray[np.float64]
 
-# Relative rms errors of COR, contact time and peak force against finite elements that no fit has
-# seen, 160 everyday impacts: of those inside the limits, and of those that are `doubtful`. Errors
-# of a COR below 0.3 are relative to 0.3. `python -m validation.inverse model` computes them.
-MODEL_ERRORS = {
-    "fem": ((0.0044, 0.0057, 0.0066), (0.0169, 0.0184, 0.0140)),
-    "hertz": ((0.0317, 0.0143, 0.0154), (0.847, 0.0568, 0.382)),
-    "jackson_green": ((0.0208, 0.0176, 0.0241), (0.294, 0.0344, 0.121)),
-    "kogut_etsion": ((0.0195, 0.0177, 0.0222), (0.299, 0.0361, 0.135)),
-    "myc": ((0.0196, 0.0193, 0.0215), (0.332, 0.136, 0.214)),
-    "stronge": ((0.0410, 0.0962, 0.152), (0.320, 0.135, 0.185)),
-    "thornton": ((0.261, 0.140, 0.263), (0.440, 0.637, 0.466)),
-}
-_LEAST_COR = 0.3
-_THIN = 1.4  # R/H from which on relative errors are larger, even where absolute ones of COR are not
 # Rms error of the sliding speed after an impact, over friction times speed, against finite elements
 # in three dimensions (`python -m validation.fem3d`). The tangential motion is that of any law.
 SLIDING_ERROR = 0.061
@@ -170,22 +156,12 @@ def _prior_information(predictor: Predictor) -> Array:
     return np.asarray(held + _RIDGE * np.eye(len(priors)))
 
 
-def doubtful(hit: Rebound, slenderness: Array) -> NDArray[np.bool_]:
-    """Which rebounds have a flag of accuracy or a plate so thin that errors are larger, by R/H."""
-    flagged = (np.asarray(hit.flags) & Validity.ACCURACY) != 0
-    return np.asarray(flagged | (slenderness > _THIN))
-
-
 def model_covariance(predictor: Predictor, values: Array, hit: Rebound) -> ModelCovariance | None:
     """Covariance of the model's errors of all values; None for a law whose errors are not known."""
-    known = MODEL_ERRORS.get(predictor.law.family)
-    if known is None:
-        return None
     at = predictor.setting(values)
-    fitted = columns_of(hit, at)[: len(NORMAL)]
-    fitted[0] = np.maximum(fitted[0], _LEAST_COR)
-    inside, beyond = (np.array(rms)[:, None] for rms in known)
-    rms = np.where(doubtful(hit, at.radius / at.thickness), beyond, inside) * fitted
+    rms = law_errors(predictor.law, at.pair, hit, at.radius / at.thickness)
+    if rms is None:
+        return None
     kind, row = predictor.values.kind, predictor.values.row
     if at.friction is not None:
         slide = SLIDING_ERROR * at.friction * np.asarray(predictor.data.speed)

@@ -72,4 +72,4 @@ def scaled(body: Material, factor: float) -> Material:
 def _strengthened(body: Material, rate: float) -> Material:
     if body.flow is None or not body.flow.rate:
         return body
-    return dataclasses.replace(scaled(body, body.flow.factor(rate)), rate=None)
+    return dataclasses.replace(scaled(body, body.flow.factor(rate)), rate=None, uncertainty={})

@@ -23,11 +23,16 @@ COR = ["cor", "--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc"]
 IMPACT = [*COR, "--radius", "0.9e-3", "--thickness", "1e-3", "--speed", "12"]
 
 
+# Ends of bands.
+ENDS = [f"{name}_{end}" for name in ("restitution", "contact_time", "peak_force")
+        for end in ("low", "high")]  # fmt: skip
+
+
 def test_cor_json_holds_every_field(model, capsys):
     assert main([*IMPACT, "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
     hit = model.lookup(12.0, 0.9e-3, 1e-3)
-    assert set(printed) == {*cl.Rebound.__dataclass_fields__, "yield_speed"}
+    assert set(printed) == {*cl.Rebound.__dataclass_fields__, "yield_speed", *ENDS}
     assert printed["restitution"] == hit.restitution
     assert printed["contact_time"] == hit.contact_time
     assert printed["yield_speed"] == model.yield_speed(0.9e-3, 1e-3)
@@ -37,8 +42,8 @@ def test_cor_json_holds_every_field(model, capsys):
 def test_cor_text_has_units(capsys):
     assert main(IMPACT) == 0
     out = capsys.readouterr().out
-    assert "restitution           0.871554\n" in out
-    assert "contact_time          4.04768e-06 s\n" in out
+    assert "restitution           0.871554 (" in out
+    assert "contact_time          4.04768e-06 s (" in out
     assert "inside every limit" in out
 
 
@@ -101,7 +106,7 @@ def test_several_values_are_every_combination(model, capsys):
         assert row["yield_speed"] == model.yield_speed(row["radius"], h)
     assert rows[0]["flags"] == []
     assert set(rows[0]) == {
-        "speed", "radius", "thickness", "yield_speed", *cl.Rebound.__dataclass_fields__
+        "speed", "radius", "thickness", "yield_speed", *cl.Rebound.__dataclass_fields__, *ENDS
     }  # fmt: skip
 
 
@@ -123,7 +128,7 @@ def test_a_table_has_a_row_per_impact_and_units(capsys):
 
 
 def test_csv_has_units_in_its_header_and_every_digit(model, capsys):
-    assert main([*MANY, "--csv"]) == 0
+    assert main([*MANY, "--csv", "--no-band"]) == 0
     out = capsys.readouterr().out
     header, *rows = csv.reader(io.StringIO(out))
     assert header[:5] == ["speed_m/s", "radius_m", "thickness_m", "restitution", "contact_time_s"]

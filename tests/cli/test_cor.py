@@ -1,5 +1,7 @@
 """``contactlaw cor`` for a few impacts, which are integrated in Python, against the table."""
 
+import csv
+import dataclasses
 import json
 import os
 import subprocess
@@ -7,7 +9,9 @@ import sys
 
 import pytest
 
+import contactlaw as cl
 from contactlaw.__main__ import asks_for_few
+from contactlaw.cli import main
 
 PAIR = "cor --sphere gamma-alumina --plate glass --radius 0.9mm"
 STEEL = "cor --sphere stainless-steel-304 --plate aluminium-6061-t6 --radius 1mm"
@@ -151,6 +155,63 @@ def test_children_keep_their_compiler(tmp_path):
     """Child processes do not inherit the environment variable that disables the compiler."""
     child = "import os, atexit; atexit.register(lambda: print(os.environ.get('NUMBA_DISABLE_JIT')))"
     assert run(ANSWERED[0], tmp_path, child).stdout.endswith("\nNone\n")
+
+
+SURE = f"{PAIR} --thickness 1mm --speed 12"
+GIVEN = "--sphere-error yield_strength=20% --thickness-error 5%"
+
+
+def printed(command, capsys):
+    assert main(command.split()) == 0, capsys.readouterr().err
+    return capsys.readouterr().out
+
+
+def test_the_band_is_that_of_the_model(capsys):
+    """As text, with its causes, as CSV and as JSON; the same numbers as in Python."""
+    pair = cl.Pair("gamma-alumina", "glass")
+    bead = dataclasses.replace(pair.sphere, uncertainty={"yield_strength": 0.2})
+    model = cl.ImpactModel(cl.Pair(bead, pair.plate))
+    bands = model.uncertainty(12.0, 0.9e-3, 1e-3, thickness_error=0.05)
+    cor = bands.restitution
+    sizes = [f"{name} {size:.2g}" for name, size in cor.causes.items()]
+    text = printed(f"{SURE} {GIVEN}", capsys)
+    assert f" ({cor.low:.3g} to {cor.high:.3g}; {', '.join(sizes)})" in text
+    assert sizes[0].startswith("yield strength of the bead 0.028")
+    assert "two in three real impacts" in text
+    (row,) = csv.DictReader(printed(f"{SURE} {GIVEN} --csv", capsys).splitlines())
+    record = json.loads(printed(f"{SURE} {GIVEN} --json", capsys))
+    for name, unit in (("restitution", ""), ("contact_time", "_s"), ("peak_force", "_N")):
+        band = getattr(bands, name)
+        for end in ("low", "high"):
+            value = pytest.approx(getattr(band, end), rel=1e-6)
+            assert float(row[f"{name}_{end}{unit}"]) == record[f"{name}_{end}"] == value
+    table = printed(f"{SURE},1 {GIVEN}", capsys)
+    assert (
+        f"  {cor.low:.3g}-{cor.high:.3g}  " in table and "yield strength of the bead 0 to" in table
+    )
+
+
+def test_without_errors_of_materials_it_says_so(capsys):
+    words = "two in three impacts by finite elements (no errors of the materials are known)"
+    assert words in printed(SURE, capsys) and words in printed(f"{SURE},1", capsys)
+    assert "low" not in printed(f"{SURE} --no-band --csv", capsys).splitlines()[0]
+    assert words not in printed(f"{SURE},1 --no-band", capsys)
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        ("--speed-error -1%", "--speed-error: got -0.01; must lie between 0 and 1"),
+        ("--plate-error yeld=1%", "unknown 'yeld'"),
+        ("--plate-error density", "as yield_strength=15%"),
+    ],
+)
+def test_errors_that_are_none_are_refused(error, said, capsys):
+    try:
+        assert main(f"{SURE} {error}".split()) == 1
+    except SystemExit as stopped:
+        assert stopped.code == 2
+    assert said in capsys.readouterr().err
 
 
 def test_an_interrupt_ends_it_in_words(tmp_path):

@@ -1,5 +1,6 @@
 """What pictures of the COR over speed show, and that nothing in them lies over something else."""
 
+import dataclasses
 import itertools
 import math
 
@@ -107,6 +108,18 @@ def test_oblique_impacts_with_a_flag_are_dashed(drawn, tmp_path):
     first = 5.0 + 10.0 * np.argmax(hit.flags & cl.Validity.ACCURACY > 0)
     assert [line.get_xdata()[0] for line in lines(axes, "--")] == [first] and first > 5.0
     assert [text.get_text() for text in axes.get_legend().get_texts()] == ["friction 0.1"]
+
+
+def test_the_band_is_shaded_and_explained(pair, drawn, tmp_path):
+    asked = "cor --sphere gamma-alumina --plate glass --radius 0.9mm --thickness 1mm --speed 1,20"
+    main([*asked.split(), "--sphere-error=yield_strength=20%", "--plot", str(tmp_path / "cor.png")])
+    bead = dataclasses.replace(pair.sphere, uncertainty={"yield_strength": 0.2})
+    model = cl.ImpactModel(cl.Pair(bead, pair.plate))
+    (shaded,) = drawn[0].axes[0].collections
+    ends = shaded.get_paths()[0].vertices[:, 1]
+    assert ends.min() == pytest.approx(model.uncertainty(20.0, 0.9e-3, 1e-3).restitution.low)
+    said = "Shaded: two in three real impacts, mostly by the yield strength of the bead"
+    assert said in " ".join(drawn[0].texts[1].get_text().split())
 
 
 def test_nothing_is_explained_that_is_not_there(model, drawn):

@@ -17,6 +17,7 @@ from scipy import stats
 from scipy.optimize import least_squares
 
 import contactlaw as cl
+from contactlaw.answers import law_errors
 from contactlaw.cli import main
 from contactlaw.fitting import errors, notes
 from contactlaw.fitting.predictions import Predictor, Values, impacts
@@ -96,7 +97,7 @@ def test_the_model_part_of_the_error_is_its_rms_where_all_errors_are_alike(by_sc
     slope = cl.ImpactModel(STEEL).sensitivity(v, RADIUS, THICKNESS).thickness
     share = found.model_errors["thickness"] / found.values["thickness"]
     assert found.flags[0] == 0
-    assert share == pytest.approx(errors.MODEL_ERRORS["fem"][0][0] / slope, rel=1e-3)
+    assert share == pytest.approx(law_errors.MODEL_ERRORS["fem"][0][0] / slope, rel=1e-3)
     assert found.statistical_errors["thickness"] == 0.0
     assert any("model alone" in note for note in found.notes)
 
@@ -394,7 +395,7 @@ def test_numbers_of_rebounds_are_listed():
 
 @pytest.mark.parametrize("law", ["fem", "myc"])
 def test_the_stated_errors_of_the_model_are_those_beside_finite_elements(law):
-    for stated, measured in zip(errors.MODEL_ERRORS[law], model.rms(law), strict=True):
+    for stated, measured in zip(law_errors.MODEL_ERRORS[law], model.rms(law), strict=True):
         assert stated == pytest.approx(measured, rel=0.01)
 
 

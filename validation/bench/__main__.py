@@ -14,6 +14,7 @@ SUBJECTS = (
     "histories",
     "solver",
     "fits",
+    "uncertainty",
     "startup",
     "processes",
     "rain",

@@ -1,4 +1,4 @@
-"""Errors of each law beside finite elements that no fit has seen: `fitting.errors.MODEL_ERRORS`."""
+"""Errors of each law beside finite elements that no fit has seen: `answers.law_errors`."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.fitting.errors import doubtful
+from contactlaw.answers.law_errors import doubtful
 from contactlaw.fitting.measurements import NORMAL
 from contactlaw.fitting.predictions import impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 import json
 import math
 import sys
 from typing import Any
 
-from contactlaw.cli.cor import curves, figure
-from contactlaw.cli.parts import chosen, impacts, options, quantities
+from contactlaw.answers.uncertainty import Uncertainty
+from contactlaw.cli.cor import bands, curves, figure
+from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
+from contactlaw.model import ImpactModel
+from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
 
 
@@ -18,6 +22,16 @@ def add(commands: Any) -> None:
     about = "coefficient of restitution and more, of one impact or many"
     command = options.command(commands, "cor", about, _run)
     options.add_impact(command, quantities.values)
+    share = options.reader_of(quantities.value, quantities.SHARE)
+    for name in _SIZES:
+        command.add_argument(f"--{name}-error", metavar="SHARE", type=share, default=0.0,
+            help=f"standard error of the {name}, as 5%% (default: 0)")  # fmt: skip
+    for role in ("sphere", "plate"):
+        command.add_argument(f"--{role}-error", metavar="NUMBER=SHARE", type=_error, default=[],
+            action="append", help="standard error of a number of its material, as "
+            "yield_strength=15%% (default: those of the catalogue)")  # fmt: skip
+    command.add_argument("--no-band", action="store_true",
+        help="leave out the range of real impacts, which takes longest")  # fmt: skip
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
     add("--json", action="store_true",
@@ -28,22 +42,60 @@ def add(commands: Any) -> None:
     command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
+_SIZES = "speed", "radius", "thickness"
+
+
+def _error(text: str) -> tuple[str, float]:
+    name, _, share = text.partition("=")
+    try:
+        return name, quantities.value(share, quantities.SHARE)
+    except ValueError as error:
+        wanted = "expected a number of a material and its error, as yield_strength=15%"
+        raise argparse.ArgumentTypeError(f"{wanted}: {error}") from None
+
+
+def _model(arguments: argparse.Namespace) -> ImpactModel:
+    """Model of the given materials, with their errors."""
+    pair, given = chosen.pair(arguments), (arguments.sphere_error, arguments.plate_error)
+    bodies = (
+        dataclasses.replace(body, uncertainty={**body.uncertainty, **dict(errors)})
+        for body, errors in zip((pair.sphere, pair.plate), given, strict=True)
+    )
+    return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
+
+
+def _errors(arguments: argparse.Namespace) -> dict[str, float] | None:
+    """Errors of speed and sizes; None if there is to be no band."""
+    if arguments.no_band:
+        return None
+    return {f"{name}_error": getattr(arguments, f"{name}_error") for name in _SIZES}
+
+
 def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
     if arguments.plot is not None:
         with chosen.plot_file(arguments):
             _plot_cor(arguments)
         return
-    values = (arguments.speed, arguments.radius, arguments.thickness)
-    found = impacts.tabulate(chosen.model(arguments), *values, solve=arguments.solve)
+    values, model = (arguments.speed, arguments.radius, arguments.thickness), _model(arguments)
+    errors = _errors(arguments)
+    found = impacts.tabulate(model, *values, solve=arguments.solve)
+    known = None
+    if errors is not None:
+        sizes = [found.columns[name] for name in _SIZES]
+        with wording.naming_impact(*sizes):
+            known = model.uncertainty(*sizes, **errors)
+    found, columns = bands.with_bands(found, known)
     if arguments.csv:
-        impacts.write_csv(found, sys.stdout)
+        impacts.write_csv(found, sys.stdout, columns)
     elif arguments.json:
         print(json.dumps(_as_json(impacts.records(found)), indent=2))
     elif len(found) > 1:
-        print(*impacts.text(found), sep="\n")
+        print(*impacts.text(found, columns), sep="\n")
+        if known:
+            print(*bands.explained(known.restitution), sep="\n")
     else:
-        _print_one(found)
+        _print_one(found, known)
 
 
 def _as_json(rows: list[dict[str, object]]) -> object:
@@ -54,13 +106,21 @@ def _as_json(rows: list[dict[str, object]]) -> object:
     return {name: value for name, value in rows[0].items() if name not in known}
 
 
-def _print_one(found: impacts.ImpactTable) -> None:
-    units = impacts.units()
-    for name, (value,) in found.columns.items():
+def _print_one(found: impacts.ImpactTable, known: Uncertainty | None) -> None:
+    for name, unit in impacts.units().items():
+        value, band = found.columns[name][0], getattr(known, name, None)
         if name == "yield_speed" and value == math.inf:
             print(f"{name:21s} none within the table")
         elif name not in ("speed", "radius", "thickness"):
-            print(f"{name:21s} {value:.6g} {units[name]}".rstrip())
+            print(
+                " ".join(
+                    filter(
+                        None, (f"{name:21s} {value:.6g}", unit, band and bands.in_brackets(band))
+                    )
+                )
+            )
+    if known:
+        print(f"{'in brackets':21s} {bands.meaning(known.restitution)}; half the width by cause")
     flags = int(found.flags[0])
     print(f"{'flags':21s} {', '.join(impacts.flag_names(flags)) or 'none: inside every limit'}")
     for words in explain(flags):
@@ -68,9 +128,8 @@ def _print_one(found: impacts.ImpactTable) -> None:
 
 
 def _plot_cor(arguments: argparse.Namespace) -> None:
-    model = chosen.model(arguments)
-    drawn = curves.restitution_curves(
-        model, arguments.speed, arguments.radius, arguments.thickness, solve=arguments.solve
-    )
+    values = arguments.speed, arguments.radius, arguments.thickness
+    errors = _errors(arguments)
+    drawn = curves.restitution_curves(_model(arguments), *values, arguments.solve, errors)
     title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
     figure.save_restitution(drawn, title, arguments.plot)

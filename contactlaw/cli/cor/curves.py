@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.answers.uncertainty import Band
 from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.impacts import yield_speeds
 from contactlaw.model import ImpactModel
@@ -29,6 +30,7 @@ class CorCurve(NamedTuple):
     flags: NDArray[np.int64]
     yield_speed: float  # inf if nothing yields
     at_yield: float  # COR at the yield speed; NaN if the curve does not reach it
+    band: Band | None = None  # of the COR
 
 
 def restitution_curves(
@@ -37,6 +39,7 @@ def restitution_curves(
     radii: Sequence[float],
     thicknesses: Sequence[float],
     solve: bool = False,
+    errors: dict[str, float] | None = None,
 ) -> list[CorCurve]:
     """COR from the least to the largest of some speeds, for each bead on each plate.
 
@@ -49,6 +52,9 @@ def restitution_curves(
         begin at a tenth of it.
     solve : bool, optional
         Whether to integrate the equation instead of using the table.
+    errors : dict of str to float, optional
+        Errors of speed and sizes, as `ImpactModel.uncertainty` takes them; without it curves have
+        no bands.
 
     Returns
     -------
@@ -80,7 +86,7 @@ def restitution_curves(
     least, largest = min(speeds), max(speeds)
     v = _speeds(least if least < largest else 0.1 * largest, largest)
     plates = sorted(set(thicknesses))
-    return [_curve(model, v, r, h, solve) for r in sorted(set(radii)) for h in plates]
+    return [_curve(model, v, r, h, solve, errors) for r in sorted(set(radii)) for h in plates]
 
 
 def _speeds(least: float, largest: float) -> Array:
@@ -99,13 +105,16 @@ def is_logarithmic(least: float, largest: float) -> bool:
     return largest >= 20.0 * least
 
 
-def _curve(model: ImpactModel, v: Array, r: float, h: float, solve: bool) -> CorCurve:
+def _curve(
+    model: ImpactModel, v: Array, r: float, h: float, solve: bool, errors: dict[str, float] | None
+) -> CorCurve:
     yields = float(yield_speeds(model, np.array([r]), np.array([h]))[0])
     reached = v[0] <= yields <= v[-1]
     if reached:
         v = np.sort(np.append(v, yields))
     with wording.naming_impact(v, r, h):
         rebound = (model.solve if solve else model.lookup)(v, r, h)
+        band = None if errors is None else model.uncertainty(v, r, h, **errors).restitution
     e = np.asarray(rebound.restitution)
     at_yield = float(e[np.searchsorted(v, yields)]) if reached else math.nan
-    return CorCurve(r, h, v, e, np.asarray(rebound.flags), yields, at_yield)
+    return CorCurve(r, h, v, e, np.asarray(rebound.flags), yields, at_yield, band)

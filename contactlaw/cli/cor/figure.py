@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw.cli.cor import bands
 from contactlaw.cli.cor.curves import CorCurve, is_logarithmic
 from contactlaw.cli.parts import plots, wording
 from contactlaw.cli.parts.plots import SUFFIXES, colour_of, length_of, plate_of
@@ -21,12 +22,14 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+_SEEN = 0.015  # width of a band of the COR that its curve does not hide
+
 
 def save_restitution(curves: Sequence[CorCurve], title: str, path: str | os.PathLike[str]) -> None:
     """Draw the COR over speed into a file: a curve per plate or bead, first yield marked.
 
-    A curve is dashed where impacts have a flag of `Validity.ACCURACY`. Several beads on several
-    plates have a panel per bead.
+    A curve has its band, shaded, and is dashed where impacts have a flag of `Validity.ACCURACY`.
+    Several beads on several plates have a panel per bead.
 
     Parameters
     ----------
@@ -87,6 +90,11 @@ def _caption(panels: list[list[CorCurve]], by_radius: bool) -> str:
         parts.append(f"first yield {'' if max(yields) < least else 'of some '}below {least:g} m/s")
     if any(least <= speed <= largest for speed in yields):
         parts.append("triangle: first yield")
+    known = [curve.band for curve in curves if curve.band]
+    if known and max(np.max(np.subtract(band.high, band.low)) for band in known) > _SEEN:
+        parts.append(f"shaded: {bands.meaning(known[0])}")
+        if len(known[0].causes) > 1:
+            parts[-1] += f", mostly by the {bands.main_cause(known)}"
     reasons = plots.limits_of(np.concatenate([curve.flags for curve in curves]))
     if reasons:
         parts.append(f"dashed: {reasons}")
@@ -100,6 +108,9 @@ def _names(curves: list[CorCurve], by_radius: bool, short: bool) -> list[str]:
 
 
 def _draw(axes: Axes, curve: CorCurve, colour: Any) -> None:
+    if curve.band:
+        ends = curve.band.low, curve.band.high
+        axes.fill_between(curve.speed, *ends, color=colour, alpha=0.2, linewidth=0.0)
     plots.curve(axes, curve.speed, curve.restitution, curve.flags, colour)
     if curve.at_yield == curve.at_yield:  # not NaN
         axes.plot(
@@ -123,7 +134,8 @@ def _axes(grid: NDArray[Any], panels: list[list[CorCurve]]) -> None:
         first.set_xticks(shown, [f"{tick:g}" for tick in shown])
         first.minorticks_off()
     first.set_xlim(least, largest)
-    lowest = min(float(curve.restitution.min()) for curve in curves)
+    ends = (curve.band.low if curve.band else curve.restitution for curve in curves)
+    lowest = min(float(np.min(low)) for low in ends)
     span = max(1.0 - lowest, 0.05)  # the COR of elastic beads on a half-space is 1 throughout
     first.set_ylim(max(0.0, 1.0 - 1.06 * span), 1.0 + 0.03 * span)
     for axes in grid.flat[max(0, len(panels) - grid.shape[1]) :]:  # the lowest of each column

@@ -39,9 +39,10 @@ class Column(NamedTuple):
     title: str = ""  # name on a terminal; a column without one is not shown there
     shown: str = "-"  # unit on a terminal
     scale: float = 1.0  # number of these units in one SI unit
+    to: str = ""  # another column, up to which this one is the lower end of a range on a terminal
 
 
-_COLUMNS = (
+COLUMNS = (
     Column("speed", "m/s", "speed", "m/s"),
     Column("radius", "m", "radius", "mm", 1e3),
     Column("thickness", "m", "thickness", "mm", 1e3),
@@ -127,7 +128,7 @@ def tabulate(
     first = slice(None, None, len(speeds))  # first row of each bead on each plate
     yields = np.repeat(yield_speeds(model, r[first], h[first]), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
-    return ImpactTable({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
+    return ImpactTable({column.name: found[column.name] for column in COLUMNS}, found["flags"])
 
 
 def _integrates(model: ImpactModel) -> bool:
@@ -167,7 +168,7 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
         return np.concatenate([yield_speeds(model, r, h) for r, h in parts])
 
 
-def text(table: ImpactTable, columns: Sequence[Column] = _COLUMNS) -> Iterator[str]:
+def text(table: ImpactTable, columns: Sequence[Column] = COLUMNS) -> Iterator[str]:
     """Lines for a terminal: names, units, a row per impact, and the meaning of the flags.
 
     Examples
@@ -182,14 +183,18 @@ def text(table: ImpactTable, columns: Sequence[Column] = _COLUMNS) -> Iterator[s
         5     0.9          1  0.9081  4.864  9.688
     """
     shown = [column for column in columns if column.title]
-    cells = [
-        [column.title, f"[{column.shown}]"]
-        + [f"{value:.4g}" for value in table.columns[column.name] * column.scale]
-        for column in shown
-    ]
+    cells = [[column.title, f"[{column.shown}]", *_cells(table, column)] for column in shown]
     cells.append(["flags", "", *map(", ".join, map(flag_names, table.flags))])
     yield from aligned(cells)
     yield from explained(count_flags(table.flags), len(table))
+
+
+def _cells(table: ImpactTable, column: Column) -> Iterator[str]:
+    values = table.columns[column.name] * column.scale
+    if not column.to:
+        return (f"{value:.4g}" for value in values)
+    ends = zip(values, table.columns[column.to] * column.scale, strict=True)
+    return (f"{low:.3g}-{high:.3g}" for low, high in ends)
 
 
 def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
@@ -225,7 +230,7 @@ def explained(flags: dict[Validity, int], total: int) -> Iterator[str]:
         yield f"{flag.name}, {count} of {total}: {words}"
 
 
-def write_csv(table: ImpactTable, out: TextIO, columns: Sequence[Column] = _COLUMNS) -> None:
+def write_csv(table: ImpactTable, out: TextIO, columns: Sequence[Column] = COLUMNS) -> None:
     """Write rows with every digit; the header has names and SI units.
 
     Examples
@@ -278,7 +283,7 @@ def units() -> dict[str, str]:
     >>> units()["peak_force"], units()["restitution"]
     ('N', '')
     """
-    return {column.name: column.unit for column in _COLUMNS}
+    return {column.name: column.unit for column in COLUMNS}
 
 
 def flag_names(flags: int) -> list[str]:

@@ -1,0 +1,54 @@
+"""Errors of each law beside finite elements that no fit has seen."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.laws import Law
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.validity import Validity
+
+Array = NDArray[np.float64]
+
+# Relative rms errors of COR, contact time and peak force, of 160 everyday impacts: of those inside
+# the limits, and of those that are `doubtful`. Errors of a COR below 0.3 are relative to 0.3.
+# `python -m validation.inverse model` computes them.
+MODEL_ERRORS = {
+    "fem": ((0.0044, 0.0057, 0.0066), (0.0169, 0.0184, 0.0140)),
+    "hertz": ((0.0317, 0.0143, 0.0154), (0.847, 0.0568, 0.382)),
+    "jackson_green": ((0.0208, 0.0176, 0.0241), (0.294, 0.0344, 0.121)),
+    "kogut_etsion": ((0.0195, 0.0177, 0.0222), (0.299, 0.0361, 0.135)),
+    "myc": ((0.0196, 0.0193, 0.0215), (0.332, 0.136, 0.214)),
+    "stronge": ((0.0410, 0.0962, 0.152), (0.320, 0.135, 0.185)),
+    "thornton": ((0.261, 0.140, 0.263), (0.440, 0.637, 0.466)),
+}
+# The same of law fem for 40 impacts of metals with hardening and rate: the target "metals" of
+# `validation.accuracy.acceptance`.
+HARDENING_ERRORS = 0.0105, 0.0095, 0.0243
+_LEAST_COR = 0.3
+_THIN = 1.4  # R/H from which on relative errors are larger, even where absolute ones of COR are not
+
+
+def doubtful(hit: Rebound, slenderness: Array) -> NDArray[np.bool_]:
+    """Which rebounds have a flag of accuracy or a plate so thin that errors are larger, by R/H."""
+    flagged = (np.asarray(hit.flags) & Validity.ACCURACY) != 0
+    return np.asarray(flagged | (slenderness > _THIN))
+
+
+def law_errors(law: Law, pair: Pair, hit: Rebound, slenderness: Array) -> Array | None:
+    """Rms errors of COR, contact time and peak force of flat rebounds, in their units (3, n).
+
+    None for a law whose errors are not known.
+    """
+    known = MODEL_ERRORS.get(law.family)
+    if known is None:
+        return None
+    inside, beyond = (np.array(rms)[:, None] for rms in known)
+    rms = np.where(doubtful(hit, slenderness), beyond, inside)
+    flows = [body.flow for body in (pair.sphere, pair.plate) if body.flow is not None]
+    if law.family == "fem" and any(flow.hardening or flow.rate for flow in flows):
+        rms = np.maximum(rms, np.array(HARDENING_ERRORS)[:, None])
+    cor = np.maximum(hit.restitution, _LEAST_COR)
+    return np.asarray(rms * np.array([cor, hit.contact_time, hit.peak_force]))

@@ -1,0 +1,362 @@
+"""How far a real impact may be from the answer, and which number makes it uncertain.
+
+Each number that has an error is changed alone, by one standard error up and down, and the impact
+integrated. Logarithms of an answer follow a parabola through these points in each number, and what
+the numbers change adds up, so that quantiles are those of sums at random errors, which need no
+integration. It does not add up in two cases. Where a body may or may not begin to yield, what flow
+changes is a function of the overload, found by changing the strengths, and overloads add up. Which
+body yields depends on the strengths of both: these are changed together as well.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from statistics import NormalDist
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contactlaw.answers import rated
+from contactlaw.answers.backend import SphereOnPlate
+from contactlaw.answers.law_errors import law_errors
+from contactlaw.answers.solver import Solver
+from contactlaw.physical.arguments import number, shaped, within
+from contactlaw.physical.materials import Material
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.rate import scaled
+from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.scaling import law_for_pair
+
+Array = NDArray[np.float64]
+Some = NDArray[np.intp]
+
+_FIELDS = "restitution", "contact_time", "peak_force", "overload"
+_SIZES = "speed", "radius", "thickness"
+_RTOL = 1e-8
+_ENDS = -1.0, 1.0  # changes, in standard errors
+_STRAIGHT = 1.5  # standard errors beyond which curves are straight
+_NEAR, _FARTHEST = 3.0, 2.0  # ln(chi) of impacts that may or may not yield, over its spread, and
+_DRAWS, _AT_ONCE = 2048, 256  # random errors, and impacts whose sums are in memory together
+_QUANTILES = NormalDist().cdf(-1.0), NormalDist().cdf(1.0)  # 16 and 84 %
+# Step in ln(V0/R) of the rates of strain at which changes are integrated: by changing radius and
+# thickness together, which changes nothing else. A law for each impact would take 10 ms.
+_RATES = 0.1
+_LARGEST_ERROR = 1.0
+_LARGEST = {"poissons_ratio": 0.5, "rate": 0.5, "loss_factor": 1.0}  # a material refuses more
+_STRENGTHS = "yield_strength", "hardness"
+_BODIES = {("sphere",): "the bead", ("plate",): "the plate", ("sphere", "plate"): "both bodies"}
+
+
+@dataclass(frozen=True)
+class Band:
+    """Range of one answer, in its unit: floats, or arrays of the shape of the impacts.
+
+    Attributes
+    ----------
+    low, high
+        Quantiles of 16 and 84 %: of three real impacts two are between them.
+    causes : dict of str to float or ndarray
+        Half the width of the band that each cause alone makes: ``"yield strength of the bead"``,
+        ``"thickness"``, ..., and ``"model"``, the law beside finite elements, if it is known.
+    """
+
+    low: float | Array
+    high: float | Array
+    causes: dict[str, float | Array]
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Ranges of the COR [-], the contact time [s] and the peak force [N] of impacts."""
+
+    restitution: Band
+    contact_time: Band
+    peak_force: Band
+
+
+class Change(NamedTuple):
+    """A number that has an error."""
+
+    name: str  # field of Material, or speed, radius, thickness
+    error: float
+    roles: tuple[str, ...] = ()  # bodies; none for a size
+
+    @property
+    def cause(self) -> str:
+        """Name for a reader."""
+        words = self.name.replace("youngs", "Young's").replace("poissons", "Poisson's")
+        body = f" of {_BODIES[self.roles]}" if self.roles else ""
+        return words.replace("_", " ") + body
+
+
+_PROBE = Change("strength", 1.0, ("sphere", "plate"))  # whole flow stress of both bodies
+_PROBES = 1.2, 0.6, 0.4, 0.2, 0.1, 0.0, -0.1, -0.2, -0.4, -0.6, -0.9, -1.2  # its changes
+
+
+class Variants:
+    """Solvers of a pair whose materials are off by some standard errors, each made once."""
+
+    def __init__(self, bodies: SphereOnPlate) -> None:
+        pair = bodies.pair
+        self.bodies = bodies
+        alike = pair.sphere == pair.plate
+        self.changes = [
+            Change(name, error, roles)
+            for roles in ([("sphere", "plate")] if alike else [("sphere",), ("plate",)])
+            for name, error in getattr(pair, roles[0]).uncertainty.items()
+            if error
+        ]
+        self.solver = functools.cache(self._solver)
+        self.rated = rated.flow_of(bodies) is not None
+
+    def _solver(self, moved: tuple[tuple[Change, float], ...]) -> Solver:
+        pair = self.bodies.pair
+        bodies = {"sphere": pair.sphere, "plate": pair.plate}
+        for change, z in moved:
+            for role in change.roles:
+                bodies[role] = _changed(bodies[role], change, z)
+        pair = Pair(**bodies)
+        given = self.bodies.law
+        law = dataclasses.replace(law_for_pair(pair, given), from_pair=given.from_pair)
+        return rated.solver(SphereOnPlate(pair, law), _RTOL)
+
+    def hit(self, impacts: Impacts, *moved: tuple[Change, float]) -> Rebound:
+        """Integrate impacts with numbers that are off by some standard errors."""
+        sizes = {name: getattr(impacts, name) for name in _SIZES}
+        for change, z in moved:
+            if not change.roles:
+                sizes[change.name] = sizes[change.name] * math.exp(z * change.error)
+        solver = self.solver(tuple(one for one in moved if one[0].roles))
+        return solver.rebounds(Impacts(**sizes, shape=(impacts.speed.size,)))
+
+
+def _changed(body: Material, change: Change, z: float) -> Material:
+    """Body one number of which is off by some standard errors."""
+    if change is _PROBE:
+        return scaled(body, math.exp(z))
+    factor, value = math.exp(z * change.error), getattr(body, change.name)
+    new: dict[str, object] = {"uncertainty": {}}
+    if change.name == "hardening" and body.flow is not None:  # B, also where it is from a hardness
+        new["yield_strength"] = body.flow.strength
+        new["hardening"] = factor * body.flow.hardening, body.flow.exponent
+    else:
+        first, *rest = value if isinstance(value, tuple) else (value,)
+        first = min(factor * first, _LARGEST.get(change.name, math.inf))
+        new[change.name] = (first, *rest) if rest else first
+    try:
+        return dataclasses.replace(body, **new)  # type: ignore[arg-type]
+    except ValueError as error:
+        raise ValueError(
+            f"uncertainty of {body.name!r}: {change.name} {change.error:g} is too large, for "
+            f"{factor:.3g} times the value: {error}"
+        ) from None
+
+
+class Uncertain:
+    """Uncertainty of the answers of one model."""
+
+    _bodies: SphereOnPlate
+
+    @functools.cached_property
+    def _variants(self) -> Variants:
+        return Variants(self._bodies)
+
+    def uncertainty(
+        self,
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        *,
+        speed_error: float = 0.0,
+        radius_error: float = 0.0,
+        thickness_error: float = 0.0,
+    ) -> Uncertainty:
+        """How far a real impact may be from the answer, and why.
+
+        Parameters
+        ----------
+        speed, radius, thickness : array_like
+            As in `solve`, which integrates all of it.
+        speed_error, radius_error, thickness_error : float, optional
+            Relative standard errors of speed and sizes [-], 0 to 1. Those of materials are their
+            `Material.uncertainty`; without any, only the law is uncertain.
+
+        Returns
+        -------
+        Uncertainty
+            Quantiles of 16 and 84 % of COR, contact time and peak force, and their causes.
+
+        Raises
+        ------
+        ValueError
+            As in `solve`; an error out of range, or so large that a material is none any more.
+
+        Notes
+        -----
+        Errors are log-normal and independent, also those of A, B and C of one fit. But if both
+        bodies are of one and the same material, equal in all numbers and in its name, a number
+        errs alike in both. A Poisson's ratio stays up to 0.5. Numbers that were given in the name
+        of a law are held fixed. Quantiles are within 10 % of half the band's width of those of
+        random pairs, and within 15 % where a body may or may not begin to yield, for errors of
+        strengths and moduli up to 30 %.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> steel = cl.Material(
+        ...     "my steel", 200e9, 0.29, 7800, yield_strength=400e6, kind="metal",
+        ...     uncertainty={"yield_strength": 0.15},
+        ... )
+        >>> model = cl.ImpactModel(cl.Pair(steel, "glass"))
+        >>> cor = model.uncertainty(3.0, 1e-3, 5e-3, thickness_error=0.05).restitution
+        >>> round(cor.low, 2), round(cor.high, 2)
+        (0.62, 0.71)
+        >>> {name: round(size, 3) for name, size in cor.causes.items()}
+        {'yield strength of the bead': 0.043, 'thickness': 0.002, 'model': 0.003}
+        """
+        sizes = []
+        for name, value in zip(_SIZES, (speed_error, radius_error, thickness_error), strict=True):
+            error = number(f"{name}_error", value)
+            remark = "(a relative standard error: 0.05 for 5 %)"
+            within(f"{name}_error", np.array([error]), 0.0, _LARGEST_ERROR, remark)
+            sizes += [Change(name, error)] if error else []
+        impacts = Impacts.on_plates(speed, radius, thickness)
+        return _uncertainty(self._variants, impacts, [*self._variants.changes, *sizes])
+
+
+class _Curves:
+    """How the logarithms of the answers of impacts change with each number."""
+
+    def __init__(self, variants: Variants, impacts: Impacts, changes: list[Change]) -> None:
+        self.variants, self.impacts, self.changes = variants, impacts, changes
+        self.unit = np.zeros((4, 1))
+        if variants.rated:
+            rate = np.log(impacts.speed / impacts.radius)
+            scale = np.exp(rate - _RATES * np.rint(rate / _RATES))
+            sizes = scale * impacts.radius, scale * impacts.thickness
+            self.impacts = Impacts(impacts.speed, *sizes, impacts.shape)
+            # contact times and forces of larger beads
+            self.unit = np.outer((0.0, 1.0, 2.0, 0.0), np.log(scale))
+        hit = variants.hit(self.impacts)
+        self.base = _logs(hit)
+        values = dict(zip(_FIELDS, np.exp(self.base - self.unit), strict=True))
+        pair, law = variants.bodies.pair, variants.bodies.law
+        known = dataclasses.replace(hit, **values)
+        errors = law_errors(law, pair, known, impacts.radius / impacts.thickness)
+        self.by_law = None
+        if errors is not None:
+            self.by_law = np.vstack([errors, 0.0 * errors[:1]]) / [*values.values()]
+        ends = [[self.moved((one, z)) for z in _ENDS] for one in changes]
+        self.ends = np.array(ends).reshape(len(changes), 2, *self.base.shape)
+        # Impacts that may or may not reach the yield strength, and what flow does to their answers.
+        reach = _NEAR * np.sqrt((self.ends[:, :, 3] ** 2).max(axis=1, initial=0.0).sum(axis=0))
+        self.near = np.flatnonzero(np.abs(self.base[3]) < np.minimum(reach, _FARTHEST))
+        if self.near.size:
+            probed = [self.moved((_PROBE, z), some=self.near) for z in _PROBES]
+            self.probed = np.array(probed) + self.base[:, self.near]
+
+    def moved(self, *moved: tuple[Change, float], some: Some | slice = slice(None)) -> Array:
+        """Change of the logarithms of some impacts' answers with numbers."""
+        speed, radius, thickness = (getattr(self.impacts, name)[some] for name in _SIZES)
+        hit = self.variants.hit(Impacts(speed, radius, thickness, None), *moved)
+        return _logs(hit) - self.base[:, some]
+
+    def by_flow(self, m: int, change: Array) -> Array:
+        """Change of one of the impacts near yield by flow, with the logarithm of its overload."""
+        at, values = self.probed[:, 3, m], self.probed[:, :, m]
+        slopes = np.gradient(values, at, axis=0)
+
+        def curve(x: Array) -> Array:  # cubic between the probes, constant beyond
+            j = np.clip(np.searchsorted(at, x) - 1, 0, at.size - 2)
+            h = (at[j + 1] - at[j])[..., None]
+            t = np.clip((x - at[j])[..., None] / h, 0.0, 1.0)
+            ends = (1.0 + 2.0 * t) * values[j] + t * h * slopes[j], values[j + 1], h * slopes[j + 1]
+            after = t * t * ((3.0 - 2.0 * t) * ends[1] + (t - 1.0) * ends[2])
+            return np.asarray((1.0 - t) ** 2 * ends[0] + after)
+
+        base = self.base[3, self.near[m]]
+        return (curve(base + change) - curve(base)) * [1.0, 1.0, 1.0, 0.0]
+
+    def rows(self, z: Array) -> tuple[Array, Array]:
+        """Weights of random errors (draws, rows), and rows of a sum of changes (rows, 4, n)."""
+        ends = self.ends.copy()
+        for m, n in enumerate(self.near.tolist()):
+            ends[..., n] -= self.by_flow(m, ends[:, :, 3, n])
+        close = np.clip(z, -_STRAIGHT, _STRAIGHT)
+        weights = [*z[: len(ends)], *(close * (2.0 * z - close))[: len(ends)]]
+        rows = [*0.5 * (ends[:, 1] - ends[:, 0]), *0.5 * (ends[:, 1] + ends[:, 0])]
+        if self.by_law is not None:
+            weights, rows = [*weights, z[-1]], [*rows, self.by_law]
+        for m, n in self._strengths():
+            for (i, a), (j, b) in itertools.product(enumerate(_ENDS), repeat=2):
+                together = self.moved((self.changes[m], a), (self.changes[n], b))
+                rows.append(together - self.ends[m, i] - self.ends[n, j])
+                weights.append(np.maximum(a * z[m], 0.0) * np.maximum(b * z[n], 0.0))
+        return np.array(weights).T, np.array(rows)
+
+    def _strengths(self) -> Iterator[tuple[int, int]]:
+        """Which changes are of the strength of the bead and of the plate, if both are."""
+        known = [(one.roles, n) for n, one in enumerate(self.changes) if one.name in _STRENGTHS]
+        each = ([n for roles, n in known if roles == (role,)][:1] for role in ("sphere", "plate"))
+        return zip(*each, strict=False)
+
+    def quantiles(self) -> tuple[Array, Array]:
+        """Quantiles of the logarithms of the answers, less the logarithms themselves (4, n)."""
+        z = _deviates(len(self.changes) + 1)
+        weights, rows = self.rows(z)
+        found = np.zeros((2, *self.base.shape))
+        for first in range(0, self.base.shape[1] if len(rows) else 0, _AT_ONCE):
+            here = rows[:, :, first : first + _AT_ONCE]
+            sums = (here.reshape(len(rows), -1).T @ weights.T).reshape(*here[0].shape, _DRAWS)
+            for m, n in enumerate(self.near.tolist()):
+                if first <= n < first + _AT_ONCE:
+                    sums[:, n - first] += self.by_flow(m, sums[3, n - first]).T
+            # quantiles of the overload are not asked for
+            found[:, :3, first : first + _AT_ONCE] = np.quantile(sums[:3], _QUANTILES, axis=-1)
+        return found[0], found[1]
+
+
+def _logs(hit: Rebound) -> Array:
+    return np.log(np.maximum([getattr(hit, name) for name in _FIELDS], 1e-300))
+
+
+@functools.lru_cache(maxsize=16)
+def _deviates(count: int) -> Array:
+    """Draw normal deviates (count, draws): for each number a permutation of the same quantiles."""
+    known = [NormalDist().inv_cdf((n + 0.5) / _DRAWS) for n in range(_DRAWS)]
+    return np.random.default_rng(0).permuted(np.tile(known, (count, 1)), axis=1)
+
+
+def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) -> Uncertainty:
+    """Bands of the answers of impacts by changes of numbers, and by the law."""
+    curves = _Curves(variants, impacts, changes)
+    logs = curves.base - curves.unit
+    most = np.array([0.0, math.inf, math.inf, math.inf])[:, None]  # the COR is 1 at most
+
+    def shifted(by: Array) -> Array:
+        return np.asarray(np.exp(np.minimum(logs + by, most)))
+
+    def width(ends: Array) -> Array:
+        return 0.5 * (
+            shifted(np.maximum(ends.max(axis=0), 0.0)) - shifted(np.minimum(ends.min(axis=0), 0.0))
+        )
+
+    low, high = map(shifted, curves.quantiles())
+    causes = {one.cause: width(ends) for one, ends in zip(changes, curves.ends, strict=True)}
+    if curves.by_law is not None:
+        causes["model"] = width(np.array([-curves.by_law, curves.by_law]))
+    bands = (
+        Band(
+            shaped(low[n], impacts.shape),
+            shaped(high[n], impacts.shape),
+            {cause: shaped(size[n], impacts.shape) for cause, size in causes.items()},
+        )
+        for n in range(3)
+    )
+    return Uncertainty(*bands)

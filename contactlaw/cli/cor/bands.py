@@ -1,0 +1,78 @@
+"""Bands of ``contactlaw cor``: how far a real impact may be from its COR, and why."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.answers.uncertainty import Band, Uncertainty
+from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
+
+_MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the largest
+_OF_LAW = "two in three impacts by finite elements (no errors of the materials are known)"
+_OF_ALL = "two in three real impacts"
+
+
+def with_bands(
+    table: ImpactTable, bands: Uncertainty | None
+) -> tuple[ImpactTable, tuple[Column, ...]]:
+    """Table and columns with the ends of each band after its value; without bands, as they are."""
+    columns, values = [], {}
+    for column in COLUMNS:
+        columns.append(column)
+        values[column.name] = table.columns[column.name]
+        band: Band | None = getattr(bands, column.name, None)
+        if band:
+            low, high = f"{column.name}_low", f"{column.name}_high"
+            shown = "68 %" if column.name == "restitution" else ""
+            columns += [Column(low, column.unit, shown, to=high), Column(high, column.unit)]
+            values |= {low: np.asarray(band.low), high: np.asarray(band.high)}
+    return dataclasses.replace(table, columns=values), tuple(columns)
+
+
+def in_brackets(band: Band) -> str:
+    """Band of one impact, with its causes, as text after its value.
+
+    Examples
+    --------
+    >>> in_brackets(Band(0.41, 0.55, {"model": 0.0031}))
+    '(0.41 to 0.55; model 0.0031)'
+    """
+    low, high = (np.ravel(end).item() for end in (band.low, band.high))
+    return f"({low:.3g} to {high:.3g}; {_causes(band)})"
+
+
+def explained(band: Band) -> Iterator[str]:
+    """Lines below a table with the meaning of the band of the COR, and its causes."""
+    yield ""
+    yield f"68 %: {meaning(band)} have their COR in this range."
+    if meaning(band) is _OF_ALL:
+        yield f"Half its width by each cause alone: {_causes(band)}"
+
+
+def meaning(band: Band) -> str:
+    """Say which impacts are in a band."""
+    return _OF_ALL if set(band.causes) > {"model"} else _OF_LAW
+
+
+def main_cause(bands: Sequence[Band]) -> str:
+    """Find the cause that makes the widest band of all."""
+    return max(bands[0].causes, key=lambda name: max(np.max(one.causes[name]) for one in bands))
+
+
+def _causes(band: Band) -> str:
+    """Causes with the half widths that they alone make, the largest ones first."""
+    sizes = {name: np.asarray(size) for name, size in band.causes.items()}
+    most = max((size.max() for size in sizes.values()), default=0.0)
+    largest = sorted(sizes, key=lambda name: -sizes[name].max())[:_MOST]
+    counted = (name for name in largest if sizes[name].max() >= _LEAST * most)
+    return ", ".join(f"{name} {_range(sizes[name])}" for name in counted)
+
+
+def _range(sizes: NDArray[np.float64]) -> str:
+    known = np.where(sizes > _LEAST**2 * sizes.max(), sizes, 0.0)  # not what integration errs by
+    least, most = (f"{size:.2g}" for size in (known.min(), known.max()))
+    return most if least == most else f"{least} to {most}"
