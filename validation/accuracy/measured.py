@@ -12,11 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
-
 import contactlaw as cl
-from contactlaw.fitting.errors import MODEL_ERRORS
 
 FOLDER = Path(__file__).parent.parent / "measured"
 _COLUMNS = "speed_m_s", "radius_m", "thickness_m", "restitution", "reading_error"
@@ -50,26 +46,6 @@ def sources() -> list[Source]:
     ['alumina on a thick glass anvil, R = 2.5 mm']
     """
     return [_read(path) for path in sorted(FOLDER.glob("*-normal.csv"))]
-
-
-def band(
-    model: cl.ImpactModel, speed: ArrayLike, radius: float, thickness: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Bounds of the model's COR, one standard error below and above it.
-
-    The law's own error beside finite elements and the effect of each number of a material that has
-    an uncertainty are added as squares.
-    """
-    middle = np.asarray(model.restitution(speed, radius, thickness))
-    squares = (MODEL_ERRORS["fem"][0][0] * middle) ** 2
-    bodies: dict[str, Any] = {"sphere": model.pair.sphere, "plate": model.pair.plate}
-    for body, material in bodies.items():
-        for name, error in material.uncertainty.items():
-            more: Any = {name: getattr(material, name) * (1.0 + error)}
-            changed = cl.ImpactModel(cl.Pair(**bodies | {body: replace(material, **more)}))
-            change = np.asarray(changed.restitution(speed, radius, thickness)) - middle
-            squares = squares + change**2
-    return middle - np.sqrt(squares), np.minimum(middle + np.sqrt(squares), 1.0)
 
 
 def _read(path: Path) -> Source:

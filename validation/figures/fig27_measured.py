@@ -59,12 +59,12 @@ def draw() -> chart.Drawn:
         )
         for axes in (left, right):
             axes.legend(loc="lower right")
-        low, high = measured.band(model, one.speed, one.radius, one.thickness)
+        band = model.uncertainty(one.speed, one.radius, one.thickness).restitution
         found = float(model.restitution(one.speed, one.radius, one.thickness))
         curve = np.asarray(model.restitution(one.speed, one.radius, thickness))
         numbers |= {
             f"{source.title}: COR": found,
-            f"{source.title}: COR, standard error": float(high - low) / 2.0,
+            f"{source.title}: COR, standard error": float(band.high - band.low) / 2.0,
             f"{source.title}: COR, model minus measured": found - one.restitution,
             f"{source.title}: least thickness within the reading error, mm": 1e3
             * float(np.interp(least, curve, thickness)),
@@ -79,5 +79,6 @@ def _panels(source: Source) -> tuple[Panel, Panel]:
 
 
 def _model(axes: Axes, x: NDArray[np.float64], model: cl.ImpactModel, *impact: Any) -> None:
-    axes.fill_between(x, *measured.band(model, *impact), color=SKY, alpha=0.35, linewidth=0.0)
+    band = model.uncertainty(*impact).restitution
+    axes.fill_between(x, band.low, band.high, color=SKY, alpha=0.35, linewidth=0.0)
     axes.plot(x, model.restitution(*impact), color=BLUE, linewidth=2.4, label="model")
