@@ -293,7 +293,7 @@ class Material:
         >>> from contactlaw import Material
         >>> bead = Material("bead", 3e9, 0.35, 1200, loss_factor=(0.1, 1e3))
         >>> round(bead.at_frequency(1e4).youngs_modulus / 1e9, 3)
-        3.471
+        3.472
         """
         if self.loss_factor is None:
             return self

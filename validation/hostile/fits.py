@@ -1,11 +1,13 @@
 """Fits of two unknowns to exact data: within two standard errors, or with alternatives, or refused.
 
 A case is a bead and a plate of the catalogue, R 0.1 to 5 mm, R/H 0.1 to 1.8, 6 to 16 speeds, exact
-values of one to three kinds with a stated error of 1 %, and any two of the eight unknowns.
+values of one to three kinds with a stated error of 1 %, and any two of the ten unknowns. Bodies
+have losses if a loss factor is unknown.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import math
 from collections.abc import Iterator
@@ -25,6 +27,7 @@ FULL = 500
 
 _ERROR = 0.01  # stated relative error of the values
 _LEAST_COR = 0.05  # smallest COR of a measurement
+_LOSSES = 0.02, 0.4  # tan delta
 _LARGEST = 2.0  # error of an answer that is allowed, in standard errors
 
 
@@ -66,6 +69,14 @@ def draw(random: np.random.Generator) -> Case:
     while True:
         pair = cl.Pair(*(str(random.choice(names)) for _ in range(2)))
         unknown = questions[int(random.integers(len(questions)))]
+        pair = cl.Pair(
+            *(
+                dataclasses.replace(body, loss_factor=(random.uniform(*_LOSSES), 1e4))
+                if f"{prefix}loss_factor" in unknown
+                else body
+                for prefix, body in (("", pair.sphere), ("plate_", pair.plate))
+            )
+        )
         bodies = {"yield_strength": pair.sphere, "plate_yield_strength": pair.plate}
         if any(bodies[name].yield_strength is None for name in unknown if name in bodies):
             continue

@@ -39,7 +39,8 @@ def true(one: Any, name: str) -> float:
     """Find the true value of an unknown of `contactlaw.fit` in a measurement, as in `rebounds`."""
     unknown = UNKNOWNS[name]
     of = getattr(one.pair, unknown.body) if unknown.body else one
-    return float(getattr(of, unknown.field))
+    value = getattr(of, unknown.field)
+    return float(value[0] if isinstance(value, tuple) else value)
 
 
 class Impact(NamedTuple):

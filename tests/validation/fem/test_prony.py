@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import contactlaw as cl
-from validation.fem import elements, prony, solver, store
+from validation.fem import elements, polymers, prony, solver, store
 from validation.fem.cases import material
 from validation.fem.impact import impact
 from validation.fem.viscoelastic import ELASTIC_PEAK, ELASTIC_TIME, power_law, rebound
@@ -135,7 +135,7 @@ def test_constant_loss_of_a_hertz_impact():
         assert rebound(relaxed, 1000).restitution == pytest.approx(cor, rel=2e-3)
 
 
-@pytest.mark.parametrize("name", ["polymers"])
+@pytest.mark.parametrize("name", polymers.SEEDS)
 def test_stored_impacts_account_for_their_energy(name):
     data = store.read(name).data
     parts = "plastic", "wave", "vibration", "friction_loss", "touching_loss", "viscous"
