@@ -177,7 +177,7 @@ def test_the_band_is_that_of_the_model(capsys):
     text = printed(f"{SURE} {GIVEN}", capsys)
     assert f" ({cor.low:.3g} to {cor.high:.3g}; {', '.join(sizes)})" in text
     assert sizes[0].startswith("yield strength of the bead 0.028")
-    assert "two in three real impacts" in text
+    assert "two in three impacts, by the errors that are known" in text
     (row,) = csv.DictReader(printed(f"{SURE} {GIVEN} --csv", capsys).splitlines())
     record = json.loads(printed(f"{SURE} {GIVEN} --json", capsys))
     for name, unit in (("restitution", ""), ("contact_time", "_s"), ("peak_force", "_N")):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import textwrap
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -13,7 +14,8 @@ from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
 
 _MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the largest
 _OF_LAW = "two in three impacts by finite elements (no errors of the materials are known)"
-_OF_ALL = "two in three real impacts"
+_OF_ALL = "two in three impacts, by the errors that are known"
+_WIDTH = 110  # of a line of text
 
 
 def with_bands(
@@ -48,9 +50,9 @@ def in_brackets(band: Band) -> str:
 def explained(band: Band) -> Iterator[str]:
     """Lines below a table with the meaning of the band of the COR, and its causes."""
     yield ""
-    yield f"68 %: {meaning(band)} have their COR in this range."
+    yield f"68 %: in this range is the COR of {meaning(band)}."
     if meaning(band) is _OF_ALL:
-        yield f"Half its width by each cause alone: {_causes(band)}"
+        yield from textwrap.wrap(f"Half its width by cause: {_causes(band)}", _WIDTH)
 
 
 def meaning(band: Band) -> str:
