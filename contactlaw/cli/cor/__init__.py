@@ -93,9 +93,9 @@ def _run(arguments: argparse.Namespace) -> None:
     elif len(found) > 1:
         print(*impacts.text(found, columns), sep="\n")
         if known:
-            print(*bands.explained(known.restitution), sep="\n")
+            print(*bands.explained(known.restitution, model.pair), sep="\n")
     else:
-        _print_one(found, known)
+        _print_one(found, known, model.pair)
 
 
 def _as_json(rows: list[dict[str, object]]) -> object:
@@ -106,7 +106,7 @@ def _as_json(rows: list[dict[str, object]]) -> object:
     return {name: value for name, value in rows[0].items() if name not in known}
 
 
-def _print_one(found: impacts.ImpactTable, known: Uncertainty | None) -> None:
+def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair) -> None:
     for name, unit in impacts.units().items():
         value, band = found.columns[name][0], getattr(known, name, None)
         if name == "yield_speed" and value == math.inf:
@@ -120,7 +120,9 @@ def _print_one(found: impacts.ImpactTable, known: Uncertainty | None) -> None:
                 )
             )
     if known:
-        print(f"{'in brackets':21s} {bands.meaning(known.restitution)}; half the width by cause")
+        band = known.restitution
+        said = f"{bands.meaning(band)}{bands.left_out(band, pair)}; half the width by cause"
+        print(f"{'in brackets':21s} {said}")
     flags = int(found.flags[0])
     print(f"{'flags':21s} {', '.join(impacts.flag_names(flags)) or 'none: inside every limit'}")
     for words in explain(flags):

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from contactlaw.answers.uncertainty import Band, Uncertainty
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
+from contactlaw.physical.pair import Pair
 
 _MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the largest
 _OF_LAW = "two in three impacts by finite elements (no errors of the materials are known)"
@@ -47,12 +48,28 @@ def in_brackets(band: Band) -> str:
     return f"({low:.3g} to {high:.3g}; {_causes(band)})"
 
 
-def explained(band: Band) -> Iterator[str]:
+def explained(band: Band, pair: Pair) -> Iterator[str]:
     """Lines below a table with the meaning of the band of the COR, and its causes."""
     yield ""
-    yield f"68 %: in this range is the COR of {meaning(band)}."
+    said = f"68 %: in this range is the COR of {meaning(band)}{left_out(band, pair)}."
+    yield from textwrap.wrap(said, _WIDTH)
     if meaning(band) is _OF_ALL:
         yield from textwrap.wrap(f"Half its width by cause: {_causes(band)}", _WIDTH)
+
+
+def left_out(band: Band, pair: Pair) -> str:
+    """Name the strengths without an error: they are not in the band, and often matter most."""
+    roles = {"the bead": pair.sphere, "the plate": pair.plate}
+    names = [
+        role
+        for role, body in roles.items()
+        if body.strength is not None
+        and not body.uncertainty.keys() & {"yield_strength", "hardness"}
+    ]
+    if not names or meaning(band) is not _OF_ALL:
+        return ""
+    subject, verb = ("strength", "has") if len(names) == 1 else ("strengths", "have")
+    return f" (the {subject} of {' and '.join(names)} {verb} none)"
 
 
 def meaning(band: Band) -> str:
