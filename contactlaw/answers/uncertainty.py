@@ -38,6 +38,7 @@ Some = NDArray[np.intp]
 
 _FIELDS = "restitution", "contact_time", "peak_force", "overload"
 _SIZES = "speed", "radius", "thickness"
+_ROLES = "sphere", "plate"
 _RTOL = 1e-8
 _ENDS = -1.0, 1.0  # changes, in standard errors
 _STRAIGHT = 1.5  # standard errors beyond which curves are straight
@@ -48,6 +49,7 @@ _QUANTILES = NormalDist().cdf(-1.0), NormalDist().cdf(1.0)  # 16 and 84 %
 # thickness together, which changes nothing else. A law for each impact would take 10 ms.
 _RATES = 0.1
 _LARGEST_ERROR = 1.0
+_LEAST_COR = 1e-12  # the lower end of a range that reaches below zero
 _LARGEST = {"poissons_ratio": 0.5, "rate": 0.5, "loss_factor": 1.0}  # a material refuses more
 _STRENGTHS = "yield_strength", "hardness"
 _BODIES = {("sphere",): "the bead", ("plate",): "the plate", ("sphere", "plate"): "both bodies"}
@@ -103,21 +105,19 @@ class Variants:
     """Solvers of a pair whose materials are off by some standard errors, each made once."""
 
     def __init__(self, bodies: SphereOnPlate) -> None:
-        pair = bodies.pair
-        self.bodies = bodies
-        alike = pair.sphere == pair.plate
+        self.bodies, self.given = bodies, dict(zip(_ROLES, bodies.pair.given, strict=True))
+        alike = self.given["sphere"] == self.given["plate"]
         self.changes = [
             Change(name, error, roles)
             for roles in ([("sphere", "plate")] if alike else [("sphere",), ("plate",)])
-            for name, error in getattr(pair, roles[0]).uncertainty.items()
+            for name, error in self.given[roles[0]].uncertainty.items()
             if error
         ]
         self.solver = functools.cache(self._solver)
         self.rated = rated.flow_of(bodies) is not None
 
     def _solver(self, moved: tuple[tuple[Change, float], ...]) -> Solver:
-        pair = self.bodies.pair
-        bodies = {"sphere": pair.sphere, "plate": pair.plate}
+        bodies = self.given.copy()
         for change, z in moved:
             for role in change.roles:
                 bodies[role] = _changed(bodies[role], change, z)
@@ -249,9 +249,11 @@ class _Curves:
         pair, law = variants.bodies.pair, variants.bodies.law
         known = dataclasses.replace(hit, **values)
         errors = law_errors(law, pair, known, impacts.radius / impacts.thickness)
-        self.by_law = None
+        self.by_law, self.cor_by_law = None, np.zeros(self.base.shape[1])
         if errors is not None:
-            self.by_law = np.vstack([errors, 0.0 * errors[:1]]) / [*values.values()]
+            # that of a low COR is absolute, far more than the COR itself: it is no factor
+            self.cor_by_law, none = errors[0], 0.0 * errors[:1]
+            self.by_law = np.vstack([none, errors[1:], none]) / [*values.values()]
         ends = [[self.moved((one, z)) for z in _ENDS] for one in changes]
         self.ends = np.array(ends).reshape(len(changes), 2, *self.base.shape)
         # Impacts that may or may not reach the yield strength, and what flow does to their answers.
@@ -317,6 +319,10 @@ class _Curves:
             for m, n in enumerate(self.near.tolist()):
                 if first <= n < first + _AT_ONCE:
                     sums[:, n - first] += self.by_flow(m, sums[3, n - first]).T
+            part = self.base[0, first : first + _AT_ONCE, None]
+            cor = np.exp(np.minimum(part + sums[0], 0.0))
+            cor += np.outer(self.cor_by_law[first : first + _AT_ONCE], z[-1])
+            sums[0] = np.log(np.clip(cor, _LEAST_COR, 1.0)) - part
             # quantiles of the overload are not asked for
             found[:, :3, first : first + _AT_ONCE] = np.quantile(sums[:3], _QUANTILES, axis=-1)
         return found[0], found[1]
@@ -351,6 +357,7 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
     causes = {one.cause: width(ends) for one, ends in zip(changes, curves.ends, strict=True)}
     if curves.by_law is not None:
         causes["model"] = width(np.array([-curves.by_law, curves.by_law]))
+        causes["model"][0] = curves.cor_by_law
     bands = (
         Band(
             shaped(low[n], impacts.shape),

@@ -88,7 +88,7 @@ def stiffness_at(
     if largest > y * force.leaves_hertz(law):
         curve = force.unloading(law, largest / y)
         exponent, left = 0.5 * curve.exponent, curve.residual * y
-    span, work = force.returned(law)
+    span, work = force.returned(law) if left > 0.0 else (1.0, 1.0)
     if work < 1.0:
         exponent = (exponent + 1.0) * work / span - 1.0
     power = 2.0 if exponent == 1.5 else 1.0 / (exponent - 1.0)

@@ -93,9 +93,15 @@ class Setting(NamedTuple):
 
 
 def parameters(
-    pair: Pair, data: Measurements, unknown: str | Iterable[str], priors: Mapping[str, float]
+    pair: Pair,
+    data: Measurements,
+    unknown: str | Iterable[str],
+    priors: Mapping[str, float],
+    known: Pair | None = None,
 ) -> list[Parameter]:
     """List the parameters: the unknowns first, then given values with priors.
+
+    Priors are of the values of the pair that the user gave.
 
     Raises
     ------
@@ -120,7 +126,9 @@ def parameters(
     found = []
     for name in [*names, *(name for name in priors if name not in names)]:
         centre = _centre(pair, data, UNKNOWNS[name])
-        prior = None if name not in priors else _prior(name, centre, priors[name])
+        prior = None
+        if name in priors:
+            prior = _prior(name, _centre(known or pair, data, UNKNOWNS[name]), priors[name])
         found.append(Parameter(name, centre, prior, name in names))
     return found
 

@@ -31,6 +31,7 @@ _STEEPEST_ALONE = 0.6  # n of a metal known by its hardness; annealed copper and
 _LEAST_HARDENING = 1e-6  # B over Young's modulus; below, it is in MPa
 _STEEPEST_RATE = 0.5  # C; of published metals up to 0.1
 _LARGEST_LOSS = 1.0  # tan delta; rubber at its glass transition has 1 to 2, and no one modulus
+_FREQUENCIES = 1e-3, 1e9  # [Hz]; from slow tests to ultrasound and beads of micrometres
 _LARGEST_ERROR = 1.0  # relative standard error; beyond, nothing is known
 
 KINDS = ("metal", "ceramic", "glass", "polymer")
@@ -530,6 +531,8 @@ def _loss_factor(body: Material) -> tuple[float, float] | None:
     given, what = body.loss_factor, f"loss_factor of {body.name!r}"
     if given is None:
         return None
+    if isinstance(given, np.ndarray):
+        given = given.tolist()
     if not isinstance(given, tuple | list) or len(given) != 2:
         raise ValueError(
             f"{what} must be (tan delta, frequency), the frequency in Hz, got {given!r}"
@@ -538,6 +541,11 @@ def _loss_factor(body: Material) -> tuple[float, float] | None:
     if not (0.0 <= loss <= _LARGEST_LOSS):
         raise ValueError(f"{what}: tan delta must be from 0 to {_LARGEST_LOSS:g}, got {given[0]!r}")
     frequency = _positive(body.name, "loss_factor", given[1], "Hz")
+    if not (_FREQUENCIES[0] <= frequency <= _FREQUENCIES[1]):
+        raise ValueError(
+            f"{what}: its frequency must be from {_FREQUENCIES[0]:g} to {_FREQUENCIES[1]:g} Hz, "
+            f"got {given[1]!r}: give that of an impact, 1/(2 contact times), or one near it"
+        )
     return (loss, frequency) if loss else None
 
 

@@ -34,14 +34,16 @@ class Pair:
     7.43
     """
 
-    __slots__ = ("plate", "sphere")
+    __slots__ = ("given", "plate", "sphere")
 
     sphere: Material
     plate: Material
+    given: tuple[Material, Material]  # before the plate's modulus was carried
 
     def __init__(self, sphere: Material | str, plate: Material | str) -> None:
         self.sphere = _resolve("sphere", sphere)
         self.plate = _resolve("plate", plate)
+        self.given = self.sphere, self.plate
         if self.sphere.loss_factor and self.plate.loss_factor:
             self.plate = self.plate.at_frequency(self.sphere.loss_factor[1])
 

@@ -131,34 +131,52 @@ def relaxation(mass: Any, stiffness: Any) -> Any:
     return RELAXATION * CONTACT_TIME * (mass / stiffness) ** 0.4
 
 
+@kernel
+def at_usual_frequency(spring: Spring) -> Spring:
+    """Spring with the moduli of an impact at `USUAL_SPEED`, from one with the pair's.
+
+    In the second step of a contact moduli become those of its own speed; the yield compression
+    stays.
+    """
+    if not relaxes(spring.plate):
+        return spring
+    own, usual = spring.plate, 0.2 * math.log(USUAL_SPEED)
+    plate, faster, growth = relaxed(
+        own, 1.0, 0.4 * math.log(spring.mass / spring.stiffness) - usual
+    )
+    stiffness = spring.stiffness * math.exp(growth)
+    slower = plate.inelasticity / own.inelasticity if own.inelasticity > 0.0 else 1.0
+    return Spring(
+        spring.mass, stiffness, spring.mobility * slower,
+        spring.scale * math.exp(own.growth.yield_power * growth), spring.relaxation, spring.ratio,
+        PlateConstants(
+            plate.inelasticity * faster, plate.transit * faster, plate.x_at_one * (faster * faster),
+            plate.saturated / faster, plate.corrections,
+            ModulusGrowth(
+                0.4 * math.log(spring.mass / stiffness) - usual, own.growth.modulus_power,
+                own.growth.plate_power, own.growth.yield_power, own.growth.wave,
+                own.growth.wave_slope,
+            ),
+        ),
+        spring.levels,
+    )  # fmt: skip
+
+
 @kernel(cache=True)
 def resized(unit: Spring, radius: float) -> Spring:
-    """Spring of a bead of this radius [m], from that of radius 1 m on the same plate.
-
-    Moduli that depend on the frequency are those of an impact at `USUAL_SPEED`. In the second step
-    of a contact they become those of its own speed, but the yield compression stays.
-    """
-    mass, stiffness = unit.mass * (radius * radius * radius), unit.stiffness * math.sqrt(radius)
-    mobility, scale, plate = unit.mobility, unit.scale * radius, unit.plate
-    if relaxes(plate):
-        usual = 0.2 * math.log(USUAL_SPEED)
-        own, faster, growth = relaxed(plate, 1.0, 0.4 * math.log(mass / stiffness) - usual)
-        stiffness *= math.exp(growth)
-        scale *= math.exp(plate.growth.yield_power * growth)
-        mobility *= own.inelasticity / plate.inelasticity if plate.inelasticity > 0.0 else 1.0
-        plate = PlateConstants(
-            own.inelasticity * faster, own.transit * faster, own.x_at_one * (faster * faster),
-            own.saturated / faster, own.corrections,
-            ModulusGrowth(
-                0.4 * math.log(mass / stiffness) - usual, plate.growth.modulus_power,
-                plate.growth.plate_power, plate.growth.yield_power, plate.growth.wave,
-                plate.growth.wave_slope,
-            ),
-        )  # fmt: skip
-    return Spring(
-        mass, stiffness, mobility, scale, unit.relaxation * radius, unit.ratio * radius, plate,
-        unit.levels,
-    )  # fmt: skip
+    """Spring of a bead of this radius [m], from that of radius 1 m on the same plate."""
+    return at_usual_frequency(
+        Spring(
+            unit.mass * (radius * radius * radius),
+            unit.stiffness * math.sqrt(radius),
+            unit.mobility,
+            unit.scale * radius,
+            unit.relaxation * radius,
+            unit.ratio * radius,
+            unit.plate,
+            unit.levels,
+        )
+    )
 
 
 @kernel(entry=True)

@@ -106,3 +106,40 @@ def test_a_fit_finds_the_loss_factor_of_a_polymer_that_has_none():
     unknown = cl.fit(cl.Pair(replace(bead, loss_factor=None), "glass"), data, "loss_factor")
     assert unknown.values["loss_factor"] == pytest.approx(0.12, rel=0.02)
     assert 5e3 < unknown.pair.sphere.loss_factor[1] < 4e4
+
+
+def test_oblique_impacts_from_the_table_are_those_of_the_solver():
+    """Springs of contacts too shallow for a loss had a negative exponent: speeds grew to 1e45."""
+    bead = replace(polymer.FLOWING, youngs_modulus=2e9, loss_factor=(0.2, 1e4))
+    model = cl.ImpactModel(cl.Pair(bead, "glass"))
+    speed, mu = 0.3, 0.3
+    sliding = np.array([1e-4, 1e-2, 0.3, 1.0, 3.0, 10.0]) * mu * speed
+    table, exact = (
+        model.oblique(speed, sliding, 1e-3, 3e-3, mu, method=method)
+        for method in ("table", "solve")
+    )
+    np.testing.assert_allclose(table.sliding_speed, exact.sliding_speed, atol=2e-3 * mu * speed)
+    assert (np.abs(exact.sliding_speed) < sliding).all() and (exact.friction_energy > 0.0).all()
+
+
+def test_errors_of_a_plate_are_those_of_the_material_given():
+    """Its modulus is carried to the bead's frequency, by the loss factor that is uncertain."""
+    plate = replace(
+        polymer.SOFT, name="p", loss_factor=(0.5, 1e2), uncertainty={"loss_factor": 0.2}
+    )
+    found = cl.ImpactModel(cl.Pair(polymer.SOFT, plate)).uncertainty(1.0, 1e-3, 5e-3).restitution
+    ends = [
+        cl.ImpactModel(
+            cl.Pair(polymer.SOFT, replace(plate, loss_factor=(0.5 * math.exp(z), 1e2)))
+        ).solve(1.0, 1e-3, 5e-3).restitution
+        for z in (-0.2, 0.2)
+    ]  # fmt: skip
+    width = 0.5 * abs(ends[1] - ends[0])
+    assert found.causes["loss factor of the plate"] == pytest.approx(width, rel=1e-3)
+
+
+def test_a_prior_needs_a_loss_factor_that_was_given():
+    data = {"speed": [1.0, 2.0], "radius": 1e-3, "thickness": 1e-2, "restitution": [0.8, 0.79]}
+    pair = cl.Pair(replace(polymer.SOFT, loss_factor=None), "glass")
+    with pytest.raises(ValueError, match="loss_factor has no value"):
+        cl.fit(pair, data, "loss_factor", priors={"loss_factor": 0.01})

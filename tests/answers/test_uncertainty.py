@@ -79,9 +79,8 @@ def test_the_band_is_that_of_random_pairs(case):
     flat = cl.Rebound(**{name: np.ravel(values) for name, values in vars(hit).items()})
     ratio = np.broadcast_to(1e-3 / np.array(thickness), np.shape(hit.flags)).ravel()
     law = law_errors.law_errors(model.force_law, pair, flat, ratio).reshape(3, *np.shape(hit.flags))
-    law /= [getattr(hit, name) for name in answers]
-    found = np.array(hits) * np.exp(law * rows[:, -1, None, None, None])
-    found[:, 0] = np.minimum(found[:, 0], 1.0)
+    found = np.array(hits) + law * rows[:, -1, None, None, None]
+    found[:, 0] = np.clip(found[:, 0], 0.0, 1.0)
     expected = np.quantile(found, norm.cdf([-1.0, 1.0]), axis=0)
     named = dict(zip(("speed_error", "radius_error", "thickness_error"), sizes, strict=False))
     bands = model.uncertainty(speed, 1e-3, thickness, **named)
@@ -94,7 +93,8 @@ def test_the_band_is_that_of_random_pairs(case):
 
 
 def test_without_errors_only_the_law_is_uncertain():
-    model = cl.ImpactModel(cl.Pair("stainless-steel-304", "glass"))
+    steel = dataclasses.replace(cl.material("stainless-steel-304"), uncertainty={})
+    model = cl.ImpactModel(cl.Pair(steel, "glass"))
     bands, hit = model.uncertainty(3.0, 1e-3, 5e-3), model.solve(3.0, 1e-3, 5e-3)
     for (name, band), rms in zip(
         vars(bands).items(), law_errors.MODEL_ERRORS["fem"][0], strict=True
@@ -163,3 +163,11 @@ def test_the_stated_errors_of_metals_that_harden_are_those_beside_finite_element
     found = acceptance.members(acceptance.TARGETS["metals"])
     rms = np.sqrt(np.mean(np.array([one.errors[:3] for one in found]) ** 2, axis=0))
     assert rms == pytest.approx(law_errors.HARDENING_ERRORS, rel=0.01)
+
+
+def test_the_range_of_a_cor_near_zero_is_as_wide_as_the_law_is_wrong():
+    """It was 1e-52 to 1 where the law's error is larger than the COR."""
+    steel = dataclasses.replace(cl.material("carbon-steel-1020"), uncertainty={})
+    cor = cl.ImpactModel(cl.Pair(steel, "glass")).uncertainty(1.0, 1e-3, 0.25e-3).restitution
+    assert cor.low < 1e-3 and 0.0 < cor.high < 0.006
+    assert cor.causes == {"model": pytest.approx(0.0169 * 0.3)}

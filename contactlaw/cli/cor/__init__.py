@@ -57,10 +57,13 @@ def _error(text: str) -> tuple[str, float]:
 def _model(arguments: argparse.Namespace) -> ImpactModel:
     """Model of the given materials, with their errors."""
     pair, given = chosen.pair(arguments), (arguments.sphere_error, arguments.plate_error)
-    bodies = (
-        dataclasses.replace(body, uncertainty={**body.uncertainty, **dict(errors)})
-        for body, errors in zip((pair.sphere, pair.plate), given, strict=True)
-    )
+    bodies = []
+    for body, errors in zip((pair.sphere, pair.plate), given, strict=True):
+        changed = dataclasses.replace(body, uncertainty={**body.uncertainty, **dict(errors)})
+        for name, _ in errors:
+            if name not in changed.uncertainty:
+                raise ValueError(f"{name}: {body.name!r} has no value that could have an error")
+        bodies.append(changed)
     return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
 
 

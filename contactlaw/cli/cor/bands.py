@@ -58,18 +58,23 @@ def explained(band: Band, pair: Pair) -> Iterator[str]:
 
 
 def left_out(band: Band, pair: Pair) -> str:
-    """Name the strengths without an error: they are not in the band, and often matter most."""
+    """Name what is not in the band and often matters most: unknown errors, viscosity."""
     roles = {"the bead": pair.sphere, "the plate": pair.plate}
-    names = [
-        role
-        for role, body in roles.items()
-        if body.strength is not None
-        and not body.uncertainty.keys() & {"yield_strength", "hardness"}
-    ]
-    if not names or meaning(band) is not _OF_ALL:
-        return ""
-    subject, verb = ("strength", "has") if len(names) == 1 else ("strengths", "have")
-    return f" (the {subject} of {' and '.join(names)} {verb} none)"
+    parts, names = (
+        [],
+        [
+            role
+            for role, body in roles.items()
+            if body.strength is not None
+            and not body.uncertainty.keys() & {"yield_strength", "hardness"}
+        ],
+    )
+    if names and meaning(band) is _OF_ALL:
+        subject, verb = ("strength", "has") if len(names) == 1 else ("strengths", "have")
+        parts.append(f"the {subject} of {' and '.join(names)} {verb} none")
+    if any(body.is_polymer and not body.loss_factor for body in roles.values()):
+        parts.append("what a polymer loses by viscosity is not in it")
+    return f" ({'; '.join(parts)})" if parts else ""
 
 
 def meaning(band: Band) -> str:
