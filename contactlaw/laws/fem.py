@@ -155,6 +155,11 @@ class Given(NamedTuple):
             > 0.0
         )
 
+    @property
+    def relaxation(self) -> float:
+        """Exponent a = 2 delta/pi with which the modulus grows with frequency."""
+        return 2.0 / math.pi * math.atan(self.loss_factor)
+
     def ratios(self, strain: Any) -> tuple[Any, Any]:
         """E*/sigma of sphere and plate at a representative strain, or at an array of them."""
         return (
@@ -259,7 +264,7 @@ class Curves:
         # shares of the work and of the compression that come back, and of the energy lost before
         self.returned, self.recovered, self.lost_before = 1.0, 1.0, 0.0
         if given.loss_factor:
-            a = 2.0 / math.pi * math.atan(given.loss_factor)
+            a = given.relaxation
             sums = [a * float(np.polynomial.polynomial.polyval(a, x)) for x in found["losses"]]
             self.returned, self.recovered = math.exp(-sums[0]), math.exp(-sums[1])
             self.lost_before = sums[2]
@@ -459,7 +464,7 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
     """Law of a pair from the numbers of a fit."""
     named = given[: 10 if given.loss_factor else 9 if given.hardens else 5]
     if given.loss_factor:
-        weaker = math.exp(-found["pressure"] * 2.0 / math.pi * math.atan(given.loss_factor))
+        weaker = math.exp(-found["pressure"] * given.relaxation)
         ratios = {name: weaker * getattr(given, name) for name in _STRENGTHS}
         given = given._replace(**ratios)
     curves = (HardeningCurves if given.hardens else Curves)(given, found)

@@ -115,13 +115,8 @@ def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair
         if name == "yield_speed" and value == math.inf:
             print(f"{name:21s} none within the table")
         elif name not in ("speed", "radius", "thickness"):
-            print(
-                " ".join(
-                    filter(
-                        None, (f"{name:21s} {value:.6g}", unit, band and bands.in_brackets(band))
-                    )
-                )
-            )
+            shown = f"{name:21s} {value:.6g}", unit, band and bands.in_brackets(band)
+            print(" ".join(filter(None, shown)))
     if known:
         band = known.restitution
         said = f"{bands.meaning(band)}{bands.left_out(band, pair)}; half the width by cause"

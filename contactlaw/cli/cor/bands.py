@@ -60,15 +60,13 @@ def explained(band: Band, pair: Pair) -> Iterator[str]:
 def left_out(band: Band, pair: Pair) -> str:
     """Name what is not in the band and often matters most: unknown errors, viscosity."""
     roles = {"the bead": pair.sphere, "the plate": pair.plate}
-    parts, names = (
-        [],
-        [
-            role
-            for role, body in roles.items()
-            if body.strength is not None
-            and not body.uncertainty.keys() & {"yield_strength", "hardness"}
-        ],
-    )
+    known = {"yield_strength", "hardness"}
+    names = [
+        role
+        for role, body in roles.items()
+        if body.strength is not None and not body.uncertainty.keys() & known
+    ]
+    parts = []
     if names and meaning(band) is _OF_ALL:
         subject, verb = ("strength", "has") if len(names) == 1 else ("strengths", "have")
         parts.append(f"the {subject} of {' and '.join(names)} {verb} none")
