@@ -7,25 +7,28 @@ module of `contactlaw.answers`. Those that engines call are in `contactlaw.answe
 from __future__ import annotations
 
 import functools
-from typing import Any, Literal
+import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
-from contactlaw.answers.backend import Backend, SphereOnPlate
+from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
+from contactlaw.answers.edges import near_edges
+from contactlaw.answers.histories import Histories
 from contactlaw.answers.oblique import Oblique
 from contactlaw.answers.rated import solver, tabulated
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.speed_table import SpeedTable, speed_table
 from contactlaw.answers.tabulated import Border, Outside, TableArgument
 from contactlaw.answers.uncertainty import Uncertain
+from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
-from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
 from contactlaw.physical.scaling import law_of
@@ -33,7 +36,7 @@ from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
 
 
-class ImpactModel(Compiled, Oblique, Uncertain):
+class ImpactModel(Compiled, Histories, Oblique, Uncertain):
     """The modified Zener model of one pair of materials, ready to answer per collision.
 
     Adhesion, heating, rolling and drilling friction are outside it (see `Validity`).
@@ -143,8 +146,9 @@ class ImpactModel(Compiled, Oblique, Uncertain):
             self._border.clamped = count
 
     def restitution(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike
-    ) -> float | NDArray[np.float64]:
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+    ) -> float | NDArray[np.float64]:  # fmt: skip
         """Coefficient of restitution, from the table.
 
         Parameters
@@ -153,6 +157,11 @@ class ImpactModel(Compiled, Oblique, Uncertain):
             Normal approach speed [m/s], > 0.
         radius, thickness : array_like
             Radius of the sphere and thickness of the plate [m]; ``inf`` is the half-space.
+        edge : {"free", "supported", "clamped"}, optional
+            What holds the plate at its edge; a hole has a free one.
+        edge_distance : array_like, optional
+            Distance of the impact from that edge [m]; ``inf`` is a plate without edges. Impacts
+            near edges are integrated, whatever table there is. See docs/edges.md.
 
         Returns
         -------
@@ -175,7 +184,14 @@ class ImpactModel(Compiled, Oblique, Uncertain):
         >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
         >>> model.restitution([2.0, 10.0], radius=0.9e-3, thickness=0.5e-3).round(4)
         array([0.7156, 0.6211])
+        >>> model.restitution(2.0, 0.9e-3, 0.5e-3, edge_distance=[1e-3, 4e-3]).round(3)
+        array([0.592, 0.712])
         """
+        if edge_distance is not math.inf or edge != "free":
+            impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance)
+            if impacts.edge_distance is not None:
+                by = near_edges(self._tabulated, solver(self._bodies), impacts)
+                return by.rebounds(impacts).restitution
         # a short cut for engines that call this once per collision
         if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
             value = self._tabulated.restitution(speed, radius, thickness)
@@ -184,12 +200,15 @@ class ImpactModel(Compiled, Oblique, Uncertain):
         v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
         return shaped(self._tabulated.restitutions(v, r, h), shape)
 
-    def lookup(self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Rebound:
+    def lookup(
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+    ) -> Rebound:  # fmt: skip
         """Everything about the impact, from the table.
 
         Parameters
         ----------
-        speed, radius, thickness : array_like
+        speed, radius, thickness, edge, edge_distance
             As in `restitution`, which says what is refused.
 
         Returns
@@ -208,11 +227,13 @@ class ImpactModel(Compiled, Oblique, Uncertain):
         >>> f"{hit.peak_force:.1f} N for {hit.contact_time * 1e6:.2f} us"
         '28.3 N for 3.92 us'
         """
-        return self._tabulated.rebounds(Impacts.on_plates(speed, radius, thickness))
+        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance)
+        return near_edges(self._tabulated, solver(self._bodies), impacts).rebounds(impacts)
 
     def solve(
-        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10
-    ) -> Rebound:
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10,
+        edge: Edge = "free", edge_distance: ArrayLike = math.inf,
+    ) -> Rebound:  # fmt: skip
         """Everything about the impact, by integrating the equation: the reference.
 
         Parameters
@@ -221,6 +242,8 @@ class ImpactModel(Compiled, Oblique, Uncertain):
             As in `restitution`, but no table limits the range.
         rtol : float, optional
             Error allowed in each step of the integration, between 1e-13 and 1e-6.
+        edge, edge_distance
+            As in `restitution`.
 
         Returns
         -------
@@ -243,7 +266,9 @@ class ImpactModel(Compiled, Oblique, Uncertain):
         """
         if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
             raise ValueError(f"rtol: must be a float between 1e-13 and 1e-6, got {rtol!r}")
-        return solver(self._bodies, rtol).rebounds(Impacts.on_plates(speed, radius, thickness))
+        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance)
+        by = solver(self._bodies, rtol)
+        return near_edges(by, by, impacts).rebounds(impacts)
 
     def lookup_sphere_sphere(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike, other: Other = None
@@ -268,52 +293,6 @@ class ImpactModel(Compiled, Oblique, Uncertain):
         0.0
         """
         return self._beads(other).rebounds(speed, radius, other_radius)
-
-    def force_history(
-        self,
-        speed: ArrayLike,
-        radius: ArrayLike,
-        thickness: ArrayLike,
-        samples: int = 256,
-        method: Literal["table", "solve"] = "table",
-    ) -> ForceHistory:
-        """Force, compression, impulse and displacement of the plate over contacts.
-
-        Parameters
-        ----------
-        speed, radius, thickness : array_like
-            As in `restitution`.
-        samples : int, optional
-            Number of even times from first touch to separation, at least 2.
-        method : {"table", "solve"}, optional
-            Interpolate shapes of contacts in the table, or integrate the equation.
-
-        Returns
-        -------
-        ForceHistory
-            Arrays with the samples along the last axis, and flags. By ``"table"`` within 1e-4 of
-            the peak force of those by ``"solve"``. Contacts that unload along a capped law's
-            loading curve (``"stronge"`` up to 2.15 yield compressions) are integrated either way.
-
-        Raises
-        ------
-        ValueError
-            As in `restitution`; too few samples, or an unknown method.
-
-        Examples
-        --------
-        >>> import contactlaw as cl
-        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
-        >>> contact = model.force_history(speed=12.0, radius=0.9e-3, thickness=1e-3, samples=5)
-        >>> contact.force.round(1)
-        array([ 0. , 16.9, 28.2, 15.1,  0. ])
-        """
-        if not (isinstance(samples, int | np.integer) and 2 <= samples <= 1_000_000):
-            raise ValueError(f"samples: must be an integer from 2 to 1 000 000, got {samples!r}")
-        if method not in ("table", "solve"):
-            raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
-        backend: Backend = self._tabulated if method == "table" else solver(self._bodies)
-        return backend.histories(Impacts.on_plates(speed, radius, thickness), samples)
 
     def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | NDArray[np.float64]:
         """Speed V_Y [m/s] from which bead or plate yields, whichever is first; ``inf`` for neither.

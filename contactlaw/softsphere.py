@@ -18,10 +18,13 @@ from contactlaw._jit import enable_caching, kernel
 from contactlaw.answers.backend import OutsideTableError, too_thin
 from contactlaw.answers.solver import RTOL, solved
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.edge import Edge
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.rate import factors, rated, strengthened
+from contactlaw.physical.rebound import edge_distances
 from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
+from contactlaw.stepping.edge import Near, near_edge
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import (
     FRICTION,
@@ -85,7 +88,20 @@ def _state_at(states: State, n: int) -> State:
         states.force[n],
         states.mobility[n],
         states.stiffening[n],
+        states.x1[n],
+        states.y1[n],
+        states.x2[n],
+        states.y2[n],
+        states.x3[n],
+        states.y3[n],
     )
+
+
+@kernel(inline=True)
+def _near_at(near: Near | None, n: int) -> Near | None:
+    if near is None:
+        return None
+    return Near(near.response, near.rate[n])
 
 
 @kernel
@@ -123,8 +139,9 @@ def _slide_all(
 
 @kernel(cache=True)
 def _advance_all(
-    law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float
-) -> int:
+    law: Array, springs: Spring, states: State, deepest: Array, overlap: Array, step: float,
+    near: Near | None,
+) -> int:  # fmt: skip
     """`advance` for arrays, in place; returns the index of an impossible overlap, else -1.
 
     The deepest possible overlap is measured from where the plate is: its displacement is added.
@@ -133,12 +150,15 @@ def _advance_all(
         if not -math.inf < overlap[n] <= deepest[n] + states.plate_displacement[n]:
             return n
     for n in range(overlap.size):
-        state = advance(law, _spring_at(springs, n), _state_at(states, n), overlap[n], step)
+        spring, state, edge = _spring_at(springs, n), _state_at(states, n), _near_at(near, n)
+        state = advance(law, spring, state, overlap[n], step, edge)
         states.plate_displacement[n] = state.plate_displacement
         states.largest_compression[n] = state.largest_compression
         states.force[n] = state.force
         states.mobility[n] = state.mobility
         states.stiffening[n] = state.stiffening
+        states.x1[n], states.y1[n], states.x2[n] = state.x1, state.y1, state.x2
+        states.y2[n], states.x3[n], states.y3[n] = state.y2, state.x3, state.y3
     return -1
 
 
@@ -151,6 +171,8 @@ class Contacts:
         Materials and law.
     radius, thickness : array_like
         Of the beads and of their plates [m]; broadcast to one entry per contact.
+    edge, edge_distance
+        As in `ImpactModel.restitution`.
 
     Raises
     ------
@@ -180,9 +202,13 @@ class Contacts:
     True
     """
 
-    def __init__(self, model: ImpactModel, radius: ArrayLike, thickness: ArrayLike) -> None:
-        r, h, _ = broadcast(radius=radius, thickness=thickness)
+    def __init__(
+        self, model: ImpactModel, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
+    ) -> None:  # fmt: skip
+        r, h, s, _ = broadcast(radius=radius, thickness=thickness, edge_distance=edge_distance)
         check(radius=r, thickness=h)
+        self._near = near_edge(model.pair.plate, h, edge, edge_distances(edge, s, h))
         law = model.force_law
         contact = sphere_on_plate(model.pair, law, r, h)
         elastic = contact.yield_compression == math.inf
@@ -267,7 +293,9 @@ class Contacts:
                 f"step: must be positive and at most {self._longest:.3g} s, far longer than any "
                 f"contact, got {step!r}; contactlaw.softsphere.time_step advises one"
             )
-        wrong = _advance_all(self._law, self._springs, self._states, self._diameters, overlap, step)
+        wrong = _advance_all(
+            self._law, self._springs, self._states, self._diameters, overlap, step, self._near
+        )
         if wrong >= 0:
             self._refuse(overlap[wrong], wrong)
         self._overlap[:], self._step = overlap, step

@@ -34,14 +34,16 @@ LAYERS = [
 ]
 # Within a folder without units, the same: the order of its files.
 FILES = {
-    "equation": ["force", "outcome", "tangential", "corrections", "numbers", "plate", "legs",
-                 "losses", "motion", "creep", "integrator", "zener"],
+    "equation": ["force", "outcome", "tangential", "corrections", "edge", "numbers", "plate",
+                 "legs", "losses", "motion", "creep", "integrator", "zener"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "slides", "strengths", "file", "cache"],
-    "answers": ["backend", "solver", "tabulated", "rated", "beads", "compiled", "constant", "loads",
-                "oblique", "sensitivity", "speed_table", "law_errors", "uncertainty"],
+    "answers": ["backend", "solver", "tabulated", "rated", "edges", "beads", "compiled", "constant",
+                "histories", "loads", "oblique", "sensitivity", "speed_table", "law_errors",
+                "uncertainty"],
     "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
-    "stepping": ["strength", "spring", "energy", "friction", "plate_rows", "contact", "bead"],
+    "stepping": ["strength", "edge", "spring", "energy", "friction", "plate_rows", "contact",
+                 "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
                 "fit"],
     "export": ["c_header", "liggghts_wall"],

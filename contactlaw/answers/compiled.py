@@ -12,9 +12,12 @@ from numpy.typing import NDArray
 
 from contactlaw import _jit
 from contactlaw._jit import in_memory, kernel
+from contactlaw.answers import edges
 from contactlaw.answers.beads import Beads, Other
 from contactlaw.answers.tabulated import Tabulated
+from contactlaw.equation.edge import Edge
 from contactlaw.physical.arguments import scalars
+from contactlaw.physical.rebound import check_kind
 
 
 class Compiled:
@@ -93,6 +96,38 @@ class Compiled:
         """
         known = self._tabulated
         return _jitted(known.on_plate, known.packed, known.c_lam, known.c_chi)
+
+    def edge_kernel(self, edge: Edge = "free") -> Callable[[float, float, float, float], float]:
+        """COR near an edge as a numba-jitted ``f(speed, radius, thickness, edge_distance)``.
+
+        As `kernel`, but it integrates the equation, within 1e-5 of `solve`: 10 to 100 us per
+        impact, the more the nearer the edge is.
+
+        Parameters
+        ----------
+        edge : {"free", "supported", "clamped"}, optional
+            As in `restitution`.
+
+        Raises
+        ------
+        ValueError
+            If there is no such kind of edge.
+
+        Examples
+        --------
+        >>> import contactlaw as cl
+        >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+        >>> round(model.edge_kernel("free")(2.0, 0.9e-3, 0.5e-3, 1e-3), 3)
+        0.592
+        """
+        check_kind(edge)
+        if edge not in self._edge_kernels:
+            self._edge_kernels[edge] = edges.kernel_near(self._tabulated.bodies, edge)
+        return self._edge_kernels[edge]
+
+    @functools.cached_property
+    def _edge_kernels(self) -> dict[str, Callable[[float, float, float, float], float]]:
+        return {}
 
     @functools.cached_property
     def _c_function(self) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable
 from typing import Any, Literal
 
@@ -11,13 +12,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import in_memory, kernel, switched_off
 from contactlaw.answers.backend import Backend
+from contactlaw.answers.edges import near_edges
 from contactlaw.answers.rated import solver
 from contactlaw.answers.tabulated import Tabulated
+from contactlaw.equation.edge import Edge
 from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts
+from contactlaw.physical.rebound import Impacts, edge_distances
 from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
@@ -43,6 +46,8 @@ class Oblique:
         thickness: ArrayLike,
         friction: ArrayLike,
         method: Literal["table", "solve"] = "table",
+        edge: Edge = "free",
+        edge_distance: ArrayLike = math.inf,
     ) -> ObliqueRebound:
         """Everything about an oblique impact.
 
@@ -59,6 +64,8 @@ class Oblique:
             Coulomb's coefficient of friction between bead and plate [-], from 0 to 1000.
         method : {"table", "solve"}, optional
             Interpolate in a table, which takes seconds to make once, or integrate.
+        edge, edge_distance
+            As in `ImpactModel.restitution`.
 
         Returns
         -------
@@ -82,14 +89,15 @@ class Oblique:
         """
         if method not in ("table", "solve"):
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
-        v, s, r, h, mu, shape = broadcast(
+        v, s, r, h, mu, near, shape = broadcast(
             speed=speed, sliding_speed=sliding_speed, radius=radius, thickness=thickness,
-            friction=friction,
+            friction=friction, edge_distance=edge_distance,
         )  # fmt: skip
         check(speed=v, radius=r, thickness=h, sliding_speed=s, friction=mu)
-        bodies, impacts = self._tabulated.bodies, Impacts(v, r, h, shape)
-        backend: Backend = self._tabulated if method == "table" else solver(bodies)
-        return answer(backend, bodies.pair, impacts, mu, s)
+        bodies = self._tabulated.bodies
+        impacts = Impacts(v, r, h, shape, edge, edge_distances(edge, near, h))
+        by: Backend = self._tabulated if method == "table" else solver(bodies)
+        return answer(near_edges(by, solver(bodies), impacts), bodies.pair, impacts, mu, s)
 
     def collide(
         self,

@@ -10,7 +10,8 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
@@ -24,9 +25,10 @@ from contactlaw.answers.backend import (
     too_fast,
     too_thin,
 )
-from contactlaw.answers.solver import RTOL, Solver, histories, slid, within
+from contactlaw.answers.solver import RTOL, Solver, edges_near, histories_and_path, slid, within
 from contactlaw.answers.tabulated import Border, TableArgument, Tabulated
 from contactlaw.equation import outcome, zener
+from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import Extremes, Outcome
 from contactlaw.laws import Law, fem
@@ -78,9 +80,14 @@ def stronger(bodies: SphereOnPlate, factor: float) -> SphereOnPlate:
     return SphereOnPlate(pair, law_for_pair(pair, bodies.law))
 
 
-def part(impacts: Impacts, some: Some) -> Impacts:
-    """Choose some of the impacts."""
-    return Impacts(impacts.speed[some], impacts.radius[some], impacts.thickness[some], (some.size,))
+@contextmanager
+def renumbered(some: Some) -> Iterator[None]:
+    """Make errors about one of some impacts name it by its number among all."""
+    try:
+        yield
+    except (OutsideTableError, UnsolvedError) as error:
+        impact, *rest = error.args
+        raise type(error)(int(some[impact]), *rest) from None
 
 
 def merged(parts: Iterable[tuple[Some, Rebound]], impacts: Impacts) -> Rebound:
@@ -95,6 +102,18 @@ def merged(parts: Iterable[tuple[Some, Rebound]], impacts: Impacts) -> Rebound:
     return Rebound(**named, flags=flags)
 
 
+def merged_histories(parts: Sequence[tuple[Some, ForceHistory]], impacts: Impacts) -> ForceHistory:
+    """Put histories of some of the impacts together."""
+    samples, flags = parts[0][1].time.shape[-1], np.empty(impacts.speed.size, dtype=np.int64)
+    columns = np.empty((len(ForceHistory._fields), impacts.speed.size, samples))
+    for some, found in parts:
+        columns[:, some], flags[some] = found, found.flags
+    whole = *(impacts.shape or ()), samples
+    together = ForceHistory(*(values.reshape(whole) for values in columns))
+    together.flags = shaped_flags(flags, impacts.shape)
+    return together
+
+
 class Solved(NamedTuple):
     """Integrated impacts whose pair is stronger by one factor."""
 
@@ -104,6 +123,7 @@ class Solved(NamedTuple):
     contact: ContactConstants
     units: Numbers
     outcome: Outcome
+    edges: Edges | None
 
     def rebound(self) -> Rebound:
         """Everything about the impacts."""
@@ -111,7 +131,7 @@ class Solved(NamedTuple):
         unclamped = self.units.inelasticity, self.units.yield_ratio
         return rebound(
             self.bodies.law.data, self.bodies.limits, self.impacts, self.units.time,
-            self.contact.mass, unclamped, self.outcome, flags,
+            self.contact.mass, unclamped, self.outcome, flags, self.edges,
         )  # fmt: skip
 
 
@@ -134,19 +154,17 @@ def solved(
     groups = np.split(among[np.argsort(which, kind="stable")], np.cumsum(np.bincount(which))[:-1])
     for one, some in zip(each.tolist(), groups, strict=True) if each.size else [(1.0, among)]:
         here = stronger(bodies, one)
-        at, these = contact(here, some), part(impacts, some)
+        at, these = contact(here, some), impacts.part(some)
         units = scales(at, these.speed)
-        try:
-            found = within(here.law, units, rtol, extent, few)
-        except (OutsideTableError, UnsolvedError) as error:
-            impact, *rest = error.args
-            raise type(error)(int(some[impact]), *rest) from None
-        yield Solved(some, here, these, at, units, found)
+        edges = edges_near(here, at, units, these)
+        with renumbered(some):
+            found = within(here.law, units, rtol, extent, few, edges)
+        yield Solved(some, here, these, at, units, found, edges)
 
 
 def on_plates(impacts: Impacts) -> Contact:
     """Contacts of impacts on plates."""
-    return lambda bodies, some: bodies.contact(part(impacts, some))
+    return lambda bodies, some: bodies.contact(impacts.part(some))
 
 
 def first_yield(flow: Flow, radius: Array, at: Callable[[Array], Array]) -> Array:
@@ -179,27 +197,18 @@ class RatedSolver(Solver):
         changes, parts = np.empty_like(psi), []
         for one in self._parts(impacts):
             parts.append((one.some, one.rebound()))
-            changes[one.some] = slid(one.bodies, one.outcome, psi[one.some])
+            changes[one.some] = slid(one.bodies, one.outcome, psi[one.some], one.edges)
         return merged(parts, impacts), changes
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        columns = np.empty((len(ForceHistory._fields), impacts.speed.size, samples))
         parts = []
         for one in self._parts(impacts):
-            normal = one.rebound()
-            parts.append((one.some, normal))
-            contacts, lam = (
-                histories(one.bodies.law, one.outcome, samples),
-                one.outcome.inelasticity,
-            )
-            columns[:, one.some] = with_units(
-                contacts, one.units, lam, one.impacts.shape, normal.flags
-            )
-        whole = *(impacts.shape or ()), samples
-        found = ForceHistory(*(values.reshape(whole) for values in columns))
-        found.flags = merged(parts, impacts).flags
-        return found
+            contacts, path = histories_and_path(one.bodies.law, one.outcome, samples, one.edges)
+            lam, flags = one.outcome.inelasticity, one.rebound().flags
+            here = with_units(contacts, one.units, lam, one.impacts.shape, flags, path)
+            parts.append((one.some, here))
+        return merged_histories(parts, impacts)
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
@@ -391,7 +400,7 @@ class Nodes:
             mass = units.force[some] * units.time[some] / impacts.speed[some]
             unclamped = places.unclamped[some], units.yield_ratio[some]
             yield some, completed(
-                limits, part(impacts, some), units.time[some], mass, unclamped, at, extremes,
+                limits, impacts.part(some), units.time[some], mass, unclamped, at, extremes,
                 flags[some],
             )  # fmt: skip
 

@@ -16,13 +16,14 @@ from contactlaw.answers.backend import (
     too_fast,
     too_thin,
 )
-from contactlaw.equation import outcome, zener
+from contactlaw.equation import edge, outcome, zener
+from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import scales, yield_share
+from contactlaw.physical.scaling import ContactConstants, edges_of, scales, yield_share
 from contactlaw.table import slides
 from contactlaw.table.grid import Settings
 
@@ -30,6 +31,7 @@ Array = NDArray[np.float64]
 Places = NDArray[np.intp]  # indices of impacts in the flat arrays that the user gave
 
 RTOL = 1e-10  # error allowed per step, by default
+_CLOSE = 512  # samples from which the path of a sphere is known to 1e-6
 _CONVERGED = 1e-9  # largest size of ln(largest compression/d_Y) at the yield speed found
 _ROUNDS = 30
 _SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5
@@ -49,26 +51,27 @@ class Solver:
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        normal, found = self._solved(impacts)
-        return normal, slid(self.bodies, found, psi)
+        normal, found, edges = self._solved(impacts)
+        return normal, slid(self.bodies, found, psi, edges)
 
-    def _solved(self, impacts: Impacts) -> tuple[Rebound, Outcome]:
+    def _solved(self, impacts: Impacts) -> tuple[Rebound, Outcome, Edges | None]:
         contact = self.bodies.contact(impacts)
         units = scales(contact, impacts.speed)
-        found = within(self.bodies.law, units, self.rtol, self.extent)
+        edges = edges_near(self.bodies, contact, units, impacts)
+        found = within(self.bodies.law, units, self.rtol, self.extent, edges=edges)
         flags = np.zeros(impacts.speed.size, dtype=np.int64)
         unclamped = units.inelasticity, units.yield_ratio
         return rebound(
             self.bodies.law.data, self.bodies.limits, impacts, units.time, contact.mass, unclamped,
-            found, flags,
-        ), found  # fmt: skip
+            found, flags, edges,
+        ), found, edges  # fmt: skip
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        normal, found = self._solved(impacts)
+        normal, found, edges = self._solved(impacts)
         units = scales(self.bodies.contact(impacts), impacts.speed)
-        contacts = histories(self.bodies.law, found, samples)
-        return with_units(contacts, units, found.inelasticity, impacts.shape, normal.flags)
+        contacts, path = histories_and_path(self.bodies.law, found, samples, edges)
+        return with_units(contacts, units, found.inelasticity, impacts.shape, normal.flags, path)
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
@@ -119,15 +122,17 @@ class Solver:
 
 
 def within(
-    law: Law, units: Numbers, rtol: float, extent: Settings | None, few: bool = False
-) -> Outcome:
+    law: Law, units: Numbers, rtol: float, extent: Settings | None, few: bool = False,
+    edges: Edges | None = None,
+) -> Outcome:  # fmt: skip
     """Integrate impacts up to the first one that is outside the extent, which is refused."""
     lam, y = units.inelasticity, units.yield_ratio
     if extent is None:
-        return solved(law, lam, y, rtol, few=few)
+        return solved(law, lam, y, rtol, few=few, edges=edges)
     thin = extent.largest_inelasticity
     beyond = int(np.argmax(np.append(lam > thin, True)))
-    found = solved(law, lam[:beyond], y[:beyond], rtol, few=few)
+    inner = edge.part(edges, slice(beyond))
+    found = solved(law, lam[:beyond], y[:beyond], rtol, few=few, edges=inner)
     chi = found.elastic_compression / found.yield_ratio
     for n in np.flatnonzero(chi > extent.largest_overload)[:1].tolist():
         raise OutsideTableError(n, too_fast(chi[n], extent.largest_overload))
@@ -143,6 +148,7 @@ def solved(
     rtol: float,
     places: Places | None = None,
     few: bool = False,
+    edges: Edges | None = None,
 ) -> Outcome:
     """Outcomes at inelasticities and yield ratios, by integration.
 
@@ -150,22 +156,49 @@ def solved(
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
     out = outcome.at(lam, y)
-    status, n = zener.solve_all(law.data, rtol, out, few)
+    status, n = zener.solve_all(law.data, rtol, out, few, edges)
     if status != zener.OK:
         where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
         raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])
     return out
 
 
-def slid(bodies: SphereOnPlate, found: Outcome, psi: Array) -> Array:
+def edges_near(
+    bodies: SphereOnPlate, contact: ContactConstants, units: Numbers, impacts: Impacts
+) -> Edges | None:
+    """Edges near impacts, as the equation has them; None where there are none."""
+    if impacts.edge_distance is None:
+        return None
+    near = impacts.thickness, impacts.edge, impacts.edge_distance
+    return edges_of(bodies.pair.plate, contact, units, *near)
+
+
+def slid(bodies: SphereOnPlate, found: Outcome, psi: Array, edges: Edges | None = None) -> Array:
     """Change of the sliding speeds psi in impacts with these outcomes [mu V0], by integration."""
     kappa = bodies.pair.tangential_ratio
-    changed: Array = psi - slides.after(bodies.law, found, kappa, psi[:, None])[:, 0]
+    changed: Array = psi - slides.after(bodies.law, found, kappa, psi[:, None], edges=edges)[:, 0]
     return changed
 
 
 def histories(law: Law, found: Outcome, samples: int) -> History:
     """Contacts over time on Hertz's scale, by integration."""
-    out = outcome.history(found.inelasticity.size, samples)
-    zener.histories(law.data, found, RTOL, out)
-    return out
+    return histories_and_path(law, found, samples, None)[0]
+
+
+def histories_and_path(
+    law: Law, found: Outcome, samples: int, edges: Edges | None
+) -> tuple[History, Array | None]:
+    """Contacts over time on Hertz's scale, and near edges the displacement of the plate.
+
+    The plate is where the sphere would be without compression. The path of the sphere is the
+    integral of its speed, between samples that are close, by the cubic through speeds and forces.
+    """
+    every = 1 if edges is None else -(-_CLOSE // (samples - 1))
+    out = outcome.history(found.inelasticity.size, every * (samples - 1) + 1)
+    zener.histories(law.data, found, RTOL, out, edges)
+    if edges is None:
+        return out, None
+    step, u, f = out.time[:, 1:2], 1.0 - out.impulse, out.force
+    moved = 0.5 * step * (u[:, 1:] + u[:, :-1]) + step * step / 12.0 * (f[:, 1:] - f[:, :-1])
+    path = np.pad(np.cumsum(moved, axis=1), ((0, 0), (1, 0))) - out.compression
+    return History(*(values[:, ::every] for values in out)), path[:, ::every]

@@ -62,7 +62,9 @@ def creep(
     last = delta * math.exp(p * x)
     q *= math.pow(u / ((1.0 - last) * beta * state.f), 1.0 / b)
     time = x - delta * (math.expm1(p * x) / p if p != 0.0 else x)
-    there = motion.start(contact, leg, q, u, state.t + beta * time, state.work)
+    there = motion.start(contact, leg, q, u, state.t + beta * time, state.work, state.memory)
     spent = rebound_speed_squared(leg, state) - rebound_speed_squared(leg, there)
     wave = state.work.wave + spent / (2.0 * beta)
-    return ScaledState(q, u, there.t, losses.Work(wave), there.dq, there.du, there.f)
+    return ScaledState(
+        q, u, there.t, losses.Work(wave), there.dq, there.du, there.f, there.memory, there.dmemory
+    )

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation import force, legs, losses, motion, plate
+from contactlaw.equation import edge, force, legs, losses, motion, plate
 from contactlaw.equation.creep import creep, rebound_speed_squared
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import CUBIC, PIECES, POWER, Leg
@@ -90,26 +90,37 @@ def _step(
 
     The rates at its end are the first ones of the next step. The error is in tolerances.
     """
-    q, u = state.q, state.u
-    a1, b1, f1 = state.dq, state.du, state.f
+    q, u, m = state.q, state.u, state.memory
+    a1, b1, f1, k1 = state.dq, state.du, state.f, state.dmemory
     q2, u2 = q + h * (1 / 5 * a1), u + h * (1 / 5 * b1)
-    a2, b2, _ = motion.rates(contact, leg, kind, q2, u2)
+    m2 = edge.moved(m, h / 5, k1, 0.0, k1, 0.0, k1, 0.0, k1, 0.0, k1)
+    a2, b2, _, k2 = motion.rates(contact, leg, kind, q2, u2, m2)
     q3 = q + h * (3 / 40 * a1 + 9 / 40 * a2)
     u3 = u + h * (3 / 40 * b1 + 9 / 40 * b2)
-    a3, b3, f3 = motion.rates(contact, leg, kind, q3, u3)
+    m3 = edge.moved(m, 3 / 40 * h, k1, 9 / 40 * h, k2, 0.0, k1, 0.0, k1, 0.0, k1)
+    a3, b3, f3, k3 = motion.rates(contact, leg, kind, q3, u3, m3)
     q4 = q + h * (44 / 45 * a1 - 56 / 15 * a2 + 32 / 9 * a3)
     u4 = u + h * (44 / 45 * b1 - 56 / 15 * b2 + 32 / 9 * b3)
-    a4, b4, f4 = motion.rates(contact, leg, kind, q4, u4)
+    m4 = edge.moved(m, 44 / 45 * h, k1, -56 / 15 * h, k2, 32 / 9 * h, k3, 0.0, k1, 0.0, k1)
+    a4, b4, f4, k4 = motion.rates(contact, leg, kind, q4, u4, m4)
     q5 = q + h * (19372 / 6561 * a1 - 25360 / 2187 * a2 + 64448 / 6561 * a3 - 212 / 729 * a4)
     u5 = u + h * (19372 / 6561 * b1 - 25360 / 2187 * b2 + 64448 / 6561 * b3 - 212 / 729 * b4)
-    a5, b5, f5 = motion.rates(contact, leg, kind, q5, u5)
+    m5 = edge.moved(
+        m, 19372 / 6561 * h, k1, -25360 / 2187 * h, k2, 64448 / 6561 * h, k3, -212 / 729 * h, k4,
+        0.0, k1,
+    )  # fmt: skip
+    a5, b5, f5, k5 = motion.rates(contact, leg, kind, q5, u5, m5)
     q6 = q + h * (
         9017 / 3168 * a1 - 355 / 33 * a2 + 46732 / 5247 * a3 + 49 / 176 * a4 - 5103 / 18656 * a5
     )
     u6 = u + h * (
         9017 / 3168 * b1 - 355 / 33 * b2 + 46732 / 5247 * b3 + 49 / 176 * b4 - 5103 / 18656 * b5
     )
-    a6, b6, f6 = motion.rates(contact, leg, kind, q6, u6)
+    m6 = edge.moved(
+        m, 9017 / 3168 * h, k1, -355 / 33 * h, k2, 46732 / 5247 * h, k3, 49 / 176 * h, k4,
+        -5103 / 18656 * h, k5,
+    )  # fmt: skip
+    a6, b6, f6, k6 = motion.rates(contact, leg, kind, q6, u6, m6)
     w1, w3, w4, w5, w6 = (
         h * 35 / 384,
         h * 500 / 1113,
@@ -119,12 +130,17 @@ def _step(
     )
     q7 = q + (w1 * a1 + w3 * a3 + w4 * a4 + w5 * a5 + w6 * a6)
     u7 = u + (w1 * b1 + w3 * b3 + w4 * b4 + w5 * b5 + w6 * b6)
-    a7, b7, f7 = motion.rates(contact, leg, kind, q7, u7)
+    m7 = edge.moved(m, w1, k1, w3, k3, w4, k4, w5, k5, w6, k6)
+    a7, b7, f7, k7 = motion.rates(contact, leg, kind, q7, u7, m7)
     t = state.t + 2.0 * (w1 * q + w3 * q3 + w4 * q4 + w5 * q5 + w6 * q6)
+    response = contact.plate.response
     work = losses.gathered(
         state.work,
-        w1, losses.power(q, f1), w3, losses.power(q3, f3), w4, losses.power(q4, f4),
-        w5, losses.power(q5, f5), w6, losses.power(q6, f6),
+        w1, losses.power(q, f1, edge.drive(response, f1, m)),
+        w3, losses.power(q3, f3, edge.drive(response, f3, m3)),
+        w4, losses.power(q4, f4, edge.drive(response, f4, m4)),
+        w5, losses.power(q5, f5, edge.drive(response, f5, m5)),
+        w6, losses.power(q6, f6, edge.drive(response, f6, m6)),
     )  # fmt: skip
     error_q = (
         71 / 57600 * a1 - 71 / 16695 * a3 + 71 / 1920 * a4 - 17253 / 339200 * a5 + 22 / 525 * a6
@@ -133,7 +149,7 @@ def _step(
         71 / 57600 * b1 - 71 / 16695 * b3 + 71 / 1920 * b4 - 17253 / 339200 * b5 + 22 / 525 * b6
     ) - 1 / 40 * b7
     error = h * max(abs(error_q) * scale.per_q, abs(error_u) * scale.per_u)
-    return ScaledState(q7, u7, t, work, a7, b7, f7), error
+    return ScaledState(q7, u7, t, work, a7, b7, f7, m7, k7), error
 
 
 @kernel(inline=True)
@@ -162,7 +178,7 @@ def _follow(
                 event = TIME
             elif (
                 legs.unloads(leg)
-                and plate.moves(contact.plate)
+                and plate.only_recedes(contact.plate)
                 and trial.u * trial.u < scale.energy_low
                 and rebound_speed_squared(leg, trial) < scale.energy_low
             ):
@@ -219,16 +235,18 @@ def follow(
     spent = (LEAST_RESTITUTION * scale.u) ** 2
     steps = 0
     while True:
-        if legs.unloads(leg):
-            if plate.moves(contact.plate):
+        if legs.unloads(leg) and plate.endless(contact.plate):
+            if plate.only_recedes(contact.plate):
                 state = creep(contact, leg, state, level, until, spent)
             # a little less, because the last event _ENERGY_LOW was met only to 1e-9
             energy_low = (1.0 - 1e-6) * rebound_speed_squared(leg, state)
             while energy_low < scale.energy_low and scale.energy_low > spent:
                 scale = _finer(scale, spent)
             if energy_low < spent:
-                contact = ScaledContact(contact.law, plate.HELD)
-                state = motion.start(contact, leg, state.q, -abs(state.u), state.t, state.work)
+                contact = ScaledContact(contact.law, plate.held(contact.plate))
+                state = motion.start(
+                    contact, leg, state.q, -abs(state.u), state.t, state.work, state.memory
+                )
         if leg.kind == CUBIC:
             state, event, h, more = _follow(contact, leg, CUBIC, state, h, scale, level, until)
         elif leg.kind == POWER:
@@ -246,7 +264,7 @@ def _to_leg(contact: ScaledContact, leg: Leg, residual: float, state: ScaledStat
     q = state.q
     if leg.residual != residual:
         q = math.sqrt(max(q * q + (residual - leg.residual), 0.0))
-    return motion.start(contact, leg, q, state.u, state.t, state.work)
+    return motion.start(contact, leg, q, state.u, state.t, state.work, state.memory)
 
 
 @kernel

@@ -48,9 +48,9 @@ NO_WORK = Work(0.0)
 
 
 @kernel(inline=True)
-def power(q: float, f: float) -> Work:
-    """Work that each channel takes per ds."""
-    return Work(2.0 * q * f * f)
+def power(q: float, f: float, drive: float) -> Work:
+    """Work that each channel takes per ds, from the plate's speed over its mobility."""
+    return Work(2.0 * q * f * drive)
 
 
 @kernel(inline=True)

@@ -20,13 +20,14 @@ Legend. The law's scale: compressions in d_Y, forces in F_Y, time in T_Y = sqrt(
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
-from contactlaw.equation import legs, losses, plate
+from contactlaw.equation import edge, legs, losses, plate
+from contactlaw.equation.edge import Memory
 from contactlaw.equation.legs import Leg
 from contactlaw.equation.losses import Work
 from contactlaw.equation.plate import PlateMobility
@@ -51,28 +52,33 @@ class ScaledState(NamedTuple):
     dq: float  # dq/ds
     du: float  # du/ds
     f: float
+    memory: Any  # of the plate; None for one without edges
+    dmemory: Any
 
 
 @kernel(inline=True)
 def rates(
-    contact: ScaledContact, leg: Leg, kind: int, q: float, u: float
-) -> tuple[float, float, float]:
-    """dq/ds, du/ds and the force."""
+    contact: ScaledContact, leg: Leg, kind: int, q: float, u: float, memory: Memory | None
+) -> tuple[float, float, float, Memory | None]:
+    """dq/ds, du/ds, the force, and the change of the memory."""
     f = legs.force_on(leg, kind, contact.law, q)
-    return u - plate.speed(contact.plate, f), -2.0 * q * f, f
+    change = edge.remember(contact.plate.response, f, memory, 2.0 * q)
+    return u - plate.speed(contact.plate, f, memory), -2.0 * q * f, f, change
 
 
 @kernel
 def start(
-    contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: Work
-) -> ScaledState:
+    contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: Work,
+    memory: Memory | None,
+) -> ScaledState:  # fmt: skip
     """State on a leg, with the rates there."""
-    dq, du, f = rates(contact, leg, leg.kind, q, u)
-    return ScaledState(q, u, t, work, dq, du, f)
+    dq, du, f, dmemory = rates(contact, leg, leg.kind, q, u, memory)
+    return ScaledState(q, u, t, work, dq, du, f, memory, dmemory)
 
 
 @kernel
 def touch(contact: ScaledContact, speed: float) -> tuple[Leg, ScaledState]:
     """Leg that begins at first touch, and the state there."""
     leg = legs.up(contact.law, legs.FIRST)
-    return leg, start(contact, leg, 0.0, speed, 0.0, losses.NO_WORK)
+    memory = edge.at_touch(contact.plate.response)
+    return leg, start(contact, leg, 0.0, speed, 0.0, losses.NO_WORK, memory)

@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import at_first_as_python, kernel
-from contactlaw.equation import force, integrator, legs, losses, motion
+from contactlaw.equation import edge, force, integrator, legs, losses, motion
+from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import HERTZ
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
 from contactlaw.equation.legs import NO_CURVE
@@ -74,8 +75,9 @@ _NO_NOTES = Notes(*np.empty((5, 0, 0)))
 
 @kernel(cache=True)
 def _integrate(
-    goal: int, law: Array, lam: Array, y: Array, rtol: float, notes: Notes, out: Array
-) -> None:
+    goal: int, law: Array, lam: Array, y: Array, rtol: float, notes: Notes, out: Array,
+    edges: Edges | None,
+) -> None:  # fmt: skip
     """Integrate impacts: lam >= 0, y = d_Y/(V0 T_H) > 0, rtol the error allowed per step.
 
     The solution of each goes into a column of out, in the order of `Solution`.
@@ -83,18 +85,19 @@ def _integrate(
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
-            one = _impact(goal, law, lam[n], y[n], rtol, notes, n)
+            one = _impact(goal, law, lam[n], y[n], rtol, notes, n, edges)
             for k in range(len(one)):
                 out[k, n] = one[k]
 
 
 @kernel
 def _impact(
-    goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int
-) -> Solution:
+    goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int,
+    edges: Edges | None,
+) -> Solution:  # fmt: skip
     """Integrate one impact, and note points of its path in row n."""
     scale, h = integrator.scale_of(y, rtol)
-    contact = ScaledContact(law, PlateMobility(lam * scale.t))
+    contact = ScaledContact(law, PlateMobility(lam * scale.t, edge.near(edges, n, scale.t)))
     leg, state = motion.touch(contact, scale.u)
     curve, top, total, longest = NO_CURVE, state, 0, 0
     marks, noted, going = notes.at.shape[1], 0, True
@@ -126,6 +129,10 @@ def _impact(
         going = going and (goal < _AT_TIMES or noted < marks)
         if going and ends:
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
+    if goal == _TO_THE_END:
+        edge.look_back(
+            edges, n, contact.plate.response, state.memory, state.u, contact.plate.mobility
+        )
     dm = top.q * top.q
     residual, plastic, other = losses.at_the_contact(law, dm)
     lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
@@ -145,6 +152,18 @@ def _impact(
     )
 
 
+@kernel
+def restitution_near(
+    law: Array, response: Array, lam: float, y: float, coupling: float, rate: float, rtol: float
+) -> float:
+    """Restitution of one impact near an edge, see `Edges`; NaN if it does not solve."""
+    edges = Edges(response, np.full(1, coupling), np.full(1, rate), np.zeros(1))
+    none = np.empty((0, 0))
+    notes = Notes(none, none, none, none, none)
+    one = _impact(_TO_THE_END, law, lam, y, rtol, notes, 0, edges)
+    return one.restitution if one.status == OK else math.nan
+
+
 # Python takes 25 ms for an impact, the compiler six seconds and more.
 _integrate_few = at_first_as_python(_integrate, 3.0)
 
@@ -157,6 +176,7 @@ def _run(
     rtol: float,
     notes: Notes = _NO_NOTES,
     few: bool = False,
+    edges: Edges | None = None,
 ) -> Solution:
     """Integrate impacts, broadcasting lam and y; y is arbitrary for a law that never yields."""
     lams, ys = np.array(lam, np.float64, ndmin=1), np.array(y, np.float64, ndmin=1)
@@ -164,7 +184,7 @@ def _run(
         lams, ys = (each.copy() for each in np.broadcast_arrays(lams, ys))
     out = np.zeros((len(Solution._fields), lams.size))
     integrate = _integrate_few if few else _integrate
-    integrate(goal, law, lams, ys, rtol, notes, out)
+    integrate(goal, law, lams, ys, rtol, notes, out, edges)
     return Solution(*out)
 
 
@@ -180,7 +200,7 @@ def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
 
 
 def history(
-    law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, time: Array
+    law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, time: Array, edges: Edges | None = None
 ) -> tuple[Array, Array, Array]:
     """Force, compression and speed of the sphere at rising times [T_H] since first touch.
 
@@ -189,18 +209,20 @@ def history(
     """
     at = np.ascontiguousarray(np.atleast_2d(time))
     notes = Notes(at, *np.empty((4, *at.shape)))
-    status, n = failure(_run(_AT_TIMES, law, lam, y, rtol, notes).status)
+    status, n = failure(_run(_AT_TIMES, law, lam, y, rtol, notes, edges=edges).status)
     if status != OK:
         raise RuntimeError(f"the contact of impact {n} did not solve: {MESSAGES[status]}")
     f, w, u = (each.reshape(time.shape) for each in (notes.force, notes.compression, notes.speed))
     return f, w, u
 
 
-def histories(law: Array, outcome: Outcome, rtol: float, out: History) -> None:
+def histories(
+    law: Array, outcome: Outcome, rtol: float, out: History, edges: Edges | None = None
+) -> None:
     """Contacts at even times from touch to separation."""
     out.time[:] = outcome.contact_time[:, None] * np.linspace(0.0, 1.0, out.time.shape[1])
     lam, y = outcome.inelasticity, _scale(outcome.yield_ratio)
-    out.force[:], out.compression[:], speed = history(law, lam, y, rtol, out.time)
+    out.force[:], out.compression[:], speed = history(law, lam, y, rtol, out.time, edges)
     out.impulse[:] = 1.0 - speed
     out.force[:, -1] = 0.0
 
@@ -222,7 +244,9 @@ def shape(
     return _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes).status, notes.time, notes.speed
 
 
-def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) -> tuple[Any, Any]:
+def elastic_compression(
+    law: Array, lam: Any, rtol: float, few: bool = False, edges: Edges | None = None
+) -> tuple[Any, Any]:
     """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
 
     If the law is Hertz's up to yield, all elastic impacts have the same (Fig. 4 of the paper). If
@@ -230,7 +254,7 @@ def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) ->
     """
     hertz, before = force.is_hertz(law), np.ones(np.size(lam))
     for _ in range(100):
-        found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol, few=few)
+        found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol, few=few, edges=edges)
         w_m = found.peak_compression
         moved = ~(abs(w_m - before) < 1e-11 * before)
         if hertz or found.status.any() or not moved.any():
@@ -253,19 +277,23 @@ def _put(one: Solution, w_m: Array, out: Outcome) -> None:
     out.compression_ratio[:] = one.peak_compression / w_m
 
 
-def solve_all(law: Array, rtol: float, out: Outcome, few: bool = False) -> tuple[int, int]:
+def solve_all(
+    law: Array, rtol: float, out: Outcome, few: bool = False, edges: Edges | None = None
+) -> tuple[int, int]:
     """Solve the impacts with the inelasticities and yield ratios of `out`; see `failure`.
 
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
     y = _scale(out.yield_ratio)
-    one = _run(_TO_THE_END, law, out.inelasticity, y, rtol, few=few)
+    one = _run(_TO_THE_END, law, out.inelasticity, y, rtol, few=few, edges=edges)
     if one.status.any():
         return failure(one.status)
     w_m = one.peak_compression.copy()
     beyond = w_m > force.leaves_hertz(law) * y
     if beyond.any():
-        status, w_m[beyond] = elastic_compression(law, out.inelasticity[beyond], rtol, few)
+        status, w_m[beyond] = elastic_compression(
+            law, out.inelasticity[beyond], rtol, few, edge.part(edges, beyond)
+        )
         if status.any():
             failed, n = failure(status)
             return failed, int(np.flatnonzero(beyond)[n])

@@ -40,8 +40,8 @@ class ForceHistory(_Samples):
         a sum over the samples: above lambda = 3 the force has a long tail behind its peak.
     plate_displacement
         Displacement of the plate at the contact point [m]: its mobility times the impulse, with the
-        mobility that the law has for this impact. An infinite plate does not come back; a real one
-        does when the bending wave returns.
+        mobility that the law has for this impact. An endless plate does not come back; one with an
+        edge does when the bending wave returns.
     flags
         `Validity` limits that an impact exceeds, as in `Rebound`; no member of the tuple, since
         they have no samples.
@@ -56,18 +56,22 @@ def with_units(
     inelasticity: Array,
     shape: tuple[int, ...] | None,
     flags: Validity | NDArray[np.int64],
+    path: Array | None = None,
 ) -> ForceHistory:
     """Give contacts (n, samples) their units and the shape of the answer.
 
-    The inelasticity is that of the contacts, which at a table's border is not the impact's.
+    The inelasticity is that of the contacts, which at a table's border is not the impact's. Near
+    edges the displacement of the plate is given on Hertz's scale, by `path`.
     """
     scales = units.time, units.force, units.compression, units.force * units.time
     time, force, compression, impulse = (
         values * scale[:, None] for values, scale in zip(contacts, scales, strict=True)
     )
     whole = (*(shape or ()), time.shape[1])
-    # with the mobility that the equation had, lambda T_H/m
-    displacement = (inelasticity * units.compression)[:, None] * contacts.impulse
+    if path is None:  # the mobility that the equation had is lambda T_H/m
+        displacement = (inelasticity * units.compression)[:, None] * contacts.impulse
+    else:
+        displacement = path * units.compression[:, None]
     found = ForceHistory(
         *(values.reshape(whole) for values in (time, force, compression, impulse, displacement))
     )

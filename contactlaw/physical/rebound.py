@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -11,9 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation import outcome as outcomes
 from contactlaw.equation import zener
+from contactlaw.equation.edge import KINDS, Edges
 from contactlaw.equation.outcome import Extremes, Outcome
 from contactlaw.physical.arguments import broadcast, check, shaped
-from contactlaw.physical.validity import Limits, Validity, flags_of
+from contactlaw.physical.validity import Limits, Validity, edge_flags, flags_of
 
 Array = NDArray[np.float64]
 
@@ -66,13 +68,44 @@ class Impacts:
     radius: Array  # [m], R* of two spheres
     thickness: Array  # [m]
     shape: tuple[int, ...] | None
+    edge: str = "free"  # kind of the edges
+    edge_distance: Array | None = None  # [m]; None for plates without edges
 
     @staticmethod
-    def on_plates(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Impacts:
+    def on_plates(
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        edge: str = "free",
+        edge_distance: ArrayLike = math.inf,
+    ) -> Impacts:
         """Broadcast and check what the user gave."""
-        v, r, h, shape = broadcast(speed=speed, radius=radius, thickness=thickness)
+        v, r, h, s, shape = broadcast(
+            speed=speed, radius=radius, thickness=thickness, edge_distance=edge_distance
+        )
         check(speed=v, radius=r, thickness=h)
-        return Impacts(v, r, h, shape)
+        return Impacts(v, r, h, shape, edge, edge_distances(edge, s, h))
+
+    def part(self, some: NDArray[np.intp]) -> Impacts:
+        """Choose some of the impacts."""
+        near = None if self.edge_distance is None else self.edge_distance[some]
+        sizes = self.speed[some], self.radius[some], self.thickness[some]
+        return Impacts(*sizes, (some.size,), self.edge, near)
+
+
+def edge_distances(edge: str, distance: Array, thickness: Array) -> Array | None:
+    """Check distances from edges [m], inf for half-spaces; None if no plate has edges."""
+    check_kind(edge)
+    check(edge_distance=distance)
+    if not (distance < math.inf).any():
+        return None
+    return np.where(thickness < math.inf, distance, math.inf)
+
+
+def check_kind(edge: str) -> None:
+    """Refuse what is no kind of edge."""
+    if edge not in KINDS:
+        raise ValueError(f"edge: must be one of {', '.join(KINDS)}, got {edge!r}")
 
 
 class Units(NamedTuple):
@@ -131,6 +164,7 @@ def rebound(
     unclamped: tuple[Array, Array],
     outcome: Outcome,
     flags: NDArray[np.int64],
+    edges: Edges | None = None,
 ) -> Rebound:
     """Convert outcomes to SI units, with T_H [s] and effective masses [kg], and complete them.
 
@@ -139,6 +173,13 @@ def rebound(
     """
     found = outcomes.extremes(time.size)
     zener.extremes(law, outcome, found)
+    if edges is not None and impacts.edge_distance is not None:
+        deepest = outcome.compression_ratio * outcome.elastic_compression * impacts.speed * time
+        for n in range(flags.size):
+            flags[n] |= edge_flags(
+                impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge_distance[n],
+                edges.again[n],
+            )  # fmt: skip
     return completed(limits, impacts, time, mass, unclamped, outcome, found, flags)
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from contactlaw import laws
 from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, THIN, plate_corrections
+from contactlaw.equation.edge import Edges, response_of
 from contactlaw.equation.numbers import ELASTIC, ModulusGrowth, Numbers, PlateConstants, fill
 from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
@@ -263,6 +264,29 @@ def scales(contact: ContactConstants, speed: Array) -> Numbers:
     out = Numbers(*np.empty((len(Numbers._fields), v.size)))
     fill(contact.plate, mass, stiffness, yielding, v, ratio, out)
     return Numbers(*(values.reshape(given[0].shape) for values in out))
+
+
+NEAREST = 1e3  # T_H over tau from which on a contact feels the plate as if it were at the edge
+
+
+def wave_path(plate: Material) -> float:
+    """sqrt(D/(rho2 H)) over H [m/s]: in a time t a bending wave gets about sqrt(that H t) far."""
+    return math.sqrt(plate.plane_modulus / (12.0 * plate.density))
+
+
+def edges_of(
+    plate: Material, contact: ContactConstants, units: Numbers, thickness: Array, kind: str,
+    distance: Array,
+) -> Edges:  # fmt: skip
+    """Edges at these distances [m] from impacts, as the equation has them."""
+    with np.errstate(divide="ignore"):
+        rate = wave_path(plate) * thickness * units.time / np.square(distance)
+    return Edges(
+        response_of(kind, plate.poissons_ratio),
+        np.minimum(contact.mobility * contact.mass / (units.time * units.inelasticity), 1.0),
+        np.minimum(rate, NEAREST),
+        np.zeros(rate.size),
+    )
 
 
 def factors(pair: Pair, law: Law) -> PairConstants:

@@ -86,7 +86,13 @@ class Validity(enum.IntFlag):
     """A metal yields whose strength is known from its hardness alone: it is that at 8 % of strain,
     above that at which flow begins, so that the COR is an upper bound."""
 
-    ACCURACY = 7679
+    NEAR_EDGE = 8192
+    """Nearer to an edge than is described: the plate's thickness, or two radii of the contact."""
+    STRIKES_AGAIN = 16384
+    """The plate comes back and hits the sphere again, or recedes before it; the values are those of
+    the first strike."""
+
+    ACCURACY = 32255
     """All limits of accuracy."""
 
 
@@ -151,6 +157,14 @@ _WORDS = {
     Validity.FROM_HARDNESS: (
         "a metal yields whose strength is that at 8 % of strain, from its hardness",
         "take the COR for an upper bound, by how much is not known; give the exponent of hardening",
+    ),
+    Validity.NEAR_EDGE: (
+        "nearer to an edge than the plate is thick or two contacts are wide",
+        "take the values for estimates, the plate is no thin one there",
+    ),
+    Validity.STRIKES_AGAIN: (
+        "the plate comes back and strikes the sphere again",
+        "the values are those of the first strike, the sphere leaves faster than they say",
     ),
 }
 
@@ -310,7 +324,30 @@ def flags_of(
     return flags
 
 
-_THIN_PLATE, _FAST_IMPACT, _THICK_PLATE, _DEEP_CONTACT, _BENT_PLATE, _DAMAGE = (
+@kernel
+def edge_flags(
+    radius: float, thickness: float, compression: float, edge_distance: float, again: float
+) -> int:
+    """Flag what is due to the edge of a plate, from the largest compression [m]."""
+    flags = 0
+    # by Hertz's law the radius of the contact is sqrt(R d)
+    if edge_distance < max(2.0 * math.sqrt(radius * compression), thickness):
+        flags |= _NEAR_EDGE
+    if again > 0.0:
+        flags |= _STRIKES_AGAIN
+    return flags
+
+
+(
+    _THIN_PLATE,
+    _FAST_IMPACT,
+    _THICK_PLATE,
+    _DEEP_CONTACT,
+    _BENT_PLATE,
+    _DAMAGE,
+    _NEAR_EDGE,
+    _STRIKES_AGAIN,
+) = (
     int(flag)
     for flag in (
         Validity.THIN_PLATE,
@@ -319,6 +356,8 @@ _THIN_PLATE, _FAST_IMPACT, _THICK_PLATE, _DEEP_CONTACT, _BENT_PLATE, _DAMAGE = (
         Validity.DEEP_CONTACT,
         Validity.BENT_PLATE,
         Validity.DAMAGE,
+        Validity.NEAR_EDGE,
+        Validity.STRIKES_AGAIN,
     )
 )
 

@@ -22,7 +22,15 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force
-from contactlaw.stepping.spring import FEWEST_STEPS, Spring, State, advance
+from contactlaw.stepping.edge import Near, weighted
+from contactlaw.stepping.spring import (
+    FEWEST_STEPS,
+    Spring,
+    State,
+    advance,
+    memory_of,
+    with_memory,
+)
 
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -44,8 +52,9 @@ _FIRST_OVERLAP = 1.01
 
 @kernel
 def step(
-    law: Array, spring: Spring, state: State, x: float, u: float, h: float, before: float
-) -> tuple[State, float]:
+    law: Array, spring: Spring, state: State, x: float, u: float, h: float, before: float,
+    near: Near | None = None,
+) -> tuple[State, float]:  # fmt: skip
     """State at the end of a step, and a force to add to the state's in this step alone.
 
     Verlet's position differs from the sphere's by h^2 f/(12 m), see `contactlaw.softsphere`, and so
@@ -54,14 +63,17 @@ def step(
     """
     f0, u2 = state.force, state.plate_displacement
     shift = (h - before) * (h + before) / (12.0 * spring.mass) if f0 > 0.0 else 0.0
-    last = State(
-        u2 - shift * f0, state.largest_compression, f0, state.mobility, state.stiffening
-    )  # fmt: skip
-    new = advance(law, spring, last, x, h)
+    last = with_memory(
+        State(u2 - shift * f0, state.largest_compression, f0, state.mobility, state.stiffening),
+        memory_of(state),
+    )
+    new = advance(law, spring, last, x, h, near)
     f1 = new.force
     if f1 > 0.0 and shift != 0.0:
         u2 = new.plate_displacement + shift * (f1 - f0)
-        new = State(u2, new.largest_compression, f1, new.mobility, new.stiffening)
+        new = with_memory(
+            State(u2, new.largest_compression, f1, new.mobility, new.stiffening), memory_of(new)
+        )
         return new, spring.mass * shift * (f1 - f0) / (h * h)
     first = f1 > 0.0 and state.largest_compression == 0.0
     if first and x <= _FIRST_OVERLAP * u * h and force.is_hertz(law):
@@ -79,11 +91,17 @@ def _first_step_correction(spring: Spring, x: float, path: float) -> Any:
 
 
 @kernel
-def wave_energy(spring: Spring, last: State, state: State, h: float) -> Any:
-    """Energy that the plate takes in a step [J]."""
+def wave_energy(
+    spring: Spring, last: State, state: State, h: float, near: Near | None = None
+) -> Any:
+    """Energy that the plate takes in a step, less what it gives back [J]."""
     mobility = state.mobility if state.stiffening > 0.0 else spring.mobility
     speed_0 = mobility * last.force - last.plate_displacement / spring.relaxation
     speed_1 = mobility * state.force - state.plate_displacement / spring.relaxation
+    if near is not None and near.rate > 0.0:
+        thin = min(spring.mobility, mobility)
+        speed_0 += thin * weighted(near, memory_of(last))
+        speed_1 += thin * weighted(near, memory_of(state))
     return 0.5 * h * (last.force * speed_0 + state.force * speed_1)
 
 

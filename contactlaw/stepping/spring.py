@@ -1,8 +1,9 @@
 """Normal force of a sphere on a plate, step by step.
 
 In each step an engine knows the overlap of the sphere with the undeformed plate; `advance` gives
-the force and keeps five numbers per contact, `State`. The plate's displacement u2 is advanced by
-the trapezoidal rule, implicit in the force F' at the end of the step,
+the force and keeps five numbers per contact, `State`, and near an edge of the plate six more
+(`contactlaw.stepping.edge`). The plate's displacement u2 is advanced by the trapezoidal rule,
+implicit in the force F' at the end of the step,
 
     u2' = u2 + alpha dt (F + F')/2,
     d'  = x' - u2' + alpha dt (F' - F)/12 - dt^2 F'/(12 m),    F' = F(d'; dm).
@@ -42,6 +43,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.corrections import CONTACT_TIME, is_thin
+from contactlaw.equation.edge import Memory
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import (
@@ -55,6 +57,7 @@ from contactlaw.equation.numbers import (
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import sphere_on_plate
 from contactlaw.stepping import strength
+from contactlaw.stepping.edge import Near, recalled, remembered
 
 Array = NDArray[np.float64]
 
@@ -80,6 +83,13 @@ class State(NamedTuple):
     # stiffness of the contact over the spring's; 0 where the spring's holds; of a pair with a rate
     # it holds the strength, too
     stiffening: Any = 0.0
+    # memory of a plate near an edge [N], see `contactlaw.equation.edge`
+    x1: Any = 0.0
+    y1: Any = 0.0
+    x2: Any = 0.0
+    y2: Any = 0.0
+    x3: Any = 0.0
+    y3: Any = 0.0
 
 
 class Spring(NamedTuple):
@@ -105,7 +115,22 @@ class Largest(NamedTuple):
     peak: float
 
 
-PARTED = State(0.0, 0.0, 0.0, 0.0, 0.0)
+PARTED = State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@kernel(inline=True)
+def with_memory(state: State, m: Memory) -> State:
+    """State with this memory of the plate."""
+    return State(
+        state.plate_displacement, state.largest_compression, state.force, state.mobility,
+        state.stiffening, m.x1, m.y1, m.x2, m.y2, m.x3, m.y3,
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def memory_of(state: State) -> Memory:
+    """Memory of the plate."""
+    return Memory(state.x1, state.y1, state.x2, state.y2, state.x3, state.y3)
 
 
 def unit_spring(model: ImpactModel, thickness: float) -> Spring:
@@ -279,7 +304,9 @@ def _balance(
 
 
 @kernel(cache=True)
-def advance(law: Array, spring: Spring, state: State, overlap: float, step: float) -> State:
+def advance(
+    law: Array, spring: Spring, state: State, overlap: float, step: float, near: Near | None = None
+) -> State:
     """State at the end of a step [s], from the overlap [m] at its end.
 
     The force to apply is the state's. Compression that falls, or grows again below its largest
@@ -302,7 +329,12 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     moved = 0.5 * step * mobility / (1.0 + leak)  # motion of the plate per force at either end
     known = state.plate_displacement * (1.0 - leak) / (1.0 + leak) + moved * state.force
     rule_error = moved / 6.0  # the trapezoidal rule's error in `moved`
-    b = (moved - rule_error + step * step / (12.0 * spring.mass)) * unit / scale
+    # the plate of a contact gives way no more than a thin one, so what returns is limited by it
+    sent = 0.5 * step * min(spring.mobility, mobility)
+    before_edge = recalled(near, memory_of(state), state.force, step)
+    known += sent * before_edge.known
+    by_edge = sent * before_edge.per_force
+    b = (moved + by_edge - rule_error + step * step / (12.0 * spring.mass)) * unit / scale
     r = (overlap - known - rule_error * state.force) / scale
     dm = state.largest_compression / scale
     # Whether the contact is at compression dm, on the loading curve.
@@ -329,7 +361,9 @@ def advance(law: Array, spring: Spring, state: State, overlap: float, step: floa
     force = f * unit
     if levels is not None and stiffening > 0.0:
         stiffening = strength.with_place(stiffening, place)
-    return State(known + moved * force, dm * scale, force, own, stiffening)
+    moved += by_edge
+    new = State(known + moved * force, dm * scale, force, own, stiffening)
+    return with_memory(new, remembered(before_edge, force))
 
 
 @kernel
@@ -365,8 +399,11 @@ def nearest_level(
             spring.mass, spring.stiffness, spring.mobility, growth * spring.scale,
             spring.relaxation, spring.ratio, spring.plate, spring.levels,
         ),
-        State(
-            state.plate_displacement + shift, state.largest_compression, state.force,
-            state.mobility, stiffening,
+        with_memory(
+            State(
+                state.plate_displacement + shift, state.largest_compression, state.force,
+                state.mobility, stiffening,
+            ),
+            memory_of(state),
         ),
     )  # fmt: skip

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import outcome, tangential, zener
+from contactlaw.equation.edge import Edges
 from contactlaw.equation.outcome import Outcome
 from contactlaw.equation.tangential import POINT
 from contactlaw.laws import Law
@@ -85,11 +86,12 @@ def _changes(law: Law, out: Outcome, kappa: float) -> Array:
 
 
 def after(
-    law: Law, found: Outcome, kappa: float, psi: Array, samples: int = 801, springs: int = 64
-) -> Array:
+    law: Law, found: Outcome, kappa: float, psi: Array, samples: int = 801, springs: int = 64,
+    edges: Edges | None = None,
+) -> Array:  # fmt: skip
     """Speeds of the contact points after impacts (impacts, speeds) [mu V0], by integration."""
     path = outcome.history(found.inelasticity.size, samples)
-    zener.histories(law.data, found, _RTOL, path)
+    zener.histories(law.data, found, _RTOL, path, edges)
     speed = np.array(psi)
     tangential.slide_all(law.data, found.yield_ratio, kappa, path, speed, springs)
     return speed

@@ -125,7 +125,7 @@ def test_the_series_errs_as_the_square_of_its_number():
         beta = contact.plate.mobility
         fast = 0.5 * (beta + math.sqrt(beta**2 - 4.0))  # s^2 - beta s + 1 = 0
         slow = 1.0 / fast
-        state = motion.start(contact, leg, math.sqrt(slow), 1.0, 0.0, losses.NO_WORK)  # f = slow u
+        state = motion.start(contact, leg, math.sqrt(slow), 1.0, 0.0, losses.NO_WORK, None)  # f = slow u
         there = creep.creep(contact, leg, state, 0.0, 5.0 * beta, 1e-18)
         assert 4.9 * beta < there.t < 5.0 * beta
         decayed = math.exp(-slow * there.t)

@@ -1,0 +1,105 @@
+"""Answers near the edges of plates: these impacts are integrated, all others left as they are."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import in_memory, kernel
+from contactlaw.answers.backend import Backend, SphereOnPlate
+from contactlaw.answers.rated import merged, merged_histories, renumbered
+from contactlaw.answers.solver import Solver
+from contactlaw.equation import zener
+from contactlaw.equation.edge import response_of
+from contactlaw.equation.numbers import numbers
+from contactlaw.physical.history import ForceHistory
+from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.scaling import NEAREST, wave_path
+from contactlaw.table import lookup
+
+Array = NDArray[np.float64]
+Some = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class NearEdges:
+    """Integrates the impacts that have an edge, and leaves all others to another backend."""
+
+    others: Backend
+    near: Solver
+
+    def rebounds(self, impacts: Impacts) -> Rebound:
+        """Everything about impacts."""
+        return merged(_each(self, impacts, lambda by, part, _: by.rebounds(part)), impacts)
+
+    def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
+        """Everything about the normal part, and the change of the sliding speed [mu V0]."""
+        found = _each(self, impacts, lambda by, part, some: by.oblique(part, psi[some]))
+        changes = np.empty_like(psi)
+        for some, (_, changed) in found:
+            changes[some] = changed
+        return merged(((some, normal) for some, (normal, _) in found), impacts), changes
+
+    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
+        """Contacts at even times from first touch to separation."""
+        found = _each(self, impacts, lambda by, part, _: by.histories(part, samples))
+        return merged_histories(found, impacts)
+
+    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+        """Speeds [m/s] from which sphere or plate yields, far from edges."""
+        return self.others.yield_speeds(radius, thickness)
+
+
+def near_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
+    """Backend for impacts of which some may be near an edge."""
+    return others if impacts.edge_distance is None else NearEdges(others, near)
+
+
+_RTOL = 1e-6  # of the kernel: its COR is within 1e-5 of the solver's
+
+
+def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, float, float], float]:
+    """COR near an edge of this kind as a jitted function of speed, radius, thickness, distance."""
+    # TODO rated
+    one = bodies.contact(Impacts(np.ones(1), np.ones(1), np.ones(1), None))
+    mass, stiffness, yielding = one.mass.item(), one.stiffness.item(), one.yield_compression.item()
+    mobility, path, plate = one.mobility.item(), wave_path(bodies.pair.plate), one.plate
+    law = in_memory(bodies.law.data)
+    response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))
+
+    @kernel(entry=True)
+    def cor(speed: float, radius: float, thickness: float, edge_distance: float) -> float:
+        if not (
+            lookup.V_MIN <= speed <= lookup.V_MAX and lookup.R_MIN <= radius <= lookup.R_MAX
+            and lookup.THINNEST * radius <= thickness < math.inf and edge_distance >= 0.0
+        ):  # fmt: skip
+            return math.nan
+        m, ratio = mass * (radius * radius * radius), radius / thickness
+        known = numbers(plate, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
+        share = edge_distance / thickness
+        rate = min(path * known.time / (share * share * thickness), NEAREST)
+        thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
+        y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
+        return zener.restitution_near(
+            law(), response(), known.inelasticity, y, min(thin, 1.0), rate, _RTOL
+        )
+
+    return cor
+
+
+def _each(
+    both: NearEdges, impacts: Impacts, answer: Callable[[Backend, Impacts, Some], Any]
+) -> list[tuple[Some, Any]]:
+    """Answers of the impacts without an edge, and of those with one."""
+    assert impacts.edge_distance is not None
+    near, found = impacts.edge_distance < math.inf, []
+    for by, some in ((both.others, np.flatnonzero(~near)), (both.near, np.flatnonzero(near))):
+        if some.size:
+            with renumbered(some):
+                found.append((some, answer(by, impacts.part(some), some)))
+    return found
