@@ -147,7 +147,7 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
 
     def restitution(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
-        edge_distance: ArrayLike = math.inf,
+        edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
     ) -> float | NDArray[np.float64]:  # fmt: skip
         """Coefficient of restitution, from the table.
 
@@ -162,6 +162,8 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
         edge_distance : array_like, optional
             Distance of the impact from that edge [m]; ``inf`` is a plate without edges. Impacts
             near edges are integrated, whatever table there is. See docs/edges.md.
+        hole_radius : array_like, optional
+            Radius of the hole whose rim the edge is [m]; ``inf`` is a straight edge.
 
         Returns
         -------
@@ -187,8 +189,8 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
         >>> model.restitution(2.0, 0.9e-3, 0.5e-3, edge_distance=[1e-3, 4e-3]).round(3)
         array([0.592, 0.712])
         """
-        if edge_distance is not math.inf or edge != "free":
-            impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance)
+        if edge_distance is not math.inf or edge != "free" or hole_radius is not math.inf:
+            impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
             if impacts.edge_distance is not None:
                 by = near_edges(self._tabulated, solver(self._bodies), impacts)
                 return by.rebounds(impacts).restitution
@@ -202,13 +204,13 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
 
     def lookup(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
-        edge_distance: ArrayLike = math.inf,
+        edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
     ) -> Rebound:  # fmt: skip
         """Everything about the impact, from the table.
 
         Parameters
         ----------
-        speed, radius, thickness, edge, edge_distance
+        speed, radius, thickness, edge, edge_distance, hole_radius
             As in `restitution`, which says what is refused.
 
         Returns
@@ -227,12 +229,12 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
         >>> f"{hit.peak_force:.1f} N for {hit.contact_time * 1e6:.2f} us"
         '28.3 N for 3.92 us'
         """
-        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance)
+        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
         return near_edges(self._tabulated, solver(self._bodies), impacts).rebounds(impacts)
 
     def solve(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10,
-        edge: Edge = "free", edge_distance: ArrayLike = math.inf,
+        edge: Edge = "free", edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
     ) -> Rebound:  # fmt: skip
         """Everything about the impact, by integrating the equation: the reference.
 
@@ -242,7 +244,7 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
             As in `restitution`, but no table limits the range.
         rtol : float, optional
             Error allowed in each step of the integration, between 1e-13 and 1e-6.
-        edge, edge_distance
+        edge, edge_distance, hole_radius
             As in `restitution`.
 
         Returns
@@ -266,7 +268,7 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
         """
         if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
             raise ValueError(f"rtol: must be a float between 1e-13 and 1e-6, got {rtol!r}")
-        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance)
+        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
         by = solver(self._bodies, rtol)
         return near_edges(by, by, impacts).rebounds(impacts)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,7 @@ from contactlaw.answers.rated import merged, merged_histories, renumbered
 from contactlaw.answers.solver import Solver
 from contactlaw.equation import zener
 from contactlaw.equation.edge import response_of
-from contactlaw.equation.numbers import numbers
+from contactlaw.equation.numbers import numbers, relaxes
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.rebound import Impacts, Rebound
 from contactlaw.physical.scaling import NEAREST, wave_path
@@ -84,6 +84,7 @@ def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, flo
         share = edge_distance / thickness
         rate = min(path * known.time / (share * share * thickness), NEAREST)
         thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
+        thin = 1.0 if relaxes(plate) else thin
         y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
         return zener.restitution_near(
             law(), response(), known.inelasticity, y, min(thin, 1.0), rate, _RTOL
@@ -98,8 +99,10 @@ def _each(
     """Answers of the impacts without an edge, and of those with one."""
     assert impacts.edge_distance is not None
     near, found = impacts.edge_distance < math.inf, []
-    for by, some in ((both.others, np.flatnonzero(~near)), (both.near, np.flatnonzero(near))):
+    endless = replace(impacts, edge_distance=None)
+    for by, which, these in ((both.others, ~near, endless), (both.near, near, impacts)):
+        some = np.flatnonzero(which)
         if some.size:
             with renumbered(some):
-                found.append((some, answer(by, impacts.part(some), some)))
+                found.append((some, answer(by, these.part(some), some)))
     return found

@@ -31,6 +31,7 @@ class Histories:
         method: Literal["table", "solve"] = "table",
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
     ) -> ForceHistory:
         """Force, compression, impulse and displacement of the plate over contacts.
 
@@ -42,7 +43,7 @@ class Histories:
             Number of even times from first touch to separation, at least 2.
         method : {"table", "solve"}, optional
             Interpolate shapes of contacts in the table, or integrate the equation.
-        edge, edge_distance
+        edge, edge_distance, hole_radius
             As in `restitution`.
 
         Returns
@@ -71,5 +72,5 @@ class Histories:
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
         bodies = self._tabulated.bodies
         by: Backend = self._tabulated if method == "table" else solver(bodies)
-        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance)
+        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
         return near_edges(by, solver(bodies), impacts).histories(impacts, samples)

@@ -20,7 +20,7 @@ from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, edge_distances
+from contactlaw.physical.rebound import Impacts, edges_as_given
 from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
@@ -48,6 +48,7 @@ class Oblique:
         method: Literal["table", "solve"] = "table",
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
     ) -> ObliqueRebound:
         """Everything about an oblique impact.
 
@@ -64,7 +65,7 @@ class Oblique:
             Coulomb's coefficient of friction between bead and plate [-], from 0 to 1000.
         method : {"table", "solve"}, optional
             Interpolate in a table, which takes seconds to make once, or integrate.
-        edge, edge_distance
+        edge, edge_distance, hole_radius
             As in `ImpactModel.restitution`.
 
         Returns
@@ -89,13 +90,13 @@ class Oblique:
         """
         if method not in ("table", "solve"):
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
-        v, s, r, h, mu, near, shape = broadcast(
+        v, s, r, h, mu, near, hole, shape = broadcast(
             speed=speed, sliding_speed=sliding_speed, radius=radius, thickness=thickness,
-            friction=friction, edge_distance=edge_distance,
+            friction=friction, edge_distance=edge_distance, hole_radius=hole_radius,
         )  # fmt: skip
         check(speed=v, radius=r, thickness=h, sliding_speed=s, friction=mu)
         bodies = self._tabulated.bodies
-        impacts = Impacts(v, r, h, shape, edge, edge_distances(edge, near, h))
+        impacts = Impacts(v, r, h, shape, edge, *edges_as_given(edge, near, hole, h))
         by: Backend = self._tabulated if method == "table" else solver(bodies)
         return answer(near_edges(by, solver(bodies), impacts), bodies.pair, impacts, mu, s)
 

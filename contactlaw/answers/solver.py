@@ -167,9 +167,9 @@ def edges_near(
     bodies: SphereOnPlate, contact: ContactConstants, units: Numbers, impacts: Impacts
 ) -> Edges | None:
     """Edges near impacts, as the equation has them; None where there are none."""
-    if impacts.edge_distance is None:
+    if impacts.edge_distance is None or impacts.hole_radius is None:
         return None
-    near = impacts.thickness, impacts.edge, impacts.edge_distance
+    near = impacts.thickness, impacts.edge, impacts.edge_distance, impacts.hole_radius
     return edges_of(bodies.pair.plate, contact, units, *near)
 
 

@@ -1,26 +1,29 @@
 """How the edge of a plate acts on a contact near it: the memory of the plate's own response.
 
 Under a force f that begins at time 0, an endless thin plate moves with a speed in proportion to the
-force. Near a straight edge the wave that the edge sends back is added:
+force. Near an edge the wave that the edge sends back is added:
 
     v = beta [f + coupling * sum_k c_k z_k],    dz_k/dt = p_k (f - z_k)/tau,    tau = s^2/b,
 
-with s the distance from the edge and b = sqrt(D/(rho2 H)), the plate's bending stiffness over its
-mass. The sum stands for the exact response, a function of t/tau for each kind of edge, and for a
-free one of the plate's Poisson's ratio. Rates p_k and weights c_k are fitted to it, so that the
-work on the plate is within 0.7 % for forces that last from tau/12 to 500 tau
-(`validation.derivations.edges`). `coupling` is the mobility of a thin plate over that of the
-contact: what returns is a bending wave, however thick the plate is.
+with s the distance from the edge and b = sqrt(D/(rho2 H)), D the plate's bending stiffness. The sum
+stands for the exact response, a function of t/tau for each kind of edge; that of a free one depends
+on the plate's Poisson's ratio, and on its curvature if it is the rim of a hole. Rates p_k and
+weights c_k are fitted to it by `validation.derivations.edges`: twelve for the equation and six for
+time steps, in which each contact has to keep its z_k. `coupling` is the mobility of a thin plate
+over that of the contact: what returns is a bending wave, however thick the plate is.
 
-The six z are three blocks of two, which is what a real plate's rates come in: real ones, p and p',
-or the real and imaginary part of a complex one, p + i p'.
+The z come in blocks of two, which have two real rates p and p', or the real and the imaginary part
+of a complex one, p + i p'.
 
 Legend: f contact force, beta mobility, z memory, h step, as in `contactlaw.equation.motion`.
 """
 
 from __future__ import annotations
 
+import functools
+import json
 import math
+from importlib.resources import files
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -33,10 +36,13 @@ Array = NDArray[np.float64]
 Edge = Literal["free", "supported", "clamped"]
 """Kinds of edges: nothing holds the plate there; it cannot move; nor turn."""
 KINDS: tuple[str, ...] = get_args(Edge)
+SIZE = 18  # of a response of six numbers: their rates, four for each block, and weights
+_AT_ONCE = 2 * SIZE  # place of the number that `near` adds
+_QUICK = 500.0  # rate [1/T_H]; explicit steps would have to follow quicker ones
 
 
 class Memory(NamedTuple):
-    """Forces on the plate, each averaged over the recent past with one of the rates."""
+    """Six forces on the plate, each averaged over the recent past with one of the rates."""
 
     x1: Any
     y1: Any
@@ -46,14 +52,21 @@ class Memory(NamedTuple):
     y3: Any
 
 
+class Memories(NamedTuple):
+    """The memory of the equation."""
+
+    first: Memory
+    second: Memory
+
+
 NO_MEMORY = Memory(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """The memory at first touch."""
 
 
 class Edges(NamedTuple):
-    """Edges near impacts; the response is common to them."""
+    """Edges near impacts."""
 
-    response: Array  # as `response_of` gives it
+    response: Array  # as `response_of` gives it, (impacts, 2 SIZE)
     coupling: Array  # mobility of a thin plate over that of the contact, at most 1
     rate: Array  # T_H/tau
     again: Array  # set to 1 where the plate comes back to the sphere after the contact, else to 0
@@ -61,96 +74,125 @@ class Edges(NamedTuple):
 
 def part(edges: Edges | None, some: Any) -> Edges | None:
     """Edges of some of the impacts."""
-    if edges is None:
-        return None
-    return Edges(edges.response, edges.coupling[some], edges.rate[some], edges.again[some])
+    return None if edges is None else Edges(*(values[some] for values in edges))
 
 
-# For each kind of edge, rates p_k as (p, p', 0) for two real ones or (p, p, p') for a complex one,
-# and weights c_k as polynomials in the plate's Poisson's ratio.
-_RATES: dict[str, tuple[tuple[float, float, float], ...]] = {
-    "free": ((0.009434, 0.10964, 0.0), (0.76355, 2.69136, 0.0), (0.002451, 0.002451, 8.19199)),
-    "supported": ((0.03586, 0.3141, 0.0), (1.91749, 3.8872, 0.0), (0.14573, 0.14573, 11.0897)),
-    "clamped": (
-        (0.69704, 3.25559, 0.0),
-        (0.006734, 0.006734, 27.3786),
-        (6.34824, 6.34824, 9.79214),
-    ),
-}
-_WEIGHTS: dict[str, tuple[tuple[float, ...], ...]] = {
-    "free": (
-        (0.44433, 0.25086, 0.51938), (0.92002, 0.5498, 0.96337), (1.47074, 0.32874, 0.50994),
-        (-0.73378, -0.38702, -0.32928), (0.05824, 0.05638, 0.02052), (0.06, 0.05905, 0.03048),
-    ),
-    "supported": (
-        (-0.05901,), (-0.37726,), (-2.1663,), (1.63319,), (-0.02744,), (-0.15132,),
-    ),
-    "clamped": (
-        (-0.08695,), (-1.85306,), (-0.04968,), (0.06865,), (0.98979,), (-0.27811,),
-    ),
-}  # fmt: skip
+@functools.cache
+def _fitted() -> Any:
+    """Rates and weights; of a free edge for the shares s/(s + a) of holes of radius a, too."""
+    return json.loads(files("contactlaw.equation").joinpath("edge.json").read_text())
 
 
-def response_of(kind: str, poissons_ratio: float) -> Array:
-    """Response of a plate near an edge, in units of tau: rates of the three blocks, weights."""
-    rates = [(p, second, turn, turn or second) for p, second, turn in _RATES[kind]]
-    weights = [np.polynomial.Polynomial(c)(poissons_ratio) for c in _WEIGHTS[kind]]
-    return np.array([*np.ravel(rates), *weights])
+@functools.cache
+def _table(kind: str, poissons_ratio: float, size: str) -> tuple[Array, Array]:
+    """Rates, four for each block, and weights for all shares."""
+    one = _fitted()["responses"][kind][size]
+    rates = [(p, second, turn, turn or second) for p, second, turn in one["rates"]]
+    powers = poissons_ratio ** np.arange(np.shape(one["weights"])[2])
+    return np.array(rates), np.array(one["weights"]) @ powers
+
+
+def response_of(
+    kind: str,
+    poissons_ratio: float,
+    share: Any = 0.0,
+    size: Literal["equation", "steps"] = "equation",
+) -> Array:
+    """Responses near edges in units of tau, in parts of `SIZE`: for the equation two, else one.
+
+    `share` is s/(s + a) near the rim of a hole of radius a, and 0 near a straight edge.
+    """
+    rates, weights = _table(kind, poissons_ratio, size)
+    shares = _fitted()["shares"]
+    if kind == "free":  # a hole without radius is none
+        weights = np.vstack([weights, np.zeros_like(weights[:1])])
+        each = np.array([np.interp(share, shares, column) for column in weights.T])
+    else:
+        each = np.multiply.outer(weights[0], np.ones(np.shape(share)))
+    parts = []
+    for n in range(0, len(rates), 3):
+        block = np.multiply.outer(rates[n : n + 3].ravel(), np.ones(np.shape(share)))
+        parts.append(np.concatenate([block, each[2 * n : 2 * n + 6]]))
+    return np.ascontiguousarray(np.moveaxis(np.concatenate(parts), 0, -1))
 
 
 @kernel
 def near(edges: Edges | None, n: int, unit: float) -> Array | None:
-    """Response in the law's scale, whose time is `unit` times that of Hertz's scale."""
+    """Response in the law's scale, whose time is `unit` times that of Hertz's scale.
+
+    A last number has been added: what follows the force at once, all that is quicker than `_QUICK`.
+    """
     if edges is None:
         return None
-    scaled = edges.response.copy()
-    scaled[:12] *= edges.rate[n] / unit
-    scaled[12:] *= edges.coupling[n]
+    scaled, given = np.zeros(2 * SIZE + 1), edges.response[n]
+    scaled[_AT_ONCE] = 1.0
+    for block in range(6):
+        at = SIZE * (block // 3) + 4 * (block % 3)
+        weight = SIZE * (block // 3) + 12 + 2 * (block % 3)
+        first, second = edges.coupling[n] * given[weight], edges.coupling[n] * given[weight + 1]
+        turns = given[at + 2] > 0.0
+        if edges.rate[n] * max(given[at], given[at + 1], given[at + 2]) > _QUICK:
+            scaled[_AT_ONCE] += first if turns else first + second
+        else:
+            scaled[at : at + 4] = given[at : at + 4] * (edges.rate[n] / unit)
+            scaled[weight], scaled[weight + 1] = first, second
     return scaled
 
 
 @kernel
-def at_touch(response: Array | None) -> Memory | None:
+def at_touch(response: Array | None) -> Memories | None:
     """Memory at first touch; None for an endless plate."""
     if response is None:
         return None
-    return NO_MEMORY
+    return Memories(NO_MEMORY, NO_MEMORY)
 
 
 @kernel(inline=True)
-def drive(response: Array | None, f: float, memory: Memory | None) -> float:
+def weighted(r: Array, at: int, m: Memory) -> float:
+    """Sum over a part of the memory with the weights of the response."""
+    first = r[at + 12] * m.x1 + r[at + 13] * m.y1 + r[at + 14] * m.x2
+    return float(first + r[at + 15] * m.y2 + r[at + 16] * m.x3 + r[at + 17] * m.y3)
+
+
+@kernel(inline=True)
+def drive(response: Array | None, f: float, memory: Memories | None) -> float:
     """Speed of the plate over its mobility."""
     if response is None or memory is None:
         return f
-    r, m = response, memory
-    first = r[12] * m.x1 + r[13] * m.y1 + r[14] * m.x2
-    return float(f + (first + r[15] * m.y2 + r[16] * m.x3 + r[17] * m.y3))
+    later = weighted(response, 0, memory.first) + weighted(response, SIZE, memory.second)
+    return float(response[_AT_ONCE] * f + later)
 
 
-@kernel(inline=True)
-def remember(response: Array | None, f: float, memory: Memory | None, pace: float) -> Memory | None:
-    """Change of the memory per ds, from dt/ds."""
-    if response is None or memory is None:
-        return None
-    r, m = response, memory
+@kernel
+def _change(r: Array, at: int, f: float, m: Memory, pace: float) -> Memory:
     return Memory(
-        pace * (r[0] * (f - m.x1) + r[2] * m.y1),
-        pace * (r[3] * f - r[2] * m.x1 - r[1] * m.y1),
-        pace * (r[4] * (f - m.x2) + r[6] * m.y2),
-        pace * (r[7] * f - r[6] * m.x2 - r[5] * m.y2),
-        pace * (r[8] * (f - m.x3) + r[10] * m.y3),
-        pace * (r[11] * f - r[10] * m.x3 - r[9] * m.y3),
+        pace * (r[at] * (f - m.x1) + r[at + 2] * m.y1),
+        pace * (r[at + 3] * f - r[at + 2] * m.x1 - r[at + 1] * m.y1),
+        pace * (r[at + 4] * (f - m.x2) + r[at + 6] * m.y2),
+        pace * (r[at + 7] * f - r[at + 6] * m.x2 - r[at + 5] * m.y2),
+        pace * (r[at + 8] * (f - m.x3) + r[at + 10] * m.y3),
+        pace * (r[at + 11] * f - r[at + 10] * m.x3 - r[at + 9] * m.y3),
     )
 
 
 @kernel(inline=True)
-def moved(
-    m: Memory | None, w1: float, k1: Memory | None, w2: float, k2: Memory | None, w3: float,
-    k3: Memory | None, w4: float, k4: Memory | None, w5: float, k5: Memory | None,
-) -> Memory | None:  # fmt: skip
-    """Memory at a stage or at the end of a step, from the stages before."""
-    if m is None or k1 is None or k2 is None or k3 is None or k4 is None or k5 is None:
+def remember(
+    response: Array | None, f: float, memory: Memories | None, pace: float
+) -> Memories | None:
+    """Change of the memory per ds, from dt/ds."""
+    if response is None or memory is None:
         return None
+    return Memories(
+        _change(response, 0, f, memory.first, pace),
+        _change(response, SIZE, f, memory.second, pace),
+    )
+
+
+@kernel
+def _moved(
+    m: Memory, w1: float, k1: Memory, w2: float, k2: Memory, w3: float, k3: Memory, w4: float,
+    k4: Memory, w5: float, k5: Memory,
+) -> Memory:  # fmt: skip
     return Memory(
         m.x1 + (w1 * k1.x1 + w2 * k2.x1 + w3 * k3.x1 + w4 * k4.x1 + w5 * k5.x1),
         m.y1 + (w1 * k1.y1 + w2 * k2.y1 + w3 * k3.y1 + w4 * k4.y1 + w5 * k5.y1),
@@ -161,17 +203,31 @@ def moved(
     )
 
 
+@kernel(inline=True)
+def moved(
+    m: Memories | None, w1: float, k1: Memories | None, w2: float, k2: Memories | None, w3: float,
+    k3: Memories | None, w4: float, k4: Memories | None, w5: float, k5: Memories | None,
+) -> Memories | None:  # fmt: skip
+    """Memory at a stage or at the end of a step, from the stages before."""
+    if m is None or k1 is None or k2 is None or k3 is None or k4 is None or k5 is None:
+        return None
+    return Memories(
+        _moved(m.first, w1, k1.first, w2, k2.first, w3, k3.first, w4, k4.first, w5, k5.first),
+        _moved(m.second, w1, k1.second, w2, k2.second, w3, k3.second, w4, k4.second, w5, k5.second),
+    )
+
+
 @kernel
-def _path(response: Array, memory: Memory, t: float) -> float:
+def _path(r: Array, at: int, memory: Memory, t: float) -> float:
     """Displacement of the plate over its mobility, at a time after the contact has ended."""
-    r, z = response, (memory.x1, memory.y1, memory.x2, memory.y2, memory.x3, memory.y3)
+    z = memory.x1, memory.y1, memory.x2, memory.y2, memory.x3, memory.y3
     path = 0.0
     for k in range(3):
-        x, y, w, v = z[2 * k], z[2 * k + 1], r[12 + 2 * k], r[13 + 2 * k]
-        a, second, turn = r[4 * k], r[4 * k + 1], r[4 * k + 2]
-        if turn == 0.0:
+        x, y, w, v = z[2 * k], z[2 * k + 1], r[at + 12 + 2 * k], r[at + 13 + 2 * k]
+        a, second, turn = r[at + 4 * k], r[at + 4 * k + 1], r[at + 4 * k + 2]
+        if turn == 0.0 and a > 0.0:
             path -= w * x * math.expm1(-a * t) / a + v * y * math.expm1(-second * t) / second
-        else:
+        elif turn > 0.0:
             rate = complex(a, turn)
             gone = complex(x, y) * (1.0 - np.exp(-rate * t)) / rate
             path += w * gone.real + v * gone.imag
@@ -180,19 +236,19 @@ def _path(response: Array, memory: Memory, t: float) -> float:
 
 @kernel
 def look_back(
-    edges: Edges | None, n: int, response: Array | None, memory: Memory | None, u: float,
-    mobility: float,
+    edges: Edges | None, n: int, response: Array | None, memory: Memories | None, u: float,
+    mobility: float, duration: float,
 ) -> None:  # fmt: skip
-    """Note whether the plate comes back to a sphere that has left it with the speed -u."""
+    """Note whether the plate comes back to a sphere that has left it with the speed -u.
+
+    It is looked for within 300 durations of the contact.
+    """
     if edges is None or response is None or memory is None:
         return
-    fastest, slowest = 0.0, math.inf
-    for k in range(3):
-        fastest = max(fastest, response[4 * k], response[4 * k + 1])
-        slowest = min(slowest, response[4 * k], response[4 * k + 1])
     edges.again[n] = 0.0
-    t = 0.1 / fastest
-    while t < 10.0 / slowest:
-        if mobility * _path(response, memory, t) < u * t:
+    t = 0.01 * duration
+    while t < 300.0 * duration:
+        path = _path(response, 0, memory.first, t) + _path(response, SIZE, memory.second, t)
+        if mobility * path < u * t:
             edges.again[n] = 1.0
         t *= 1.2

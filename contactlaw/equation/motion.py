@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import edge, legs, losses, plate
-from contactlaw.equation.edge import Memory
+from contactlaw.equation.edge import Memories
 from contactlaw.equation.legs import Leg
 from contactlaw.equation.losses import Work
 from contactlaw.equation.plate import PlateMobility
@@ -58,8 +58,8 @@ class ScaledState(NamedTuple):
 
 @kernel(inline=True)
 def rates(
-    contact: ScaledContact, leg: Leg, kind: int, q: float, u: float, memory: Memory | None
-) -> tuple[float, float, float, Memory | None]:
+    contact: ScaledContact, leg: Leg, kind: int, q: float, u: float, memory: Memories | None
+) -> tuple[float, float, float, Memories | None]:
     """dq/ds, du/ds, the force, and the change of the memory."""
     f = legs.force_on(leg, kind, contact.law, q)
     change = edge.remember(contact.plate.response, f, memory, 2.0 * q)
@@ -69,7 +69,7 @@ def rates(
 @kernel
 def start(
     contact: ScaledContact, leg: Leg, q: float, u: float, t: float, work: Work,
-    memory: Memory | None,
+    memory: Memories | None,
 ) -> ScaledState:  # fmt: skip
     """State on a leg, with the rates there."""
     dq, du, f, dmemory = rates(contact, leg, leg.kind, q, u, memory)

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from contactlaw._jit import kernel
 from contactlaw.equation import edge
-from contactlaw.equation.edge import Memory
+from contactlaw.equation.edge import Memories
 
 
 class PlateMobility(NamedTuple):
@@ -23,7 +23,7 @@ class PlateMobility(NamedTuple):
 
 
 @kernel(inline=True)
-def speed(plate: PlateMobility, f: float, memory: Memory | None) -> float:
+def speed(plate: PlateMobility, f: float, memory: Memories | None) -> float:
     """Speed of the plate at the contact under a force."""
     return plate.mobility * edge.drive(plate.response, f, memory)
 

@@ -131,7 +131,13 @@ def _impact(
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
     if goal == _TO_THE_END:
         edge.look_back(
-            edges, n, contact.plate.response, state.memory, state.u, contact.plate.mobility
+            edges,
+            n,
+            contact.plate.response,
+            state.memory,
+            state.u,
+            contact.plate.mobility,
+            state.t,
         )
     dm = top.q * top.q
     residual, plastic, other = losses.at_the_contact(law, dm)
@@ -157,7 +163,7 @@ def restitution_near(
     law: Array, response: Array, lam: float, y: float, coupling: float, rate: float, rtol: float
 ) -> float:
     """Restitution of one impact near an edge, see `Edges`; NaN if it does not solve."""
-    edges = Edges(response, np.full(1, coupling), np.full(1, rate), np.zeros(1))
+    edges = Edges(response.reshape(1, -1), np.full(1, coupling), np.full(1, rate), np.zeros(1))
     none = np.empty((0, 0))
     notes = Notes(none, none, none, none, none)
     one = _impact(_TO_THE_END, law, lam, y, rtol, notes, 0, edges)
@@ -244,9 +250,7 @@ def shape(
     return _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes).status, notes.time, notes.speed
 
 
-def elastic_compression(
-    law: Array, lam: Any, rtol: float, few: bool = False, edges: Edges | None = None
-) -> tuple[Any, Any]:
+def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) -> tuple[Any, Any]:
     """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
 
     If the law is Hertz's up to yield, all elastic impacts have the same (Fig. 4 of the paper). If
@@ -254,7 +258,7 @@ def elastic_compression(
     """
     hertz, before = force.is_hertz(law), np.ones(np.size(lam))
     for _ in range(100):
-        found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol, few=few, edges=edges)
+        found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol, few=few)
         w_m = found.peak_compression
         moved = ~(abs(w_m - before) < 1e-11 * before)
         if hertz or found.status.any() or not moved.any():
@@ -289,11 +293,10 @@ def solve_all(
     if one.status.any():
         return failure(one.status)
     w_m = one.peak_compression.copy()
-    beyond = w_m > force.leaves_hertz(law) * y
+    # near edges, too, w_m is that of an endless plate: it makes the overload, and nothing else
+    beyond = (w_m > force.leaves_hertz(law) * y) | (edges is not None)
     if beyond.any():
-        status, w_m[beyond] = elastic_compression(
-            law, out.inelasticity[beyond], rtol, few, edge.part(edges, beyond)
-        )
+        status, w_m[beyond] = elastic_compression(law, out.inelasticity[beyond], rtol, few)
         if status.any():
             failed, n = failure(status)
             return failed, int(np.flatnonzero(beyond)[n])

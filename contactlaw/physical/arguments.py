@@ -14,7 +14,8 @@ from contactlaw.table import lookup
 Array = NDArray[np.float64]
 
 # Units by argument. The others are dimensionless, for which pint and astropy take the unit "".
-_SI = dict.fromkeys(("radius", "other_radius", "thickness", "edge_distance"), "m")
+_SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")
+_SI |= dict.fromkeys(("edge_distance", "hole_radius"), "m")
 _SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
 _SI |= dict.fromkeys(("speed", "slowest", "fastest", "sliding_speed"), "m/s") | {"rate": "1/s"}
 _SI |= {"velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"}
@@ -29,6 +30,7 @@ _LIMITS = {
     "other_radius": (lookup.R_MIN, lookup.R_MAX, "metres"),
     "thickness": (lookup.R_MIN, math.inf, "metres; inf is the half-space"),
     "edge_distance": (0.0, math.inf, "metres; inf is a plate without edges"),
+    "hole_radius": (lookup.R_MIN, math.inf, "metres; inf is a straight edge"),
     "contact_time": (1e-12, 1e6, "seconds"),
     "sliding_speed": (-lookup.V_MAX, lookup.V_MAX, "m/s, of the contact point along the plate"),
     "friction": (0.0, ROUGHEST, "Coulomb's coefficient"),

@@ -70,6 +70,7 @@ class Impacts:
     shape: tuple[int, ...] | None
     edge: str = "free"  # kind of the edges
     edge_distance: Array | None = None  # [m]; None for plates without edges
+    hole_radius: Array | None = None  # [m]; inf for straight edges, None without edges
 
     @staticmethod
     def on_plates(
@@ -78,19 +79,22 @@ class Impacts:
         thickness: ArrayLike,
         edge: str = "free",
         edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
     ) -> Impacts:
         """Broadcast and check what the user gave."""
-        v, r, h, s, shape = broadcast(
-            speed=speed, radius=radius, thickness=thickness, edge_distance=edge_distance
-        )
+        v, r, h, s, a, shape = broadcast(
+            speed=speed, radius=radius, thickness=thickness, edge_distance=edge_distance,
+            hole_radius=hole_radius,
+        )  # fmt: skip
         check(speed=v, radius=r, thickness=h)
-        return Impacts(v, r, h, shape, edge, edge_distances(edge, s, h))
+        return Impacts(v, r, h, shape, edge, *edges_as_given(edge, s, a, h))
 
     def part(self, some: NDArray[np.intp]) -> Impacts:
         """Choose some of the impacts."""
         near = None if self.edge_distance is None else self.edge_distance[some]
+        hole = None if self.hole_radius is None else self.hole_radius[some]
         sizes = self.speed[some], self.radius[some], self.thickness[some]
-        return Impacts(*sizes, (some.size,), self.edge, near)
+        return Impacts(*sizes, (some.size,), self.edge, near, hole)
 
 
 def edge_distances(edge: str, distance: Array, thickness: Array) -> Array | None:
@@ -100,6 +104,19 @@ def edge_distances(edge: str, distance: Array, thickness: Array) -> Array | None
     if not (distance < math.inf).any():
         return None
     return np.where(thickness < math.inf, distance, math.inf)
+
+
+def edges_as_given(
+    edge: str, distance: Array, hole_radius: Array, thickness: Array
+) -> tuple[Array | None, Array | None]:
+    """Check distances from edges and radii of holes [m]; None if no plate has edges."""
+    near = edge_distances(edge, distance, thickness)
+    check(hole_radius=hole_radius)
+    if edge != "free" and (hole_radius < math.inf).any():
+        raise ValueError(
+            f"hole_radius: the rim of a hole is a free edge, got {edge!r}; leave it out"
+        )
+    return near, None if near is None else hole_radius
 
 
 def check_kind(edge: str) -> None:

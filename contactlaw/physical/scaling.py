@@ -17,7 +17,14 @@ from numpy.typing import NDArray
 from contactlaw import laws
 from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, THIN, plate_corrections
 from contactlaw.equation.edge import Edges, response_of
-from contactlaw.equation.numbers import ELASTIC, ModulusGrowth, Numbers, PlateConstants, fill
+from contactlaw.equation.numbers import (
+    ELASTIC,
+    ModulusGrowth,
+    Numbers,
+    PlateConstants,
+    fill,
+    relaxes,
+)
 from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.materials import Material, sphere_mass
@@ -266,7 +273,7 @@ def scales(contact: ContactConstants, speed: Array) -> Numbers:
     return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 
-NEAREST = 1e3  # T_H over tau from which on a contact feels the plate as if it were at the edge
+NEAREST = 1e6  # T_H over tau; from there on a contact is at the edge itself
 
 
 def wave_path(plate: Material) -> float:
@@ -276,14 +283,21 @@ def wave_path(plate: Material) -> float:
 
 def edges_of(
     plate: Material, contact: ContactConstants, units: Numbers, thickness: Array, kind: str,
-    distance: Array,
+    distance: Array, hole_radius: Array,
 ) -> Edges:  # fmt: skip
-    """Edges at these distances [m] from impacts, as the equation has them."""
-    with np.errstate(divide="ignore"):
+    """Edges at these distances [m] from impacts, as the equation has them.
+
+    The radius of a hole is that of the rim, inf for a straight edge [m].
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = np.where(hole_radius < math.inf, distance / (distance + hole_radius), 0.0)
         rate = wave_path(plate) * thickness * units.time / np.square(distance)
     return Edges(
-        response_of(kind, plate.poissons_ratio),
-        np.minimum(contact.mobility * contact.mass / (units.time * units.inelasticity), 1.0),
+        response_of(kind, plate.poissons_ratio, share),
+        # of bodies with losses both mobilities have those of the impact
+        np.ones(rate.size)
+        if relaxes(contact.plate)
+        else np.minimum(contact.mobility * contact.mass / (units.time * units.inelasticity), 1.0),
         np.minimum(rate, NEAREST),
         np.zeros(rate.size),
     )

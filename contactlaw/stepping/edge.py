@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.edge import NO_MEMORY, Memory, response_of
+from contactlaw.equation.edge import weighted as weighted_sum
 from contactlaw.physical.materials import Material
 from contactlaw.physical.scaling import wave_path
 
@@ -44,7 +45,9 @@ def near_edge(
     """Edges at these distances [m] from contacts; None where no plate has any."""
     if distance is None:
         return None
-    return Near(response_of(kind, plate.poissons_ratio), rate_of(plate, thickness, distance))
+    return Near(
+        response_of(kind, plate.poissons_ratio, size="steps"), rate_of(plate, thickness, distance)
+    )
 
 
 def rate_of(plate: Material, thickness: Any, distance: Any) -> Any:
@@ -74,9 +77,7 @@ def weighted(near: Near | None, m: Memory) -> float:
     """Speed that the edge adds, over the mobility of a thin plate [N]."""
     if near is None:
         return 0.0
-    r = near.response
-    first = r[12] * m.x1 + r[13] * m.y1 + r[14] * m.x2
-    return float(first + r[15] * m.y2 + r[16] * m.x3 + r[17] * m.y3)
+    return weighted_sum(near.response, 0, m)
 
 
 @kernel

@@ -124,8 +124,8 @@ def test_the_series_errs_as_the_square_of_its_number():
         contact = motion.ScaledContact(law, PlateMobility(delta**-0.5))
         beta = contact.plate.mobility
         fast = 0.5 * (beta + math.sqrt(beta**2 - 4.0))  # s^2 - beta s + 1 = 0
-        slow = 1.0 / fast
-        state = motion.start(contact, leg, math.sqrt(slow), 1.0, 0.0, losses.NO_WORK, None)  # f = slow u
+        slow = 1.0 / fast  # f = slow u
+        state = motion.start(contact, leg, math.sqrt(slow), 1.0, 0.0, losses.NO_WORK, None)
         there = creep.creep(contact, leg, state, 0.0, 5.0 * beta, 1e-18)
         assert 4.9 * beta < there.t < 5.0 * beta
         decayed = math.exp(-slow * there.t)

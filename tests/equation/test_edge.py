@@ -1,0 +1,111 @@
+"""Plates with edges: the response against the exact one, and the equation with its memory."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+from scipy.special import kv
+
+from contactlaw import laws
+from contactlaw.equation import zener
+from contactlaw.equation.edge import KINDS, SIZE, Edges, response_of
+from contactlaw.equation.force import HERTZ
+from validation.accuracy import edges as independent
+from validation.derivations import edges as exact
+
+USUAL = (exact.DURATIONS > 0.05) & (exact.DURATIONS < 1000.0)
+# Mobility at a free edge over that far from it, `shared/PHYSICS.md`, section 9.
+AT_THE_EDGE = {0.0: 3.27, 0.2: 3.53, 0.3: 3.70, 0.5: 4.18}
+
+
+def error_of_work(kind, poisson, size, radius=math.inf):
+    response = response_of(kind, poisson, 1.0 / (1.0 + radius), size)
+    added = 0.0
+    for part in response.reshape(-1, SIZE):
+        blocks = part[:12].reshape(3, 4)[:, :3]
+        added = added + np.tensordot(part[12:], exact.columns(exact.rates_of(blocks)), 1)
+    wanted = exact.work(exact.speeds(kind, poisson, radius))
+    return np.abs((exact.work(added) - wanted) / np.maximum(1.0 + wanted, 0.3))[USUAL].max()
+
+
+def test_a_supported_edge_is_an_image_of_opposite_sign():
+    p = np.array([0.1, 3.0, 2.0 + 5.0j])
+    image = 2.0 / (1j * math.pi) * (kv(0, 2.0 * np.sqrt(-1j * p)) - kv(0, 2.0 * np.sqrt(1j * p)))
+    np.testing.assert_allclose(exact.reflected(p, "supported", 0.3), -image, rtol=1e-8)
+
+
+@pytest.mark.parametrize(("poisson", "ratio"), AT_THE_EDGE.items())
+def test_the_mobility_at_a_free_edge(poisson, ratio):
+    """The closed form by the derivation, and by the weights of all rates."""
+    assert 1.0 + exact.at_the_edge("free", poisson) == pytest.approx(ratio, abs=0.006)
+    for size in ("equation", "steps"):
+        total = 1.0
+        for part in response_of("free", poisson, 0.0, size).reshape(-1, SIZE):
+            turns = part[2:12:4] != 0.0  # the imaginary part of a steady z is 0
+            total += part[12::2].sum() + part[13::2][~turns].sum()
+        assert total == pytest.approx(ratio, rel=0.01)
+
+
+def test_a_large_hole_has_a_straight_rim():
+    p = np.array([0.3, 2.0, 1.0 + 8.0j])
+    straight = exact.reflected(p, "free", 0.3)
+    errors = [abs(exact.around_hole(p, 0.3, radius) - straight).max() for radius in (25.0, 50.0)]
+    assert errors[1] < 0.03
+    assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.1)  # of first order in s/a
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("poisson", [0.15, 0.4])  # between those of the fit
+def test_the_fitted_response_does_the_work_of_the_exact_one(kind, poisson):
+    assert error_of_work(kind, poisson, "equation") < 0.003
+    assert error_of_work(kind, poisson, "steps") < 0.015
+
+
+@pytest.mark.parametrize("radius", [20.0, 4.0, 1.0])  # between those of the fit
+def test_the_fitted_response_near_holes(radius):
+    assert error_of_work("free", 0.3, "equation", radius) < 0.01
+
+
+def solved(law, lam, y, edges):
+    return zener._run(zener._TO_THE_END, law, lam, y, 1e-9, edges=edges)
+
+
+def near(kind, poisson, rate):
+    rate = np.atleast_1d(np.asarray(rate, float))
+    response = np.tile(response_of(kind, poisson), (rate.size, 1))
+    return Edges(response, np.ones(rate.size), rate, np.zeros(rate.size))
+
+
+def read():
+    with independent.FILE.open() as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("law", ["hertz", "myc", "fem"])
+def test_impacts_are_those_of_a_large_plate_of_finite_elements(kind, law):
+    """Within 1 % of the COR or 0.001; lambda to 1, all distances. See `validation/data/edges.csv`.
+
+    A plate that gives way so much that the sphere never leaves it has a COR of 0.
+    """
+    data = (
+        HERTZ if law == "hertz" else laws.law(law, **(independent.FEM if law == "fem" else {})).data
+    )
+    rows = [row for row in read() if (row["edge"], row["law"]) == (kind, law)]
+    assert len(rows) >= 24
+    for poisson in {row["poissons_ratio"] for row in rows}:
+        these = [row for row in rows if row["poissons_ratio"] == poisson]
+        lam, y, s, e, share = np.array([
+            [float(row[name]) for name in ("inelasticity", "yield_compression", "distance",
+                                           "restitution", "plate_fraction")]
+            for row in these
+        ]).T  # fmt: skip
+        edges = near(kind, float(poisson), s**-2)
+        found = solved(data, lam, np.where(np.isinf(y), 1.0, y), edges)
+        assert (found.status[e > 0.0] == zener.OK).all()
+        np.testing.assert_allclose(found.restitution, np.maximum(e, 0.0), rtol=0.01, atol=1e-3)
+        left = e > 0.0
+        np.testing.assert_allclose(found.wave_fraction[left], share[left], atol=0.01)
+        losses = found.plastic_fraction + found.wave_fraction + found.other_fraction
+        np.testing.assert_allclose(found.restitution[left] ** 2 + losses[left], 1.0, atol=1e-7)
