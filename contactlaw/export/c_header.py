@@ -28,14 +28,16 @@ from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
 from contactlaw.equation import corrections, creep, force, integrator, tangential
+from contactlaw.equation.edge import KINDS, response_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
 from contactlaw.physical.rate import largest_factor, rated, strengthened
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.scaling import factors
+from contactlaw.physical.scaling import factors, wave_path
 from contactlaw.physical.validity import Limits, Validity, explain
 from contactlaw.softsphere import unit_spring
+from contactlaw.stepping import edge as stepping_edge
 from contactlaw.stepping import friction as stepping_friction
 from contactlaw.stepping import spring as stepping_spring
 from contactlaw.stepping import strength
@@ -60,6 +62,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     creep: "SLOW",
     tangential: "POINT RELAXING",
     solver: "RTOL",
+    stepping_edge: "_NEAREST",
     stepping_friction: "SPRINGS _LEAST_SPEED _DEEPEST",
     stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED USUAL_SPEED",
     strength: "_STRIDE _FINE",
@@ -207,6 +210,12 @@ def _text(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> 
         "impact": "\n".join(_members(names, text) for names, text in groups),
         "nothing": ", ".join("none" for names, _ in groups for _ in names),
         "validity": ",\n".join(f"    CONTACTLAW_{one.name} = {one.value}" for one in Validity),
+        "edges": ", ".join(f"CONTACTLAW_{kind.upper()}_EDGE" for kind in KINDS),
+        "responses": ",\n".join(
+            f"{{\n{_array(response_of(kind, model.pair.plate.poissons_ratio))}\n}}"
+            for kind in KINDS
+        ),
+        "wave_path": _number(wave_path(model.pair.plate)),
         "limits": "\n        ".join(textwrap.wrap(", ".join(Limits._fields), _WIDTH - 8)),
         "limit_values": _array(model.limits),
         "root_series": _array(lookup.ROOT),

@@ -15,6 +15,7 @@ from pathlib import Path
 from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.edge import KINDS
 from contactlaw.export import c_header
 from contactlaw.model import ImpactModel
 from contactlaw.stepping.spring import FEWEST_STEPS
@@ -48,7 +49,8 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     -----
     ``README.txt`` says how it is built and used. ``build.sh`` makes a library that Debian's binary
     loads; the three headers also go into the sources of LIGGGHTS. The
-    thickness is a property of a wall's atom type, so walls of one pair may differ in thickness.
+    thickness is a property of a wall's atom type, so walls of one pair may differ in thickness; so
+    is the distance from an edge, if walls have one.
 
     Normal forces are those of `contactlaw.softsphere`, friction is that of `contactlaw.stepping` or
     LIGGGHTS's ``tangential history``. Contacts between beads are LIGGGHTS's own.
@@ -85,7 +87,9 @@ def _texts(model: ImpactModel) -> dict[str, str]:
         "contact_time": repr(CONTACT_TIME),
         "steps": str(FEWEST_STEPS),
         "R_MIN": repr(lookup.R_MIN),
+        "R_MAX": repr(lookup.R_MAX),
         "THINNEST": repr(lookup.THINNEST),
+        "edge_names": ", ".join(f'"{kind}Edge"' for kind in KINDS),
     }
     found = {}
     for name in _FILES:

@@ -13,6 +13,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+import polymer
 import pytest
 from own_laws import measured, own
 from places import ROOT
@@ -26,6 +27,7 @@ from contactlaw._jit import kernel
 from contactlaw._version import VERSION
 from contactlaw.equation import force, zener
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.edge import KINDS, response_of
 from contactlaw.export import c_header
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
@@ -35,6 +37,7 @@ from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.physical.validity import flags_of
 from contactlaw.softsphere import PARTED, Contacts, State, advance, resized, unit_spring
+from contactlaw.stepping.edge import Near, rate_of
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
 from contactlaw.stepping.spring import RELAXATION
 from contactlaw.table import Settings, lookup, nodes
@@ -50,8 +53,17 @@ STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
 MODELS = {name: (PAIR, name) for name in laws.names()}
 MODELS |= {"fem, metals": (STEEL, "fem"), "fem, elastic": (cl.Pair("glass", "glass"), "fem")}
 MODELS |= {"own": (PAIR, own()), "measured": (PAIR, measured())}
+DOUBLE = ctypes.c_double
 FIELDS = [one.name for one in dataclasses.fields(Rebound) if one.name not in ("overload", "flags")]
 FIELDS.insert(2, "loading_time")
+
+
+class SpringOfC(ctypes.Structure):
+    """The last number holds the kind of an edge."""
+
+    _fields_ = [("v", DOUBLE * 11)]
+
+
 LINKAGE = """
 #include "contactlaw.h"
 #ifdef __cplusplus
@@ -107,6 +119,16 @@ CALLED double step(const contactlaw_spring *spring, contactlaw_state *state, dou
 CALLED contactlaw_spring spring_of(double radius, double thickness)
 {
     return contactlaw_spring_of(radius, thickness);
+}
+
+CALLED void set_edge(contactlaw_spring *spring, int edge, double distance)
+{
+    contactlaw_set_edge(spring, edge, distance);
+}
+
+CALLED double near_edge(double v, double r, double h, int edge, double distance)
+{
+    return contactlaw_restitution_near(v, r, h, edge, distance);
 }
 
 /* Friction on beads in each step; the wall rocks, and another bead strikes them in the middle. */
@@ -359,6 +381,45 @@ def test_an_oblique_impact_is_that_of_the_integration(compiled):
     assert np.isnan(out[2:, :6]).all()
 
 
+@pytest.mark.parametrize("pair", [STEEL, polymer.PAIRS[1]], ids=["metals", "losses"])
+def test_a_step_near_an_edge_is_that_of_softsphere(pair, tmp_path):
+    """Compare the whole state in each step of an impact, 1.5 thicknesses from each kind of edge."""
+    model, v, r, h, s = cl.ImpactModel(pair), 2.0, 1e-3, 1e-3, 1.5e-3
+    library, spring = without_a_table(tmp_path, model), resized(unit_spring(model, h), r)
+    library.spring_of.restype, dt = SpringOfC, float(model.solve(v, r, h).contact_time) / 50
+    for n, kind in enumerate(KINDS, 1):
+        near = Near(response_of(kind, pair.plate.poissons_ratio), float(rate_of(pair.plate, h, s)))
+        peer = library.spring_of(DOUBLE(r), DOUBLE(h))
+        library.set_edge(ctypes.byref(peer), n, DOUBLE(s))
+        x, u, state, expected, found = -0.3 * v * dt, v, PARTED, [], [np.zeros(len(PARTED))]
+        while not expected or state.force > 0.0:
+            u -= 0.5 * dt * state.force / spring.mass
+            x += dt * u
+            state = advance(model.force_law.data, spring, state, x, dt, near)
+            u -= 0.5 * dt * state.force / spring.mass
+            expected.append(state)
+            found.append(found[-1].copy())
+            library.step(ctypes.byref(peer), pointer(found[-1]), DOUBLE(x), DOUBLE(dt))
+        size = np.abs(expected).max(axis=0)
+        assert (size[5:] > 0.0).all()
+        assert (np.abs(np.subtract(found[1:], expected)).max(axis=0) <= 1e-12 * size).all()
+
+
+@pytest.mark.parametrize("pair", [STEEL, polymer.PAIRS[0]], ids=["metals", "losses"])
+def test_restitution_near_an_edge_is_the_solvers(pair, tmp_path):
+    model, drop = cl.ImpactModel(pair), (2.0, 1e-3, 1e-3)
+    near = without_a_table(tmp_path, model).near_edge
+    near.restype, near.argtypes = DOUBLE, [DOUBLE] * 3 + [ctypes.c_int, DOUBLE]
+    for n, kind in enumerate(KINDS, 1):
+        for s in (0.5e-3, 1e-3, 3e-3):
+            hit = model.solve(*drop, edge=kind, edge_distance=s)
+            assert near(*drop, n, s) == pytest.approx(hit.restitution, abs=1e-3)
+    for n, s in ((1, math.inf), (0, 1e-3)):
+        assert near(*drop, n, s) == pytest.approx(model.solve(*drop).restitution, abs=1e-9)
+    for n, s in ((1, -1e-3), (2, math.nan), (4, 1e-3), (-1, 1e-3)):
+        assert math.isnan(near(*drop, n, s))
+
+
 @kernel(entry=True)
 def slides(law, spring, kappa, steps, v, spin, r, dt, mu, row, out):
     """Friction on a bead in `contactlaw.stepping`, in each step of what `slides` does in C."""
@@ -478,7 +539,9 @@ def test_a_field_of_an_impact_adds_itself_to_the_header(monkeypatch):
 def test_a_state_in_c_is_softspheres():
     text = c_header._text(model_of("myc"), {})
     inside = re.search(r"struct contactlaw_state {(.*?)}", text, re.DOTALL)[1]
-    assert re.findall(r"double (\w+);", inside) == list(State._fields)
+    assert re.findall(r"double (\w+);", inside) == list(State._fields[:5])
+    assert "double memory[6];" in inside
+    assert len(State._fields) == 5 + 6
 
 
 def test_no_constant_of_python_is_repeated_in_the_template():
@@ -487,6 +550,7 @@ def test_no_constant_of_python_is_repeated_in_the_template():
     values = {float(getattr(module, name)): name for module, name in CONSTANTS}
     values |= {RELAXATION: "RELAXATION", validity.SLENDER: "THINNEST"}
     del values[1.5]  # RELAXING, but also Hertz's exponent
+    del values[1e-3]  # _NEAREST, but also a bound of the integration
     number = re.compile(r"(?<![\w.$])\d+(?:\.\d*)?(?:e-?\d+)?(?![\w.])")
     for path in (folder / "contactlaw.h.in", *folder.glob("liggghts/*.h.in")):
         code = path.read_text().partition("BSD 3-Clause License")[0]
@@ -609,6 +673,8 @@ int main(void)
             spring.transit = near(spring.transit);
             spring.ratio = near(spring.ratio);
         }
+        if (uniform() < 0.3)
+            contactlaw_set_edge(&spring, (int)(4.0 * uniform()), any(1e-5, 1e-1));
         for (k = 0; k < 60; ++k) {
             double x = any(1e-3, 1.0) * 1e-5, dt = any(1e-9, 1e-5), f;
             contactlaw_state before;
@@ -768,13 +834,10 @@ def test_several_source_files_may_include_it(tmp_path):
 
 def test_a_spring_is_that_of_softsphere(compiled):
     model, library, _ = compiled
-    values = ctypes.c_double * 8
     for radius, thickness in ((0.9e-3, 1e-3), (1e-9, math.inf), (1e3, 10.0), (1e-7, 1e-9)):
         library.spring_of.argtypes = (ctypes.c_double, ctypes.c_double)
-        library.spring_of.restype = type(
-            "Spring", (ctypes.Structure,), {"_fields_": [("v", values)]}
-        )
-        found = list(library.spring_of(radius, thickness).v)
+        library.spring_of.restype = SpringOfC
+        found = list(library.spring_of(radius, thickness).v)[:8]
         spring = resized(unit_spring(model, thickness), radius)
         plate = model.pair.plate
         shear = 0.5 * plate.youngs_modulus / (1.0 + plate.poissons_ratio)
@@ -782,7 +845,7 @@ def test_a_spring_is_that_of_softsphere(compiled):
         theirs = *spring[:5], transit, spring.ratio, radius
         assert found == pytest.approx(theirs, rel=1e-14)
     for radius, thickness in ((0.0, 1e-3), (-1.0, 1e-3), (1e-3, 0.0), (1e-3, math.nan), (2e3, 1.0)):
-        assert np.isnan(list(library.spring_of(radius, thickness).v)).all()
+        assert np.isnan(list(library.spring_of(radius, thickness).v)[:8]).all()
 
 
 def test_a_blown_up_simulation_is_told_and_leaves_the_state(tmp_path):
@@ -912,8 +975,8 @@ def test_the_documented_c_compiles(tmp_path):
     write_header(tmp_path, "myc")
     arguments = "double speed, double radius, double thickness, double overlap, double dt, "
     arguments += "double friction, double *velocity, double *spin, const double *normal, "
-    arguments += "const double *wall_velocity"
-    body = f"{calls} return e + force + impact.peak_force + flags;"
+    arguments += "const double *wall_velocity, double distance"
+    body = f"{calls} return e + near + force + impact.peak_force + flags;"
     source = f"{include}\ndouble f({arguments});\ndouble f({arguments}) {{ {body} }}\n"
     build(tmp_path, source, "-c", *WARNINGS)
 

@@ -14,6 +14,7 @@ from places import ROOT
 
 import contactlaw as cl
 from contactlaw import _atomic, cli
+from contactlaw.equation.edge import KINDS
 from contactlaw.softsphere import Contacts, time_step
 
 TOOLS = "liggghts", "mpicxx", "mpirun.openmpi"
@@ -209,6 +210,25 @@ def test_drops_have_the_restitution_of_the_table(law, libraries, tmp_path):
     assert (last["fz"][-1] == 0.0).all()
     assert np.abs(last["vz"][-1] / speed - expected.restitution).max() < 5e-4
     assert expected.restitution.min() < 0.6 < 0.84 < expected.restitution.max()
+
+
+@needs_liggghts
+def test_drops_near_edges_have_the_restitution_of_the_solver(scene):
+    """One plate has an edge of each kind; three fixes give their distances."""
+    sheets, centres, lines, v, s = {}, [], [], 5.0, 1.5e-3
+    for n, kind in enumerate(KINDS):
+        x = -0.0375 + 0.025 * n
+        scene.sheet(kind, (x - 0.011, -0.02), (x + 0.011, 0.02))
+        sheets[kind] = n + 2
+        centres.append((x, 3e-3, scene.radius + GAP))
+        distances = " ".join(str(s if m == n + 1 else 1000) for m in range(5))
+        lines.append(f"fix p{kind} all property/global {kind}Edge peratomtype {distances}")
+    start, walls = scene.beads(centres, (0, 0, -v)), "\n".join([*lines, meshes(**sheets)])
+    last = scene.run(scene.script(start, walls, step=5e-8, every=600) + "run 600")
+    for found, kind, h in zip(last["vz"][-1] / v, KINDS, THICKNESS, strict=False):
+        near = scene.model.solve(v, scene.radius, h, edge=kind, edge_distance=s).restitution
+        assert found == pytest.approx(near, abs=5e-4)
+        assert abs(found - scene.model.restitution(v, scene.radius, h)) > 2e-3
 
 
 @needs_liggghts
@@ -477,6 +497,13 @@ WRONG = {
     "option": (
         ("tangential contactlaw primitive", "tangential contactlaw damping on primitive"),
         "damping",
+    ),
+    "edge": (
+        (
+            "fix friction",
+            "fix rim all property/global freeEdge peratomtype 1 1 -1 1 1\nfix friction",
+        ),
+        "freeEdge requires values between 0 and 1e+20",
     ),
     "units": (("units si", "units cgs"), "Normal model contactlaw is in SI units: take units si"),
     "step": (
