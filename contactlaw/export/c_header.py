@@ -212,7 +212,7 @@ def _text(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> 
         "validity": ",\n".join(f"    CONTACTLAW_{one.name} = {one.value}" for one in Validity),
         "edges": ", ".join(f"CONTACTLAW_{kind.upper()}_EDGE" for kind in KINDS),
         "responses": ",\n".join(
-            f"{{\n{_array(response_of(kind, model.pair.plate.poissons_ratio))}\n}}"
+            f"{{\n{_array(response_of(kind, model.pair.plate.poissons_ratio, size='steps'))}\n}}"
             for kind in KINDS
         ),
         "wave_path": _number(wave_path(model.pair.plate)),
