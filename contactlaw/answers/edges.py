@@ -72,24 +72,36 @@ def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, flo
     law = in_memory(bodies.law.data)
     response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))
 
+    constants = mass, stiffness, yielding, mobility, path
+
     @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float, edge_distance: float) -> float:
-        if not (
-            lookup.V_MIN <= speed <= lookup.V_MAX and lookup.R_MIN <= radius <= lookup.R_MAX
-            and lookup.THINNEST * radius <= thickness < math.inf and edge_distance >= 0.0
-        ):  # fmt: skip
-            return math.nan
-        m, ratio = mass * (radius * radius * radius), radius / thickness
-        known = numbers(plate, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
-        share = edge_distance / thickness
-        rate = min(path * known.time / (share * share * thickness), NEAREST)
-        thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
-        y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
-        return zener.restitution_near(
-            law(), response(), known.inelasticity, y, min(thin, 1.0), rate, _RTOL
+        return _cor_near(
+            law(), response(), plate, constants, speed, radius, thickness, edge_distance
         )
 
     return cor
+
+
+# Its machine code is kept on disk, which is not possible for callers that know a law in memory.
+@kernel(cache=True)
+def _cor_near(
+    law: Array, response: Array, plate: Any, constants: tuple[float, float, float, float, float],
+    speed: float, radius: float, thickness: float, edge_distance: float,
+) -> float:  # fmt: skip
+    if not (
+        lookup.V_MIN <= speed <= lookup.V_MAX and lookup.R_MIN <= radius <= lookup.R_MAX
+        and lookup.THINNEST * radius <= thickness < math.inf and edge_distance >= 0.0
+    ):  # fmt: skip
+        return math.nan
+    mass, stiffness, yielding, mobility, path = constants
+    m, ratio = mass * (radius * radius * radius), radius / thickness
+    known = numbers(plate, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
+    share = edge_distance / thickness
+    rate = min(path * known.time / (share * share * thickness), NEAREST)
+    thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
+    y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
+    return zener.restitution_near(law, response, known.inelasticity, y, min(thin, 1.0), rate, _RTOL)
 
 
 def _each(
