@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.backend import Backend, SphereOnPlate
-from contactlaw.answers.rated import merged, merged_histories, renumbered
+from contactlaw.answers.rated import flow_of, merged, merged_histories, renumbered
 from contactlaw.answers.solver import Solver
 from contactlaw.equation import zener
 from contactlaw.equation.edge import response_of
@@ -65,32 +65,48 @@ _RTOL = 1e-6  # of the kernel: its COR is within 1e-5 of the solver's
 
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, float, float], float]:
     """COR near an edge of this kind as a jitted function of speed, radius, thickness, distance."""
-    # TODO rated
+    if flow_of(bodies) is not None:
+        raise ValueError(
+            "edge_kernel: a pair with a rate of strain has a law for each impact: call "
+            "restitution(..., edge, edge_distance)"
+        )
     one = bodies.contact(Impacts(np.ones(1), np.ones(1), np.ones(1), None))
     mass, stiffness, yielding = one.mass.item(), one.stiffness.item(), one.yield_compression.item()
     mobility, path, plate = one.mobility.item(), wave_path(bodies.pair.plate), one.plate
     law = in_memory(bodies.law.data)
     response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))
 
+    constants = mass, stiffness, yielding, mobility, path
+
     @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float, edge_distance: float) -> float:
-        if not (
-            lookup.V_MIN <= speed <= lookup.V_MAX and lookup.R_MIN <= radius <= lookup.R_MAX
-            and lookup.THINNEST * radius <= thickness < math.inf and edge_distance >= 0.0
-        ):  # fmt: skip
-            return math.nan
-        m, ratio = mass * (radius * radius * radius), radius / thickness
-        known = numbers(plate, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
-        share = edge_distance / thickness
-        rate = min(path * known.time / (share * share * thickness), NEAREST)
-        thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
-        thin = 1.0 if relaxes(plate) else thin
-        y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
-        return zener.restitution_near(
-            law(), response(), known.inelasticity, y, min(thin, 1.0), rate, _RTOL
+        return _cor_near(
+            law(), response(), plate, constants, speed, radius, thickness, edge_distance
         )
 
     return cor
+
+
+# Its machine code is kept on disk, which is not possible for callers that know a law in memory.
+@kernel(cache=True)
+def _cor_near(
+    law: Array, response: Array, plate: Any, constants: tuple[float, float, float, float, float],
+    speed: float, radius: float, thickness: float, edge_distance: float,
+) -> float:  # fmt: skip
+    if not (
+        lookup.V_MIN <= speed <= lookup.V_MAX and lookup.R_MIN <= radius <= lookup.R_MAX
+        and lookup.THINNEST * radius <= thickness < math.inf and edge_distance >= 0.0
+    ):  # fmt: skip
+        return math.nan
+    mass, stiffness, yielding, mobility, path = constants
+    m, ratio = mass * (radius * radius * radius), radius / thickness
+    known = numbers(plate, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
+    share = edge_distance / thickness
+    rate = min(path * known.time / (share * share * thickness), NEAREST)
+    thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
+    thin = 1.0 if relaxes(plate) else thin
+    y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
+    return zener.restitution_near(law, response, known.inelasticity, y, min(thin, 1.0), rate, _RTOL)
 
 
 def _each(

@@ -78,6 +78,11 @@ def knows_friction(model: object) -> TypeGuard[ObliqueModel]:
     return hasattr(model, "oblique")
 
 
+def knows_edges(model: object) -> bool:
+    """Whether a model knows edges of plates, as `contactlaw.ImpactModel` does."""
+    return hasattr(model, "edge_kernel")
+
+
 def knows_rebounds(model: object) -> TypeGuard[ReboundModel]:
     """Whether a model can complete the impact record.
 

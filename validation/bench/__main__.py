@@ -18,6 +18,7 @@ SUBJECTS = (
     "startup",
     "processes",
     "rain",
+    "edges",
     "elements",
     "c_header",
     "lammps",

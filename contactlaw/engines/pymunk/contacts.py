@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
+from contactlaw.engines.needs import CorBySpeed
+from contactlaw.engines.pymunk.edges import PlateEdges
 from contactlaw.engines.pymunk.friction import LOOSE, Rubbing, belt, check_moment, sliding
 from contactlaw.engines.pymunk.handlers import Callback, Hook, overridden
 from contactlaw.engines.pymunk.lookahead import tunnelling
@@ -35,6 +37,8 @@ class Contacts:
         Registered beads and plates by the id of their shape.
     record : Record
         Record of all impacts.
+    edges : PlateEdges
+        Distances of impacts from edges of plates.
     time, steps : float, int
         Sum [s] and number of the steps so far.
     resting : int
@@ -49,6 +53,7 @@ class Contacts:
         self.beads: dict[int, BeadShape] = {}
         self.plates: dict[int, PlateShape] = {}
         self.record = Record()
+        self.edges = PlateEdges()
         self.time = 0.0
         self.steps = 0
         self.resting = 0
@@ -108,18 +113,25 @@ class Contacts:
                     if friction is not None:
                         arbiter.friction = friction
                     return
-                cor = self._answer(arbiter, bead, plate, circle, shape, speed)
+                near = curve = None
+                if plate.edge is not None:
+                    near = self.edges.near(bead, plate, (x, y), speed)
+                    curve = near and plate.models.near(bead.kind, plate.thickness, near)
+                cor = self._answer(arbiter, bead, plate, circle, shape, speed, curve)
                 kind = IMPACT if arbiter.is_first_contact else STRUCK
                 spin = body.angular_velocity
                 slip = nx * (vy - uy) - ny * (vx - ux) + bead.radius * spin
                 after, work = abs(slip), 0.0
                 if friction is not None:
+                    gain = (1.0 + cor) / (1.0 + plate.curve(bead, shape)(speed)) if near else 1.0
                     slip, after, spin, work = self._slide(
-                        arbiter, bead, plate, body, (nx, ny), speed, slip
+                        arbiter, bead, plate, body, (nx, ny), speed, slip, gain
                     )
                 elif arbiter.friction > 0.0:
                     self._rub(arbiter, circle, shape, len(self.record))
                     after = spin = work = math.nan
+                if near:
+                    self.record.near[len(self.record)] = near
                 record((
                     self.time, bead.index, plate.index, -1, x, y, 0.0, speed, cor, abs(slip), kind,
                     after, spin, work,
@@ -196,11 +208,14 @@ class Contacts:
         normal: tuple[float, float],
         speed: float,
         along: float,
+        gain: float,
     ) -> tuple[float, ...]:
         """Let the model answer for friction: sliding speed before and after, spin, and work.
 
         The engine's solver gives the contact the ``surface_velocity``, as far as its friction can.
         Gravity moves the bead along the plate as in any step. `along` is without a `belt` [m/s].
+        Near an edge the normal impulse is `gain` times that far away, and so is the bead's
+        tangential motion at sliding speeds that are as much larger.
         """
         (nx, ny), (gx, gy), mount = normal, self._fall, plate.mount
         friction, carried = plate.friction or 0.0, belt(arbiter, nx, ny)
@@ -208,7 +223,7 @@ class Contacts:
         if friction:
             try:
                 check_moment(body, bead.radius)
-                change = plate.slide(bead)(speed, slip) - slip
+                change = gain * (plate.slide(bead)(speed, slip / gain) - slip / gain)
             except Exception as error:
                 error.add_note(self._describe(bead, plate, speed))
                 raise
@@ -287,12 +302,16 @@ class Contacts:
         circle: Any,
         shape: Any,
         speed: float,
+        curve: CorBySpeed | None = None,
     ) -> float:
-        """Ask the model for the restitution, check it, and give it to the engine."""
+        """Ask the model for the restitution, check it, and give it to the engine.
+
+        `curve` is in place of that of the plate far from its edges.
+        """
         if circle.radius != bead.radius:
             raise changed(bead, circle)
         try:
-            restitution = other.curve(bead, shape)(speed)
+            restitution = (curve or other.curve(bead, shape))(speed)
         except Exception as error:
             error.add_note(self._describe(bead, other, speed))
             raise

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from contactlaw.engines.needs import RestitutionModel
 from contactlaw.engines.pymunk.contacts import Contacts
+from contactlaw.engines.pymunk.edges import edges_of
 from contactlaw.engines.pymunk.handlers import Handlers
 from contactlaw.engines.pymunk.lookahead import LookAhead
 from contactlaw.engines.pymunk.models import Models
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
     import pymunk
 
     from contactlaw import Material
+    from contactlaw.equation.edge import Edge
 
 # The first collision type, far above those that users choose and below 2**32, pymunk's limit on
 # 32-bit machines.
@@ -193,6 +195,7 @@ class PymunkImpacts:
         material: Material | str | None = None,
         model: RestitutionModel | Sequence[RestitutionModel] | None = None,
         friction: float | None = None,
+        edge: Edge | None | tuple[Edge | None, Edge | None] = None,
     ) -> int:
         """Register a plate; its body may be static, kinematic (a sieve) or dynamic.
 
@@ -213,6 +216,9 @@ class PymunkImpacts:
             Coulomb's coefficient between beads and this plate [-]: tangential rebound and spin are
             the model's. By default pymunk's own friction acts, as on other shapes: of rigid bodies,
             with the product of the two shapes' ``friction``, which is 0 unless set.
+        edge : {"free", "supported", "clamped"}, or two of them, optional
+            What holds the plate at its edges, the ends of a segment or of a polygon's sides; two
+            are for a segment's start and end. By default the plate has no edges.
 
         Returns
         -------
@@ -223,7 +229,8 @@ class PymunkImpacts:
         ------
         TypeError, ValueError, RuntimeError
             As `add_bead`; also if the shape has no length, the thickness is no positive number, or
-            a model without ``oblique`` is asked for friction.
+            a model without ``oblique`` is asked for friction, or one without ``edge_kernel`` for
+            edges.
         """
         import pymunk
 
@@ -236,16 +243,18 @@ class PymunkImpacts:
         chosen = self._models.plate(material) if model is None else self._models.own_models(model)
         if friction is not None:
             friction = friction_of(friction, chosen, shape, self._contacts.beads.values())
+        edges = edges_of(edge, chosen, len(ends(shape)), thickness)
         key = id(shape)
         index = self._register.plate(chosen, thickness)
         mount = self._mounts.get(id(body))
         if mount is None or mount.body() is not body:
             mount = self._mounts[id(body)] = Mount(id(body), ref(body))
         noted = KeyedRef(shape, self._gone.append, key)
-        plate = PlateShape(index, noted, mount, thickness, chosen, friction)
+        plate = PlateShape(index, noted, mount, thickness, chosen, friction, edges)
         mount.plates[index] = plate
         self._contacts.plates[key] = plate
         self._seams.join(plate, shape, body)
+        self._contacts.edges.forget()
         shape.collision_type = self.plate_type
         return index
 
@@ -377,6 +386,7 @@ class PymunkImpacts:
     def _forget_plate(self, key: int) -> None:
         plate = self._contacts.plates.pop(key)
         self._seams.part(plate)
+        self._contacts.edges.forget()
         mount = plate.mount
         del mount.plates[plate.index]
         if not mount.plates and self._mounts.get(mount.key) is mount:

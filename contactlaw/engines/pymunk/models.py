@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import math
+from collections.abc import Callable, Sequence
 from typing import Any, NoReturn
 
-from contactlaw import Material
+from contactlaw import Material, edge_distance
 from contactlaw import material as catalogued
 from contactlaw.engines.needs import CorBySpeed, RestitutionModel, knows_beads
+from contactlaw.physical.rate import rated
+
+Near = tuple[str, float]  # kind of an edge, and the distance from it [m]
 
 
 class ModelsByBead(dict[int, RestitutionModel]):
@@ -17,6 +21,8 @@ class ModelsByBead(dict[int, RestitutionModel]):
         super().__init__()
         self._spheres = spheres
         self.plate = _name(plate)
+        self._reaches: dict[tuple[float, ...], float] = {}
+        self._kernels: dict[tuple[int, str], Callable[..., float] | None] = {}
 
     def __missing__(self, number: int) -> NoReturn:
         """Raise for a pair of materials that no model is for."""
@@ -24,6 +30,36 @@ class ModelsByBead(dict[int, RestitutionModel]):
             f"model: none is attached for Pair({_name(self._spheres[number])!r}, {self.plate!r}): "
             "attach(space, [model, ...]) takes one for each pair of materials that meets"
         )
+
+    def reach(self, bead: tuple[float, int], thickness: float, speed: float) -> float:
+        """Distance [m] from which on edges do not matter; found once per doubling of the speed."""
+        (radius, number), octave = bead, math.frexp(speed)[1]
+        found = self._reaches.get((radius, number, thickness, octave))
+        if found is None:
+            model: Any = self[number]
+            # Slower impacts last longer, so the slowest of these speeds has the longest reach.
+            time = model.solve(math.ldexp(0.5, octave), radius, thickness).contact_time
+            found = float(edge_distance(model.pair.plate, thickness, time))
+            self._reaches[radius, number, thickness, octave] = found
+        return found
+
+    def near(self, bead: tuple[float, int], thickness: float, near: Near) -> CorBySpeed:
+        """COR by speed near an edge."""
+        (radius, number), (kind, distance) = bead, near
+        model: Any = self[number]
+        if (number, kind) not in self._kernels:
+            slow = model.force_law.yields and rated(model.pair, model.force_law)
+            self._kernels[number, kind] = None if slow else model.edge_kernel(kind)
+        kernel = self._kernels[number, kind]
+
+        def curve(speed: float) -> float:
+            cor = math.nan if kernel is None else kernel(speed, radius, thickness, distance)
+            # The kernel knows no rate of strain, and cannot say what is wrong with an impact.
+            if cor != cor:
+                return float(model.restitution(speed, radius, thickness, kind, distance))
+            return float(cor)
+
+        return curve
 
 
 class Models:

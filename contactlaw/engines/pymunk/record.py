@@ -11,7 +11,7 @@ from numpy.lib.recfunctions import repack_fields
 from numpy.typing import NDArray
 
 from contactlaw.engines.needs import RestitutionModel, knows_rebounds
-from contactlaw.engines.pymunk.models import Models, ModelsByBead
+from contactlaw.engines.pymunk.models import Models, ModelsByBead, Near
 from contactlaw.engines.record import IMPACT, OBSERVED, fill
 from contactlaw.physical.materials import sphere_mass
 
@@ -80,6 +80,7 @@ class Record:
     def __init__(self) -> None:
         self._seen = array("d")  # 112 bytes per impact; a list of tuples takes five times that
         self.add = self._seen.extend  # takes one tuple in the order of SEEN
+        self.near: dict[int, Near] = {}  # of impacts near edges, by row
         self._rows = np.empty(0, IMPACT)  # rows of the impacts that have been read
 
     def __len__(self) -> int:
@@ -92,6 +93,7 @@ class Record:
     def undo(self) -> None:
         """Remove the last impact."""
         del self._seen[-WIDTH:]
+        self.near.pop(len(self), None)
         self._rows = self._rows[: len(self)]
 
     def settle(self, row: int, before: float, outcome: tuple[float, float, float]) -> None:
@@ -116,13 +118,15 @@ class Record:
             for name, column in zip(SEEN, seen.T, strict=True):
                 rows[name] = column
             if whole:
-                _complete(rows, register)
+                first = len(self._rows)
+                near = {n - first: one for n, one in self.near.items() if n >= first}
+                _complete(rows, register, near)
             self._rows = np.concatenate((self._rows, rows))
         # Once a model gives a COR alone, the rest of the run has the columns of OBSERVED only.
         return self._rows.copy() if whole else repack_fields(self._rows[list(OBSERVED)])
 
 
-def _complete(rows: NDArray[np.void], register: Register) -> None:
+def _complete(rows: NDArray[np.void], register: Register, near: dict[int, Near]) -> None:
     """Look impacts up, each with the model of its materials; every model is a `ReboundModel`."""
     beads, plates, material = register.beads(), register.plates(), register.materials
     density = np.array([register.models.density(n) for n in range(len(register.models.spheres))])
@@ -137,15 +141,20 @@ def _complete(rows: NDArray[np.void], register: Register) -> None:
     # m1 m2/(m1 + m2); a plate has an infinite mass
     reduced = mass[bead] / (1.0 + np.where(on_bead, mass[bead] / mass[other], 0.0))
     energy = 0.5 * reduced * rows["approach_speed"] ** 2
-    questions: list[tuple[Any, NDArray[np.bool_], tuple[Any, ...]]] = [
-        (model.lookup, own, ()) for model, own in register.by_model(rows)
-    ]
+    edge, distance = np.full(len(rows), "", dtype="U9"), np.full(len(rows), math.inf)
+    for n, one in near.items():
+        edge[n], distance[n] = one
+    questions: list[tuple[Any, NDArray[np.bool_], tuple[Any, ...]]] = []
+    for model, own in register.by_model(rows):
+        for kind in np.unique(edge[own]).tolist():
+            some = own & (edge == kind)
+            questions.append((model.lookup, some, (kind, distance[some]) if kind else ()))
     for pair in np.unique(
         np.stack((material[bead], material[other]))[:, on_bead], axis=1
     ).T.tolist():
         own = on_bead & (material[bead] == pair[0]) & (material[other] == pair[1])
-        model: Any = register.models.of_bead(pair[0])
-        questions.append((model.lookup_sphere_sphere, own, register.models.extra_arguments(*pair)))
+        by: Any = register.models.of_bead(pair[0])
+        questions.append((by.lookup_sphere_sphere, own, register.models.extra_arguments(*pair)))
     for lookup, own, more in questions:
         part = rows[own]
         fill(

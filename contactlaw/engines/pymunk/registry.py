@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     Face = pymunk.Segment | pymunk.Poly
 
 Vector = tuple[float, float]
+Edges = tuple[str | None, str | None]  # kinds of a plate's edges, at its start and its end
 Kind = tuple[float, int]  # beads that rebound alike: radius [m], number of the material
 # a shared end [m], in the body's coordinates, and the other plate
 Joint = tuple[float, float, "PlateShape"]
@@ -72,6 +73,7 @@ class PlateShape:
     thickness: float
     models: ModelsByBead
     friction: float | None = None  # None: the engine's own
+    edge: Edges | None = None  # None: endless
     joints: list[Joint] = field(default_factory=list)  # ends shared with other plates
     curves: dict[Kind, CorBySpeed] = field(default_factory=dict)
     slides: dict[Kind, Slide] = field(default_factory=dict)

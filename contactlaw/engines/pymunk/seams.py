@@ -33,7 +33,7 @@ class Seams:
         """Make joints of the ends that a new plate shares with others on the same rigid body."""
         cells = self._cells[plate.index] = []
         for end in ends(shape):
-            rigid, (x, y) = _place(end, body)
+            rigid, (x, y) = place(end, body)
             if not (math.isfinite(x) and math.isfinite(y)):
                 continue
             column, row = round(x / SAME_END), round(y / SAME_END)
@@ -81,7 +81,7 @@ def belongs_to_neighbour(
     return False
 
 
-def _place(end: pymunk.Vec2d, body: pymunk.Body) -> tuple[int, Vector]:
+def place(end: pymunk.Vec2d, body: pymunk.Body) -> tuple[int, Vector]:
     """Rigid body of an end, and its coordinates there; all static bodies count as one."""
     import pymunk
 

@@ -1,0 +1,126 @@
+"""Edges of plates: how far from the nearest one an impact is, along plates that continue."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from contactlaw.engines.needs import knows_edges
+from contactlaw.engines.pymunk.models import ModelsByBead, Near
+from contactlaw.engines.pymunk.registry import BeadShape, Edges, PlateShape, Vector, ends
+from contactlaw.engines.pymunk.seams import SAME_END, place
+from contactlaw.physical.rebound import check_kind
+
+# Plates that meet at a smaller angle than 30 degrees are one plate; a sharper fold holds both.
+SMOOTH = math.cos(math.radians(30.0))
+# Nearer than half its thickness to an edge, a plate is as it is there. The model does not describe
+# either (`Validity.NEAR_EDGE`), but it takes a hundred times longer right at an edge.
+NEAREST = 0.5
+# No wave comes back from more than this many thicknesses within a contact.
+FARTHEST = 1000.0
+
+
+class Side(NamedTuple):
+    """A straight piece of a plate, in coordinates of its body [m]."""
+
+    start: Vector
+    along: Vector  # of length 1, from the start
+    length: float
+    edges: tuple[Near, Near]  # beyond the start and the end; the distances are from there
+
+
+class PlateEdges:
+    """Sides of the plates of a space; each is measured at the first impact."""
+
+    def __init__(self) -> None:
+        self._sides: dict[int, list[Side]] = {}  # by index of the plate
+
+    def forget(self) -> None:
+        """Measure again, because plates have come or gone."""
+        self._sides.clear()
+
+    def near(self, bead: BeadShape, plate: PlateShape, at: Vector, speed: float) -> Near | None:
+        """Kind of the nearest edge and its distance [m]; None if it is too far to matter."""
+        sides = self._sides.get(plate.index)
+        if sides is None:
+            sides = self._sides[plate.index] = _sides(plate)
+        u, v = plate.mount.local(*at)
+        least, found = math.inf, ("", math.inf)
+        for (u0, v0), (du, dv), length, (before, after) in sides:
+            s = min(max((u - u0) * du + (v - v0) * dv, 0.0), length)
+            off = math.hypot(u - u0 - s * du, v - v0 - s * dv)
+            if off < least:
+                least, one, other = off, before[1] + s, after[1] + length - s
+                found = (before[0], one) if one <= other else (after[0], other)
+        kind, distance = found
+        if distance >= plate.models.reach(bead.kind, plate.thickness, speed):
+            return None
+        return kind, max(distance, NEAREST * plate.thickness)
+
+
+def edges_of(edge: Any, models: ModelsByBead, corners: int, thickness: float) -> Edges | None:
+    """Kinds of the edges of a new plate, at its start and its end; None for an endless one."""
+    kinds = tuple(edge) if isinstance(edge, tuple | list) else (edge, edge)
+    if len(kinds) != 2 or (corners > 2 and kinds[0] != kinds[1]):
+        raise ValueError(f"edge: expected one kind, or for a segment two, got {edge!r}")
+    named = [kind for kind in kinds if kind is not None]
+    for kind in named:
+        check_kind(kind)
+    for model in models.values() if named else ():
+        if not knows_edges(model):
+            raise TypeError(
+                f"edge: {model!r} knows none, it has no edge_kernel(); leave edge=None, a plate "
+                "without edges, or give an ImpactModel"
+            )
+    return kinds if named and thickness < math.inf else None  # no wave returns in a half-space
+
+
+def _sides(plate: PlateShape) -> list[Side]:
+    shape: Any = plate.shape()
+    corners, found = ends(shape), []
+    for i in range(len(corners) if len(corners) > 2 else 1):
+        last = (i + 1) % len(corners)
+        beyond = _beyond(plate, last, i), _beyond(plate, i, last)
+        found.append(Side(corners[i], *_direction(corners[i], corners[last]), beyond))
+    return found
+
+
+def _beyond(plate: PlateShape, came: int, corner: int) -> Near:
+    """Kind of the edge where the plates end, and how far from a corner it is [m].
+
+    The way to it comes to the corner from another one, and goes on where plates turn least.
+    """
+    distance, seen, limit = 0.0, set(), FARTHEST * plate.thickness
+    while (plate.index, came, corner) not in seen and distance <= limit:
+        seen.add((plate.index, came, corner))
+        corners = _corners(plate)
+        here, (du, dv) = corners[corner], _direction(corners[came], corners[corner])[0]
+        joined = {other.index: other for _, _, other in plate.joints}
+        straightest, step, held = SMOOTH, None, False
+        for other in (plate, *joined.values()):
+            its = _corners(other)
+            for i in (n for n, at in enumerate(its) if math.dist(at, here) <= SAME_END):
+                held |= other is not plate
+                for j in (i - 1) % len(its), (i + 1) % len(its):
+                    (eu, ev), length = _direction(its[i], its[j])
+                    if du * eu + dv * ev > straightest:
+                        straightest, step = du * eu + dv * ev, (other, i, j, length)
+        if step is None:
+            kind = plate.edge and plate.edge[min(corner, 1)]
+            # What is joined at a fold keeps the end where it is.
+            return ("supported" if held else kind, distance) if kind else ("", math.inf)
+        plate, came, corner, length = step
+        distance += length
+    return "", math.inf  # the plates are closed, or end too far away
+
+
+def _corners(plate: PlateShape) -> list[Vector]:
+    """Corners in coordinates that joined plates have in common."""
+    shape: Any = plate.shape()
+    return [] if shape is None else [place(end, shape.body)[1] for end in ends(shape)]
+
+
+def _direction(one: Vector, other: Vector) -> tuple[Vector, float]:
+    """Vector of length 1 from one point to another, and their distance."""
+    length = math.dist(one, other)
+    return ((other[0] - one[0]) / length, (other[1] - one[1]) / length), length

@@ -1,0 +1,140 @@
+"""Edges of plates: where they are, and what the model answers near them."""
+
+import math
+
+import polymer
+import pymunk
+import pymunk_room as room
+import pytest
+from pymunk_room import R, Stub, make_bead, make_plate, make_space
+
+import contactlaw as cl
+from contactlaw.engines.pymunk import attach
+
+H = 1e-3
+NEAR, FAR = 1.5e-3, 15e-3  # [m]; edges are felt from 8.3 mm at 2 m/s
+RING = [(0.05 * math.cos(a), 0.05 * math.sin(a)) for a in (math.pi * n / 9 for n in range(18))]
+
+
+def hit(model, x, shapes, edge, y=0.0, speed=2.0, slip=0.0, thickness=H, friction=None):
+    """Row of the record, and body, of one bead that hits plates given by their corners."""
+    space = make_space(0.0)
+    impacts = attach(space, model)
+    circle = make_bead(space, (x, y + 1.01 * R), (slip, -speed))
+    impacts.add_bead(circle)
+    body = room.moving_body(space, position=(1.0, 0.0))  # plates know where their body is
+    for corners in shapes:
+        corners = [(u - 1.0, v) for u, v in corners]
+        shape = pymunk.Poly(body, corners)
+        if len(corners) == 2:
+            shape = make_plate(space, *corners, body=body)
+        else:
+            space.add(shape)
+        impacts.add_plate(shape, thickness, edge=edge, friction=friction)
+    room.step_to_impact(space, impacts, circle.body, 1e-5)
+    (row,) = impacts.collisions()
+    assert circle.body.velocity.y / speed == pytest.approx(row["restitution"], abs=1e-12)
+    return row, circle.body
+
+
+LONG, BOX = [(0, 0), (0.1, 0)], [(0, 0), (0.1, 0), (0.1, -0.01), (0, -0.01)]
+PIECES = [[(0, 0), (1e-3, 0)], [(0.1, 0), (1e-3, 0)]]
+NO_EDGE = {
+    "far": (FAR, [LONG], "free"),
+    "half of it": (0.1 - NEAR, [LONG], ("free", None)),
+    "closed": (7e-3, [[one, RING[n - 1]] for n, one in enumerate(RING)], "clamped"),
+    "round": (7e-3, [RING], "clamped"),
+}
+
+
+@pytest.mark.parametrize(
+    "x, shapes, edge, kind",
+    [
+        (NEAR, [LONG], "free", "free"),
+        (0.1 - NEAR, [LONG], ("clamped", "free"), "free"),
+        (NEAR, PIECES, "clamped", "clamped"),
+        (0.1 - NEAR, [BOX], "supported", "supported"),
+        (NEAR, [LONG, [(0, 0), (0, -0.1)]], "free", "supported"),  # a fold
+        (0.5e-3, [BOX, [(0, 0), (-1e-3, 0)]], "clamped", "clamped"),
+    ],
+    ids=["start", "end", "pieces", "box", "fold", "box and strip"],
+)
+def test_the_distance_is_along_the_plates(model, x, shapes, edge, kind):
+    row, _ = hit(model, x, shapes, edge)
+    expected = model.restitution(row["approach_speed"], R, H, kind, NEAR)
+    assert abs(expected - model.restitution(2.0, R, H)) > 0.01
+    assert row["restitution"] == pytest.approx(expected, abs=1e-5)
+
+
+@pytest.mark.parametrize("case", NO_EDGE)
+def test_without_an_edge_nearby_the_answer_is_as_before(model, case):
+    x, shapes, edge = NO_EDGE[case]
+    y = RING[4][1] if case in ("closed", "round") else 0.0  # the highest side is level
+    (row, _), (before, _) = (hit(model, x, shapes, one, y) for one in (edge, None))
+    assert row == before
+
+
+def test_the_record_has_the_answer_near_the_edge(model):
+    row, body = hit(model, 0.8 * H, [LONG], "free")
+    expected = model.lookup(row["approach_speed"], R, H, "free", 0.8 * H)
+    assert row["flags"] == expected.flags and cl.Validity.NEAR_EDGE in cl.Validity(row["flags"])
+    energy = 0.5 * body.mass * row["approach_speed"] ** 2
+    assert row["wave_energy"] == pytest.approx(float(expected.wave_fraction) * energy)
+    lost = row["wave_energy"] + row["plastic_energy"] + row["other_energy"]
+    assert lost == pytest.approx((1.0 - row["restitution"] ** 2) * energy, abs=1e-4 * energy)
+
+
+def test_a_bead_at_the_very_end_hits_half_a_thickness_from_it(model):
+    row, _ = hit(model, 0.1 * H, [LONG], "supported")
+    speed = row["approach_speed"]
+    assert row["restitution"] == pytest.approx(
+        model.restitution(speed, R, H, "supported", 0.5 * H), abs=1e-5
+    )
+
+
+def test_plates_that_come_later_continue_a_plate(model):
+    space = make_space(0.0)
+    impacts = attach(space, model)
+    circle = make_bead(space, (NEAR, 1.01 * R), (0, -2))
+    impacts.add_bead(circle)
+    impacts.add_plate(make_plate(space, (0, 0), (0.1, 0)), H, edge="free")
+    room.steps(space, 5)
+    impacts.add_plate(make_plate(space, (0, 0), (-0.1, 0)), H, edge="free")
+    circle.body.position, circle.body.velocity = (NEAR, 1.01 * R), (0, -2)
+    room.steps(space, 5)
+    first, second = impacts.collisions()["restitution"]
+    assert first < second - 0.01 and second == model.curve(R, H)(2.0)
+
+
+@pytest.mark.parametrize("sliding", [0.5, 2.0, 12.0])
+def test_friction_follows_the_normal_impulse(model, sliding):
+    mu, speed = 0.2, 2.0
+    row, _ = hit(model, NEAR, [LONG], "free", slip=sliding * mu * speed, friction=mu)
+    expected = model.oblique(speed, sliding * mu * speed, R, H, mu, "solve", "free", row["x"])
+    least = 1e-3 if sliding > 10.0 else 0.05
+    assert row["sliding_speed_after"] == pytest.approx(
+        float(expected.sliding_speed), abs=least * mu * speed
+    )
+
+
+def test_a_pair_with_a_rate_of_strain_has_its_own_answer():
+    model = polymer.MODELS[2]
+    row, _ = hit(model, NEAR, [LONG], "free")
+    expected = model.restitution(row["approach_speed"], R, H, "free", NEAR)
+    assert row["restitution"] == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "edge, box, error, message",
+    [
+        ("loose", False, ValueError, "edge: must be one of free, supported, clamped"),
+        (("free",) * 3, False, ValueError, "edge: expected one kind, or for a segment two"),
+        (("free", "clamped"), True, ValueError, "edge: expected one kind, or for a segment two"),
+        ("free", False, TypeError, "edge: .* leave edge=None.*ImpactModel"),
+    ],
+)
+def test_edges_that_cannot_be_are_refused(model, edge, box, error, message):
+    space = make_space()
+    shape = pymunk.Poly(space.static_body, BOX) if box else make_plate(space)
+    with pytest.raises(error, match=message):
+        attach(space, Stub() if error is TypeError else model).add_plate(shape, H, edge=edge)
