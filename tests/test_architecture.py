@@ -41,7 +41,7 @@ FILES = {
     "answers": ["backend", "solver", "tabulated", "rated", "edges", "beads", "compiled", "constant",
                 "histories", "loads", "oblique", "sensitivity", "speed_table", "law_errors",
                 "uncertainty"],
-    "walls": ["memory", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
+    "walls": ["memory", "edges", "motion", "plate", "mesh", "grid", "frame", "facet", "surface"],
     "stepping": ["strength", "edge", "spring", "energy", "friction", "plate_rows", "contact",
                  "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",

@@ -18,13 +18,15 @@ from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
-from contactlaw.physical.validity import flags_of
+from contactlaw.physical.validity import edge_flags, flags_of
 from contactlaw.stepping import energy
+from contactlaw.stepping.edge import REACH, Near, rate_at
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.plate_rows import limits_of, spring_of, with_levels
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
+    RELAXATION,
     Spring,
     State,
     at_largest,
@@ -32,7 +34,8 @@ from contactlaw.stepping.spring import (
     nearest_level,
 )
 from contactlaw.table.lookup import THINNEST
-from contactlaw.walls.facet import Point, Touch, nearest, velocity
+from contactlaw.walls.edges import nearest_edge
+from contactlaw.walls.facet import Point, Touch, nearest, to_frame, velocity
 from contactlaw.walls.memory import array_at
 from contactlaw.walls.surface import wall_ends
 
@@ -63,7 +66,7 @@ CONTACT = np.dtype(
         ("wall_power", "f8"),  # power of the normal force at the wall's velocity [W]
         ("push", "f8", 3),  # force on the bead without friction [N]
         ("sliding_speed", "f8"),  # of the contact point along the wall at first touch [m/s]
-        ("arrival", "f8"),  # FREE, ON_EDGE or SLIDING
+        ("arrival", "f8"),  # FREE, ON_EDGE, SLIDING or HIT_BACK
     ]
 )
 NO_CONTACT = np.zeros(1, CONTACT)
@@ -71,8 +74,9 @@ NO_CONTACT = np.zeros(1, CONTACT)
 # A contact is ALONE on one smooth surface, UNEVEN if it crossed a kink or another one pressed at
 # the same time, and SHARING if it has shared its force with another one.
 ALONE, UNEVEN, SHARING = 0.0, 1.0, 2.0
-# A bead arrives FREE on a surface or ON_EDGE of it, or SLIDING while another wall presses on it.
-FREE, ON_EDGE, SLIDING = 0.0, 1.0, 2.0
+# A bead arrives FREE on a surface or ON_EDGE of it, or SLIDING while another wall presses on it; or
+# it was leaving and is HIT_BACK by a plate that returns from its edge.
+FREE, ON_EDGE, SLIDING, HIT_BACK = 0.0, 1.0, 2.0, 3.0
 _LASTING = 50.0  # [contact times of an elastic bead]; impacts on the thinnest plates take 23
 _WORK = 0.02  # [energy of the approach] work of others on a bead that counts as a strike
 
@@ -139,6 +143,13 @@ class Bead(NamedTuple):
     torque: Any
     contacts: Any  # rows of CONTACT
     friction: Any  # as many rows of FRICTION; none without friction
+
+
+class Edge(NamedTuple):
+    """The edge of a wall that is nearest to a contact."""
+
+    near: Near
+    distance: float  # [m]; inf without any
 
 
 class Contact(NamedTuple):
@@ -303,6 +314,7 @@ def _end(
     spring: Spring,
     last: State,
     u: float,
+    edge: Edge,
 ) -> Point:
     """Record an impact whose force ended in this step; return the force that settles its energy.
 
@@ -328,7 +340,8 @@ def _end(
             bead.friction[contact.merged_into].work += bead.friction[k].work
         return 0.0, 0.0, 0.0
     reported, row.reported_loss = row.reported_loss, lost
-    if not row.approach_speed > 0.0:  # the bead did not arrive: it was put down in contact
+    # The bead did not arrive: it was put down in contact.
+    if not (row.approach_speed > 0.0 or row.arrival == HIT_BACK):
         return 0.0, 0.0, 0.0
     missing = reported - lost - row.wave_energy - row.work
     steps, sharing = row.duration / clock.dt, _sharing_row(bead, k)
@@ -372,7 +385,7 @@ def _end(
     # what is still missing is an error of the steps; with it, the energies of a run add up
     record.other_energy = (1.0 - share) * (lost - reported) + missing
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
-    expected = impact(spring, row.approach_speed)
+    expected = impact(spring, abs(row.approach_speed))
     record.kind = _kind_of(
         scene, bead, contact, row, lost - reported + row.wave_energy + missing, leaves,
         _LASTING * CONTACT_TIME * expected.time,
@@ -381,6 +394,14 @@ def _end(
         limits_of(plate_row), bead.r, plate_row.thickness, expected.compression,
         record.contact_time, last.largest_compression, record.peak_force,
     )  # fmt: skip
+    if edge.near.rate > 0.0 and row.wave_energy < 0.0:  # a returning plate has driven the bead
+        record.kind = Kind.STRUCK.value
+    # Whether the plate comes back later is not known here; the strike will have a row of its own.
+    # Flagged is a plate that recedes before the bead.
+    recedes = 1.0 if edge.near.rate > 0.0 and leaves < 0.0 else 0.0
+    record.flags |= edge_flags(
+        bead.r, plate_row.thickness, last.largest_compression, edge.distance, recedes
+    )
     return extra
 
 
@@ -396,8 +417,29 @@ def clear_contact(bead: Bead, k: int) -> None:
 def state_of(row: Any) -> State:
     """State of the normal force in the row of a contact."""
     return State(
-        row.plate_displacement, row.largest_compression, row.force, row.mobility, row.stiffening
-    )
+        row.plate_displacement, row.largest_compression, row.force, row.mobility, row.stiffening,
+        row.x1, row.y1, row.x2, row.y2, row.x3, row.y3,
+    )  # fmt: skip
+
+
+@kernel
+def _near_edge(
+    scene: WallScene, bead: Bead, contact: Contact, plate_row: Any, spring: Spring
+) -> Edge:
+    """Edge that is nearest to a contact, and how it acts there."""
+    facet = scene.facets[contact.facet]
+    if facet.edge_count == 0 or plate_row.thickness == math.inf:
+        return Edge(Near(plate_row.responses[0], 0.0), math.inf)
+    path, thickness = plate_row.wave_path, plate_row.thickness
+    # Slow impacts last twice as long as those at 1 m/s, and the more the plate gives way, the
+    # longer: the bead is then slowed in the time m alpha.
+    long = 2.0 * spring.relaxation / RELAXATION + 4.0 * spring.mass * spring.mobility
+    reach = math.sqrt(REACH * path * thickness * long)
+    p = to_frame(scene.frames[facet.frame], contact.point)
+    # At an edge nearer than that, an impact is flagged.
+    distance, kind = nearest_edge(facet, p, max(reach, thickness, bead.r))
+    rate = rate_at(path, thickness, distance) if distance < reach else 0.0
+    return Edge(Near(plate_row.responses[kind], rate), distance)
 
 
 @kernel
@@ -418,12 +460,12 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r)
-    last = state_of(row)
+    last, edge = state_of(row), _near_edge(scene, bead, contact, plate_row, spring)
     if plate_row.levels_size > 0:
         rated = with_levels(plate_row, spring)
-        state, extra = energy.step(law, rated, last, touch.x, u, clock.dt, clock.before)
+        state, extra = energy.step(law, rated, last, touch.x, u, clock.dt, clock.before, edge.near)
     else:
-        state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before)
+        state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, edge.near)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
         held, power_0 = (row.push[0], row.push[1], row.push[2]), row.wall_power
@@ -431,6 +473,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
             row.disturbance = max(row.disturbance, UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
         _begin(scene, clock, bead, contact, k, spring, u)
+        if edge.near.rate > 0.0 and u < 0.0 < last.largest_compression:
+            row.arrival = HIT_BACK
         if len(bead.friction) > 0:  # of a bead that returns before it has left the wall
             clear_friction(bead.friction[k])
     else:
@@ -447,7 +491,7 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
             _check_step(scene, clock, contact.wall, spring, u)
         elif clock.dt > clock.before and row.approach_speed > 0.0:
             _check_step(scene, clock, contact.wall, spring, row.approach_speed)
-    row.wave_energy += energy.wave_energy(spring, last, state, clock.dt)
+    row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, edge.near)
     push = state.force + extra
     pushes = push * along[0], push * along[1], push * along[2]
     power = dot(pushes, contact.w)
@@ -455,11 +499,13 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         spring.mass, held, pushes, bead.v, power_0, power, clock.dt, clock.before
     )
     if state.force == 0.0 and last.force > 0.0:
-        pushes = _end(law, scene, clock, bead, contact, k, spring, last, u)
+        pushes = _end(law, scene, clock, bead, contact, k, spring, last, u, edge)
         extra = dot(pushes, n)
     row.plate_displacement = state.plate_displacement
     row.largest_compression = state.largest_compression
     row.force, row.mobility, row.stiffening = state.force, state.mobility, state.stiffening
+    row.x1, row.y1, row.x2, row.y2 = state.x1, state.y1, state.x2, state.y2
+    row.x3, row.y3 = state.x3, state.y3
     row.facet, row.overlap = side, touch.x
     if touch.x <= 0.0:
         bead.contacts[k] = NO_CONTACT[0]

@@ -36,6 +36,7 @@ class Recalled(NamedTuple):
     gain: Memory  # q
 
 
+REACH = 10.0  # square of the distance over b t beyond which an edge changes nothing
 _NEAREST = 1e-3  # of the thickness; nearer than that a contact is at the edge itself
 
 
@@ -56,6 +57,13 @@ def rate_of(plate: Material, thickness: Any, distance: Any) -> Any:
         share = np.maximum(distance / thickness, _NEAREST)
         rate = wave_path(plate) / (share * share * thickness)
     return np.where(distance < math.inf, rate, 0.0)
+
+
+@kernel
+def rate_at(path: float, thickness: float, distance: float) -> float:
+    """1/tau [1/s] of a contact, as by `rate_of`, from the plate's `wave_path` [m/s]."""
+    share = max(distance / thickness, _NEAREST)
+    return path / (share * share * thickness)
 
 
 @kernel

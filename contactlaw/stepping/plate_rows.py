@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections
+from contactlaw.equation.edge import KINDS, response_of
 from contactlaw.equation.numbers import ModulusGrowth, PlateConstants
 from contactlaw.model import ImpactModel
+from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.validity import Limits
 from contactlaw.stepping.spring import Spring, resized, unit_spring
 from contactlaw.stepping.strength import levels_of
@@ -43,6 +45,8 @@ PLATE_ROW = np.dtype(
         (name, "i8" if "int" in str(kind) else "f8")
         for name, kind in Limits.__annotations__.items()
     ]
+    # how a plate's edges act, for each kind, and by what its bending waves scale [m/s]
+    + [("responses", "f8", (len(KINDS), 18)), ("wave_path", "f8")]
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates
     + [("largest", "f8"), ("alike", "i8")]
     # addresses and sizes of the law (0: there is no model for beads of this type), and of the laws
@@ -86,8 +90,11 @@ def _first_alike(rows: Any, laws: list[list[Any]]) -> NDArray[np.intp]:
 
     Laws are compared by what they are, because equal models hold their data at different addresses.
     """
-    numbers = [name for name in PLATE_ROW.names or () if name not in ("law", "levels")]
-    said = [(row[numbers].tolist(), keys) for row, keys in zip(rows, laws, strict=True)]
+    numbers = [name for name in PLATE_ROW.names or () if name not in ("law", "levels", "responses")]
+    said = [
+        (row[numbers].tolist(), row["responses"].tolist(), keys)
+        for row, keys in zip(rows, laws, strict=True)
+    ]
     return np.array([said.index(one) for one in said])
 
 
@@ -102,7 +109,9 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
         row[name] = value
     law = model.force_law.data
     row["law"], row["law_size"] = law.ctypes.data, law.size
-    row["thickness"] = thickness
+    row["thickness"], plate = thickness, model.pair.plate
+    row["responses"] = [response_of(kind, plate.poissons_ratio) for kind in KINDS]
+    row["wave_path"] = wave_path(plate)
     row["largest"] = math.inf
     if model.outside == "raise":  # other models answer beyond their table too
         row["largest"] = model.largest_inelasticity

@@ -12,10 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.walls.edges import fill_edges, smooth_parts
 from contactlaw.walls.grid import GRID, FacetGrid
 from contactlaw.walls.mesh import Mesh
 from contactlaw.walls.motion import MOTION, POSE
-from contactlaw.walls.plate import Plate
+from contactlaw.walls.plate import Plate, rim
 
 Rows = NDArray[np.void]
 Wall = Plate | Mesh
@@ -25,7 +26,9 @@ FACET = np.dtype(
     # a and b: along a rectangle's edges as unit vectors, or a triangle's edges themselves [m]
     [("corner", "f8", 3), ("normal", "f8", 3), ("a", "f8", 3), ("b", "f8", 3)]
     + [("length_a", "f8"), ("length_b", "f8"), ("between", "f8")]  # between: a . b
-    + [(name, "i8") for name in ("kind", "plate_row", "frame", "wall", "triangle")],
+    + [(name, "i8") for name in ("kind", "plate_row", "frame", "wall", "triangle")]
+    # address of the edges that are nearest to the facet's points, none of them within `clear` [m]
+    + [("edges", "i8"), ("edge_count", "i8"), ("clear", "f8")],
     align=True,
 )
 FRAME = np.dtype(
@@ -49,12 +52,14 @@ def framed(walls: Sequence[Wall], plate_rows: Sequence[Any], largest: float) -> 
     triangles; `largest` is the radius of the largest sphere [m], 0 if that is not known yet.
     """
     groups: dict[Any, list[Rows]] = {}
+    held: list[Any] = []
     for number, (wall, plate_row) in enumerate(zip(walls, plate_rows, strict=True)):
         rows = _rectangle(wall) if isinstance(wall, Plate) else _triangles(wall)
         rows["plate_row"], rows["wall"] = plate_row, number
+        held.append(_with_edges(wall, rows))
         groups.setdefault(wall.motion, []).append(rows)
     facets = np.concatenate([rows for parts in groups.values() for rows in parts])
-    frames, held, first = np.zeros(len(groups), FRAME), [], 0
+    frames, first = np.zeros(len(groups), FRAME), 0
     for number, (motion, parts) in enumerate(groups.items()):
         frame, count = frames[number], sum(map(len, parts))
         facets["frame"][first : first + count] = number
@@ -91,6 +96,16 @@ def _triangles(mesh: Mesh) -> Rows:
     normal = np.cross(rows["a"], rows["b"])
     rows["normal"] = normal / np.linalg.norm(normal, axis=1)[:, None]
     return rows
+
+
+def _with_edges(wall: Wall, rows: Rows) -> Rows:
+    """Write the edges of a wall into its facets; return the rows that they point to."""
+    if isinstance(wall, Plate):
+        return fill_edges(rows, _corners(rows), rim(wall), np.zeros(1, int))
+    if not len(wall.rim):
+        return rows[:0]
+    part = smooth_parts(wall.vertices, wall.triangles, rows["normal"])
+    return fill_edges(rows, _corners(rows), wall.rim, part)
 
 
 def _corners(facets: Rows) -> NDArray[np.float64]:

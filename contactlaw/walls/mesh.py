@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.physical.arguments import check, number
+from contactlaw.walls.edges import Rims, boundary, edges_of
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, vector
 from contactlaw.walls.plate import Models, check_models
 
@@ -43,6 +44,11 @@ class Mesh:
         For a wall of another material than the attached model's; a dict has one by atom type.
     motion : Translation, Rotation, Vibration or Tabulated, optional
         How the wall moves; without it, the wall stands still.
+    edges : {"free", "supported", "clamped"} or callable, optional
+        How the wall ends at its rims and holes: on sides of one triangle alone, wherever the
+        vertices' numbers differ but their places do not. A callable takes the middles of these
+        sides, shape (n, 3) [m], and returns a kind, or None, for each. Without `edges`, the wall
+        gives way as an endless plate.
 
     Attributes
     ----------
@@ -50,12 +56,15 @@ class Mesh:
         Number of triangles left out, with a warning: those without area, and duplicates.
     kept : ndarray of int
         For each triangle of the mesh, its number in the `triangles` that were given.
+    rim : structured array
+        Edges: start and vector to the end [m], number of the kind, of the triangle in the mesh.
 
     Raises
     ------
     TypeError, ValueError
         If the arrays do not fit together, a coordinate is not finite or beyond 1e6 m, no triangle
-        has an area, a thickness is no positive number, or the model or motion is of no such type.
+        has an area, a thickness is no positive number, the model or motion is of no such type,
+        or an edge is of no such kind.
 
     Examples
     --------
@@ -72,8 +81,10 @@ class Mesh:
     thickness: Any
     model: Models | None = None
     motion: Motion | None = None
+    edges: Rims | None = None
     dropped: int = field(default=0, init=False)
     kept: Any = field(default=None, init=False)
+    rim: Any = field(default=None, init=False)
 
     def __post_init__(self) -> None:
         """Check the arguments, and drop triangles without area and duplicates."""
@@ -91,12 +102,16 @@ class Mesh:
                 f"Mesh: {lost} of {len(triangles)} triangles left out: without area, or duplicates",
                 stacklevel=3,
             )
+        rim: Any = ()
+        if self.edges is not None:
+            rim = edges_of(self.edges, *boundary(vertices, triangles[good]))
         for name, value in (
             ("vertices", vertices),
             ("triangles", triangles[good]),
             ("thickness", thickness[good]),
             ("dropped", lost),
             ("kept", good),
+            ("rim", rim),
         ):
             if isinstance(value, np.ndarray):
                 value.setflags(write=False)  # it has been checked
@@ -118,6 +133,7 @@ class Mesh:
         scale: float = 1.0,
         model: Models | None = None,
         motion: Motion | None = None,
+        edges: Rims | None = None,
     ) -> Self:
         """Read a mesh from a file: STL (binary or text), PLY, OBJ or another that trimesh reads.
 
@@ -129,7 +145,7 @@ class Mesh:
             As in `Mesh`; an array has the triangles in the order of the file.
         scale : float, optional
             Length of the file's unit [m]: 1e-3 for a drawing in millimetres.
-        model, motion
+        model, motion, edges
             As in `Mesh`.
 
         Raises
@@ -174,7 +190,7 @@ class Mesh:
             raise ValueError(
                 f"path: {str(path)!r} is no mesh that trimesh reads: {error}"
             ) from error
-        return cls(size * vertices, triangles, thickness, model, motion)
+        return cls(size * vertices, triangles, thickness, model, motion, edges)
 
     @classmethod
     def cone(
@@ -188,6 +204,7 @@ class Mesh:
         facets: int = 72,
         model: Models | None = None,
         motion: Motion | None = None,
+        edges: Rims | None = None,
     ) -> Self:
         """Wall of a cone or a truncated cone, open at both ends, as of a hopper.
 
@@ -202,7 +219,7 @@ class Mesh:
         facets : int, optional
             Number of facets around the axis, at least 3. Fewer than 18 meet at more than 20
             degrees, and beads do not feel them as a smooth surface.
-        model, motion
+        model, motion, edges
             As in `Mesh`.
 
         Examples
@@ -226,7 +243,7 @@ class Mesh:
         lower = np.column_stack((here, there, here + n))
         upper = np.column_stack((there, there + n, here + n))
         parts = [part for part, r in zip((lower, upper), radii, strict=True) if r > 0.0]
-        return cls(np.concatenate(rings), np.concatenate(parts), thickness, model, motion)
+        return cls(np.concatenate(rings), np.concatenate(parts), thickness, model, motion, edges)
 
     @classmethod
     def cylinder(
@@ -239,6 +256,7 @@ class Mesh:
         facets: int = 72,
         model: Models | None = None,
         motion: Motion | None = None,
+        edges: Rims | None = None,
     ) -> Self:
         """Wall of a cylinder, open at both ends: a `cone` with the same radius [m] at both.
 
@@ -249,8 +267,9 @@ class Mesh:
         144
         """
         return cls.cone(
-            start, end, radius, radius, thickness, facets=facets, model=model, motion=motion
-        )
+            start, end, radius, radius, thickness, facets=facets, model=model, motion=motion,
+            edges=edges,
+        )  # fmt: skip
 
     @classmethod
     def disc(
@@ -263,6 +282,7 @@ class Mesh:
         facets: int = 72,
         model: Models | None = None,
         motion: Motion | None = None,
+        edges: Rims | None = None,
     ) -> Self:
         """Flat disc: the end of a drum, a spinning plate.
 
@@ -272,7 +292,7 @@ class Mesh:
             Centre of the disc [m], and a vector normal to it of any length but zero.
         radius, thickness : float
             Radius of the disc, and plate thickness in the model [m].
-        facets, model, motion
+        facets, model, motion, edges
             As in `cone`.
 
         Examples
@@ -291,7 +311,9 @@ class Mesh:
         n = len(around)
         here = np.arange(n)
         fan = np.column_stack((here, np.roll(here, -1), np.full(n, n)))
-        return cls(np.vstack((middle + radius * around, middle)), fan, thickness, model, motion)
+        return cls(
+            np.vstack((middle + radius * around, middle)), fan, thickness, model, motion, edges
+        )
 
 
 def _circle(axis: Floats, facets: int) -> Floats:

@@ -10,6 +10,7 @@ import numpy as np
 
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
+from contactlaw.walls.edges import Rows, Sides, edges_of
 from contactlaw.walls.motion import Motion, check_motion, vector
 
 Vector = Sequence[float]
@@ -35,12 +36,16 @@ class Plate:
         For a plate of another material than the attached model's; a dict has one by atom type.
     motion : Translation, Rotation, Vibration or Tabulated, optional
         How the plate moves; without it, the plate stands still.
+    edges : {"free", "supported", "clamped"} or sequence of 4, optional
+        How the plate ends, on all sides, or on each in the order of a walk around it that starts
+        at the corner along `edge_a`; None for a side on which it goes on, as in another plate.
+        Without it, the plate gives way as an endless one. Impacts near edges bounce differently.
 
     Raises
     ------
     TypeError, ValueError
-        If the three vectors span no rectangle, the thickness is no positive number, or the model
-        or motion is of no such type.
+        If the three vectors span no rectangle, the thickness is no positive number, the model or
+        motion is of no such type, or an edge is of no such kind.
 
     Examples
     --------
@@ -54,6 +59,7 @@ class Plate:
     thickness: float
     model: Models | None = None
     motion: Motion | None = None
+    edges: Sides | None = None
 
     def __post_init__(self) -> None:
         """Check the arguments."""
@@ -68,6 +74,14 @@ class Plate:
         scalars(thickness=self.thickness)
         check_models(self.model)
         check_motion(self.motion)
+        rim(self)
+
+
+def rim(plate: Plate) -> Rows:
+    """Edges of a plate."""
+    here, a, b = (np.asarray(v, dtype=float) for v in (plate.corner, plate.edge_a, plate.edge_b))
+    corners = np.array([here, here + a, here + a + b, here + b])
+    return edges_of(plate.edges, corners, np.roll(corners, -1, axis=0), np.zeros(4, int))
 
 
 def by_type(models: Models | None, types: int) -> dict[int, ImpactModel]:

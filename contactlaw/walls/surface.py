@@ -28,6 +28,7 @@ from typing import Any
 import numpy as np
 
 from contactlaw._jit import kernel
+from contactlaw.walls.edges import SMOOTH
 from contactlaw.walls.facet import (
     Point,
     Touch,
@@ -43,7 +44,6 @@ from contactlaw.walls.memory import array_at
 
 _SEAM = 1e-4  # [r] distance from a facet within which a point counts as on it
 _TIE = 1e-10  # [r] difference of overlaps that is rounding
-_SMOOTH = math.cos(math.radians(20.0))  # least cosine between facets of one smooth surface
 # Factor on the distance of a pass from the bead's centre, so that there is no pass between faces
 # that lean towards each other by 20 degrees.
 _PASS_FACTOR = math.cos(math.radians(10.0))
@@ -79,7 +79,7 @@ def _has_deeper(found: Any, count: int, one: Any) -> bool:
     for n in range(count):
         row = found[n]
         along = row.nx * one.nx + row.ny * one.ny + row.nz * one.nz
-        if row.x > one.x and along > _SMOOTH:
+        if row.x > one.x and along > SMOOTH:
             return True
     return False
 
@@ -267,7 +267,7 @@ def wall_ends(frames: Any, facets: Any, number: int, point: Point, r: float) -> 
     for e in range(starts[at], starts[at + 1]):
         other = facets[entries[e]]
         m = other.normal
-        smooth = abs(n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) > _SMOOTH
+        smooth = abs(n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) > SMOOTH
         if smooth and entries[e] != number and contains(other, p, _SEAM * r):
             return False
     return True

@@ -167,10 +167,13 @@ def state(lmp):
 
 
 def shower(lmp):
-    """Three plates that lean and meet, for the beads of `rain`; many cross ranks."""
-    lean = Plate((0, -0.05, 0), (0.05, 0, 0.01), (0, 0.1, 0), thickness=1e-3)
+    """Three plates that lean and meet, for the beads of `rain`; many cross ranks.
+
+    Where two meet is an edge of either.
+    """
+    lean = Plate((0, -0.05, 0), (0.05, 0, 0.01), (0, 0.1, 0), thickness=1e-3, edges="supported")
     wall = Plate((-0.006, -0.05, 0), (0, 0.1, 0), (0, 0, 0.03), thickness=2e-3)
-    plates = [flat(0.5e-3, width=0.05), lean, wall]
+    plates = [flat(0.5e-3, width=0.05, edges="free"), lean, wall]
     return attach(lmp, cl.ImpactModel(PAIR, law="myc"), plates, friction=0.3)
 
 

@@ -64,6 +64,9 @@ def rows() -> Iterator[Row]:
     for count in PLATES:
         yield Row(f"{FEW} beads, {count} plates", one["plates"][str(count)], "us",
                   note=f"no wall {one['plates']['none']:.0f} us")  # fmt: skip
+    near, none = (one["plates"][name] for name in ("all near edges", "none"))
+    yield Row("walls near edges, over endless ones", (near - none) / (one["plates"]["8"] - none),
+              "x", target=3.0, note=f"{PLATES[0]} plates, {FEW} beads, all near edges")  # fmt: skip
     note = f"of {2 * CELLS[-1] ** 2:.0e} triangles, made in {one['made']:.2g} s"
     yield Row("grid, memory per triangle", one["memory"], "B", note=note)
     mesh = str(CELLS[2])
@@ -243,14 +246,15 @@ def _plates(model: cl.ImpactModel) -> dict[str, float]:
     """Time a step of some beads above tiles that lie beside each other."""
     simulations = {"none": _cloud(FEW)}
     width = _side(FEW) * PITCH
-    for count in PLATES:
-        simulations[str(count)] = _cloud(FEW)
+    cases = [(str(count), count, None) for count in PLATES]
+    for name, count, edges in [*cases, ("all near edges", PLATES[0], "free")]:
+        simulations[name] = _cloud(FEW)
         nx = 2 ** math.ceil(math.log2(math.sqrt(count)))
         ny = count // nx
         a, b = width / nx, width / ny
-        tiles = [Plate((i * a, j * b, 0), (a, 0, 0), (0, b, 0), THICKNESS)
+        tiles = [Plate((i * a, j * b, 0), (a, 0, 0), (0, b, 0), THICKNESS, edges=edges)
                  for i in range(nx) for j in range(ny)]  # fmt: skip
-        attach(simulations[str(count)], model, tiles)
+        attach(simulations[name], model, tiles)
     return _times(simulations)
 
 

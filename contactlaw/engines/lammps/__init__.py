@@ -15,7 +15,9 @@ Walls
     `Plate` is a rectangle, `Mesh` any triangles: from a file, from arrays, a cylinder, cone or
     disc. Each wall may have its own material, motion (`Translation`, `Rotation`, `Vibration`,
     `Tabulated`) and thickness, and so may each triangle have its own thickness. Beads touch a wall
-    from either side. The facets near a bead are found by a grid that moves with the wall.
+    from either side. The facets near a bead are found by a grid that moves with the wall. Near its
+    `edges` a wall gives way more or less; without them it does so as an endless plate. Each wall
+    knows its own edges only.
 Dump
     ``d_contactlaw_restitution`` is the COR of each bead's last impact on a wall, 0 before the first
     one. ``d2_contactlaw[1]`` and so on are the state of its contacts, which is of no use in a dump

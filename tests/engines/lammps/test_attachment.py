@@ -9,7 +9,7 @@ from lammps_box import ABOVE, PLATE, R, above, attach, dropped, flat, make, scen
 
 import contactlaw as cl
 from contactlaw import softsphere
-from contactlaw.engines.lammps import Plate, pair_coeff
+from contactlaw.engines.lammps import Mesh, Plate, pair_coeff
 from dem_demo import cli
 from dem_demo.kit.beads import FLYING, GRAVITY
 from dem_demo.rain import figures
@@ -37,6 +37,19 @@ def test_drops_have_the_restitution_of_the_solver(model, radius):
     energy = 0.5 * 4 / 3 * math.pi * box.DENSITY * radius**3 * speed**2
     assert rows["plastic_energy"] / energy == pytest.approx(hit.plastic_fraction, abs=2e-3)
     assert rows["wave_energy"] / energy == pytest.approx(hit.wave_fraction, abs=2e-3)
+
+
+def test_drops_near_edges_have_the_restitution_of_the_solver(model):
+    """Also on a mesh, whose rim is found, and with friction, which changes no normal motion."""
+    corners, triangles = box.square(10, 0.05)
+    square = Mesh(corners, triangles, 1e-3, edges="supported")
+    place = 0.05 - 1.5e-3, 0.011, R + 1e-4
+    for wall, kind in ((flat(1e-3, edges="clamped"), "clamped"), (square, "supported")):
+        for friction in (0.0, 0.3):
+            rows, _ = dropped(model, [wall], place, friction=friction)
+            hit = model.solve(5.0, R, 1e-3, edge=kind, edge_distance=1.5e-3)
+            assert rows["restitution"] == pytest.approx([hit.restitution], abs=5e-4)
+            assert rows["flags"].tolist() == [hit.flags]
 
 
 SCENES = {"shower": box.shower, "drum": box.drum}

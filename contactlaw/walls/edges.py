@@ -1,0 +1,169 @@
+"""Edges of walls, near which a plate gives way differently: where they are, and of which kind.
+
+Each facet has a list of the edges of its wall that may be nearest to one of its points. An edge
+counts for the faces that go on from it smoothly; where faces meet at an angle, a plate ends.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.equation.edge import KINDS, Edge
+from contactlaw.walls.memory import array_at
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Rows = NDArray[np.void]
+Sides = Edge | Sequence[Edge | None]  # of a plate: all four of a kind, or each of its own
+Rims = Edge | Callable[[Floats], Sequence[Edge | None]]  # of a mesh, or by the edges' middles
+
+EDGE = np.dtype(
+    [("start", "f8", 3), ("along", "f8", 3), ("square", "f8")]  # along: to its end, of this square
+    + [("kind", "i8"), ("facet", "i8")],  # kind: position in KINDS; facet: of which it is an edge
+    align=True,
+)
+
+SMOOTH = math.cos(math.radians(20.0))  # least cosine between facets of one smooth surface
+# Vertices within this share of the mesh's size are one. It is no round number, because coordinates
+# that are would lie between two steps of the grid that finds such vertices.
+_MERGED = 0.8647e-6
+_FACETS, _EDGES = 8, 4  # facets share a list of edges if they are so few, or the edges are
+
+
+def edges_of(given: Any, starts: Floats, ends: Floats, facets: Any) -> Rows:
+    """Edges from their ends [m] and what a user gave as their kinds; those without one left out."""
+    if callable(given):
+        given = list(given(0.5 * (starts + ends)))
+    kinds = [given] * len(starts) if given is None or isinstance(given, str) else given
+    if not isinstance(kinds, Sequence) or len(kinds) != len(starts):
+        raise ValueError(
+            f"edges: expected one kind for all or one for each of {len(starts)}, got {given!r}"
+        )
+    for kind in [given, *kinds] if isinstance(given, str) else kinds:
+        if kind is not None and kind not in KINDS:
+            raise ValueError(
+                f"edges: must be one of {', '.join(KINDS)}, or None where a plate goes on, got "
+                f"{kind!r}"
+            )
+    some = [n for n, kind in enumerate(kinds) if kind is not None]
+    rows = np.zeros(len(some), EDGE)
+    rows["start"], rows["along"] = starts[some], (ends - starts)[some]
+    rows["square"] = (rows["along"] ** 2).sum(axis=1)
+    rows["kind"], rows["facet"] = [KINDS.index(kinds[n]) for n in some], np.asarray(facets)[some]
+    return rows
+
+
+def boundary(vertices: Floats, triangles: Integers) -> tuple[Floats, Floats, Integers]:
+    """Find the sides that one triangle alone has: starts and ends [m], and its number."""
+    key, _ = _sides(vertices, triangles)
+    _, first, count = np.unique(key, return_index=True, return_counts=True)
+    alone = np.sort(first[count == 1])
+    facet, side = alone // 3, alone % 3
+    ends = (vertices[triangles[facet, (side + n) % 3]] for n in (0, 1))
+    return *ends, facet
+
+
+def _sides(vertices: Floats, triangles: Integers) -> tuple[Integers, Integers]:
+    """Numbers of the three sides of each triangle, of the same places the same; pairs that share.
+
+    Pairs are of triangles, shape (n, 2).
+    """
+    step = _MERGED * max(np.ptp(vertices, axis=0).max(), 1e-300)
+    _, place = np.unique(np.round(vertices / step), axis=0, return_inverse=True)
+    corners = place.ravel()[triangles]
+    ends = np.sort(np.stack((corners, np.roll(corners, -1, axis=1)), axis=2), axis=2)
+    key = (ends[..., 0] * len(vertices) + ends[..., 1]).ravel()
+    order = np.argsort(key, kind="stable")
+    same = np.flatnonzero(np.diff(key[order]) == 0)
+    return key, np.stack((order[same], order[same + 1]), axis=1) // 3
+
+
+def smooth_parts(vertices: Floats, triangles: Integers, normals: Floats) -> Integers:
+    """Give the triangles that form one smooth surface the same number."""
+    _, pairs = _sides(vertices, triangles)
+    one, other = pairs[abs((normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)) > SMOOTH].T
+    part = np.arange(len(triangles))
+    while (part[one] != part[other]).any():
+        least = np.minimum(part[one], part[other])
+        for end in (part[one], part[other]):  # a number stands for all triangles that have it
+            np.minimum.at(part, end, least)
+        while (part != part[part]).any():
+            part = part[part]
+    return part
+
+
+def fill_edges(facets: Rows, corners: Floats, edges: Rows, part: Integers) -> Rows:
+    """Write the lists of edges into facets of one wall; return the rows that they point to.
+
+    `corners` has shape (n, m, 3), and `part` a number for each facet, equal for facets of one
+    smooth surface.
+    """
+    lists = list(_lists(corners, edges, part))
+    rows = np.concatenate([edges[:0], *(edges[near] for _, near, _ in lists)])
+    at = rows.ctypes.data
+    for some, near, clear in lists:
+        facets["clear"][some] = clear
+        facets["edges"][some], facets["edge_count"][some] = at, len(near)
+        at += len(near) * EDGE.itemsize
+    return rows
+
+
+def _lists(
+    corners: Floats, edges: Rows, part: Integers
+) -> Iterator[tuple[Integers, Integers, float]]:
+    """Divide facets into groups; find edges nearest to a point of each, and the least distance."""
+    mine, low, high = part[edges["facet"]], corners.min(axis=1), corners.max(axis=1)
+    order = np.argsort(part, kind="stable")
+    groups = np.split(order, np.flatnonzero(np.diff(part[order])) + 1)
+    todo = [(some, np.flatnonzero(mine == part[some[0]])) for some in groups if len(edges)]
+    while todo:
+        some, near = todo.pop()
+        first, last = low[some].min(axis=0), high[some].max(axis=0)
+        d = _distances(edges[near], 0.5 * (first + last))
+        # Points of the box are within half of its diagonal of its centre.
+        least, size = d.min(initial=math.inf), np.linalg.norm(last - first)
+        near = near[d <= least + size]
+        if len(some) <= _FACETS or len(near) <= _EDGES:
+            if len(near):
+                yield some, near, least - 0.5 * size
+            continue
+        along = low[some, np.argmax(last - first)]
+        halves = np.argpartition(along, len(some) // 2)
+        todo += [(some[half], near) for half in np.split(halves, [len(some) // 2])]
+
+
+def _distances(edges: Rows, point: Floats) -> Floats:
+    from_start = point - edges["start"]
+    share = (from_start * edges["along"]).sum(axis=1) / edges["square"]
+    found: Floats = np.linalg.norm(
+        from_start - np.clip(share, 0.0, 1.0)[:, None] * edges["along"], axis=1
+    )
+    return found
+
+
+@kernel
+def nearest_edge(facet: Any, p: tuple[float, float, float], reach: float) -> tuple[float, int]:
+    """Distance of a facet's point from the nearest edge [m], and its kind; inf beyond the reach.
+
+    The point is in the coordinates of the facet.
+    """
+    best, kind = math.inf, 0
+    if facet.edge_count > 0 and facet.clear < reach:
+        edges = array_at(facet.edges, facet.edge_count, EDGE)
+        for n in range(len(edges)):
+            edge = edges[n]
+            start, along = edge.start, edge.along
+            x, y, z = p[0] - start[0], p[1] - start[1], p[2] - start[2]
+            share = (x * along[0] + y * along[1] + z * along[2]) / edge.square
+            share = min(max(share, 0.0), 1.0)
+            x, y, z = x - share * along[0], y - share * along[1], z - share * along[2]
+            square = x * x + y * y + z * z
+            if square < best:
+                best, kind = square, edge.kind
+    return math.sqrt(best), kind
