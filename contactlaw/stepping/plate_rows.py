@@ -110,7 +110,7 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     law = model.force_law.data
     row["law"], row["law_size"] = law.ctypes.data, law.size
     row["thickness"], plate = thickness, model.pair.plate
-    row["responses"] = [response_of(kind, plate.poissons_ratio) for kind in KINDS]
+    row["responses"] = [response_of(kind, plate.poissons_ratio, size="steps") for kind in KINDS]
     row["wave_path"] = wave_path(plate)
     row["largest"] = math.inf
     if model.outside == "raise":  # other models answer beyond their table too
