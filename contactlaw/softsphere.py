@@ -22,7 +22,7 @@ from contactlaw.equation.edge import Edge
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
 from contactlaw.physical.rate import factors, rated, strengthened
-from contactlaw.physical.rebound import edge_distances
+from contactlaw.physical.rebound import edges_as_given
 from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
 from contactlaw.stepping.edge import Near, near_edge
 from contactlaw.stepping.energy import dot
@@ -101,7 +101,7 @@ def _state_at(states: State, n: int) -> State:
 def _near_at(near: Near | None, n: int) -> Near | None:
     if near is None:
         return None
-    return Near(near.response, near.rate[n])
+    return Near(near.response[n], near.rate[n])
 
 
 @kernel
@@ -171,7 +171,7 @@ class Contacts:
         Materials and law.
     radius, thickness : array_like
         Of the beads and of their plates [m]; broadcast to one entry per contact.
-    edge, edge_distance
+    edge, edge_distance, hole_radius
         As in `ImpactModel.restitution`.
 
     Raises
@@ -204,11 +204,13 @@ class Contacts:
 
     def __init__(
         self, model: ImpactModel, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
-        edge_distance: ArrayLike = math.inf,
+        edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
     ) -> None:  # fmt: skip
-        r, h, s, _ = broadcast(radius=radius, thickness=thickness, edge_distance=edge_distance)
+        r, h, s, a, _ = broadcast(
+            radius=radius, thickness=thickness, edge_distance=edge_distance, hole_radius=hole_radius
+        )
         check(radius=r, thickness=h)
-        self._near = near_edge(model.pair.plate, h, edge, edge_distances(edge, s, h))
+        self._near = near_edge(model.pair.plate, h, edge, *edges_as_given(edge, s, a, h))
         law = model.force_law
         contact = sphere_on_plate(model.pair, law, r, h)
         elastic = contact.yield_compression == math.inf

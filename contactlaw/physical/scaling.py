@@ -281,6 +281,12 @@ def wave_path(plate: Material) -> float:
     return math.sqrt(plate.plane_modulus / (12.0 * plate.density))
 
 
+def share_of(distance: Array, hole_radius: Array) -> Array:
+    """s/(s + a) at distances s from rims of holes of radius a [m]; 0 near straight edges."""
+    with np.errstate(invalid="ignore"):
+        return np.where(hole_radius < math.inf, distance / (distance + hole_radius), 0.0)
+
+
 def edges_of(
     plate: Material, contact: ContactConstants, units: Numbers, thickness: Array, kind: str,
     distance: Array, hole_radius: Array,
@@ -289,11 +295,10 @@ def edges_of(
 
     The radius of a hole is that of the rim, inf for a straight edge [m].
     """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.where(hole_radius < math.inf, distance / (distance + hole_radius), 0.0)
+    with np.errstate(divide="ignore"):
         rate = wave_path(plate) * thickness * units.time / np.square(distance)
     return Edges(
-        response_of(kind, plate.poissons_ratio, share),
+        response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius)),
         # of bodies with losses both mobilities have those of the impact
         np.ones(rate.size)
         if relaxes(contact.plate)

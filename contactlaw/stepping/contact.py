@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.edge import place_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
@@ -437,9 +438,9 @@ def _near_edge(
     reach = math.sqrt(REACH * path * thickness * long)
     p = to_frame(scene.frames[facet.frame], contact.point)
     # At an edge nearer than that, an impact is flagged.
-    distance, kind = nearest_edge(facet, p, max(reach, thickness, bead.r))
+    distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r))
     rate = rate_at(path, thickness, distance) if distance < reach else 0.0
-    return Edge(Near(plate_row.responses[kind], rate), distance)
+    return Edge(Near(plate_row.responses[place_of(kind, distance, hole)], rate), distance)
 
 
 @kernel

@@ -17,11 +17,13 @@ from contactlaw._jit import kernel
 from contactlaw.equation.edge import NO_MEMORY, Memory, response_of
 from contactlaw.equation.edge import weighted as weighted_sum
 from contactlaw.physical.materials import Material
-from contactlaw.physical.scaling import wave_path
+from contactlaw.physical.scaling import share_of, wave_path
+
+Array = NDArray[np.float64]
 
 
 class Near(NamedTuple):
-    """An edge near a contact; the rate may be an array, for as many contacts."""
+    """An edge near a contact, or edges near as many contacts as the arrays are long."""
 
     response: Any  # as `contactlaw.equation.edge.response_of` gives it
     rate: Any  # 1/tau [1/s]; 0 for a contact that is far from edges
@@ -41,13 +43,14 @@ _NEAREST = 1e-3  # of the thickness; nearer than that a contact is at the edge i
 
 
 def near_edge(
-    plate: Material, thickness: NDArray[np.float64], kind: str, distance: NDArray[np.float64] | None
+    plate: Material, thickness: Array, kind: str, distance: Array | None, hole_radius: Array | None
 ) -> Near | None:
     """Edges at these distances [m] from contacts; None where no plate has any."""
-    if distance is None:
+    if distance is None or hole_radius is None:
         return None
+    share = share_of(distance, hole_radius)
     return Near(
-        response_of(kind, plate.poissons_ratio, size="steps"), rate_of(plate, thickness, distance)
+        response_of(kind, plate.poissons_ratio, share, "steps"), rate_of(plate, thickness, distance)
     )
 
 

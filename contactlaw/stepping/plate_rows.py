@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections
-from contactlaw.equation.edge import KINDS, response_of
+from contactlaw.equation.edge import RESPONSES, SIZE, responses_of
 from contactlaw.equation.numbers import ModulusGrowth, PlateConstants
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import wave_path
@@ -45,8 +45,8 @@ PLATE_ROW = np.dtype(
         (name, "i8" if "int" in str(kind) else "f8")
         for name, kind in Limits.__annotations__.items()
     ]
-    # how a plate's edges act, for each kind, and by what its bending waves scale [m/s]
-    + [("responses", "f8", (len(KINDS), 18)), ("wave_path", "f8")]
+    # how a plate's edges act, see `responses_of`, and by what its bending waves scale [m/s]
+    + [("responses", "f8", (RESPONSES, SIZE)), ("wave_path", "f8")]
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates
     + [("largest", "f8"), ("alike", "i8")]
     # addresses and sizes of the law (0: there is no model for beads of this type), and of the laws
@@ -110,7 +110,7 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     law = model.force_law.data
     row["law"], row["law_size"] = law.ctypes.data, law.size
     row["thickness"], plate = thickness, model.pair.plate
-    row["responses"] = [response_of(kind, plate.poissons_ratio, size="steps") for kind in KINDS]
+    row["responses"] = responses_of(plate.poissons_ratio)
     row["wave_path"] = wave_path(plate)
     row["largest"] = math.inf
     if model.outside == "raise":  # other models answer beyond their table too

@@ -25,7 +25,8 @@ Rims = Edge | Callable[[Floats], Sequence[Edge | None]]  # of a mesh, or by the 
 
 EDGE = np.dtype(
     [("start", "f8", 3), ("along", "f8", 3), ("square", "f8")]  # along: to its end, of this square
-    + [("kind", "i8"), ("facet", "i8")],  # kind: position in KINDS; facet: of which it is an edge
+    + [("kind", "i8"), ("facet", "i8")]  # kind: position in KINDS; facet: of which it is an edge
+    + [("hole", "f8")],  # radius of the hole whose rim it is; inf for one that is straight
     align=True,
 )
 
@@ -33,10 +34,11 @@ SMOOTH = math.cos(math.radians(20.0))  # least cosine between facets of one smoo
 # Vertices within this share of the mesh's size are one. It is no round number, because coordinates
 # that are would lie between two steps of the grid that finds such vertices.
 _MERGED = 0.8647e-6
+_OUTSIDE = 0.5  # least mean cosine from which triangles lie outside of a line, all around it
 _FACETS, _EDGES = 8, 4  # facets share a list of edges if they are so few, or the edges are
 
 
-def edges_of(given: Any, starts: Floats, ends: Floats, facets: Any) -> Rows:
+def edges_of(given: Any, starts: Floats, ends: Floats, facets: Any, holes: Any = math.inf) -> Rows:
     """Edges from their ends [m] and what a user gave as their kinds; those without one left out."""
     if callable(given):
         given = list(given(0.5 * (starts + ends)))
@@ -56,17 +58,35 @@ def edges_of(given: Any, starts: Floats, ends: Floats, facets: Any) -> Rows:
     rows["start"], rows["along"] = starts[some], (ends - starts)[some]
     rows["square"] = (rows["along"] ** 2).sum(axis=1)
     rows["kind"], rows["facet"] = [KINDS.index(kinds[n]) for n in some], np.asarray(facets)[some]
+    rows["hole"] = np.broadcast_to(holes, len(starts))[some]
     return rows
 
 
-def boundary(vertices: Floats, triangles: Integers) -> tuple[Floats, Floats, Integers]:
-    """Find the sides that one triangle alone has: starts and ends [m], and its number."""
+def boundary(vertices: Floats, triangles: Integers) -> tuple[Floats, Floats, Integers, Floats]:
+    """Find the sides that one triangle alone has: starts and ends [m], its number, radii of holes.
+
+    A closed line of such sides goes around a hole if the triangles lie outside of it.
+    """
     key, _ = _sides(vertices, triangles)
     _, first, count = np.unique(key, return_index=True, return_counts=True)
     alone = np.sort(first[count == 1])
     facet, side = alone // 3, alone % 3
-    ends = (vertices[triangles[facet, (side + n) % 3]] for n in (0, 1))
-    return *ends, facet
+    starts, ends = (vertices[triangles[facet, (side + n) % 3]] for n in (0, 1))
+    middles, lengths = 0.5 * (starts + ends), np.linalg.norm(ends - starts, axis=1)
+    corners = np.stack((key[alone] // len(vertices), key[alone] % len(vertices)), axis=1)
+    _, line = np.unique(_joined(len(vertices), corners)[corners[:, 0]], return_inverse=True)
+    around = np.bincount(line, lengths)
+    centre = np.stack([np.bincount(line, lengths * middles[:, n]) / around for n in range(3)], 1)
+    out = _unit(middles - centre[line])
+    sheet = _unit(vertices[triangles[facet]].mean(axis=1) - middles)
+    outside = np.bincount(line, lengths * (out * sheet).sum(axis=1)) / around
+    radii = np.where(outside > _OUTSIDE, around / (2.0 * math.pi), math.inf)
+    return starts, ends, facet, radii[line]
+
+
+def _unit(vectors: Floats) -> Floats:
+    found: Floats = vectors / np.maximum(np.linalg.norm(vectors, axis=1), 1e-300)[:, None]
+    return found
 
 
 def _sides(vertices: Floats, triangles: Integers) -> tuple[Integers, Integers]:
@@ -87,8 +107,13 @@ def _sides(vertices: Floats, triangles: Integers) -> tuple[Integers, Integers]:
 def smooth_parts(vertices: Floats, triangles: Integers, normals: Floats) -> Integers:
     """Give the triangles that form one smooth surface the same number."""
     _, pairs = _sides(vertices, triangles)
-    one, other = pairs[abs((normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)) > SMOOTH].T
-    part = np.arange(len(triangles))
+    smooth = abs((normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1)) > SMOOTH
+    return _joined(len(triangles), pairs[smooth])
+
+
+def _joined(count: int, pairs: Integers) -> Integers:
+    """Give things that pairs join, directly or through others, the same number."""
+    (one, other), part = pairs.T, np.arange(count)
     while (part[one] != part[other]).any():
         least = np.minimum(part[one], part[other])
         for end in (part[one], part[other]):  # a number stands for all triangles that have it
@@ -148,12 +173,14 @@ def _distances(edges: Rows, point: Floats) -> Floats:
 
 
 @kernel
-def nearest_edge(facet: Any, p: tuple[float, float, float], reach: float) -> tuple[float, int]:
-    """Distance of a facet's point from the nearest edge [m], and its kind; inf beyond the reach.
+def nearest_edge(
+    facet: Any, p: tuple[float, float, float], reach: float
+) -> tuple[float, int, float]:
+    """Distance of a facet's point from the nearest edge [m], its kind and the radius of its hole.
 
-    The point is in the coordinates of the facet.
+    The distance is inf beyond the reach. The point is in the coordinates of the facet.
     """
-    best, kind = math.inf, 0
+    best, kind, hole = math.inf, 0, math.inf
     if facet.edge_count > 0 and facet.clear < reach:
         edges = array_at(facet.edges, facet.edge_count, EDGE)
         for n in range(len(edges)):
@@ -165,5 +192,5 @@ def nearest_edge(facet: Any, p: tuple[float, float, float], reach: float) -> tup
             x, y, z = x - share * along[0], y - share * along[1], z - share * along[2]
             square = x * x + y * y + z * z
             if square < best:
-                best, kind = square, edge.kind
-    return math.sqrt(best), kind
+                best, kind, hole = square, edge.kind, edge.hole
+    return math.sqrt(best), kind, hole

@@ -93,7 +93,7 @@ def test_sides_are_in_the_order_of_a_walk():
         (row,), _ = dropped(plate(kinds), *point)
         some = {"edge": kind, "edge_distance": near} if kind else {}
         assert row["restitution"] == pytest.approx(
-            MODEL.solve(SPEED, R, H, **some).restitution, abs=2e-4
+            MODEL.solve(SPEED, R, H, **some).restitution, abs=1e-3
         )
 
 
@@ -102,8 +102,11 @@ def test_the_rim_of_a_hole_is_found_and_creases_are_none():
     assert len(whole.rim) == 40 and len(holed.rim) == 44
     cell = SIDE / 10
     (row,), _ = dropped(holed, 5 * cell + 1e-3, 4.5 * cell)
-    expected = MODEL.restitution(SPEED, R, H, edge="free", edge_distance=1e-3)
-    assert row["restitution"] == pytest.approx(expected, abs=1e-3)
+    hole = 2.0 * cell / math.pi  # the radius of a circle that is as long as the rim
+    np.testing.assert_allclose(np.sort(holed.rim["hole"]), [hole] * 4 + [math.inf] * 40)
+    expected = MODEL.restitution(SPEED, R, H, edge_distance=1e-3, hole_radius=hole)
+    straight = MODEL.restitution(SPEED, R, H, edge_distance=1e-3)
+    assert row["restitution"] == pytest.approx(expected, abs=0.03 * (expected - straight) + 3e-3)
     cube = SIDE * np.array(list(itertools.product((0, 1), repeat=3)), dtype=float)
     sides = np.array([[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4]])
     triangles = np.concatenate((sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]))
