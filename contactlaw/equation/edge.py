@@ -85,11 +85,12 @@ def _fitted() -> Any:
 
 @functools.cache
 def _table(kind: str, poissons_ratio: float, size: str) -> tuple[Array, Array]:
-    """Rates, four for each block, and weights for all shares."""
+    """Rates, four for each block, and weights, for all shares."""
     one = _fitted()["responses"][kind][size]
-    rates = [(p, second, turn, turn or second) for p, second, turn in one["rates"]]
+    p, second, turn = np.moveaxis(np.array(one["rates"]), -1, 0)
+    rates = np.stack([p, second, turn, np.where(turn > 0.0, turn, second)], axis=-1)
     powers = poissons_ratio ** np.arange(np.shape(one["weights"])[2])
-    return np.array(rates), np.array(one["weights"]) @ powers
+    return rates, np.array(one["weights"]) @ powers
 
 
 def response_of(
@@ -100,20 +101,25 @@ def response_of(
 ) -> Array:
     """Responses near edges in units of tau, in parts of `SIZE`: for the equation two, else one.
 
-    `share` is s/(s + a) near the rim of a hole of radius a, and 0 near a straight edge.
+    `share` is s/(s + a) near the rim of a hole of radius a, and 0 near a straight edge. For steps
+    the response is that of the nearest of the shares that were fitted, each with its own rates.
     """
     rates, weights = _table(kind, poissons_ratio, size)
-    shares = _fitted()["shares"]
-    if kind == "free":  # a hole without radius is none
+    shares, given = np.array(_fitted()["shares"]), np.asarray(share, float)
+    if size == "steps":
+        middles = 0.5 * (shares[2:-1] + shares[1:-2]) if kind == "free" else []
+        place = np.searchsorted(np.append(0.5 * shares[1:2], middles)[: len(weights) - 1], given)
+        rates, each = rates[place], weights[place]
+    elif kind == "free":  # a hole without radius is none
         weights = np.vstack([weights, np.zeros_like(weights[:1])])
-        each = np.array([np.interp(share, shares, column) for column in weights.T])
+        each = np.stack([np.interp(given, shares, column) for column in weights.T], axis=-1)
     else:
-        each = np.multiply.outer(weights[0], np.ones(np.shape(share)))
+        each = np.broadcast_to(weights[0], (*given.shape, weights.shape[1]))
+    rates = np.broadcast_to(rates, (*given.shape, *rates.shape[-2:])).reshape(*given.shape, -1)
     parts = []
-    for n in range(0, len(rates), 3):
-        block = np.multiply.outer(rates[n : n + 3].ravel(), np.ones(np.shape(share)))
-        parts.append(np.concatenate([block, each[2 * n : 2 * n + 6]]))
-    return np.ascontiguousarray(np.moveaxis(np.concatenate(parts), 0, -1))
+    for n in range(each.shape[-1] // 6):
+        parts += [rates[..., 12 * n : 12 * n + 12], each[..., 6 * n : 6 * n + 6]]
+    return np.ascontiguousarray(np.concatenate(parts, axis=-1))
 
 
 _RIMS = tuple(_fitted()["shares"][1:-1])  # of the responses near rims that steps choose from

@@ -105,12 +105,11 @@ def test_the_rim_of_a_hole_is_found_and_creases_are_none():
     hole = 2.0 * cell / math.pi  # the radius of a circle that is as long as the rim
     np.testing.assert_allclose(np.sort(holed.rim["hole"]), [hole] * 4 + [math.inf] * 40)
     expected = MODEL.restitution(SPEED, R, H, edge_distance=1e-3, hole_radius=hole)
-    straight = MODEL.restitution(SPEED, R, H, edge_distance=1e-3)
-    assert row["restitution"] == pytest.approx(expected, abs=0.03 * (expected - straight) + 3e-3)
-    cube = SIDE * np.array(list(itertools.product((0, 1), repeat=3)), dtype=float)
+    assert row["restitution"] == pytest.approx(expected, abs=2e-3)
+    cube = np.array(list(itertools.product((0, SIDE), (0, SIDE), (0, 2e-3))))
     sides = np.array([[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4]])
     triangles = np.concatenate((sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]))
-    tray = Mesh(cube, triangles, H, edges="clamped")  # a box whose side at y = z = SIDE is open
+    tray = Mesh(cube, triangles, H, edges="clamped")  # an open box of low walls
     assert len(tray.rim) == 4
     # the floor meets no edge where it is joined to a wall
     assert dropped(tray, 1e-3, 0.02)[0] == dropped(Mesh(cube, triangles, H), 1e-3, 0.02)[0]
@@ -144,9 +143,10 @@ def test_far_from_edges_all_bits_are_those_of_an_endless_plate(walls):
 
 def test_an_edge_moves_with_its_plate():
     still, _ = dropped(plate("free"), SIDE - 1e-3, 0.02)
-    rising = plate("free", motion=Translation((0, 0, 1.0)))
-    (row,), _ = moved(rising, (SIDE - 1e-3, 0.02, 1.001 * R), (0, 0, 1.0 - SPEED))
-    assert row["restitution"] == pytest.approx(still[0]["restitution"], abs=1e-4)
+    passing = plate("free", motion=Translation((20.0, 0, 0)))
+    start = SIDE - 1e-3 - 20.0 * DT  # the bead is a step ahead of the walls
+    (row,), _ = moved(passing, (start, 0.02, 1.001 * R), (20.0, 0, -SPEED))
+    assert row["restitution"] == pytest.approx(still[0]["restitution"], abs=1e-9)
 
 
 @pytest.mark.parametrize("kind", KINDS)

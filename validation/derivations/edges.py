@@ -207,8 +207,8 @@ def weights(rates: list[complex], kind: str, poisson: float, radius: float) -> t
     return found, matrix @ found - wanted
 
 
-def fitted_rates(kind: str, rates: list[complex]) -> list[complex]:
-    """Rates of a straight edge, by least squares of the errors; of a free one at all ratios."""
+def fitted_rates(kind: str, rates: list[complex], radius: float = math.inf) -> list[complex]:
+    """Rates by least squares of the errors; of a free edge at all ratios."""
     turns = [bool(rate.imag) for rate in rates]
     ratios = RATIOS if kind == "free" else RATIOS[:1]
 
@@ -218,7 +218,7 @@ def fitted_rates(kind: str, rates: list[complex]) -> list[complex]:
 
     def errors(logs: Array) -> Array:
         now = unpacked(logs)
-        return np.concatenate([weights(now, kind, nu, math.inf)[1] for nu in ratios])
+        return np.concatenate([weights(now, kind, nu, radius)[1] for nu in ratios])
 
     start, least = [], []
     for rate in rates:
@@ -231,20 +231,32 @@ def fitted_rates(kind: str, rates: list[complex]) -> list[complex]:
     return unpacked(least_squares(errors, logs, bounds=(lowest, math.inf), max_nfev=60).x)
 
 
-def numbers(kind: str, blocks: Any) -> dict[str, Any]:
-    """Rates, and weights at all radii and as polynomials of Poisson's ratio."""
-    rates = fitted_rates(kind, rates_of(blocks))
-    paired = [rate for rate in rates if not rate.imag]
-    found = [[one.real, two.real, 0.0] for one, two in zip(paired[::2], paired[1::2], strict=True)]
+def _blocks(rates: list[complex]) -> list[list[float]]:
+    """Blocks of rates, as `rates_of` takes them."""
+    real = [rate.real for rate in rates if not rate.imag]
+    found = [[one, two, 0.0] for one, two in zip(real[::2], real[1::2], strict=True)]
     found += [[rate.real, rate.real, rate.imag] for rate in rates if rate.imag]
+    return [[float(f"{one:.6g}") for one in row] for row in found]
+
+
+def numbers(kind: str, blocks: Any, own_rates: bool) -> dict[str, Any]:
+    """Rates, and weights at all radii and as polynomials of Poisson's ratio.
+
+    The rates are those of a straight edge, or each radius has its own.
+    """
+    radii = RADII if kind == "free" else RADII[:1]
+    rates = fitted_rates(kind, rates_of(blocks))
+    each_rates = [rates] * len(radii)
+    for n in range(1, len(radii) if own_rates else 1):
+        each_rates[n] = fitted_rates(kind, each_rates[n - 1], radii[n])
     ratios = RATIOS if kind == "free" else RATIOS[:1]
     powers = np.vander(ratios, increasing=True)
     each = [
-        np.linalg.solve(powers, [weights(rates, kind, nu, radius)[0] for nu in ratios]).T
-        for radius in (RADII if kind == "free" else RADII[:1])
+        np.linalg.solve(powers, [weights(own, kind, nu, radius)[0] for nu in ratios]).T
+        for own, radius in zip(each_rates, radii, strict=True)
     ]
     return {
-        "rates": [[float(f"{one:.6g}") for one in row] for row in found],
+        "rates": [_blocks(own) for own in each_rates] if own_rates else _blocks(rates),
         "weights": np.round(each, 5).tolist(),
     }
 
@@ -254,7 +266,8 @@ def main() -> None:
     known = json.loads(FILE.read_text())
     for kind, sizes in known["responses"].items():
         for size, one in sizes.items():
-            sizes[size] = numbers(kind, one["rates"])
+            own = size == "steps"
+            sizes[size] = numbers(kind, one["rates"][0] if own else one["rates"], own)
             print(kind, size, sizes[size]["rates"], flush=True)
     known["shares"] = [round(1.0 / (1.0 + radius), 6) for radius in RADII] + [1.0]
     FILE.write_text(json.dumps(known, indent=None, separators=(",", ":")).replace("},", "},\n"))
