@@ -37,6 +37,7 @@ Edge = Literal["free", "supported", "clamped"]
 """Kinds of edges: nothing holds the plate there; it cannot move; nor turn."""
 KINDS: tuple[str, ...] = get_args(Edge)
 SIZE = 18  # of a response of six numbers: their rates, four for each block, and weights
+_LONGEST = 50.0  # [T_H]; contacts that end take up to 25
 _AT_ONCE = 2 * SIZE  # place of the number that `near` adds
 _QUICK = 500.0  # rate [1/T_H]; explicit steps would have to follow quicker ones
 
@@ -250,6 +251,22 @@ def moved(
         _moved(m.first, w1, k1.first, w2, k2.first, w3, k3.first, w4, k4.first, w5, k5.first),
         _moved(m.second, w1, k1.second, w2, k2.second, w3, k3.second, w4, k4.second, w5, k5.second),
     )
+
+
+@kernel
+def longest(edges: Edges | None) -> float:
+    """Time in which contacts end [T_H]; longer ones are those of spheres that stay on the plate."""
+    if edges is None:
+        return math.inf
+    return _LONGEST
+
+
+@kernel
+def is_followed(edges: Edges | None, n: int) -> bool:
+    """Whether the plate was found to come back to the sphere, or to recede before it."""
+    if edges is None:
+        return False
+    return bool(edges.again[n] > 0.0)
 
 
 @kernel

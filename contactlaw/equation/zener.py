@@ -24,6 +24,7 @@ from contactlaw.equation.edge import Edges
 from contactlaw.equation.force import HERTZ
 from contactlaw.equation.integrator import LEVEL, MAX_STEPS, TIME
 from contactlaw.equation.legs import NO_CURVE
+from contactlaw.equation.losses import Losses
 from contactlaw.equation.motion import ScaledContact
 from contactlaw.equation.outcome import Extremes, History, Outcome
 from contactlaw.equation.plate import PlateMobility
@@ -102,13 +103,13 @@ def _impact(
     curve, top, total, longest = NO_CURVE, state, 0, 0
     marks, noted, going = notes.at.shape[1], 0, True
     while going:
-        level, until, loading = leg.level, math.inf, legs.is_loading(leg)
+        level, until, loading = leg.level, edge.longest(edges) * scale.t, legs.is_loading(leg)
         if goal == _AT_TIMES:
             until = notes.at[n, noted] * scale.t
         elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
             mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
             level = min(mark, level) if loading else max(mark, level)
-        event, turns, here = TIME, False, noted + 1
+        event, turns, here = TIME, False, noted + (goal >= _AT_TIMES)
         if until > state.t:
             state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
             total, longest = total + steps, max(longest, steps)
@@ -126,6 +127,8 @@ def _impact(
             notes.force[n, k] = state.f * y * math.sqrt(y)
             notes.compression[n, k] = (leg.residual + state.q * state.q) * y
         noted = here
+        if event == TIME and goal != _AT_TIMES:  # the sphere stays on a plate that recedes
+            break
         going = going and (goal < _AT_TIMES or noted < marks)
         if going and ends:
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
@@ -142,10 +145,15 @@ def _impact(
     dm = top.q * top.q
     residual, plastic, other = losses.at_the_contact(law, dm)
     lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
+    rebound = min(max(-state.u / scale.u, 0.0), 1.0)  # a step's error may put it outside
+    wave_rate = 2.0 * scale.t * state.work.wave / scale.u**2
+    if edge.is_followed(edges, n) and rebound == 0.0:  # the plate has what the sphere still has
+        lost = Losses(lost.plastic, 1.0 - lost.plastic - lost.other, lost.other)
+        wave_rate = lost.wave / lam
     return Solution(
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
         float(total),
-        min(max(-state.u / scale.u, 0.0), 1.0),  # a step's error may put it outside
+        rebound,
         top.t / scale.t,
         state.t / scale.t,
         top.f * y * math.sqrt(y),
@@ -154,7 +162,7 @@ def _impact(
         lost.plastic,
         lost.wave,
         lost.other,
-        2.0 * scale.t * state.work.wave / scale.u**2,
+        wave_rate,
     )
 
 

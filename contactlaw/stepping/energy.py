@@ -29,6 +29,7 @@ from contactlaw.stepping.spring import (
     State,
     advance,
     memory_of,
+    returning,
     with_memory,
 )
 
@@ -99,7 +100,7 @@ def wave_energy(
     speed_0 = mobility * last.force - last.plate_displacement / spring.relaxation
     speed_1 = mobility * state.force - state.plate_displacement / spring.relaxation
     if near is not None and near.rate > 0.0:
-        thin = min(spring.mobility, mobility)
+        thin = returning(spring, mobility)
         speed_0 += thin * weighted(near, memory_of(last))
         speed_1 += thin * weighted(near, memory_of(state))
     return 0.5 * h * (last.force * speed_0 + state.force * speed_1)

@@ -239,6 +239,15 @@ def _slow_scale(spring: Spring) -> float:
 
 
 @kernel
+def returning(spring: Spring, mobility: float) -> float:
+    """Mobility with which the wave from an edge returns, as `contactlaw.physical.scaling.edges_of`.
+
+    It is that of a thin plate, or of the contact if that is less; of bodies with losses the latter.
+    """
+    return mobility if relaxes(spring.plate) else min(spring.mobility, mobility)
+
+
+@kernel
 def _first_known(
     levels: Array | None, spring: Spring, state: State, overlap: float, step: float
 ) -> tuple[float, float, float]:
@@ -329,8 +338,7 @@ def advance(
     moved = 0.5 * step * mobility / (1.0 + leak)  # motion of the plate per force at either end
     known = state.plate_displacement * (1.0 - leak) / (1.0 + leak) + moved * state.force
     rule_error = moved / 6.0  # the trapezoidal rule's error in `moved`
-    # the plate of a contact gives way no more than a thin one, so what returns is limited by it
-    sent = 0.5 * step * min(spring.mobility, mobility)
+    sent = 0.5 * step * returning(spring, mobility)
     before_edge = recalled(near, memory_of(state), state.force, step)
     known += sent * before_edge.known
     by_edge = sent * before_edge.per_force
