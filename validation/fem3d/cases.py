@@ -10,7 +10,7 @@ from __future__ import annotations
 import csv
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, fields
 from datetime import date
 from typing import Any
@@ -150,28 +150,35 @@ def model(case: Case) -> ObliqueRebound:
     )
 
 
-def results(name: str) -> dict[Case, dict[str, Any]]:
+def results(name: str, of: Callable[..., Any] = Case) -> dict[Any, dict[str, Any]]:
     """Read the outcomes of the impacts of one of `SEEDS` that this solver has computed."""
     done = {}
     path = _FOLDER / f"fem3d_{name}.jsonl"
     for line in path.read_text().splitlines() if path.exists() else ():
         entry = json.loads(line)
         if entry["solver_version"] == impact.VERSION:
-            done[Case(**entry["case"])] = entry["outcome"]
+            done[of(**entry["case"])] = entry["outcome"]
     return done
 
 
 def compute(name: str) -> Iterator[tuple[Case, dict[str, Any]]]:
     """Compute what is missing of one of `SEEDS`; each impact is kept as soon as it is done."""
-    done = results(name)
-    for case in drawn(name):
+    return kept(name, drawn(name), solve)
+
+
+def kept(
+    name: str, listed: list[Any], solve: Callable[[Any], dict[str, Any]]
+) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """Compute what is missing of these impacts, and store each as soon as it is done."""
+    done = results(name, type(listed[0]))
+    for case in listed:
         if case not in done:
             done[case] = solve(case)
             line = {
-                "case": asdict(case),
+                "case": vars(case),
                 "outcome": done[case],
                 "command": f"python -m validation.fem3d {name}",
-                "across": impact.ACROSS,
+                "across": vars(case).get("across", impact.ACROSS),
                 "solver_version": impact.VERSION,
                 "contactlaw_version": VERSION,
                 "date": date.today().isoformat(),

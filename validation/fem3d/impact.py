@@ -138,8 +138,10 @@ def oblique_impact(
     yields: bool = False,
     plate_yields: bool = False,
     across: int = ACROSS,
+    distance: float | None = None,
+    hole: float = math.inf,
 ) -> Oblique:
-    """Let a sphere without spin hit a plate whose rim sends no wave back.
+    """Let a sphere without spin hit a plate whose outer rim sends no wave back.
 
     Parameters
     ----------
@@ -155,6 +157,12 @@ def oblique_impact(
         Whether the sphere yields, and the plate.
     across : int, optional
         Elements in the expected radius of the contact, 3 to 20.
+    distance : float, optional
+        Distance [m] to a free edge of a plate of finite thickness, ahead in the direction of the
+        slide. With inf there is none nearby, on
+        a mesh of the same rows; by default the plate is round.
+    hole : float, optional
+        Radius [m] of the hole whose rim is the edge; inf is a straight edge.
 
     Returns
     -------
@@ -171,11 +179,13 @@ def oblique_impact(
     guess = expect(pair, speed, radius, thickness, yields, plate_yields)
     core, n = _CORE * guess.contact, round(_CORE * across)
     width = free_width(pair.plate, guess.time)
-    below = (
-        mesh.half_space(core, n, width)
-        if math.isinf(thickness)
-        else mesh.plate(core, n, thickness, width)
-    )
+    if math.isinf(thickness):
+        below = mesh.half_space(core, n, width)
+    elif distance is None:
+        below = mesh.plate(core, n, thickness, width)
+    else:
+        checked(distance=(distance, core, math.inf, "m"))
+        below = mesh.edged_plate(core, n, thickness, width, min(distance, width), hole)
     touch = _TOUCH * guess.contact + sliding_speed * guess.time
     bodies = mesh.sphere(radius, core, n), below
     system = assemble(bodies, pair, radius, friction, yields, plate_yields, core, touch)

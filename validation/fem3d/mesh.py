@@ -25,6 +25,8 @@ Move = Callable[[Array], Array]
 # Our choices.
 _SPHERE_GROWTH = 1.7  # thickness of the first shell over that of a cube of the box
 _PLATE_GROWTH = 0.11  # a ring of a plate over its distance: waves run through many
+# In a plate with an edge, each row beyond the box of n cubes is wider than the last by this over n.
+_ROW_GROWTH = 0.9
 _FAR_BOX = 1.2  # half the width of the box around the far pole [R]
 _LAYER_GROWTH = 1.2  # thickness of a layer of a plate over that of the one above it
 _LAYERS = 7.0  # a layer is at most this part of the plate's thickness
@@ -94,7 +96,7 @@ def plate(core: float, n: int, thickness: float, width: float) -> Mesh:
     >>> [round(float(v), 6) for v in (*mesh.nodes.min(axis=0), *mesh.nodes.max(axis=0))]
     [-10.0, 0.0, -1.0, 10.0, 10.0, 0.0]
     """
-    depth = _layers(thickness, core / n, 0.6 * core)[::-1]
+    depth = _depths(core, n, thickness)
     shells = _shells(
         n, _PLATE_GROWTH, lambda s: core * s, lambda s: width * s / np.sqrt(_squared(s))
     )
@@ -106,6 +108,37 @@ def plate(core: float, n: int, thickness: float, width: float) -> Mesh:
         blocks.append(block)
         surface.append(block[..., 2] == 0.0)
     return _joined(blocks, surface)
+
+
+def edged_plate(
+    core: float, n: int, thickness: float, width: float, distance: float, hole: float = math.inf
+) -> Mesh:
+    """Half of a plate whose free edge runs across the x axis at `distance`, more than `core`.
+
+    The edge is straight, or the rim of a circular hole of the radius `hole`; the other edges are
+    at least `width` away. The grid of a straight edge has rows along x and along y. For a hole it
+    is bent by the exponential function, which is conformal: cubes stay nearly cubes.
+
+    Examples
+    --------
+    >>> mesh = edged_plate(0.2, 6, 1.0, 10.0, 2.0)
+    >>> [round(float(v), 6) for v in (*mesh.nodes.min(axis=0), *mesh.nodes.max(axis=0))]
+    [-10.0, 0.0, -1.0, 2.0, 10.0, 0.0]
+    """
+    centre = hole + distance
+    bent = math.isfinite(hole)
+    ends = [distance, width, width]
+    if bent:
+        ends = [centre * v for v in (math.log(centre / hole), math.log1p(width / centre), math.pi)]
+    ahead, behind, side = (_steps(end, core / n, core, 1.0 + _ROW_GROWTH / n) for end in ends)
+    x, depth = np.concatenate([-behind[:0:-1], ahead]), _depths(core, n, thickness)
+    points = np.stack(np.meshgrid(x, side, 0.0 - depth, indexing="ij"), axis=-1)
+    if bent:
+        moved = -centre * np.expm1(-(points[..., 0] + 1j * points[..., 1]) / centre)
+        points[..., 0], points[..., 1] = moved.real, moved.imag
+    fine = behind.size - 1 - n  # the first block begins with the finest rows, as in other meshes
+    blocks = [points[fine:], points[: fine + 1]]
+    return _joined(blocks, [block[..., 2] == 0.0 for block in blocks])
 
 
 def top(mesh: Mesh) -> Indices:
@@ -168,17 +201,25 @@ def _inverted(u: Array, radius: float) -> Array:
     return image
 
 
-def _layers(length: float, size: float, fine: float) -> Array:
-    """Depths from 0 to length: steps of one size down to `fine`, which then grow."""
+def _depths(core: float, n: int, thickness: float) -> Array:
+    """Depths of the layers of a plate, from the lower face to the upper one."""
+    size = core / n
+    return _steps(thickness, size, 0.6 * core, _LAYER_GROWTH, max(thickness / _LAYERS, size))[::-1]
+
+
+def _steps(
+    length: float, size: float, fine: float, growth: float, largest: float = math.inf
+) -> Array:
+    """Places from 0 to length: steps of one size up to `fine`, which then grow to the largest."""
     steps = [size] * math.ceil(fine / size)
     while sum(steps) < length:
-        steps.append(min(max(length / _LAYERS, size), _LAYER_GROWTH * steps[-1]))
-    depth = np.concatenate([[0.0], np.cumsum(steps)])
+        steps.append(min(largest, growth * steps[-1]))
+    place = np.concatenate([[0.0], np.cumsum(steps)])
     start = math.ceil(fine / size)
-    depth[start:] = depth[start] + (depth[start:] - depth[start]) * (
-        (length - depth[start]) / (depth[-1] - depth[start])
+    place[start:] = place[start] + (place[start:] - place[start]) * (
+        (length - place[start]) / (place[-1] - place[start])
     )
-    return depth
+    return place
 
 
 def _joined(blocks: list[Array], surface: list[NDArray[np.bool_]]) -> Mesh:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from validation.fem3d import __main__, cases, hexahedra, impact, mesh
+from validation.fem3d import __main__, cases, edges, hexahedra, impact, mesh
 from validation.fem3d.impact import oblique_impact
 
 R = 1e-3
@@ -59,6 +59,39 @@ def test_surfaces_touch_at_the_origin(ball):
         assert times.max() == 4 and body.surface[ends].all()
         assert np.linalg.norm(body.nodes[body.surface], axis=1).min() == 0
     assert mesh.areas(ball).sum() == pytest.approx(2 * math.pi, rel=0.03)
+
+
+@pytest.mark.parametrize("hole", [math.inf, 3.0, 1.0])
+def test_a_plate_ends_at_its_edge(hole):
+    """The straight edge bounds a rectangle, and a hole lies in a round plate."""
+    plate = mesh.edged_plate(0.2, 5, 1.0, 8.0, 1.0, hole)
+    volumes = hexahedra.volumes(plate.elements, plate.nodes)
+    exact = 9.0 * 8.0 if math.isinf(hole) else 0.5 * math.pi * ((hole + 9.0) ** 2 - hole**2)
+    assert volumes.min() > 0
+    assert volumes.sum() == pytest.approx(exact, rel=0.03)
+    x, y, z = plate.nodes.T
+    ahead = x[(y == 0) & (x >= 0) & (x < 1.5)]
+    assert ahead.max() == pytest.approx(1.0)
+    if math.isfinite(hole):
+        assert np.hypot(x - 1.0 - hole, y).min() == pytest.approx(hole)
+
+
+def test_a_sphere_rebounds_less_near_an_edge():
+    near, far = (
+        oblique_impact(PAIR, SPEED, 0.0, R, R, 0.0, across=3, distance=distance)
+        for distance in (R, math.inf)
+    )
+    assert near.balance < 0.003
+    assert near.restitution == pytest.approx(0.45, abs=0.03)
+    assert far.restitution == pytest.approx(0.660, abs=0.02)  # of the round plate, as above
+
+
+def test_stored_impacts_near_edges_are_listed_and_keep_their_energy():
+    stored = cases.results(edges.NAME, edges.Case)
+    assert stored and set(stored) <= set(edges.listed())
+    for case, hit in stored.items():
+        assert hit["balance"] < 0.003
+        assert (hit["plastic"] == 0) == (case.kind == "elastic")
 
 
 def test_a_linear_field_has_one_stress_and_no_hourglass_force(ball):
