@@ -54,6 +54,7 @@ pictures: .venv/test.done  ## draw the pictures of docs again, in about 10 minut
 	cp $(PICTURES)/sieve/dissipation.png docs/sieve.png
 	cp $(PICTURES)/report/fig15_restitution.png docs/fem_restitution.png
 	cp $(PICTURES)/report/fig26_oblique.png docs/oblique.png
+	cp $(PICTURES)/report/fig28_edges.png docs/edges.png
 
 clean:  ## remove the environment and the wheels
 	rm -rf .venv dist

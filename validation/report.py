@@ -36,6 +36,7 @@ _DERIVATIONS = {
     "fem-law": "fem_law",
     "mobility": "mobility",
     "losses": "losses",
+    "edges": "edges",
 }
 _COLOURS = {
     HOLDS: "#007A5A",

@@ -340,11 +340,12 @@ def limits(processes: int) -> None:
 
 
 def edge(processes: int) -> None:
-    """Let the bending wave come back from the free edge: why `edge_distance` has a factor 1.5."""
+    """Let bending waves come back from a free edge, from distances around `edge_distance`."""
     thickness = RADIUS / 1.5
     speed = PAIR.yield_speed
     time = expect(PAIR, speed, RADIUS, thickness).time
-    distance = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5  # c_g time/2
+    # Half the way of waves of the frequency 1/(2 contact times), at their group speed.
+    distance = float(cl.edge_distance(PAIR.plate, thickness, time)) / 1.5
     factors = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 4.0)
     listed = [Case(speed, thickness, width=factor * distance, meshes=1) for factor in factors]
     about = "free edge at 0.5 to 4 times the way of the contact's own bending wave, there and back"
