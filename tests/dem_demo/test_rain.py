@@ -129,7 +129,8 @@ def test_each_collision_has_the_cor_of_the_model(run):
     np.testing.assert_allclose(pairs["restitution"], both, rtol=0, atol=1e-10)
 
 
-def test_impacts_near_edges_have_the_cor_of_a_free_edge(tmp_path, monkeypatch, empty_pictures):
+def test_impacts_near_edges_are_on_the_lines_of_the_model(tmp_path, monkeypatch, empty_pictures):
+    """In the record, and in the figure of the COR over the distance from the edge."""
     monkeypatch.setattr(nozzles, "WIDTH", 0.01)
     monkeypatch.setattr(nozzles, "MARGIN", 1e-4)
     thin = ["rain", "--beads", "120", "--plates", "0.5e-3,0.6e-3,0.7e-3,inf", "--duration", "0.3"]
@@ -148,6 +149,15 @@ def test_impacts_near_edges_have_the_cor_of_a_free_edge(tmp_path, monkeypatch, e
     flagged = (rows["flags"] & cl.Validity.NEAR_EDGE) != 0
     assert 0 < flagged.sum() == outside(run).sum()
     assert "near an edge" not in summary(tmp_path)
+    with style.applied():
+        panels = figures.module("edge_distance").draw(run).axes[:3]
+    apart = [
+        min(abs(np.interp(at, *line.get_data()) - cor) for line in axes.lines)
+        for axes in panels
+        for at, cor in axes.collections[-1].get_offsets()
+        if cor < 0.98
+    ]
+    assert len(apart) > 3 and max(apart) < 2e-3  # a line is straight between its points
 
 
 def test_impacts_lie_on_both_sides_of_the_yield_speed(run):
