@@ -33,12 +33,16 @@ class Limit(NamedTuple):
     impacts: int
 
 
-def exceeded(flags: NDArray[np.int64], near: NDArray[np.bool_]) -> list[Limit]:
-    """List the limits that impacts exceed; `near` marks the impacts near an edge of the plate."""
+def exceeded(flags: NDArray[np.int64], near: NDArray[np.bool_] | None = None) -> list[Limit]:
+    """List the limits that impacts exceed.
+
+    `near` marks impacts near an edge of a plate that was simulated as an endless one.
+    """
     found = [
         Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity
     ]
-    found.append(Limit("near an edge", _EDGE, int(near.sum())))
+    if near is not None:
+        found.append(Limit("near an edge", _EDGE, int(near.sum())))
     return [limit for limit in found if limit.impacts]
 
 

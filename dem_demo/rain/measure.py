@@ -167,9 +167,7 @@ def constant_beside_model(run: Run) -> tuple[Floats, Floats]:
     own = rows["restitution"].astype(float)
     if run.constant_cor is None:
         return np.full(own.size, own.mean() if own.size else math.nan), own
-    thickness = np.array([plate.thickness for plate in run.scene.plates])[rows["plate"]]
-    radius = run.scene.beads.radius[rows["bead"]]
-    return own, np.asarray(run.model.restitution(rows["approach_speed"], radius, thickness))
+    return own, np.asarray(run.by_model.restitution)
 
 
 def restitution_range(run: Run) -> tuple[float, float]:
@@ -180,12 +178,12 @@ def restitution_range(run: Run) -> tuple[float, float]:
 
 def limits(run: Run) -> list[Limit]:
     """List the limits of the model that impacts on plates exceed."""
-    return exceeded(run.modelled["flags"], near_edge(run))
+    return exceeded(run.modelled["flags"])
 
 
 def outside(run: Run) -> NDArray[np.bool_]:
     """Mask of the impacts in `Run.modelled` that exceed a limit of the model."""
-    found: NDArray[np.bool_] = (run.modelled["flags"] != 0) | near_edge(run)
+    found: NDArray[np.bool_] = run.modelled["flags"] != 0
     return found
 
 
@@ -196,10 +194,9 @@ def near_edge(run: Run) -> NDArray[np.bool_]:
         here = rows["plate"] == n
         if plate.thickness == math.inf or not here.any():
             continue
-        edge = np.minimum(rows["x"] - plate.x0, plate.x1 - rows["x"])
         # The distance grows with the square root of contact time: one call serves all impacts.
         unit = edge_distance(run.scene.plate_material, plate.thickness, 1.0)
-        near |= here & (edge < unit * np.sqrt(rows["contact_time"]))
+        near |= here & (run.edge_distance < unit * np.sqrt(rows["contact_time"]))
     return near
 
 

@@ -16,7 +16,7 @@ from dem_demo.rain.scene import Beads, Plate, Scene
 WIDTH, GAP = 0.060, 0.020  # [m], width of a plate, and distance to the next
 DEPTH = 0.060  # [m], depth of a plate in three dimensions
 _LARGEST = 0.05  # [m], largest radius of a bead that suits plates of this size
-MARGIN = 0.012  # [m]: nozzles keep off the edges, whose reflected waves the model leaves out
+MARGIN = 0.012  # [m]: nozzles keep off the edges, so that few beads miss the plates
 HEIGHT = 0.2  # [m], height of the nozzles above the plates
 _STEEPEST = 75.0  # [degrees], largest tilt: such nozzles are already 0.7 m beside the plates
 SIDEWAYS = 0.05  # [m/s], largest sideways speed: beads wander over to the next plate or the gap

@@ -25,6 +25,7 @@ from dem_demo.rain.measure import (
     PlateRow,
     constant_beside_model,
     limits,
+    near_edge,
     plate_rows,
     restitution_range,
 )
@@ -111,7 +112,8 @@ def _data(run: Run) -> dict[str, object]:
 def _hardest(run: Run, plate: int) -> dict[str, object] | None:
     """Describe the hardest contact on a plate, and how its bending wave spreads."""
     rows = run.modelled
-    here = np.flatnonzero(rows["plate"] == plate)
+    # The page says that no wave comes back during the contact, so it is one far from edges.
+    here = np.flatnonzero((rows["plate"] == plate) & ~near_edge(run))
     if not here.size:
         return None
     n = here[np.argmax(rows["peak_force"][here])]

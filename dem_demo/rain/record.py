@@ -10,12 +10,13 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import ImpactModel, Pair
+from contactlaw import ImpactModel, Pair, Rebound
 from contactlaw.engines import layout
 from contactlaw.engines.record import IMPACT, fill
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.reader import Recorded, checked, common
 from dem_demo.kit.recorder import Dataset, Making, Recorder
+from dem_demo.rain.nozzles import DEPTH
 from dem_demo.rain.scene import Beads, Plate, Scene
 
 NAME, SCHEMA = "rain", 3
@@ -141,11 +142,28 @@ class Run(Recorded):
         rows = np.zeros(recorded.size, IMPACT)
         for name in names:
             rows[name] = recorded[name]
-        thickness = np.array([plate.thickness for plate in self.scene.plates])[rows["plate"]]
-        radius = self.scene.beads.radius[rows["bead"]]
-        rebound = self.model.lookup(rows["approach_speed"], radius, thickness)
-        fill(rows, rebound, self.energy(rows))
+        fill(rows, self.by_model, self.energy(rows))
         return rows
+
+    @cached_property
+    def by_model(self) -> Rebound:
+        """The model's results for all impacts on plates."""
+        rows = self.impacts[self.impacts["plate"] >= 0]
+        thickness = np.array([plate.thickness for plate in self.scene.plates])[rows["plate"]]
+        return self.model.lookup(
+            rows["approach_speed"], self.scene.beads.radius[rows["bead"]], thickness,
+            edge="free", edge_distance=self.edge_distance,
+        )  # fmt: skip
+
+    @cached_property
+    def edge_distance(self) -> Floats:
+        """Distance [m] of all impacts on plates from the nearest edge of the plate."""
+        rows = self.impacts[self.impacts["plate"] >= 0]
+        x0, x1 = np.array([(plate.x0, plate.x1) for plate in self.scene.plates])[rows["plate"]].T
+        distance: Floats = np.minimum(rows["x"] - x0, x1 - rows["x"])
+        if self.depth is not None:
+            distance = np.minimum(distance, 0.5 * DEPTH - np.abs(rows["z"]))
+        return distance.clip(0.0)  # rounding may put a contact with the rim beside the plate
 
     @property
     def baseline(self) -> bool:

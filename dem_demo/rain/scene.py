@@ -22,7 +22,7 @@ STEPS_PER_RADIUS = 3.0
 
 @dataclass(frozen=True, slots=True)
 class Plate:
-    """A horizontal plate, seen from its edge.
+    """A horizontal plate, seen from its edge; nothing holds it at its ends.
 
     Parameters
     ----------

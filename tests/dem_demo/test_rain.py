@@ -16,7 +16,7 @@ from contactlaw.engines.record import COLUMNS, IMPACT
 from dem_demo import cli
 from dem_demo.kit.beads import GRAVITY
 from dem_demo.rain import figures, nozzles, report
-from dem_demo.rain.measure import balance, limits, model_shares, plate_rows
+from dem_demo.rain.measure import balance, limits, model_shares, outside, plate_rows
 from dem_demo.rain.record import read
 
 # Numbers are those of the paper's law, whichever is the default.
@@ -102,8 +102,7 @@ def test_each_impact_has_the_flags_of_the_model(tmp_path, empty_pictures):
     rows, radius = run.collisions, run.scene.beads.radius
     on = rows[rows["plate"] >= 0]
     thickness = np.array([plate.thickness for plate in run.scene.plates])[on["plate"]]
-    expected = run.model.lookup(on["approach_speed"], radius[on["bead"]], thickness).flags
-    assert on["flags"].tolist() == expected.tolist()
+    assert on["flags"].tolist() == run.by_model.flags.tolist()
     thin = (on["flags"] & cl.Validity.THIN_PLATE) != 0
     assert thin.tolist() == (radius[on["bead"]] > 1.8 * thickness).tolist()
     assert 0 < thin.sum() < thin.size
@@ -116,7 +115,7 @@ def test_each_impact_has_the_flags_of_the_model(tmp_path, empty_pictures):
 def test_each_collision_has_the_cor_of_the_model(run):
     rows, radius = run.collisions, run.scene.beads.radius
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    on = rows[rows["plate"] >= 0]
+    on = rows[rows["plate"] >= 0][run.edge_distance > 0.01]  # no wave comes back from that far
     assert on.size > 30
     thickness = np.array([plate.thickness for plate in run.scene.plates])[on["plate"]]
     expected = model.restitution(on["approach_speed"], radius[on["bead"]], thickness)
@@ -128,6 +127,37 @@ def test_each_collision_has_the_cor_of_the_model(run):
         for v, i, j in zip(pairs["approach_speed"], pairs["bead"], pairs["other"], strict=True)
     ]
     np.testing.assert_allclose(pairs["restitution"], both, rtol=0, atol=1e-10)
+
+
+def test_impacts_near_edges_are_on_the_lines_of_the_model(tmp_path, monkeypatch, empty_pictures):
+    """In the record, and in the figure of the COR over the distance from the edge."""
+    monkeypatch.setattr(nozzles, "WIDTH", 0.01)
+    monkeypatch.setattr(nozzles, "MARGIN", 1e-4)
+    thin = ["rain", "--beads", "120", "--plates", "0.5e-3,0.6e-3,0.7e-3,inf", "--duration", "0.3"]
+    assert cli.main([*thin, "--law", "myc", "--out", str(tmp_path)]) == 0
+    run = read(tmp_path / "rain.h5")
+    rows, plates = run.modelled, run.scene.plates
+    thickness = np.array([plate.thickness for plate in plates])[rows["plate"]]
+    x = np.array([(plate.x0, plate.x1) for plate in plates])[rows["plate"]] - rows["x"][:, None]
+    distance = np.maximum(abs(x).min(axis=1), np.where(thickness < 1, 0.5 * thickness, 0.0))
+    speed, radius = rows["approach_speed"], run.scene.beads.radius[rows["bead"]]
+    expected = run.model.solve(speed, radius, thickness, edge="free", edge_distance=distance)
+    # An impact that an edge changes by less than that may be answered as on an endless plate.
+    np.testing.assert_allclose(rows["restitution"], expected.restitution, rtol=0, atol=1e-3)
+    endless = run.model.restitution(speed, radius, thickness)
+    assert (rows["restitution"] < endless - 0.02).sum() > 3
+    flagged = (rows["flags"] & cl.Validity.NEAR_EDGE) != 0
+    assert 0 < flagged.sum() == outside(run).sum()
+    assert "near an edge" not in summary(tmp_path)
+    with style.applied():
+        panels = figures.module("edge_distance").draw(run).axes[:3]
+    apart = [
+        min(abs(np.interp(at, *line.get_data()) - cor) for line in axes.lines)
+        for axes in panels
+        for at, cor in axes.collections[-1].get_offsets()
+        if cor < 0.98
+    ]
+    assert len(apart) > 3 and max(apart) < 2e-3  # a line is straight between its points
 
 
 def test_impacts_lie_on_both_sides_of_the_yield_speed(run):
@@ -199,9 +229,9 @@ def test_no_impact_is_looked_up_a_second_time(request, which, times, monkeypatch
     run = read(request.getfixturevalue(which) / "rain.h5")
     asked = []
 
-    def count(model, speed, radius, thickness, real=cl.ImpactModel.lookup):
+    def count(model, speed, radius, thickness, real=cl.ImpactModel.lookup, **edges):
         asked.extend(np.ravel(speed).tolist())
-        return real(model, speed, radius, thickness)
+        return real(model, speed, radius, thickness, **edges)
 
     monkeypatch.setattr(cl.ImpactModel, "lookup", count)
     limits(run)
@@ -217,7 +247,9 @@ def test_baseline_is_compared_with_the_model_on_the_same_impacts(baseline):
     run = read(baseline / "rain.h5")
     rows, radius = run.collisions[run.collisions["plate"] >= 0], run.scene.beads.radius
     thickness = np.array([plate.thickness for plate in run.scene.plates])[rows["plate"]]
-    rebound = run.model.lookup(rows["approach_speed"], radius[rows["bead"]], thickness)
+    rebound = run.model.lookup(
+        rows["approach_speed"], radius[rows["bead"]], thickness, edge_distance=run.edge_distance
+    )
     assert (run.modelled["peak_force"] == rebound.peak_force).all()
     assert (run.modelled["flags"] == rebound.flags).all()
     for n in range(len(run.scene.plates)):

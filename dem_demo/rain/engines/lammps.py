@@ -60,8 +60,9 @@ class _Rain:
         self.step = time_step(scene, model)
         self.steps = round(1.0 / (scene.frame_rate * self.step))
         self.lmp.commands_string(self._input(model))
+        deep = 0, DEPTH, 0
         plates = [
-            Plate((p.x0, -0.5 * DEPTH, p.y), (p.x1 - p.x0, 0, 0), (0, DEPTH, 0), p.thickness)
+            Plate((p.x0, -0.5 * DEPTH, p.y), (p.x1 - p.x0, 0, 0), deep, p.thickness, edges="free")
             for p in scene.plates
         ]
         self.plates = attach(self.lmp, model, plates, friction=scene.friction)

@@ -57,6 +57,7 @@ class Rain:
         import pymunk
 
         from contactlaw.engines import pymunk as adapter
+        from dem_demo.rain.baseline import ConstantRestitution
 
         self.scene = scene
         self.space = pymunk.Space()
@@ -66,11 +67,15 @@ class Rain:
         cell, cells = 4.0 * float(scene.beads.radius.max()), 10 * scene.beads.radius.size
         self.space.use_spatial_hash(cell, cells)
         self.impacts = adapter.attach(self.space, model)
+        constant = isinstance(model, ConstantRestitution)  # it knows no edges
         for plate in scene.plates:
             ends = (plate.x0, plate.y), (plate.x1, plate.y)
             segment = pymunk.Segment(self.space.static_body, *ends, radius=0.0)
             self.space.add(segment)
-            self.impacts.add_plate(segment, plate.thickness, friction=scene.friction or None)
+            friction = scene.friction or None
+            self.impacts.add_plate(
+                segment, plate.thickness, friction=friction, edge=None if constant else "free"
+            )
         self.mass = scene.beads.mass(scene.sphere_material.density)
         # First step of each bead: the one that begins after its emission.
         self.first_step = np.ceil(scene.beads.emission_time / scene.time_step).astype(int).tolist()

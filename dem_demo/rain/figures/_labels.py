@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from numpy.typing import NDArray
 
 from contactlaw import style
@@ -40,3 +42,10 @@ def ring(axes: Axes, x: Floats, y: Floats, far: NDArray[np.bool_]) -> None:
 def ringed(far: NDArray[np.bool_]) -> str:
     """Legend of the rings; empty if there are none."""
     return "; ringed: outside a limit of the model" if far.any() else ""
+
+
+def radius_colours(run: Run) -> ScalarMappable:
+    """Colours of beads by their radius in mm."""
+    radius = run.scene.beads.radius * 1e3
+    top = max(radius.max(), radius.min() + 1e-6)
+    return ScalarMappable(Normalize(radius.min(), top), "cividis")

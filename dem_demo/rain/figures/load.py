@@ -50,7 +50,8 @@ def draw(run: Run) -> Figure:
 
 
 def _plate(left: Axes, right: Axes, run: Run, plate: int, rate: float) -> None:
-    rows = run.modelled[run.modelled["plate"] == plate]
+    here = run.modelled["plate"] == plate
+    rows, distance = run.modelled[here], run.edge_distance[here]
     speed, radius = rows["approach_speed"], run.scene.beads.radius[rows["bead"]]
     thickness = run.scene.plates[plate].thickness
     load = load_signal(
@@ -61,5 +62,5 @@ def _plate(left: Axes, right: Axes, run: Run, plate: int, rate: float) -> None:
     left.set_title(label(thickness), pad=3.0)
     if rows.size:
         n = int(np.argmax(rows["peak_force"]))
-        contact = run.model.force_history(speed[n], radius[n], thickness)
+        contact = run.model.force_history(speed[n], radius[n], thickness, edge_distance=distance[n])
         right.plot(contact.time * 1e6, contact.force, color=style.VERMILION, linewidth=2.0)

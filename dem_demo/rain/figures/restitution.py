@@ -7,16 +7,13 @@ import math
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from contactlaw import style
 from dem_demo.kit.report import label
-from dem_demo.rain.figures._labels import ring, ringed, source
+from dem_demo.rain.figures._labels import radius_colours, ring, ringed, source
 from dem_demo.rain.measure import outside
 from dem_demo.rain.record import Run
-
-_COLOURS = "cividis"
 
 
 def draw(run: Run) -> Figure:
@@ -36,10 +33,7 @@ def draw(run: Run) -> Figure:
     )
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     panels = list(grid.flat)
-    radius = run.scene.beads.radius * 1e3
-    colours = ScalarMappable(
-        Normalize(radius.min(), max(radius.max(), radius.min() + 1e-6)), _COLOURS
-    )
+    colours = radius_colours(run)
     for n, axes in enumerate(panels):
         if n < len(plates):
             _panel(axes, run, n, colours)
