@@ -55,7 +55,8 @@ FILES = {
     "cli/constant": ["records", "walls", "lines"],
     "cli/cor": ["bands", "curves", "figure"],
     "cli/fit": ["measured", "printed", "figure"],
-    "physical": ["arguments", "kind", "hardness", "flow", "materials", "pair", "rate", "scaling",
+    "physical": ["arguments", "kind", "hardness", "flow", "materials", "pair", "rate", "responses",
+                 "scaling",
                  "measured", "validity", "history", "rebound", "oblique"],
 }  # fmt: skip
 KERNELS = [

@@ -15,10 +15,10 @@ from contactlaw.answers.backend import Backend, SphereOnPlate
 from contactlaw.answers.rated import flow_of, merged, merged_histories, renumbered
 from contactlaw.answers.solver import Solver
 from contactlaw.equation import zener
-from contactlaw.equation.edge import response_of
 from contactlaw.equation.numbers import numbers, relaxes
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import NEAREST, wave_path
 from contactlaw.table import lookup
 

@@ -20,10 +20,7 @@ Legend: f contact force, beta mobility, z memory, h step, as in `contactlaw.equa
 
 from __future__ import annotations
 
-import functools
-import json
 import math
-from importlib.resources import files
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -67,7 +64,7 @@ NO_MEMORY = Memory(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 class Edges(NamedTuple):
     """Edges near impacts."""
 
-    response: Array  # as `response_of` gives it, (impacts, 2 SIZE)
+    response: Array  # (impacts, 2 SIZE), as `contactlaw.physical.responses` gives it
     coupling: Array  # mobility of a thin plate over that of the contact, at most 1
     rate: Array  # T_H/tau
     again: Array  # set to 1 where the plate comes back to the sphere after the contact, else to 0
@@ -76,80 +73,6 @@ class Edges(NamedTuple):
 def part(edges: Edges | None, some: Any) -> Edges | None:
     """Edges of some of the impacts."""
     return None if edges is None else Edges(*(values[some] for values in edges))
-
-
-@functools.cache
-def _fitted() -> Any:
-    """Rates and weights; of a free edge for the shares s/(s + a) of holes of radius a, too."""
-    return json.loads(files("contactlaw.equation").joinpath("edge.json").read_text())
-
-
-@functools.cache
-def _table(kind: str, poissons_ratio: float, size: str) -> tuple[Array, Array]:
-    """Rates, four for each block, and weights, for all shares."""
-    one = _fitted()["responses"][kind][size]
-    p, second, turn = np.moveaxis(np.array(one["rates"]), -1, 0)
-    rates = np.stack([p, second, turn, np.where(turn > 0.0, turn, second)], axis=-1)
-    powers = poissons_ratio ** np.arange(np.shape(one["weights"])[2])
-    return rates, np.array(one["weights"]) @ powers
-
-
-def response_of(
-    kind: str,
-    poissons_ratio: float,
-    share: Any = 0.0,
-    size: Literal["equation", "steps"] = "equation",
-) -> Array:
-    """Responses near edges in units of tau, in parts of `SIZE`: for the equation two, else one.
-
-    `share` is s/(s + a) near the rim of a hole of radius a, and 0 near a straight edge. For steps
-    the response is that of the nearest of the shares that were fitted, each with its own rates.
-    """
-    rates, weights = _table(kind, poissons_ratio, size)
-    shares, given = np.array(_fitted()["shares"]), np.asarray(share, float)
-    if size == "steps":
-        middles = 0.5 * (shares[2:-1] + shares[1:-2]) if kind == "free" else []
-        place = np.searchsorted(np.append(0.5 * shares[1:2], middles)[: len(weights) - 1], given)
-        rates, each = rates[place], weights[place]
-    elif kind == "free":  # a hole without radius is none
-        weights = np.vstack([weights, np.zeros_like(weights[:1])])
-        each = np.stack([np.interp(given, shares, column) for column in weights.T], axis=-1)
-    else:
-        each = np.broadcast_to(weights[0], (*given.shape, weights.shape[1]))
-    rates = np.broadcast_to(rates, (*given.shape, *rates.shape[-2:])).reshape(*given.shape, -1)
-    parts = []
-    for n in range(each.shape[-1] // 6):
-        parts += [rates[..., 12 * n : 12 * n + 12], each[..., 6 * n : 6 * n + 6]]
-    return np.ascontiguousarray(np.concatenate(parts, axis=-1))
-
-
-_RIMS = tuple(_fitted()["shares"][1:-1])  # of the responses near rims that steps choose from
-RESPONSES = len(KINDS) + len(_RIMS)
-
-
-def responses_of(poissons_ratio: float) -> Array:
-    """Responses in steps: near a straight edge of each kind, and near rims of holes."""
-    straight = [response_of(kind, poissons_ratio, size="steps") for kind in KINDS]
-    rims = [response_of("free", poissons_ratio, share, "steps") for share in _RIMS]
-    return np.array(straight + rims)
-
-
-@kernel
-def place_of(kind: int, distance: float, hole: float) -> int:
-    """Place among the responses in steps of the nearest share; the kind is its number in `KINDS`.
-
-    Neighbours differ by a quarter in the radius, so that the COR errs by up to 1 %.
-    """
-    if kind != 0 or not hole < math.inf or not distance < math.inf:
-        return kind
-    share = distance / (distance + hole)
-    if share < 0.5 * _RIMS[0]:
-        return kind
-    place = 0
-    for n in range(1, len(_RIMS)):
-        if share > 0.5 * (_RIMS[n - 1] + _RIMS[n]):
-            place = n
-    return len(KINDS) + place
 
 
 @kernel

@@ -28,12 +28,13 @@ from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
 from contactlaw.equation import corrections, creep, force, integrator, tangential
-from contactlaw.equation.edge import KINDS, response_of
+from contactlaw.equation.edge import KINDS
 from contactlaw.model import ImpactModel
 from contactlaw.physical import validity
 from contactlaw.physical.materials import Material
 from contactlaw.physical.rate import largest_factor, rated, strengthened
 from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import factors, wave_path
 from contactlaw.physical.validity import Limits, Validity, explain
 from contactlaw.softsphere import unit_spring

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from contactlaw import laws
 from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, THIN, plate_corrections
-from contactlaw.equation.edge import Edges, response_of
+from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import (
     ELASTIC,
     ModulusGrowth,
@@ -29,6 +29,7 @@ from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.responses import response_of
 
 Array = NDArray[np.float64]
 

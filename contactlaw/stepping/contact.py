@@ -15,13 +15,12 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
-from contactlaw.equation.edge import place_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
 from contactlaw.physical.validity import edge_flags, flags_of
 from contactlaw.stepping import energy
-from contactlaw.stepping.edge import REACH, Near, rate_at
+from contactlaw.stepping.edge import REACH, Near, place_of, rate_at
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.plate_rows import limits_of, spring_of, with_levels

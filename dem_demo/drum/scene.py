@@ -68,13 +68,22 @@ class Drum(Bed):
         return (-side, -_AROUND, -side), (side, self.length + _AROUND, side)
 
     def meshes(self, thickness: float, folder: Path) -> list[Mesh]:
-        """Make the shell and the two ends."""
+        """Make the shell and the two ends.
+
+        At a seam of shell and end neither plate can move, and each holds the other against turning:
+        their edges lie halfway between supported and clamped ones.
+        """
         from contactlaw.walls import Mesh, Rotation
 
         motion = Rotation(axis=(0, 1, 0), speed=self.spin)
         ends = (0.0, 0.0, 0.0), (0.0, self.length, 0.0)
-        shell = Mesh.cylinder(*ends, self.drum, thickness, facets=_FACETS, motion=motion)
-        discs = [Mesh.disc(end, (0, 1, 0), self.drum, thickness, motion=motion) for end in ends]
+        shell = Mesh.cylinder(
+            *ends, self.drum, thickness, facets=_FACETS, motion=motion, edges="supported"
+        )
+        discs = [
+            Mesh.disc(end, (0, 1, 0), self.drum, thickness, motion=motion, edges="supported")
+            for end in ends
+        ]
         return [shell, *discs]
 
     def write_walls(self, file: h5py.File) -> None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import edge_distance
 from dem_demo.drum import figures
 from dem_demo.drum.scene import Drum
 from dem_demo.kit.beads import Floats
@@ -22,12 +21,6 @@ def on_faces(run: Run[Drum]) -> NDArray[np.bool_]:
     At a seam both walls contribute to the rebound, and neither contact has a COR of its own.
     """
     return np.asarray(_away(run) > _SEAM * run.scene.radius[run.collisions["bead"]])
-
-
-def near_edge(run: Run[Drum]) -> NDArray[np.bool_]:
-    """Mask of impacts so near a seam that the bending wave comes back during the contact."""
-    unit = float(edge_distance(run.scene.plate_material, run.scene.thickness, 1.0))
-    return np.asarray(_away(run) < unit * np.sqrt(run.collisions["contact_time"]))
 
 
 def _away(run: Run[Drum]) -> Floats:
@@ -62,7 +55,8 @@ def _facts(run: Run[Drum]) -> Facts:
 TALE = Tale(
     wall="drum",
     flat=("on one wall, not at a seam", on_faces),
-    near_edge=near_edge,
+    # Impacts near the seams are within the model; those too near have a flag in the record.
+    near_edge=lambda run: np.zeros_like(run.impact),
     own=_facts,
     title=_title,
     figures=figures,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import edge_distance
+from contactlaw import ImpactModel
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.runs import Run
 from dem_demo.sieve.deck import areas
@@ -56,12 +56,19 @@ def _averaged(corners: Floats, energy: Floats, pitch: float) -> Floats:
     return spread(energy) / spread(areas(corners))
 
 
-def near_edge(run: Run[Sieve]) -> NDArray[np.bool_]:
-    """Mask of impacts so near an opening that the bending wave comes back during the contact."""
-    scene = run.scene
-    unit = float(edge_distance(scene.plate_material, scene.thickness, 1.0))
-    near: NDArray[np.bool_] = _away(run) < unit * np.sqrt(run.collisions["contact_time"])
-    return near
+def loss_by_openings(run: Run[Sieve]) -> float:
+    """Energy that impacts on the flat of the deck lose, over that without openings, less 1.
+
+    The same impacts are compared: their recorded COR, with the law's on a sheet without openings.
+    NaN without such impacts.
+    """
+    rows, scene = run.collisions[on_faces(run) & run.impact], run.scene
+    speed, bead = rows["approach_speed"], rows["bead"]
+    model = ImpactModel(run.pair, run.law, outside="clamp")
+    endless = model.restitution(speed, scene.radius[bead], scene.thickness)
+    energy = scene.mass[bead] * speed**2
+    lost, without = (float((energy * (1.0 - e**2)).sum()) for e in (rows["restitution"], endless))
+    return lost / without - 1.0 if without else math.nan
 
 
 def on_faces(run: Run[Sieve]) -> NDArray[np.bool_]:

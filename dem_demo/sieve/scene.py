@@ -98,11 +98,15 @@ class Sieve(Bed):
         write_stl(folder / FORM, self.deck.triangles())
 
     def meshes(self, thickness: float, folder: Path) -> list[Mesh]:
-        """Read the deck from its STL file, as a user would."""
+        """Read the deck from its STL file, as a user would.
+
+        Nothing holds the sheet at the rims of its openings. Where it is folded up to a wall, no
+        kind of edge describes it: there the sheet gives way as one that goes on.
+        """
         from contactlaw.walls import Mesh, Vibration
 
         motion = Vibration(tuple(self.vibration.tolist()), self.frequency)
-        return [Mesh.read(folder / FORM, thickness, scale=1e-3, motion=motion)]
+        return [Mesh.read(folder / FORM, thickness, scale=1e-3, motion=motion, edges="free")]
 
     def write_walls(self, file: h5py.File) -> None:
         """Write the triangles and the dimensions of the deck."""

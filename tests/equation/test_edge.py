@@ -9,8 +9,9 @@ from scipy.special import kv
 
 from contactlaw import laws
 from contactlaw.equation import zener
-from contactlaw.equation.edge import KINDS, SIZE, Edges, response_of
+from contactlaw.equation.edge import KINDS, SIZE, Edges
 from contactlaw.equation.force import HERTZ
+from contactlaw.physical.responses import response_of
 from validation.accuracy import edges as independent
 from validation.derivations import edges as exact
 

@@ -27,13 +27,14 @@ from contactlaw._jit import kernel
 from contactlaw._version import VERSION
 from contactlaw.equation import force, zener
 from contactlaw.equation.corrections import CONTACT_TIME
-from contactlaw.equation.edge import KINDS, response_of
+from contactlaw.equation.edge import KINDS
 from contactlaw.export import c_header
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
 from contactlaw.physical import validity
 from contactlaw.physical.oblique import surface_velocity
 from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.physical.validity import flags_of
 from contactlaw.softsphere import PARTED, Contacts, State, advance, resized, unit_spring
@@ -388,7 +389,10 @@ def test_a_step_near_an_edge_is_that_of_softsphere(pair, tmp_path):
     library, spring = without_a_table(tmp_path, model), resized(unit_spring(model, h), r)
     library.spring_of.restype, dt = SpringOfC, float(model.solve(v, r, h).contact_time) / 50
     for n, kind in enumerate(KINDS, 1):
-        near = Near(response_of(kind, pair.plate.poissons_ratio), float(rate_of(pair.plate, h, s)))
+        near = Near(
+            response_of(kind, pair.plate.poissons_ratio, size="steps"),
+            float(rate_of(pair.plate, h, s)),
+        )
         peer = library.spring_of(DOUBLE(r), DOUBLE(h))
         library.set_edge(ctypes.byref(peer), n, DOUBLE(s))
         x, u, state, expected, found = -0.3 * v * dt, v, PARTED, [], [np.zeros(len(PARTED))]

@@ -246,7 +246,7 @@ def _plates(model: cl.ImpactModel) -> dict[str, float]:
     """Time a step of some beads above tiles that lie beside each other."""
     simulations = {"none": _cloud(FEW)}
     width = _side(FEW) * PITCH
-    cases = [(str(count), count, None) for count in PLATES]
+    cases: list[tuple[str, int, Any]] = [(str(count), count, None) for count in PLATES]
     for name, count, edges in [*cases, ("all near edges", PLATES[0], "free")]:
         simulations[name] = _cloud(FEW)
         nx = 2 ** math.ceil(math.log2(math.sqrt(count)))

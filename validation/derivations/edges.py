@@ -1,6 +1,6 @@
 """Response of a thin plate near a straight edge, and the fit of it that the model takes.
 
-``python -m validation.derivations.edges`` writes the numbers of `contactlaw.equation.edge`, in ten
+``python -m validation.derivations.edges`` writes those of `contactlaw.physical.responses`, in ten
 minutes. See edges.md; nothing here comes from contactlaw but the rates that a fit starts from.
 Units: the distance from the edge and b = sqrt(D/(rho2 H)) are 1, and so tau = s^2/b is.
 """
@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 DURATIONS = np.geomspace(0.02, 2e3, 40)  # of the forces of the fit, over tau
-FILE = Path(contactlaw.__file__).parent / "equation/edge.json"
+FILE = Path(contactlaw.__file__).parent / "physical/responses.json"
 # Radii of holes, over the distance from their rims; a straight edge has the first.
 RADII = (
     math.inf, 200.0, 100.0, 60.0, 40.0, 28.0, 20.0, 15.0, 11.0, 8.0, 6.3, 5.0, 3.9, 3.0, 2.5, 2.0,

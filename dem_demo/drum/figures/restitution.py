@@ -1,8 +1,9 @@
 """The COR of the impacts on the drum, over their approach speed.
 
 From a thin plate heavy beads rebound less than light ones, and fast ones less than slow ones.
-Points off the lines are beads that other beads struck while they touched the drum. At a seam of
-shell and end a bead has two contacts at once, which share its rebound.
+Points off the lines are beads near a seam of shell and end, where the walls cannot move, or beads
+that other beads struck while they touched the drum. At a seam a bead has two contacts at once,
+which share its rebound.
 """
 
 from __future__ import annotations

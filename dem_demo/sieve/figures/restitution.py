@@ -1,8 +1,9 @@
 """The COR of the impacts on the deck, over their approach speed.
 
 From a thin plate heavy beads rebound less than light ones, and fast ones less than slow ones.
-Points off the lines are beads that other beads struck while they touched the deck. At the rim of
-an opening a bead has several contacts at once, which share its rebound.
+The lines are those of a deck without openings. Points below them are beads near an opening, where
+the deck gives way more; other beads struck some while they touched the deck. At the rim of an
+opening a bead has several contacts at once, which share its rebound.
 """
 
 from __future__ import annotations
