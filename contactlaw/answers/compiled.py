@@ -100,7 +100,7 @@ class Compiled:
     def edge_kernel(self, edge: Edge = "free") -> Callable[[float, float, float, float], float]:
         """COR near an edge as a numba-jitted ``f(speed, radius, thickness, edge_distance)``.
 
-        As `kernel`, but it integrates the equation, within 1e-5 of `solve`: 10 to 100 us per
+        As `kernel`, but it integrates the equation, within 1e-3 of `solve`: 30 to 100 us per
         impact, the more the nearer the edge is.
 
         Parameters

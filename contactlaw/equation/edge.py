@@ -36,7 +36,7 @@ KINDS: tuple[str, ...] = get_args(Edge)
 SIZE = 18  # of a response of six numbers: their rates, four for each block, and weights
 _LONGEST = 50.0  # [T_H]; contacts that end take up to 25
 _AT_ONCE = 2 * SIZE  # place of the number that `near` adds
-_QUICK = 500.0  # rate [1/T_H]; explicit steps would have to follow quicker ones
+_QUICK = 100.0, 500.0  # rates [1/T_H] that follow the force at once, at rtol 1e-6 and 1e-10
 
 
 class Memory(NamedTuple):
@@ -76,21 +76,23 @@ def part(edges: Edges | None, some: Any) -> Edges | None:
 
 
 @kernel
-def near(edges: Edges | None, n: int, unit: float) -> Array | None:
+def near(edges: Edges | None, n: int, unit: float, rtol: float) -> Array | None:
     """Response in the law's scale, whose time is `unit` times that of Hertz's scale.
 
-    A last number has been added: what follows the force at once, all that is quicker than `_QUICK`.
+    A last number has been added: what follows the force at once. It stands for all rates that
+    explicit steps would have to follow for little; the finer the steps, the fewer these are.
     """
     if edges is None:
         return None
     scaled, given = np.zeros(2 * SIZE + 1), edges.response[n]
     scaled[_AT_ONCE] = 1.0
+    quick = min(_QUICK[0] * (1e-6 / rtol) ** 0.175, _QUICK[1])
     for block in range(6):
         at = SIZE * (block // 3) + 4 * (block % 3)
         weight = SIZE * (block // 3) + 12 + 2 * (block % 3)
         first, second = edges.coupling[n] * given[weight], edges.coupling[n] * given[weight + 1]
         turns = given[at + 2] > 0.0
-        if edges.rate[n] * max(given[at], given[at + 1], given[at + 2]) > _QUICK:
+        if edges.rate[n] * max(given[at], given[at + 1], given[at + 2]) > quick:
             scaled[_AT_ONCE] += first if turns else first + second
         else:
             scaled[at : at + 4] = given[at : at + 4] * (edges.rate[n] / unit)

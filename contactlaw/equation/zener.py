@@ -98,7 +98,7 @@ def _impact(
 ) -> Solution:  # fmt: skip
     """Integrate one impact, and note points of its path in row n."""
     scale, h = integrator.scale_of(y, rtol)
-    contact = ScaledContact(law, PlateMobility(lam * scale.t, edge.near(edges, n, scale.t)))
+    contact = ScaledContact(law, PlateMobility(lam * scale.t, edge.near(edges, n, scale.t, rtol)))
     leg, state = motion.touch(contact, scale.u)
     curve, top, total, longest = NO_CURVE, state, 0, 0
     marks, noted, going = notes.at.shape[1], 0, True

@@ -139,7 +139,7 @@ def test_impacts_near_edges_are_on_the_lines_of_the_model(tmp_path, monkeypatch,
     rows, plates = run.modelled, run.scene.plates
     thickness = np.array([plate.thickness for plate in plates])[rows["plate"]]
     x = np.array([(plate.x0, plate.x1) for plate in plates])[rows["plate"]] - rows["x"][:, None]
-    distance = np.maximum(abs(x).min(axis=1), np.where(thickness < 1, 0.5 * thickness, 0.0))
+    distance = abs(x).min(axis=1)
     speed, radius = rows["approach_speed"], run.scene.beads.radius[rows["bead"]]
     expected = run.model.solve(speed, radius, thickness, edge="free", edge_distance=distance)
     # An impact that an edge changes by less than that may be answered as on an endless plate.

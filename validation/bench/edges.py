@@ -43,6 +43,6 @@ def rows() -> Iterator[Row]:
     for place in PLACES:
         yield Row(
             f"pymunk, impact {place * 1e3:g} mm from an edge", least[place] / least[AWAY], "x",
-            3.0 if place > THICKNESS else None,
+            3.0,
             note=f"{least[place] / PLATES * 1e6:.0f} us; away {least[AWAY] / PLATES * 1e6:.0f} us",
         )  # fmt: skip

@@ -27,9 +27,9 @@ Edges
     ``add_plate(..., edge="free")`` (or ``"supported"``, ``"clamped"``) lets impacts near the ends
     of a segment, or of a polygon's side, have the COR of a plate that ends there. Plates that meet
     at less than 30 degrees continue each other; a sharper fold or a corner with another plate is
-    supported. The nearest edge counts, at half a thickness or more; impacts from which no wave
-    comes back in time are answered as without edges. Friction there is that far away, scaled with
-    the normal impulse: within 0.06 of friction times speed at R/H = 0.9, 0.19 at R/H = 1.8.
+    supported. The nearest edge counts; impacts from which no wave comes back in time are answered
+    as without edges. Friction there is that far away, scaled with the normal impulse: within 0.06
+    of friction times speed at R/H = 0.9, 0.19 at R/H = 1.8.
 Materials
     ``attach(space, [model, ...])`` takes a model for each pair of materials; ``material=`` gives
     the material of a bead or a plate. `beads` and `plates` list the materials by index.

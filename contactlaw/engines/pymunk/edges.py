@@ -13,9 +13,6 @@ from contactlaw.physical.rebound import check_kind
 
 # Plates that meet at a smaller angle than 30 degrees are one plate; a sharper fold holds both.
 SMOOTH = math.cos(math.radians(30.0))
-# Nearer than half its thickness to an edge, a plate is as it is there. The model does not describe
-# either (`Validity.NEAR_EDGE`), but it takes a hundred times longer right at an edge.
-NEAREST = 0.5
 # No wave comes back from more than this many thicknesses within a contact.
 FARTHEST = 1000.0
 
@@ -55,7 +52,7 @@ class PlateEdges:
         kind, distance = found
         if distance >= plate.models.reach(bead.kind, plate.thickness, speed):
             return None
-        return kind, max(distance, NEAREST * plate.thickness)
+        return kind, distance
 
 
 def edges_of(edge: Any, models: ModelsByBead, corners: int, thickness: float) -> Edges | None:

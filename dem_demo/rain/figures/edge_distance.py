@@ -1,8 +1,7 @@
 """How the COR falls towards the ends of the plates, which nothing holds.
 
 The plate gives way more at a free edge, and the bending wave comes back from it while the contact
-lasts. Farther away than that wave goes, the COR is that of an endless plate. The nearest impacts
-count as half a plate's thickness away.
+lasts. Farther away than that wave goes, the COR is that of an endless plate.
 """
 
 from __future__ import annotations
@@ -22,7 +21,6 @@ from dem_demo.rain.record import Run
 
 _FARTHEST = 6e-3  # [m], right end of the axis; most of the waves that matter have come back there
 _LINES = 10  # largest number of lines in a panel, more could not be told apart
-_NEAREST = 0.5  # [thickness], distance of all impacts that are nearer
 
 
 def draw(run: Run) -> Figure:
@@ -58,11 +56,11 @@ def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
     rows, distance = run.modelled[here], run.edge_distance[here]
     speed, radius = rows["approach_speed"], run.scene.beads.radius[rows["bead"]]
     far = np.asarray(run.model.restitution(speed, radius, thickness))
-    near = np.linspace(_NEAREST * thickness, _FARTHEST, 60)
+    near = np.linspace(0.0, _FARTHEST, 60)
     for n in np.argsort(distance)[:_LINES]:
         cor = np.asarray(run.model.restitution(speed[n], radius[n], thickness, edge_distance=near))
         colour = colours.to_rgba(radius[n] * 1e3)
-        axes.plot(np.r_[0.0, near] * 1e3, np.r_[cor[:1], cor] / far[n], color=colour, linewidth=1.2)
+        axes.plot(near * 1e3, cor / far[n], color=colour, linewidth=1.2)
     ring(axes, distance * 1e3, rows["restitution"] / far, outside(run)[here])
     axes.scatter(
         distance * 1e3, rows["restitution"] / far, s=28, zorder=3,
