@@ -191,9 +191,11 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
         """
         if edge_distance is not math.inf or edge != "free" or hole_radius is not math.inf:
             impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
-            if impacts.edge_distance is not None:
-                by = near_edges(self._tabulated, solver(self._bodies), impacts)
-                return by.rebounds(impacts).restitution
+            if impacts.edge_distance is None:
+                v, r, h = impacts.speed, impacts.radius, impacts.thickness
+                return shaped(self._tabulated.restitutions(v, r, h), impacts.shape)
+            by = near_edges(self._tabulated, solver(self._bodies), impacts)
+            return by.rebounds(impacts).restitution
         # a short cut for engines that call this once per collision
         if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
             value = self._tabulated.restitution(speed, radius, thickness)

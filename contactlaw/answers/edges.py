@@ -60,7 +60,7 @@ def near_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
     return others if impacts.edge_distance is None else NearEdges(others, near)
 
 
-_RTOL = 1e-6  # of the kernel: its COR is within 1e-3 of the solver's from a thickness on
+_RTOL = 1e-5  # of the kernel: its COR is within 1e-3 of the solver's
 
 
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, float, float], float]:
@@ -95,16 +95,18 @@ def _cor_near(
 ) -> float:  # fmt: skip
     if not (
         lookup.V_MIN <= speed <= lookup.V_MAX and lookup.R_MIN <= radius <= lookup.R_MAX
-        and lookup.THINNEST * radius <= thickness < math.inf and edge_distance >= 0.0
+        and lookup.THINNEST * radius <= thickness and edge_distance >= 0.0
     ):  # fmt: skip
         return math.nan
     mass, stiffness, yielding, mobility, path = constants
     m, ratio = mass * (radius * radius * radius), radius / thickness
     known = numbers(plate, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
-    share = edge_distance / thickness
-    rate = min(path * known.time / (share * share * thickness), NEAREST)
+    rate = 0.0
+    if thickness < math.inf:
+        share = edge_distance / thickness
+        rate = min(path * known.time / (share * share * thickness), NEAREST)
     thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
-    thin = 1.0 if relaxes(plate) else thin
+    thin = 1.0 if relaxes(plate) or rate == 0.0 else thin
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
     return zener.restitution_near(law, response, known.inelasticity, y, min(thin, 1.0), rate, _RTOL)
 

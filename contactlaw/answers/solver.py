@@ -32,7 +32,7 @@ Places = NDArray[np.intp]  # indices of impacts in the flat arrays that the user
 
 RTOL = 1e-10  # error allowed per step, by default
 _FEW = 8  # impacts near edges that take less time as Python than the compiler does
-_CLOSE = 512  # samples from which the path of a sphere is known to 1e-6
+_CLOSE = 512  # samples between which the path of a sphere is a cubic
 _CONVERGED = 1e-9  # largest size of ln(largest compression/d_Y) at the yield speed found
 _ROUNDS = 30
 _SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts have 2/3 to 4/5

@@ -34,9 +34,9 @@ Edge = Literal["free", "supported", "clamped"]
 """Kinds of edges: nothing holds the plate there; it cannot move; nor turn."""
 KINDS: tuple[str, ...] = get_args(Edge)
 SIZE = 18  # of a response of six numbers: their rates, four for each block, and weights
-_LONGEST = 50.0  # [T_H]; contacts that end take up to 25
+_LONGEST = 50.0  # [T_H]; contacts that end take up to 25 for lambda up to 1
 _AT_ONCE = 2 * SIZE  # place of the number that `near` adds
-_QUICK = 100.0, 500.0  # rates [1/T_H] that follow the force at once, at rtol 1e-6 and 1e-10
+_QUICK = 120.0, 500.0  # rates [1/T_H] that follow the force at once, at rtol 1e-6 and 1e-10
 
 
 class Memory(NamedTuple):
@@ -179,19 +179,27 @@ def moved(
 
 
 @kernel
-def longest(edges: Edges | None) -> float:
-    """Time in which contacts end [T_H]; longer ones are those of spheres that stay on the plate."""
+def longest(edges: Edges | None, rtol: float) -> float:
+    """Time up to which a contact is followed [T_H]; a sphere that then presses stays on the plate.
+
+    Coarse steps are for loops that have no time for a sphere on a plate that recedes.
+    """
     if edges is None:
         return math.inf
-    return _LONGEST
+    return _LONGEST if rtol <= 1e-6 else 0.4 * _LONGEST
 
 
 @kernel
-def is_followed(edges: Edges | None, n: int) -> bool:
-    """Whether the plate was found to come back to the sphere, or to recede before it."""
+def settles(edges: Edges | None, n: int, stays: bool, restitution: float) -> bool:
+    """Whether the plate takes what is left: of a sphere that stays, or has no speed of its own.
+
+    A sphere that stays is flagged as struck again.
+    """
     if edges is None:
         return False
-    return bool(edges.again[n] > 0.0)
+    if stays:
+        edges.again[n] = 1.0
+    return stays or not 0.0 < restitution < 1.0
 
 
 @kernel

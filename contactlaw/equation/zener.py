@@ -102,8 +102,9 @@ def _impact(
     leg, state = motion.touch(contact, scale.u)
     curve, top, total, longest = NO_CURVE, state, 0, 0
     marks, noted, going = notes.at.shape[1], 0, True
+    stays = False
     while going:
-        level, until, loading = leg.level, edge.longest(edges) * scale.t, legs.is_loading(leg)
+        level, until, loading = leg.level, edge.longest(edges, rtol) * scale.t, legs.is_loading(leg)
         if goal == _AT_TIMES:
             until = notes.at[n, noted] * scale.t
         elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
@@ -127,7 +128,8 @@ def _impact(
             notes.force[n, k] = state.f * y * math.sqrt(y)
             notes.compression[n, k] = (leg.residual + state.q * state.q) * y
         noted = here
-        if event == TIME and goal != _AT_TIMES:  # the sphere stays on a plate that recedes
+        if event == TIME and goal != _AT_TIMES:  # the sphere stays on the plate
+            stays = True
             break
         going = going and (goal < _AT_TIMES or noted < marks)
         if going and ends:
@@ -147,8 +149,10 @@ def _impact(
     lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
     rebound = min(max(-state.u / scale.u, 0.0), 1.0)  # a step's error may put it outside
     wave_rate = 2.0 * scale.t * state.work.wave / scale.u**2
-    if edge.is_followed(edges, n) and rebound == 0.0:  # the plate has what the sphere still has
-        lost = Losses(lost.plastic, 1.0 - lost.plastic - lost.other, lost.other)
+    # the plate has what the sphere still has, or what the fit of its response is off by
+    if edge.settles(edges, n, stays, rebound):
+        wave = 1.0 - rebound * rebound - lost.plastic - lost.other
+        lost = Losses(lost.plastic, wave, lost.other)
         wave_rate = lost.wave / lam
     return Solution(
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),

@@ -30,7 +30,8 @@ class Rebound:
         Rebound speed over impact speed [-].
     contact_time
         Time from first touch to separation [s]; for a sphere that stays (restitution 1e-9), until
-        the energy that is left in the contact could throw it off no faster.
+        the energy that is left in the contact could throw it off no faster. Near an edge a sphere
+        that stays is followed for 50 times the unit of time T_H, and has a restitution of 0.
     peak_force
         Largest contact force [N].
     peak_compression, residual_compression
@@ -121,7 +122,7 @@ def edges_as_given(
 
 def check_kind(edge: str) -> None:
     """Refuse what is no kind of edge."""
-    if edge not in KINDS:
+    if not isinstance(edge, str) or edge not in KINDS:
         raise ValueError(f"edge: must be one of {', '.join(KINDS)}, got {edge!r}")
 
 

@@ -284,7 +284,7 @@ def wave_path(plate: Material) -> float:
 
 def share_of(distance: Array, hole_radius: Array) -> Array:
     """s/(s + a) at distances s from rims of holes of radius a [m]; 0 near straight edges."""
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", over="ignore"):
         return np.where(hole_radius < math.inf, distance / (distance + hole_radius), 0.0)
 
 
@@ -296,7 +296,7 @@ def edges_of(
 
     The radius of a hole is that of the rim, inf for a straight edge [m].
     """
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", over="ignore"):
         rate = wave_path(plate) * thickness * units.time / np.square(distance)
     return Edges(
         response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius)),

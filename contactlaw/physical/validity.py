@@ -164,7 +164,7 @@ _WORDS = {
     ),
     Validity.STRIKES_AGAIN: (
         "the plate comes back and strikes the sphere again",
-        "the values are those of the first strike, the sphere leaves faster than they say",
+        "the values are those of the first strike",
     ),
 }
 

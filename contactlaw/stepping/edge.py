@@ -57,7 +57,7 @@ def near_edge(
 
 def rate_of(plate: Material, thickness: Any, distance: Any) -> Any:
     """1/tau [1/s] of contacts at these distances from edges [m]; 0 without an edge."""
-    with np.errstate(invalid="ignore"):  # of an endless half-space
+    with np.errstate(invalid="ignore", over="ignore"):  # of an endless half-space
         share = np.maximum(distance / thickness, _NEAREST)
         rate = wave_path(plate) / (share * share * thickness)
     return np.where(distance < math.inf, rate, 0.0)
@@ -74,7 +74,7 @@ def rate_at(path: float, thickness: float, distance: float) -> float:
 def place_of(kind: int, distance: float, hole: float) -> int:
     """Place among the responses in steps of the nearest share; the kind is its number in `KINDS`.
 
-    Neighbours differ by a quarter in the radius, so that the COR errs by up to 1 %.
+    Most neighbours differ by a quarter in the radius, so that the COR errs by up to 1 %.
     """
     if kind != 0 or not hole < math.inf or not distance < math.inf:
         return kind

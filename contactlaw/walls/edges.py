@@ -178,7 +178,8 @@ def nearest_edge(
 ) -> tuple[float, int, float]:
     """Distance of a facet's point from the nearest edge [m], its kind and the radius of its hole.
 
-    The distance is inf beyond the reach. The point is in the coordinates of the facet.
+    Facets all of which are beyond the reach have the distance inf. The point is in the coordinates
+    of the facet.
     """
     best, kind, hole = math.inf, 0, math.inf
     if facet.edge_count > 0 and facet.clear < reach:
