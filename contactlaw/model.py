@@ -187,7 +187,7 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
         >>> model.restitution([2.0, 10.0], radius=0.9e-3, thickness=0.5e-3).round(4)
         array([0.7156, 0.6211])
         >>> model.restitution(2.0, 0.9e-3, 0.5e-3, edge_distance=[1e-3, 4e-3]).round(3)
-        array([0.592, 0.712])
+        array([0.592, 0.714])
         """
         if edge_distance is not math.inf or edge != "free" or hole_radius is not math.inf:
             impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)

@@ -274,6 +274,7 @@ def scales(contact: ContactConstants, speed: Array) -> Numbers:
     return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 
+_LONGEST = 500.0  # T_H over tau near holes: the response was fitted for forces of 2000 tau
 NEAREST = 1e6  # T_H over tau; from there on a contact is at the edge itself
 
 
@@ -294,8 +295,11 @@ def edges_of(
 ) -> Edges:  # fmt: skip
     """Edges at these distances [m] from impacts, as the equation has them.
 
-    The radius of a hole is that of the rim, inf for a straight edge [m].
+    The radius of a hole is that of the rim, inf for a straight edge [m]. Right at the rim of a hole
+    a contact is as long in tau as any that the response was fitted for.
     """
+    least = np.sqrt(wave_path(plate) * thickness * units.time / _LONGEST)
+    distance = np.where(hole_radius < math.inf, np.maximum(distance, least), distance)
     with np.errstate(divide="ignore", over="ignore"):
         rate = wave_path(plate) * thickness * units.time / np.square(distance)
     return Edges(

@@ -68,6 +68,25 @@ def test_the_fitted_response_near_holes(radius):
     assert error_of_work("free", 0.3, "equation", radius) < 0.01
 
 
+@pytest.mark.parametrize("size", ["equation", "steps"])
+def test_no_force_is_driven_by_the_plate(size):
+    """The real part of the mobility is not negative at any frequency: the plate makes no energy."""
+    omega = 1j * np.geomspace(1e-6, 1e4, 500)
+    cases = [(kind, nu, 0.0) for kind in KINDS for nu in (0.0, 0.3, 0.5)]
+    cases += [("free", nu, 1.0 / (1.0 + radius)) for nu in (0.0, 0.5) for radius in exact.RADII[1:]]
+    for kind, nu, share in cases:
+        mobility = 1.0
+        for part in response_of(kind, nu, share, size).reshape(-1, SIZE):
+            for (a, b, turn, _), (c, d) in zip(
+                part[:12].reshape(3, 4), part[12:].reshape(3, 2), strict=True
+            ):
+                first, second = (a, b) if turn == 0.0 else (a + 1j * turn, a - 1j * turn)
+                x, y = first / (omega + first), second / (omega + second)
+                x, y = (x, y) if turn == 0.0 else (0.5 * (x + y), -0.5j * (x - y))
+                mobility = mobility + c * x + d * y
+        assert mobility.real.min() > -1e-4, (kind, nu, share)
+
+
 def solved(law, lam, y, edges):
     return zener._run(zener._TO_THE_END, law, lam, y, 1e-9, edges=edges)
 

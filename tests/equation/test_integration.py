@@ -342,13 +342,13 @@ def solved(lam, data=law):
 solved(0.6)
 solved(0.3 * 2.0**0.4, force.HERTZ)
 speed, force_on, power = plate.speed, legs.force_on, losses.power
-plate.speed = lambda plate, f: 2.0 * speed(plate, f)
+plate.speed = lambda plate, f, memory: 2.0 * speed(plate, f, memory)
 solved(0.3)
 plate.speed = speed
 legs.force_on = lambda leg, kind, data, q: 2.0 * force_on(leg, kind, data, q)
 solved(0.3, force.HERTZ)
 legs.force_on = force_on
-losses.power = lambda q, f: losses.Work(0.5 * power(q, f).wave)
+losses.power = lambda q, f, drive: losses.Work(0.5 * power(q, f, drive).wave)
 solved(0.6)
 """
 

@@ -171,7 +171,8 @@ def test_a_plate_that_comes_back_strikes_again(kind, distance):
     first, *later = rows
     expected = MODEL.solve(SPEED, R, 0.15e-3, edge=kind, edge_distance=distance)
     assert expected.flags & cl.Validity.STRIKES_AGAIN
-    assert first["restitution"] == pytest.approx(expected.restitution, abs=0.02)
+    # at a lambda of 2.3 six numbers are few
+    assert first["restitution"] == pytest.approx(expected.restitution, abs=0.03)
     assert later and all(row["kind"] == Kind.STRUCK for row in later)
     lost = sum(rows[f"{name}_energy"].sum() for name in ("plastic", "wave", "other"))
     assert lost == pytest.approx(0.5 * MASS * SPEED**2 - path[-1, 0], rel=1e-9)

@@ -33,6 +33,7 @@ RADII = (
 _TIMES = np.linspace(0.02, 1.0, 50)  # over the duration
 _FORCE = np.sin(math.pi * _TIMES) ** 2
 RATIOS = 0.0, 0.25, 0.5  # Poisson's ratios of the fit; between them weights are parabolas
+_LARGEST = 60.0  # radius of a hole with six numbers of its own
 _DAMPED = 0.3  # least real part of a complex rate, over its imaginary part
 _NODES = np.polynomial.legendre.leggauss(400)
 
@@ -242,9 +243,12 @@ def _blocks(rates: list[complex]) -> list[list[float]]:
 def numbers(kind: str, blocks: Any, own_rates: bool) -> dict[str, Any]:
     """Rates, and weights at all radii and as polynomials of Poisson's ratio.
 
-    The rates are those of a straight edge, or each radius has its own.
+    The rates are those of a straight edge, or each radius has its own. Six numbers cannot follow
+    the longest forces near the largest holes, and would drive the plate: these are as smaller ones.
     """
-    radii = RADII if kind == "free" else RADII[:1]
+    radii: tuple[float, ...] = RADII if kind == "free" else RADII[:1]
+    if own_rates:
+        radii = tuple(min(radius, _LARGEST) if radius < math.inf else radius for radius in radii)
     rates = fitted_rates(kind, rates_of(blocks))
     each_rates = [rates] * len(radii)
     for n in range(1, len(radii) if own_rates else 1):
