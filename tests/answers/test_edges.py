@@ -77,11 +77,12 @@ def test_the_kernel_answers_as_the_solver(kind):
         assert kernel(SPEED, R, H, distance) == pytest.approx(exact, abs=error)
     for wrong in (
         (-1.0, R, H, R),
-        (SPEED, R, math.inf, R),
         (SPEED, R, H, -R),
         (SPEED, R, H, math.nan),
     ):
         assert math.isnan(kernel(*wrong))
+    bulk = STEEL.solve(SPEED, R, math.inf).restitution
+    assert kernel(SPEED, R, math.inf, R) == pytest.approx(bulk, abs=1e-5)
 
 
 def test_tangential_answers_near_an_edge():
