@@ -189,8 +189,10 @@ def test_impacts_on_the_flat_have_the_cor_of_the_law_and_the_constant(runs):
     rim = from_rims(law.scene.deck, flat["x"] - moved[:, 0], flat["y"])
     expected = model.restitution(*sizes, edge_distance=rim, hole_radius=HOLE)
     endless = model.restitution(*sizes)
-    # in steps a rim has the response of the nearest of some radii, with six numbers
-    assert flat["restitution"] == pytest.approx(expected, abs=1e-2)
+    # In steps a rim has the response of the nearest of some radii, with six numbers, and right at
+    # it the distance during the contact is not that at its end.
+    close = flat["flags"] & cl.Validity.NEAR_EDGE != 0
+    assert (abs(flat["restitution"] - expected) < np.where(close, 2e-2, 5e-3)).all()
     energy = law.scene.mass[flat["bead"]] * flat["approach_speed"] ** 2
     lost, without = (energy @ (1.0 - e**2) for e in (expected, endless))
     assert lost / without - 1.0 > 0.01
