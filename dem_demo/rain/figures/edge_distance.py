@@ -56,7 +56,7 @@ def _panel(axes: Axes, run: Run, plate: int, colours: ScalarMappable) -> None:
     rows, distance = run.modelled[here], run.edge_distance[here]
     speed, radius = rows["approach_speed"], run.scene.beads.radius[rows["bead"]]
     far = np.asarray(run.model.restitution(speed, radius, thickness))
-    near = np.linspace(0.0, _FARTHEST, 60)
+    near = np.linspace(0.0, _FARTHEST, 181)
     for n in np.argsort(distance)[:_LINES]:
         cor = np.asarray(run.model.restitution(speed[n], radius[n], thickness, edge_distance=near))
         colour = colours.to_rgba(radius[n] * 1e3)
