@@ -55,8 +55,6 @@ def _facts(run: Run[Drum]) -> Facts:
 TALE = Tale(
     wall="drum",
     flat=("on one wall, not at a seam", on_faces),
-    # Impacts near the seams are within the model; those too near have a flag in the record.
-    near_edge=lambda run: np.zeros_like(run.impact),
     own=_facts,
     title=_title,
     figures=figures,

@@ -11,8 +11,6 @@ from numpy.typing import NDArray
 
 from contactlaw import Validity, explain
 
-_EDGE = "so close to the plate's edge that the bending wave comes back while the contact lasts"
-
 
 def label(thickness: float) -> str:
     """Name a plate by its thickness [m].
@@ -33,16 +31,11 @@ class Limit(NamedTuple):
     impacts: int
 
 
-def exceeded(flags: NDArray[np.int64], near: NDArray[np.bool_] | None = None) -> list[Limit]:
-    """List the limits that impacts exceed.
-
-    `near` marks impacts near an edge of a plate that was simulated as an endless one.
-    """
+def exceeded(flags: NDArray[np.int64]) -> list[Limit]:
+    """List the limits that impacts exceed."""
     found = [
         Limit(_words(flag), explain(flag)[0], int(((flags & flag) != 0).sum())) for flag in Validity
     ]
-    if near is not None:
-        found.append(Limit("near an edge", _EDGE, int(near.sum())))
     return [limit for limit in found if limit.impacts]
 
 

@@ -15,7 +15,7 @@ from contactlaw import ImpactModel
 from dem_demo.kit import page as common
 from dem_demo.kit.gallery import Picture
 from dem_demo.kit.measure import account, kept
-from dem_demo.kit.report import Limit, exceeded, limits_lines
+from dem_demo.kit.report import exceeded, limits_lines
 from dem_demo.kit.runs import Run, Runs
 
 _WIDTH = 42
@@ -31,8 +31,6 @@ class Tale(NamedTuple):
     """Name of what the beads hit, such as "deck"."""
     flat: tuple[str, Callable[[Run[Any]], Marks]]
     """Where the COR of the law holds, in words, and the mask of such impacts."""
-    near_edge: Callable[[Run[Any]], Marks]
-    """Mask of impacts whose bending wave comes back from an edge during the contact."""
     own: Callable[[Run[Any]], Facts]
     """Names and values of facts that only this scene has."""
     title: Callable[[Run[Any]], tuple[str, str]]
@@ -59,7 +57,7 @@ def summary(tale: Tale, runs: Runs[Any]) -> str:
     ]
     lines += ["", "Bead on bead is the engine's own, not recorded impact by impact"]
     lines += [f"{run.name}: {run.left_out}" for run in runs.every if run.left_out]
-    lines += limits_lines(limits(tale, runs.law))
+    lines += limits_lines(exceeded(runs.law.impacts["flags"]))
     if runs.reason:
         lines += ["", f"Partial, {progress(runs)}: {runs.reason}"]
     return "\n".join(lines)
@@ -110,11 +108,6 @@ def _energy(energy: float) -> str:
     return f"{energy * 1e3:.1f} mJ" if abs(energy) >= 10e-3 else f"{energy * 1e6:.0f} µJ"
 
 
-def limits(tale: Tale, run: Run[Any]) -> list[Limit]:
-    """List the limits of the model that impacts exceed."""
-    return exceeded(run.impacts["flags"], tale.near_edge(run)[run.impact])
-
-
 def progress(runs: Runs[Any]) -> str:
     """Say how far a partial run has come."""
     last = runs.every[-1]
@@ -158,7 +151,7 @@ def page(
         film=f"data:image/gif;base64,{base64.b64encode(film()).decode('ascii')}",
         head="".join(f"<th>{html.escape(text)}</th>" for text in ["", *(c[head] for c in columns)]),
         rows="".join(_row(name, columns) for name in names),
-        limits=common.exceeded(limits(tale, run), ""),
+        limits=common.exceeded(exceeded(run.impacts["flags"]), ""),
         figures=common.shown(tale.figures.module, pictures),
         command=html.escape(run.command),
         law=html.escape(run.law),

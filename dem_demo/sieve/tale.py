@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from dem_demo.kit.report import label
 from dem_demo.kit.runs import Run
 from dem_demo.kit.tale import Facts, Tale
@@ -44,8 +42,6 @@ def _facts(run: Run[Sieve]) -> Facts:
 TALE = Tale(
     wall="deck",
     flat=("on its flat, not at a rim or a wall", on_faces),
-    # Impacts near the rims are within the model; those too near have a flag in the record.
-    near_edge=lambda run: np.zeros_like(run.impact),
     own=_facts,
     title=title,
     figures=figures,
