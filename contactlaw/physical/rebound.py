@@ -98,26 +98,22 @@ class Impacts:
         return Impacts(*sizes, (some.size,), self.edge, near, hole)
 
 
-def edge_distances(edge: str, distance: Array, thickness: Array) -> Array | None:
-    """Check distances from edges [m], inf for half-spaces; None if no plate has edges."""
-    check_kind(edge)
-    check(edge_distance=distance)
-    if not (distance < math.inf).any():
-        return None
-    return np.where(thickness < math.inf, distance, math.inf)
-
-
 def edges_as_given(
     edge: str, distance: Array, hole_radius: Array, thickness: Array
 ) -> tuple[Array | None, Array | None]:
-    """Check distances from edges and radii of holes [m]; None if no plate has edges."""
-    near = edge_distances(edge, distance, thickness)
-    check(hole_radius=hole_radius)
+    """Check distances from edges, inf for half-spaces, and radii of holes [m].
+
+    Both are None if no plate has edges.
+    """
+    check_kind(edge)
+    check(edge_distance=distance, hole_radius=hole_radius)
     if edge != "free" and (hole_radius < math.inf).any():
         raise ValueError(
             f"hole_radius: the rim of a hole is a free edge, got {edge!r}; leave it out"
         )
-    return near, None if near is None else hole_radius
+    if not (distance < math.inf).any():
+        return None, None
+    return np.where(thickness < math.inf, distance, math.inf), hole_radius
 
 
 def check_kind(edge: str) -> None:
