@@ -14,7 +14,7 @@ from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.backend import Backend, SphereOnPlate
 from contactlaw.answers.rated import flow_of, merged, merged_histories, renumbered
 from contactlaw.answers.solver import Solver
-from contactlaw.equation import zener
+from contactlaw.equation.few_steps import restitution_near
 from contactlaw.equation.numbers import numbers, relaxes
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.rebound import Impacts, Rebound
@@ -108,7 +108,7 @@ def _cor_near(
     thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
     thin = 1.0 if relaxes(plate) or rate == 0.0 else thin
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
-    return zener.restitution_near(law, response, known.inelasticity, y, min(thin, 1.0), rate, _RTOL)
+    return restitution_near(law, response, known.inelasticity, y, min(thin, 1.0), rate)
 
 
 def _each(
