@@ -34,8 +34,9 @@ LAYERS = [
 ]
 # Within a folder without units, the same: the order of its files.
 FILES = {
-    "equation": ["force", "outcome", "tangential", "corrections", "edge", "numbers", "plate",
-                 "legs", "losses", "motion", "creep", "integrator", "zener"],
+    "equation": ["force", "outcome", "tangential", "corrections", "edge", "recall", "numbers",
+                 "plate", "legs", "losses", "motion", "creep", "integrator", "zener",
+                 "few_steps"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "slides", "strengths", "file", "cache"],
     "answers": ["backend", "solver", "tabulated", "rated", "edges", "beads", "compiled", "constant",

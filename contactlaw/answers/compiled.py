@@ -100,8 +100,8 @@ class Compiled:
     def edge_kernel(self, edge: Edge = "free") -> Callable[[float, float, float, float], float]:
         """COR near an edge as a numba-jitted ``f(speed, radius, thickness, edge_distance)``.
 
-        As `kernel`, but it integrates the equation, within 1e-3 of `solve`: 30 to 60 us per
-        impact, up to 1 ms where a sphere stays on a plate that recedes.
+        As `kernel`, but it integrates the equation, within 1e-3 of `solve`: 10 to 15 us per
+        impact, longer where a sphere stays on a plate that recedes.
 
         Parameters
         ----------

@@ -60,9 +60,6 @@ def near_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
     return others if impacts.edge_distance is None else NearEdges(others, near)
 
 
-_RTOL = 1e-5  # of the kernel: its COR is within 1e-3 of the solver's
-
-
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, float, float], float]:
     """COR near an edge of this kind as a jitted function of speed, radius, thickness, distance."""
     if flow_of(bodies) is not None:

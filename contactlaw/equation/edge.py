@@ -34,7 +34,7 @@ Edge = Literal["free", "supported", "clamped"]
 """Kinds of edges: nothing holds the plate there; it cannot move; nor turn."""
 KINDS: tuple[str, ...] = get_args(Edge)
 SIZE = 18  # of a response of six numbers: their rates, four for each block, and weights
-_LONGEST = 50.0  # [T_H]; contacts that end take up to 25 for lambda up to 1
+LONGEST = 50.0  # [T_H]; contacts that end take up to 25 for lambda up to 1
 _AT_ONCE = 2 * SIZE  # place of the number that `near` adds
 _QUICK = 120.0, 500.0  # rates [1/T_H] that follow the force at once, at rtol 1e-6 and 1e-10
 
@@ -179,14 +179,9 @@ def moved(
 
 
 @kernel
-def longest(edges: Edges | None, rtol: float) -> float:
-    """Time up to which a contact is followed [T_H]; a sphere that then presses stays on the plate.
-
-    Coarse steps are for loops that have no time for a sphere on a plate that recedes.
-    """
-    if edges is None:
-        return math.inf
-    return _LONGEST if rtol <= 1e-6 else 0.4 * _LONGEST
+def longest(edges: Edges | None) -> float:
+    """Time up to which contacts are followed [T_H]; a sphere that then presses stays."""
+    return math.inf if edges is None else LONGEST
 
 
 @kernel

@@ -36,8 +36,9 @@ _LANDED = 1e-9
 LEAST_RESTITUTION = 1e-9  # smallest restitution; smaller ones are rounded up to it
 # Steps get finer each time the largest possible restitution falls by this factor.
 FINER_EVERY = 1e-2
-# no event; end of loading; a root compression is reached; a time is reached; little energy is left
-NONE, TURN, LEVEL, TIME, _ENERGY_LOW = range(5)
+# no event; end of loading; a root compression is reached; a time is reached; little energy is left;
+# the largest compression is reached again
+NONE, TURN, LEVEL, TIME, _ENERGY_LOW, _AGAIN = range(6)
 
 
 class Scale(NamedTuple):
@@ -60,7 +61,7 @@ def _gap(
         return state.dq / scale.u
     if event == _ENERGY_LOW:
         return 1.0 - rebound_speed_squared(leg, state) / scale.energy_low
-    return (level - state.q) / scale.q if event == LEVEL else (until - state.t) / scale.t
+    return (until - state.t) / scale.t if event == TIME else (level - state.q) / scale.q
 
 
 @kernel
@@ -155,7 +156,7 @@ def _step(
 @kernel(inline=True)
 def _follow(
     contact: ScaledContact, leg: Leg, kind: int, state: ScaledState, h: float, scale: Scale,
-    level: float, until: float,
+    level: float, high: float, until: float,
 ) -> tuple[ScaledState, int, float, int]:  # fmt: skip
     """Follow a leg of one kind up to an event; the compiler makes a separate loop for each kind.
 
@@ -174,6 +175,8 @@ def _follow(
                 event = TURN
             elif (trial.q > level) if loading else (trial.q < level):
                 event = LEVEL
+            elif trial.q > high:
+                event, level = _AGAIN, high
             elif trial.t > until:
                 event = TIME
             elif (
@@ -225,9 +228,11 @@ def _finer(scale: Scale, spent: float) -> Scale:
 @kernel
 def follow(
     contact: ScaledContact, leg: Leg, state: ScaledState, h: float, scale: Scale, level: float,
-    until: float,
+    high: float, until: float,
 ) -> tuple[ScaledState, int, float, int]:  # fmt: skip
     """Integrate a leg to a level, the end of loading or the time `until`, whichever comes first.
+
+    Unloading also ends at the level `high` above, from where the contact loads again.
 
     Returns the point reached, the event, the next step length and the number of steps. An event is
     met by shortening the step that passes it: regula falsi with Illinois' weights.
@@ -248,11 +253,17 @@ def follow(
                     contact, leg, state.q, -abs(state.u), state.t, state.work, state.memory
                 )
         if leg.kind == CUBIC:
-            state, event, h, more = _follow(contact, leg, CUBIC, state, h, scale, level, until)
+            state, event, h, more = _follow(
+                contact, leg, CUBIC, state, h, scale, level, high, until
+            )
         elif leg.kind == POWER:
-            state, event, h, more = _follow(contact, leg, POWER, state, h, scale, level, until)
+            state, event, h, more = _follow(
+                contact, leg, POWER, state, h, scale, level, high, until
+            )
         else:
-            state, event, h, more = _follow(contact, leg, PIECES, state, h, scale, level, until)
+            state, event, h, more = _follow(
+                contact, leg, PIECES, state, h, scale, level, high, until
+            )
         steps += more
         if event != _ENERGY_LOW or more == MAX_STEPS:
             return state, event, h, steps
@@ -273,7 +284,9 @@ def after(
 ) -> tuple[UnloadingCurve, Leg, ScaledState]:
     """Next leg, and the state on it, after a leg that ended at its level or with loading."""
     residual = leg.residual
-    if legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
+    if event == _AGAIN:
+        leg = legs.up_again(contact.law, math.sqrt(state.q * state.q + residual))
+    elif legs.is_loading(leg) and (event == TURN or state.dq <= 0.0):
         dm = state.q * state.q
         curve = force.unloading(contact.law, dm)
         leg = legs.first_down(contact.law, curve, dm)

@@ -114,6 +114,12 @@ def up(law: Array, first: int) -> Leg:
 
 
 @kernel
+def up_again(law: Array, q: float) -> Leg:
+    """Leg of loading that goes on from a root compression."""
+    return up(law, int(law[force.row_of(law, force.piece_at(law, q)) + force.FIRST]))
+
+
+@kernel
 def _down(law: Array, curve: UnloadingCurve, below: float) -> Leg:
     """Leg of unloading along the loading curve, from below a root compression to a kink or cap."""
     k = 0

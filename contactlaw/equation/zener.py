@@ -104,15 +104,21 @@ def _impact(
     marks, noted, going = notes.at.shape[1], 0, True
     stays = False
     while going:
-        level, until, loading = leg.level, edge.longest(edges, rtol) * scale.t, legs.is_loading(leg)
+        level, until, loading = leg.level, edge.longest(edges) * scale.t, legs.is_loading(leg)
         if goal == _AT_TIMES:
             until = notes.at[n, noted] * scale.t
         elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
             mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
             level = min(mark, level) if loading else max(mark, level)
+        # a plate that comes back may press the sphere beyond its largest compression
+        high = math.inf
+        if edges is not None and not loading:
+            high = math.sqrt(top.q * top.q - leg.residual)
         event, turns, here = TIME, False, noted + (goal >= _AT_TIMES)
         if until > state.t:
-            state, event, h, steps = integrator.follow(contact, leg, state, h, scale, level, until)
+            state, event, h, steps = integrator.follow(
+                contact, leg, state, h, scale, level, high, until
+            )
             total, longest = total + steps, max(longest, steps)
         # the leg ends unless the event was only a time or a compression to note
         ends = event != TIME and (event != LEVEL or level == leg.level)
@@ -168,18 +174,6 @@ def _impact(
         lost.other,
         wave_rate,
     )
-
-
-@kernel
-def restitution_near(
-    law: Array, response: Array, lam: float, y: float, coupling: float, rate: float, rtol: float
-) -> float:
-    """Restitution of one impact near an edge, see `Edges`; NaN if it does not solve."""
-    edges = Edges(response.reshape(1, -1), np.full(1, coupling), np.full(1, rate), np.zeros(1))
-    none = np.empty((0, 0))
-    notes = Notes(none, none, none, none, none)
-    one = _impact(_TO_THE_END, law, lam, y, rtol, notes, 0, edges)
-    return one.restitution if one.status == OK else math.nan
 
 
 # Python takes 25 ms for an impact, the compiler six seconds and more.

@@ -275,6 +275,12 @@ def scales(contact: ContactConstants, speed: Array) -> Numbers:
 
 
 _LONGEST = 500.0  # T_H over tau near holes: the response was fitted for forces of 2000 tau
+# A plate is softer in torsion than Kirchhoff's by the strip of this share of its thickness along an
+# edge: a band of width b is as stiff as one of b - 2 times that (St Venant; Timoshenko & Goodier,
+# Theory of Elasticity, 3rd ed., section 109). A wave twists the rim of a hole, which is as soft as
+# that of a hole wider by the strip. With it, three impacts near holes are within 2 % of finite
+# elements in three dimensions, without it within 3.5 %; near straight edges they are without.
+SOFT_RIM = 0.315
 NEAREST = 1e6  # T_H over tau; from there on a contact is at the edge itself
 
 
@@ -283,10 +289,14 @@ def wave_path(plate: Material) -> float:
     return math.sqrt(plate.plane_modulus / (12.0 * plate.density))
 
 
-def share_of(distance: Array, hole_radius: Array) -> Array:
-    """s/(s + a) at distances s from rims of holes of radius a [m]; 0 near straight edges."""
+def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
+    """s/(s + a) at distances s from rims of holes of radius a [m]; 0 near straight edges.
+
+    a is larger than the radius by `SOFT_RIM`.
+    """
     with np.errstate(invalid="ignore", over="ignore"):
-        return np.where(hole_radius < math.inf, distance / (distance + hole_radius), 0.0)
+        wide = distance / (distance + hole_radius + SOFT_RIM * thickness)
+    return np.where(hole_radius < math.inf, wide, 0.0)
 
 
 def edges_of(
@@ -303,7 +313,7 @@ def edges_of(
     with np.errstate(divide="ignore", over="ignore"):
         rate = wave_path(plate) * thickness * units.time / np.square(distance)
     return Edges(
-        response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius)),
+        response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness)),
         # of bodies with losses both mobilities have those of the impact
         np.ones(rate.size)
         if relaxes(contact.plate)

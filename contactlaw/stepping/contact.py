@@ -439,7 +439,8 @@ def _near_edge(
     # At an edge nearer than that, an impact is flagged.
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r))
     rate = rate_at(path, thickness, distance) if distance < reach else 0.0
-    return Edge(Near(plate_row.responses[place_of(kind, distance, hole)], rate), distance)
+    place = place_of(kind, distance, hole, thickness)
+    return Edge(Near(plate_row.responses[place], rate), distance)
 
 
 @kernel

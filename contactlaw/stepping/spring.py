@@ -54,10 +54,11 @@ from contactlaw.equation.numbers import (
     relaxed,
     relaxes,
 )
+from contactlaw.equation.recall import remembered
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import sphere_on_plate
 from contactlaw.stepping import strength
-from contactlaw.stepping.edge import Near, recalled, remembered
+from contactlaw.stepping.edge import Near, recalled
 
 Array = NDArray[np.float64]
 

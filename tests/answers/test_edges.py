@@ -72,7 +72,7 @@ def test_an_effective_inelasticity_does_not_do():
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_kernel_answers_as_the_solver(kind):
     kernel = STEEL.edge_kernel(kind)
-    for distance, error in ((0.0, 3e-3), (1e-3, 1e-3), (3e-3, 1e-4), (20e-3, 1e-5)):
+    for distance, error in ((0.0, 3e-3), (1e-3, 5e-4), (3e-3, 5e-4), (20e-3, 1e-4)):
         exact = STEEL.solve(SPEED, R, H, edge=kind, edge_distance=distance).restitution
         assert kernel(SPEED, R, H, distance) == pytest.approx(exact, abs=error)
     for wrong in (
@@ -82,7 +82,7 @@ def test_the_kernel_answers_as_the_solver(kind):
     ):
         assert math.isnan(kernel(*wrong))
     bulk = STEEL.solve(SPEED, R, math.inf).restitution
-    assert kernel(SPEED, R, math.inf, R) == pytest.approx(bulk, abs=1e-5)
+    assert kernel(SPEED, R, math.inf, R) == pytest.approx(bulk, abs=1e-4)
 
 
 def test_tangential_answers_near_an_edge():

@@ -5,16 +5,19 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_banded
 from scipy.special import kv
 
 from contactlaw import laws
 from contactlaw.equation import zener
 from contactlaw.equation.edge import KINDS, SIZE, Edges
+from contactlaw.equation.few_steps import restitution_near
 from contactlaw.equation.force import HERTZ
 from contactlaw.physical.responses import response_of
 from validation.accuracy import edges as independent
 from validation.derivations import edges as exact
 
+MYC = laws.law("myc").data
 USUAL = (exact.DURATIONS > 0.05) & (exact.DURATIONS < 1000.0)
 # Mobility at a free edge over that far from it, `shared/PHYSICS.md`, section 9.
 AT_THE_EDGE = {0.0: 3.27, 0.2: 3.53, 0.3: 3.70, 0.5: 4.18}
@@ -54,6 +57,54 @@ def test_a_large_hole_has_a_straight_rim():
     errors = [abs(exact.around_hole(p, 0.3, radius) - straight).max() for radius in (25.0, 50.0)]
     assert errors[1] < 0.04
     assert errors[0] / errors[1] == pytest.approx(2.0, rel=0.1)  # of first order in s/a
+
+
+def deflection_beside_a_hole(p, poisson, radius, orders=150):
+    """Deflection under a unit force at Laplace's variable p, by finite elements along r.
+
+    For each wave around the hole Hermite's cubics take the energy of the plate to its least. Unlike
+    the derivation this needs no condition at the rim, which the energy has of itself. The plate's
+    stiffness and mass, and the distance of the force from the rim, are 1.
+    """
+    out = np.concatenate([np.linspace(0.0, 0.02, 6)[:-1], np.geomspace(0.02, 40.0, 80)])
+    inner = np.concatenate([np.linspace(0.0, 0.02, 6)[:-1], np.geomspace(0.02, 1.0, 60)])
+    r = radius + 1.0 + np.concatenate([-inner[:0:-1], out])
+    x, weight = np.polynomial.legendre.leggauss(6)
+    x, size = 0.5 * (x + 1.0), np.diff(r)[:, None]
+    at = r[:-1, None] + size * x
+    area = 0.5 * weight * size * at
+    cubics = np.polynomial.Polynomial
+    w, slope, bend = (
+        np.stack([
+            f.deriv(n)(x) * size ** (k % 2 - n) if n else f(x) * size ** (k % 2)
+            for k, f in enumerate(map(cubics, ([1, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2],
+                                               [0, 0, -1, 1])))
+        ])
+        for n in range(3)
+    )  # fmt: skip
+
+    def product(a, b):
+        return np.einsum("ieg,jeg->eij", area * a, b)
+
+    total, loaded = 0.0, len(inner) - 1
+    for n in range(orders):
+        round_it, twist = slope / at - n * n * w / at**2, n * (slope / at - w / at**2)
+        trace, mixed = bend + round_it, product(bend, round_it)
+        each = product(trace, trace) + p * p * product(w, w)
+        each -= (1.0 - poisson) * (mixed + mixed.transpose(0, 2, 1) - 2.0 * product(twist, twist))
+        bands, load = np.zeros((7, 2 * r.size)), np.zeros(2 * r.size)
+        for i in range(4):
+            for j in range(4):
+                bands[3 + i - j, j : j + 2 * len(each) : 2] += each[:, i, j]
+        load[2 * loaded] = 1.0 / (math.pi * (1.0 if n else 2.0))
+        total += solve_banded((3, 3), bands, load)[2 * loaded]
+    return total
+
+
+@pytest.mark.parametrize(("radius", "p"), [(1.0, 0.1), (1.0, 1.0), (3.0, 0.3), (3.0, 1.0)])
+def test_the_response_near_holes_is_that_of_finite_elements(radius, p):
+    added = 8.0 * p * deflection_beside_a_hole(p, 0.3, radius) - 1.0
+    assert added == pytest.approx(exact.around_hole(p, 0.3, radius).item().real, abs=3e-4)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -129,3 +180,42 @@ def test_impacts_are_those_of_a_large_plate_of_finite_elements(kind, law):
         np.testing.assert_allclose(found.wave_fraction[left], share[left], atol=0.01)
         losses = found.plastic_fraction + found.wave_fraction + found.other_fraction
         np.testing.assert_allclose(found.restitution[left] ** 2 + losses[left], 1.0, atol=1e-7)
+
+
+def test_few_steps_answer_as_the_finite_elements():
+    """As `test_impacts_are_those_of_a_large_plate_of_finite_elements`, with their own error."""
+    rows = [row for row in read() if row["law"] == "myc"]
+    assert len(rows) > 150
+    for row in rows:
+        names = "inelasticity", "yield_compression", "distance", "restitution", "poissons_ratio"
+        lam, y, s, e, poisson = (float(row[name]) for name in names)
+        found = restitution_near(MYC, response_of(row["edge"], poisson), lam, y, 1.0, s**-2)
+        assert found == pytest.approx(max(e, 0.0), rel=0.01, abs=1.5e-3)
+
+
+@pytest.mark.parametrize("y", [0.1, 1.0])
+def test_few_steps_answer_as_the_integrator(y):
+    lam, s = (each.ravel() for each in np.meshgrid([0.1, 0.3, 1.0], [0.4, 1.0, 3.0]))
+    for kind in KINDS:
+        edges = near(kind, 0.3, s**-2)
+        found = [
+            restitution_near(MYC, edges.response[n], lam[n], y, 1.0, edges.rate[n])
+            for n in range(lam.size)
+        ]
+        wanted = solved(MYC, lam, np.full(lam.size, y), edges)
+        assert np.abs(found - wanted.restitution).max() < 1e-3
+
+
+def test_a_plate_that_comes_back_presses_harder_than_the_impact():
+    """The largest force of such a contact is the second one; it is on the loading curve again."""
+    edges = near("clamped", 0.3, 0.25)
+    lam, y, time = np.array([5.0]), np.array([0.1]), np.linspace(0.0, 30.0, 6001)
+    one = solved(MYC, lam, y, edges)
+    f, w, _ = zener.history(MYC, lam, y, 1e-9, time[None], edges)
+    peaks = np.flatnonzero((f[0, 1:-1] > f[0, :-2]) & (f[0, 1:-1] > f[0, 2:])) + 1
+    assert len(peaks) == 2
+    assert f[0, peaks[1]] > 1.2 * f[0, peaks[0]]
+    assert one.peak_force[0] == pytest.approx(f.max(), rel=1e-4)
+    assert one.peak_compression[0] == pytest.approx(w.max(), rel=1e-4)
+    shares = one.restitution**2 + one.plastic_fraction + one.wave_fraction
+    assert shares[0] == pytest.approx(1.0, abs=1e-7)

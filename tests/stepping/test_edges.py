@@ -105,7 +105,9 @@ def test_the_rim_of_a_hole_is_found_and_creases_are_none():
     hole = 2.0 * cell / math.pi  # the radius of a circle that is as long as the rim
     np.testing.assert_allclose(np.sort(holed.rim["hole"]), [hole] * 4 + [math.inf] * 40)
     expected = MODEL.restitution(SPEED, R, H, edge_distance=1e-3, hole_radius=hole)
-    assert row["restitution"] == pytest.approx(expected, abs=2e-3)
+    # steps take the response of the nearest of a few radii, see `place_of`
+    assert row["restitution"] == pytest.approx(expected, rel=0.01)
+    assert expected - MODEL.restitution(SPEED, R, H, edge_distance=1e-3) > 0.025
     cube = np.array(list(itertools.product((0, SIDE), (0, SIDE), (0, 2e-3))))
     sides = np.array([[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4]])
     triangles = np.concatenate((sides[:, [0, 1, 2]], sides[:, [0, 2, 3]]))

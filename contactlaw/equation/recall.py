@@ -1,0 +1,63 @@
+"""The memory of a plate near an edge, in steps; see `contactlaw.equation.edge`.
+
+The numbers z of a contact follow the force by the trapezoidal rule. It is stable however short tau
+is, and implicit in the force F' at the end of the step: z' = z0 + q F'.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.equation.edge import Memory, weighted
+
+Array = NDArray[np.float64]
+
+
+class Recalled(NamedTuple):
+    """What six numbers add in a step, of which the force at its end is not known yet."""
+
+    known: float  # sum of c z0
+    per_force: float  # sum of c q
+    memory: Memory  # z0
+    gain: Memory  # q
+
+
+@kernel(inline=True)
+def _block(
+    r: Array, at: int, x: float, y: float, f: float, half: float
+) -> tuple[float, float, float, float]:
+    """Two numbers of the memory, and their gains, after a step of 2 half/tau; f is F before it."""
+    a, s, b, d = half * r[at], half * r[at + 1], half * r[at + 2], half * r[at + 3]
+    u, v = x - a * x + b * y + a * f, y - b * x - s * y + d * f
+    per = 1.0 / ((1.0 + a) * (1.0 + s) + b * b)
+    return (
+        per * ((1.0 + s) * u + b * v), per * ((1.0 + a) * v - b * u),
+        per * ((1.0 + s) * a + b * d), per * ((1.0 + a) * d - b * a),
+    )  # fmt: skip
+
+
+@kernel
+def recalled(r: Array, at: int, m: Memory, force: float, half: float) -> Recalled:
+    """Say what six numbers add in a step of 2 half/tau, from the force at its beginning.
+
+    They are those of the response r from place `at` on.
+    """
+    x1, y1, a1, b1 = _block(r, at, m.x1, m.y1, force, half)
+    x2, y2, a2, b2 = _block(r, at + 4, m.x2, m.y2, force, half)
+    x3, y3, a3, b3 = _block(r, at + 8, m.x3, m.y3, force, half)
+    new, gain = Memory(x1, y1, x2, y2, x3, y3), Memory(a1, b1, a2, b2, a3, b3)
+    return Recalled(weighted(r, at, new), weighted(r, at, gain), new, gain)
+
+
+@kernel
+def remembered(found: Recalled, force: float) -> Memory:
+    """Memory at the end of a step, from the force there."""
+    z, q = found.memory, found.gain
+    return Memory(
+        z.x1 + q.x1 * force, z.y1 + q.y1 * force, z.x2 + q.x2 * force, z.y2 + q.y2 * force,
+        z.x3 + q.x3 * force, z.y3 + q.y3 * force,
+    )  # fmt: skip
