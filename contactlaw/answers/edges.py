@@ -19,7 +19,7 @@ from contactlaw.equation.numbers import numbers, relaxes
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.rebound import Impacts, Rebound
 from contactlaw.physical.responses import response_of
-from contactlaw.physical.scaling import NEAREST, wave_path
+from contactlaw.physical.scaling import wave_path, wave_rate
 from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
@@ -98,10 +98,7 @@ def _cor_near(
     mass, stiffness, yielding, mobility, path = constants
     m, ratio = mass * (radius * radius * radius), radius / thickness
     known = numbers(plate, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
-    rate = 0.0
-    if thickness < math.inf:
-        share = edge_distance / thickness
-        rate = min(path * known.time / (share * share * thickness), NEAREST)
+    rate = wave_rate(path, thickness, edge_distance) * known.time if thickness < math.inf else 0.0
     thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
     thin = 1.0 if relaxes(plate) or rate == 0.0 else thin
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0

@@ -30,7 +30,7 @@ from contactlaw.answers import solver
 from contactlaw.equation import corrections, creep, force, integrator, tangential
 from contactlaw.equation.edge import KINDS
 from contactlaw.model import ImpactModel
-from contactlaw.physical import validity
+from contactlaw.physical import scaling, validity
 from contactlaw.physical.materials import Material
 from contactlaw.physical.rate import largest_factor, rated, strengthened
 from contactlaw.physical.rebound import Rebound
@@ -38,7 +38,6 @@ from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import factors, wave_path
 from contactlaw.physical.validity import Limits, Validity, explain
 from contactlaw.softsphere import unit_spring
-from contactlaw.stepping import edge as stepping_edge
 from contactlaw.stepping import friction as stepping_friction
 from contactlaw.stepping import spring as stepping_spring
 from contactlaw.stepping import strength
@@ -63,7 +62,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     creep: "SLOW",
     tangential: "POINT RELAXING",
     solver: "RTOL",
-    stepping_edge: "_NEAREST",
+    scaling: "NEAREST",
     stepping_friction: "SPRINGS _LEAST_SPEED _DEEPEST",
     stepping_spring: "ON_LOADING_CURVE MOST_ITERATIONS CONVERGED USUAL_SPEED",
     strength: "_STRIDE _FINE",

@@ -18,9 +18,10 @@ from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
+from contactlaw.physical.scaling import wave_rate
 from contactlaw.physical.validity import edge_flags, flags_of
 from contactlaw.stepping import energy
-from contactlaw.stepping.edge import REACH, Near, place_of, rate_at
+from contactlaw.stepping.edge import REACH, Near, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
 from contactlaw.stepping.plate_rows import limits_of, spring_of, with_levels
@@ -438,7 +439,7 @@ def _near_edge(
     p = to_frame(scene.frames[facet.frame], contact.point)
     # At an edge nearer than that, an impact is flagged.
     distance, kind, hole = nearest_edge(facet, p, max(reach, thickness, bead.r))
-    rate = rate_at(path, thickness, distance) if distance < reach else 0.0
+    rate = wave_rate(path, thickness, distance) if distance < reach else 0.0
     place = place_of(kind, distance, hole, thickness)
     return Edge(Near(plate_row.responses[place], rate), distance)
 

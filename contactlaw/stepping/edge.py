@@ -19,7 +19,7 @@ from contactlaw.equation.edge import weighted as weighted_sum
 from contactlaw.equation.recall import Recalled
 from contactlaw.physical.materials import Material
 from contactlaw.physical.responses import RIMS, response_of
-from contactlaw.physical.scaling import SOFT_RIM, share_of, wave_path
+from contactlaw.physical.scaling import SOFT_RIM, share_of, wave_path, wave_rate
 
 Array = NDArray[np.float64]
 
@@ -33,7 +33,6 @@ class Near(NamedTuple):
 
 NOTHING = Recalled(0.0, 0.0, NO_MEMORY, NO_MEMORY)
 REACH = 10.0  # square of the distance over b t beyond which an edge changes nothing
-_NEAREST = 1e-3  # of the thickness; nearer than that a contact is at the edge itself
 
 
 def near_edge(
@@ -51,16 +50,8 @@ def near_edge(
 def rate_of(plate: Material, thickness: Any, distance: Any) -> Any:
     """1/tau [1/s] of contacts at these distances from edges [m]; 0 without an edge."""
     with np.errstate(invalid="ignore", over="ignore"):  # of an endless half-space
-        share = np.maximum(distance / thickness, _NEAREST)
-        rate = wave_path(plate) / (share * share * thickness)
+        rate = wave_rate(wave_path(plate), thickness, distance)
     return np.where(distance < math.inf, rate, 0.0)
-
-
-@kernel
-def rate_at(path: float, thickness: float, distance: float) -> float:
-    """1/tau [1/s] of a contact, as by `rate_of`, from the plate's `wave_path` [m/s]."""
-    share = max(distance / thickness, _NEAREST)
-    return path / (share * share * thickness)
 
 
 @kernel

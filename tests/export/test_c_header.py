@@ -554,7 +554,7 @@ def test_no_constant_of_python_is_repeated_in_the_template():
     values = {float(getattr(module, name)): name for module, name in CONSTANTS}
     values |= {RELAXATION: "RELAXATION", validity.SLENDER: "THINNEST"}
     del values[1.5]  # RELAXING, but also Hertz's exponent
-    del values[1e-3]  # _NEAREST, but also a bound of the integration
+    del values[1e-3]  # NEAREST, but also a bound of the integration
     number = re.compile(r"(?<![\w.$])\d+(?:\.\d*)?(?:e-?\d+)?(?![\w.])")
     for path in (folder / "contactlaw.h.in", *folder.glob("liggghts/*.h.in")):
         code = path.read_text().partition("BSD 3-Clause License")[0]
