@@ -35,7 +35,7 @@ _KINDS: tuple[tuple[Edge, str, tuple[float, float]], ...] = (
 )
 # radius [mm], name and its place
 _HOLES = (
-    (1.0, "hole, 1 mm", (0.28, 0.533)),
+    (1.0, "hole, 1 mm", (0.28, 0.578)),
     (3.0, "3 mm", (0.28, 0.476)),
     (10.0, "10 mm", (0.15, 0.338)),
 )
