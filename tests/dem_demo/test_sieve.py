@@ -172,7 +172,8 @@ def test_only_impacts_near_an_opening_differ_from_those_on_a_sheet_without_any(t
     sizes = rows["approach_speed"], 0.9e-3, 1e-3
     endless = model.restitution(*sizes)
     expected = model.restitution(*sizes, edge_distance=rim, hole_radius=HOLE)
-    assert rows["restitution"] == pytest.approx(expected, abs=5e-3)
+    # steps take the response of the nearest of a few radii of holes, which costs up to 1 %
+    assert rows["restitution"] == pytest.approx(expected, rel=0.01)
     assert endless[0] - rows["restitution"][0] > 0.01
     assert rows["restitution"][4:] == pytest.approx(endless[4:], abs=5e-4)
     flagged = (rows["flags"] & cl.Validity.NEAR_EDGE) != 0
