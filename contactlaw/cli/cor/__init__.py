@@ -144,11 +144,11 @@ def _plot_cor(arguments: argparse.Namespace) -> None:
         with wording.naming_impact(*impact):
             hit = (model.solve if arguments.solve else model.lookup)(*impact)
             known = None if errors is None else model.uncertainty(*impact, **errors).restitution
-        fields: list[Any] = [hit.restitution, hit.flags, hit.overload]
+        cor, flags, overload = map(np.asarray, (hit.restitution, hit.flags, hit.overload))
         if known is None:
-            return layout.Answers(*fields, fields[0], fields[0])
+            return layout.Answers(cor, flags, overload, cor, cor)
         low, high = np.asarray(known.low), np.asarray(known.high)
-        return layout.Answers(*fields, low, high, bands.in_caption(known))
+        return layout.Answers(cor, flags, overload, low, high, bands.in_caption(known))
 
     about = f"{model.pair.sphere.name} on {model.pair.plate.name}, law {arguments.law}"
     subject = figure.Subject("COR", "coefficient of restitution [-]", about)

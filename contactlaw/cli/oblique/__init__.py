@@ -162,7 +162,9 @@ def _plot(arguments: argparse.Namespace, given: dict[str, Any]) -> None:
         value = hit["tangential_restitution"]
         return layout.Answers(value, hit["flags"], hit["overload"], value, value)
 
-    about = f"{model.pair.sphere.name} on {model.pair.plate.name}, law {arguments.law}, no spin"
+    about = (
+        f"{model.pair.sphere.name} on {model.pair.plate.name}, law {arguments.law}, no spin before"
+    )
     label = "tangential restitution $v_t'/v_t$ [-]"
     subject = figure.Subject("Tangential restitution", label, about)
     figure.save(arguments.plot, subject, given, ask, along=120, across=41)

@@ -148,6 +148,8 @@ def _map(plan: Layout, found: Answers, subject: Subject) -> Figure:
     axes, kinds = figure.add_subplot(), kinds_of(found.flags)
     x, y = (plan.values[name] * _unit(name, plan.values[name]).scale
             for name in (plan.axis, plan.curve))  # fmt: skip
+    for which, name in (("x", plan.axis), ("y", plan.curve)):
+        _scale(axes, which, name, plan.values[name])
     value, flags, overload = (part[0] for part in found[:3])
     least, most = float(value.min()), float(value.max())
     nice = np.array(MaxNLocator(10, steps=[1, 2, 5, 10]).tick_values(least, most))
@@ -155,20 +157,20 @@ def _map(plan: Layout, found: Answers, subject: Subject) -> Figure:
     colours = ListedColormap(colormaps["viridis"](np.linspace(0.25, 1.0, 256)))  # hatches are dark
     levels = [min(least, most - 0.01), *inner, most]
     filled = axes.contourf(x, y, value, levels, cmap=colours)
-    figure.colorbar(filled, label=subject.label, ticks=inner, spacing="proportional")
-    if inner.size:
-        lines = axes.contour(x, y, value, inner, colors="white", linewidths=1.0)
-        for text in axes.clabel(lines, fmt="%g", fontsize=12, inline=False):
-            text.set(color=style.INK, fontweight="bold",
-                     path_effects=[withStroke(linewidth=3.0, foreground="white")])  # fmt: skip
+    ticks = inner if inner.size else [most]
+    figure.colorbar(filled, label=subject.label, ticks=ticks, spacing="proportional")
     for flag, kind in kinds.items():
         axes.contourf(x, y, (flags & flag) != 0, [0.5, 1.5], colors="none", hatches=[kind.hatch])
     if overload.min() < 1.0 < overload.max():
         line = axes.contour(x, y, overload, [1.0], colors=style.INK, linewidths=3.0)
         line.set_path_effects([withStroke(linewidth=6.0, foreground="white")])
-    for which, name in (("x", plan.axis), ("y", plan.curve)):
-        _scale(axes, which, name, plan.values[name])
     axes.grid(visible=False)
+    if inner.size:
+        lines = axes.contour(x, y, value, inner, colors="white", linewidths=1.0)
+        figure.draw_without_rendering()  # so that the slopes of the lines are known
+        for text in axes.clabel(lines, fmt="%g", fontsize=12, inline=False):
+            text.set(color=style.INK, fontweight="bold",
+                     path_effects=[withStroke(linewidth=3.0, foreground="white")])  # fmt: skip
     return figure
 
 
@@ -190,7 +192,8 @@ def _figure(width: float, height: float, plan: Layout, found: Answers, subject: 
         parts.append("nothing yields")
     half = 0.5 * (found.high - found.low)
     if plan.is_map and found.said:
-        parts.append(f"±{half.min():.2g} to {half.max():.2g}: {found.said}")
+        ends = dict.fromkeys(f"{end:.2g}" for end in (half.min(), half.max()))
+        parts.append(f"±{' to '.join(ends)}: {found.said}")
     elif half.max() > 0.5 * _SEEN:
         parts.append(f"shaded: {found.said}")
     if not plan.is_map and math.inf in plan.values[plan.axis]:

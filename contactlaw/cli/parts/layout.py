@@ -128,7 +128,7 @@ def layout(given: Mapping[str, Sequence[float]], along: int, across: int) -> Lay
             f"values, too many for one picture: give one list, {_MOST_CURVES} values at most of a "
             f"second and {_MOST_PANELS} of a third, or for a map two lists alone"
         )
-    if is_map and math.inf in values.get("thickness", ()):
+    if is_map and "thickness" in axes and values["thickness"][-1] == math.inf:
         raise ValueError("thickness: got inf, which no axis of a map reaches: leave it out")
     for name in axes:
         values[name] = _samples(name, values[name], across if is_map else along)

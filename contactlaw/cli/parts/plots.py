@@ -61,10 +61,10 @@ def kinds_of(flags: NDArray[np.int64]) -> dict[Validity, Kind]:
 
     Examples
     --------
-    >>> kinds = kinds_of(np.array([0, 2, Validity.FAST_IMPACT | Validity.DAMAGE]))
+    >>> kinds = kinds_of(np.array([0, 2, Validity.FAST_IMPACT | Validity.DEEP_CONTACT]))
     >>> [(kind.stroke, kind.words) for kind in kinds.values()]
-    [(3.2, 'faster than the impacts that the law was checked for'), (1.0, 'a brittle body may \
-break or flow')]
+    [(3.2, 'faster than the impacts that the law was checked for'), (1.0, 'compressed deeper \
+than the finite elements that the law is made of')]
     """
     counts = count_flags(flags & Validity.ACCURACY)
     looks = itertools.cycle(zip(_STROKES, _HATCHES, strict=True))
@@ -79,8 +79,8 @@ def dashes_of(flags: int, kinds: dict[Validity, Kind]) -> Any:
 
     Examples
     --------
-    >>> kinds = kinds_of(np.array([0, 2, Validity.FAST_IMPACT | Validity.DAMAGE]))
-    >>> dashes_of(0, kinds), dashes_of(Validity.FAST_IMPACT | Validity.DAMAGE, kinds)
+    >>> kinds = kinds_of(np.array([0, 2, Validity.FAST_IMPACT | Validity.DEEP_CONTACT]))
+    >>> dashes_of(0, kinds), dashes_of(Validity.FAST_IMPACT | Validity.DEEP_CONTACT, kinds)
     ('-', (0, [3.2, 1.4, 1.0, 1.4]))
     """
     strokes = [kind.stroke for flag, kind in kinds.items() if flags & flag]
