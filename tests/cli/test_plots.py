@@ -106,10 +106,6 @@ def test_what_no_picture_shows_is_refused(asked, said, tmp_path, capsys):
     assert said in capsys.readouterr().err and not path.exists()
 
 
-def lines(axes, style):
-    return [line for line in axes.lines if line.get_linestyle() == style and len(line.get_xdata())]
-
-
 def test_kinds_of_flags_are_told_apart_and_the_yield_point_marked(drawn, tmp_path):
     asked = f"--radius {R} --thickness 0.3mm,1mm --speed 1,100 --law myc --no-band"
     figure = picture(drawn, tmp_path, asked)
@@ -130,10 +126,8 @@ def test_kinds_of_flags_are_told_apart_and_the_yield_point_marked(drawn, tmp_pat
     assert patterns == [of_thin, [*of_thin, *of_fast], None, of_fast]
     marks = [line.get_xydata()[0] for line in axes.lines if line.get_marker() == "v"]
     for mark, thickness in zip(marks, (0.3e-3, 1e-3), strict=True):
-        at_yield = model.yield_speed(R, thickness)
-        assert mark == pytest.approx(
-            [at_yield, model.restitution(at_yield, R, thickness)], rel=1e-3
-        )
+        v = model.yield_speed(R, thickness)
+        assert mark == pytest.approx([v, model.restitution(v, R, thickness)], rel=1e-3)
     assert "radius 0.9 mm. Triangle: yield point" in caption(figure)
     assert axes.get_xscale() == "log" and axes.get_ylabel() == "coefficient of restitution [-]"
 

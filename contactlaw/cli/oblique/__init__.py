@@ -12,17 +12,9 @@ from numpy.typing import NDArray
 from contactlaw import _atomic
 from contactlaw._version import VERSION
 from contactlaw.cli.oblique import tracers
-from contactlaw.cli.parts import (
-    chosen,
-    figure,
-    impacts,
-    layout,
-    options,
-    plots,
-    quantities,
-    wording,
-)
+from contactlaw.cli.parts import chosen, figure, impacts, layout, options, quantities, wording
 from contactlaw.cli.parts.impacts import Column, ImpactTable
+from contactlaw.cli.parts.plots import length_of, plate_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import within
@@ -142,8 +134,8 @@ def _traced(arguments: argparse.Namespace, program: str, given: dict[str, Any]) 
     rows = _table(arguments, given).columns
     (speed,), (friction,) = arguments.speed, arguments.friction
     about = (
-        f"{arguments.sphere} on {arguments.plate}, radius {plots.length_of(*arguments.radius)}, "
-        f"{plots.plate_of(*arguments.thickness)}, {speed:g} m/s, friction {friction:g}, "
+        f"{arguments.sphere} on {arguments.plate}, radius {length_of(*arguments.radius)}, "
+        f"{plate_of(*arguments.thickness)}, {speed:g} m/s, friction {friction:g}, "
         f"law {arguments.law}, no spin before"
     )
     inclined = angles[::-1]
@@ -156,15 +148,14 @@ def _traced(arguments: argparse.Namespace, program: str, given: dict[str, Any]) 
 
 def _plot(arguments: argparse.Namespace, given: dict[str, Any]) -> None:
     model = chosen.model(arguments)
+    pair = model.pair
 
     def ask(grid: dict[str, Array]) -> layout.Answers:
         hit = _hits(model, grid | {"angle": np.maximum(grid["angle"], _STEEPEST)})
         value = hit["tangential_restitution"]
         return layout.Answers(value, hit["flags"], hit["overload"], value, value)
 
-    about = (
-        f"{model.pair.sphere.name} on {model.pair.plate.name}, law {arguments.law}, no spin before"
-    )
+    about = f"{pair.sphere.name} on {pair.plate.name}, law {arguments.law}, no spin before"
     label = "tangential restitution $v_t'/v_t$ [-]"
     subject = figure.Subject("Tangential restitution", label, about)
     figure.save(arguments.plot, subject, given, ask, along=120, across=41)

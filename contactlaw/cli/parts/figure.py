@@ -13,16 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _atomic, style
+from contactlaw.cli.parts import plots
 from contactlaw.cli.parts.layout import AXES, Answers, Ask, Layout, is_logarithmic, layout
-from contactlaw.cli.parts.plots import (
-    Kind,
-    colour_of,
-    curve,
-    dashes_of,
-    kinds_of,
-    length_of,
-    plate_of,
-)
+from contactlaw.cli.parts.plots import Kind, colour_of, curve, dashes_of, kinds_of
 from contactlaw.cli.parts.quantities import LENGTH, formatted
 from contactlaw.physical.validity import Validity
 
@@ -32,7 +25,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_ALONG, _SEEN = 400, 0.015  # steps of half a millimetre on a slide; least width of a visible band
+_SEEN = 0.015  # width of a band that its curve does not hide
 
 
 class Subject(NamedTuple):
@@ -45,7 +38,7 @@ class Subject(NamedTuple):
 
 def save(
     path: str | os.PathLike[str], subject: Subject, given: Mapping[str, Sequence[float]], ask: Ask,
-    along: int = _ALONG, across: int = 81,
+    along: int = 400, across: int = 81,  # steps of half a millimetre on a slide
 ) -> None:  # fmt: skip
     """Draw what `ask` answers into a file: PNG, SVG or PDF, by its suffix.
 
@@ -77,9 +70,9 @@ def named(name: str, value: float) -> str:
     """
     match name:
         case "thickness":
-            return plate_of(value)
+            return plots.plate_of(value)
         case "radius":
-            return f"radius {length_of(value)}"
+            return f"radius {plots.length_of(value)}"
         case "friction":
             return f"friction {value:g}"
     return f"{value:g}{'°' if name == 'angle' else ' m/s'}"
@@ -93,7 +86,8 @@ def _curves(plan: Layout, found: Answers, subject: Subject) -> Figure:
     figure = _figure(width, 1.6 + 4.4 * rows, plan, found, subject)
     grid = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     kinds, x = kinds_of(found.flags), plan.values[plan.axis]
-    shown = _finite(x) * _unit(plan.axis, x).scale
+    label, scale = _unit(plan.axis, x)
+    shown = _finite(x) * scale
     for p, axes in enumerate(grid.flat[:panels]):
         for c in range(curves):
             part = Answers(*(numbers[p, c] for numbers in found[:5]))
@@ -104,7 +98,7 @@ def _curves(plan: Layout, found: Answers, subject: Subject) -> Figure:
         axes.set_visible(False)
     _scale(grid[0, 0], "x", plan.axis, x, few=panels > 1)
     for axes in grid.flat[max(0, panels - columns) : panels]:  # the lowest of each column
-        axes.set_xlabel(_unit(plan.axis, x).label)
+        axes.set_xlabel(label)
         axes.tick_params(labelbottom=True)
     for axes in grid[:, 0]:
         axes.set_ylabel(subject.label)
@@ -146,7 +140,7 @@ def _map(plan: Layout, found: Answers, subject: Subject) -> Figure:
 
     figure = _figure(9.0, 7.0, plan, found, subject)
     axes, kinds = figure.add_subplot(), kinds_of(found.flags)
-    x, y = (plan.values[name] * _unit(name, plan.values[name]).scale
+    x, y = (plan.values[name] * _unit(name, plan.values[name])[1]
             for name in (plan.axis, plan.curve))  # fmt: skip
     for which, name in (("x", plan.axis), ("y", plan.curve)):
         _scale(axes, which, name, plan.values[name])
@@ -226,17 +220,12 @@ def _keys(kinds: dict[Validity, Kind], width: float, hatched: bool) -> list[Any]
     return keys
 
 
-class _Unit(NamedTuple):
-    label: str  # of an axis
-    scale: float  # number of these units in an SI unit
-
-
-def _unit(name: str, values: Array) -> _Unit:
-    """Choose the unit of an axis: for lengths that in which the largest one is written."""
+def _unit(name: str, values: Array) -> tuple[str, float]:
+    """Name an axis with its unit, for lengths that of the largest; and units per SI unit."""
     label, quantity, _ = AXES[name]
     unit = formatted(_finite(values)[-1], LENGTH).split()[1] if quantity is LENGTH else quantity.si
     shown = unit.translate({ord("u"): "µ"}).replace("deg", "° from the normal")
-    return _Unit(f"{label} [{shown}]", 1.0 / float(quantity.units[unit]))
+    return f"{label} [{shown}]", 1.0 / float(quantity.units[unit])
 
 
 def _scale(axes: Axes, which: str, name: str, values: Array, few: bool = False) -> None:
