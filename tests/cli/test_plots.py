@@ -86,7 +86,9 @@ def test_two_long_lists_are_a_map(drawn, tmp_path):
 
 def test_a_map_of_one_value(drawn, tmp_path):
     asked = "--radius 1mm:2mm:9 --thickness inf --speed 1:2:9 --law hertz --no-band"
-    assert caption(picture(drawn, tmp_path, asked)).endswith("half-space. Nothing yields")
+    figure = picture(drawn, tmp_path, asked)
+    assert caption(figure).endswith("half-space. Nothing yields")
+    assert figure.axes[1].get_yticks().tolist() == [1.0]
 
 
 @pytest.mark.parametrize(
