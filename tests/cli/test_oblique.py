@@ -39,7 +39,9 @@ def test_rows_are_those_of_the_model(capsys):
 def test_a_table_and_a_plot(capsys, tmp_path):
     assert main([*BEAD, "--angle", "10:80:3", "--friction", "0.2"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert len(lines) == 5 and lines[0].split()[:3] == ["angle", "friction", "COR"]
+    assert len(lines) == 5 and lines[0].split()[:6] == [
+        "angle", "friction", "speed", "radius", "thickness", "COR",
+    ]  # fmt: skip
     path = tmp_path / "oblique.png"
     assert main([*BEAD, "--angle", "1:80:9", "--friction", "0.1", "--plot", str(path)]) == 0
     assert path.read_bytes().startswith(b"\x89PNG")
@@ -53,8 +55,11 @@ def test_a_table_and_a_plot(capsys, tmp_path):
     assert paths[0] == paths[1]
     capsys.readouterr()
     empty = tmp_path / "empty.png"
-    assert main([*BEAD, "--angle", "0,30", "--friction", "0.1", "--plot", str(empty)]) == 1
-    assert "--plot: give at least two angles above 0" in capsys.readouterr().err
+    assert main([*BEAD, "--angle", "30", "--friction", "0.1", "--plot", str(empty)]) == 1
+    assert (
+        "--plot: got no two values of angle, speed, thickness, radius, friction to draw"
+        in capsys.readouterr().err
+    )
     assert not empty.exists()
 
 
@@ -125,10 +130,13 @@ def test_acutrace_gets_both_coefficients_over_the_normal_speed(tmp_path):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (["--friction", "0.1,0.2", "--angle", "1,80"], "--fluent: got 2 coefficients and 2 angles"),
+        (
+            ["--friction", "0.1,0.2", "--angle", "1,80"],
+            "--fluent: got 2 angles and of speed, thickness",
+        ),
         (
             ["--friction", "0.1", "--angle", "40,40"],
-            "and 1 angles; give one coefficient of friction and at least two",
+            "--fluent: got 1 angles and of speed, thickness, radius, friction 1, 1, 1, 1 values",
         ),
     ],
 )

@@ -9,12 +9,17 @@ import math
 import sys
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from contactlaw.answers.uncertainty import Uncertainty
-from contactlaw.cli.cor import bands, curves, figure
-from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
+from contactlaw.cli.cor import bands
+from contactlaw.cli.parts import chosen, figure, impacts, layout, options, quantities, wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
+
+Array = NDArray[np.float64]
 
 
 def add(commands: Any) -> None:
@@ -37,8 +42,9 @@ def add(commands: Any) -> None:
     add("--json", action="store_true",
         help="print all fields in SI units, a list for several impacts; inf is null")  # fmt: skip
     add("--plot", metavar="FILE",
-        help="draw the COR over these speeds into FILE (PNG, SVG, PDF), a curve per thickness; "
-        "with a single speed, up to that")  # fmt: skip
+        help="draw the COR into FILE (PNG, SVG, PDF), over the first list of speeds, thicknesses "
+        "or radii, a curve for each value of a second one; two of more than 8 values make a map; "
+        "without a list, up to the speed")  # fmt: skip
     command.epilog = f"{options.UNITS} {options.LISTS}"
 
 
@@ -128,8 +134,22 @@ def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair
 
 
 def _plot_cor(arguments: argparse.Namespace) -> None:
-    values = arguments.speed, arguments.radius, arguments.thickness
-    errors = _errors(arguments)
-    drawn = curves.restitution_curves(_model(arguments), *values, arguments.solve, errors)
-    title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
-    figure.save_restitution(drawn, title, arguments.plot)
+    model, errors = _model(arguments), _errors(arguments)
+    given = {name: getattr(arguments, name) for name in ("speed", "thickness", "radius")}
+    if not any(map(layout.can_be_axis, given.values())):
+        given["speed"] = (0.1 * arguments.speed[0], arguments.speed[0])
+
+    def ask(grid: dict[str, Array]) -> layout.Answers:
+        impact = grid["speed"], grid["radius"], grid["thickness"]
+        with wording.naming_impact(*impact):
+            hit = (model.solve if arguments.solve else model.lookup)(*impact)
+            known = None if errors is None else model.uncertainty(*impact, **errors).restitution
+        cor, flags, overload = map(np.asarray, (hit.restitution, hit.flags, hit.overload))
+        if known is None:
+            return layout.Answers(cor, flags, overload, cor, cor)
+        low, high = np.asarray(known.low), np.asarray(known.high)
+        return layout.Answers(cor, flags, overload, low, high, bands.in_caption(known))
+
+    about = f"{model.pair.sphere.name} on {model.pair.plate.name}, law {arguments.law}"
+    subject = figure.Subject("COR", "coefficient of restitution [-]", about)
+    figure.save(arguments.plot, subject, given, ask)

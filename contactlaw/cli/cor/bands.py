@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,9 +80,10 @@ def meaning(band: Band) -> str:
     return _OF_ALL if set(band.causes) > {"model"} else _OF_LAW
 
 
-def main_cause(bands: Sequence[Band]) -> str:
-    """Find the cause that makes the widest band of all."""
-    return max(bands[0].causes, key=lambda name: max(np.max(one.causes[name]) for one in bands))
+def in_caption(band: Band) -> str:
+    """Say which impacts are in a band, and which of several causes makes it widest."""
+    cause = max(band.causes, key=lambda name: np.max(band.causes[name]), default="")
+    return meaning(band) + (f", mostly by the {cause}" if len(band.causes) > 1 else "")
 
 
 def _causes(band: Band) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.cli.parts.quantities import LENGTH, formatted
-from contactlaw.physical.validity import Validity, limits_in_words
+from contactlaw.physical.validity import Validity, count_flags, limits_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,27 +44,57 @@ def colour_of(n: int, count: int) -> Any:
     return colormaps["viridis"](0.82 * n / max(count - 1, 1))
 
 
-def curve(
-    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], colour: Any, **options: Any
-) -> None:
-    """Draw a curve: dashed where it has flags of `Validity.ACCURACY`, otherwise solid."""
-    flagged = (flags & Validity.ACCURACY) != 0
-    changes = np.flatnonzero(np.diff(flagged)) + 1
-    for part in np.split(np.arange(flagged.size), changes):
-        # Each part goes to the first point of the next one, because otherwise there is a gap.
-        to = min(part[-1] + 2, flagged.size)
-        line = (0, (3.0, 1.6)) if flagged[part[0]] else "-"
-        axes.plot(x[part[0] : to], y[part[0] : to], linestyle=line, color=colour, linewidth=2.4,
-                  **(options if part[0] == 0 else {}))  # fmt: skip
+class Kind(NamedTuple):
+    """How a limit of accuracy is drawn where it is exceeded, and its words."""
+
+    stroke: float  # length of the dashes, in widths of the line
+    hatch: str  # in maps
+    words: str
 
 
-def limits_of(flags: NDArray[np.int64]) -> str:
-    """Say which limits of accuracy any of some impacts exceed; "" if none does.
+_GAP, _STROKES = 1.4, (3.2, 1.0, 6.5, 2.0, 10.0, 4.5)
+_HATCHES = "///", "\\\\\\", "...", "|||", "---", "ooo"
+
+
+def kinds_of(flags: NDArray[np.int64]) -> dict[Validity, Kind]:
+    """Limits of accuracy that some impacts exceed, each drawn in its own way; frequent ones first.
 
     Examples
     --------
-    >>> limits_of(np.array([0, Validity.FAST_IMPACT | Validity.DAMAGE]))
-    'faster than the impacts that the law was checked for'
+    >>> kinds = kinds_of(np.array([0, 2, Validity.FAST_IMPACT | Validity.DEEP_CONTACT]))
+    >>> [(kind.stroke, kind.words) for kind in kinds.values()]
+    [(3.2, 'faster than the impacts that the law was checked for'), (1.0, 'compressed deeper \
+than the finite elements that the law is made of')]
     """
-    exceeded = int(np.bitwise_or.reduce(flags, axis=None)) & Validity.ACCURACY
-    return "; or ".join(limits_in_words(exceeded))
+    counts = count_flags(flags & Validity.ACCURACY)
+    looks = itertools.cycle(zip(_STROKES, _HATCHES, strict=True))
+    return {
+        flag: Kind(*look, *limits_in_words(flag))
+        for flag, look in zip(sorted(counts, key=lambda flag: -counts[flag]), looks, strict=False)
+    }
+
+
+def dashes_of(flags: int, kinds: dict[Validity, Kind]) -> Any:
+    """Line style of impacts with some flags: each kind has a stroke in it, so that all are seen.
+
+    Examples
+    --------
+    >>> kinds = kinds_of(np.array([0, 2, Validity.FAST_IMPACT | Validity.DEEP_CONTACT]))
+    >>> dashes_of(0, kinds), dashes_of(Validity.FAST_IMPACT | Validity.DEEP_CONTACT, kinds)
+    ('-', (0, [3.2, 1.4, 1.0, 1.4]))
+    """
+    strokes = [kind.stroke for flag, kind in kinds.items() if flags & flag]
+    return (0, [length for stroke in strokes for length in (stroke, _GAP)]) if strokes else "-"
+
+
+def curve(
+    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], kinds: dict[Validity, Kind],
+    **options: Any,
+) -> None:  # fmt: skip
+    """Draw a curve: dashed by kind where it exceeds limits of accuracy, otherwise solid."""
+    exceeded = flags & Validity.ACCURACY
+    changes = np.flatnonzero(np.diff(exceeded)) + 1
+    for part in np.split(np.arange(exceeded.size), changes):
+        # Each part goes to the first point of the next one, because otherwise there is a gap.
+        to, dashes = min(part[-1] + 2, exceeded.size), dashes_of(exceeded[part[0]], kinds)
+        axes.plot(x[part[0] : to], y[part[0] : to], linestyle=dashes, **options)
