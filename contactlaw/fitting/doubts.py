@@ -14,9 +14,9 @@ from contactlaw._readable import percent, rounded, scale_of
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.fitting import errors, search
 from contactlaw.fitting.identify import UnidentifiedError
-from contactlaw.fitting.measurements import KINDS, Measurements
+from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.notes import listed
-from contactlaw.fitting.predictions import Predictor, Values
+from contactlaw.fitting.predictions import Predictor
 from contactlaw.fitting.unknowns import centre
 from contactlaw.physical.pair import Pair
 
@@ -31,7 +31,6 @@ _EVIDENCE = 10.0  # difference of -2 ln(likelihood): one reading is 150 times as
 # factor depends on the frequency and is often a guess.
 _FACTORS = {"yield_strength": 3.0, "youngs_modulus": 2.0, "density": 2.0}
 _SPEEDS = {"speeds in mm/s": 1e-3, "speeds in cm/s": 1e-2, "speeds 1000 times larger": 1e3}
-_AT_MOST_1 = "restitution", "tangential_restitution"
 
 
 class _Reading(NamedTuple):
@@ -66,21 +65,13 @@ def doubts(
             order = of_kind[np.argsort(np.asarray(predictor.data.speed)[values.row[of_kind]])]
             share = off * error / values.value
             slow, middle, fast = (percent(share[k].mean()) for k in np.array_split(order, 3))
-            why = "units, materials or the law may be wrong"
-            if found[1] > _SIGNIFICANCE:
-                why = f"the errors of law {predictor.law.family!r} allow that, those of the data do"
-                why += " not"
+            why = f"errors of law {predictor.law.family!r} allow that, those of the data do not"
+            why = why if found[1] > _SIGNIFICANCE else "units, materials or the law may be wrong"
             trends.append(
                 f"residuals of {name} trend with speed: {slow}, {middle} and {fast} in the slow, "
                 f"the middle and the fast third, by chance in fewer than 1 of 1000 fits: {why}"
             )
-    for n, name in enumerate(KINDS):
-        above = (values.kind == n) & (values.value > 1.0)
-        if name in _AT_MOST_1 and above.any():
-            yield (
-                f"{name} of rebound {listed(values.row[above])} is above 1, up to "
-                f"{values.value[above].max():.4g}: no impact gains energy, a mistake?"
-            )
+    yield from _above_one(predictor)
     low, high = search.limits(predictor)
     if ((at < 1.001 * low) | (at > 0.999 * high)).any() and (outside := _outside(predictor, at)):
         yield outside
@@ -114,8 +105,16 @@ def explained(refused: UnidentifiedError, predictor: Predictor, at: Array) -> Un
     message = f"unknown: {outside}" if outside else refused.message
     others = _readings(predictor, at, search.guessed(predictor.values))
     better = (f"{words[0].upper()}{words[1:]}" for words in _better(predictor, at, others))
-    message = ". ".join([message, *better])
+    message = ". ".join([message, *_above_one(predictor), *better])
     return UnidentifiedError(message, refused.unknown, refused.known)
+
+
+def _above_one(predictor: Predictor) -> Iterator[str]:
+    for name in ("restitution", "tangential_restitution"):
+        rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
+        if rows.size:
+            which = f"{name} of rebound{'s' * (rows.size > 1)} {listed(rows)}"
+            yield f"{which} above 1: no impact gains energy, a mistake?"
 
 
 def _chances(
@@ -199,9 +198,8 @@ def _outside(predictor: Predictor, at: Array) -> str:
 
 def _readings(predictor: Predictor, at: Array, error: Array) -> list[_Reading]:
     """Fit the data as if speeds or radii had other units, and with the bodies exchanged."""
-    pair, data = predictor.pair, predictor.data
-    free = sum(one.prior is None for one in predictor.parameters)
-    freedom = predictor.values.value.size - free
+    pair, data, parameters = predictor.pair, predictor.data, predictor.parameters
+    freedom = predictor.values.value.size - sum(one.prior is None for one in parameters)
     if freedom < 1:
         return []
     meant: list[tuple[str, Pair, dict[str, Any]]] = []
@@ -218,18 +216,15 @@ def _readings(predictor: Predictor, at: Array, error: Array) -> list[_Reading]:
     found = []
     for words, bodies, changes in meant:
         try:
-            other = _meaning(predictor, bodies, replace(data, **changes))
+            read = replace(data, **changes)
+            moved = [replace(p, centre=centre(bodies, read, p.unknown)) for p in parameters]
+            other = Predictor(bodies, predictor.law, read, moved, predictor.values)
             values = search.basins(other)[0].at
             gained = freedom * math.log(least / _square(other, values, error))
         except (UnsolvedError, ValueError):  # impossible bodies, or speeds beyond the model
             continue
         found.append(_Reading(words, other, values, gained))
     return sorted(found, key=lambda one: -one.gained)
-
-
-def _meaning(predictor: Predictor, pair: Pair, data: Measurements) -> Predictor:
-    moved = [replace(one, centre=centre(pair, data, one.unknown)) for one in predictor.parameters]
-    return replace(predictor, pair=pair, data=data, parameters=moved, values=Values.of(data))
 
 
 def _square(predictor: Predictor, at: Array, error: Array) -> float:
@@ -242,17 +237,11 @@ def _better(predictor: Predictor, at: Array, others: list[_Reading]) -> Iterator
     scatter = _scatter(predictor, at)
     for one in others:
         allowed = errors.model_covariance(one.predictor, one.at, one.predictor.impacts(one.at))
-        rms = (
-            0.0
-            if allowed is None
-            else np.sqrt(np.mean((allowed.size / one.predictor.values.value) ** 2))
-        )
-        if one.gained > max(_EVIDENCE, others[0].gained - _EVIDENCE) and scatter > 2.0 * rms:
-            share = percent(_scatter(one.predictor, one.at))
-            yield (
-                f"the data fit better with {one.words}: {share} off (rms) in place of "
-                f"{percent(scatter)}"
-            )
+        size = 0.0 if allowed is None else allowed.size / predictor.values.value
+        unlikely = scatter > 2.0 * np.sqrt(np.mean(np.square(size)))
+        if unlikely and one.gained > max(_EVIDENCE, others[0].gained - _EVIDENCE):
+            off = f"{percent(_scatter(one.predictor, one.at))} off (rms) in place of"
+            yield f"the data fit better with {one.words}: {off} {percent(scatter)}"
 
 
 def _scatter(predictor: Predictor, at: Array) -> float:
