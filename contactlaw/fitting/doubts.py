@@ -25,12 +25,14 @@ Array = NDArray[np.float64]
 _SIGNIFICANCE = 1e-3  # a trend is noted if scatter alone gives it in fewer than 1 of 1000 fits
 _SUSPECT = 0.05  # chance of a trend below which other readings of the data are tried
 _MISFIT = 1.5  # rms residual over its given standard error from which on they are tried, too
-_OUTLIER = 3.0  # standard errors to which residuals are cut, so that one mistake makes no trend
+# Residuals are cut to 3 standard errors or medians, so that one mistake makes no trend.
+_OUTLIER = 3.0
 _EVIDENCE = 10.0  # difference of -2 ln(likelihood): one reading is 150 times as likely as another
 # Factors by which a value may differ from the one given: a strength depends on the temper. A loss
 # factor depends on the frequency and is often a guess.
 _FACTORS = {"yield_strength": 3.0, "youngs_modulus": 2.0, "density": 2.0}
-_SPEEDS = {"speeds in mm/s": 1e-3, "speeds in cm/s": 1e-2, "speeds 1000 times larger": 1e3}
+_SPEEDS = {"speeds in mm/s": 1e-3, "speeds in cm/s": 1e-2, "speeds 100 times larger": 1e2}
+_SPEEDS["speeds 1000 times larger"] = 1e3
 
 
 class _Reading(NamedTuple):
@@ -55,7 +57,7 @@ def doubts(
     Arguments are those of `errors.covariances`, and the covariance of the parameters' logarithms.
     """
     values = predictor.values
-    off = np.clip((values.value - predictor.predicted(at)) / error, -_OUTLIER, _OUTLIER)
+    off = (values.value - predictor.predicted(at)) / error
     chances, trends = [1.0], []
     for n, name in enumerate(KINDS):
         found = _chances(predictor, values.kind == n, off, slopes, error, model)
@@ -114,7 +116,7 @@ def _above_one(predictor: Predictor) -> Iterator[str]:
         rows = np.flatnonzero(np.array(getattr(predictor.data, name), dtype=np.float64) > 1.0)
         if rows.size:
             which = f"{name} of rebound{'s' * (rows.size > 1)} {listed(rows)}"
-            yield f"{which} above 1: no impact gains energy, a mistake?"
+            yield f"{which} is above 1: no impact gains energy, a mistake?"
 
 
 def _chances(
@@ -135,6 +137,8 @@ def _chances(
     x = np.log(np.asarray(predictor.data.speed))[predictor.values.row]
     if np.unique(x[of_kind]).size < 4:
         return 1.0, 1.0
+    most = _OUTLIER * max(1.0, float(np.median(np.abs(off[of_kind]))))
+    off = np.clip(off, -most, most)
     x = (x - x[of_kind].mean()) / x[of_kind].std()
     shapes = np.array([x, x**2 - 1.0]).T * of_kind[:, None]
     count = slopes.shape[1]
