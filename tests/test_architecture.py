@@ -46,7 +46,7 @@ FILES = {
     "stepping": ["strength", "edge", "spring", "energy", "friction", "plate_rows", "contact",
                  "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
-                "fit"],
+                "doubts", "fit"],
     "export": ["c_header", "liggghts_wall"],
     "engines": ["record", "hdf5", "layout", "needs"],
     "engines/lammps": ["beads", "commands", "memory", "errors", "callback", "attachment"],

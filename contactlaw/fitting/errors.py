@@ -104,7 +104,7 @@ def covariances(
         Covariance of the model's errors; None where they are not known.
     """
     scaled = slopes / error[:, None]
-    statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + _prior_information(predictor)))
+    statistical = np.asarray(np.linalg.inv(scaled.T @ scaled + prior_information(predictor)))
     gain = statistical @ (scaled / error[:, None]).T
     from_model = np.zeros_like(statistical) if model is None else model.propagated(gain)
     return Errors(statistical, from_model)
@@ -130,7 +130,7 @@ def freedoms(
         Values whose errors were found together, and from how many degrees of freedom.
     """
     scaled = slopes / error[:, None]
-    statistical = np.linalg.inv(scaled.T @ scaled + _prior_information(predictor))
+    statistical = np.linalg.inv(scaled.T @ scaled + prior_information(predictor))
     parts = (statistical @ scaled.T) ** 2
     doubt = np.zeros(len(statistical))
     for these, freedom in found:
@@ -145,11 +145,11 @@ def leverages(predictor: Predictor, slopes: Array, error: Array) -> Array:
     The sum over all values is one for each free parameter, and a share of one for each prior.
     """
     scaled = slopes / error[:, None]
-    solved = np.linalg.solve(scaled.T @ scaled + _prior_information(predictor), scaled.T)
+    solved = np.linalg.solve(scaled.T @ scaled + prior_information(predictor), scaled.T)
     return np.asarray(np.einsum("ij,ji->i", scaled, solved))
 
 
-def _prior_information(predictor: Predictor) -> Array:
+def prior_information(predictor: Predictor) -> Array:
     """Fisher information of the priors."""
     priors = [one.prior for one in predictor.parameters]
     held = np.diag([0.0 if prior is None else prior**-2 for prior in priors])

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
 from contactlaw.fitting import errors, identify, search
+from contactlaw.fitting.doubts import doubts, explained
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, notes
 from contactlaw.fitting.predictions import Predictor, Values
@@ -214,7 +215,11 @@ def fit(
     varied = parameters(pair, data, unknown, priors or {}, given)
     predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))
     descent = search.Descent(predictor)
-    return _result(predictor, descent, _least_squares(predictor, descent))
+    ended = _least_squares(predictor, descent)
+    try:
+        return _result(predictor, descent, ended)
+    except identify.UnidentifiedError as error:
+        raise explained(error, predictor, ended.basins[0].at) from None
 
 
 def _law(pair: Pair, law: str | Law, parameters: list[Parameter]) -> Law:
@@ -371,6 +376,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
                     None if model_error is None else model_error / fitted,
                 ),
                 *(alternative_note(names, other) for other in others),
+                *doubts(predictor, at, slopes, error, found.total, model),
             ]
         ),
         pair=bodies.pair,

@@ -119,6 +119,15 @@ def scan(predictor: Predictor) -> list[Array]:
     return [np.clip(axes.values(one), low, high) for one in bottoms[:_MOST]]
 
 
+def attainable(predictor: Predictor) -> Array:
+    """Predict the measured values over the range of the unknowns; a row for each trial."""
+    axes = _axes(predictor)
+    free = [n for n, one in enumerate(predictor.parameters) if _scanned(one)]
+    if [predictor.parameters[n].name for n in free] == ["thickness"]:  # up to a half-space
+        axes.points[free[0]] = np.append(axes.points[free[0]], np.log(limits(predictor)[1][free]))
+    return _predicted(predictor, axes)
+
+
 def _bottoms(axes: list[Array], off: Array) -> list[Array]:
     """Minima of the sum of squares of a grid of residuals, the best first; a row for each.
 

@@ -125,11 +125,11 @@ def parameters(
         _check_size(size, getattr(data, size), size in names, size in priors)
     found = []
     for name in [*names, *(name for name in priors if name not in names)]:
-        centre = _centre(pair, data, UNKNOWNS[name])
+        middle = centre(pair, data, UNKNOWNS[name])
         prior = None
         if name in priors:
-            prior = _prior(name, _centre(known or pair, data, UNKNOWNS[name]), priors[name])
-        found.append(Parameter(name, centre, prior, name in names))
+            prior = _prior(name, centre(known or pair, data, UNKNOWNS[name]), priors[name])
+        found.append(Parameter(name, middle, prior, name in names))
     return found
 
 
@@ -174,7 +174,8 @@ def _check_size(name: str, values: Array | None, unknown: bool, prior: bool) -> 
         raise ValueError(f"{name}: a half-space has no error: leave {name} out of priors")
 
 
-def _centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
+def centre(pair: Pair, data: Measurements, unknown: Unknown) -> float:
+    """Value given for an unknown, the median of a size; NaN: none."""
     if unknown.body:
         value = getattr(getattr(pair, unknown.body), unknown.field)
         value = value[0] if isinstance(value, tuple) else value

@@ -58,6 +58,7 @@ def test_text_has_the_value_its_error_and_each_rebound(usual, found, capsys):
     assert float(value) == pytest.approx(1e3 * found.values["thickness"], abs=1e-3)
     assert float(error) == pytest.approx(1e3 * found.errors["thickness"], rel=0.05)
     assert len(re.findall(r"^ +\d+ ", out, re.MULTILINE)) == 12
+    assert re.search(r"\n +0 +2 +0.2 ", out)  # the second line of the file
 
 
 @pytest.mark.parametrize(
@@ -67,11 +68,17 @@ def test_text_has_the_value_its_error_and_each_rebound(usual, found, capsys):
         ("Speed [cm/s];COR [%];Contact time [µs]", ["100;50;", "200;;7.5"]),
         ("impact speed (mm/s)\te\tduration ns", ["1000\t0.5\t", "2000\t\t7500"]),
         ("speed,restitution,contact_time", ["1,0.5,", "2,,7.5e-6"]),
+        ("Velocity (m/s);CoR;Duration [µs]", ["1,0;0,5;n/a", "2;-;7,5", ";;"]),
+        ("v;e;time_us;diameter_mm", ["1,0;0,5;NA;2,0", "2,0;;7,5;2"]),
+        ("impact_velocity_mm/s,cor,duration_ns,bead_radius_um", ["1e3,.5,,1e3", "2e3,,7500,1e3"]),
     ],
 )
 def test_tables_as_people_write_them(head, rows, table):
     path = table(head, *rows)
-    data = measured.completed(measured.read(path), path, radius=RADIUS, thickness=THICKNESS)
+    found = measured.read(path)
+    sizes = {} if "radius" in found.columns else {"radius": RADIUS}
+    data = measured.completed(found, path, thickness=THICKNESS, **sizes)
+    assert data.radius == pytest.approx([RADIUS] * 2) and found.unused == ()
     assert data.speed == pytest.approx([1.0, 2.0])
     assert data.restitution == pytest.approx([0.5, np.nan], nan_ok=True)
     assert data.contact_time == pytest.approx([np.nan, 7.5e-6], nan_ok=True)
@@ -80,15 +87,22 @@ def test_tables_as_people_write_them(head, rows, table):
 @pytest.mark.parametrize(
     ("lines", "words"),
     [
-        (["velocity,COR", "1,0.5"], "no column of speeds in its first line, 'velocity, COR'"),
+        (
+            ["velocty,COR", "1,0.5"],
+            "no column of speeds in its first line, 'velocty, COR': call one "
+            "speed_m/s, did you mean velocity for 'velocty'?",
+        ),  # fmt: skip
+        (["v,COR,diameter,radius", "1,0.5,1,1"], "columns of radius and of diameter"),
+        (["speed,COR", "", "1,o.5"], "line 3, column 'COR': 'o.5' is no number"),
+        (["speed;COR", "1;0,5", "2;1,5"], "restitution: got 1.5 (element 1, line 3)"),
         (["speed_m/s,rebound", "1,0.5"], "nothing measured in its first line"),
         (["speed_m/s,COR"], "it has no row after the first line"),
         (["speed_m/s,COR", "1,half"], "half"),
         (["speed [mph],COR", "1,0.5"], "'mph' is no unit of speed"),
         (["speed,COR,COR", "1,0.5,0.5"], "two columns of restitution"),
         (["speed,COR", "1,85", "2,80"], "restitution: got 85.0"),
-        (["speed,COR", ",0.5", "2,0.4"], "row 1 has no speed"),
-        (["speed,COR", "1,", "2,0.4"], "rebound 0 has none of"),
+        (["speed,COR", ",0.5", "2,0.4"], "line 2 has no speed"),
+        (["speed,COR", "1,", "2,0.4"], "rebound 0, line 2 has none of"),
         (["speed,COR", "-1,0.5"], "speed: got -1.0"),
         (["speed,COR,COR_error", "1,0.5,0.01", "2,0.4,"], "restitution_error: got nan"),
         (
@@ -161,8 +175,18 @@ def test_friction_from_a_table_with_angles(table, capsys, tmp_path):
 
 
 def test_columns_that_are_not_used_are_named(table, capsys):
-    assert main(["fit", table("speed,COR,eror", "1,0.4497,3", "2,0.3716,3"), *FIT]) == 0
-    assert "columns that are not used: eror" in capsys.readouterr().err
+    assert main(["fit", table("speed,COR,COR_eror", "1,0.4497,3", "2,0.3716,3"), *FIT]) == 0
+    assert "columns that are not used: COR_eror, did you mean cor_error" in capsys.readouterr().err
+
+
+def test_a_table_of_windows_and_the_lines_of_its_doubtful_rows(tmp_path, capsys):
+    path = tmp_path / "rebounds.csv"
+    heads = "Velocity [m/s];Bemerkung µ;COR;Contact time [µs]"
+    rows = ("1,0;;0,45;7,9", "", "2,0;;1,03;7,5")
+    path.write_bytes("\r\n".join([heads, *rows]).encode("cp1252"))
+    assert measured.read(path).columns["contact_time"] == pytest.approx([7.9e-6, 7.5e-6])
+    assert main(["fit", str(path), *FIT]) == 1
+    assert "restitution of rebound 1, line 4 is above 1" in capsys.readouterr().err
 
 
 def test_a_picture(usual, tmp_path, capsys, monkeypatch):

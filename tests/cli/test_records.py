@@ -127,7 +127,7 @@ def test_a_rain_of_the_demo(tmp_path, empty_pictures):
         ("a.csv", "", "no column of speeds in its first line, ''"),
         ("a.csv", "speed_m/s\n", "it has no impact on a plate"),
         ("a.csv", "speed,plate\n1,-1\n", "it has no impact on a plate"),
-        ("a.csv", "speed_m/s\n1\nfast\n", "could not convert string 'fast'"),
+        ("a.csv", "speed_m/s\n1\nfast\n", "line 3, column 'speed_m/s': 'fast' is no number"),
         ("a.csv", "speed_m/s\n1\n-2\n", r"speed: got -2.0 \(element 1\); must lie between"),
         ("a.csv", "speed_m/s\n1\nnan\n", "speed: got nan"),
         ("a.csv", "speed,radius_mm\n1,900000000\n", "radius: got 900000.0"),

@@ -230,7 +230,7 @@ def _text(content: bytes) -> Recorded:
         names, rows, delimiter = columns.split_table(content)
     except ValueError as error:
         raise ValueError(f"{error}, nor HDF5 (.h5), nor of np.save (.npy)") from None
-    return _columns(names, lambda wanted: columns.numbers(rows, delimiter, len(names), wanted))
+    return _columns(names, lambda wanted: columns.numbers(rows, delimiter, names, wanted)[1])
 
 
 def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Recorded:

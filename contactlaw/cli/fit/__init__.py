@@ -11,7 +11,7 @@ from contactlaw.cli.fit import figure, measured, printed
 from contactlaw.cli.parts import chosen, options, quantities, wording
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import LENGTH
-from contactlaw.fitting import fit
+from contactlaw.fitting import UnidentifiedError, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
 
 
@@ -96,11 +96,14 @@ def _run(arguments: argparse.Namespace) -> None:
     )  # fmt: skip
     priors = dict(arguments.prior)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
-        found = fit(pair, data, arguments.unknown, arguments.law, priors)
+        try:
+            found = fit(pair, data, arguments.unknown, arguments.law, priors)
+        except UnidentifiedError as error:
+            raise ValueError(measured.with_lines(str(error), read.lines)) from None
         if arguments.plot is not None:
             title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
             figure.save_fit(found, title, arguments.plot)
         if arguments.json:
             print(json.dumps(printed.record(found), indent=2))
         else:
-            print(*printed.text(found), "", *printed.rows(found), sep="\n")
+            print(*printed.text(found, read.lines), "", *printed.rows(found, read.lines), sep="\n")

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,20 +17,25 @@ from contactlaw.fitting import Measurements
 from contactlaw.fitting.measurements import INPUTS
 
 _KINDS = {
-    "restitution": (("restitution", "cor", "coefficient_of_restitution", "e"), SHARE),
-    "contact_time": (("contact_time", "time", "duration"), TIME),
-    "peak_force": (("peak_force", "force"), FORCE),
+    "restitution": (("restitution", "cor", "coefficient_of_restitution", "e", "e_n"), SHARE),
+    "contact_time": (("contact_time", "time", "duration", "contact_duration"), TIME),
+    "peak_force": (("peak_force", "force", "max_force", "maximum_force"), FORCE),
     "tangential_restitution": (("tangential_restitution", "tangential_cor", "e_t"), SHARE),
     "rotational_restitution": (("rotational_restitution", "beta"), SHARE),
     "spin": (("spin", "rebound_spin", "angular_velocity"), quantities.SPIN),
 }
 _ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
+_SPEEDS = ("speed", "approach_speed", "normal_speed", "impact_speed")
+_BEADS = ("", "bead_", "ball_", "sphere_", "particle_")
 _COLUMNS = {
-    "speed": TextColumn(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
+    "speed": TextColumn(
+        (*_SPEEDS, *(name.replace("speed", "velocity") for name in _SPEEDS), "v"), SPEED
+    ),  # fmt: skip
     "angle": TextColumn(("angle", "impact_angle", "angle_of_incidence"), quantities.ANGLE),
     "sliding_speed": TextColumn(("sliding_speed", "tangential_speed"), SPEED),
     "friction": TextColumn(("friction", "coefficient_of_friction", "mu"), quantities.FRICTION),
-    "radius": TextColumn(("radius", "bead_radius"), LENGTH),
+    "radius": TextColumn(tuple(f"{of}radius" for of in _BEADS), LENGTH),
+    "diameter": TextColumn(tuple(f"{of}diameter" for of in _BEADS), LENGTH),
     "thickness": TextColumn(("thickness", "plate_thickness"), LENGTH),
     **{field: TextColumn(names, quantity) for field, (names, quantity) in _KINDS.items()},
     **{
@@ -41,10 +48,11 @@ _COLUMNS = {
 
 
 class Read(NamedTuple):
-    """Columns of a file in SI units, by the names of `Measurements`, and names of unused ones."""
+    """Columns of a file in SI units, by the names of `Measurements`."""
 
     columns: dict[str, Any]
-    unused: tuple[str, ...]
+    unused: tuple[str, ...]  # names of other columns, with what they may be meant for
+    lines: list[int]  # line of the file of each rebound
 
 
 def read(path: str | os.PathLike[str]) -> Read:
@@ -59,7 +67,8 @@ def read(path: str | os.PathLike[str]) -> Read:
         contact time, peak force, tangential restitution, rotational restitution and spin.
         Optional are their standard errors, ``..._error``, angles of incidence from the normal,
         with which the speeds are those of the beads, or sliding speeds, friction, radius and
-        thickness. An empty cell was not measured.
+        thickness, or diameters. An empty cell, or ``n/a``, was not measured.
+        Numbers may have decimal commas, with semicolons or tabs between the columns.
 
     Returns
     -------
@@ -98,11 +107,15 @@ def _read(content: bytes) -> Read:
     found = columns.locate(names, _COLUMNS)
     listed = ", ".join(names)[:200]
     if "speed" not in found:
-        raise ValueError(f"no column of speeds in its first line, {listed!r}: call one speed_m/s")
+        near = _nearest(names, ("speed",))
+        raise ValueError(
+            f"no column of speeds in its first line, {listed!r}: call one speed_m/s{near}"
+        )
     if not found.keys() & _KINDS.keys():
+        near = _nearest(names, _KINDS)
         raise ValueError(
             f"nothing measured in its first line, {listed!r}: call a column COR, contact_time_us, "
-            "peak_force_N, tangential_restitution, rotational_restitution or spin_rad/s"
+            f"peak_force_N, tangential_restitution, rotational_restitution or spin_rad/s{near}"
         )
     if "angle" in found and "normal" in names[found["speed"].place].lower():
         raise ValueError(
@@ -112,13 +125,24 @@ def _read(content: bytes) -> Read:
     if not rows:
         raise ValueError("it has no row after the first line")
     wanted = [one.place for one in found.values()]
-    table = columns.numbers(rows, delimiter, len(names), wanted, columns.number_or_nan)
+    lines, table = columns.numbers(rows, delimiter, names, wanted, gaps=True)
     picked = {
         name: values / one.per_unit
         for (name, one), values in zip(found.items(), table.T, strict=True)
     }
-    places = {one.place for one in found.values()}
-    return Read(picked, tuple(name for n, name in enumerate(names) if n not in places))
+    if "diameter" in picked:
+        if "radius" in picked:
+            raise ValueError("columns of radius and of diameter: leave one out")
+        picked["radius"] = picked.pop("diameter") / 2.0
+    unused = [name for n, name in enumerate(names) if name and n not in wanted]
+    missing = _COLUMNS.keys() - found.keys()
+    return Read(picked, tuple(name + _nearest([name], missing) for name in unused), lines)
+
+
+def _nearest(heads: list[str], fields: Iterable[str]) -> str:
+    """Ask for each head whether it is meant for one of some fields."""
+    of = {field: _COLUMNS[field] for field in sorted(fields)}
+    return "".join(columns.nearest(head, of) for head in heads)
 
 
 def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) -> Measurements:
@@ -130,8 +154,15 @@ def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) 
     for name, values in found.columns.items():
         if name in (*INPUTS, "angle") and np.isnan(values).any():
             row = int(np.argmax(np.isnan(values)))
-            raise ValueError(f"{path}: row {row + 1} has no {name}")
+            raise ValueError(f"{path}: line {found.lines[row]} has no {name}")
     try:
         return Measurements(**found.columns, **given)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+        raise ValueError(f"{path}: {with_lines(str(error), found.lines)}") from None
+
+
+def with_lines(text: str, lines: list[int]) -> str:
+    """Add to rebounds and elements, which count from 0, their line of the file."""
+    return re.sub(
+        r"\b(rebound|element) (\d+)\b", lambda at: f"{at[0]}, line {lines[int(at[2])]}", text
+    )

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 
 from contactlaw._readable import percent, rounded, scale_of, with_error
+from contactlaw.cli.fit.measured import with_lines
 from contactlaw.cli.parts.impacts import aligned, flag_names
 from contactlaw.fitting import Fit
 from contactlaw.fitting.unknowns import UNKNOWNS
 
 
-def text(found: Fit) -> Iterator[str]:
+def text(found: Fit, lines: list[int]) -> Iterator[str]:
     """Lines for a terminal: each value with its error and the error's parts, residuals, and notes.
 
     Examples
@@ -21,7 +22,7 @@ def text(found: Fit) -> Iterator[str]:
     >>> import contactlaw as cl
     >>> data = {"speed": [1.0, 2.0, 3.0], "radius": 0.9e-3, "restitution": [0.885, 0.869, 0.862]}
     >>> found = cl.fit(cl.Pair("gamma-alumina", "glass"), data, "thickness")
-    >>> print(next(iter(text(found))))
+    >>> print(next(iter(text(found, [2, 3, 4]))))
     thickness of the plate  0.793 +- 0.013 mm
     """
     width = max(len(UNKNOWNS[name].title) for name in found.unknown)
@@ -39,7 +40,7 @@ def text(found: Fit) -> Iterator[str]:
         yield f"{what}: {off.size} value{many}, {share} off the fit (rms)"
     if found.notes:
         yield ""
-    yield from found.notes
+    yield from (with_lines(note, lines) for note in found.notes)
 
 
 def values_in_words(found: Fit) -> list[str]:
@@ -51,8 +52,8 @@ def _number(found: Fit, name: str) -> str:
     return with_error(found.values[name], found.errors[name], UNKNOWNS[name].unit).rstrip()
 
 
-def rows(found: Fit) -> Iterator[str]:
-    """Lines for a terminal: a row per rebound, with residuals and flags."""
+def rows(found: Fit, lines: list[int]) -> Iterator[str]:
+    """Lines for a terminal: a row per rebound, with its line of the file."""
     kinds = list(found.residuals)
     cells: dict[str, list[str]] = {kind: ["-"] * len(found.data) for kind in kinds}
     for kind in kinds:
@@ -63,6 +64,7 @@ def rows(found: Fit) -> Iterator[str]:
     yield from aligned(
         [
             ["rebound", "", *(str(n) for n in range(len(found.data)))],
+            ["line", "", *map(str, lines)],
             ["speed", "[m/s]", *(f"{v:.4g}" for v in np.asarray(found.data.speed).tolist())],
             *([["angle", "[deg]", *(f"{a:.4g}" for a in angle)]] if angle else []),
             *([kind.replace("_", " "), "[% off]", *cells[kind]] for kind in kinds),

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import csv
+import difflib
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ Array = NDArray[np.float64]
 
 _BRACKET = re.compile(r"(?P<name>.*?)[_ ]*[\[(](?P<unit>[^])]*)[\])]")
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
+_MISSING = ("", "n/a", "na", "nan", "none", "-")  # cells of what was not measured
 
 
 class TextColumn(NamedTuple):
@@ -66,7 +68,9 @@ def split_table(content: bytes) -> tuple[list[str], list[str], str]:
     try:
         first, *lines = content.decode("utf-8-sig").splitlines() or [""]
     except UnicodeDecodeError:
-        raise ValueError("neither text") from None
+        if b"\0" in content:
+            raise ValueError("neither text") from None
+        first, *lines = content.decode("cp1252", "replace").splitlines()  # of Windows, for µ
     delimiter = next((mark for mark in "\t;" if mark in first), ",")
     names = [head.strip() for head in _fields(first.lstrip("#"), delimiter)]
     rows = ["" if line.isspace() or line.startswith("#") else line for line in lines]
@@ -106,6 +110,23 @@ def locate(names: Sequence[str], columns: dict[str, TextColumn]) -> dict[str, Lo
     return found
 
 
+def nearest(head: str, columns: Mapping[str, TextColumn]) -> str:
+    """Find the name of a column that a head may be meant for, with a question, or "".
+
+    Examples
+    --------
+    >>> nearest("Velocty [mm/s]", {"speed": TextColumn(("speed", "velocity"), None)})
+    ", did you mean velocity for 'Velocty [mm/s]'?"
+    """
+    names = [name for column in columns.values() for name in column.names if len(name) > 2]
+    match = _BRACKET.fullmatch(head)
+    bare = re.sub(r"\s+", "_", (match["name"] if match else head).strip().lower())
+    for trial in (bare, bare.rpartition("_")[0]):  # a unit may follow an underscore
+        for near in difflib.get_close_matches(trial, names, n=1, cutoff=0.7):
+            return f", did you mean {near} for {head!r}?"
+    return ""
+
+
 def _unit(head: str, column: TextColumn) -> str | None:
     """Take the unit of a column's head, "" if it has none; None for another column's head."""
     bare = head.strip().lower().translate(_MICRO)
@@ -131,12 +152,8 @@ def _per_unit(head: str, unit: str, quantity: Quantity | None) -> float:
 
 
 def numbers(
-    rows: Sequence[str],
-    delimiter: str,
-    count: int,
-    wanted: list[int],
-    read: Callable[[str], float] = float,
-) -> Array:
+    rows: Sequence[str], delimiter: str, names: Sequence[str], wanted: list[int], gaps: bool = False
+) -> tuple[list[int], Array]:
     """Read some columns of a table's rows.
 
     Parameters
@@ -144,33 +161,54 @@ def numbers(
     rows : sequence of str
         Rows that `split_table` returned.
     delimiter : str
-        Delimiter of columns.
-    count : int
-        Number of columns that the first line names.
+        Delimiter of columns; if it is no comma, numbers may have decimal commas.
+    names : sequence of str
+        Names in the first line.
     wanted : list of int
         Indices of the columns to read.
-    read : callable, optional
-        Function that reads the number in the text of a cell.
+    gaps : bool, optional
+        Whether cells may be empty or ``n/a``, which is NaN.
+
+    Returns
+    -------
+    list of int, ndarray
+        Line of the file of each row that holds data, and its numbers.
 
     Raises
     ------
     ValueError
         If a cell is no number, or a row has more fields than the first line or too few for the
-        wanted columns; the message names the row.
+        wanted columns; the message names the line and the column.
 
     Examples
     --------
-    >>> numbers(["1;2", "3;4"], ";", 2, [1])
-    array([[2.],
-           [4.]])
+    >>> numbers(["1;2,5", ";;", "3;n/a"], ";", ["a", "b"], [1], gaps=True)
+    ([2, 4], array([[2.5],
+           [nan]]))
     """
-    _check_fields(rows, delimiter, count, max(wanted, default=-1) + 1)
-    rows = [row for row in rows if row]
-    if not rows:  # loadtxt would warn
-        return np.empty((0, len(wanted)))
-    return np.loadtxt(
-        rows, delimiter=delimiter, usecols=wanted, ndmin=2, quotechar='"', converters=read
-    )
+    lines, table = [], list[list[float]]()
+    for line, row in enumerate(rows, start=2):
+        fields = _fields(row, delimiter)
+        if not fields:
+            continue
+        _check_fields(line, row, fields, delimiter, len(names), max(wanted, default=-1) + 1)
+        cells = [*fields, *[""] * (len(names) - len(fields))]
+        lines.append(line)
+        table.append([])
+        for n in wanted:
+            try:
+                table[-1].append(_number(cells[n].strip(), delimiter, gaps))
+            except ValueError:
+                where = f"line {line}, column {names[n]!r}: {cells[n].strip()!r}"
+                raise ValueError(f"{where} is no number such as 1.5") from None
+    return lines, np.array(table, dtype=np.float64).reshape(len(lines), len(wanted))
+
+
+def _number(text: str, delimiter: str, gaps: bool) -> float:
+    if gaps and text.lower() in _MISSING:
+        return math.nan
+    decimal_comma = delimiter != "," and "." not in text
+    return float(text.replace(",", ".") if decimal_comma else text)
 
 
 def _fields(row: str, delimiter: str) -> list[str]:
@@ -184,21 +222,21 @@ def _fields(row: str, delimiter: str) -> list[str]:
     return found
 
 
-def _check_fields(rows: Sequence[str], delimiter: str, count: int, least: int) -> None:
+def _check_fields(
+    line: int, row: str, fields: list[str], delimiter: str, count: int, least: int
+) -> None:
     """Refuse rows with more fields than the first line: numbers might be in the wrong column.
 
     Rows with fewer than the `least` number of fields, which ends with the last wanted column, are
     refused too, unless they have the delimiters up to there.
     """
-    for line, row in enumerate(rows, start=2):
-        fields = _fields(row, delimiter)
-        more, fewer = len(fields) > count, len(fields) < least > row.count(delimiter) + 1
-        if fields and (more or fewer):
-            why = _why(row, delimiter, more)
-            raise ValueError(
-                f"line {line} has {_counted(len(fields), 'field')}, {row[:80]!r}, where the first "
-                f"line names {_counted(count, 'column')}: {why}"
-            )
+    more, fewer = len(fields) > count, len(fields) < least > row.count(delimiter) + 1
+    if more or fewer:
+        why = _why(row, delimiter, more)
+        raise ValueError(
+            f"line {line} has {_counted(len(fields), 'field')}, {row[:80]!r}, where the first "
+            f"line names {_counted(count, 'column')}: {why}"
+        )
 
 
 def _counted(count: int, what: str) -> str:
@@ -208,21 +246,7 @@ def _counted(count: int, what: str) -> str:
 def _why(row: str, delimiter: str, more: bool) -> str:
     """Likely cause and remedy for a row with too many or too few fields."""
     if more and delimiter == "," and "." not in row and re.search(r"\d,\d", row):
-        return (
-            "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns "
-            "and points in the numbers"
-        )
+        return "a decimal comma? Write numbers with a point, 1.5, or semicolons between the columns"
     if more:
         return "delete what is beyond the columns, or name it in the first line"
     return "leave the cell of what was not measured empty, but keep what separates the cells"
-
-
-def number_or_nan(text: str) -> float:
-    """Read a number; an empty cell is NaN.
-
-    Examples
-    --------
-    >>> number_or_nan(" "), number_or_nan("1e-3")
-    (nan, 0.001)
-    """
-    return float(text) if text.strip() else math.nan

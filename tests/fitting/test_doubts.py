@@ -1,0 +1,110 @@
+"""Doubts about fits of nonsense, which fits of honest data with noise do not raise."""
+
+import re
+
+import numpy as np
+import pytest
+from rebounds import RADIUS, STEEL, rebounds
+from scipy import stats
+
+import contactlaw as cl
+from contactlaw.fitting import doubts
+from contactlaw.fitting.predictions import Predictor, Values
+from contactlaw.fitting.unknowns import parameters
+from contactlaw.physical.scaling import law_of
+
+DOUBT = re.compile(r"trend with|times (above|below) that|fit better|above 1:|no \w+ gives")
+ALUMINA, EXCHANGED = cl.Pair("gamma-alumina", "glass"), cl.Pair(STEEL.plate, STEEL.sphere)
+FAST = np.geomspace(2.0, 40.0, 12)
+
+
+def said(pair, data, unknown, law="fem", stated=True):
+    """Doubts in the notes or in the refusal of a fit."""
+    data = {name: v for name, v in data.items() if name != unknown}
+    if not stated:
+        data = {name: v for name, v in data.items() if not name.endswith("_error")}
+    try:
+        notes = cl.fit(pair, data, unknown, law).notes
+    except cl.UnidentifiedError as refused:
+        notes = (str(refused),)
+    return " | ".join(note for note in notes if DOUBT.search(note))
+
+
+@pytest.mark.parametrize("stated", [True, False])
+@pytest.mark.parametrize(
+    ("pair", "unknown", "speed"),
+    [(STEEL, "thickness", None), (STEEL, "density", None), (ALUMINA, "yield_strength", FAST)],
+)
+def test_honest_data_raise_no_doubt(pair, unknown, speed, stated):
+    for seed in range(8):
+        data = rebounds(pair, noise=0.01, seed=seed, speed=speed)
+        assert said(pair, data, unknown, stated=stated) == ""
+
+
+@pytest.mark.parametrize(
+    ("pair", "unknown", "kind", "factor", "words"),
+    [
+        (ALUMINA, "yield_strength", "restitution", 1e-3,
+         r"yield_strength is 2\d times below that of gamma-alumina, 472.5 MPa: speeds 1000 times"),
+        (STEEL, "plate_density", "contact_time", 1e3, r"3.\d times below .*: speeds in mm/s\?"),
+        (STEEL, "plate_yield_strength", "restitution", 1e3, "fit better with speeds in mm/s"),
+        (STEEL, "thickness", "restitution", 1e2, "fit better with speeds in cm/s"),
+    ],
+)  # fmt: skip
+def test_speeds_in_other_units_are_named(pair, unknown, kind, factor, words):
+    speed = FAST if pair is ALUMINA else None
+    for stated in (True, False):
+        data = rebounds(pair, kinds=(kind,), noise=0.01, seed=2, speed=speed)
+        data["speed"] = factor * data["speed"]
+        assert re.search(words, said(pair, data, unknown, stated=stated))
+
+
+@pytest.mark.parametrize("unknown", ["thickness", "plate_yield_strength"])
+def test_bodies_that_are_exchanged_are_named(unknown):
+    """The same data with the bodies in their places raise no doubt, by the test above."""
+    for seed in range(3):
+        found = said(EXCHANGED, rebounds(STEEL, noise=0.005, seed=seed), unknown)
+        assert "fit better with sphere and plate exchanged" in found
+        assert "times below" not in found or "MPa: sphere and plate exchanged?" in found
+
+
+def test_another_law_leaves_a_trend_and_one_mistake_does_not():
+    data = rebounds(STEEL, noise=0.01, seed=1)
+    for stated in (True, False):
+        assert "restitution trend with speed" in said(STEEL, data, "thickness", "hertz", stated)
+    data["restitution"][4] *= 1.2
+    assert "trend" not in said(STEEL, data, "thickness")
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_chances_of_trends_are_those_of_noise(stated):
+    """They are uniform over sets of pure noise, so that 1 in 1000 has one below the limit."""
+    data = rebounds(STEEL, without=("thickness",))
+    data = cl.Measurements.of(data if stated else {k: data[k] for k in list(data)[:3]})
+    moved = parameters(STEEL, data, "thickness", {})
+    predictor = Predictor(STEEL, law_of(STEEL, "fem"), data, moved, Values.of(data))
+    fitted = predictor.predicted(np.array([1.2e-3]))
+    error = 0.01 * fitted
+    slopes = predictor.derivatives(np.array([1.2e-3]), fitted)
+    z, random, found = slopes / error[:, None], np.random.default_rng(5), []
+    for _ in range(500):
+        off = random.standard_normal(12)
+        off -= z @ np.linalg.lstsq(z, off, rcond=None)[0]
+        off *= 1.0 if stated else np.sqrt(11.0 / (off @ off))
+        found.append(doubts._chances(predictor, np.full(12, True), off, slopes, error, None)[0])
+    assert stats.kstest(found, "uniform").pvalue > 0.01
+
+
+def test_what_no_thickness_gives_is_refused_with_what_is_attainable():
+    one = {"speed": 2.0, "radius": RADIUS, "restitution": 0.8}
+    half_space = float(cl.ImpactModel(STEEL).solve(2.0, RADIUS, np.inf).restitution)
+    words = rf"no thickness gives .* 0\.8 .* to {half_space:.3g}, that of a half-space"
+    with pytest.raises(cl.UnidentifiedError, match=words):
+        cl.fit(STEEL, one, "thickness")
+    assert said(STEEL, one | {"restitution": half_space - 0.01}, "thickness") == ""
+
+
+def test_a_restitution_above_one_is_named_by_its_rebound():
+    data = rebounds(ALUMINA, noise=0.005)
+    data["restitution"][3] = 1.05
+    assert "restitution of rebound 3 is above 1" in said(ALUMINA, data, "thickness")
