@@ -95,7 +95,8 @@ def _table(arguments: argparse.Namespace, angles: Array, coefficients: Array) ->
     speed, sliding = arguments.speed * np.cos(inclined), arguments.speed * np.sin(inclined)
     size = arguments.radius, arguments.thickness
     with wording.naming_impact(speed, np.full_like(speed, size[0]), np.full_like(speed, size[1])):
-        hit = chosen.model(arguments).oblique(speed, sliding, *size, friction, method="solve")
+        model = chosen.model(arguments)
+        hit = model.oblique(speed, sliding, *size, friction, method="solve")
     changed = sliding - np.asarray(hit.sliding_speed)
     found = {
         **vars(hit), "angle": angle, "friction": friction,
@@ -104,7 +105,9 @@ def _table(arguments: argparse.Namespace, angles: Array, coefficients: Array) ->
             np.arctan2(sliding - changed / POINT, hit.restitution * speed)
         ),
     }  # fmt: skip
-    return ImpactTable({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
+    columns = {column.name: found[column.name] for column in _COLUMNS}
+    given = impacts.asked(model, speed=arguments.speed, radius=size[0], thickness=size[1])
+    return ImpactTable(columns, found["flags"], given)
 
 
 def _traced(arguments: argparse.Namespace, program: str, angles: Array, coefficients: Array) -> str:
