@@ -70,8 +70,10 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
         print(json.dumps(impacts.records(table), indent=2))
     else:
         band = next(one.band for one in found if one.band)
-        known_errors = f"{bands.meaning(band)}{bands.left_out(band, model.pair)}"
-        said = f"68 %: a {unknown} in this range has the COR that was asked in the band of {known_errors}."
+        said = (
+            f"68 %: a {unknown} in this range has the COR that was asked in the band of "
+            f"{bands.meaning(band)}{bands.left_out(band, model.pair)}."
+        )
         print(*impacts.text(table, columns), "", *textwrap.wrap(said, bands.WIDTH), sep="\n")
 
 

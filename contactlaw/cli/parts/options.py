@@ -88,7 +88,7 @@ def add_pair(command: argparse.ArgumentParser, otherwise: str = "") -> None:
         help=f"material of the bead: a name, see materials, or numbers, {OWN}{otherwise}",
         )  # fmt: skip
     add("--plate", required=required, metavar="NAME", help=f"material of the plate{otherwise}")
-    add("--materials", metavar="FILE", type=_materials, default={},
+    add("--materials", metavar="FILE", type=_materials,
         help="materials of your own, a TOML file in the format of the catalogue")  # fmt: skip
 
 

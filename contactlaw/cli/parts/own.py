@@ -18,6 +18,8 @@ def _of(*parts: Quantity) -> Callable[[str], object]:
 
     def read(text: str) -> object:
         words = text.strip("()[] ").split(",")
+        if len(words) > len(parts):
+            raise ValueError(f"got {text!r}, expected {' and '.join(one.name for one in parts)}")
         known = parts[-len(words) :]
         found = tuple(value(word, one) for word, one in zip(words, known, strict=True))
         return found if len(parts) > 1 and len(found) > 1 else found[0]
