@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from contactlaw.fitting.measurements import Measurements
     from contactlaw.model import ImpactModel
     from contactlaw.physical.history import ForceHistory
-    from contactlaw.physical.materials import Material, material, materials
+    from contactlaw.physical.materials import Material, material, materials, read_materials
     from contactlaw.physical.measured import measured_law
     from contactlaw.physical.pair import Pair
     from contactlaw.physical.rebound import Rebound
@@ -57,6 +57,7 @@ __all__ = [
     "material",
     "materials",
     "measured_law",
+    "read_materials",
     "restitution_sphere_sphere",
 ]
 
@@ -68,7 +69,7 @@ _MODULES = {
     "answers.loads": "LoadSignal load_signal",
     "model": "ImpactModel",
     "physical.history": "ForceHistory",
-    "physical.materials": "Material material materials",
+    "physical.materials": "Material material materials read_materials",
     "physical.measured": "measured_law",
     "physical.pair": "Pair",
     "physical.rebound": "Rebound",

@@ -20,12 +20,12 @@ from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
 from contactlaw.answers.edges import near_edges
 from contactlaw.answers.histories import Histories
+from contactlaw.answers.inverse import Inverse
 from contactlaw.answers.oblique import Oblique
 from contactlaw.answers.rated import solver, tabulated
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.speed_table import SpeedTable, speed_table
 from contactlaw.answers.tabulated import Border, Outside, TableArgument
-from contactlaw.answers.uncertainty import Uncertain
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
@@ -36,7 +36,7 @@ from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
 
 
-class ImpactModel(Compiled, Histories, Oblique, Uncertain):
+class ImpactModel(Compiled, Histories, Inverse, Oblique):
     """The modified Zener model of one pair of materials, ready to answer per collision.
 
     Adhesion, heating, rolling and drilling friction are outside it (see `Validity`).

@@ -11,6 +11,7 @@ import numpy as np
 from contactlaw import style
 from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
 from contactlaw.cli.parts.quantities import LENGTH, formatted
+from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import explain, limits_in_words
 
@@ -32,16 +33,18 @@ def _run(arguments: argparse.Namespace) -> None:
         with chosen.plot_file(arguments):
             _plot_history(arguments)
         return
-    contact = np.column_stack(_contact(arguments))
+    given = {name: getattr(arguments, name) for name in ("speed", "radius", "thickness")}
+    model = chosen.model(arguments)
+    contact = np.column_stack(_contact(arguments, model))
+    print(f"# {impacts.in_words(impacts.asked(model, **given))}")
     print("time_s,force_N,compression_m,impulse_Ns,plate_displacement_m")
     np.savetxt(sys.stdout, contact, fmt="%.9g", delimiter=",")
 
 
-def _contact(arguments: argparse.Namespace) -> ForceHistory:
+def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
     """Force over time; flags are warnings on stderr, because the output is CSV alone."""
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
-    model = chosen.model(arguments)
     with wording.naming_impact(*impact):
         found = model.force_history(*impact, arguments.samples, method)
     flags = int(found.flags)
@@ -51,7 +54,7 @@ def _contact(arguments: argparse.Namespace) -> ForceHistory:
 
 
 def _plot_history(arguments: argparse.Namespace) -> None:
-    contact = _contact(arguments)
+    contact = _contact(arguments, chosen.model(arguments))
     radius, thickness = (
         formatted(size, LENGTH) for size in (arguments.radius, arguments.thickness)
     )

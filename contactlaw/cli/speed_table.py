@@ -11,7 +11,7 @@ import numpy as np
 
 from contactlaw.answers.speed_table import SpeedTable
 from contactlaw.cli.parts import chosen, options, quantities, wording
-from contactlaw.cli.parts.impacts import aligned, explained
+from contactlaw.cli.parts.impacts import aligned, asked, explained, in_words
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import SPEED
 
@@ -36,7 +36,7 @@ def add(commands: Any) -> None:
         help="largest error in COR of straight lines between rows (default: %(default)s)",
     )
     options.add_law(command)
-    add("--csv", action="store_true", help="print the two columns alone, every digit")
+    add("--csv", action="store_true", help="print a comment and the two columns, every digit")
     command.epilog = options.UNITS
 
 
@@ -44,14 +44,15 @@ def _run(arguments: argparse.Namespace) -> None:
     chosen.check_quantities(arguments)
     ends = (arguments.slowest, arguments.fastest)
     with wording.naming_impact(ends, arguments.radius, arguments.thickness):
-        found = chosen.model(arguments).speed_table(
-            arguments.radius, arguments.thickness, arguments.error, *ends
-        )
+        model = chosen.model(arguments)
+        found = model.speed_table(arguments.radius, arguments.thickness, arguments.error, *ends)
+    given = asked(model, radius=arguments.radius, thickness=arguments.thickness)
     if arguments.csv:
+        print(f"# {in_words(given)}")
         print("speed_m/s,restitution")
         np.savetxt(sys.stdout, np.column_stack(found[:2]), fmt="%.17g", delimiter=",")
     else:
-        print(*text(found), sep="\n")
+        print(in_words(given), *text(found), sep="\n")
 
 
 def text(found: SpeedTable) -> Iterator[str]:

@@ -32,12 +32,7 @@ def add(commands: Any) -> None:
         # not laws.DEFAULT, whose table may depend on the pair; this table comes with the package
         action.add_argument("--law", default="myc", metavar="LAW",
                             help="force law of the table (default: %(default)s)")  # fmt: skip
-        action.add_argument(
-            "--sphere",
-            metavar="NAME",
-            help="material of the bead, for laws that take numbers from a pair",
-        )
-        action.add_argument("--plate", metavar="NAME", help="material of the plate, for such laws")
+        options.add_pair(action, ", for laws that take numbers from a pair")
     check.add_argument("--points", type=int, default=10_000, metavar="N",
                        help="number of points, at least 100 (default: %(default)s)")  # fmt: skip
     check.add_argument("--seed", type=int, metavar="S",

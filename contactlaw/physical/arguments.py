@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from numbers import Real
 from typing import Any
 
@@ -20,6 +21,7 @@ _SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
 _SI |= dict.fromkeys(("speed", "slowest", "fastest", "sliding_speed"), "m/s") | {"rate": "1/s"}
 _SI |= {"velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"}
 
+_LARGE = 0.1  # [m], our choice: of larger beads and plates few are modelled, and many are mistakes
 ROUGHEST = 1e3  # largest coefficient of friction
 _BARE = frozenset({float, int, np.float64})  # types without a unit, which long lists hold
 _LIMITS = {
@@ -167,6 +169,20 @@ def within(name: str, values: Array, low: float, high: float, remark: str) -> No
             f"{name}: got {float(values[n])!r}{where}; "
             f"must lie between {low:.9g} and {high:.9g} {remark}".rstrip()
         )
+
+
+def unlikely(sizes: ArrayLike) -> float | None:
+    """Find the largest bead or plate [m] that is so large that it was given in millimetres."""
+    array = np.ravel(np.asarray(sizes, dtype=np.float64))
+    largest = float(np.max(array[np.isfinite(array)], initial=0.0))
+    return largest if largest >= _LARGE else None
+
+
+def warn_of_metres(name: str, sizes: ArrayLike, stacklevel: int) -> None:
+    """Warn of a bead or plate that is `unlikely`, at the caller's caller's, or further up."""
+    if (size := unlikely(sizes)) is not None:
+        said = f"{name}: {size:g} is {size:g} m; {size:g}e-3 for {size:g} mm?"
+        warnings.warn(said, stacklevel=stacklevel + 1)
 
 
 def checked(**arguments: tuple[ArrayLike, float, float, str]) -> Any:

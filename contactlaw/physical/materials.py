@@ -3,12 +3,14 @@
 import difflib
 import functools
 import math
+import os
 import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from importlib.resources import files
 from numbers import Real
+from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
@@ -82,7 +84,10 @@ class UnknownMaterialError(ValueError):
         return f"unknown material {self.name!r}:{hint}"
 
     def __str__(self) -> str:
-        return f"{self.what} contactlaw.materials() lists all; Material(...) defines your own"
+        return (
+            f"{self.what} contactlaw.materials() lists all; Material(...) defines your own, and "
+            "read_materials(path) reads them"
+        )
 
 
 class NoYieldStrengthError(ValueError):
@@ -374,16 +379,25 @@ def material(name: str) -> Material:
     >>> material("AISI 304").name
     'stainless-steel-304'
     """
+    return find(name, {})
+
+
+def find(name: str, own: Mapping[str, Material]) -> Material:
+    """Return a material by name or alias: one of the user's own, otherwise of the catalogue."""
     if not isinstance(name, str):
         raise ValueError(f"name must be a string such as 'glass', got {name!r}")
-    by_name, canonical = _catalogue()
-    key = re.sub(r"[\s_-]+", "-", name.strip().lower())
-    if key not in canonical:
+    known = _catalogue() | {_key(alias): body for alias, body in own.items()}
+    key = _key(name)
+    if key not in known:
         # Names that contain the word come first ("steel"), then similar ones; each material once.
-        near = [known for known in canonical if key and key in known]
-        near += difflib.get_close_matches(key, canonical, n=3, cutoff=0.45)
-        raise UnknownMaterialError(name, tuple(dict.fromkeys(canonical[match] for match in near)))
-    return by_name[canonical[key]]
+        near = [one for one in known if key and key in one]
+        near += difflib.get_close_matches(key, known, n=3, cutoff=0.45)
+        raise UnknownMaterialError(name, tuple(dict.fromkeys(known[one].name for one in near)))
+    return known[key]
+
+
+def _key(name: str) -> str:
+    return re.sub(r"[\s_-]+", "-", name.strip().lower())
 
 
 def materials() -> tuple[str, ...]:
@@ -395,41 +409,97 @@ def materials() -> tuple[str, ...]:
     >>> "gamma-alumina" in materials()
     True
     """
-    return tuple(sorted(_catalogue()[0]))
+    return tuple(sorted({body.name for body in _catalogue().values()}))
+
+
+def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
+    r"""Read materials of your own from a file in the format of the catalogue.
+
+    Parameters
+    ----------
+    path : path-like
+        A TOML file with a table for each material: numbers as in `Material`, in SI units, its
+        ``kind`` and, if you like, ``aliases``, ``grade``, ``source`` and ``uncertainty``. Another
+        entry, of the file or of the catalogue, gives modulus, ratio and density with ``like``.
+
+    Returns
+    -------
+    dict of str to Material
+        By name and by alias.
+
+    Raises
+    ------
+    OSError, ValueError
+        If there is no such file; if it is no TOML, or a table lacks a number or has an unknown one.
+
+    Examples
+    --------
+    >>> import pathlib, tempfile
+    >>> from contactlaw import read_materials
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     file = pathlib.Path(folder) / "mine.toml"
+    ...     _ = file.write_text("[hard-304]\nlike = 'stainless-steel-304'\nhardness = '32 HRC'")
+    ...     read_materials(file)["hard-304"].density
+    8000.0
+    """
+    text = Path(path).read_text("utf-8")
+    try:
+        return _read(tomllib.loads(text), _tables())
+    except (ValueError, TypeError, AttributeError, KeyError) as error:
+        raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
+
+
+def _tables() -> dict[str, Any]:
+    text = files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8")
+    return tomllib.loads(text)
 
 
 @functools.cache
-def _catalogue() -> tuple[dict[str, Material], dict[str, str]]:
-    """Read the catalogue once: materials by name, and the name behind every name or alias."""
-    tables = tomllib.loads(
-        files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8")
-    )
-    references = tables.pop("references")
-    by_name = {name: _from_table(name, tables, references) for name in tables}
-    canonical = {name: name for name in by_name}
-    for name, table in tables.items():
-        canonical.update(dict.fromkeys(table.get("aliases", ()), name))
-    return by_name, canonical
+def _catalogue() -> dict[str, Material]:
+    """Read the catalogue once: materials by name and by alias."""
+    return _read(_tables(), {})
 
 
-def _from_table(name: str, tables: dict[str, Any], references: dict[str, str]) -> Material:
-    table, source = tables[name], tables[name]["source"]
+def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]:
+    """Materials by name and by alias; an entry may be `like` one of other tables."""
+    references = others.pop("references", {}) | tables.pop("references", {})
+    found = {name: _from_table(name, tables[name], others | tables, references) for name in tables}
+    return found | {one: found[name] for name in tables for one in tables[name].get("aliases", ())}
+
+
+def _from_table(
+    name: str, table: dict[str, Any], tables: dict[str, Any], references: dict[str, str]
+) -> Material:
+    known = (*_LABELS, "kind", "grade", "aliases", "like", "source", "uncertainty")
+    for key in table.keys() - known:
+        near = difflib.get_close_matches(key, known, n=1)
+        hint = f"did you mean {near[0]!r}? " if near else ""
+        raise ValueError(f"[{name}]: unknown {key!r}; {hint}known: {', '.join(known)}")
+    source = table.get("source", {})
     if "like" in table:
+        if table["like"] not in tables:
+            raise ValueError(f"[{name}]: like = {table['like']!r} is no entry")
         other = tables[table["like"]]
-        table = {field: other[field] for field in _ALIKE} | table
-        source = {field: other["source"][field] for field in _ALIKE[1:]} | source
+        table = {field: other[field] for field in _ALIKE if field in other} | table
+        theirs = other.get("source", {})
+        source = {field: theirs[field] for field in _ALIKE[1:] if field in theirs} | source
         alike = {field: e for field, e in other.get("uncertainty", {}).items() if field in _ALIKE}
         table["uncertainty"] = alike | table.get("uncertainty", {})
+    if missing := [field for field in _ALIKE[1:] if field not in table]:
+        raise ValueError(f"[{name}]: give {', '.join(missing)}, in SI units")
     # Hardening and rate are of the same fit as the yield strength A.
     fitted = {"hardening", "rate"} & set(table)
-    source = source | {field: source["yield_strength"] for field in fitted}
+    source = {field: source.get("yield_strength", "") for field in fitted} | source
     values = {field: table[field] for field in _LABELS if field in table}
-    errors = table.get("uncertainty", {})
+    errors = {  # an error has a reason in the catalogue
+        number: error if isinstance(error, list) else [error, ""]
+        for number, error in table.get("uncertainty", {}).items()
+    }
     body = Material(
-        name, **values, kind=table["kind"],
+        name, **values, kind=table.get("kind"),
         uncertainty={number: error for number, (error, _) in errors.items()},
     )  # fmt: skip
-    parts = [table["grade"]]
+    parts = [table.get("grade", name)]
     for number, (label, unit) in _LABELS.items():
         if number not in source:
             continue  # as the hardness of a material that has a yield strength

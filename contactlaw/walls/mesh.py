@@ -12,7 +12,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.physical.arguments import check, number
+from contactlaw.physical.arguments import check, number, warn_of_metres
 from contactlaw.walls.edges import Rims, boundary, edges_of
 from contactlaw.walls.motion import FARTHEST, Motion, check_motion, vector
 from contactlaw.walls.plate import Models, check_models
@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 Vector = Sequence[float]
 
+_LONGEST = 20.0  # [m] of a mesh that was likely drawn in metres; our choice
 _FLAT = 1e-10  # least height of a triangle over its longest side; a flatter one has no sure normal
 
 
@@ -88,6 +89,7 @@ class Mesh:
 
     def __post_init__(self) -> None:
         """Check the arguments, and drop triangles without area and duplicates."""
+        warn_of_metres("thickness", self.thickness, stacklevel=3)
         vertices = _vertices(self.vertices)
         triangles = _triangles(self.triangles, len(vertices))
         thickness = _thickness(self.thickness, len(triangles))
@@ -130,7 +132,7 @@ class Mesh:
         path: str | Path,
         thickness: ArrayLike,
         *,
-        scale: float = 1.0,
+        scale: float | None = None,
         model: Models | None = None,
         motion: Motion | None = None,
         edges: Rims | None = None,
@@ -144,7 +146,8 @@ class Mesh:
         thickness : float or array_like
             As in `Mesh`; an array has the triangles in the order of the file.
         scale : float, optional
-            Length of the file's unit [m]: 1e-3 for a drawing in millimetres.
+            Length of the file's unit [m]: 1e-3 for a drawing in millimetres. Without it the unit
+            is the metre, and a mesh longer than 20 m draws a warning.
         model, motion, edges
             As in `Mesh`.
 
@@ -176,7 +179,7 @@ class Mesh:
             import trimesh
         except ImportError as error:
             raise ImportError("Mesh.read needs trimesh: pip install contactlaw[lammps]") from error
-        size = number("scale", scale)
+        size = 1.0 if scale is None else number("scale", scale)
         if not 0.0 < size < math.inf:
             raise ValueError(f"scale: must be positive, metres per unit of the file, got {scale!r}")
         if not Path(path).is_file():
@@ -190,6 +193,10 @@ class Mesh:
             raise ValueError(
                 f"path: {str(path)!r} is no mesh that trimesh reads: {error}"
             ) from error
+        extent = float(np.ptp(vertices, axis=0).max())
+        if scale is None and extent > _LONGEST:
+            said = f"scale: the mesh is {extent:g} m long; scale=1e-3 if it is drawn in mm?"
+            warnings.warn(said, stacklevel=2)
         return cls(size * vertices, triangles, thickness, model, motion, edges)
 
     @classmethod

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import scalars
+from contactlaw.physical.arguments import scalars, warn_of_metres
 from contactlaw.walls.edges import Rows, Sides, edges_of
 from contactlaw.walls.motion import Motion, check_motion, vector
 
@@ -72,6 +72,7 @@ class Plate:
                 f"{self.edge_a!r} and {self.edge_b!r}"
             )
         scalars(thickness=self.thickness)
+        warn_of_metres("thickness", self.thickness, stacklevel=3)
         check_models(self.model)
         check_motion(self.motion)
         rim(self)

@@ -26,13 +26,16 @@ IMPACT = [*COR, "--radius", "0.9e-3", "--thickness", "1e-3", "--speed", "12"]
 # Ends of bands.
 ENDS = [f"{name}_{end}" for name in ("restitution", "contact_time", "peak_force")
         for end in ("low", "high")]  # fmt: skip
+ASKED = {"sphere": "gamma-alumina", "plate": "glass", "law": "myc"}
+SIZES = {"speed": 12.0, "radius": 0.9e-3, "thickness": 1e-3}
 
 
 def test_cor_json_holds_every_field(model, capsys):
     assert main([*IMPACT, "--json"]) == 0
     printed = json.loads(capsys.readouterr().out)
     hit = model.lookup(12.0, 0.9e-3, 1e-3)
-    assert set(printed) == {*cl.Rebound.__dataclass_fields__, "yield_speed", *ENDS}
+    assert set(printed) == {*cl.Rebound.__dataclass_fields__, "yield_speed", *ENDS, *ASKED, *SIZES}
+    assert printed.items() >= {**ASKED, **SIZES}.items()
     assert printed["restitution"] == hit.restitution
     assert printed["contact_time"] == hit.contact_time
     assert printed["yield_speed"] == model.yield_speed(0.9e-3, 1e-3)
@@ -106,13 +109,15 @@ def test_several_values_are_every_combination(model, capsys):
         assert row["yield_speed"] == model.yield_speed(row["radius"], h)
     assert rows[0]["flags"] == []
     assert set(rows[0]) == {
-        "speed", "radius", "thickness", "yield_speed", *cl.Rebound.__dataclass_fields__, *ENDS
+        "speed", "radius", "thickness", "yield_speed", *cl.Rebound.__dataclass_fields__, *ENDS,
+        *ASKED,
     }  # fmt: skip
 
 
 def test_a_table_has_a_row_per_impact_and_units(capsys):
     assert main([*MANY, "--speed", "1,70"]) == 0
-    names, units, *rows = capsys.readouterr().out.splitlines()
+    asked, names, units, *rows = capsys.readouterr().out.splitlines()
+    assert asked == "gamma-alumina on glass, law myc"
     assert names.split()[:4] == ["speed", "radius", "thickness", "COR"]
     assert units.split()[:4] == ["[m/s]", "[mm]", "[mm]", "[-]"]
     assert [row.split()[:3] for row in rows[:6]] == [
@@ -132,7 +137,8 @@ def test_csv_has_units_in_its_header_and_every_digit(model, capsys):
     out = capsys.readouterr().out
     header, *rows = csv.reader(io.StringIO(out))
     assert header[:5] == ["speed_m/s", "radius_m", "thickness_m", "restitution", "contact_time_s"]
-    assert header[-2:] == ["yield_speed_m/s", "flags"]
+    assert header[-5:] == ["yield_speed_m/s", *ASKED, "flags"]
+    assert rows[0][-4:] == [*ASKED.values(), ""]
     hit = model.lookup([1.0, 5.0] * 3, 0.9e-3, np.repeat([0.5e-3, 1e-3, np.inf], 2))
     assert [float(row[3]) for row in rows] == list(hit.restitution)
     assert [float(row[4]) for row in rows] == list(hit.contact_time)
@@ -393,6 +399,8 @@ def test_as_a_module():
 def test_history_prints_csv(capsys, model):
     assert main(["history", *IMPACT[1:], "--samples", "5"]) == 0
     lines = capsys.readouterr().out.splitlines()
+    said = "# gamma-alumina on glass, law myc, speed 12.0 m/s, radius 0.0009 m, thickness 0.001 m"
+    assert lines.pop(0) == said
     assert lines[0] == "time_s,force_N,compression_m,impulse_Ns,plate_displacement_m"
     printed = np.array([[float(value) for value in line.split(",")] for line in lines[1:]])
     contact = model.force_history(12.0, 0.9e-3, 1e-3, samples=5)

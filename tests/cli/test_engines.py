@@ -36,7 +36,7 @@ def test_a_sweep_as_hdf5(tmp_path, grid, model, capsys):
     out = tmp_path / "cor.h5"
     assert main([*SWEEP, "--out", str(out)]) == 0
     first, _, flag = capsys.readouterr().out.splitlines()
-    assert first == f"{out}: 24 impacts"
+    assert first == f"{out}: 24 impacts, gamma-alumina on glass, law myc"
     assert flag.startswith("FAST_IMPACT, 6 of 24: ")
     with h5py.File(out) as file:
         assert dict(file.attrs) == {
@@ -98,7 +98,7 @@ def test_a_sweep_is_written_whole_or_not_at_all(name, tmp_path, monkeypatch, cap
 
 def test_a_constant_has_its_errors_beside_it(model, capsys):
     assert main(CONSTANT) == 0
-    names, units, thin, thick, _, meaning, _, flag = capsys.readouterr().out.splitlines()
+    asked, names, units, thin, thick, _, meaning, _, flag = capsys.readouterr().out.splitlines()
     titles = "thickness impacts COR spread energy rebound mean energy flags".split()
     assert names.split() == titles
     assert units.split() == ["[mm]", "[-]", "[-]", "[-]", "[%]", "[%]", "[-]", "[%]"]
@@ -165,13 +165,14 @@ TABLE = ["speed-table", *PAIR, "--radius", "0.9mm", "--thickness", "1mm"]
 
 def test_a_speed_table(model, capsys):
     assert main([*TABLE, "--error", "1e-4", "--fastest", "216km/h", "--csv"]) == 0
-    head, *rows = capsys.readouterr().out.splitlines()
+    said, head, *rows = capsys.readouterr().out.splitlines()
+    assert said == "# gamma-alumina on glass, law myc, radius 0.0009 m, thickness 0.001 m"
     assert head == "speed_m/s,restitution"
     found = np.array([row.split(",") for row in rows], dtype=float)
     wanted = model.speed_table(0.9e-3, 1e-3, 1e-4, fastest=60.0)
     assert found.T.tolist() == [wanted.speed.tolist(), wanted.restitution.tolist()]
     assert main([*TABLE, "--fastest", "60"]) == 0
-    names, units, *rows, _, said, _, flag = capsys.readouterr().out.splitlines()
+    _, names, units, *rows, _, said, _, flag = capsys.readouterr().out.splitlines()
     assert (names.split(), units.split()) == (["speed", "COR"], ["[m/s]", "[-]"])
     assert said.startswith(f"{len(rows)} rows, straight lines between them within 0.001 in COR")
     assert flag.startswith("FAST_IMPACT, ")
@@ -193,7 +194,10 @@ def test_a_speed_table(model, capsys):
         ([*TABLE, "--slowest", "20"], "--slowest: must be below the fastest speed, 10.0, got 20.0"),
         ([*TABLE, "--slowest", "0"], "--slowest: got 0.0; must lie"),
         ([*TABLE, "--fastest", "1e4"], "10000 m/s, radius 0.9 mm, thickness 1 mm: outside the "),
-        ([*CONSTANT, "--thickness", "1:2:101"], "--thickness: 101 different ones, 100 is the most"),
+        (
+            [*CONSTANT, "--thickness", "1mm:2mm:101"],
+            "--thickness: 101 different ones, 100 is the most",
+        ),
     ],
 )
 def test_refused_physics_is_status_1_and_one_sentence(argv, message, tmp_path, monkeypatch, capsys):

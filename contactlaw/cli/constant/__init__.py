@@ -9,6 +9,7 @@ from typing import Any
 from contactlaw import laws
 from contactlaw.cli.constant import lines, records, walls
 from contactlaw.cli.parts import chosen, options, quantities, wording
+from contactlaw.cli.parts.impacts import asked, in_words
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import SPEED
 from contactlaw.model import ImpactModel
@@ -18,7 +19,7 @@ def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     about = "one COR for each wall, and its errors"
     command = options.command(commands, "constant", about, _run)
-    options.add_pair(command, required=False)
+    options.add_pair(command, options.OF_RECORD)
     options.add_sizes(command, quantities.values, required=False)
     add = command.add_mutually_exclusive_group(required=True).add_argument
     add(
@@ -62,9 +63,9 @@ def _run(arguments: argparse.Namespace) -> None:
     if write is not None:
         print(*list(write(model, found, arguments.keep)), sep="\n")
     elif arguments.csv:
-        walls.write_csv(found, arguments.keep, sys.stdout)
+        walls.write_csv(found, arguments.keep, sys.stdout, asked(model))
     else:
-        print(*walls.text(found, arguments.keep), sep="\n")
+        print(in_words(asked(model)), *walls.text(found, arguments.keep), sep="\n")
 
 
 def _recorded(arguments: argparse.Namespace) -> records.PlannedImpacts:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import dataclasses
 import json
 import math
 import sys
@@ -13,9 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.answers.uncertainty import Uncertainty
-from contactlaw.cli.cor import bands
+from contactlaw.cli.cor import bands, inverse
 from contactlaw.cli.parts import chosen, figure, impacts, layout, options, quantities, wording
-from contactlaw.model import ImpactModel
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import explain
 
@@ -27,14 +25,7 @@ def add(commands: Any) -> None:
     about = "coefficient of restitution and more, of one impact or many"
     command = options.command(commands, "cor", about, _run)
     options.add_impact(command, quantities.values)
-    share = options.reader_of(quantities.value, quantities.SHARE)
-    for name in _SIZES:
-        command.add_argument(f"--{name}-error", metavar="SHARE", type=share, default=0.0,
-            help=f"standard error of the {name}, as 5%% (default: 0)")  # fmt: skip
-    for role in ("sphere", "plate"):
-        command.add_argument(f"--{role}-error", metavar="NUMBER=SHARE", type=_error, default=[],
-            action="append", help="standard error of a number of its material, as "
-            "yield_strength=15%% (default: those of the catalogue)")  # fmt: skip
+    options.add_errors(command, _SIZES)
     command.add_argument("--no-band", action="store_true",
         help="leave out the range of real impacts, which takes longest")  # fmt: skip
     add = command.add_mutually_exclusive_group().add_argument
@@ -46,31 +37,10 @@ def add(commands: Any) -> None:
         "or radii, a curve for each value of a second one; two of more than 8 values make a map; "
         "without a list, up to the speed")  # fmt: skip
     command.epilog = f"{options.UNITS} {options.LISTS}"
+    inverse.add(commands)
 
 
 _SIZES = "speed", "radius", "thickness"
-
-
-def _error(text: str) -> tuple[str, float]:
-    name, _, share = text.partition("=")
-    try:
-        return name, quantities.value(share, quantities.SHARE)
-    except ValueError as error:
-        wanted = "expected a number of a material and its error, as yield_strength=15%"
-        raise argparse.ArgumentTypeError(f"{wanted}: {error}") from None
-
-
-def _model(arguments: argparse.Namespace) -> ImpactModel:
-    """Model of the given materials, with their errors."""
-    pair, given = chosen.pair(arguments), (arguments.sphere_error, arguments.plate_error)
-    bodies = []
-    for body, errors in zip((pair.sphere, pair.plate), given, strict=True):
-        changed = dataclasses.replace(body, uncertainty={**body.uncertainty, **dict(errors)})
-        for name, _ in errors:
-            if name not in changed.uncertainty:
-                raise ValueError(f"{name}: {body.name!r} has no value that could have an error")
-        bodies.append(changed)
-    return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
 
 
 def _errors(arguments: argparse.Namespace) -> dict[str, float] | None:
@@ -86,8 +56,8 @@ def _run(arguments: argparse.Namespace) -> None:
         with chosen.plot_file(arguments):
             _plot_cor(arguments)
         return
-    values, model = (arguments.speed, arguments.radius, arguments.thickness), _model(arguments)
-    errors = _errors(arguments)
+    values = arguments.speed, arguments.radius, arguments.thickness
+    model, errors = chosen.model(arguments), _errors(arguments)
     found = impacts.tabulate(model, *values, solve=arguments.solve)
     known = None
     if errors is not None:
@@ -98,7 +68,8 @@ def _run(arguments: argparse.Namespace) -> None:
     if arguments.csv:
         impacts.write_csv(found, sys.stdout, columns)
     elif arguments.json:
-        print(json.dumps(_as_json(impacts.records(found)), indent=2))
+        rows = impacts.records(found)
+        print(json.dumps(rows if len(rows) > 1 else rows[0], indent=2))
     elif len(found) > 1:
         print(*impacts.text(found, columns), sep="\n")
         if known:
@@ -107,20 +78,13 @@ def _run(arguments: argparse.Namespace) -> None:
         _print_one(found, known, model.pair)
 
 
-def _as_json(rows: list[dict[str, object]]) -> object:
-    """Rows; for a single impact, one record without the speed and sizes that the user gave."""
-    if len(rows) > 1:
-        return rows
-    known = ("speed", "radius", "thickness")
-    return {name: value for name, value in rows[0].items() if name not in known}
-
-
 def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair) -> None:
+    print(f"{'asked':21s} {impacts.in_words(found.asked)}")
     for name, unit in impacts.units().items():
         value, band = found.columns[name][0], getattr(known, name, None)
         if name == "yield_speed" and value == math.inf:
             print(f"{name:21s} none within the table")
-        elif name not in ("speed", "radius", "thickness"):
+        else:
             shown = f"{name:21s} {value:.6g}", unit, band and bands.in_brackets(band)
             print(" ".join(filter(None, shown)))
     if known:
@@ -134,7 +98,7 @@ def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair
 
 
 def _plot_cor(arguments: argparse.Namespace) -> None:
-    model, errors = _model(arguments), _errors(arguments)
+    model, errors = chosen.model(arguments), _errors(arguments)
     given = {name: getattr(arguments, name) for name in ("speed", "thickness", "radius")}
     if not any(map(layout.can_be_axis, given.values())):
         given["speed"] = (0.1 * arguments.speed[0], arguments.speed[0])

@@ -16,7 +16,7 @@ from contactlaw.physical.pair import Pair
 _MOST, _LEAST = 3, 0.01  # causes that are named, and the least of one over the largest
 _OF_LAW = "two in three impacts by finite elements (no errors of the materials are known)"
 _OF_ALL = "two in three impacts, by the errors that are known"
-_WIDTH = 110  # of a line of text
+WIDTH = 110  # of a line of text
 
 
 def with_bands(
@@ -52,9 +52,9 @@ def explained(band: Band, pair: Pair) -> Iterator[str]:
     """Lines below a table with the meaning of the band of the COR, and its causes."""
     yield ""
     said = f"68 %: in this range is the COR of {meaning(band)}{left_out(band, pair)}."
-    yield from textwrap.wrap(said, _WIDTH)
+    yield from textwrap.wrap(said, WIDTH)
     if meaning(band) is _OF_ALL:
-        yield from textwrap.wrap(f"Half its width by cause: {_causes(band)}", _WIDTH)
+        yield from textwrap.wrap(f"Half its width by cause: {_causes(band)}", WIDTH)
 
 
 def left_out(band: Band, pair: Pair) -> str:

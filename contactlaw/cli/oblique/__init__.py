@@ -98,8 +98,10 @@ def _table(arguments: argparse.Namespace, given: dict[str, Any]) -> ImpactTable:
     names = _GIVEN[::-1]
     parts = np.meshgrid(*(given[name] for name in names), indexing="ij")
     every = dict(zip(names, (part.ravel() for part in parts), strict=True))
-    found = _hits(chosen.model(arguments), every)
-    return ImpactTable({column.name: found[column.name] for column in _COLUMNS}, found["flags"])
+    model = chosen.model(arguments)
+    found = _hits(model, every)
+    columns = {column.name: found[column.name] for column in _COLUMNS}
+    return ImpactTable(columns, found["flags"], impacts.asked(model))
 
 
 def _hits(model: ImpactModel, given: dict[str, Array]) -> dict[str, Any]:

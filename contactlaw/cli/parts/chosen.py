@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
 
-from contactlaw.cli.parts import plots, wording
+from contactlaw.cli.parts import own, plots, wording
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import scalars
-from contactlaw.physical.materials import material
 from contactlaw.physical.pair import Pair
 
 
 def model(arguments: argparse.Namespace) -> ImpactModel:
-    """Model of the given materials and law, with the given behaviour outside its table."""
-    return ImpactModel(pair(arguments), law=arguments.law, outside=arguments.outside)
+    """Model of the given materials, with errors of their own if there are such options, and law."""
+    bodies = []
+    for role, body in zip(("sphere", "plate"), pair(arguments).given, strict=True):
+        errors = dict(getattr(arguments, f"{role}_error", ()))
+        changed = dataclasses.replace(body, uncertainty={**body.uncertainty, **errors})
+        for name in errors:
+            if name not in changed.uncertainty:
+                raise ValueError(f"{name}: {body.name!r} has no value that could have an error")
+        bodies.append(changed)
+    return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
 
 
 def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
@@ -30,8 +38,7 @@ def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
                 raise wording.Refused(f"--{name}: has to be given, no record says it")
             bodies[name] = getattr(known, name)
         else:
-            with wording.material_of(name):
-                bodies[name] = material(chosen)
+            bodies[name] = own.material_of(name, chosen, arguments.materials or {})
     return Pair(**bodies)
 
 

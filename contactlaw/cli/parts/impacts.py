@@ -70,14 +70,40 @@ class ImpactTable:
         table.
     flags : ndarray of int64
         `Validity` limits that an impact exceeds.
+    asked : dict of str to str
+        What was asked: names of the sphere, the plate and the law, and sizes of all impacts.
     """
 
     columns: dict[str, Array]
     flags: NDArray[np.int64]
+    asked: dict[str, str]
 
     def __len__(self) -> int:
         """Count the impacts."""
         return len(self.flags)
+
+
+def asked(model: ImpactModel, **sizes: float) -> dict[str, str]:
+    """Repeat what the user asked: names of the materials and of the law, and sizes in SI units."""
+    law, (sphere, plate) = model.force_law, model.pair.given
+    name = law.family if law.from_pair else law.name
+    numbers = {f"{size}_{units()[size]}": f"{value!r}" for size, value in sizes.items()}
+    return {"sphere": sphere.name, "plate": plate.name, "law": name, **numbers}
+
+
+def in_words(asked: dict[str, str]) -> str:
+    """Write what was asked as a title.
+
+    Examples
+    --------
+    >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": "0.001"})
+    'glass on pom, law fem, radius 0.001 m'
+    """
+    sphere, plate, law, *_ = asked.values()
+    sizes = [(*name.split("_"), value) for name, value in [*asked.items()][3:]]
+    return ", ".join(
+        [f"{sphere} on {plate}, law {law}", *(f"{name} {one} {unit}" for name, unit, one in sizes)]
+    )
 
 
 def tabulate(
@@ -128,7 +154,9 @@ def tabulate(
     first = slice(None, None, len(speeds))  # first row of each bead on each plate
     yields = np.repeat(yield_speeds(model, r[first], h[first]), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
-    return ImpactTable({column.name: found[column.name] for column in COLUMNS}, found["flags"])
+    return ImpactTable(
+        {column.name: found[column.name] for column in COLUMNS}, found["flags"], asked(model)
+    )
 
 
 def _integrates(model: ImpactModel) -> bool:
@@ -169,7 +197,7 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
 
 
 def text(table: ImpactTable, columns: Sequence[Column] = COLUMNS) -> Iterator[str]:
-    """Lines for a terminal: names, units, a row per impact, and the meaning of the flags.
+    """Lines for a terminal: what was asked, names, units, impacts, and the meaning of the flags.
 
     Examples
     --------
@@ -177,6 +205,7 @@ def text(table: ImpactTable, columns: Sequence[Column] = COLUMNS) -> Iterator[st
     >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     >>> for line in text(tabulate(model, [1.0, 5.0], [0.9e-3], [1e-3])):
     ...     print(line[:46])
+    gamma-alumina on glass, law myc
     speed  radius  thickness     COR   time  force
     [m/s]    [mm]       [mm]     [-]   [us]    [N]
         1     0.9          1  0.9324  6.692  1.426
@@ -185,6 +214,7 @@ def text(table: ImpactTable, columns: Sequence[Column] = COLUMNS) -> Iterator[st
     shown = [column for column in columns if column.title]
     cells = [[column.title, f"[{column.shown}]", *_cells(table, column)] for column in shown]
     cells.append(["flags", "", *map(", ".join, map(flag_names, table.flags))])
+    yield in_words(table.asked)
     yield from aligned(cells)
     yield from explained(count_flags(table.flags), len(table))
 
@@ -247,10 +277,11 @@ def write_csv(table: ImpactTable, out: TextIO, columns: Sequence[Column] = COLUM
     """
     writer = csv.writer(out, lineterminator="\n")
     names = [f"{column.name}_{column.unit}" if column.unit else column.name for column in columns]
-    writer.writerow([*names, "flags"])
+    writer.writerow([*names, *table.asked, "flags"])
     values = (column.tolist() for column in table.columns.values())
     flags = ("|".join(flag_names(value)) for value in table.flags)
-    writer.writerows([*row, last] for *row, last in zip(*values, flags, strict=True))
+    said = table.asked.values()
+    writer.writerows([*row, *said, last] for *row, last in zip(*values, flags, strict=True))
 
 
 def records(table: ImpactTable) -> list[dict[str, object]]:
@@ -270,7 +301,7 @@ def records(table: ImpactTable) -> list[dict[str, object]]:
             name: value if value < math.inf else None
             for name, value in zip(table.columns, row, strict=True)
         }
-        | {"flags": flag_names(flags)}
+        | {**table.asked, "flags": flag_names(flags)}
         for row, flags in zip(values, table.flags, strict=True)
     ]
 

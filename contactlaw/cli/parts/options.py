@@ -8,7 +8,11 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from contactlaw import laws
+from contactlaw.cli.parts import quantities, wording
 from contactlaw.cli.parts.quantities import LENGTH, SPEED, Quantity
+from contactlaw.cli.parts.wording import OWN
+from contactlaw.physical.arguments import unlikely
+from contactlaw.physical.materials import Material, read_materials
 
 Reader = Callable[[str, Quantity], Any]
 Run = Callable[[argparse.Namespace], None]
@@ -74,24 +78,73 @@ def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     )
 
 
-_OF_RECORD = " (default: that of the record)"
+OF_RECORD = " (default: that of the record)"
 
 
-def add_pair(command: argparse.ArgumentParser, required: bool = True) -> None:
-    """Add the options of materials; if not required, a record may have them."""
-    add, known = command.add_argument, "" if required else _OF_RECORD
+def add_pair(command: argparse.ArgumentParser, otherwise: str = "") -> None:
+    """Add the options of materials, required unless their help says what holds `otherwise`."""
+    add, required = command.add_argument, not otherwise
     add("--sphere", required=required, metavar="NAME",
-        help=f"material of the bead, see materials{known}")  # fmt: skip
-    add("--plate", required=required, metavar="NAME", help=f"material of the plate{known}")
+        help=f"material of the bead: a name, see materials, or numbers, {OWN}{otherwise}",
+        )  # fmt: skip
+    add("--plate", required=required, metavar="NAME", help=f"material of the plate{otherwise}")
+    add("--materials", metavar="FILE", type=_materials,
+        help="materials of your own, a TOML file in the format of the catalogue")  # fmt: skip
 
 
-def add_sizes(command: argparse.ArgumentParser, read: Reader, required: bool = True) -> None:
-    """Add the options of sizes; if not required, a record may have them."""
-    add, known = command.add_argument, "" if required else _OF_RECORD
-    add("--radius", required=required, metavar="R", type=reader_of(read, LENGTH),
+def _materials(path: str) -> dict[str, Material]:
+    try:
+        return read_materials(path)
+    except OSError as error:
+        raise argparse.ArgumentTypeError(f"{path}: {error.strerror}") from None
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def add_sizes(
+    command: argparse.ArgumentParser, read: Reader, required: bool = True, unknown: str = ""
+) -> None:
+    """Add the options of sizes, but for an unknown one; if not required, a record may have them."""
+    known = "" if required else OF_RECORD
+    add = command.add_mutually_exclusive_group(required=required).add_argument
+    add("--radius", metavar="R", type=reader_of(read, LENGTH),
         help=f"radius of the bead [m], or with a unit{known}")  # fmt: skip
-    add("--thickness", required=required, metavar="H", type=reader_of(read, LENGTH),
-        help=f"thickness of the plate [m], or with a unit; inf: a half-space{known}")  # fmt: skip
+    add("--diameter", dest="radius", metavar="D", type=_half(reader_of(read, LENGTH)),
+        help="diameter of the bead instead")  # fmt: skip
+    if unknown != "thickness":
+        command.add_argument("--thickness", required=required, metavar="H",
+            type=reader_of(read, LENGTH),
+            help=f"thickness of the plate [m], or with a unit; inf: a half-space{known}",
+        )  # fmt: skip
+
+
+def _half(read: Callable[[str], Any]) -> Callable[[str], Any]:
+    def half(text: str) -> Any:
+        found = read(text)
+        return tuple(0.5 * one for one in found) if isinstance(found, tuple) else 0.5 * found
+
+    return half
+
+
+def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
+    """Add the options of standard errors, of sizes and of numbers of the materials."""
+    share = reader_of(quantities.value, quantities.SHARE)
+    for name in sizes:
+        command.add_argument(f"--{name}-error", metavar="SHARE", type=share, default=0.0,
+            help=f"standard error of the {name}, as 5%% (default: 0)")  # fmt: skip
+    for role in ("sphere", "plate"):
+        command.add_argument(f"--{role}-error", metavar="NUMBER=SHARE", type=_error, default=[],
+            action="append", help="standard error of a number of its material, as "
+            "yield_strength=15%% (default: those of the catalogue)")  # fmt: skip
+
+
+def _error(text: str) -> tuple[str, float]:
+    name, _, share = text.partition("=")
+    try:
+        return name, quantities.value(share, quantities.SHARE)
+    except ValueError as error:
+        wanted = "expected a number of a material and its error, as yield_strength=15%"
+        raise argparse.ArgumentTypeError(f"{wanted}: {error}") from None
 
 
 def add_name_of_law(command: argparse.ArgumentParser, default: str | None = laws.DEFAULT) -> None:
@@ -114,8 +167,12 @@ def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
 
     def one(text: str) -> Any:
         try:
-            return read(text, quantity)
+            found = read(text, quantity)
         except ValueError as error:
             raise argparse.ArgumentTypeError(str(error)) from None
+        size = unlikely(found) if quantity is LENGTH and "m" not in text else None  # no unit
+        if size is not None:
+            wording.print_warning(f"{size:g} is {size:g} m; {size:g}mm?")
+        return found
 
     return one

@@ -25,12 +25,15 @@ _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
 _OTHER_NAMES = {"path": "plot", "priors": "prior"}  # arguments whose options have other names
 
 
+OWN = '"E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer"'  # a material on the command line
+
+
 class Refused(ValueError):
     """An error whose message speaks of the command line already."""
 
 
 def sentence(error: Exception, options: Container[str]) -> str:
-    """Write the message of an error with options in place of arguments.
+    r"""Write the message of an error with options in place of arguments.
 
     Parameters
     ----------
@@ -46,11 +49,15 @@ def sentence(error: Exception, options: Container[str]) -> str:
     >>> sentence(ValueError("constant_cor: must lie between 0 and 1"), {"constant_cor"})
     '--constant-cor: must lie between 0 and 1'
     >>> sentence(UnknownMaterialError("glas", ("glass",)), {})
-    "unknown material 'glas': did you mean 'glass'? `contactlaw materials` lists all"
+    'unknown material \'glas\': did you mean \'glass\'? `contactlaw materials` lists all; one of \
+your own is --materials FILE, or --sphere "E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer"'
     """
     match error:
         case UnknownMaterialError():
-            return f"{error.what} `contactlaw materials` lists all"
+            return (
+                f"{error.what} `contactlaw materials` lists all; one of your own is --materials "
+                f"FILE, or --sphere {OWN}"
+            )
         case NoYieldStrengthError():
             return (
                 f"--sphere: {error.what}: take --law fem, in which such a body is elastic and the "
@@ -67,24 +74,6 @@ def sentence(error: Exception, options: Container[str]) -> str:
         if all(name in options for name in names):
             return f"--{', --'.join(names)}".replace("_", "-") + message[arguments.end() :]
     return message
-
-
-@contextmanager
-def material_of(option: str) -> Iterator[None]:
-    """Name the option that an error about a material comes from.
-
-    Examples
-    --------
-    >>> with material_of("plate"):
-    ...     raise UnknownMaterialError("soap", ())
-    Traceback (most recent call last):
-    contactlaw.cli.parts.wording.Refused: --plate: unknown material 'soap': `contactlaw materials` \
-lists all
-    """
-    try:
-        yield
-    except UnknownMaterialError as error:
-        raise Refused(f"--{option}: {sentence(error, {})}") from error
 
 
 def check_suffix(name: str, path: str | os.PathLike[str], suffixes: Sequence[str]) -> None:

@@ -27,6 +27,7 @@ from contactlaw.engines.lammps.memory import (
 )
 from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import warn_of_metres
 from contactlaw.stepping import WallContacts
 from contactlaw.stepping.friction import check_friction
 from contactlaw.walls.frame import Wall
@@ -252,9 +253,11 @@ class LammpsPlates:
         self._comm = lmp.get_mpi_comm()
         self._attached = True
         self._parts: list[NDArray[np.void]] = []
-        types = lmp.extract_setting("ntypes")
+        types, radius = lmp.extract_setting("ntypes"), self._largest_radius()
+        if self._comm.rank == 0:
+            warn_of_metres("radius", radius, stacklevel=3)
         self._contacts = WallContacts(
-            walls, models, self._largest_radius(), records, friction=friction, types=types
+            walls, models, radius, records, friction=friction, types=types
         )
         self._fixes: list[str] = []
         self._warned: set[str] = set()

@@ -37,6 +37,7 @@ from contactlaw.engines.pymunk.registry import (
     scalar,
 )
 from contactlaw.engines.pymunk.seams import Seams
+from contactlaw.physical.arguments import warn_of_metres
 
 if TYPE_CHECKING:
     import pymunk
@@ -173,6 +174,7 @@ class PymunkImpacts:
         if body.id in self._bodies:
             raise ValueError(f"circle.body: carries bead {self._bodies[body.id].index} already")
         check_mass(body.mass, radius, self._models.density(number), self._models.names()[number])
+        warn_of_metres("radius", radius, stacklevel=2)
         plates = self._contacts.plates.values()
         check_solid(circle, radius, (plate.shape() for plate in plates if plate.friction))
         key, kind = id(circle), (radius, number)
@@ -236,6 +238,7 @@ class PymunkImpacts:
 
         body = self._admit(shape, [pymunk.Segment, pymunk.Poly], self.plate_type)
         thickness = scalar(thickness=thickness)
+        warn_of_metres("thickness", thickness, stacklevel=2)
         if len(set(ends(shape))) < 2:
             raise ValueError(f"shape: has no length, all of it is at {tuple(ends(shape)[0])}")
         if model is not None and material is not None:

@@ -1,0 +1,90 @@
+"""``contactlaw thickness`` and ``contactlaw speed``: what gives a coefficient of restitution."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import itertools
+import json
+import sys
+import textwrap
+from typing import Any
+
+import numpy as np
+
+from contactlaw.cli.cor import bands
+from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
+from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
+
+_KNOWN = {"thickness": ("speed", "radius"), "speed": ("radius", "thickness")}
+
+
+def add(commands: Any) -> None:
+    """Add both subcommands and their options."""
+    for unknown, what in (("thickness", "thicknesses of the plate"), ("speed", "impact speeds")):
+        about = f"all {what} that give a coefficient of restitution"
+        command = options.command(commands, unknown, about, functools.partial(_run, unknown))
+        options.add_pair(command)
+        options.add_sizes(command, quantities.values, unknown=unknown)
+        add = command.add_argument
+        if unknown == "thickness":
+            add("--speed", required=True, metavar="V",
+                type=options.reader_of(quantities.values, quantities.SPEED),
+                help="normal approach speed [m/s], or with a unit")  # fmt: skip
+        add("--cor", required=True, metavar="E",
+            type=options.reader_of(quantities.values, quantities.SHARE),
+            help="coefficients of restitution, between 0 and 1")  # fmt: skip
+        options.add_name_of_law(command)
+        command.set_defaults(outside="raise")  # what is outside the table is not searched
+        options.add_errors(command, _KNOWN[unknown])
+        add = command.add_mutually_exclusive_group().add_argument
+        add("--csv", action="store_true", help="print rows in SI units, every digit")
+        add("--json", action="store_true", help="print rows in SI units; inf is null")
+        command.epilog = f"{options.UNITS} {options.LISTS}"
+
+
+def _run(unknown: str, arguments: argparse.Namespace) -> None:
+    chosen.check_quantities(arguments)
+    model, known = chosen.model(arguments), _KNOWN[unknown]
+    values = arguments.cor, *(getattr(arguments, name) for name in known)
+    asked = np.array([*itertools.product(*values)]).T
+    errors = {f"{name}_error": getattr(arguments, f"{name}_error") for name in known}
+    found: Any = getattr(model, unknown)(*asked, **errors)
+    remarks = [
+        f"COR {question[0]:g}, {_sizes(known, question[1:])}: {one.remark}"
+        for question, one in zip(asked.T.tolist(), found, strict=True) if one.remark
+    ]  # fmt: skip
+    if len(remarks) == len(found):
+        raise wording.Refused("\n".join(remarks))
+    for remark in remarks:
+        wording.print_warning(remark)
+    counts = [one.value.size for one in found]
+    rows = dict(zip(("restitution", *known), np.repeat(asked, counts, axis=1), strict=True))
+    for name, field in ((unknown, "value"), (f"{unknown}_low", "low"), (f"{unknown}_high", "high")):
+        rows[name] = np.concatenate([getattr(one, field) for one in found])
+    flags = np.concatenate([one.flags for one in found])
+    table, columns = ImpactTable(rows, flags, impacts.asked(model)), _columns(unknown)
+    if arguments.csv:
+        impacts.write_csv(table, sys.stdout, columns)
+    elif arguments.json:
+        print(json.dumps(impacts.records(table), indent=2))
+    else:
+        band = next(one.band for one in found if one.band)
+        said = (
+            f"68 %: a {unknown} in this range has the COR that was asked in the band of "
+            f"{bands.meaning(band)}{bands.left_out(band, model.pair)}."
+        )
+        print(*impacts.text(table, columns), "", *textwrap.wrap(said, bands.WIDTH), sep="\n")
+
+
+def _sizes(names: tuple[str, ...], values: list[float]) -> str:
+    units = [quantities.SPEED if name == "speed" else quantities.LENGTH for name in names]
+    shown = (quantities.formatted(*one) for one in zip(values, units, strict=True))
+    return ", ".join(map(" ".join, zip(names, shown, strict=True)))
+
+
+def _columns(unknown: str) -> tuple[Column, ...]:
+    by_name = {column.name: column for column in COLUMNS}
+    value, low, high = by_name[unknown], f"{unknown}_low", f"{unknown}_high"
+    band = value._replace(name=low, title="68 %", to=high), Column(high, value.unit)
+    return *(by_name[name] for name in ("restitution", *_KNOWN[unknown])), value, *band

@@ -1,0 +1,84 @@
+"""Thicknesses and speeds that give a COR, against the COR that they give."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import contactlaw as cl
+from contactlaw.cli import main
+
+STEEL = "--sphere stainless-steel-304-ball --plate glass --radius 1mm".split()
+
+
+@pytest.fixture(scope="module")
+def steel():
+    return cl.ImpactModel(cl.Pair("stainless-steel-304-ball", "glass"))
+
+
+def test_every_solution_is_found_where_the_cor_has_a_maximum(steel):
+    """A finer search that shares no code sees as many crossings, at the same places."""
+    h = np.geomspace(0.3e-3, 10.0, 20_000)
+    e = np.asarray(steel.solve(2.0, 1e-3, h).restitution)
+    assert e.max() > e[-1] + 3e-5
+    for wanted, count in ((0.5, 1), (e[-1] + 2e-5, 2), (e.max() + 2e-5, 0)):
+        found = steel.thickness(wanted, 2.0, 1e-3)
+        at = np.flatnonzero(np.diff(e > wanted))
+        assert found.value.size == at.size == count
+        assert ((h[at] <= found.value) & (found.value <= h[at + 1])).all()
+        assert steel.solve(2.0, 1e-3, found.value).restitution == pytest.approx(wanted, abs=1e-9)
+        assert found.attainable[1] == pytest.approx(e.max(), abs=1e-5)
+    assert found.remark.startswith("no thickness: 21.")
+
+
+def test_a_half_space_is_a_solution_and_says_what_it_gives():
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-6061-t6"))
+    most = model.restitution(2.0, 1e-3, math.inf)
+    beyond, thick = model.thickness([0.8, most], 2.0, 1e-3)
+    assert beyond.remark.startswith(f"no thickness: a half-space gives {most:.4g}, the largest")
+    assert beyond.value.size == 0 and beyond.band is None
+    assert thick.value[0] > 0.1 and thick.high.tolist() == [math.inf]
+
+
+def test_speeds_broadcast_and_flags_are_those_of_the_impact(steel):
+    found = steel.speed([[0.3], [0.9]], 1e-3, [1e-3, 5e-3])
+    assert found.shape == (2, 2)
+    for (n, m), one in np.ndenumerate(found):
+        hit = steel.lookup(one.value, 1e-3, (1e-3, 5e-3)[m])
+        assert hit.restitution == pytest.approx((0.3, 0.9)[n], abs=1e-5)
+        assert one.flags.tolist() == np.asarray(hit.flags).tolist()
+
+
+def test_the_error_is_that_of_the_cor_over_its_slope():
+    aluminium = cl.Material("mine", 70e9, 0.33, 2700, 276e6, uncertainty={"density": 0.1})
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", aluminium))
+    found = model.thickness(0.4, 2.0, 1e-3, speed_error=0.05)
+    (h,), band = found.value, model.uncertainty(2.0, 1e-3, found.value, speed_error=0.05)
+    slope = np.diff(model.solve(2.0, 1e-3, [0.99 * h, 1.01 * h]).restitution)[0] / (0.02 * h)
+    wide = (band.restitution.high - band.restitution.low) / slope
+    assert found.high - found.low == pytest.approx(wide, rel=0.03)
+    assert model.thickness(0.4, 2.0, 1e-3).high - found.low < wide
+
+
+@pytest.mark.parametrize("wanted", [0.0, 1.0, -0.5, math.nan])
+def test_a_cor_out_of_range_is_refused(wanted, steel):
+    with pytest.raises(ValueError, match="restitution: got"):
+        steel.thickness(wanted, 2.0, 1e-3)
+
+
+def test_the_commands_say_the_same(steel, capsys):
+    asked = [*STEEL, "--cor", "0.5,0.99", "--speed", "2"]
+    assert main(["thickness", *asked, "--json"]) == 0
+    out, said = capsys.readouterr()
+    (row,), one = json.loads(out), steel.thickness(0.5, 2.0, 1e-3)
+    assert row["thickness"] == one.value[0] and row["thickness_high"] == one.high[0]
+    assert (row["plate"], row["speed"], row["restitution"]) == ("glass", 2.0, 0.5)
+    assert said.startswith("contactlaw: warning: COR 0.99, speed 2 m/s, radius 1 mm: no thickness:")
+    assert main(["speed", *STEEL, "--cor", "90%", "--thickness", "5mm"]) == 0
+    asked, names, _, row, *_ = capsys.readouterr().out.splitlines()
+    assert asked == "stainless-steel-304-ball on glass, law fem"
+    assert names.split() == ["COR", "radius", "thickness", "speed", "68", "%", "flags"]
+    assert float(row.split()[3]) == pytest.approx(steel.speed(0.9, 1e-3, 5e-3).value[0], rel=1e-3)
+    assert main(["thickness", *STEEL, "--cor", "0.99", "--speed", "2"]) == 1
+    assert "no thickness: " in capsys.readouterr().err

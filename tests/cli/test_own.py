@@ -1,0 +1,112 @@
+"""Materials of one's own on the command line, and lengths that are likelier millimetres."""
+
+import json
+
+import pytest
+
+import contactlaw as cl
+from contactlaw.cli import main
+from contactlaw.cli.parts.own import material_of
+from contactlaw.walls import Mesh, Plate
+
+NUMBERS = {"youngs_modulus": 2.8e9, "poissons_ratio": 0.35, "density": 1410, "kind": "polymer"}
+POM = "E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer"
+FILE = """
+[my-pom]
+aliases = ["delrin"]
+kind = "polymer"
+youngs_modulus = 2.8e9
+poissons_ratio = 0.35
+density = 1410
+yield_strength = 62e6
+uncertainty = {yield_strength = 0.1}
+
+[hard-304]
+like = "stainless-steel-304"
+hardness = "32 HRC"
+source = {hardness = "measured"}
+"""
+IMPACT = "--plate steel-dc01 --diameter 2mm --thickness 1mm --speed 2 --json".split()
+
+
+@pytest.mark.parametrize(
+    ("text", "more"),
+    [
+        (POM, {"yield_strength": 62e6}),
+        ("E=2.8 GPa, nu=0.35, rho=1.41g/cm3, kind=polymer, loss=0.05,10kHz",
+         {"loss_factor": (0.05, 1e4)}),
+        ("E=2.8GPa nu=.35 rho=1410 yield=62MPa hardening=(100MPa,0.3) rate=0.01,1 kind=polymer",
+         {"yield_strength": 62e6, "hardening": (100e6, 0.3), "rate": (0.01, 1.0)}),
+        ("E=2.8GPa nu=0.35 rho=1410 hardness=30 HV kind=polymer", {"hardness": "30 HV"}),
+    ],
+)  # fmt: skip
+def test_numbers_make_the_material_that_python_makes(text, more):
+    assert material_of("sphere", text, {}) == cl.Material(text, **NUMBERS, **more)
+
+
+def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
+    path = tmp_path / "mine.toml"
+    path.write_text(FILE)
+    mine = cl.read_materials(path)
+    assert mine["delrin"] == cl.Material("my-pom", **NUMBERS, yield_strength=62e6,
+        source="my-pom", uncertainty={"yield_strength": 0.1})  # fmt: skip
+    assert mine["hard-304"].density == cl.material("304").density
+    assert mine["hard-304"].source.endswith("hardness 3.11851e+09 Pa: measured")
+    assert main(["cor", "--materials", str(path), "--sphere", "Delrin", *IMPACT]) == 0
+    row = json.loads(capsys.readouterr().out)
+    model = cl.ImpactModel(cl.Pair(mine["my-pom"], "steel-dc01"))
+    assert row["restitution"] == pytest.approx(model.restitution(2.0, 1e-3, 1e-3), abs=1e-6)
+    assert (row["sphere"], row["radius"]) == ("my-pom", 1e-3)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "pomm",
+            "did you mean 'pom' or 'pmma'? `contactlaw materials` lists all; one of your own is",
+        ),
+        ("E=2.8GPa nuu=0.35 rho=1410", "--sphere: unknown 'nuu'; did you mean nu? known: E, nu"),
+        ("E=2.8GPa", "'E=2.8GPa' lacks nu and rho, as in \"E=2.8GPa nu=0.35"),
+        ("E=2.8GPa nu=0.35 rho=1410m", "--sphere: got '1410m': 'm' is no unit of density"),
+        ("E=2.8 nu=0.35 rho=1410", "--sphere: youngs_modulus 2.8 of"),
+        ("E=2.8GPa nu=0.35 rho=1410 yield=1MPa,2", "--sphere: got '1MPa,2', expected stress"),
+    ],
+)
+def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
+    assert main(["cor", "--sphere", text, *IMPACT]) == 1
+    assert message in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("density", "densty", r"mine.toml: \[my-pom\]: unknown 'densty'; did you mean 'density'"),
+        ("density = 1410", "", r"\[my-pom\]: give density, in SI units"),
+        ('"stainless-steel-304"', '"304L"', r"\[hard-304\]: like = '304L' is no entry"),
+        ("= 2.8e9", "= ", "mine.toml: Invalid value"),
+        ("[my-pom]", "", "mine.toml: "),
+        ('"measured"', '"{key}"', "mine.toml: .*key"),
+    ],
+)
+def test_a_file_with_a_mistake_is_refused(old, new, message, tmp_path):
+    (tmp_path / "mine.toml").write_text(FILE.replace(old, new, 1))
+    with pytest.raises(ValueError, match=message):
+        cl.read_materials(tmp_path / "mine.toml")
+
+
+def test_a_length_without_a_unit_draws_a_warning(capsys, tmp_path):
+    asked = [*IMPACT, "--outside", "solve", "--sphere", "alumina", "--thickness"]
+    assert main(["cor", *asked, "1m", "--diameter", "3"]) == 0
+    assert capsys.readouterr().err == "contactlaw: warning: 3 is 3 m; 3mm?\n"
+    assert main(["cor", *asked, "1m,inf", "--diameter", "3m"]) == 0
+    assert main(["cor", *asked, "0.05,inf", "--diameter", "0.01"]) == 0
+    assert capsys.readouterr().err == ""
+    with pytest.warns(UserWarning, match="thickness: 1 is 1 m; 1e-3 for 1 mm") as said:
+        Plate((0, 0, 0), (1, 0, 0), (0, 1, 0), thickness=1.0)
+    part = tmp_path / "part.obj"
+    part.write_text("v 0 0 0\nv 100 0 0\nv 0 50 0\nf 1 2 3\n")
+    with pytest.warns(UserWarning, match="the mesh is 100 m long; scale=1e-3 if it") as again:
+        Mesh.read(part, 1e-3)
+    assert {one.filename for one in (*said, *again)} == {__file__}
+    assert Mesh.read(part, 1e-3, scale=1.0).area == pytest.approx(2500)
