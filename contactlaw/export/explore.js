@@ -24,7 +24,7 @@ for (const [id, [unit, size, low, high]] of Object.entries(SLIDERS)) {
     if (from !== slider) slider.value = steps * bounded(place([low, high], value), 0, 1);
     if (from !== box) box.value = value < Infinity ? round(value / size, 6) : "";
     slider.ariaValueText = value < Infinity ? `${round(value / size)} ${unit}` : "half-space";
-    if (from) requestAnimationFrame(show);
+    if (from) show();
   };
   slider.oninput = () => {
     const share = slider.value / steps;
@@ -47,14 +47,14 @@ function fill(id, entries) { // elements with texts
 function show() {
   const { speed, radius, thickness, angle, friction } = asked, tilt = Math.cos(angle * Math.PI / 180);
   const curve = ([, , low, high], at) => Array.from({ length: 73 }, (_, n) => {
-    const x = low * (high / low) ** (n / 72), one = solve(...at(x), 1e-5, null, 1e-3);
+    const x = low * (high / low) ** (n / 72), one = solve(...at(x), 1e-5, 1e-3);
     return one ? [x, one.restitution, one.flags] : [x, NaN, 0];
   });
   curves = { speed: curve(SLIDERS.speed, (v) => [v * tilt, radius, thickness]),
     thickness: curve(SLIDERS.thickness, (h) => [speed * tilt, radius, h]) };
   hit = collide(speed, angle, radius, thickness, friction);
   const words = hit ? Object.keys(pair.words).filter((bit) => hit.flags & bit).map((bit) => pair.words[bit])
-    : ["No answer: a number is zero, or the plate is thinner than 1 % of the radius."];
+    : ["No answer: a number is zero, or the plate is far too thin for this bead."];
   fill("flags", (words.length ? words : ["Inside every limit of the model."]).map((text) => ["li", text]));
   byId("flags").className = words.length ? "outside" : "";
   byId("cor").textContent = hit ? hit.restitution.toFixed(4) : "–";
@@ -64,7 +64,7 @@ function show() {
     Object.assign(facts, { "rebound": `${round(hit.restitution * hit.speed)} m/s`,
       "contact": `${round(hit.contact_time * 1e6)} µs`, "peak force": `${round(hit.peak_force)} N`,
       "dent": `${round(hit.residual_compression * 1e6)} µm` });
-    if (angle > 0) Object.assign(facts, { "along the plate": `${round(hit.along)} m/s`,
+    if (angle > 0) Object.assign(facts, { "along plate": `${round(hit.along)} m/s`,
       "spin": `${round(hit.spin)} rad/s` });
     const lost = { friction: hit.friction_share };
     for (const name of ["other", "plastic", "wave"]) lost[name] = hit.normal_share * hit[`${name}_fraction`];

@@ -159,15 +159,16 @@ function note({ path, force, root, curve, y }, [q, u, t]) {
   path.push({ t, u, f: force * forceOn(curve, root * q), d: q * q + left });
 }
 
-// ImpactModel.solve, in SI units; null for what it refuses. `path` takes the points of the contact.
-function solve(speed, radius, thickness, rtol = RTOL, path = null, least = 1e-7) {
+// ImpactModel.solve, in SI units; null for what it refuses, and beyond lambda = 200, where a bead stays
+// and the steps would be too many. `path` takes the points of the contact.
+function solve(speed, radius, thickness, rtol = RTOL, least = 1e-7, path = null) {
   if (!(V_MIN <= speed && speed <= V_MAX && R_MIN <= radius && radius <= R_MAX
         && thickness >= Math.max(R_MIN, THINNEST * radius))) return null;
   const { lam, scale, mass, time } = numbersOf(speed, radius, thickness), unit = speed * time;
   const y = scale / unit, force = y ** 1.5, work = 2 * y * force, at = Float64Array.of(0, 1, 0, 0);
   const run = { curve: null, lam, root: y ** -0.5, force, y, path, step: 0.7 * rtol ** 0.2 };
   if (path) note(run, at);
-  if (!integrate(run, at, rtol, least)) return null;
+  if (!(lam <= 200 && integrate(run, at, rtol, least))) return null;
   const dm = at[0] ** 2 / y, curve = run.curve = unloading(dm), row = unloadingRow(dm);
   at[0] = Math.sqrt((dm - curve.residual) * y);
   if (!integrate(run, at, rtol, least)) return null;
@@ -232,7 +233,7 @@ function slid(path, y, psi) {
 // ImpactModel.oblique of a bead without spin, from its speed and the angle from the normal [deg].
 function collide(bead, angle, radius, thickness, friction) {
   const tilt = angle * Math.PI / 180, size = bead * Math.sin(tilt), path = [];
-  const hit = solve(bead * Math.cos(tilt), radius, thickness, RTOL, path);
+  const hit = solve(bead * Math.cos(tilt), radius, thickness, RTOL, 1e-7, path);
   if (!hit) return null;
   const limit = friction * hit.speed, psi = limit > 0 ? Math.min(size / limit, FASTEST) : 0;
   const changed = psi > 0 ? limit * (psi - slid(path, hit.y, psi)) : 0, after = size - changed;
