@@ -1,6 +1,6 @@
 "use strict";
-// What the pages of contactlaw draw with. All quantities are in metres and seconds; only the drawing
-// functions use pixels.
+// What the pages of contactlaw draw with. All quantities are in metres and seconds; only the
+// drawing functions use pixels.
 const byId = (id) => document.getElementById(id);
 const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
 const INK = "#222", MUTED = "#a9a9a9", LINE = "#e2e2e2", BLUE = "#0072b2", RED = "#d55e00";
@@ -85,8 +85,9 @@ function drawHit(pen, width, tall, hit, phase, larger, colour) {
   const sunk = phase < 0 ? 0 : pressed + sampled(hit.displacement, phase);
   const y = ground - radius - shift(gap) + shift(sunk);
   // along the plate, at a speed that changes evenly during the contact
-  const moved = (first, last, t = Math.min(Math.max(phase, 0), 1)) => shift(hit.duration
-    * (Math.min(phase, 0) * first + t * first + 0.5 * t * t * (last - first) + Math.max(phase - 1, 0) * last));
+  const [before, t, after] = [Math.min(phase, 0), Math.min(Math.max(phase, 0), 1), Math.max(phase - 1, 0)];
+  const moved = (first, last) => shift(hit.duration
+    * ((before + t) * first + 0.5 * t * t * (last - first) + after * last));
   const x = width / 2 + moved(hit.size || 0, hit.along || 0);
   pen.save();
   if (phase >= 0 && phase <= 1) { // the bead is flattened at the contact

@@ -12,7 +12,7 @@ const place = ([low, high], x) => (low > 0 ? Math.log(x / low) / Math.log(high /
 const bounded = (x, low, high) => Math.min(Math.max(x, low), high);
 
 for (const [id, [unit, size, low, high]] of Object.entries(SLIDERS)) {
-  const row = document.createElement("div"), steps = low > 0 ? 1000 : Math.max(high, 100);
+  const row = document.createElement("div"), steps = low > 0 ? 1000 : high > 1 ? high : 100;
   row.innerHTML = `<label for="${id}">${id}</label>
     <input id="${id}" type="range" min="0" max="${steps}">
     <input type="number" min="0" step="any" aria-label="${id} ${unit}"> ${unit}`;
@@ -45,7 +45,8 @@ function fill(id, entries) { // elements with texts
     Object.assign(document.createElement(tag), { textContent: text }, more)));
 }
 function show() {
-  const { speed, radius, thickness, angle, friction } = asked, tilt = Math.cos(angle * Math.PI / 180);
+  const { speed, radius, thickness, angle, friction } = asked;
+  const tilt = Math.cos(angle * Math.PI / 180);
   const curve = ([, , low, high], at) => Array.from({ length: 73 }, (_, n) => {
     const x = low * (high / low) ** (n / 72), one = solve(...at(x), 1e-5, 1e-3);
     return one ? [x, one.restitution, one.flags] : [x, NaN, 0];
@@ -53,10 +54,11 @@ function show() {
   curves = { speed: curve(SLIDERS.speed, (v) => [v * tilt, radius, thickness]),
     thickness: curve(SLIDERS.thickness, (h) => [speed * tilt, radius, h]) };
   hit = collide(speed, angle, radius, thickness, friction);
-  const words = hit ? Object.keys(pair.words).filter((bit) => hit.flags & bit).map((bit) => pair.words[bit])
-    : ["No answer: a number is zero, or the plate is far too thin for this bead."];
-  fill("flags", (words.length ? words : ["Inside every limit of the model."]).map((text) => ["li", text]));
-  byId("flags").className = words.length ? "outside" : "";
+  const outside = Object.keys(pair.words).filter((bit) => !hit || hit.flags & bit);
+  const words = !hit ? ["No answer: a number is out of range, or the plate is far too thin for this bead."]
+    : outside.length ? outside.map((bit) => pair.words[bit]) : ["Inside every limit of the model."];
+  fill("flags", words.map((text) => ["li", text]));
+  byId("flags").className = outside.length ? "outside" : "";
   byId("cor").textContent = hit ? hit.restitution.toFixed(4) : "–";
   const facts = {}, shares = {};
   if (hit) {
@@ -67,7 +69,8 @@ function show() {
     if (angle > 0) Object.assign(facts, { "along plate": `${round(hit.along)} m/s`,
       "spin": `${round(hit.spin)} rad/s` });
     const lost = { friction: hit.friction_share };
-    for (const name of ["other", "plastic", "wave"]) lost[name] = hit.normal_share * hit[`${name}_fraction`];
+    for (const name of ["other", "plastic", "wave"])
+      lost[name] = hit.normal_share * hit[`${name}_fraction`];
     shares.rebound = Object.values(lost).reduce((left, share) => left - share, 1);
     for (const [name, share] of Object.entries(lost).reverse()) if (share > 0) shares[name] = share;
   }
@@ -76,7 +79,7 @@ function show() {
     ["i", "", { style: `flex:${share};background:${COLOURS[name]}` }]));
   fill("shares", Object.entries(shares).map(([name, share]) =>
     ["li", `${name} ${(100 * share).toFixed(1)} %`, { style: `border-color:${COLOURS[name]}` }]));
-  const python = thickness < Infinity ? thickness : "math.inf", shell = thickness < Infinity ? thickness : "inf";
+  const [python, shell] = thickness < Infinity ? [thickness, thickness] : ["math.inf", "inf"];
   byId("python").textContent = "import math\nimport contactlaw as cl\n\n" + pair.python + (angle > 0
     ? `angle = math.radians(${angle})\nhit = model.oblique(\n    speed=${speed} * math.cos(angle), `
       + `sliding_speed=${speed} * math.sin(angle),\n    radius=${radius}, thickness=${python}, `
@@ -96,7 +99,8 @@ function sample(one) { // the contact at even times, as drawHit takes it; the ta
     return of(a) + (t - a.t) / (b.t - a.t) * (of(b) - of(a));
   });
   Object.assign(one, { duration: end * one.time, model: one.restitution,
-    force: even(({ f }) => f * one.mass * one.speed / one.time), compression: even(({ d }) => d * unit),
+    force: even(({ f }) => f * one.mass * one.speed / one.time),
+    compression: even(({ d }) => d * unit),
     displacement: even(({ u }) => one.inelasticity * (1 - u) * unit),
     spread: pair.wave_path * Math.min(one.thickness, 4 * one.radius) });
   const most = Math.max(...one.compression.map((d, n) => d + one.displacement[n])) / one.radius;
@@ -108,7 +112,8 @@ function sample(one) { // the contact at even times, as drawHit takes it; the ta
 // Axes of a chart, in the units of their labels.
 function axes(pen, width, tall, across, up, titles) {
   const [x0, y0, x1, y1] = [46, tall - 44, width - 14, 28];
-  const X = (v) => x0 + bounded(place(across, v), 0, 1) * (x1 - x0), Y = (v) => y0 - place(up, v) * (y0 - y1);
+  const X = (v) => x0 + bounded(place(across, v), 0, 1) * (x1 - x0);
+  const Y = (v) => y0 - place(up, v) * (y0 - y1);
   const marks = across[0] > 0 ? [-2, -1, 0, 1, 2].flatMap((n) => [1, 2, 5].map((k) => k * 10 ** n))
     .filter((v) => v >= across[0] && v <= across[1] * 1.001) : ticks(across[1]);
   const write = (text, x, y, align, base) => {

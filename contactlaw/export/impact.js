@@ -1,6 +1,6 @@
-// One impact of a sphere on a plate: the functions of contactlaw.h.in, in JavaScript. `pair` has the
-// law's array and the numbers of the materials, for R = 1 m and H = 1 m. What is in capitals and not
-// defined here is a constant of the Python package.
+// One impact of a sphere on a plate: the functions of contactlaw.h.in, in JavaScript. `pair` has
+// the law's array and the numbers of the materials, for R = 1 m and H = 1 m. What is in capitals
+// and not defined here is a constant of the Python package.
 const { law, plate, limits } = pair, { corrections, growth } = plate;
 
 function polynomial(at, degree, t) {
@@ -26,7 +26,7 @@ function valueAt(row, which, dm) {
   return polynomial(law[entry + FUNCTION_AT], law[entry + FUNCTION_DEGREE], t)
     * (dm - 1) ** law[entry + FUNCTION_POWER];
 }
-function unloading(dm) { // the curve down from a largest compression; low and high: where it is capped
+function unloading(dm) { // the curve down from a largest compression; capped from low to high
   const row = unloadingRow(dm), capped = row > 0 && law[CAPPED] > 0;
   if (row === 0) return { residual: 0, stiffness: 0, exponent: 3, low: 0, high: 0 };
   const residual = valueAt(row, RESIDUAL, dm), exponent = valueAt(row, EXPONENT, dm);
@@ -159,8 +159,8 @@ function note({ path, force, root, curve, y }, [q, u, t]) {
   path.push({ t, u, f: force * forceOn(curve, root * q), d: q * q + left });
 }
 
-// ImpactModel.solve, in SI units; null for what it refuses, and beyond lambda = 200, where a bead stays
-// and the steps would be too many. `path` takes the points of the contact.
+// ImpactModel.solve, in SI units; null for what it refuses, and beyond lambda = 200, where a bead
+// stays and the steps would be too many. `path` takes the points of the contact.
 function solve(speed, radius, thickness, rtol = RTOL, least = 1e-7, path = null) {
   if (!(V_MIN <= speed && speed <= V_MAX && R_MIN <= radius && radius <= R_MAX
         && thickness >= Math.max(R_MIN, THINNEST * radius))) return null;
@@ -234,7 +234,7 @@ function slid(path, y, psi) {
 function collide(bead, angle, radius, thickness, friction) {
   const tilt = angle * Math.PI / 180, size = bead * Math.sin(tilt), path = [];
   const hit = solve(bead * Math.cos(tilt), radius, thickness, RTOL, 1e-7, path);
-  if (!hit) return null;
+  if (!hit || !(friction <= ROUGHEST)) return null;
   const limit = friction * hit.speed, psi = limit > 0 ? Math.min(size / limit, FASTEST) : 0;
   const changed = psi > 0 ? limit * (psi - slid(path, hit.y, psi)) : 0, after = size - changed;
   const deep = hit.peak_compression - hit.residual_compression, sum = size + Math.abs(after);

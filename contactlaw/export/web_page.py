@@ -30,8 +30,8 @@ from contactlaw.physical.scaling import sphere_on_plate, wave_path
 from contactlaw.physical.validity import Validity, explain
 from contactlaw.table import lookup
 
-# Modules whose constants the scripts use; of a name in two of them the first one counts.
-_MODULES = (force, corrections, integrator, tangential, solver, validity, oblique, lookup)
+# Modules whose constants the scripts use; of a name in two of them the last one counts.
+_MODULES = (lookup, oblique, validity, solver, tangential, integrator, corrections, force)
 _CAPITALS = re.compile(r"\b_?[A-Z][A-Z_0-9]+\b")
 
 
@@ -84,37 +84,33 @@ def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
 def _text(model: ImpactModel) -> str:
     """Fill the template."""
     pair, law = model.pair, model.force_law
-    known, registered = all(map(_in_catalogue, pair.given)), law.family in laws.names()
-    default = law.family == laws.DEFAULT
-    made = ", ".join(map(_python, pair.given))
-    chosen = "" if default else f", law={law.family!r}" if registered else ", law=...)  # your own"
-    values = {
-        "title": f"{pair.sphere.name} on {pair.plate.name}",
-        "law": f"{law.family}: {law.source}",
-        "made": f"contactlaw {VERSION}",
-    }
+    registered, default = law.family in laws.names(), law.family == laws.DEFAULT
+    bodies = ", ".join(_python(body) for body in pair.given)
+    chosen = "" if default else f", law={law.family!r}" if registered else ", law=law"
+    options = f"--sphere {pair.sphere.name} --plate {pair.plate.name}"
     numbers = _numbers(model) | {
-        "python": f"model = cl.ImpactModel(cl.Pair({made}){chosen})\n",
-        "options": f"--sphere {pair.sphere.name} --plate {pair.plate.name}"
-        + ("" if default else f" --law {law.family}"),
+        "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
+        "options": options + ("" if default else f" --law {law.family}"),
     }
+    typed = registered and all(map(_in_catalogue, pair.given))
     return string.Template(_read("explore.html")).substitute(
-        {name: html.escape(value) for name, value in values.items()},
-        hidden="" if known and registered else " hidden",
+        title=html.escape(f"{pair.sphere.name} on {pair.plate.name}"),
+        made=f"contactlaw {VERSION}; law {html.escape(f'{law.family}: {law.source}')}",
+        hidden="" if typed else " hidden",
         script=_script(numbers),
     )
 
 
 def _numbers(model: ImpactModel) -> dict[str, Any]:
-    """Numbers of a pair, of a bead of radius 1 m on a plate of 1 m."""
+    """Numbers of a pair, for a bead of radius 1 m on a plate of 1 m."""
     pair, law, one = model.pair, model.force_law, np.ones(())
     contact = sphere_on_plate(pair, law, one, one)
     plate = contact.plate
+    parts = {"corrections": plate.corrections._asdict(), "growth": plate.growth._asdict()}
     return {
         "law": law.data.tolist(),
         "limits": model.limits._asdict(),
-        "plate": plate._asdict()
-        | {"corrections": plate.corrections._asdict(), "growth": plate.growth._asdict()},
+        "plate": plate._asdict() | parts,
         "mass": contact.mass.item(),
         "stiffness": contact.stiffness.item(),
         # a law that never yields has no scale of its own
@@ -132,17 +128,17 @@ def _numbers(model: ImpactModel) -> dict[str, Any]:
 
 def _script(numbers: dict[str, Any]) -> str:
     """Scripts of the page, and the constants of Python that they use."""
-    drawing, *rest = map(_read, ("drawing.js", "impact.js", "explore.js"))
-    names = sorted(set(_CAPITALS.findall(rest[0])))
+    drawing, impact, explore = map(_read, ("drawing.js", "impact.js", "explore.js"))
     found = {
-        name: next(getattr(module, name) for module in _MODULES if hasattr(module, name))
-        for name in names
-        if any(hasattr(module, name) for module in _MODULES)
+        name: getattr(module, name)
+        for module in _MODULES
+        for name in _CAPITALS.findall(impact)
+        if hasattr(module, name)
     }
-    constants = ", ".join(f"{name} = {json.dumps(value)}" for name, value in found.items())
-    # JavaScript reads what json writes for inf; a name of a material could end the script
+    constants = ", ".join(f"{name} = {found[name]!r}" for name in sorted(found))
+    # JavaScript reads what json writes for inf; the name of a material could end the script
     data = json.dumps(numbers, separators=(",", ":")).replace("<", "\\u003c")
-    return "\n".join([drawing, f"const {constants};", f"const pair = {data};", *rest])
+    return f"{drawing}\nconst {constants};\nconst pair = {data};\n{impact}\n{explore}"
 
 
 def _read(name: str) -> str:
