@@ -120,7 +120,8 @@ function axes(pen, width, tall, across, up, titles) {
     [pen.textAlign, pen.textBaseline] = [align, base];
     pen.fillText(text, x, y);
   };
-  [pen.font, pen.fillStyle, pen.strokeStyle, pen.lineWidth] = ["13px " + FONT, INK, LINE, 1];
+  pen.font = `${width < 420 ? 11 : 13}px ${FONT}`;
+  [pen.fillStyle, pen.strokeStyle, pen.lineWidth] = [INK, LINE, 1];
   pen.beginPath();
   for (const v of ticks(up[1])) {
     pen.moveTo(x0, Y(v));

@@ -159,7 +159,7 @@ function note({ path, force, root, curve, y }, [q, u, t]) {
   path.push({ t, u, f: force * forceOn(curve, root * q), d: q * q + left });
 }
 
-// ImpactModel.solve, in SI units; null for what it refuses, and beyond lambda = 200, where a bead
+// ImpactModel.solve, in SI units; null for what it refuses, and beyond lambda = 100, where a bead
 // stays and the steps would be too many. `path` takes the points of the contact.
 function solve(speed, radius, thickness, rtol = RTOL, least = 1e-7, path = null) {
   if (!(V_MIN <= speed && speed <= V_MAX && R_MIN <= radius && radius <= R_MAX
@@ -168,10 +168,11 @@ function solve(speed, radius, thickness, rtol = RTOL, least = 1e-7, path = null)
   const y = scale / unit, force = y ** 1.5, work = 2 * y * force, at = Float64Array.of(0, 1, 0, 0);
   const run = { curve: null, lam, root: y ** -0.5, force, y, path, step: 0.7 * rtol ** 0.2 };
   if (path) note(run, at);
-  if (!(lam <= 200 && integrate(run, at, rtol, least))) return null;
+  if (!(lam <= 100 && integrate(run, at, rtol, least))) return null;
   const dm = at[0] ** 2 / y, curve = run.curve = unloading(dm), row = unloadingRow(dm);
   at[0] = Math.sqrt((dm - curve.residual) * y);
-  if (!integrate(run, at, rtol, least)) return null;
+  // beyond lambda = 8 the restitution is below 1e-4, which curves take for 0
+  if (!(lam > 8 && least > 1e-4) && !integrate(run, at, rtol, least)) return null;
   const other_fraction = row ? work * valueAt(row, OTHER, dm) : 0;
   const hit = {
     speed, radius, thickness, mass, y, unit, time, inelasticity: lam, other_fraction,
