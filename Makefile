@@ -55,6 +55,7 @@ pictures: .venv/test.done  ## draw the pictures of docs again, in about 10 minut
 	cp $(PICTURES)/report/fig15_restitution.png docs/fem_restitution.png
 	cp $(PICTURES)/report/fig26_oblique.png docs/oblique.png
 	cp $(PICTURES)/report/fig28_edges.png docs/edges.png
+	$(BIN)/contactlaw explore --sphere bearing-steel-52100 --plate aluminium-6061-t6 --out docs/explore.html
 
 clean:  ## remove the environment and the wheels
 	rm -rf .venv dist

@@ -47,7 +47,7 @@ FILES = {
                  "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
                 "doubts", "fit"],
-    "export": ["c_header", "liggghts_wall"],
+    "export": ["c_header", "liggghts_wall", "web_page"],
     "engines": ["record", "hdf5", "layout", "needs"],
     "engines/lammps": ["beads", "commands", "memory", "errors", "callback", "attachment"],
     "engines/pymunk": ["handlers", "models", "record", "registry", "seams", "edges",

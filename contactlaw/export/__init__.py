@@ -1,6 +1,7 @@
-"""Source files for codes that do not run Python: the law of a pair of materials in C."""
+"""The law of a pair of materials where no Python runs: source files in C, a page for a browser."""
 
 from contactlaw.export.c_header import header
 from contactlaw.export.liggghts_wall import liggghts
+from contactlaw.export.web_page import page
 
-__all__ = ["header", "liggghts"]
+__all__ = ["header", "liggghts", "page"]

@@ -1,6 +1,7 @@
 """index.html: the results of a rain on one page, which needs no other file and no network.
 
-The page is made of ``page.html``, ``page.css`` of the kit, and ``player.js``, the animation.
+The page is made of ``page.html``, ``page.css`` of the kit, and ``player.js``, the animation, which
+draws with ``drawing.js`` of `contactlaw.export`.
 """
 
 from __future__ import annotations
@@ -54,7 +55,8 @@ def page(run: Run, pictures: Mapping[str, Picture]) -> str:
     first, second = title(run)
     return common.template(__package__, "page.html").substitute(
         style=common.template(common.__package__, "page.css").template,
-        script=common.template(__package__, "player.js").template,
+        script=common.template("contactlaw.export", "drawing.js").template
+        + common.template(__package__, "player.js").template,
         data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
         what=html.escape(first),
         how=html.escape(second),

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from browser import WIDE
 
 from dem_demo import cli
 from dem_demo.rain import paths
@@ -14,11 +15,6 @@ RAIN += ["--law", "myc"]
 MORE = {"model": [], "baseline": ["--constant-cor", "0.9"], "oblique": ["--friction", "0.2"]}
 PICTURE = "document.getElementById('rain').toDataURL()"
 CONTACT = "document.getElementById('contact').toDataURL()"
-# Elements that reach beyond the screen, and what would have to be scrolled sideways.
-WIDE = """[...document.querySelectorAll("*")]
-  .filter((e) => e.getBoundingClientRect().right > innerWidth + 0.5
-              || e.getBoundingClientRect().left < -0.5 || e.scrollWidth > innerWidth)
-  .map((e) => e.outerHTML.slice(0, 80))"""
 
 
 @pytest.fixture(scope="module", params=MORE)

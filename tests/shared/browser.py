@@ -15,6 +15,12 @@ CHROMIUM = next(
 )
 _PATIENCE = 60.0  # [s], for a machine that is busy
 
+# Elements that reach beyond the screen, and what would have to be scrolled sideways.
+WIDE = """[...document.querySelectorAll("*")]
+  .filter((e) => e.getBoundingClientRect().right > innerWidth + 0.5
+              || e.getBoundingClientRect().left < -0.5 || e.scrollWidth > innerWidth)
+  .map((e) => e.outerHTML.slice(0, 80))"""
+
 
 class Page:
     """One page; `complaints` has what its console and its scripts complained of."""

@@ -1,0 +1,26 @@
+"""``contactlaw explore``: a page with sliders for a browser."""
+
+from __future__ import annotations
+
+import argparse
+from typing import Any
+
+from contactlaw import export
+from contactlaw.cli.parts import chosen, options, wording
+from contactlaw.model import ImpactModel
+
+
+def add(commands: Any) -> None:
+    """Add the subcommand and its options."""
+    about = "a page for a browser: sliders, curves, energy, one hit in slow motion"
+    command = options.command(commands, "explore", about, _run)
+    options.add_pair(command)
+    options.add_name_of_law(command)
+    command.add_argument("--out", default="page.html", metavar="FILE",
+                         help="file to write (default: %(default)s)")  # fmt: skip
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    with wording.file_of("out", arguments.out):
+        export.page(arguments.out, ImpactModel(chosen.pair(arguments), law=arguments.law))
+    print(arguments.out)

@@ -1,0 +1,156 @@
+"""One page of a pair of materials for a browser, with sliders; it integrates the law itself.
+
+``impact.js`` has the equation, ``drawing.js`` what the pages of the demo draw with, too, and
+``explore.js`` the page of ``explore.html``. Their constants are those of Python's modules.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+import json
+import math
+import os
+import re
+import string
+from importlib import resources
+from typing import Any
+
+import numpy as np
+
+from contactlaw import _atomic, laws
+from contactlaw._version import VERSION
+from contactlaw.answers import solver
+from contactlaw.equation import corrections, force, integrator, tangential
+from contactlaw.model import ImpactModel
+from contactlaw.physical import oblique, validity
+from contactlaw.physical.materials import Material, material, materials
+from contactlaw.physical.rate import rated
+from contactlaw.physical.scaling import sphere_on_plate, wave_path
+from contactlaw.physical.validity import Validity, explain
+from contactlaw.table import lookup
+
+# Modules whose constants the scripts use; of a name in two of them the last one counts.
+_MODULES = (lookup, oblique, validity, solver, tangential, integrator, corrections, force)
+_CAPITALS = re.compile(r"\b_?[A-Z][A-Z_0-9]+\b")
+
+
+def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
+    """Write a page for a browser that answers for a pair of materials, without a network.
+
+    It has sliders for speed, radius, thickness, angle and friction, curves of the COR, where the
+    energy goes, the force over time and flags. It integrates the law in JavaScript.
+
+    Parameters
+    ----------
+    path : path-like
+        File to write, below 1 MB; an existing file is replaced.
+    model : ImpactModel
+        Pair and law.
+
+    Raises
+    ------
+    TypeError
+        If the model is no ImpactModel.
+    ValueError
+        If the strength of a body depends on the rate of strain, for which the page has no law.
+    OSError
+        If the file cannot be written; nothing is left behind then.
+
+    Notes
+    -----
+    The COR is within 1e-6 of `ImpactModel.solve`, the sliding speed within 2e-3 of friction times
+    speed of `ImpactModel.oblique`.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> file = getfixture("tmp_path") / "page.html"
+    >>> cl.export.page(file, cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
+    >>> file.stat().st_size < 1e6
+    True
+    """
+    if not isinstance(model, ImpactModel):
+        raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
+    pair, law = model.pair, model.force_law
+    if law.yields and rated(pair, law):
+        raise ValueError(
+            f"model: the strength of {pair!r} grows with the rate of strain, and a page has one "
+            "law for all speeds: leave the rate out, by dataclasses.replace(material, rate=None)"
+        )
+    _atomic.write(path, _text(model).encode())
+
+
+def _text(model: ImpactModel) -> str:
+    """Fill the template."""
+    pair, law = model.pair, model.force_law
+    registered, default = law.family in laws.names(), law.family == laws.DEFAULT
+    bodies = ", ".join(_python(body) for body in pair.given)
+    chosen = "" if default else f", law={law.family!r}" if registered else ", law=law"
+    options = f"--sphere {pair.sphere.name} --plate {pair.plate.name}"
+    numbers = _numbers(model) | {
+        "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
+        "options": options + ("" if default else f" --law {law.family}"),
+    }
+    typed = registered and all(map(_in_catalogue, pair.given))
+    return string.Template(_read("explore.html")).substitute(
+        title=html.escape(f"{pair.sphere.name} on {pair.plate.name}"),
+        made=f"contactlaw {VERSION}; law {html.escape(f'{law.family}: {law.source}')}",
+        hidden="" if typed else " hidden",
+        script=_script(numbers),
+    )
+
+
+def _numbers(model: ImpactModel) -> dict[str, Any]:
+    """Numbers of a pair, for a bead of radius 1 m on a plate of 1 m."""
+    pair, law, one = model.pair, model.force_law, np.ones(())
+    contact = sphere_on_plate(pair, law, one, one)
+    plate = contact.plate
+    parts = {"corrections": plate.corrections._asdict(), "growth": plate.growth._asdict()}
+    return {
+        "law": law.data.tolist(),
+        "limits": model.limits._asdict(),
+        "plate": plate._asdict() | parts,
+        "mass": contact.mass.item(),
+        "stiffness": contact.stiffness.item(),
+        # a law that never yields has no scale of its own
+        "scale": min(contact.yield_compression.item(), 1.0),
+        "modulus": pair.effective_modulus,
+        "strength": min(body.strength or math.inf for body in (pair.sphere, pair.plate)),
+        "tangential_ratio": pair.tangential_ratio,
+        "returned": force.returned(law.data),
+        "stiffening": force.stiffening(law.data),
+        "wave_path": wave_path(pair.plate),
+        "words": {flag.value: explain(flag)[0] for flag in Validity},
+        "SLIDING_FLOW": Validity.SLIDING_FLOW.value,
+    }
+
+
+def _script(numbers: dict[str, Any]) -> str:
+    """Scripts of the page, and the constants of Python that they use."""
+    drawing, impact, explore = map(_read, ("drawing.js", "impact.js", "explore.js"))
+    found = {
+        name: getattr(module, name)
+        for module in _MODULES
+        for name in _CAPITALS.findall(impact)
+        if hasattr(module, name)
+    }
+    constants = ", ".join(f"{name} = {found[name]!r}" for name in sorted(found))
+    # JavaScript reads what json writes for inf; the name of a material could end the script
+    data = json.dumps(numbers, separators=(",", ":")).replace("<", "\\u003c")
+    return f"{drawing}\nconst {constants};\nconst pair = {data};\n{impact}\n{explore}"
+
+
+def _read(name: str) -> str:
+    return resources.files("contactlaw.export").joinpath(name).read_text("utf-8")
+
+
+def _in_catalogue(body: Material) -> bool:
+    return body.name in materials() and material(body.name) == body
+
+
+def _python(body: Material) -> str:
+    """Write a material as Python has it."""
+    if _in_catalogue(body):
+        return repr(body.name)
+    return f"cl.{dataclasses.replace(body, source='', uncertainty={})!r}"

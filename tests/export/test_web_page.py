@@ -1,0 +1,152 @@
+"""The page with sliders: in a browser it answers as Python does, fits, and needs no mouse."""
+
+import json
+import math
+import re
+import shlex
+
+import numpy as np
+import polymer
+import pytest
+from browser import WIDE
+from places import ROOT
+
+import contactlaw as cl
+from contactlaw import cli
+
+STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
+EXPLORE = ["explore", "--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name, "--out"]
+MODELS = {
+    "fem": cl.ImpactModel(STEEL),
+    "both flow": cl.ImpactModel(cl.Pair("copper-c11000", "lead")),
+    "elastic": cl.ImpactModel(cl.Pair("glass", "glass")),
+    "losses": polymer.MODELS[0],
+    "losses of both": polymer.MODELS[1],
+    "myc": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "myc"),
+    "capped": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "stronge"),
+    "hertz": cl.ImpactModel(cl.Pair("glass", "glass"), "hertz"),
+}
+# Errors allowed, of what is at most 1 absolutely and of sizes relatively.
+SHARES = dict.fromkeys(("restitution", "plastic_fraction", "wave_fraction", "other_fraction"), 1e-6)
+SIZES = dict.fromkeys(("peak_force", "peak_compression", "contact_time"), 1e-6)
+COR = "document.getElementById('cor').textContent"
+
+
+@pytest.fixture(scope="module")
+def steel(tmp_path_factory):
+    file = tmp_path_factory.mktemp("page") / "page.html"
+    assert cli.main([*EXPLORE, str(file)]) == 0
+    return file
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_browser_answers_as_python_does(name, tmp_path, page):
+    model, rng = MODELS[name], np.random.default_rng(7)
+    cl.export.page(tmp_path / "page.html", model)
+    speed = np.exp(rng.uniform(math.log(0.02), math.log(50.0), 200))
+    radius = np.exp(rng.uniform(math.log(2e-5), math.log(2e-2), 200))
+    thickness = radius * np.exp(rng.uniform(math.log(0.2), math.log(50.0), 200))
+    thickness[::10] = math.inf
+    angle, friction = rng.uniform(0.0, 89.0, 200), rng.choice([0.0, 0.05, 0.3, 1.0], 200)
+    tilt = np.radians(angle)
+    normal, along = speed * np.cos(tilt), speed * np.sin(tilt)
+    settings = np.stack([speed, angle, radius, thickness, friction], axis=1).tolist()
+    page.open(tmp_path / "page.html", 1280)
+    found = page.value(
+        f"{json.dumps(settings)}.map((one) => ({{...collide(...one), path: 0,"
+        " flags_normal: solve(one[0], one[2], one[3]).flags}))"
+    )
+    rows = {name: np.array([one[name] for one in found]) for name in found[0] if name != "path"}
+    expected = model.oblique(normal, along, radius, thickness, friction, method="solve")
+    stays = expected.restitution < 1e-6  # the page follows such a bead for less time
+    for name, most in (SHARES | SIZES).items():
+        right = np.asarray(getattr(expected, name))
+        off = abs(rows[name] - right) / (right if name in SIZES else 1.0)
+        assert off[~stays if name == "contact_time" else slice(None)].max() < most, name
+    off = abs(rows["sliding_speed"] - expected.sliding_speed)
+    assert (off <= 2e-3 * friction * normal + 1e-12).all()
+    np.testing.assert_array_equal(rows["flags"], expected.flags)
+    straight = model.solve(speed, radius, thickness)
+    np.testing.assert_array_equal(rows["flags_normal"], straight.flags)
+    mass = model.pair.sphere.density * 4 / 3 * math.pi * radius**3
+    share = expected.friction_energy / (0.5 * mass * speed**2)
+    np.testing.assert_allclose(rows["friction_share"], share, atol=1e-3)
+
+
+@pytest.mark.parametrize("angle", [0, 35])
+def test_the_page_gives_the_question_as_python_and_as_a_command(steel, page, angle, capsys):
+    page.open(steel, 1280)
+    page.value(f"Object.assign(asked, {{speed: 3, thickness: 1e-3, angle: {angle}}}), show()")
+    names = {}
+    exec(page.value("document.getElementById('python').textContent"), names)
+    printed = float(capsys.readouterr().out.split()[0])
+    words = shlex.split(page.value("document.getElementById('command').textContent"))
+    assert words[0] == "contactlaw" and cli.main([*words[1:], "--csv"]) == 0
+    header, row = capsys.readouterr().out.splitlines()
+    shell = float(row.split(",")[header.split(",").index("restitution")])
+    assert float(page.value(COR)) == pytest.approx(printed, abs=5.1e-5)
+    assert shell == pytest.approx(printed, abs=1e-9)
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_page_fits_and_needs_no_mouse(steel, page, width):
+    page.complaints.clear()
+    page.open(steel, width)
+    assert page.value("innerWidth") == width
+    unnamed = "[...document.querySelectorAll('input, canvas')].filter((e) =>"
+    assert page.value(f"{unnamed} !(e.ariaLabel || e.labels.length)).length") == 0
+    reached = []
+    for _ in range(14):
+        press(page, "Tab", 9)
+        reached.append(page.value("document.activeElement.id || document.activeElement.type"))
+        if reached[-1] == "thickness":
+            before = page.value(COR)
+            press(page, "ArrowRight", 39)
+            assert page.value("asked.thickness") > 2e-3
+            assert page.value(COR) > before
+    assert {"speed", "radius", "thickness", "angle", "friction", "play", "number"} <= set(reached)
+    page.value("(document.getElementById('angle').value = 60, 0)")
+    page.value("document.getElementById('angle').oninput(), asked.radius = 0.02, show()")
+    assert "deflection is not small" in page.value("document.getElementById('flags').textContent")
+    assert page.value(WIDE) == []
+    assert page.wait_for_change("document.getElementById('contact').toDataURL()")
+    assert page.complaints == []
+
+
+def press(page, key, code):
+    for kind in ("rawKeyDown", "keyUp"):
+        page.call("Input.dispatchKeyEvent", type=kind, key=key, windowsVirtualKeyCode=code)
+
+
+def test_the_example_is_what_the_command_writes(steel):
+    """The numbers of the pair aside, which another processor may round differently."""
+    data, version = re.compile(r"(?<=^const pair = ).*$", re.M), r"(?<=contactlaw )[\d.]+\d"
+    made, kept = (
+        re.sub(version, "", data.sub(lambda one: re.sub(r"[-+.\de]+", "", one[0]), text))
+        for text in (steel.read_text(), (ROOT / "docs/explore.html").read_text())
+    )
+    assert made == kept
+    assert steel.stat().st_size < 1e6
+    assert not re.findall(r"https?:|url\(|src=", kept)
+
+
+def test_what_a_page_cannot_answer_is_refused(tmp_path, capsys):
+    with pytest.raises(TypeError, match="ImpactModel, got 'steel'"):
+        cl.export.page(tmp_path / "page.html", "steel")
+    rated = [*EXPLORE[:2], "alloy-steel-4340", *EXPLORE[3:], str(tmp_path / "page.html")]
+    assert cli.main(rated) == 1
+    assert "rate of strain" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_materials_and_laws_of_ones_own_cannot_break_the_page(tmp_path, page):
+    bead = cl.Material("</script><b>", 70e9, 0.3, 2700, 2e8)
+    cl.export.page(tmp_path / "page.html", cl.ImpactModel(cl.Pair(bead, "glass")))
+    page.complaints.clear()
+    page.open(tmp_path / "page.html", 390)
+    assert page.value("document.querySelector('h1').textContent") == "</script><b> on glass"
+    assert page.value("document.getElementById('command').checkVisibility()") is False
+    names = {}
+    exec(page.value("document.getElementById('python').textContent"), names)
+    assert float(page.value(COR)) == pytest.approx(names["hit"].restitution, abs=5.1e-5)
+    assert page.complaints == []
