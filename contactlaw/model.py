@@ -390,7 +390,8 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
         (0.6225, 0.7343)
         """
         v, r, h, w, _ = broadcast(speed=speed, radius=radius, thickness=thickness, weights=weights)
-        return constant(v, r, w, self.lookup(v, r, h), keep)
+        found = self.lookup(v, r, h)
+        return constant(v, r, w, *map(np.atleast_1d, (found.restitution, found.flags)), keep)
 
     def speed_table(
         self,
