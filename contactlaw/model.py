@@ -391,7 +391,8 @@ class ImpactModel(Compiled, Histories, Oblique, Uncertain):
         """
         v, r, h, w, _ = broadcast(speed=speed, radius=radius, thickness=thickness, weights=weights)
         found = self.lookup(v, r, h)
-        return constant(v, r, w, *map(np.atleast_1d, (found.restitution, found.flags)), keep)
+        e, flags = (np.atleast_1d(one) for one in (found.restitution, found.flags))
+        return constant(v, r, w, e, flags, keep)
 
     def speed_table(
         self,

@@ -155,7 +155,8 @@ class Run:
 
 def taken(rows: Rows) -> Floats:
     """Energy that each contact took from the bead [J], by all causes."""
-    return np.sum([np.nan_to_num(rows[f"{cause}_energy"]) for cause in CAUSES], axis=0)
+    found: Floats = np.nansum([rows[f"{cause}_energy"] for cause in CAUSES], axis=0)
+    return found
 
 
 def _wall(name: str, rows: Rows) -> WallRow:

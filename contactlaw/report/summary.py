@@ -89,7 +89,7 @@ def joules(energy: float) -> str:
 
 
 def unit_of(energy: float) -> tuple[str, float]:
-    """Unit that suits an energy [J], and its size [J]."""
+    """Choose the unit that suits an energy [J]; returns its name and size [J]."""
     units = ("nJ", 1e-9), ("µJ", 1e-6), ("mJ", 1e-3)
     return next((one for one in units if 0.0 < abs(energy) < 1e3 * one[1]), ("J", 1.0))
 

@@ -23,6 +23,8 @@ class Surface(NamedTuple):
     ----------
     corners
         Corners of the triangles, shape (m, 3, 3) [m].
+    wall
+        Number of the wall of each triangle, shape (m,).
     triangle
         Number of the triangle for each row of a record, shape (n,); -1: on none of them.
     point
@@ -30,6 +32,7 @@ class Surface(NamedTuple):
     """
 
     corners: Floats
+    wall: Integers
     triangle: Integers
     point: Floats | None
 
@@ -42,7 +45,7 @@ class EnergyMap(NamedTuple):
     impacts, energy
         Number of contacts on each triangle, and the energy [J] that these took.
     density
-        Energy over area [J/m2], an average over the neighbourhood.
+        Energy over area [J/m2], an average over the neighbourhood on the same wall.
     """
 
     corners: Floats
@@ -53,18 +56,20 @@ class EnergyMap(NamedTuple):
 
 def energy_map(surface: Surface, energy: Floats) -> EnergyMap:
     """Sum up energies [J] by parts of a surface, which are small where triangles are large."""
-    corners, triangle = surface.corners, surface.triangle
-    hit = triangle >= 0
+    corners, hit = surface.corners, surface.triangle >= 0
     extent = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     reach = math.sqrt(_FEW * areas(corners).sum() / max(1, np.count_nonzero(hit)))
     reach = min(max(reach, _FINEST * extent), _COARSEST * extent)
-    where = triangle[hit]
+    where, wall = surface.triangle[hit], surface.wall
     if surface.point is not None:
-        corners, where = refined(corners, where, surface.point[hit], reach)
-    count = len(corners)
+        corners, where, whole = refined(corners, where, surface.point[hit], 0.7 * reach)
+        wall = wall[whole]
+    count, density = len(corners), np.empty(len(corners))
     taken = np.bincount(where, energy[hit], count)
-    return EnergyMap(corners, np.bincount(where, minlength=count), taken,
-                     averaged(corners, taken, reach))  # fmt: skip
+    for one in np.unique(wall):
+        here = wall == one
+        density[here] = averaged(corners[here], taken[here], reach)
+    return EnergyMap(corners, np.bincount(where, minlength=count), taken, density)
 
 
 def areas(corners: NDArray[np.floating]) -> Floats:
@@ -76,21 +81,26 @@ def areas(corners: NDArray[np.floating]) -> Floats:
 
 def refined(
     corners: Floats, triangle: Integers, point: Floats, longest: float
-) -> tuple[Floats, Integers]:
+) -> tuple[Floats, Integers, Integers]:
     """Halve triangles until no side is longer than `longest`; find that of each point again.
+
+    Returns the corners, the triangle of each point, and the number of the triangle of which each
+    is a part.
 
     Examples
     --------
     >>> square = np.array([[[0, 0, 0], [2, 0, 0], [2, 1, 0]], [[0, 0, 0], [2, 1, 0], [0, 1, 0]]])
-    >>> corners, where = refined(1.0 * square, np.array([0]), np.array([[1.9, 0.1, 0.0]]), 1.2)
-    >>> len(corners), corners[where[0]].tolist()
-    (4, [[1.0, 0.5, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0]])
+    >>> point = np.array([[1.9, 0.1, 0.0]])
+    >>> corners, where, whole = refined(1.0 * square, np.array([0]), point, 1.2)
+    >>> whole.tolist(), corners[where[0]].tolist()
+    ([0, 1, 0, 1], [[1.0, 0.5, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0]])
     """
+    whole = np.arange(len(corners))
     while True:
         side = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
         long = np.flatnonzero(side.max(axis=1) > longest)
         if not long.size:
-            return corners, triangle
+            return corners, triangle, whole
         # Roll each triangle until its longest side is from a to b; c is the corner opposite.
         turn = (side[long].argmax(axis=1)[:, None] + np.arange(3)) % 3
         a, b, c = np.moveaxis(corners[long[:, None], turn], 1, 0)
@@ -107,6 +117,7 @@ def refined(
         corners = corners.copy()
         corners[long] = np.stack((a, middle, c), axis=1)
         corners = np.concatenate((corners, np.stack((middle, b, c), axis=1)))
+        whole = np.concatenate((whole, whole[long]))
 
 
 def averaged(corners: NDArray[np.floating], energy: Floats, reach: float) -> Floats:
@@ -165,7 +176,7 @@ def ply(found: EnergyMap, colours: Integers) -> bytes:
 
 
 def _rows(values: NDArray[np.generic]) -> list[str]:
-    return [" ".join(map(repr, row)) for row in values.tolist()]
+    return [" ".join(f"{value:.9g}" for value in row) for row in values.tolist()]
 
 
 def _faces(count: int) -> list[str]:

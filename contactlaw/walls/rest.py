@@ -13,10 +13,11 @@ from contactlaw.walls.frame import RECTANGLE, corners_of
 from contactlaw.walls.motion import place
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 Rows = NDArray[np.void]
 
 
-def at_rest(facets: Rows, frames: Rows, hits: Rows) -> tuple[Floats, NDArray[np.int64], Floats]:
+def at_rest(facets: Rows, frames: Rows, hits: Rows) -> tuple[Floats, Integers, Integers, Floats]:
     """Triangles of all walls, and the triangle and the point on it of each impact.
 
     Parameters
@@ -30,6 +31,8 @@ def at_rest(facets: Rows, frames: Rows, hits: Rows) -> tuple[Floats, NDArray[np.
     -------
     corners : ndarray, shape (m, 3, 3)
         Corners of the triangles at time 0 of the motion's data [m]; a rectangle is two of them.
+    wall : ndarray of int, shape (m,)
+        Number of the wall of each triangle.
     triangle : ndarray of int, shape (n,)
         Triangle that each impact was on.
     point : ndarray, shape (n, 3)
@@ -48,7 +51,8 @@ def at_rest(facets: Rows, frames: Rows, hits: Rows) -> tuple[Floats, NDArray[np.
     one = facets[facet]
     along = point - one["corner"]
     a, b = ((along * one[edge]).sum(axis=1) / one[f"length_{edge}"] for edge in "ab")
-    return corners, np.where(box[facet] & (b > a), second[facet], facet), point
+    wall = np.concatenate((facets["wall"], facets["wall"][box]))
+    return corners, wall, np.where(box[facet] & (b > a), second[facet], facet), point
 
 
 @kernel(entry=True)

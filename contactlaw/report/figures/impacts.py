@@ -6,6 +6,8 @@ are medians.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -72,7 +74,7 @@ def _stacked(run: Run) -> list[tuple[str, NDArray[np.void]]]:
 
 
 def _histogram(axes: Axes, walls: list[tuple[str, NDArray[np.void]]], edges: NDArray[np.float64],
-               column: object, label: str) -> None:  # fmt: skip
+               column: Callable[[NDArray[np.void]], NDArray[np.float64]], label: str) -> None:  # fmt: skip
     values = [column(rows).clip(edges[0], edges[-1]) for _, rows in walls]
     axes.hist(values, list(edges), stacked=True, label=[name for name, _ in walls],
               color=_COLOURS[: len(walls)], edgecolor="white", linewidth=0.3)  # fmt: skip
@@ -95,4 +97,4 @@ def _cor(rows: NDArray[np.void]) -> NDArray[np.float64]:
 
 def angle(rows: NDArray[np.void]) -> NDArray[np.float64]:
     """Angle of each impact from the wall's normal [degrees]."""
-    return np.degrees(np.arctan2(rows["sliding_speed"], rows["approach_speed"]))
+    return np.asarray(np.degrees(np.arctan2(rows["sliding_speed"], rows["approach_speed"])))

@@ -6,9 +6,12 @@ mesh, each contact is a point whose area is the energy that it took.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -34,7 +37,8 @@ def draw(run: Run) -> Figure:
     thin = np.flatnonzero(high - low <= _FLAT * (high - low).max())
     views = 1 if thin.size else len(_VIEWS)
     figure = style.figure(
-        12.0, style.pick(6.6, 5.8 * views), "Where the walls take energy from the beads",
+        12.0, style.pick(6.6 if thin.size else 5.8, 5.8 * views),
+        "Where the walls take energy from the beads",
         f"{run.subject}; energy of all contacts per area, in {_time(run)}",
     )  # fmt: skip
     panels = np.atleast_1d(figure.subplots(*style.pick((1, views), (views, 1))))
@@ -53,7 +57,7 @@ def _time(run: Run) -> str:
     return f"{float(np.ptp(run.rows['time'])) * 1e3:.3g} ms"
 
 
-def _plan(axes: Axes, found: EnergyMap, across: int, scale: object) -> None:
+def _plan(axes: Axes, found: EnergyMap, across: int, scale: LogNorm) -> None:
     """Draw walls that are all in one plane, seen along the axis `across`."""
     x, y = (n for n in range(3) if n != across)
     sheet(axes, found.corners[:, :, [x, y]] * 1e3, found.density, scale)
@@ -61,7 +65,7 @@ def _plan(axes: Axes, found: EnergyMap, across: int, scale: object) -> None:
     axes.set(xlabel=f"{'xyz'[x]} [mm]", ylabel=f"{'xyz'[y]} [mm]")
 
 
-def _view(axes: Axes, found: EnergyMap, towards: Floats, scale: object) -> None:
+def _view(axes: Axes, found: EnergyMap, towards: Floats, scale: LogNorm) -> None:
     """Draw walls in space as one at the end of `towards` sees them from far away."""
     towards = towards / np.linalg.norm(towards)
     right = np.cross([0.0, 0.0, 1.0], towards)
@@ -108,13 +112,13 @@ def _points(run: Run) -> Figure:
     few = np.argsort(-energy)[:_POINTS]
     most = float(np.quantile(energy, 0.98)) or 1.0
     most = float(f"{most:.0e}")
-    style_of = {"color": style.VERMILION, "alpha": 0.4, "linewidths": 0}
+    look: dict[str, Any] = {"color": style.VERMILION, "alpha": 0.4, "linewidths": 0}
     size = 200.0 * (energy[few] / most).clip(0.01, 4.0)
-    axes.scatter(places[few, x], places[few, y], s=size, rasterized=True, **style_of)
+    axes.scatter(places[few, x], places[few, y], s=size, rasterized=True, **look)
     for part in (1.0, 0.1, 0.01):
-        axes.scatter([], [], s=200.0 * part, label=joules(part * most), **style_of)
+        axes.scatter([], [], s=200.0 * part, label=joules(part * most), **look)
     axes.set(xlabel=f"{'xyz'[x]} [mm]", ylabel=f"{'xyz'[y]} [mm]")
-    axes.set_aspect("equal", "datalim")
+    axes.set_aspect("equal")
     figure.legend(title="taken by a contact", loc="outside lower center", ncols=3)
     return figure
 
