@@ -56,7 +56,7 @@ def write(out: str | os.PathLike[str], run: Run) -> Path:
         if run.map is not None:
             from contactlaw.report.figures.places import colours
 
-            for name, content in zip(_MAPS, (vtk(run.map), ply(run.map, colours(run.map))),
+            for name, content in zip(_MAPS, (vtk(run.map), ply(run.map, 255.0 * colours(run.map))),
                                      strict=True):  # fmt: skip
                 (folder / name).write_bytes(content)
         (folder / "index.html").write_text(_page(run, pictures), encoding="utf-8")

@@ -65,7 +65,7 @@ def energy_map(surface: Surface, energy: Floats) -> EnergyMap:
         corners, where, whole = refined(corners, where, surface.point[hit], 0.7 * reach)
         wall = wall[whole]
     count, density = len(corners), np.empty(len(corners))
-    taken = np.bincount(where, energy[hit], count)
+    taken: Floats = np.bincount(where, energy[hit], count).astype(float)
     for one in np.unique(wall):
         here = wall == one
         density[here] = averaged(corners[here], taken[here], reach)
@@ -128,7 +128,8 @@ def averaged(corners: NDArray[np.floating], energy: Floats, reach: float) -> Flo
     middle = corners.mean(axis=1, dtype=float)
     middle -= middle.min(axis=0)
     width = middle.max(axis=0) / reach + 1.0
-    grid = max(_GRID, (float(width.prod()) / _CELLS) ** (1.0 / max(1, np.count_nonzero(width > 2))))
+    dimensions = max(1, int((width > 2.0).sum()))
+    grid = max(_GRID, (float(width.prod()) / _CELLS) ** (1.0 / dimensions))
     cell = (middle // (grid * reach)).astype(int)
     shape = tuple(cell.max(axis=0) + 1)
     window = np.arange(-math.ceil(3.0 / grid), math.ceil(3.0 / grid) + 1)
@@ -158,7 +159,7 @@ def vtk(found: EnergyMap) -> bytes:
     return "\n".join([*lines, ""]).encode()
 
 
-def ply(found: EnergyMap, colours: Integers) -> bytes:
+def ply(found: EnergyMap, colours: Floats) -> bytes:
     """Write a map as PLY text, with colours (k, 3) from 0 to 255 that any viewer shows."""
     n = len(found.corners)
     corner = [f"property {kind}" for kind in ("double x", "double y", "double z")]
@@ -168,7 +169,7 @@ def ply(found: EnergyMap, colours: Integers) -> bytes:
     head += ["property list uchar int vertex_indices", "property double energy_J"]
     head += ["property double J_per_m2", "end_header"]
     values = _rows(np.column_stack((found.energy, found.density)))
-    shades = np.repeat(colours, 3, axis=0).tolist()
+    shades = np.repeat(colours.round().astype(int), 3, axis=0).tolist()
     points = (f"{p} {r} {g} {b}" for p, (r, g, b) in
               zip(_rows(found.corners.reshape(-1, 3)), shades, strict=True))  # fmt: skip
     faces = (f"{face} {value}" for face, value in zip(_faces(n), values, strict=True))

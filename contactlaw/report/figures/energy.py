@@ -41,6 +41,8 @@ def draw(run: Run) -> Figure:
             bar(right, n, 0.6, list(zip(PARTS, found, strict=True)))
     for axes in (left, right):
         wall_axis(axes, names, "wall")
+        if len(walls) < 3:  # or a single bar would be as wide as its panel
+            axes.set_xlim(0.5 * len(walls) - 2.0, 0.5 * len(walls) + 1.0)
     left.set_ylabel(f"energy taken [{unit}]")
     left.margins(y=0.1)
     right.set_ylabel("share of the impacts' energy [%]")

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 from contactlaw import style
 from contactlaw.report.run import OTHERS, Run
 
+Column = Callable[[NDArray[np.void]], NDArray[np.float64]]
+
 _BINS = 12, 40  # fewest and most
 _COLOURS = style.BLUE, style.ORANGE, style.GREEN, style.PURPLE, style.SKY
 _WIDE = 50.0  # largest over smallest speed from which on the axis is logarithmic
@@ -74,7 +76,7 @@ def _stacked(run: Run) -> list[tuple[str, NDArray[np.void]]]:
 
 
 def _histogram(axes: Axes, walls: list[tuple[str, NDArray[np.void]]], edges: NDArray[np.float64],
-               column: Callable[[NDArray[np.void]], NDArray[np.float64]], label: str) -> None:  # fmt: skip
+               column: Column, label: str) -> None:  # fmt: skip
     values = [column(rows).clip(edges[0], edges[-1]) for _, rows in walls]
     axes.hist(values, list(edges), stacked=True, label=[name for name, _ in walls],
               color=_COLOURS[: len(walls)], edgecolor="white", linewidth=0.3)  # fmt: skip

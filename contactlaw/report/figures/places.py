@@ -1,7 +1,7 @@
 """Where the walls take energy from the beads: where they wear, ring and warm.
 
-Colours show the energy per area, averaged over a neighbourhood, of all causes. Without the walls'
-mesh, each contact is a point whose area is the energy that it took.
+Colours show the energy per area, averaged over a neighbourhood, of all causes; grey: none near.
+Without the walls' mesh, each contact is a point whose area is the energy that it took.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LogNorm, to_rgb
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 _FLAT = 1e-6  # extent over the largest one; walls with less are drawn as a plan
 _VIEWS = {"seen from above": (1.0, -1.6, 1.0), "seen from below, behind": (-1.0, 1.6, -1.0)}
 _DULL = 0.65  # brightness of a surface that is seen edge-on
+_NOTHING = 1e-4  # share of the largest energy per area; less is drawn as no energy, in grey
 _POINTS = 20_000  # most contacts that are drawn
 
 
@@ -60,7 +61,8 @@ def _time(run: Run) -> str:
 def _plan(axes: Axes, found: EnergyMap, across: int, scale: LogNorm) -> None:
     """Draw walls that are all in one plane, seen along the axis `across`."""
     x, y = (n for n in range(3) if n != across)
-    sheet(axes, found.corners[:, :, [x, y]] * 1e3, found.density, scale)
+    drawn = sheet(axes, found.corners[:, :, [x, y]] * 1e3, found.density, scale)
+    drawn.set(array=None, facecolors=colours(found))
     axes.autoscale_view()
     axes.set(xlabel=f"{'xyz'[x]} [mm]", ylabel=f"{'xyz'[y]} [mm]")
 
@@ -76,9 +78,8 @@ def _view(axes: Axes, found: EnergyMap, towards: Floats, scale: LogNorm) -> None
     drawn = sheet(axes, corners @ plane * 1e3, found.density[order], scale)
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     facing = np.abs(normal @ towards) / np.linalg.norm(normal, axis=1)
-    colours = drawn.to_rgba(found.density[order])
-    colours[:, :3] *= (_DULL + (1.0 - _DULL) * facing)[:, None]
-    drawn.set(array=None, facecolors=colours)
+    shades = colours(found)[order] * (_DULL + (1.0 - _DULL) * facing)[:, None]
+    drawn.set(array=None, facecolors=shades)
     axes.autoscale_view()
     axes.axis("off")
     _ruler(axes)
@@ -123,7 +124,9 @@ def _points(run: Run) -> Figure:
     return figure
 
 
-def colours(found: EnergyMap) -> NDArray[np.int64]:
-    """Colours of the map's triangles from 0 to 255, as in the figure, shape (k, 3)."""
-    mapped = ScalarMappable(density_scale([found.density]), DENSITY).to_rgba(found.density)
-    return (255.0 * np.asarray(mapped)[:, :3]).round().astype(np.int64)
+def colours(found: EnergyMap) -> Floats:
+    """Colours of the map's triangles as red, green and blue from 0 to 1, shape (k, 3)."""
+    scale = density_scale([found.density])
+    mapped = np.asarray(ScalarMappable(scale, DENSITY).to_rgba(found.density))[:, :3]
+    mapped[found.density < _NOTHING * found.density.max()] = to_rgb(style.PALE)
+    return mapped
