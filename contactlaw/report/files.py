@@ -56,9 +56,9 @@ def write(out: str | os.PathLike[str], run: Run) -> Path:
         if run.map is not None:
             from contactlaw.report.figures.places import colours
 
-            for name, content in zip(_MAPS, (vtk(run.map), ply(run.map, 255.0 * colours(run.map))),
-                                     strict=True):  # fmt: skip
-                (folder / name).write_bytes(content)
+            shown = colours(run.map)
+            for name, form in zip(_MAPS, (vtk, ply), strict=True):
+                (folder / name).write_bytes(form(run.map, shown))
         (folder / "index.html").write_text(_page(run, pictures), encoding="utf-8")
     if run.map is None:
         for name in _MAPS:  # of an earlier report
@@ -87,5 +87,5 @@ def _page(run: Run, pictures: dict[str, Picture]) -> str:
 
 _MAP_NOTE = (
     "<code>energy.vtk</code>, the energy map for ParaView and OVITO; <code>energy.ply</code>, the "
-    "same in colours for any viewer of meshes; "
+    "same for ParaView, MeshLab and Blender; "
 )

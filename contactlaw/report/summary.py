@@ -27,7 +27,8 @@ CONSTANT = (
 def counts(run: Run) -> str:
     """Say in one line how many impacts there are, on how many walls, and of what."""
     walls = f"{len(run.walls)} walls" if len(run.walls) > 1 else "one wall"
-    return f"{run.impacts.size} impacts on {walls}, {run.subject}"
+    count = run.impacts.size
+    return f"{count} impact{'s' * (count != 1)} on {walls}, {run.subject}"
 
 
 def text(run: Run) -> str:

@@ -146,8 +146,11 @@ def averaged(corners: NDArray[np.floating], energy: Floats, reach: float) -> Flo
     return spread(energy) / spread(areas(corners))
 
 
-def vtk(found: EnergyMap) -> bytes:
-    """Write a map in VTK's legacy text format, which ParaView and OVITO read."""
+def vtk(found: EnergyMap, colours: Floats) -> bytes:
+    """Write a map in VTK's legacy text format, which ParaView and OVITO read.
+
+    OVITO shows the colours, red, green and blue from 0 to 1, shape (k, 3).
+    """
     n = len(found.corners)
     lines = ["# vtk DataFile Version 3.0", "contactlaw: energy by wall [m, J]", "ASCII"]
     lines += ["DATASET UNSTRUCTURED_GRID", f"POINTS {3 * n} double"]
@@ -156,11 +159,12 @@ def vtk(found: EnergyMap) -> bytes:
     columns = ("impacts", found.impacts), ("energy_J", found.energy), ("J_per_m2", found.density)
     for name, values in columns:
         lines += [f"SCALARS {name} double 1", "LOOKUP_TABLE default", *_rows(values[:, None])]
+    lines += ["COLOR_SCALARS color 3", *_rows(colours)]  # last, or some readers lose the others
     return "\n".join([*lines, ""]).encode()
 
 
 def ply(found: EnergyMap, colours: Floats) -> bytes:
-    """Write a map as PLY text, with colours (k, 3) from 0 to 255 that any viewer shows."""
+    """Write a map as PLY text, with the colours of `vtk`, for viewers of meshes."""
     n = len(found.corners)
     corner = [f"property {kind}" for kind in ("double x", "double y", "double z")]
     corner += [f"property uchar {name}" for name in ("red", "green", "blue")]
@@ -169,7 +173,7 @@ def ply(found: EnergyMap, colours: Floats) -> bytes:
     head += ["property list uchar int vertex_indices", "property double energy_J"]
     head += ["property double J_per_m2", "end_header"]
     values = _rows(np.column_stack((found.energy, found.density)))
-    shades = np.repeat(colours.round().astype(int), 3, axis=0).tolist()
+    shades = np.repeat((255.0 * colours).round().astype(int), 3, axis=0).tolist()
     points = (f"{p} {r} {g} {b}" for p, (r, g, b) in
               zip(_rows(found.corners.reshape(-1, 3)), shades, strict=True))  # fmt: skip
     faces = (f"{face} {value}" for face, value in zip(_faces(n), values, strict=True))
