@@ -54,7 +54,7 @@ def _run(arguments: argparse.Namespace) -> None:
     except ValueError as error:
         raise wording.Refused(f"{path}: {error}") from None
     if arguments.mesh:
-        surface = _surface(run.record, arguments.mesh, arguments.scale)
+        surface = _surface(run, arguments.mesh, arguments.scale)
         run = dataclasses.replace(run, surface=surface)
     with wording.folder_of("out", arguments.out):
         print(files.write(arguments.out, run))
@@ -74,8 +74,9 @@ def _hdf5(content: bytes, name: str) -> Run:
     return Run(rows, f"{sphere} on {plate}, {name}", plates)
 
 
-def _surface(rows: NDArray[np.void], paths: list[str], scale: float | None) -> Surface:
+def _surface(run: Run, paths: list[str], scale: float | None) -> Surface:
     """Read the meshes of the walls whose triangles the record names."""
+    rows, point = run.record, run.points
     plates = np.unique(rows["plate"][rows["triangle"] >= 0])
     if plates.size != len(paths):
         raise wording.Refused(
@@ -84,7 +85,6 @@ def _surface(rows: NDArray[np.void], paths: list[str], scale: float | None) -> S
     corners: list[Floats] = []
     wall: list[NDArray[np.int64]] = []
     triangle = np.full(rows.size, -1)
-    point = np.column_stack([rows[name] for name in "xyz"])
     for plate, path in zip(plates.tolist(), paths, strict=True):
         mesh = Mesh.read(path, 1.0, scale=1.0 if scale is None else scale)
         here = np.flatnonzero(rows["plate"] == plate)

@@ -64,8 +64,13 @@ def shares(rows: Rows, mass: Floats, friction: bool) -> Shares:
     total = 0.5 * float((mass * rows["approach_speed"] ** 2).sum())
     if friction:
         total += float((mass * rows["sliding_speed"] ** 2).sum()) / 7.0
-    lost = [float(np.nansum(rows[f"{cause}_energy"])) / total for cause in CAUSES]
+    lost = (by_cause(rows) / total).tolist()
     return Shares(1.0 - sum(lost), *lost)
+
+
+def by_cause(rows: Rows) -> Floats:
+    """Energy that contacts took from the beads by each of the causes [J]."""
+    return np.array([np.nansum(rows[f"{cause}_energy"]) for cause in CAUSES])
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,9 +128,9 @@ class Run:
         return found
 
     @cached_property
-    def friction(self) -> bool:
-        """Whether friction took energy."""
-        return bool(np.nansum(np.abs(self.rows["friction_energy"])) > 0.0)
+    def points(self) -> Floats:
+        """Contact points of the record, shape (n, 3) [m]."""
+        return np.stack([self.record[name] for name in "xyz"], axis=1)
 
     @cached_property
     def walls(self) -> list[WallRow]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from contactlaw.report import page
 from contactlaw.report.limits import exceeded, limits_lines
-from contactlaw.report.run import CAUSES, Run, WallRow, taken
+from contactlaw.report.run import CAUSES, Run, WallRow, by_cause
 
 Table = list[tuple[str, ...]]
 
@@ -26,13 +26,12 @@ CONSTANT = (
 
 def counts(run: Run) -> str:
     """Say in one line how many impacts there are, on how many walls, and of what."""
-    walls = f"{len(run.walls)} walls" if len(run.walls) > 1 else "one wall"
-    count = run.impacts.size
-    return f"{count} impact{'s' * (count != 1)} on {walls}, {run.subject}"
+    walls, count = len(run.walls), run.impacts.size
+    return f"{count} impact{'s' * (count != 1)} on {walls} wall{'s' * (walls != 1)}, {run.subject}"
 
 
 def text(run: Run) -> str:
-    """Write the summary for a terminal and a text file."""
+    """Write the summary for a text file."""
     lines = [counts(run), *([run.left_out] if run.left_out else [])]
     for table, note in ((impacts(run), CONSTANT), (energies(run), ENERGY)):
         widths = [max(map(len, column)) for column in zip(*table, strict=True)]
@@ -43,8 +42,8 @@ def text(run: Run) -> str:
                 for row in table
             ),
         ]
-        lines += ["", note]
-    return "\n".join([*lines, "", *limits_lines(exceeded(run.impacts["flags"]))])  # fmt: skip
+        lines += ["", note]  # fmt: skip
+    return "\n".join([*lines, "", *limits_lines(exceeded(run.impacts["flags"]))])
 
 
 def impacts(run: Run) -> Table:
@@ -68,12 +67,11 @@ def _impacts(wall: WallRow) -> tuple[str, ...]:
 def energies(run: Run) -> Table:
     """Energy that each wall and each cause took, and the sums."""
     found: Table = [("wall", "contacts", *CAUSES, "in all", "share")]
-    whole = float(taken(run.rows).sum())
+    whole = by_cause(run.rows).sum() or 1.0
     for name, rows in (*((wall.name, wall.rows) for wall in run.walls), ("all walls", run.rows)):
-        parts = [float(np.nansum(rows[f"{cause}_energy"])) for cause in CAUSES]
-        shown = (joules(part) for part in (*parts, sum(parts)))
-        share = f"{sum(parts) / whole:z.1%}" if whole else "-"
-        found.append((name, f"{rows.size}", *shown, share))
+        parts = by_cause(rows)
+        shown = (joules(part) for part in (*parts, parts.sum()))
+        found.append((name, f"{rows.size}", *shown, f"{parts.sum() / whole:z.1%}"))
     return found
 
 
@@ -99,8 +97,5 @@ def as_html(table: Table) -> str:
     """Make a table of a page."""
     head, *rows = table
     cells = "".join(f"<th>{html.escape(name)}</th>" for name in head)
-    return (
-        f"<table><thead><tr>{cells}</tr></thead><tbody>"
-        + "".join(page.row(head, row) for row in rows)
-        + "</tbody></table>"
-    )
+    body = "".join(page.row(head, row) for row in rows)
+    return f"<table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table>"

@@ -62,8 +62,8 @@ def test_the_map_has_the_energy_and_the_area_of_the_walls(model, tmp_path):
     assert mesh.vertices[mesh.faces] == pytest.approx(corners)
     energy = mesh.metadata["_ply_raw"]["face"]["data"]["energy_J"]
     assert np.ravel(energy) == pytest.approx(columns["energy_J"], abs=1e-20)
-    bright = mesh.visual.vertex_colors[mesh.faces[:, 0], :3].sum(axis=1)
-    assert bright.argmax() == columns["J_per_m2"].argmax()
+    bright = mesh.visual.vertex_colors[mesh.faces[:, 0], :3].astype(int).sum(axis=1)
+    assert bright[columns["J_per_m2"].argmax()] == bright.max()
 
 
 def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, capsys):
@@ -98,6 +98,4 @@ def test_a_report_that_fails_on_rank_0_is_an_error(model, tmp_path):
         walls.report(tmp_path / "out")
     lmp.command("run 700")
     walls.report(tmp_path / "out")
-    assert (
-        "1 impact on one wall, gamma-alumina on glass" in (tmp_path / "out/index.html").read_text()
-    )
+    assert "1 impact on 1 wall, gamma-alumina on glass" in (tmp_path / "out/index.html").read_text()
