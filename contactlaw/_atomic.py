@@ -7,6 +7,8 @@ import errno
 import os
 import stat
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 
@@ -32,9 +34,30 @@ def write(path: str | os.PathLike[str], content: bytes) -> None:
             file.write(content)
 
 
+@contextmanager
+def folder(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """Give a temporary folder whose files move into `path` if the block raises nothing.
+
+    A new folder is made, in one that exists; other files in it are left alone.
+    """
+    to = Path(os.path.realpath(path))  # the temporary folder has to be on its file system
+    if to.exists() and not to.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, "is a file, not a folder: name another", str(path))
+    _check_folder(to.parent)
+    with tempfile.TemporaryDirectory(prefix=f".{to.name}.", dir=to.parent) as made:
+        yield Path(made)
+        to.mkdir(exist_ok=True)
+        for file in Path(made).iterdir():
+            write(to / file.name, file.read_bytes())
+
+
+def _check_folder(path: Path) -> None:
+    if not path.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path))
+
+
 def _replace(path: Path, content: bytes) -> None:
-    if not path.parent.is_dir():
-        raise FileNotFoundError(errno.ENOENT, "there is no such folder", str(path.parent))
+    _check_folder(path.parent)
     mode = stat.S_IMODE(path.stat().st_mode) if path.exists() else 0o644
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.parent)
     try:

@@ -390,7 +390,9 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         (0.6225, 0.7343)
         """
         v, r, h, w, _ = broadcast(speed=speed, radius=radius, thickness=thickness, weights=weights)
-        return constant(v, r, w, self.lookup(v, r, h), keep)
+        found = self.lookup(v, r, h)
+        e, flags = (np.atleast_1d(one) for one in (found.restitution, found.flags))
+        return constant(v, r, w, e, flags, keep)
 
     def speed_table(
         self,

@@ -8,7 +8,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Validity, count_flags
 
 Array = NDArray[np.float64]
@@ -64,8 +63,13 @@ class Constant:
     flags: dict[Validity, int]
 
 
-def constant(speed: Array, radius: Array, weights: Array, rebound: Rebound, keep: Keep) -> Constant:
-    """Find the COR that replaces those of many impacts, see `contactlaw.ImpactModel.constant`."""
+def constant(
+    speed: Array, radius: Array, weights: Array, e: Array, flags: NDArray[np.int64], keep: Keep
+) -> Constant:
+    """Find the COR that replaces those of many impacts, see `contactlaw.ImpactModel.constant`.
+
+    `e` and `flags` are the COR and the flags of each impact.
+    """
     if keep not in ("energy", "momentum"):
         raise ValueError(f"keep: must be 'energy' or 'momentum', got {keep!r}")
     if speed.size == 0:
@@ -75,7 +79,6 @@ def constant(speed: Array, radius: Array, weights: Array, rebound: Rebound, keep
         raise ValueError(f"weights: must be finite and not negative, got {wrong!r}")
     if not weights.any():
         raise ValueError("weights: all of them are 0, at least one has to be positive")
-    e = np.atleast_1d(np.asarray(rebound.restitution))
     share = weights / weights.max()
     mass = share * (radius / radius.max()) ** 3
     momentum = mass * (speed / speed.max())
@@ -92,7 +95,7 @@ def constant(speed: Array, radius: Array, weights: Array, rebound: Rebound, keep
         mean=mean,
         mean_energy_error=_energy_error(mean, e, energy),
         impacts=speed.size,
-        flags=count_flags(np.atleast_1d(np.asarray(rebound.flags))),
+        flags=count_flags(flags),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from contactlaw import Validity
 from contactlaw.equation.losses import DESCRIPTIONS
 from contactlaw.physical.kind import Kind as Kind  # for readers of a record
+from contactlaw.physical.kind import only_impacts as only_impacts
 
 if TYPE_CHECKING:
     from contactlaw import Rebound
@@ -65,6 +66,9 @@ COLUMNS = (
     ),
     Column("friction_energy", "f8", "J", "energy taken by friction, of translation and spin"),
     Column("wall_work", "f8", "J", "work of a moving wall on the bead during the contact"),
+    Column("radius", "f8", "m", "radius of the bead"),
+    Column("mass", "f8", "kg", "mass of the bead"),
+    Column("thickness", "f8", "m", "thickness of the plate, inf: half-space, 0: bead on bead"),
     Column("triangle", "i8", "1", "number of the mesh's triangle, -1: the plate is no mesh"),
     Column(
         "flags", "i8", "1", f"limits that the impact exceeds, 0 or a sum of: {_named(Validity)}"
@@ -74,32 +78,6 @@ IMPACT = np.dtype([(column.name, column.kind) for column in COLUMNS])
 _NAMES = tuple(column.name for column in COLUMNS)
 # The columns of a record whose model gives a COR and nothing else.
 OBSERVED = _NAMES[: _NAMES.index("sliding_speed_after")]
-
-
-def only_impacts(kinds: NDArray[Any]) -> tuple[NDArray[np.bool_], str]:
-    """Pick the rows of a record that are impacts; every reader of CORs and speeds does so.
-
-    Parameters
-    ----------
-    kinds : array (n,)
-        Column ``kind``; zeros for a record of an older version, whose rows count as impacts.
-
-    Returns
-    -------
-    ndarray of bool, str
-        Mask of the impacts, and which rows are none, "" if all are.
-
-    Examples
-    --------
-    >>> only_impacts(np.array([0, 2, 0, 4, 2]))[1]
-    '3 of 5 rows are no impacts and left out: 2 over edge, 1 resting'
-    """
-    found = kinds == Kind.IMPACT
-    names = {kind.value: kind.name.lower().replace("_", " ") for kind in Kind}
-    others, counts = np.unique(kinds[~found], return_counts=True)
-    listed = (f"{n} {names.get(kind, 'unknown')}" for kind, n in zip(others, counts, strict=True))
-    head = f"{counts.sum()} of {kinds.size} rows are no impacts and left out: "
-    return found, head + ", ".join(listed) if others.size else ""
 
 
 def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) -> None:

@@ -8,9 +8,7 @@ from __future__ import annotations
 
 import os
 import string
-import tempfile
 from importlib import resources
-from pathlib import Path
 
 from contactlaw import _atomic
 from contactlaw._version import VERSION
@@ -65,14 +63,10 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     ['README.txt', 'build.sh', 'contactlaw.h', 'normal_model_contactlaw.h',
      'tangential_model_contactlaw.h', 'wall_contactlaw.cpp']
     """
-    folder = Path(os.path.realpath(folder))  # the temporary folder has to be on its file system
-    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as made:
-        c_header.header(Path(made) / "contactlaw.h", model, table="none")
+    with _atomic.folder(folder) as made:
+        c_header.header(made / "contactlaw.h", model, table="none")
         for name, content in _texts(model).items():
-            _atomic.write(Path(made) / name, content.encode())
-        folder.mkdir(exist_ok=True)
-        for path in Path(made).iterdir():
-            _atomic.write(folder / path.name, path.read_bytes())
+            (made / name).write_bytes(content.encode())
 
 
 def _texts(model: ImpactModel) -> dict[str, str]:

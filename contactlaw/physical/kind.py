@@ -1,6 +1,10 @@
 """What a row of the impact record is: an impact, or another contact."""
 
 import enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
 
 
 class Kind(enum.IntEnum):
@@ -12,3 +16,29 @@ class Kind(enum.IntEnum):
     STRUCK = 3  # something else struck it, or pressed on it, while it was in contact; or the plate
     # came back from its edge and gave it more energy than it took
     RESTING = 4  # it stayed in contact far longer than an impact lasts, as under its weight
+
+
+def only_impacts(kinds: NDArray[Any]) -> tuple[NDArray[np.bool_], str]:
+    """Pick the rows of a record that are impacts; every reader of CORs and speeds does so.
+
+    Parameters
+    ----------
+    kinds : array (n,)
+        Column ``kind``; zeros for a record of an older version, whose rows count as impacts.
+
+    Returns
+    -------
+    ndarray of bool, str
+        Mask of the impacts, and which rows are none, "" if all are.
+
+    Examples
+    --------
+    >>> only_impacts(np.array([0, 2, 0, 4, 2]))[1]
+    '3 of 5 rows are no impacts and left out: 2 over edge, 1 resting'
+    """
+    found = kinds == Kind.IMPACT
+    names = {kind.value: kind.name.lower().replace("_", " ") for kind in Kind}
+    others, counts = np.unique(kinds[~found], return_counts=True)
+    listed = (f"{n} {names.get(kind, 'unknown')}" for kind, n in zip(others, counts, strict=True))
+    head = f"{counts.sum()} of {kinds.size} rows are no impacts and left out: "
+    return found, head + ", ".join(listed) if others.size else ""

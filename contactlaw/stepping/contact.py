@@ -386,6 +386,7 @@ def _end(
     # what is still missing is an error of the steps; with it, the energies of a run add up
     record.other_energy = (1.0 - share) * (lost - reported) + missing
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
+    record.radius, record.mass, record.thickness = bead.r, bead.mass, plate_row.thickness
     expected = impact(spring, abs(row.approach_speed))
     record.kind = _kind_of(
         scene, bead, contact, row, lost - reported + row.wave_energy + missing, leaves,

@@ -63,7 +63,7 @@ def framed(walls: Sequence[Wall], plate_rows: Sequence[Any], largest: float) -> 
     for number, (motion, parts) in enumerate(groups.items()):
         frame, count = frames[number], sum(map(len, parts))
         facets["frame"][first : first + count] = number
-        corners = _corners(facets[first : first + count])
+        corners = corners_of(facets[first : first + count])
         if motion is not None:
             motion.fill(frame)
         grid = FacetGrid(corners, first, largest)
@@ -101,14 +101,14 @@ def _triangles(mesh: Mesh) -> Rows:
 def _with_edges(wall: Wall, rows: Rows) -> Rows:
     """Write the edges of a wall into its facets; return the rows that they point to."""
     if isinstance(wall, Plate):
-        return fill_edges(rows, _corners(rows), rim(wall), np.zeros(1, int))
+        return fill_edges(rows, corners_of(rows), rim(wall), np.zeros(1, int))
     if not len(wall.rim):
         return rows[:0]
     part = smooth_parts(wall.vertices, wall.triangles, rows["normal"])
-    return fill_edges(rows, _corners(rows), wall.rim, part)
+    return fill_edges(rows, corners_of(rows), wall.rim, part)
 
 
-def _corners(facets: Rows) -> NDArray[np.float64]:
+def corners_of(facets: Rows) -> NDArray[np.float64]:
     """Corners of facets, shape (n, 4, 3) [m]; of a triangle the third corner is there twice."""
     box = facets["kind"] == RECTANGLE
     a = facets["a"] * np.where(box, facets["length_a"], 1.0)[:, None]

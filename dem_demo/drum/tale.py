@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.report.limits import label
 from dem_demo.drum import figures
 from dem_demo.drum.scene import Drum
 from dem_demo.kit.beads import Floats
-from dem_demo.kit.report import label
 from dem_demo.kit.runs import Run
 from dem_demo.kit.tale import Facts, Tale
 

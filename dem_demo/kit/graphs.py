@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw.report.limits import label
 from dem_demo.kit.measure import account, curve
-from dem_demo.kit.report import label
 from dem_demo.kit.runs import Run, Runs
 from dem_demo.kit.tale import progress
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from contactlaw.report.gallery import Picture
 from dem_demo.kit import disk
-from dem_demo.kit.gallery import Picture
 from dem_demo.kit.options import Refused
 from dem_demo.kit.place import PARTIAL, earlier, entries, replace, workplace
 from dem_demo.kit.signals import Interrupted

@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel
-from dem_demo.kit import page as common
-from dem_demo.kit.gallery import Picture
+from contactlaw.report import page as common
+from contactlaw.report.gallery import Picture
+from contactlaw.report.limits import exceeded, limits_lines
 from dem_demo.kit.measure import account, kept
-from dem_demo.kit.report import exceeded, limits_lines
 from dem_demo.kit.runs import Run, Runs
 
 _WIDTH = 42
@@ -140,17 +140,18 @@ def page(
     what, how = title(tale, runs)
     columns = [dict(facts(tale, one)) for one in runs.every]
     head, *names = columns[0]
-    frame = common.template("dem_demo.kit", "bed.html")
-    return frame.substitute(
+    body = common.template("dem_demo.kit", "bed.html").substitute(
         tale.page,
         name=run.scene.NAME,
-        style=common.template("dem_demo.kit", "page.css").template,
-        what=html.escape(what),
-        how=html.escape(how),
-        partial=common.partial(progress(runs), runs.reason),
         film=f"data:image/gif;base64,{base64.b64encode(film()).decode('ascii')}",
         head="".join(f"<th>{html.escape(text)}</th>" for text in ["", *(c[head] for c in columns)]),
-        rows="".join(_row(name, columns) for name in names),
+        rows="".join(
+            common.row(
+                ["", *(c[head] for c in columns)],
+                [name.strip(), *(c.get(name, "") for c in columns)],
+            )
+            for name in names
+        ),
         limits=common.exceeded(exceeded(run.impacts["flags"]), ""),
         figures=common.shown(tale.figures.module, pictures),
         command=html.escape(run.command),
@@ -158,12 +159,12 @@ def page(
         source=html.escape(ImpactModel(run.pair, run.law).force_law.source),
         made=common.made(run.created, run.versions),
     )
-
-
-def _row(name: str, columns: list[dict[str, str]]) -> str:
-    cells = [f"<td>{html.escape(name.strip())}</td>"]
-    cells += [
-        f"<td data-name='{html.escape(column[''])}'>{html.escape(column.get(name, ''))}</td>"
-        for column in columns
-    ]
-    return f"<tr>{''.join(cells)}</tr>"
+    heading = tale.page["heading"]
+    return common.whole(
+        body,
+        title=f"{heading}: what contactlaw gives a particle simulation",
+        heading=heading,
+        lede=tale.page["lede"],
+        facts=f"<b>{html.escape(what)}.</b> {html.escape(how)}.",
+        partial=common.partial(progress(runs), runs.reason),
+    )

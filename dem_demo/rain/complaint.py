@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 
 from contactlaw import ImpactModel
+from contactlaw.report.limits import label
 from dem_demo.kit import disk
-from dem_demo.kit.report import label
 from dem_demo.rain.scene import Scene
 
 _BEYOND = "outside the table, "

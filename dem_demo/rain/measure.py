@@ -10,26 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import edge_distance
+from contactlaw.report.limits import Limit, exceeded
+from contactlaw.report.run import Shares, shares
 from dem_demo.kit.beads import FLYING, GRAVITY, Floats
-from dem_demo.kit.report import Limit, exceeded
 from dem_demo.rain.record import Run
 
 _NOTHING = math.nan, math.nan, math.nan, math.nan
-
-
-class Shares(NamedTuple):
-    """Shares of the impact energy, which sum to 1.
-
-    Without friction it is the kinetic energy of the normal motion, with friction that of the
-    contact point, m v_n^2/2 + m v_s^2/7 with the sliding speed v_s: an impact changes no other.
-    In the baseline all but `kept` are NaN: a constant COR does not say where the energy went.
-    """
-
-    kept: float
-    wave: float
-    plastic: float
-    other: float
-    friction: float
 
 
 @dataclass(frozen=True)
@@ -45,7 +31,8 @@ class PlateRow:
     speed, restitution, lowest, highest : float
         Mean normal speed [m/s]; mean, smallest and largest COR.
     shares : Shares
-        Shares of the total energy of the impacts.
+        Shares of the total energy of the impacts. In the baseline all but ``kept`` are NaN: a
+        constant COR does not say where the energy went.
     outside : int
         Number of impacts that exceed a limit of the model.
     """
@@ -99,11 +86,7 @@ def _plate_row(run: Run, plate: int) -> PlateRow:
 def model_shares(run: Run, plate: int) -> Shares:
     """Shares of the energy by the model, also for the impacts of the baseline."""
     rows = run.modelled[run.modelled["plate"] == plate]
-    total = run.energy(rows).sum()
-    if run.scene.friction:
-        total += (_masses(run)[rows["bead"]] * rows["sliding_speed"] ** 2).sum() / 7.0
-    lost = [float(rows[f"{name}_energy"].sum() / total) for name in Shares._fields[1:]]
-    return Shares(1.0 - sum(lost), *lost)
+    return shares(rows, _masses(run)[rows["bead"]], run.scene.friction > 0.0)
 
 
 class Balance(NamedTuple):

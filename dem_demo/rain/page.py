@@ -1,7 +1,7 @@
 """index.html: the results of a rain on one page, which needs no other file and no network.
 
-The page is made of ``page.html``, ``page.css`` of the kit, and ``player.js``, the animation, which
-draws with ``drawing.js`` of `contactlaw.export`.
+``page.html`` and ``player.js``, the animation, which draws with ``drawing.js`` of
+`contactlaw.export`, stand in the frame of `contactlaw.report.page`.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ from matplotlib import colormaps
 from matplotlib.colors import to_hex
 from numpy.typing import NDArray
 
-from dem_demo.kit import page as common
-from dem_demo.kit.gallery import Picture
-from dem_demo.kit.report import label
+from contactlaw.report import page as common
+from contactlaw.report.gallery import Picture
+from contactlaw.report.limits import label
 from dem_demo.rain import figures, paths
 from dem_demo.rain.figures import _rain
 from dem_demo.rain.measure import (
@@ -33,6 +33,11 @@ from dem_demo.rain.measure import (
 from dem_demo.rain.record import Run
 from dem_demo.rain.report import progress, title
 
+_LEDE = (
+    "How a bead rebounds from a plate depends on the plate's thickness, on the bead and on its "
+    "speed. Particle simulations mostly take one number for all of it, the coefficient of "
+    "restitution (COR): rebound speed over impact speed. Here every collision has its own COR."
+)
 _SAMPLES = 96  # points of the force curve of a contact
 _FIELDS = ("start", "end", "x", "y", "u", "v", "fall", "restitution", "other_v", "outside")
 
@@ -53,14 +58,10 @@ def page(run: Run, pictures: Mapping[str, Picture]) -> str:
         HTML.
     """
     first, second = title(run)
-    return common.template(__package__, "page.html").substitute(
-        style=common.template(common.__package__, "page.css").template,
+    body = common.template(__package__, "page.html").substitute(
         script=common.template("contactlaw.export", "drawing.js").template
         + common.template(__package__, "player.js").template,
         data=json.dumps(_data(run), separators=(",", ":"), allow_nan=False),
-        what=html.escape(first),
-        how=html.escape(second),
-        partial=common.partial(progress(run), run.reason),
         sample=_sample(run),
         other=_other(run),
         rows="".join(_row(row, run.scene.friction > 0.0) for row in plate_rows(run)),
@@ -71,6 +72,14 @@ def page(run: Run, pictures: Mapping[str, Picture]) -> str:
         law=html.escape(run.law),
         source=html.escape(run.model.force_law.source),
         made=common.made(run.created, run.versions),
+    )
+    return common.whole(
+        body,
+        title="Beads rain on plates: what contactlaw gives a particle simulation",
+        heading="Beads rain on plates",
+        lede=_LEDE,
+        facts=f"<b>{html.escape(first)}.</b> {html.escape(second)}.",
+        partial=common.partial(progress(run), run.reason),
     )
 
 

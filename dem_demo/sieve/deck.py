@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dem_demo.kit.beads import Floats
 
@@ -134,10 +133,3 @@ def write_stl(path: Path, triangles: Floats) -> None:
     corners = 1e3 * triangles.reshape(-1, 3)
     mesh = trimesh.Trimesh(corners, np.arange(len(corners)).reshape(-1, 3), process=False)
     mesh.export(path, file_type="stl")
-
-
-def areas(triangles: NDArray[np.floating]) -> Floats:
-    """Areas of triangles [m2], from their corners (n, 3, 3) [m]."""
-    edge = np.diff(triangles.astype(float), axis=1)
-    area: Floats = 0.5 * np.linalg.norm(np.cross(edge[:, 0], edge[:, 1]), axis=1)
-    return area

@@ -8,13 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel
+from contactlaw.report.surface import averaged
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.runs import Run
-from dem_demo.sieve.deck import areas
 from dem_demo.sieve.scene import Sieve
 
-_SMOOTH = 1.0  # [pitch], standard deviation of the average that makes a density of impacts
-_GRID = 0.125  # [pitch], cell of the grid for that average
 _RIM = 1e-6  # [m]; contact points nearer to an opening are on its rim, within rounding
 
 
@@ -34,26 +32,7 @@ def density(run: Run[Sieve]) -> Floats:
     corners = run.scene.deck.triangles()[sheet]
     energy = np.zeros(len(run.scene.deck.triangles()))
     np.add.at(energy, run.collisions["triangle"], run.dissipated)
-    return _averaged(corners, energy[sheet], run.scene.deck.pitch)
-
-
-def _averaged(corners: Floats, energy: Floats, pitch: float) -> Floats:
-    step = _GRID * pitch
-    cell = (corners.mean(axis=1)[:, :2] // step).astype(int)
-    shape = tuple(cell.max(axis=0) + 1)
-    reach = np.arange(-math.ceil(3.0 * _SMOOTH / _GRID), math.ceil(3.0 * _SMOOTH / _GRID) + 1)
-    weight = np.exp(-0.5 * (reach * _GRID / _SMOOTH) ** 2)
-
-    def spread(values: Floats) -> Floats:
-        grid = np.zeros(shape)
-        np.add.at(grid, tuple(cell.T), values)
-        for axis in (0, 1):
-            grid = np.apply_along_axis(np.convolve, axis, grid, weight)
-            grid = np.take(grid, np.arange(shape[axis]) + reach.size // 2, axis=axis)
-        found: Floats = grid[tuple(cell.T)]
-        return found
-
-    return spread(energy) / spread(areas(corners))
+    return averaged(corners, energy[sheet], run.scene.deck.pitch)
 
 
 def loss_by_openings(run: Run[Sieve]) -> float:

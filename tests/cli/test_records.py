@@ -62,17 +62,20 @@ def test_weights_and_plates_and_a_half_space(tmp_path):
 def test_a_record_of_an_engine(tmp_path):
     rows = np.zeros(3, IMPACT)
     rows["approach_speed"], rows["plate"] = SPEED, [1, -1, 0]
+    rows["radius"], rows["thickness"] = RADIUS, [1e-3, 0.0, math.inf]
     np.save(tmp_path / "impacts.npy", rows)
     found = read(tmp_path / "impacts.npy")
     assert found.speed.tolist() == [0.5, 3.0]
     assert found.plate.tolist() == [1, 0]
+    assert found.radius.tolist() == [RADIUS[0], RADIUS[2]]
+    assert found.thickness.tolist() == [1e-3, math.inf]
 
 
 def recorded(path, kinds):
     """An engine's record, a row for each kind, in a file of numpy or of text."""
     rows = np.zeros(len(kinds), IMPACT)
     rows["approach_speed"], rows["kind"] = 1.0 + np.arange(len(kinds)), kinds
-    rows["restitution"] = 0.9
+    rows["restitution"], rows["radius"], rows["thickness"] = 0.9, 1e-3, 1e-3
     if path.suffix == ".npy":
         np.save(path, rows)
     else:
@@ -84,8 +87,8 @@ def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
     recorded(tmp_path / name, [0, 2, 0, 4, 2, 0])
     assert read(tmp_path / name).speed.tolist() == [1.0, 3.0, 6.0]
     words = "3 of 6 rows are no impacts and left out: 2 over edge, 1 resting"
-    pair = ["--sphere", "gamma-alumina", "--plate", "glass", "--radius", "1mm"]
-    command = ["constant", *pair, "--thickness", "1mm", "--record", str(tmp_path / name)]
+    pair = ["--sphere", "gamma-alumina", "--plate", "glass"]
+    command = ["constant", *pair, "--record", str(tmp_path / name)]
     assert cli_of_contactlaw.main(command) == 0
     assert words in capsys.readouterr().err
     recorded(tmp_path / name, [0, 0])

@@ -37,10 +37,10 @@ def test_every_column_has_a_unit_and_a_description():
         "time", "bead", "plate", "other", "x", "y", "z", "approach_speed", "restitution",
         "sliding_speed", "kind", "sliding_speed_after", "spin_x", "spin_y", "spin_z",
         "contact_time", "peak_force", "plastic_energy", "wave_energy", "other_energy",
-        "friction_energy", "wall_work", "triangle", "flags",
+        "friction_energy", "wall_work", "radius", "mass", "thickness", "triangle", "flags",
     )  # fmt: skip
     assert tuple(column.name for column in COLUMNS) == IMPACT.names
-    units = {"1", "s", "m", "m/s", "rad/s", "N", "J"}
+    units = {"1", "s", "m", "kg", "m/s", "rad/s", "N", "J"}
     for column in COLUMNS:
         assert column.unit in units, column
         assert len(column.description) > 10, column

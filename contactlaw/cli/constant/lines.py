@@ -153,4 +153,4 @@ def _bead_on_bead(model: ImpactModel, found: list[Wall], keep: Keep) -> Constant
             f"bead on bead, {v[error.impact]:g} m/s: outside the table, {error.reason}. --outside "
             "clamp takes the value at its border"
         ) from error
-    return constant(v, r, w, rebound, keep)
+    return constant(v, r, w, np.asarray(rebound.restitution), np.asarray(rebound.flags), keep)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import io
 import os
-import tokenize
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -200,19 +198,8 @@ def _hdf5(content: bytes) -> Recorded:
 
 
 def _npy(content: bytes) -> Recorded:
-    if not content.startswith(b"\x93NUMPY"):
-        raise ValueError("no file of np.save")
-    try:
-        rows = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError,
-            tokenize.TokenError) as error:  # fmt: skip
-        raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
-    names = rows.dtype.names
-    if names is None or rows.ndim != 1:
-        raise ValueError(
-            f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
-            "columns, as the record of an engine has"
-        )
+    rows = columns.saved(content)
+    names = rows.dtype.names or ()
 
     def numbers(wanted: list[int]) -> Array:
         for n in wanted:

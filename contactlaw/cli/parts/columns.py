@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import difflib
+import io
 import math
 import re
+import tokenize
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -48,6 +50,30 @@ def content_of(path: Path) -> bytes:
     if path.is_char_device() or path.is_block_device():
         raise ValueError(f"{path}: it is a device, not a file")
     return path.read_bytes()
+
+
+def saved(content: bytes) -> NDArray[np.void]:
+    """Read rows with named columns from the content of a file of ``np.save``.
+
+    Raises
+    ------
+    ValueError
+        If it is another file, a damaged one, or one of other arrays.
+    """
+    if not content.startswith(b"\x93NUMPY"):
+        raise ValueError("no file of np.save")
+    try:
+        rows = np.load(io.BytesIO(content), allow_pickle=False)
+    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError,
+            tokenize.TokenError) as error:  # fmt: skip
+        raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
+    if rows.dtype.names is None or rows.ndim != 1:
+        raise ValueError(
+            f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
+            "columns, as the record of an engine has"
+        )
+    found: NDArray[np.void] = rows
+    return found
 
 
 def split_table(content: bytes) -> tuple[list[str], list[str], str]:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import os
 import warnings
 from collections.abc import Callable, Sequence
 from numbers import Integral
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -258,6 +260,11 @@ class LammpsPlates:
             warn_of_metres("radius", radius, stacklevel=3)
         self._contacts = WallContacts(
             walls, models, radius, records, friction=friction, types=types
+        )
+        self._subject = ", ".join(sorted({one.pair.sphere.name for one in models.values()}))
+        own = (by_type(wall.model, types) or models for wall in walls)
+        self._materials = tuple(
+            "/".join(sorted({one.pair.plate.name for one in found.values()})) for found in own
         )
         self._fixes: list[str] = []
         self._warned: set[str] = set()
@@ -526,6 +533,47 @@ class LammpsPlates:
             return None
         whole: NDArray[np.void] = np.concatenate(parts)
         return whole[np.lexsort((whole["bead"], whole["time"]))]
+
+    def report(self, out: str | os.PathLike[str]) -> Path:
+        """Write a page about the impacts of all ranks, with figures and an energy map of the walls.
+
+        Every rank has to call it; rank 0 writes.
+
+        Parameters
+        ----------
+        out : path-like
+            Folder to write into; it is made if its parent exists.
+
+        Returns
+        -------
+        Path
+            The page, index.html, which needs no other file. Beside it are its figures,
+            summary.txt, record.npy, and the map as energy.vtk and energy.ply.
+
+        Raises
+        ------
+        ImportError, ValueError, OSError
+            Without matplotlib; without an impact; if a file cannot be written, of which no part is
+            left behind then.
+        """
+        from contactlaw.report import files
+        from contactlaw.report.run import Run
+        from contactlaw.report.surface import Surface
+        from contactlaw.walls.rest import at_rest
+
+        rows, page, error = self.gather(), Path(out) / "index.html", None
+        if rows is not None:
+            try:
+                subject = f"{self._subject} on {', '.join(sorted({*self._materials}))}, in LAMMPS"
+                scene = self._contacts.scene
+                surface = Surface(*at_rest(scene.facets, scene.frames, rows))
+                files.write(out, Run(rows, subject, self._materials, surface))
+            except Exception as found:  # the other ranks wait to hear of it
+                error = found
+        error = self._comm.bcast(error)
+        if error is not None:
+            raise error
+        return page
 
     def detach(self) -> None:
         """Remove the plates from the simulation; the record stays readable.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import sys
 import threading
 import warnings
@@ -10,6 +11,7 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import count
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 from weakref import KeyedRef, ref
 
@@ -323,11 +325,39 @@ class PymunkImpacts:
             impact, or 3 if the bead was struck while it touched); if every model is a
             `ReboundModel`, also sliding_speed_after, spin_x and spin_y (0), spin_z, contact_time,
             peak_force, plastic_energy, wave_energy, other_energy, friction_energy, wall_work (0,
-            unknown to the engine), triangle (-1) and flags. Energies are those of solid spheres,
-            bead on bead of the relative motion. What friction took of a bead that has left the
-            space within the step, and how it slides on, is NaN where the engine's friction acted.
+            unknown to the engine), radius, mass, thickness, triangle (-1) and flags. Energies are
+            those of solid spheres, bead on bead of the relative motion. What friction took of a
+            bead that has left the space within the step, and how it slides on, is NaN where the
+            engine's friction acted.
         """
         return self._contacts.record.read(self._register)
+
+    def report(self, out: str | os.PathLike[str]) -> Path:
+        """Write a page about the impacts so far, with figures, into a folder.
+
+        Parameters
+        ----------
+        out : path-like
+            Folder to write into; it is made if its parent exists.
+
+        Returns
+        -------
+        Path
+            The page, index.html, which needs no other file. Beside it are its figures,
+            summary.txt and record.npy, the record.
+
+        Raises
+        ------
+        ImportError, ValueError, OSError
+            Without matplotlib; without an impact on a plate, or with a model that is no
+            `ReboundModel`; if a file cannot be written, of which no part is left behind then.
+        """
+        from contactlaw.report import files
+        from contactlaw.report.run import Run
+
+        beads, plates = (np.unique(t["material"]) for t in (self.beads(), self.plates()))
+        subject = f"{', '.join(beads)} on {', '.join(plates)}, in pymunk"
+        return files.write(out, Run(self.collisions(), subject, tuple(self.plates()["material"])))
 
     def detach(self) -> None:
         """Restore the space as it was; the record stays readable. A second call has no effect.

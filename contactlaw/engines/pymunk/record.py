@@ -135,9 +135,11 @@ def _complete(rows: NDArray[np.void], register: Register, near: dict[int, Near])
     bead, other = rows["bead"], rows["other"]
     rows["friction_energy"] *= mass[bead]
     radius = beads["radius"]
+    rows["radius"], rows["mass"] = radius[bead], mass[bead]
     target = np.where(
         on_bead, radius[other], np.append(plates["thickness"], math.nan)[rows["plate"]]
     )
+    rows["thickness"] = np.where(on_bead, 0.0, target)
     # m1 m2/(m1 + m2); a plate has an infinite mass
     reduced = mass[bead] / (1.0 + np.where(on_bead, mass[bead] / mass[other], 0.0))
     energy = 0.5 * reduced * rows["approach_speed"] ** 2

@@ -23,15 +23,6 @@ def source(run: Run) -> str:
     return f"{scene.sphere_material.name} on {scene.plate_material.name}, {run.engine}, {law}{part}"
 
 
-def thickness_axis(axes: Axes, labels: list[str]) -> None:
-    """Give every plate a column, with its thickness below."""
-    crowded = len(labels) > style.pick(10, 6)
-    axes.set_xticks(range(len(labels)), labels, rotation=60 if crowded else 0)
-    axes.set_xlim(-0.55, len(labels) - 0.45)
-    axes.set_xlabel("plate thickness")
-    axes.grid(visible=False, axis="x")
-
-
 def ring(axes: Axes, x: Floats, y: Floats, far: NDArray[np.bool_]) -> None:
     """Mark the points of impacts that are outside a limit of the model."""
     axes.scatter(

@@ -9,8 +9,8 @@ from matplotlib.patches import Rectangle
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw.report.limits import label
 from dem_demo.kit.beads import Floats
-from dem_demo.kit.report import label
 from dem_demo.rain import paths
 from dem_demo.rain.measure import restitution_range
 from dem_demo.rain.record import Run

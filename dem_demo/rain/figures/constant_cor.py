@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from contactlaw import style
+from contactlaw.report.charts import wall_axis
+from contactlaw.report.limits import label
 from dem_demo.kit.beads import Floats
-from dem_demo.kit.report import label
-from dem_demo.rain.figures._labels import ring, ringed, source, thickness_axis
+from dem_demo.rain.figures._labels import ring, ringed, source
 from dem_demo.rain.measure import constant_beside_model, outside
 from dem_demo.rain.record import Run
 
@@ -30,7 +31,7 @@ def draw(run: Run) -> Figure:
     for n in range(len(run.scene.plates)):
         _column(axes, run, n, error)
     axes.axhline(0.0, color=style.INK, linewidth=1.4)
-    thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
+    wall_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     of_what = style.pick("% of impact energy", "%")  # the longer label does not fit on a phone
     axes.set_ylabel(f"error of rebound energy [{of_what}]")
     return figure

@@ -14,7 +14,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from dem_demo.kit.report import label
+from contactlaw.report.limits import label
 from dem_demo.rain.figures._labels import radius_colours, ring, ringed, source
 from dem_demo.rain.measure import outside
 from dem_demo.rain.record import Run

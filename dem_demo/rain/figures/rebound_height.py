@@ -10,8 +10,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from dem_demo.kit.report import label
-from dem_demo.rain.figures._labels import ring, ringed, source, thickness_axis
+from contactlaw.report.charts import wall_axis
+from contactlaw.report.limits import label
+from dem_demo.rain.figures._labels import ring, ringed, source
 from dem_demo.rain.measure import Rebounds, first_rebounds
 from dem_demo.rain.record import Run
 
@@ -34,7 +35,7 @@ def draw(run: Run) -> Figure:
     for n, column in enumerate(columns):
         _column(axes, run, n, column, fastest)
     _constant_line(axes, run)
-    thickness_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
+    wall_axis(axes, [label(plate.thickness) for plate in run.scene.plates])
     axes.set_ylabel("rebound height / impact height  $v^2/2g$")
     axes.set_ylim(0.0, 1.05)
     axes.legend(

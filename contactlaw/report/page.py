@@ -1,4 +1,4 @@
-"""Parts of the pages of all scenes; a page needs no other file and no network."""
+"""Pages of runs, and their parts; a page needs no other file and no network."""
 
 from __future__ import annotations
 
@@ -9,13 +9,22 @@ from importlib import resources
 from string import Template
 from types import ModuleType
 
-from dem_demo.kit.gallery import Picture
-from dem_demo.kit.report import Limit
+from contactlaw.report.gallery import Picture
+from contactlaw.report.limits import Limit
 
 
 def template(package: str, name: str) -> Template:
     """Read a file in the folder of a package."""
     return Template((resources.files(package) / name).read_text(encoding="utf-8"))
+
+
+def whole(body: str, *, title: str, heading: str, lede: str, facts: str, partial: str = "") -> str:
+    """Write a page; all arguments are HTML: facts in one line, a note on a partial run."""
+    style = template(__package__, "page.css").template
+    return template(__package__, "page.html").substitute(
+        body=body, title=title, heading=heading, lede=lede, facts=facts, partial=partial,
+        style=style,
+    )  # fmt: skip
 
 
 def partial(progress: str, reason: str) -> str:
@@ -62,3 +71,12 @@ def made(created: str, versions: Mapping[str, str]) -> str:
     """Say when a run was made, and by which versions."""
     programs = ", ".join(f"{name} {text}" for name, text in sorted(versions.items()))
     return html.escape(f"{created}; {programs}")
+
+
+def row(names: Sequence[str], cells: Sequence[str]) -> str:
+    """Row of a table; on a phone, each cell has the name of its column."""
+    parts = (
+        f"<td data-name='{html.escape(name)}'>{html.escape(cell)}</td>"
+        for name, cell in zip(names, cells, strict=True)
+    )
+    return f"<tr>{''.join(parts)}</tr>"

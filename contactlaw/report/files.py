@@ -1,0 +1,91 @@
+"""The folder of a report."""
+
+from __future__ import annotations
+
+import datetime
+import html
+import os
+from pathlib import Path
+
+import numpy as np
+
+from contactlaw import _atomic, style
+from contactlaw._version import VERSION
+from contactlaw.report import figures, page, summary
+from contactlaw.report.gallery import Picture
+from contactlaw.report.limits import exceeded
+from contactlaw.report.run import Run
+from contactlaw.report.surface import ply, vtk
+
+_MAPS = "energy.vtk", "energy.ply"
+_LEDE = (
+    "What the beads did to the walls: each impact had the coefficient of restitution (COR) that "
+    "follows from its speed, the bead and the wall."
+)
+
+
+def write(out: str | os.PathLike[str], run: Run) -> Path:
+    """Write index.html, its figures, summary.txt, record.npy and, of a mesh, the energy map.
+
+    Parameters
+    ----------
+    out : path-like
+        Folder to write into; it is made if its parent exists. Files of an earlier report in it are
+        replaced, other files are left alone.
+    run : Run
+        The run.
+
+    Returns
+    -------
+    Path
+        The page.
+
+    Raises
+    ------
+    ImportError
+        Without matplotlib; the message says how to install it.
+    OSError
+        If a file cannot be written; nothing is left behind then.
+    """
+    with style.applied(), _atomic.folder(out) as folder:
+        pictures = {name: figures.draw(name, run) for name in figures.names()}
+        for name, picture in pictures.items():
+            (folder / f"{name}.png").write_bytes(picture.wide)
+        (folder / "summary.txt").write_text(f"{summary.text(run)}\n", encoding="utf-8")
+        np.save(folder / "record.npy", run.record)
+        if run.map is not None:
+            from contactlaw.report.figures.places import colours
+
+            shown = colours(run.map)
+            for name, form in zip(_MAPS, (vtk, ply), strict=True):
+                (folder / name).write_bytes(form(run.map, shown))
+        (folder / "index.html").write_text(_page(run, pictures), encoding="utf-8")
+    if run.map is None:
+        for name in _MAPS:  # of an earlier report
+            (Path(out) / name).unlink(missing_ok=True)
+    return Path(out) / "index.html"
+
+
+def _page(run: Run, pictures: dict[str, Picture]) -> str:
+    made = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+    body = page.template(__package__, "body.html").substitute(
+        impacts=summary.as_html(summary.impacts(run)),
+        constant=summary.CONSTANT,
+        energies=summary.as_html(summary.energies(run)),
+        energy=summary.ENERGY,
+        limits=page.exceeded(exceeded(run.impacts["flags"]), ""),
+        figures=page.shown(figures.module, pictures),
+        maps=_MAP_NOTE if run.map is not None else "",
+        made=page.made(made, {"contactlaw": VERSION}),
+    )
+    left_out = f" {html.escape(run.left_out)}." if run.left_out else ""
+    return page.whole(
+        body, title=f"Impacts on walls: {html.escape(run.subject)}", heading="Impacts on walls",
+        lede=_LEDE, facts=f"<b>{html.escape(summary.counts(run))}.</b>{left_out}",
+    )  # fmt: skip
+
+
+_MAP_NOTE = (
+    "<code>energy.vtk</code>, the energy map for ParaView and OVITO; <code>energy.ply</code>, the "
+    "same for ParaView, MeshLab and Blender; "
+)

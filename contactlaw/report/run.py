@@ -1,0 +1,176 @@
+"""What a report says of a run: its impacts, and the energy that they took, wall by wall."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.answers.constant import Constant, constant
+from contactlaw.physical.kind import only_impacts
+from contactlaw.report.limits import label
+from contactlaw.report.surface import EnergyMap, Surface, energy_map
+
+Floats = NDArray[np.float64]
+Rows = NDArray[np.void]
+
+CAUSES = "wave", "plastic", "other", "friction"
+_NEEDED = (
+    "approach_speed", "restitution", "sliding_speed", "kind", "plate", "triangle", "x", "y", "z",
+    "flags", "mass", "thickness", *(f"{cause}_energy" for cause in CAUSES),
+)  # fmt: skip
+_MOST = 12  # walls that are told apart; beyond that, those that take the least energy are one
+OTHERS = "other walls"
+
+
+class WallRow(NamedTuple):
+    """What happened on one wall.
+
+    Attributes
+    ----------
+    name
+        Number of the wall, its thickness, and its material where that is known.
+    rows, impacts
+        Contacts on it, and those of them that are impacts.
+    best
+        One COR for all of the impacts; None without any.
+    """
+
+    name: str
+    rows: Rows
+    impacts: Rows
+    best: Constant | None
+
+
+class Shares(NamedTuple):
+    """Shares of the energy that impacts bring, which sum to 1.
+
+    Without friction it is the kinetic energy of the normal motion, with friction that of the
+    contact point, m v_n^2/2 + m v_s^2/7 with the sliding speed v_s: an impact changes no other.
+    """
+
+    kept: float
+    wave: float
+    plastic: float
+    other: float
+    friction: float
+
+
+def shares(rows: Rows, mass: Floats, friction: bool) -> Shares:
+    """Find where the energy of impacts went; `mass` is that of the bead of each [kg]."""
+    total = 0.5 * float((mass * rows["approach_speed"] ** 2).sum())
+    if friction:
+        total += float((mass * rows["sliding_speed"] ** 2).sum()) / 7.0
+    lost = (by_cause(rows) / total).tolist()
+    return Shares(1.0 - sum(lost), *lost)
+
+
+def by_cause(rows: Rows) -> Floats:
+    """Energy that contacts took from the beads by each of the causes [J]."""
+    return np.array([np.nansum(rows[f"{cause}_energy"]) for cause in CAUSES])
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """The impacts of a run.
+
+    Parameters
+    ----------
+    record : structured array
+        Impacts, with the columns of `contactlaw.engines.record.IMPACT`.
+    subject : str
+        What the run is, such as the materials and the engine.
+    materials : sequence of str
+        Material of each wall by its number in the record; "" or missing where it is unknown.
+    surface : Surface, optional
+        The walls, and where the rows of `record` hit them.
+
+    Raises
+    ------
+    ValueError
+        If the record lacks a column, or has no row on a wall.
+    """
+
+    record: Rows
+    subject: str
+    materials: tuple[str, ...] = ()
+    surface: Surface | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse a record from which no report can be made."""
+        missing = [name for name in _NEEDED if name not in (self.record.dtype.names or ())]
+        if missing:
+            raise ValueError(
+                f"record: has no column {', '.join(missing)}: a report needs all columns that the "
+                "engines record, with an ImpactModel and this version of contactlaw; simulate again"
+            )
+        if not (self.record["plate"] >= 0).any():
+            raise ValueError("record: has no impact on a wall yet: simulate longer")
+
+    @cached_property
+    def rows(self) -> Rows:
+        """Contacts on walls, also those that are no impacts."""
+        found: Rows = self.record[self.record["plate"] >= 0]
+        return found
+
+    @cached_property
+    def left_out(self) -> str:
+        """Which contacts are no impacts, and how many; empty if all are impacts."""
+        return only_impacts(self.rows["kind"])[1]
+
+    @cached_property
+    def impacts(self) -> Rows:
+        """Impacts on walls; COR and speed of other contacts mean nothing."""
+        found: Rows = self.rows[only_impacts(self.rows["kind"])[0]]
+        return found
+
+    @cached_property
+    def points(self) -> Floats:
+        """Contact points of the record, shape (n, 3) [m]."""
+        return np.stack([self.record[name] for name in "xyz"], axis=1)
+
+    @cached_property
+    def walls(self) -> list[WallRow]:
+        """Walls by number and thickness; the least of very many are counted as one."""
+        rows = self.rows
+        keys, which = np.unique(rows[["plate", "thickness"]], return_inverse=True)
+        names = [self._name(*key) for key in keys.tolist()]
+        if len(names) > _MOST:
+            order = np.argsort(-np.bincount(which, taken(rows)))
+            rank = np.empty(len(names), int)
+            rank[order] = np.minimum(np.arange(len(names)), _MOST - 1)
+            names = [names[n] for n in order[: _MOST - 1]] + [OTHERS]
+            which = rank[which]
+        return [_wall(name, rows[which == n]) for n, name in enumerate(names)]
+
+    def _name(self, plate: int, thickness: float) -> str:
+        material = self.materials[plate] if plate < len(self.materials) else ""
+        return f"{plate}: {label(thickness)}" + f" {material}" * bool(material)
+
+    @cached_property
+    def map(self) -> EnergyMap | None:
+        """Energy on the surface of the walls, if that is known."""
+        if self.surface is None or not (self.surface.triangle >= 0).any():
+            return None
+        return energy_map(self.surface, taken(self.record))
+
+
+def taken(rows: Rows) -> Floats:
+    """Energy that each contact took from the bead [J], by all causes."""
+    found: Floats = np.nansum([rows[f"{cause}_energy"] for cause in CAUSES], axis=0)
+    return found
+
+
+def _wall(name: str, rows: Rows) -> WallRow:
+    hits = rows[only_impacts(rows["kind"])[0]]
+    size = np.cbrt(hits["mass"])  # in place of the radius: beads may differ in density, too
+    best = None
+    if hits.size:
+        best = constant(
+            hits["approach_speed"], size, np.ones(hits.size), hits["restitution"], hits["flags"],
+            "energy",
+        )  # fmt: skip
+    return WallRow(name, rows, hits, best)
