@@ -15,7 +15,7 @@ def add(commands: Any) -> None:
     about = "source files for codes that do not run Python: header, liggghts"
     kinds = options.group(commands, "export", about, "KIND", "what to write")
     header = options.command(
-        kinds, "header", "the law and a table of COR as one file for C and C++",
+        kinds, "header", "the law and a table of COR as one file for C, C++ and GPUs",
         _header,
     )  # fmt: skip
     options.add_pair(header)
@@ -25,6 +25,9 @@ def add(commands: Any) -> None:
     header.add_argument("--table", default="cor", choices=["cor", "none"],
                         help="with a table of COR, or without: law and integration alone "
                         "(default: %(default)s)")  # fmt: skip
+    header.add_argument("--prefix", default="contactlaw", metavar="NAME",
+                        help="what its names begin with, as in steel_on_glass: several pairs in "
+                        "one source file need one each (default: %(default)s)")  # fmt: skip
     liggghts = options.command(
         kinds, "liggghts", "contact models for the walls of LIGGGHTS, with a build script",
         _liggghts,
@@ -38,7 +41,7 @@ def add(commands: Any) -> None:
 def _header(arguments: argparse.Namespace) -> None:
     with wording.file_of("out", arguments.out):
         model = ImpactModel(chosen.pair(arguments), law=arguments.law)
-        export.header(arguments.out, model, arguments.table)
+        export.header(arguments.out, model, arguments.table, prefix=arguments.prefix)
     print(arguments.out)
 
 

@@ -80,12 +80,21 @@ _IN_TABLE = (
 )
 _ATTRIBUTES = re.compile(r"^(\w+(?:, \w+)*)\n((?: {4}.+\n?)+)", re.MULTILINE)
 _SECTION = re.compile(r"^@(table|rate|plain)\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
+# The template is C, but for what GPUs need before each function and each constant.
+_DECLARED = re.compile(r"^static (inline|const)\b", re.MULTILINE)
+_MACROS = {"inline": "CONTACTLAW_FN", "const": "CONTACTLAW_DATA"}
+_PREFIX = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+_NAMES = re.compile(r"\b(contactlaw|CONTACTLAW)(?=_)")
 
 
 def header(
-    path: str | os.PathLike[str], model: ImpactModel, table: Literal["cor", "none"] = "cor"
+    path: str | os.PathLike[str],
+    model: ImpactModel,
+    table: Literal["cor", "none"] = "cor",
+    *,
+    prefix: str = "contactlaw",
 ) -> None:
-    """Write the law and the COR of a pair of materials as one C header, for C99 and C++11.
+    """Write the law and the COR of a pair of materials as one header for C, C++, CUDA, HIP, OpenCL.
 
     The first lines of the header say how it is used.
 
@@ -99,6 +108,9 @@ def header(
         Whether the header has a table, and with it ``contactlaw_restitution``. The table is coarser
         than the model's: its COR is within 1e-5 of the integrated equation, or as near as the
         model's own table. A pair with a rate of strain has four, with which it is within 2e-3.
+    prefix : str, optional
+        What the names in the header begin with, in lower case: headers of several pairs live in one
+        source file if each has its own, as in ``steel_on_glass_step``.
 
     Raises
     ------
@@ -106,6 +118,7 @@ def header(
         If the model is no ImpactModel.
     ValueError
         If the kind of table is unknown, or a large table would make the header exceed 500 kB; if
+        the prefix is not lower-case words of letters and digits, joined by single underscores; if
         another body may come to yield, because only one of two that yield has a rate.
     OSError
         If the file cannot be written; nothing is left behind then.
@@ -129,7 +142,12 @@ def header(
         raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
     if table not in ("cor", "none"):
         raise ValueError(f"table: must be 'cor' or 'none', got {table!r}")
-    content = _text(model, _nodes(model) if table == "cor" else {}).encode()
+    if not (isinstance(prefix, str) and _PREFIX.fullmatch(prefix)):
+        raise ValueError(
+            "prefix: must be lower-case words of letters and digits, joined by single underscores "
+            f"and beginning with a letter, as in 'steel_on_glass', got {prefix!r}"
+        )
+    content = _text(model, _nodes(model) if table == "cor" else {}, prefix).encode()
     if len(content) > LARGEST:
         raise ValueError(
             f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
@@ -163,12 +181,15 @@ def _nodes(model: ImpactModel) -> dict[float, tuple[ImpactModel, Table]]:
     return found
 
 
-def _text(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> str:
+def _text(
+    model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]], prefix: str = "contactlaw"
+) -> str:
     """Fill the template."""
     template = resources.files("contactlaw.export").joinpath("contactlaw.h.in").read_text("utf-8")
     levels = levels_of(model.pair, model.force_law, _STEP)
     parts = {"table": bool(nodes), "rate": levels is not None, "plain": levels is None}
     template = _SECTION.sub(lambda one: one[2] if parts[one[1]] else "", template)
+    template = _DECLARED.sub(lambda one: _MACROS[one[1]], template)
     spring = unit_spring(model, 1.0)
     made = factors(model.pair, model.force_law)
     transit = made.plate.transit * made.time  # time of a shear wave through a plate of H = 1 m
@@ -178,7 +199,7 @@ def _text(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> 
     numbers = [value for one in tables for value in (one if levels is None else _rounded(one))]
     values = {
         "version": VERSION,
-        "about": "\n".join(_about(model, nodes)),
+        "about": "$about",  # filled in last, as names of materials do not take the prefix
         "mass": _number(spring.mass),
         "stiffness": _number(spring.stiffness),
         "mobility": _number(spring.mobility),
@@ -221,8 +242,11 @@ def _text(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> 
         "root_series": _array(lookup.ROOT),
         "fifths": _array(2.0 ** (n / 5) for n in range(1, 6)),
     }
-    values["guard"] = hashlib.sha256(repr(values).encode()).hexdigest()[:16]
-    return string.Template(template).substitute(values)
+    about = "\n".join(_about(model, nodes))
+    values["guard"] = hashlib.sha256((repr(values) + about).encode()).hexdigest()[:16]
+    text = string.Template(template).substitute(values)
+    named = _NAMES.sub(lambda one: prefix if one[1].islower() else prefix.upper(), text)
+    return named.replace("$about", about)
 
 
 def _definitions() -> dict[str, str]:
@@ -265,6 +289,8 @@ def _enumerators(module: ModuleType, names: str) -> str:
 def _about(model: ImpactModel, nodes: dict[float, tuple[ImpactModel, Table]]) -> Iterable[str]:
     """Lines of the first comment: law, pair, flags that the pair alone decides, certificate."""
     law, pair, limits = model.force_law, model.pair, model.limits
+    if limits.always & Validity.RATE_DEPENDENT:
+        yield from _comment(f"WARNING: {'; '.join(explain(Validity.RATE_DEPENDENT))}")
     yield from _comment(f"law {law.family}: {law.source}")
     yield from _comment(f"sphere {_body(pair.sphere)}")
     yield from _comment(f"plate {_body(pair.plate)}")
