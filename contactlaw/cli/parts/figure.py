@@ -152,7 +152,7 @@ def _map(plan: Layout, found: Answers, subject: Subject) -> Figure:
     levels = [min(least, most - 0.01), *inner, most]
     filled = axes.contourf(x, y, value, levels, cmap=colours)
     ticks = inner if inner.size else [most]
-    figure.colorbar(filled, label=subject.label, ticks=ticks, spacing="proportional")
+    figure.colorbar(filled, label=subject.label, ticks=ticks, spacing="proportional", format="%g")
     for flag, kind in kinds.items():
         axes.contourf(x, y, (flags & flag) != 0, [0.5, 1.5], colors="none", hatches=[kind.hatch])
     if overload.min() < 1.0 < overload.max():
