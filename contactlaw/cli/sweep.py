@@ -13,15 +13,8 @@ import h5py
 
 from contactlaw import _atomic
 from contactlaw._version import VERSION
-from contactlaw.cli.parts import chosen, options, quantities, wording
-from contactlaw.cli.parts.impacts import (
-    ImpactTable,
-    explained,
-    in_words,
-    tabulate,
-    units,
-    write_csv,
-)
+from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
+from contactlaw.cli.parts.impacts import ImpactTable, explained, tabulate, units, write_csv
 from contactlaw.model import ImpactModel
 from contactlaw.physical.validity import Validity, count_flags
 
@@ -49,7 +42,9 @@ def _run(arguments: argparse.Namespace) -> None:
         found = tabulate(model, *axes, solve=arguments.solve)
         save(found, model, axes, arguments.out)
     flags = explained(count_flags(found.flags), len(found))
-    print(f"{arguments.out}: {len(found)} impacts, {in_words(found.asked)}", *flags, sep="\n")
+    print(
+        f"{arguments.out}: {len(found)} impacts, {impacts.in_words(found.asked)}", *flags, sep="\n"
+    )
 
 
 def save(

@@ -175,7 +175,7 @@ def unlikely(sizes: ArrayLike) -> float | None:
     """Find the largest bead or plate [m] that is so large that it was given in millimetres."""
     array = np.ravel(np.asarray(sizes, dtype=np.float64))
     largest = float(np.max(array[np.isfinite(array)], initial=0.0))
-    return largest if largest >= _LARGE else None
+    return largest if largest > _LARGE else None
 
 
 def warn_of_metres(name: str, sizes: ArrayLike, stacklevel: int) -> None:

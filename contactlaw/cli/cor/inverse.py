@@ -50,9 +50,10 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     asked = np.array([*itertools.product(*values)]).T
     errors = {f"{name}_error": getattr(arguments, f"{name}_error") for name in known}
     found: Any = getattr(model, unknown)(*asked, **errors)
+    questions = [dict(zip(known, one, strict=True)) for one in asked[1:].T.tolist()]
     remarks = [
-        f"COR {question[0]:g}, {_sizes(known, question[1:])}: {one.remark}"
-        for question, one in zip(asked.T.tolist(), found, strict=True) if one.remark
+        f"{impacts.in_words(impacts.asked(model, **sizes))}, COR {one.restitution:g}: {one.remark}"
+        for sizes, one in zip(questions, found, strict=True) if one.remark
     ]  # fmt: skip
     if len(remarks) == len(found):
         raise wording.Refused("\n".join(remarks))
@@ -75,12 +76,6 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
             f"{bands.meaning(band)}{bands.left_out(band, model.pair)}."
         )
         print(*impacts.text(table, columns), "", *textwrap.wrap(said, bands.WIDTH), sep="\n")
-
-
-def _sizes(names: tuple[str, ...], values: list[float]) -> str:
-    units = [quantities.SPEED if name == "speed" else quantities.LENGTH for name in names]
-    shown = (quantities.formatted(*one) for one in zip(values, units, strict=True))
-    return ", ".join(map(" ".join, zip(names, shown, strict=True)))
 
 
 def _columns(unknown: str) -> tuple[Column, ...]:

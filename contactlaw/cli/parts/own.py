@@ -3,47 +3,30 @@
 from __future__ import annotations
 
 import difflib
+import functools
 import re
 from collections.abc import Callable, Mapping
 
 from contactlaw.cli.parts import quantities, wording
-from contactlaw.cli.parts.quantities import Quantity, value
+from contactlaw.cli.parts.quantities import value
 from contactlaw.physical.materials import Material, find
 
 _NUMBER = re.compile(r"(\w+)\s*=\s*(.*?)[\s,;]*(?=\w+\s*=|$)")
-
-
-def _of(*parts: Quantity) -> Callable[[str], object]:
-    """Reader of as many numbers as quantities, or of the last ones; of one number alone."""
-
-    def read(text: str) -> object:
-        words = text.strip("()[] ").split(",")
-        if len(words) > len(parts):
-            raise ValueError(f"got {text!r}, expected {' and '.join(one.name for one in parts)}")
-        known = parts[-len(words) :]
-        found = tuple(value(word, one) for word, one in zip(words, known, strict=True))
-        return found if len(parts) > 1 and len(found) > 1 else found[0]
-
-    return read
 
 
 def _hardness(text: str) -> object:
     return text if "H" in text.upper() else value(text, quantities.STRESS)  # HRC, HV, HB
 
 
-_SHARE = quantities.SHARE
 _READERS: dict[str, tuple[str, Callable[[str], object]]] = {
-    "E": ("youngs_modulus", _of(quantities.STRESS)),
-    "nu": ("poissons_ratio", _of(_SHARE)),
-    "rho": ("density", _of(quantities.DENSITY)),
-    "yield": ("yield_strength", _of(quantities.STRESS)),
+    "E": ("youngs_modulus", functools.partial(value, quantity=quantities.STRESS)),
+    "nu": ("poissons_ratio", functools.partial(value, quantity=quantities.SHARE)),
+    "rho": ("density", functools.partial(value, quantity=quantities.DENSITY)),
+    "yield": ("yield_strength", functools.partial(value, quantity=quantities.STRESS)),
     "hardness": ("hardness", _hardness),
-    "hardening": ("hardening", _of(quantities.STRESS, _SHARE)),
-    "rate": ("rate", _of(_SHARE, quantities.RATE)),
-    "loss": ("loss_factor", _of(_SHARE, quantities.FREQUENCY)),
     "kind": ("kind", str),
     "name": ("name", str),
-}  # fmt: skip
+}
 
 
 def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material:
@@ -51,9 +34,9 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
 
     Examples
     --------
-    >>> bead = material_of("sphere", "E=2.8GPa nu=0.35 rho=1.41g/cm3 loss=0.05,10kHz", {})
-    >>> bead.density, bead.loss_factor
-    (1410.0, (0.05, 10000.0))
+    >>> bead = material_of("sphere", "E=2.8GPa nu=0.35 rho=1.41g/cm3 name=POM", {})
+    >>> bead.density, bead.name
+    (1410.0, 'POM')
     """
     try:
         if "=" not in text:

@@ -63,8 +63,6 @@ STRESS = Quantity(
 DENSITY = Quantity(
     "density", {"kg/m3": Decimal(1), "g/m3": Decimal("1e-3"), "g/cm3": Decimal(1000)}
 )
-RATE = Quantity("rate", {"1/s": Decimal(1), "/s": Decimal(1), "s^-1": Decimal(1)})
-FREQUENCY = Quantity("frequency", {"Hz": Decimal(1), "kHz": Decimal(1000), "MHz": Decimal("1e6")})
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 
 

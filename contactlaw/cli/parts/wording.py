@@ -22,7 +22,11 @@ from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialE
 
 _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
 
-_OTHER_NAMES = {"path": "plot", "priors": "prior"}  # arguments whose options have other names
+_OTHER_NAMES = {
+    "path": "plot",
+    "priors": "prior",
+    "restitution": "cor",
+}  # arguments whose options have other names
 
 
 OWN = '"E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer"'  # a material on the command line

@@ -22,6 +22,11 @@ DROPS += [(1e-3, 15.0), (0.7e-3, 9.0), (0.5e-3, 0.5), (0.5e-3, 4.0), (0.5e-3, 15
 DROPS += [(0.35e-3, 2.0), (0.35e-3, 12.0), (0.25e-3, 3.0)]
 
 
+def test_a_bead_that_is_likely_in_millimetres_draws_a_warning():
+    with pytest.warns(UserWarning, match="radius: 0.2 is 0.2 m; 0.2e-3 for 0.2 mm"):
+        attach(make([(0, 0, 0.05)], radius=0.2), cl.ImpactModel(box.PAIR), [flat(1e-3)])
+
+
 @pytest.mark.parametrize("radius", [0.5e-3, 0.9e-3])
 def test_drops_have_the_restitution_of_the_solver(model, radius):
     dt = min(softsphere.time_step(model, v, radius, h) for h, v in DROPS)

@@ -554,6 +554,17 @@ def test_a_length_in_pixels_is_refused():
     assert circle.collision_type == 0
 
 
+def test_sizes_that_are_likely_millimetres_draw_a_warning(model):
+    space = make_space()
+    impacts = attach(space, model)
+    with pytest.warns(UserWarning, match="radius: 0.9 is 0.9 m; 0.9e-3 for 0.9 mm"):
+        impacts.add_bead(make_bead(space, (0, 1), radius=0.9))
+    plate = pymunk.Segment(space.static_body, (-1, 0), (1, 0), 0)
+    space.add(plate)
+    with pytest.warns(UserWarning, match="thickness: 1 is 1 m; 1e-3 for 1 mm"):
+        impacts.add_plate(plate, 1.0)
+
+
 @pytest.mark.parametrize("factor", [1e-3, 1 / 1.6, 8.0, 4e5])
 def test_a_mass_that_is_not_the_spheres_is_told(model, factor):
     space = make_space()
