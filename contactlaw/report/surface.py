@@ -93,7 +93,7 @@ def refined(
     >>> point = np.array([[1.9, 0.1, 0.0]])
     >>> corners, where, whole = refined(1.0 * square, np.array([0]), point, 1.2)
     >>> whole.tolist(), corners[where[0]].tolist()
-    ([0, 1, 0, 1], [[1.0, 0.5, 0.0], [2.0, 0.0, 0.0], [2.0, 1.0, 0.0]])
+    ([0, 1, 0, 1, 0, 1], [[2.0, 1.0, 0.0], [1.0, 0.5, 0.0], [2.0, 0.0, 0.0]])
     """
     whole = np.arange(len(corners))
     while True:
