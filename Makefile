@@ -17,10 +17,12 @@ test: .venv/test.done  ## run the tests
 
 ENGINES := liggghts libliggghts-dev libopenmpi-dev g++
 
-test-engines: .venv/test.done  ## run the tests of LIGGGHTS, which PyPI does not have
+test-engines: .venv/engines.done  ## run the tests of LIGGGHTS, CUDA and OpenCL; none may be skipped
 	@dpkg-query --show $(ENGINES) >/dev/null || \
 	  { echo "for LIGGGHTS: apt-get install --no-install-recommends $(ENGINES)"; exit 1; }
-	$(BIN)/python -m pytest tests/export/test_liggghts.py
+	$(BIN)/python -m pytest tests/export/test_liggghts.py tests/export/test_gpu.py \
+	  --junitxml=.venv/engines.xml
+	@! grep -o '<skipped [^>]*' .venv/engines.xml
 
 lint: .venv/dev.done  ## check style and types
 	$(BIN)/ruff check .

@@ -914,12 +914,13 @@ PLAIN = ["export", "header", "--sphere", "bearing-steel-52100", "--plate", "alum
 
 
 def test_the_command_writes_the_same_file(tmp_path, capsys):
-    for options in (["--law", "fem"], ["--law", "myc", "--table", "none"]):
+    for options in (["--law", "fem"], ["--law", "myc", "--table", "none", "--prefix", "steel"]):
         out = tmp_path / "out.h"
         assert cli.main([*PLAIN, *options, "--out", str(out)]) == 0
         assert capsys.readouterr().out == f"{out}\n"
-        model, table = cl.ImpactModel(STEEL, law=options[1]), (*options, "", "cor")[3]
-        assert out.read_text() == exported(tmp_path, model, table=table)
+        named = {name[2:]: value for name, value in zip(options[2::2], options[3::2], strict=True)}
+        model = cl.ImpactModel(STEEL, law=options[1])
+        assert out.read_text() == exported(tmp_path, model, **named)
 
 
 @pytest.mark.parametrize(
@@ -930,6 +931,7 @@ def test_the_command_writes_the_same_file(tmp_path, capsys):
         (["--sphere", "stel"], "--sphere: unknown material 'stel'"),
         (["--sphere", "glass", "--law", "myc"], "--sphere: law 'myc' needs a yield strength"),
         (["--law", "mcy"], "--law: unknown law 'mcy'"),
+        (["--prefix", "Steel"], "--prefix: must be lower-case words"),
     ],
 )
 def test_the_command_refuses_in_its_own_words(change, message, tmp_path, monkeypatch, capsys):
@@ -1024,13 +1026,13 @@ def test_headers_of_two_pairs_in_one_source_file_stop_the_compiler(compiler, tmp
     assert done.returncode != 0
     assert done.stderr.count("error:") == 1, done.stderr  # no redefinitions after it
     assert "other.h" in done.stderr
-    assert "include each in a source file of its own" in done.stderr
+    assert "export one of them with --prefix" in done.stderr
     source.write_text('#include "one.h"\n#include "one.h"\nint main(void) { return 0; }\n')
     command = [compiler, *COMPILERS[compiler], source, "-o", tmp_path / "out", "-lm"]
     subprocess.run(command, check=True)
 
 
-@pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only", "-Ofast"])
+@pytest.mark.parametrize("flag", ["-ffast-math", "-ffinite-math-only", "-Ofast", "-D_M_FP_FAST"])
 def test_a_compiler_that_drops_nan_is_refused(flag, tmp_path):
     write_header(tmp_path, "myc", "none")
     source = tmp_path / "source.c"
@@ -1039,3 +1041,36 @@ def test_a_compiler_that_drops_nan_is_refused(flag, tmp_path):
     done = subprocess.run(command, capture_output=True, text=True)
     assert done.returncode != 0
     assert "no -ffast-math" in done.stderr
+
+
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_several_pairs_live_in_one_source_file(compiler, tmp_path):
+    """Each prefix has its own pair's numbers, and no name of another."""
+    models = {
+        "contactlaw": model_of("myc"),
+        "steel": cl.ImpactModel(STEEL),
+        "steel2": model_of("fem"),
+    }
+    for prefix, model in models.items():
+        cl.export.header(tmp_path / f"{prefix}.h", model, prefix=prefix)
+        assert prefix == "contactlaw" or "contactlaw_" not in (tmp_path / f"{prefix}.h").read_text()
+    calls = ", ".join(f"{prefix}_restitution(5.0, 1e-3, 2e-3)" for prefix in models)
+    source = "".join(f'#include "{prefix}.h"\n' for prefix in models) + "#include <stdio.h>\n"
+    source += f'int main(void) {{ printf("%.17g %.17g %.17g", {calls}); return 0; }}\n'
+    program = build(tmp_path, source, *WARNINGS, compiler=compiler)
+    found = subprocess.run([program], capture_output=True, text=True).stdout.split()
+    for one, model in zip(found, models.values(), strict=True):
+        assert float(one) == pytest.approx(model.restitution(5.0, 1e-3, 2e-3), abs=1e-5)
+
+
+@pytest.mark.parametrize("prefix", ["", "Steel", "steel-glass", "2pairs", "a__b", "a_", None])
+def test_a_prefix_that_c_does_not_take_is_refused(prefix, tmp_path):
+    with pytest.raises(ValueError, match="prefix: must be lower-case words of letters and digits"):
+        cl.export.header(tmp_path / "out.h", model_of("myc"), prefix=prefix)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("sphere", ["pom", "gamma-alumina"])
+def test_the_first_lines_warn_of_polymers(sphere, tmp_path):
+    text = exported(tmp_path, cl.ImpactModel(cl.Pair(sphere, "glass")), table="none")
+    assert ("WARNING: a polymer" in text.split("\n")[2]) == (sphere == "pom")

@@ -146,7 +146,6 @@ def drops(count, seed=1):
 def test_a_million_impacts_are_those_of_c(which, within, sides):
     name, both = sides
     found, expected = both(which, *drops(1_000_000 if name == "metals" else 20_000))
-    print(name, np.nanmax(np.abs(found - expected)), np.isnan(expected).mean())
     assert np.array_equal(np.isnan(found), np.isnan(expected))
     assert 0.5 < np.isfinite(found).mean() and np.nanstd(found) > 0.05
     assert np.nanmax(np.abs(found - expected)) < within
@@ -156,7 +155,6 @@ def test_all_other_functions_are_those_of_c(sides):
     given = drops(1000)
     for which in range(2, 7):
         found, expected = sides[1](which, *given)
-        print(which, np.nanmax(np.abs(found - expected)), np.isnan(expected).mean(), np.nanstd(found))
         assert np.array_equal(np.isnan(found), np.isnan(expected))
         assert np.isfinite(found).mean() > 0.9 and np.nanstd(found) > 0.0
         # rounding decides which springs hold: within 2e-3 of friction times speed, as docs say
@@ -176,29 +174,31 @@ def test_fast_maths_of_clang_are_refused(flag, context, tmp_path):
 
 def nvcc(*arguments, folder):
     """Run nvcc, of the wheel or of PATH; any warning is an error."""
-    at = find_spec("nvidia")
-    wheels = [next(Path(one).glob("cu*/bin/nvcc"), None) for one in at.submodule_search_locations or ()] if at else []
-    path = next((str(one) for one in wheels if one), None) or shutil.which("nvcc")
+    wheel = find_spec("nvidia")
+    folders = wheel.submodule_search_locations or () if wheel else ()
+    inside = [str(one) for at in folders for one in Path(at).glob("cu*/bin/nvcc")]
+    path = next(iter(inside), None) or shutil.which("nvcc")
     if not path:
         pytest.skip(f"nvcc {ADVICE}")
-    libraries = Path(path).parent.parent / "lib"
     warn = ["-Werror", "all-warnings", "-Xcompiler", "-Wall,-Wextra,-Wshadow,-Wconversion"]
-    command = [path, *warn, "-L", libraries, *arguments]
+    command = [path, *warn, "-L", Path(path).parents[1] / "lib", *arguments]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
-def test_nvcc_compiles_every_function_of_two_pairs_without_warnings(tmp_path):
+def test_nvcc_compiles_all_functions_of_several_pairs_without_warnings(tmp_path):
+    """For both sides; -G leaves out the optimization, of which nvcc takes minutes here."""
+    texts = []
     for name, model in MODELS.items():
         cl.export.header(tmp_path / f"{name}.h", model, prefix=name)
-    texts = []
-    for name in MODELS:
         text = SOURCE.replace("contactlaw.h", f"{name}.h").replace("contactlaw", name)
-        text = text.replace("CONTACTLAW", name.upper()).replace("static double", "__host__ __device__ static double")
         text = re.sub(r"\b(stepped|slid|rubbed|answer)\b", rf"{name}_\1", text)
-        texts.append(text + f"__global__ void {name}_all(int which, double *x) {{ *x = {name}_answer(which, *x, 1e-3, 1e-3); }}")
+        text = text.replace("CONTACTLAW", name.upper())
+        texts.append(text.replace("static double", "inline __host__ __device__ double"))
+        texts.append(f"__global__ void {name}_all(int which, double *x)")
+        texts.append(f"{{ *x = {name}_answer(which, *x, 1e-3, 1e-3); }}")
     (tmp_path / "pairs.cu").write_text("\n".join(texts))
-    nvcc("-c", "pairs.cu", folder=tmp_path)
+    nvcc("-G", "-c", "pairs.cu", folder=tmp_path)
 
 
 def test_the_example_in_cuda(tmp_path):
