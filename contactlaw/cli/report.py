@@ -36,7 +36,7 @@ def add(commands: Any) -> None:
     add(
         "--mesh", action="append", default=[], metavar="FILE",
         help="mesh of the wall (STL, PLY, OBJ), for a map of the energy; several for several "
-        "walls, in the order of their numbers",
+        "walls, in the order of their numbers (default: none, and no map)",
     )  # fmt: skip
     add(
         "--scale", type=options.reader_of(quantities.value, LENGTH), metavar="LENGTH",
