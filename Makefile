@@ -57,6 +57,15 @@ pictures: .venv/test.done  ## draw the pictures of docs again, in about 10 minut
 	cp $(PICTURES)/report/fig15_restitution.png docs/fem_restitution.png
 	cp $(PICTURES)/report/fig26_oblique.png docs/oblique.png
 	cp $(PICTURES)/report/fig28_edges.png docs/edges.png
+	cp docs/examples/rebounds.csv $(PICTURES)
+	cd $(PICTURES) && awk '/^```sh/ {on = 1; next} /^```/ {on = 0} on' $(CURDIR)/docs/gallery.md | \
+	  PATH="$(CURDIR)/$(BIN):$$PATH" sh -e
+	$(BIN)/dem-demo sieve --beads 300 --out $(PICTURES)/small
+	$(BIN)/contactlaw report $(PICTURES)/small/sieve.h5 --mesh $(PICTURES)/small/deck.stl --scale 1mm \
+	  --out $(PICTURES)/small/report
+	cp $(PICTURES)/small/report/places.png docs/gallery/report.png
+	cp $(PICTURES)/rain/constant_cor.png docs/gallery/constant.png
+	cd $(PICTURES) && cp thickness.png speed.png map.png oblique.png fit.png $(CURDIR)/docs/gallery
 	$(BIN)/contactlaw explore --sphere bearing-steel-52100 --plate aluminium-6061-t6 --out docs/explore.html
 
 clean:  ## remove the environment and the wheels

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
+import math
 from pathlib import Path
 from typing import Any
 
@@ -86,7 +87,7 @@ def _surface(run: Run, paths: list[str], scale: float | None) -> Surface:
     wall: list[NDArray[np.int64]] = []
     triangle = np.full(rows.size, -1)
     for plate, path in zip(plates.tolist(), paths, strict=True):
-        mesh = Mesh.read(path, 1.0, scale=1.0 if scale is None else scale)
+        mesh = Mesh.read(path, math.inf, scale=1.0 if scale is None else scale)
         here = np.flatnonzero(rows["plate"] == plate)
         number = np.full(max(mesh.kept.max(), rows["triangle"][here].max()) + 1, -1)
         number[mesh.kept] = np.arange(len(mesh.kept))
