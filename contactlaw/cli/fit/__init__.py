@@ -9,6 +9,7 @@ from typing import Any
 
 from contactlaw.cli.fit import figure, measured, printed
 from contactlaw.cli.parts import chosen, options, quantities, wording
+from contactlaw.cli.parts.impacts import in_words
 from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import LENGTH
 from contactlaw.fitting import UnidentifiedError, fit
@@ -31,8 +32,7 @@ def add(commands: Any) -> None:
     )
     options.add_pair(command)
     length = reader_of(quantities.value, LENGTH)
-    add("--radius", metavar="R", type=length,
-        help="radius of all beads [m], or with a unit")  # fmt: skip
+    options.add_radius(command, length, "all beads")
     add("--thickness", metavar="H", type=length,
         help="thickness of all plates [m], or with a unit; inf: a half-space")  # fmt: skip
     add("--friction", metavar="MU", type=reader_of(quantities.value, quantities.FRICTION),
@@ -94,6 +94,10 @@ def _run(arguments: argparse.Namespace) -> None:
         read, arguments.data, radius=arguments.radius, thickness=arguments.thickness,
         friction=arguments.friction,
     )  # fmt: skip
+    asked = {"sphere": pair.sphere.name, "plate": pair.plate.name, "law": arguments.law}
+    for name in ("radius", "thickness"):
+        if getattr(arguments, name) is not None:
+            asked[f"{name}_m"] = repr(getattr(arguments, name))
     priors = dict(arguments.prior)
     with nullcontext() if arguments.plot is None else chosen.plot_file(arguments):
         try:
@@ -104,6 +108,7 @@ def _run(arguments: argparse.Namespace) -> None:
             title = f"{arguments.sphere} on {arguments.plate}, law {arguments.law}"
             figure.save_fit(found, title, arguments.plot)
         if arguments.json:
-            print(json.dumps(printed.record(found), indent=2))
+            print(json.dumps(asked | printed.record(found), indent=2))
         else:
-            print(*printed.text(found, read.lines), "", *printed.rows(found, read.lines), sep="\n")
+            print(in_words(asked), *printed.text(found, read.lines), "", sep="\n")
+            print(*printed.rows(found, read.lines), sep="\n")

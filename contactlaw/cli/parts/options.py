@@ -106,16 +106,23 @@ def add_sizes(
 ) -> None:
     """Add the options of sizes, but for an unknown one; if not required, a record may have them."""
     known = "" if required else OF_RECORD
-    add = command.add_mutually_exclusive_group(required=required).add_argument
-    add("--radius", metavar="R", type=reader_of(read, LENGTH),
-        help=f"radius of the bead [m], or with a unit{known}")  # fmt: skip
-    add("--diameter", dest="radius", metavar="D", type=_half(reader_of(read, LENGTH)),
-        help="diameter of the bead instead")  # fmt: skip
+    add_radius(command, reader_of(read, LENGTH), "the bead", required, known)
     if unknown != "thickness":
         command.add_argument("--thickness", required=required, metavar="H",
             type=reader_of(read, LENGTH),
             help=f"thickness of the plate [m], or with a unit; inf: a half-space{known}",
         )  # fmt: skip
+
+
+def add_radius(
+    command: argparse.ArgumentParser, read: Callable[[str], Any], of: str, required: bool = False,
+    known: str = "",
+) -> None:  # fmt: skip
+    """Add the options of a bead's size."""
+    add = command.add_mutually_exclusive_group(required=required).add_argument
+    add("--radius", metavar="R", type=read, help=f"radius of {of} [m], or with a unit{known}")
+    add("--diameter", dest="radius", metavar="D", type=_half(read),
+        help="diameter instead")  # fmt: skip
 
 
 def _half(read: Callable[[str], Any]) -> Callable[[str], Any]:
