@@ -109,6 +109,13 @@ class Run:
             )
         if not (self.record["plate"] >= 0).any():
             raise ValueError("record: has no impact on a wall yet: simulate longer")
+        on_walls = only_impacts(self.record["kind"])[0] & (self.record["plate"] >= 0)
+        for name in ("approach_speed", "restitution", "radius", "mass", *"xyz"):
+            wrong = on_walls & ~np.isfinite(self.record[name])
+            if wrong.any():
+                row = int(np.argmax(wrong))
+                value = float(self.record[name][row])
+                raise ValueError(f"record: {name} of row {row} is {value!r}: leave the row out")
 
     @cached_property
     def rows(self) -> Rows:

@@ -66,6 +66,10 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
         ("E=2.8GPa", "'E=2.8GPa' lacks nu and rho, as in \"E=2.8GPa nu=0.35"),
         ("E=2.8GPa nu=0.35 rho=1410m", "--sphere: got '1410m': 'm' is no unit of density"),
         ("E=2.8 nu=0.35 rho=1410", "--sphere: youngs_modulus 2.8 of"),
+        (
+            "E=2GPa E=3GPa nu=0.35 rho=1410",
+            "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice",
+        ),
     ],
 )
 def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):

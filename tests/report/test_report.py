@@ -13,6 +13,7 @@ import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
 from contactlaw.report import surface
+from contactlaw.report.figures import places
 from contactlaw.report.figures.impacts import angle
 from contactlaw.report.run import CAUSES, Run
 
@@ -83,6 +84,23 @@ def test_the_constant_is_that_of_the_model(run):
         assert found.flags == best.flags
 
 
+@pytest.mark.parametrize("beads", [1, 5])
+def test_contacts_on_one_flat_plate_have_room(beads):
+    space = make_space()
+    impacts = attach(space, cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
+    impacts.add_plate(make_plate(space, (-0.1, 0), (0.1, 0)), 1e-3)
+    for x in np.linspace(-0.05, 0.05, beads):
+        impacts.add_bead(make_bead(space, (x, 0.01), (0.0, -1.0), 1e-3))
+    steps(space, 100)
+    figure = places.draw(Run(impacts.collisions(), ""))
+    (axes,) = figure.axes
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    assert high - low > 0.1 * (right - left) > 0.0
+    shown = axes.collections[0].get_offsets()
+    assert len(shown) >= beads
+    assert (shown[:, 1] > low).all() and (shown[:, 1] < high).all()
+
+
 def test_the_angle_is_that_of_the_flight():
     space = make_space(0.0)
     impacts = attach(space, cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
@@ -132,6 +150,11 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
         names = [name for name in impacts.collisions().dtype.names
                  if name not in ("mass", "thickness")]  # fmt: skip
         Run(impacts.collisions()[names], "")
+    rows = impacts.collisions()
+    row = int(np.flatnonzero((rows["kind"] == 0) & (rows["plate"] >= 0))[0])
+    rows["approach_speed"][row] = math.nan
+    with pytest.raises(ValueError, match=f"approach_speed of row {row} is nan: leave the row out"):
+        Run(rows, "")
     with monkeypatch.context() as patch:
         patch.setitem(sys.modules, "matplotlib", None)
         with pytest.raises(ImportError, match="pip install 'contactlaw"):

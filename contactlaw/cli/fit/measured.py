@@ -134,6 +134,12 @@ def _read(content: bytes) -> Read:
         if "radius" in picked:
             raise ValueError("columns of radius and of diameter: leave one out")
         picked["radius"] = picked.pop("diameter") / 2.0
+    # a spreadsheet's rows without a rebound
+    measured = np.any([~np.isnan(picked[kind]) for kind in _KINDS if kind in picked], axis=0)
+    if not measured.any():
+        raise ValueError("none of its rows has a number in a column of what is measured")
+    picked = {name: values[measured] for name, values in picked.items()}
+    lines = [line for line, one in zip(lines, measured.tolist(), strict=True) if one]
     unused = [name for n, name in enumerate(names) if name and n not in wanted]
     missing = _COLUMNS.keys() - found.keys()
     return Read(picked, tuple(name + _nearest([name], missing) for name in unused), lines)

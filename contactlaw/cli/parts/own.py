@@ -48,6 +48,8 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
                 hint = f"did you mean {near[0]}? " if near else ""
                 raise ValueError(f"unknown {key!r}; {hint}known: {', '.join(_READERS)}")
             field, read = _READERS[key]
+            if field in given and key != "name":
+                raise ValueError(f"{text!r} has {key} twice: leave one out")
             given[field] = read(word)
         if missing := [key for key in ("E", "nu", "rho") if _READERS[key][0] not in given]:
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")

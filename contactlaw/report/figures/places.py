@@ -81,7 +81,8 @@ def _points(run: Run, time: str) -> Figure:
     energy, places = taken(run.rows), 1e3 * run.points[run.record["plate"] >= 0]
     spread = np.ptp(places, axis=0)
     x, y = (n for n in range(3) if n != 2 - int(np.argmin(spread[::-1])))
-    wide, high = np.maximum(spread[[x, y]], 0.02 * spread.max() or 1.0)
+    # points on one flat wall, or a single one, need some room beside them
+    wide, high = np.maximum(spread[[x, y]], 0.12 * spread.max() or 1.0)
     height = float(np.clip(style.pick(11.0, 5.2) * high / wide, 1.2, 6.0))
     figure = style.figure(12.0, 1.9 + height, _TITLE, f"{run.subject}; contacts in {time}")
     axes = figure.add_subplot()
@@ -92,6 +93,10 @@ def _points(run: Run, time: str) -> Figure:
     axes.scatter(places[few, x], places[few, y], s=size, rasterized=True, **look)
     for part in (1.0, 0.1, 0.01):
         axes.scatter([], [], s=200.0 * part, label=joules(part * most), **look)
+    middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
+    for n, size, limit in ((x, wide, axes.set_xlim), (y, high, axes.set_ylim)):
+        limit(middle[n] - 0.55 * size, middle[n] + 0.55 * size)
+    axes.locator_params(axis="y", nbins=6 if high > 0.3 * wide else 3)
     axes.set(xlabel=f"{'xyz'[x]} [mm]", ylabel=f"{'xyz'[y]} [mm]", aspect="equal")
     figure.legend(title="taken by a contact", loc="outside lower center", ncols=3)
     return figure
