@@ -192,9 +192,13 @@ def _figure(width: float, height: float, plan: Layout, found: Answers, subject: 
         parts.append(f"shaded: {found.said}")
     if not plan.is_map and math.inf in plan.values[plan.axis]:
         parts.append("thin line: half-space")
+    kinds = kinds_of(found.flags)
+    exceeded = (sum(bool(one & flag) for flag in kinds) for one in np.unique(found.flags).tolist())
+    if not plan.is_map and max(exceeded) > 1:
+        parts.append("beyond several limits dashes have a stroke of each")
     title = f"{subject.title} over {' and '.join(over)}"
     caption = ". ".join([about, *(part[0].upper() + part[1:] for part in parts)])
-    keys = _keys(kinds_of(found.flags), width, plan.is_map)
+    keys = _keys(kinds, width, plan.is_map)
     height += 0.3 * sum(1 + key.get_label().count("\n") for key in keys)
     figure = style.figure(width, height, title, caption)
     if keys:
