@@ -71,7 +71,8 @@ def test_the_commands_say_the_same(steel, capsys):
     asked = [*STEEL, "--cor", "0.5,0.99", "--speed", "2"]
     assert main(["thickness", *asked, "--json"]) == 0
     out, said = capsys.readouterr()
-    (row,), one = json.loads(out), steel.thickness(0.5, 2.0, 1e-3)
+    (row, other), one = json.loads(out), steel.thickness(0.5, 2.0, 1e-3)
+    assert other["restitution"] == 0.99 and other["remark"].startswith("no thickness: ")
     assert row["thickness"] == one.value[0] and row["thickness_high"] == one.high[0]
     assert (row["plate"], row["speed"], row["restitution"]) == ("glass", 2.0, 0.5)
     assert (

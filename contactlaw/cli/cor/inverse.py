@@ -68,7 +68,12 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     if arguments.csv:
         impacts.write_csv(table, sys.stdout, columns)
     elif arguments.json:
-        print(json.dumps(impacts.records(table), indent=2))
+        # questions without an answer have a remark in its place
+        unanswered = [
+            dict(zip(("restitution", *known), question, strict=True)) | {"remark": one.remark}
+            for question, one in zip(asked.T.tolist(), found, strict=True) if one.remark
+        ]  # fmt: skip
+        print(json.dumps(impacts.records(table) + unanswered, indent=2))
     else:
         band = next(one.band for one in found if one.band)
         said = (
