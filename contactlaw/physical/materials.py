@@ -442,9 +442,8 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     ...     read_materials(file)["hard-304"].density
     8000.0
     """
-    text = Path(path).read_text("utf-8")
     try:
-        return _read(tomllib.loads(text), _tables())
+        return _read(tomllib.loads(Path(path).read_text("utf-8")), _tables())
     except (ValueError, TypeError, AttributeError, KeyError) as error:
         raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
 

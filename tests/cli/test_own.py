@@ -94,6 +94,14 @@ def test_a_file_with_a_mistake_is_refused(old, new, message, tmp_path):
         cl.read_materials(tmp_path / "mine.toml")
 
 
+def test_numbers_in_megapascals_and_grams_draw_warnings(capsys):
+    assert main(["cor", "--sphere", "E=70000 nu=0.35 rho=2.7 yield=276", *IMPACT]) == 0
+    said = capsys.readouterr().err
+    assert "E=70000 is 70000 Pa; MPa or GPa?" in said and "rho=2.7 is 2.7 kg/m3; g/cm3?" in said
+    assert main(["cor", "--sphere", "E=2GPa nu=0.35 rho=10kg/m3", *IMPACT]) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_a_length_without_a_unit_draws_a_warning(capsys, tmp_path):
     asked = [*IMPACT, "--outside", "solve", "--sphere", "alumina", "--thickness"]
     assert main(["cor", *asked, "1m", "--diameter", "3"]) == 0

@@ -28,6 +28,10 @@ _READERS: dict[str, tuple[str, Callable[[str], object]]] = {
     "name": ("name", str),
 }
 
+# Numbers without a unit below which another one was meant: foam is lighter, and gel softer.
+_BARE = re.compile(r"[\d.eE+-]+")
+_LIKELY = {"E": (1e6, "Pa; MPa or GPa"), "rho": (20.0, "kg/m3; g/cm3")}
+
 
 def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material:
     """Material of an option: a name of the catalogue or of the user's own, or numbers.
@@ -50,7 +54,10 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
             field, read = _READERS[key]
             if field in given and key != "name":
                 raise ValueError(f"{text!r} has {key} twice: leave one out")
-            given[field] = read(word)
+            given[field] = found = read(word)
+            least, likely = _LIKELY.get(key, (0.0, ""))
+            if isinstance(found, float) and found < least and _BARE.fullmatch(word):
+                wording.print_warning(f"{key}={word} is {word} {likely}?")
         if missing := [key for key in ("E", "nu", "rho") if _READERS[key][0] not in given]:
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
         return Material(**given)  # type: ignore[arg-type]
