@@ -57,7 +57,7 @@ pictures: .venv/test.done  ## draw the pictures of docs again, in about 10 minut
 	cp $(PICTURES)/report/fig15_restitution.png docs/fem_restitution.png
 	cp $(PICTURES)/report/fig26_oblique.png docs/oblique.png
 	cp $(PICTURES)/report/fig28_edges.png docs/edges.png
-	cp docs/examples/rebounds.csv $(PICTURES)
+	mkdir -p $(PICTURES)/docs/examples && cp docs/examples/rebounds.csv $(PICTURES)/docs/examples
 	cd $(PICTURES) && awk '/^```sh/ {on = 1; next} /^```/ {on = 0} on' $(CURDIR)/docs/gallery.md | \
 	  PATH="$(CURDIR)/$(BIN):$$PATH" sh -e
 	$(BIN)/dem-demo sieve --beads 300 --out $(PICTURES)/small

@@ -99,7 +99,8 @@ def commands(block):
 def test_commands_print_what_the_page_shows(page, tmp_path, monkeypatch, capsys, pair):
     monkeypatch.chdir(tmp_path)
     Path("impacts.csv").write_text("speed_m/s\n0.5\n1.2\n")
-    shutil.copy(ROOT / "docs/examples/rebounds.csv", "rebounds.csv")
+    Path("docs/examples").mkdir(parents=True)
+    shutil.copy(ROOT / "docs/examples/rebounds.csv", "docs/examples")
     Path("rain").mkdir()
     write_rain(Path("rain/rain.h5"), pair)
     compared = 0
