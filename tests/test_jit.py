@@ -389,6 +389,9 @@ COMMANDS = [
     f"contactlaw history {BEAD} --thickness 1mm --speed 5 --solve",
     f"contactlaw fit rebounds.csv {BEAD} --thickness 1mm --unknown yield_strength",
     "contactlaw materials",
+    f"contactlaw thickness {BEAD} --cor 0.8 --speed 5",
+    f"contactlaw speed {BEAD} --cor 0.8 --thickness 1mm",
+    f"contactlaw explore {PAIR} --out OUT.html",
     f"contactlaw export header {PAIR} --table none --out OUT.h",
     f"contactlaw export header {PAIR} --out OUT.h",
     f"contactlaw export liggghts {PAIR} --out OUT",
@@ -396,6 +399,7 @@ COMMANDS = [
     "contactlaw table check --points 100",
     f"contactlaw table build --law jackson_green {PAIR} --out OUT.h5",
     f"dem-demo rain {DEMO} 5 --plates 1mm --duration 0.05",
+    "contactlaw report RAIN/rain.h5 --out OUT",
     f"dem-demo sieve {DEMO} 12 --duration 0.004 --speed 2.5",
     f"dem-demo drum {DEMO} 4 --duration 0.01 --speed 2.5",
 ]
@@ -433,7 +437,11 @@ def second(tmp_path_factory):
     """
     folder = tmp_path_factory.mktemp("commands")
     given = [one for one in COMMANDS if one not in IN_LAMMPS or needs.has_lammps()]
-    words = [one.replace("OUT", str(folder / f"out{n}")).split() for n, one in enumerate(given)]
+    rain = next(n for n, one in enumerate(given) if one.startswith("dem-demo rain"))
+    given_rain = [one.replace("RAIN", str(folder / f"out{rain}")) for one in given]
+    words = [
+        one.replace("OUT", str(folder / f"out{n}")).split() for n, one in enumerate(given_rain)
+    ]
     for _ in range(2):
         done = subprocess.run(
             [sys.executable, "-c", COUNTED], input=json.dumps(words),

@@ -39,6 +39,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     ...       "--thickness", "1e-3", "--speed", "1", "--law", "hertz", "--json"])
     ... # doctest: +ELLIPSIS
     {
+      "speed": 1.0,
+    ...
       "restitution": 0.7...
     """
     arguments = parser().parse_args(joined(sys.argv[1:] if argv is None else argv))

@@ -23,6 +23,7 @@ import contactlaw as cl  # noqa: E402
 from contactlaw import cli as cli_of_contactlaw  # noqa: E402
 from contactlaw.cli.constant import records  # noqa: E402
 from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
+from contactlaw.report.surface import areas  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
 from dem_demo import cli  # noqa: E402
 from dem_demo.kit import lammps  # noqa: E402
@@ -31,7 +32,7 @@ from dem_demo.kit.lammps import Gathering  # noqa: E402
 from dem_demo.kit.measure import account, kept  # noqa: E402
 from dem_demo.kit.runs import read, read_one  # noqa: E402
 from dem_demo.sieve import figures, measure  # noqa: E402
-from dem_demo.sieve.deck import FORM, Deck, areas, write_stl  # noqa: E402
+from dem_demo.sieve.deck import FORM, Deck, write_stl  # noqa: E402
 from dem_demo.sieve.scene import Sieve, sieve  # noqa: E402
 
 SMALL = ["sieve", "--beads", "12", "--duration", "0.016", "--speed", "2.5", "--friction", "0"]

@@ -13,7 +13,7 @@ import pytest
 from places import ROOT
 
 import contactlaw as cl
-from contactlaw import _atomic, cli
+from contactlaw import cli
 from contactlaw.equation.edge import KINDS
 from contactlaw.softsphere import Contacts, time_step
 
@@ -630,12 +630,12 @@ def test_the_command_refuses_in_its_own_words(out, message, tmp_path, monkeypatc
 
 
 def test_a_failure_leaves_nothing_behind(tmp_path, monkeypatch):
-    def full(path, content, write=_atomic.write):
+    def full(path, content, write=Path.write_bytes):
         if path.name == "README.txt":
             raise OSError(28, "No space left on device")
         write(path, content)
 
-    monkeypatch.setattr(_atomic, "write", full)
+    monkeypatch.setattr(Path, "write_bytes", full)
     with pytest.raises(OSError, match="No space"):
         cl.export.liggghts(tmp_path / "out", cl.ImpactModel(cl.Pair("gamma-alumina", "glass")))
     assert list(tmp_path.iterdir()) == []

@@ -52,9 +52,8 @@ def sentence(error: Exception, options: Container[str]) -> str:
     '--radius, --speed: shapes do not broadcast'
     >>> sentence(ValueError("constant_cor: must lie between 0 and 1"), {"constant_cor"})
     '--constant-cor: must lie between 0 and 1'
-    >>> sentence(UnknownMaterialError("glas", ("glass",)), {})
-    'unknown material \'glas\': did you mean \'glass\'? `contactlaw materials` lists all; one of \
-your own is --materials FILE, or --sphere "E=2.8GPa nu=0.35 rho=1410 yield=62MPa kind=polymer"'
+    >>> sentence(UnknownMaterialError("glas", ("glass",)), {})  # doctest: +ELLIPSIS
+    'unknown material \'glas\': did you mean \'glass\'? `contactlaw materials` lists all; ...
     """
     match error:
         case UnknownMaterialError():
