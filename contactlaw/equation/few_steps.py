@@ -1,10 +1,10 @@
 """Restitution near an edge in few steps, for loops that have no time for the integrator's.
 
 Steps of the integrator are explicit and of fifth order, and each carries twelve numbers of memory
-through seven stages. These are implicit and of second order: the trapezoidal rule in s, with the
-memory as in `contactlaw.equation.recall`. A step costs a tenth, and 80 to 100 of them give the
-restitution within 5e-4. A contact that loads again beyond its largest compression goes on along
-the loading curve.
+through seven stages. These are implicit: the trapezoidal rule in s, whose error is taken from its
+difference to a rule of two steps, with the memory as in `contactlaw.equation.recall`. A step costs
+a tenth, and 80 to 100 of them give the restitution within 5e-4. A contact that loads again beyond
+its largest compression goes on along the loading curve.
 
 Legend, as in `contactlaw.equation.motion`: q root compression, u speed, f force, t time, h step in
 s, beta mobility, y yield compression; z memory.
