@@ -103,7 +103,7 @@ def test_tables_as_people_write_them(head, rows, table):
         (["speed,COR,COR", "1,0.5,0.5"], "two columns of restitution"),
         (["speed,COR", "1,85", "2,80"], "restitution: got 85.0"),
         (["speed,COR", ",0.5", "2,0.4"], "line 2 has no speed"),
-        (["speed,COR", "1,", "2,0.4"], "rebound 0, line 2 has none of"),
+        (["speed,COR", "1,", "2,n/a"], "none of its rows has a number in a column of what is"),
         (["speed,COR", "-1,0.5"], "speed: got -1.0"),
         (["speed,COR,COR_error", "1,0.5,0.01", "2,0.4,"], "restitution_error: got nan"),
         (
@@ -178,6 +178,19 @@ def test_friction_from_a_table_with_angles(table, capsys, tmp_path):
 def test_columns_that_are_not_used_are_named(table, capsys):
     assert main(["fit", table("speed,COR,COR_eror", "1,0.4497,3", "2,0.3716,3"), *FIT]) == 0
     assert "columns that are not used: COR_eror, did you mean cor_error" in capsys.readouterr().err
+
+
+def test_rows_without_a_rebound_are_left_out_and_named(table, capsys):
+    """As a spreadsheet has them for beads that were lost; the fit is that of the other rows."""
+    head, *rows = "speed,COR,contact time [us],by", "1,0.4497,,A", "2,0.3716,7.4,B"
+    whole = table(head, *rows)
+    assert main(["fit", whole, *FIT, "--json"]) == 0
+    values = json.loads(capsys.readouterr().out)["values"]
+    gaps = table(head, "1.5,,,A", *rows, "3,,n/a,")
+    assert main(["fit", gaps, *FIT, "--json"]) == 0
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["values"] == values
+    assert "lines without a rebound are left out: 2, 5" in printed.err
 
 
 def test_a_table_of_windows_and_the_lines_of_its_doubtful_rows(tmp_path, capsys):

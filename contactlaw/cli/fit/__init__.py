@@ -90,6 +90,9 @@ def _run(arguments: argparse.Namespace) -> None:
         wording.print_warning(
             f"{arguments.data}: columns that are not used: {', '.join(read.unused)}"
         )
+    if read.empty:
+        lines = ", ".join(map(str, read.empty))
+        wording.print_warning(f"{arguments.data}: lines without a rebound are left out: {lines}")
     data = measured.completed(
         read, arguments.data, radius=arguments.radius, thickness=arguments.thickness,
         friction=arguments.friction,

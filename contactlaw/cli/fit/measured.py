@@ -53,6 +53,7 @@ class Read(NamedTuple):
     columns: dict[str, Any]
     unused: tuple[str, ...]  # names of other columns, with what they may be meant for
     lines: list[int]  # line of the file of each rebound
+    empty: list[int]  # lines of the file in which nothing was measured
 
 
 def read(path: str | os.PathLike[str]) -> Read:
@@ -67,7 +68,8 @@ def read(path: str | os.PathLike[str]) -> Read:
         contact time, peak force, tangential restitution, rotational restitution and spin.
         Optional are their standard errors, ``..._error``, angles of incidence from the normal,
         with which the speeds are those of the beads, or sliding speeds, friction, radius and
-        thickness, or diameters. An empty cell, or ``n/a``, was not measured.
+        thickness, or diameters. An empty cell, or ``n/a``, was not measured; rows in which nothing
+        was measured are left out.
         Numbers may have decimal commas, with semicolons or tabs between the columns.
 
     Returns
@@ -88,8 +90,8 @@ def read(path: str | os.PathLike[str]) -> Read:
     ...     _ = file.write("Speed [cm/s];COR [%];No\n50;91;1\n120;;2\n")
     ...     file.flush()
     ...     found = read(file.name)
-    >>> found.columns["restitution"], found.unused
-    (array([0.91,  nan]), ('No',))
+    >>> found.columns["restitution"], found.unused, found.empty
+    (array([0.91]), ('No',), [3])
     """
     path = Path(path)
     content = columns.content_of(path)
@@ -134,15 +136,15 @@ def _read(content: bytes) -> Read:
         if "radius" in picked:
             raise ValueError("columns of radius and of diameter: leave one out")
         picked["radius"] = picked.pop("diameter") / 2.0
-    # a spreadsheet's rows without a rebound
     measured = np.any([~np.isnan(picked[kind]) for kind in _KINDS if kind in picked], axis=0)
     if not measured.any():
         raise ValueError("none of its rows has a number in a column of what is measured")
     picked = {name: values[measured] for name, values in picked.items()}
-    lines = [line for line, one in zip(lines, measured.tolist(), strict=True) if one]
+    empty = [line for line, one in zip(lines, measured.tolist(), strict=True) if not one]
+    lines = [line for line in lines if line not in empty]
     unused = [name for n, name in enumerate(names) if name and n not in wanted]
     missing = _COLUMNS.keys() - found.keys()
-    return Read(picked, tuple(name + _nearest([name], missing) for name in unused), lines)
+    return Read(picked, tuple(name + _nearest([name], missing) for name in unused), lines, empty)
 
 
 def _nearest(heads: list[str], fields: Iterable[str]) -> str:
