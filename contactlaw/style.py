@@ -7,6 +7,7 @@ figure is made.
 from __future__ import annotations
 
 import io
+import re
 import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -122,17 +123,21 @@ def figure(width: float, height: float, title: str, subtitle: str) -> Figure:
 def balanced(text: str, letters: float) -> list[str]:
     """Break a text into as few lines as fit, about equally long, so that no last word is alone.
 
+    A number stays with its unit.
+
     Examples
     --------
     >>> balanced("the quick brown fox jumps over it", 30)
     ['the quick brown', 'fox jumps over it']
+    >>> balanced("steel of 1.5 mm, beads of 2 mm", 23)
+    ['steel of 1.5 mm,', 'beads of 2 mm']
     """
-    lines = textwrap.wrap(text, int(letters))
-    for width in range(len(text) // max(1, len(lines)), int(letters)):
-        even = textwrap.wrap(text, width)
-        if len(even) == len(lines):
-            return even
-    return lines
+    text = re.sub(r"(?<=\d) (?=\S{1,3}(\W|$))", "\N{NO-BREAK SPACE}", text)
+    fewest = textwrap.wrap(text, int(letters))
+    widths = range(len(text) // max(1, len(fewest)), int(letters))
+    tried = (textwrap.wrap(text, width) for width in widths)
+    lines = next((even for even in tried if len(even) == len(fewest)), fewest)
+    return [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
 
 
 def circles(axes: Axes, missing: str, **options: Any) -> EllipseCollection:

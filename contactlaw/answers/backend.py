@@ -112,15 +112,24 @@ class UnsolvedError(RuntimeError):
 
 def too_thin(lam: float, limit: float) -> str:
     """Say why an impact is outside a table whose largest lambda is exceeded."""
-    return (
-        f"its inelasticity lambda = {lam:.4g} is above {limit:.4g}: the plate is too thin for "
-        "the bead"
-    )
+    return f"its inelasticity lambda = {_above(lam, limit)}: the plate is too thin for the bead"
 
 
 def too_fast(chi: float, limit: float) -> str:
     """Say why an impact is outside a table whose largest overload is exceeded."""
-    return f"its overload chi = {chi:.4g} is above {limit:.4g}: the impact is too fast"
+    return f"its overload chi = {_above(chi, limit)}: the impact is too fast"
+
+
+def _above(value: float, limit: float) -> str:
+    """Write a value and its limit with four digits, or as many as tell them apart.
+
+    Examples
+    --------
+    >>> _above(7.0, 6.0), _above(0.3300004, 0.33)
+    ('7 is above 6', '0.3300004 is above 0.33')
+    """
+    pairs = ((f"{value:.{digits}g}", f"{limit:.{digits}g}") for digits in range(4, 18))
+    return " is above ".join(next(pair for pair in pairs if pair[0] != pair[1]))
 
 
 def refuse_to_yield(

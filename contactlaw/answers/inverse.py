@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._readable import scale_of
 from contactlaw.answers import rated
-from contactlaw.answers.backend import Backend
+from contactlaw.answers.backend import Backend, OutsideTableError
 from contactlaw.answers.tabulated import Border, Tabulated
 from contactlaw.answers.uncertainty import Band, Uncertain
 from contactlaw.physical.arguments import broadcast, check, within
@@ -91,8 +91,20 @@ class _Curve:
         flags = np.asarray(border.rebounds(self.impacts(x)).flags)
         self.x = x[flags & Validity.CLAMPED == 0]
         if not self.x.size:
-            raise ValueError("speed, radius, thickness: all such impacts are outside the table")
+            self._refuse(border, x)
         self.e = self.restitution(self.x)
+
+    def _refuse(self, border: Tabulated, x: Array) -> None:
+        """Say why even the impact that is nearest to the table is outside of it."""
+        name, where, nearest = "speed", "on a half-space", x[-1:]
+        if self.sizes[0] is None:
+            name, where, nearest = "thickness", f"at {_SLOWEST:g} m/s", x[:1]
+        try:
+            strict = rated.tabulated(border.bodies, border.given, Border("raise"))
+            strict.rebounds(self.impacts(nearest))
+        except OutsideTableError as error:
+            said = f"{name}: even {where} the impact is outside the table, {error.reason}"
+            raise ValueError(said) from None
 
     def impacts(self, x: Array) -> Impacts:
         with np.errstate(divide="ignore"):

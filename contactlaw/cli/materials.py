@@ -8,7 +8,7 @@ from dataclasses import asdict
 from typing import Any
 
 from contactlaw.cli.parts import options
-from contactlaw.physical.materials import Material, material, materials
+from contactlaw.physical.materials import Material, find, materials
 
 # Heading, width and places of each column, and what one of its unit is in SI units.
 _COLUMNS = {
@@ -28,12 +28,16 @@ def add(commands: Any) -> None:
     """Add the subcommand and its options."""
     about = "the catalogue, with the source of each number"
     command = options.command(commands, "materials", about, _run)
+    options.add_materials(command)
     command.add_argument("name", nargs="?", metavar="NAME", help="one material, and its sources")
     command.add_argument("--json", action="store_true", help="print all fields, in SI units")
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    entries = [material(name) for name in ([arguments.name] if arguments.name else materials())]
+    own = arguments.materials
+    listed = sorted({body.name for body in own.values()}) or materials()
+    names = [arguments.name] if arguments.name else listed
+    entries = [find(name, own) for name in names]
     if arguments.json:
         print(json.dumps([asdict(entry) for entry in entries], indent=2))
         return

@@ -107,7 +107,8 @@ def explained(refused: UnidentifiedError, predictor: Predictor, at: Array) -> Un
     message = f"unknown: {outside}" if outside else refused.message
     others = _readings(predictor, at, search.guessed(predictor.values))
     better = (f"{words[0].upper()}{words[1:]}" for words in _better(predictor, at, others))
-    message = ". ".join([message, *_above_one(predictor), *better])
+    sentences = [message, *_above_one(predictor), *better]
+    message = " ".join(one if one.endswith("?") else f"{one}." for one in sentences).rstrip(".")
     return UnidentifiedError(message, refused.unknown, refused.known)
 
 
@@ -228,7 +229,17 @@ def _readings(predictor: Predictor, at: Array, error: Array) -> list[_Reading]:
         except (UnsolvedError, ValueError):  # impossible bodies, or speeds beyond the model
             continue
         found.append(_Reading(words, other, values, gained))
-    return sorted(found, key=lambda one: -one.gained)
+    return sorted(found, key=lambda one: _strangeness(one) - one.gained)
+
+
+def _strangeness(read: _Reading) -> float:
+    """Squared distance of a reading's values from those given; a factor is two standard errors."""
+    ratios = (
+        (at / one.centre, _FACTORS[one.unknown.field])
+        for one, at in zip(read.predictor.parameters, read.at.tolist(), strict=True)
+        if one.unknown.field in _FACTORS and one.is_unknown and not math.isnan(one.centre)
+    )
+    return sum((2.0 * math.log(ratio) / math.log(factor)) ** 2 for ratio, factor in ratios)
 
 
 def _square(predictor: Predictor, at: Array, error: Array) -> float:
@@ -238,12 +249,12 @@ def _square(predictor: Predictor, at: Array, error: Array) -> float:
 
 def _better(predictor: Predictor, at: Array, others: list[_Reading]) -> Iterator[str]:
     """Name the readings that are far more likely, by more than the model's own errors explain."""
-    scatter = _scatter(predictor, at)
+    scatter, most = _scatter(predictor, at), max((one.gained for one in others), default=0.0)
     for one in others:
         allowed = errors.model_covariance(one.predictor, one.at, one.predictor.impacts(one.at))
         size = 0.0 if allowed is None else allowed.size / predictor.values.value
         unlikely = scatter > 2.0 * np.sqrt(np.mean(np.square(size)))
-        if unlikely and one.gained > max(_EVIDENCE, others[0].gained - _EVIDENCE):
+        if unlikely and one.gained > max(_EVIDENCE, most - _EVIDENCE):
             off = f"{percent(_scatter(one.predictor, one.at))} off (rms) in place of"
             yield f"the data fit better with {one.words}: {off} {percent(scatter)}"
 

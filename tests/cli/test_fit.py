@@ -180,6 +180,12 @@ def test_columns_that_are_not_used_are_named(table, capsys):
     assert "columns that are not used: COR_eror, did you mean cor_error" in capsys.readouterr().err
 
 
+def test_lengths_in_metres_that_are_likelier_millimetres_draw_a_warning(table, capsys):
+    path = table("speed,COR,radius,thickness", "1,0.4497,1.5,inf", "2,0.3716,1.5,inf")
+    assert main(["fit", path, *BODIES, "--unknown", "plate-yield-strength"]) == 0
+    assert "radius 1.5 is 1.5 m; call the column radius_mm for" in capsys.readouterr().err
+
+
 def test_rows_without_a_rebound_are_left_out_and_named(table, capsys):
     """As a spreadsheet has them for beads that were lost; the fit is that of the other rows."""
     head, *rows = "speed,COR,contact time [us],by", "1,0.4497,,A", "2,0.3716,7.4,B"

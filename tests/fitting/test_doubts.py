@@ -59,6 +59,14 @@ def test_speeds_in_other_units_are_named(pair, unknown, kind, factor, words):
         assert re.search(words, said(pair, data, unknown, stated=stated))
 
 
+def test_of_two_units_that_fit_that_of_the_likelier_strength_comes_first():
+    """With these errors mm/s fits a little better, but with half the strength."""
+    data = rebounds(STEEL, kinds=("restitution",), noise=0.05, seed=3)
+    data["speed"] = 100.0 * data["speed"]
+    found = said(STEEL, data, "plate_yield_strength", stated=False)
+    assert 0 < found.index("with speeds in cm/s") < found.index("with speeds in mm/s")
+
+
 @pytest.mark.parametrize("unknown", ["thickness", "plate_yield_strength"])
 def test_bodies_that_are_exchanged_are_named(unknown):
     """The same data with the bodies in their places raise no doubt, by the test above."""

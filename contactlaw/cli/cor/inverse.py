@@ -26,12 +26,9 @@ def add(commands: Any) -> None:
         command = options.command(commands, unknown, about, functools.partial(_run, unknown))
         options.add_pair(command)
         options.add_sizes(command, quantities.values, unknown=unknown)
-        add = command.add_argument
         if unknown == "thickness":
-            add("--speed", required=True, metavar="V",
-                type=options.reader_of(quantities.values, quantities.SPEED),
-                help="normal approach speed [m/s], or with a unit")  # fmt: skip
-        add("--cor", required=True, metavar="E",
+            options.add_speed(command, quantities.values)
+        command.add_argument("--cor", required=True, metavar="E",
             type=options.reader_of(quantities.values, quantities.SHARE),
             help="coefficients of restitution, between 0 and 1")  # fmt: skip
         options.add_name_of_law(command)

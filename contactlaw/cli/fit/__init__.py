@@ -14,6 +14,7 @@ from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import LENGTH
 from contactlaw.fitting import UnidentifiedError, fit
 from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.physical.arguments import unlikely
 
 
 def add(commands: Any) -> None:
@@ -90,6 +91,10 @@ def _run(arguments: argparse.Namespace) -> None:
         wording.print_warning(
             f"{arguments.data}: columns that are not used: {', '.join(read.unused)}"
         )
+    for name in ("radius", "thickness"):
+        if (size := unlikely(read.columns.get(name, 0.0))) is not None:
+            said = f"{name} {size:g} is {size:g} m; call the column {name}_mm for millimetres?"
+            wording.print_warning(f"{arguments.data}: {said}")
     if read.empty:
         lines = ", ".join(map(str, read.empty))
         wording.print_warning(f"{arguments.data}: lines without a rebound are left out: {lines}")

@@ -44,12 +44,10 @@ def add(commands: Any) -> None:
     command = options.command(commands, "oblique", about, _run)
     options.add_pair(command)
     options.add_sizes(command, quantities.values)
+    options.add_speed(command, quantities.values, "speed of the bead")
     options.add_name_of_law(command)
     command.set_defaults(outside="raise")  # every impact is integrated
     add = command.add_argument
-    add("--speed", required=True, metavar="V",
-        type=options.reader_of(quantities.values, quantities.SPEED),
-        help="speed of the bead [m/s], or with a unit")  # fmt: skip
     add("--angle", required=True, metavar="A",
         type=options.reader_of(quantities.values, quantities.ANGLE),
         help="angle of incidence from the plate's normal [deg], from 0 to below 90")  # fmt: skip

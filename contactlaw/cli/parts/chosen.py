@@ -38,7 +38,7 @@ def pair(arguments: argparse.Namespace, known: Pair | None = None) -> Pair:
                 raise wording.Refused(f"--{name}: has to be given, no record says it")
             bodies[name] = getattr(known, name)
         else:
-            bodies[name] = own.material_of(name, chosen, arguments.materials or {})
+            bodies[name] = own.material_of(name, chosen, arguments.materials)
     return Pair(**bodies)
 
 

@@ -70,12 +70,19 @@ def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     """Add the options of commands about impacts; `read` reads one value or several."""
     add_pair(command)
     add_sizes(command, read)
-    command.add_argument("--speed", required=True, metavar="V", type=reader_of(read, SPEED),
-                         help="normal approach speed [m/s], or with a unit")  # fmt: skip
+    add_speed(command, read)
     add_law(command)
     command.add_argument(
         "--solve", action="store_true", help="integrate the equation instead of looking up"
     )
+
+
+def add_speed(
+    command: argparse.ArgumentParser, read: Reader, what: str = "normal approach speed"
+) -> None:
+    """Add the option of the impact speed."""
+    command.add_argument("--speed", required=True, metavar="V", type=reader_of(read, SPEED),
+                         help=f"{what} [m/s], or with a unit")  # fmt: skip
 
 
 OF_RECORD = " (default: that of the record)"
@@ -88,7 +95,12 @@ def add_pair(command: argparse.ArgumentParser, otherwise: str = "") -> None:
         help=f"material of the bead: a name, see materials, or numbers, {OWN}{otherwise}",
         )  # fmt: skip
     add("--plate", required=required, metavar="NAME", help=f"material of the plate{otherwise}")
-    add("--materials", metavar="FILE", type=_materials,
+    add_materials(command)
+
+
+def add_materials(command: argparse.ArgumentParser) -> None:
+    """Add the option of a file of materials."""
+    command.add_argument("--materials", metavar="FILE", type=_materials, default={},
         help="materials of your own, a TOML file in the format of the catalogue")  # fmt: skip
 
 
