@@ -31,11 +31,9 @@ def main():
     draw(found, picture)
     print(picture)
 
-    # A plate for a wanted COR is a fit to one rebound without an error.
-    wanted = {"speed": SPEED, "radius": SIZES["radius"], "restitution": WANTED}
-    plate = cl.fit(found.pair, wanted, unknown="thickness")
-    thickness, off = (1e3 * part["thickness"] for part in (plate.values, plate.errors))
-    print(f"COR {WANTED} at {SPEED:g} m/s: a plate of {thickness:.3f} +- {off:.3f} mm")
+    plate = cl.ImpactModel(found.pair).thickness(WANTED, SPEED, SIZES["radius"])
+    for best, low, high in 1e3 * np.column_stack([plate.value, plate.low, plate.high]):
+        print(f"COR {WANTED} at {SPEED:g} m/s: a plate of {best:.3f} mm ({low:.3f} to {high:.3f})")
 
 
 def draw(found, picture):

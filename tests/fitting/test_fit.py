@@ -431,7 +431,8 @@ def test_the_page_prints_what_the_command_prints(capsys, monkeypatch, tmp_path):
     shutil.copy(docs / "examples/rebounds.csv", tmp_path)
     assert main(shlex.split(command.replace("\\\n", " "))[1:]) == 0
     printed = [line.rstrip() for line in capsys.readouterr().out.splitlines()]
-    assert printed[: len(shown.splitlines())] == shown.splitlines()
+    *lines, more = shown.splitlines()
+    assert (printed[: len(lines)], more) == (lines, "...")
 
 
 SETS = 30
