@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import re
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -18,6 +18,7 @@ import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
     from matplotlib.collections import EllipseCollection
     from matplotlib.figure import Figure
 
@@ -138,6 +139,15 @@ def balanced(text: str, letters: float) -> list[str]:
     tried = (textwrap.wrap(text, width) for width in widths)
     lines = next((even for even in tried if len(even) == len(fewest)), fewest)
     return [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
+
+
+def decades(axis: Axis, steps: Sequence[float]) -> None:
+    """Give a logarithmic axis ticks at steps from 1 to 10 in each decade, as plain numbers."""
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    axis.set_major_locator(LogLocator(subs=steps, numticks=10))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter("{x:g}")
 
 
 def circles(axes: Axes, missing: str, **options: Any) -> EllipseCollection:

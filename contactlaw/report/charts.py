@@ -10,7 +10,6 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, NullLocator
 from numpy.typing import NDArray
 
 from contactlaw import style
@@ -83,6 +82,4 @@ def density_bar(figure: Figure, drawn: Any, axes: Sequence[Axes]) -> None:
     """Explain the colours of a `sheet` below some axes."""
     bar = figure.colorbar(drawn, ax=axes, location="bottom", fraction=0.06, pad=0.03, aspect=50)
     bar.set_label("dissipated energy [J/m²]")
-    bar.ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    bar.ax.xaxis.set_major_formatter("{x:g}")
-    bar.ax.xaxis.set_minor_locator(NullLocator())
+    style.decades(bar.ax.xaxis, (1.0, 2.0, 5.0))

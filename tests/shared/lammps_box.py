@@ -201,7 +201,7 @@ def rain(processors="* * *"):
 
 
 def in_chunks(path, walls_of, chunks):
-    """Run a scene in chunks on every rank; rank 0 writes."""
+    """Run a scene in chunks on every rank; rank 0 writes; return the walls."""
     lmp = rain("2 1 1" if MPI.COMM_WORLD.size == 2 else "* * *")
     walls = walls_of(lmp)
     moved, before = 0, [np.array([])] * MPI.COMM_WORLD.size
@@ -219,13 +219,15 @@ def in_chunks(path, walls_of, chunks):
         order = np.argsort(whole["id"])
         arrays = {name: values[order] for name, values in whole.items()}
         np.savez(path, **arrays, rows=rows, moved_in_contact=moved)
+    return walls
 
 
 def main(path, chunks):
     """Run the scenes, then the demo, then errors."""
-    in_chunks(Path(path), shower, chunks)
+    walls = in_chunks(Path(path), shower, chunks)
     in_chunks(Path(path).with_name("drum.npz"), drum, chunks)
     style.png = lambda figure: b""  # the other rank would wait, and take all of its core
+    walls.report(Path(path).with_name("report"))
     assert cli.main([*RAIN, "--out", str(Path(path).with_name("rain"))]) == 0
     lmp, _ = scene(
         cl.ImpactModel(PAIR, law="myc"), None, above(x=0.03), dt=4e-7, processors="2 1 1"

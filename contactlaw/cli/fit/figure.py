@@ -211,13 +211,7 @@ def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:
     above.set_xlim(low, high)
     if kind == "peak_force" and speed.max() > 10.0 * speed.min():
         above.set_yscale("log")
-    steps = (1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,)
-    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-    ticks = [step * 10.0**n for n in decades for step in steps if low <= step * 10.0**n <= high]
-    if len(ticks) < 2:
-        ticks = [float(f"{end:.2g}") for end in (low, high)]
-    below.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
-    below.minorticks_off()
+    style.decades(below.xaxis, (1.0, 2.0, 5.0) if high < 300.0 * low else (1.0,))
 
 
 def _caption(found: Fit, groups: list[Group], curves: list[FitCurve]) -> str:

@@ -165,6 +165,8 @@ def _map(plan: Layout, found: Answers, subject: Subject) -> Figure:
         for text in axes.clabel(lines, fmt="%g", fontsize=12, inline=False):
             text.set(color=style.INK, fontweight="bold",
                      path_effects=[withStroke(linewidth=3.0, foreground="white")])  # fmt: skip
+            corners = text.get_window_extent().corners()
+            text.set_visible(axes.bbox.count_contains(corners) == 4)  # none that is cut off
     return figure
 
 
@@ -236,17 +238,11 @@ def _scale(axes: Axes, which: str, name: str, values: Array, few: bool = False) 
     """Set range, spacing and ticks of an axis ("x" or "y")."""
     label, scale = _unit(name, values)
     least, largest = _finite(values)[[0, -1]] * scale
-    axis = getattr(axes, f"{which}axis")
     if is_logarithmic(name, least, largest):
         axes.set(**{f"{which}scale": "log"})
         width = math.log10(largest / least) * (2.0 if few else 1.0)
         steps = (1.0,) if width > 4.0 else (1.0, 2.0, 5.0) if width > 2.0 else (1.0, 2.0, 3.0, 5.0)
-        decades = range(math.floor(math.log10(least)), math.ceil(math.log10(largest)) + 1)
-        ticks = [step * 10.0**n for n in decades for step in steps]
-        shown = [tick for tick in ticks if 0.999 * least <= tick <= 1.001 * largest]
-        shown = shown[:: 1 + len(shown) // 16]  # at most 16 ticks, also over thirty decades
-        axis.set_ticks(shown, [f"{tick:g}" for tick in shown])
-        axis.set_ticks([], minor=True)
+        style.decades(getattr(axes, f"{which}axis"), steps)
     axes.set(**{f"{which}lim": (least, largest), f"{which}label": label})
 
 

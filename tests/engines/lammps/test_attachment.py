@@ -103,6 +103,14 @@ def test_two_ranks_give_the_same_bits(whole, two_ranks):
             assert np.array_equal(out["rows"][column], impacts[column]), column
 
 
+def test_a_report_on_two_ranks_has_the_impacts_of_both(two_ranks):
+    with np.load(two_ranks[1]) as out:
+        rows = out["rows"]
+    folder = two_ranks[1].with_name("report")
+    assert np.array_equal(np.load(folder / "record.npy"), rows)
+    assert f"{rows.size} impacts on 2 walls" in (folder / "summary.txt").read_text()
+
+
 def test_the_demo_rains_on_one_rank_and_on_two(two_ranks, tmp_path, empty_pictures):
     """The beads are too few to meet each other, so one and two ranks give the same bits."""
     assert cli.main([*box.RAIN, "--out", str(tmp_path / "rain")]) == 0
