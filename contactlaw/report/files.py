@@ -42,11 +42,15 @@ def write(out: str | os.PathLike[str], run: Run) -> Path:
 
     Raises
     ------
+    ValueError
+        Without any contact on a wall.
     ImportError
         Without matplotlib; the message says how to install it.
     OSError
         If a file cannot be written; nothing is left behind then.
     """
+    if not run.rows.size:
+        raise ValueError("record: has no impact on a wall yet: simulate longer")
     with style.applied(), _atomic.folder(out) as folder:
         pictures = {name: figures.draw(name, run) for name in figures.names()}
         for name, picture in pictures.items():

@@ -14,6 +14,8 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw.report import run as report
+from contactlaw.report.figures import impacts
 from contactlaw.report.limits import label
 from dem_demo.kit.measure import account, curve
 from dem_demo.kit.runs import Run, Runs
@@ -32,6 +34,12 @@ _PARTS = (
     ("friction", "friction on the walls", style.SKY),
     ("others", "bead on bead", style.GREEN),
 )
+
+
+def histograms(rows: NDArray[np.void], subject: str, material: str) -> Figure:
+    """Draw speed, COR and angle of the impacts on walls as a report of any run does."""
+    materials = (material,) * (int(rows["plate"].max(initial=-1)) + 1)
+    return impacts.draw(report.Run(rows, subject, materials))
 
 
 def source(runs: Runs[Any]) -> str:

@@ -142,6 +142,9 @@ class Run(Recorded):
         rows = np.zeros(recorded.size, IMPACT)
         for name in names:
             rows[name] = recorded[name]
+        beads, mass = self.scene.beads, self.scene.beads.mass(self.scene.sphere_material.density)
+        rows["radius"], rows["mass"] = beads.radius[rows["bead"]], mass[rows["bead"]]
+        rows["thickness"] = self.thickness
         fill(rows, self.by_model, self.energy(rows))
         return rows
 
@@ -149,11 +152,17 @@ class Run(Recorded):
     def by_model(self) -> Rebound:
         """The model's results for all impacts on plates."""
         rows = self.impacts[self.impacts["plate"] >= 0]
-        thickness = np.array([plate.thickness for plate in self.scene.plates])[rows["plate"]]
         return self.model.lookup(
-            rows["approach_speed"], self.scene.beads.radius[rows["bead"]], thickness,
+            rows["approach_speed"], self.scene.beads.radius[rows["bead"]], self.thickness,
             edge="free", edge_distance=self.edge_distance,
         )  # fmt: skip
+
+    @cached_property
+    def thickness(self) -> Floats:
+        """Thickness [m] of the plate of each impact on plates."""
+        plates = self.impacts["plate"][self.impacts["plate"] >= 0]
+        found: Floats = np.array([plate.thickness for plate in self.scene.plates])[plates]
+        return found
 
     @cached_property
     def edge_distance(self) -> Floats:

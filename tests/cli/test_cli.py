@@ -265,6 +265,7 @@ def test_every_option_is_explained(name, parser):
         (["core"], "invalid choice: 'core'"),
         (COR, "--radius"),
         ([*IMPACT, "--speed", "fast"], "argument --speed: got 'fast', expected a speed"),
+        ([*IMPACT, "--radius", "0,9mm"], "is it a decimal comma? Write 0.9mm"),
         ([*IMPACT, "--radius", "5 inches"], "argument --radius: got '5 inches': 'inches' is no"),
         ([*IMPACT, "--outside", "x"], "invalid choice: 'x'"),
         ([*IMPACT, "--json", "--csv"], "not allowed with argument"),

@@ -95,7 +95,6 @@ def test_a_range_has_its_ends_and_even_steps(start, stop, count, log):
         ("1e999", LENGTH, "too large"),
         ("1e99999999999999999999", LENGTH, "too large"),
         ("٣", SPEED, "expected a speed"),
-        ("0,9mm", LENGTH, "is it a decimal comma? Write 0.9mm"),
     ],
 )  # fmt: skip
 def test_what_is_refused_and_how(text, quantity, message):

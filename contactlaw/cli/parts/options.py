@@ -9,7 +9,7 @@ from typing import Any
 
 from contactlaw import laws
 from contactlaw.cli.parts import quantities, wording
-from contactlaw.cli.parts.quantities import LENGTH, SPEED, Quantity
+from contactlaw.cli.parts.quantities import LENGTH, SHARE, SPEED, Quantity
 from contactlaw.cli.parts.wording import OWN
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, read_materials
@@ -101,7 +101,8 @@ def add_pair(command: argparse.ArgumentParser, otherwise: str = "") -> None:
 def add_materials(command: argparse.ArgumentParser) -> None:
     """Add the option of a file of materials."""
     command.add_argument("--materials", metavar="FILE", type=_materials, default={},
-        help="materials of your own, a TOML file in the format of the catalogue")  # fmt: skip
+        help="materials of your own beside the catalogue, a TOML file in its format "
+        "(default: none)")  # fmt: skip
 
 
 def _materials(path: str) -> dict[str, Material]:
@@ -147,7 +148,7 @@ def _half(read: Callable[[str], Any]) -> Callable[[str], Any]:
 
 def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
     """Add the options of standard errors, of sizes and of numbers of the materials."""
-    share = reader_of(quantities.value, quantities.SHARE)
+    share = reader_of(quantities.value, SHARE)
     for name in sizes:
         command.add_argument(f"--{name}-error", metavar="SHARE", type=share, default=0.0,
             help=f"standard error of the {name}, as 5%% (default: 0)")  # fmt: skip
@@ -160,7 +161,7 @@ def add_errors(command: argparse.ArgumentParser, sizes: Iterable[str]) -> None:
 def _error(text: str) -> tuple[str, float]:
     name, _, share = text.partition("=")
     try:
-        return name, quantities.value(share, quantities.SHARE)
+        return name, quantities.value(share, SHARE)
     except ValueError as error:
         wanted = "expected a number of a material and its error, as yield_strength=15%"
         raise argparse.ArgumentTypeError(f"{wanted}: {error}") from None
@@ -185,6 +186,11 @@ def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
     """Reader of an option from a reader of quantities, with errors that argparse reports."""
 
     def one(text: str) -> Any:
+        if quantity in (LENGTH, SPEED, SHARE) and re.match(r"\s*0,\d", text):  # none may be 0
+            raise argparse.ArgumentTypeError(
+                f"got {text!r}, a list that begins with 0; is it a decimal comma? "
+                f"Write {text.replace(',', '.', 1)}"
+            )
         try:
             found = read(text, quantity)
         except ValueError as error:

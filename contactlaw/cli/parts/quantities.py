@@ -18,7 +18,6 @@ _NUMBER = re.compile(
     r"\s*(?P<number>[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?|[-+]?inf|nan)"
     r"\s*(?P<unit>[^\W\d](?:.*\S)?|[%°])?\s*"
 )
-_COMMA = re.compile(r"\s*0,[0-9]")
 _COUNT = re.compile(r"\s*[0-9]{1,9}\s*(log)?\s*")
 
 
@@ -101,11 +100,6 @@ def values(text: str, quantity: Quantity) -> tuple[float, ...]:
     >>> values("0.1:10:3log", SPEED)
     (0.1, 1.0, 10.0)
     """
-    if quantity in (LENGTH, SPEED, SHARE) and _COMMA.match(text):  # none of these may be 0
-        raise ValueError(
-            f"got {text!r}, a list that begins with 0; is it a decimal comma? "
-            f"Write {text.replace(',', '.', 1)}"
-        )
     items = [[_item(part, quantity) for part in _ends(item)] for item in text.split(",")]
     _check_units(text, [number for item in items for number in item], quantity)
     found: list[float] = []

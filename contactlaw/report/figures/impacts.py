@@ -22,9 +22,13 @@ _COLOURS = style.BLUE, style.ORANGE, style.GREEN, style.PURPLE, style.SKY
 def draw(run: Run) -> Figure:
     """Draw histograms of speed, COR and angle, stacked by wall, with their medians."""
     rows = run.impacts
-    low, high = np.quantile(rows["restitution"], [0.05, 0.95]) if rows.size else (0.0, 1.0)
+    title = "How fast the beads come"
+    if rows.size:
+        low, high = np.quantile(rows["restitution"], [0.05, 0.95])
+        title = f"Nine in ten impacts have a COR of {low:.2f} to {high:.2f}"
+        title = f"The impacts have a COR of {low:.2f}" if high - low < 0.005 else title
     figure = style.figure(
-        13.0, style.pick(4.9, 11.0), f"Nine in ten impacts have a COR of {low:.2f} to {high:.2f}",
+        13.0, style.pick(4.9, 11.0), title,
         f"{run.subject}; {rows.size} impacts{'; ' * bool(run.left_out)}{run.left_out}",
     )  # fmt: skip
     walls = _stacked(run)
@@ -44,6 +48,7 @@ def draw(run: Run) -> Figure:
                   label=[name for name, _ in walls], color=_COLOURS[: len(walls)],
                   edgecolor="white", linewidth=0.3)  # fmt: skip
         axes.set(xlabel=label, ylabel="impacts")
+        axes.yaxis.get_major_locator().set_params(integer=True)
         if whole.size:
             middle = float(np.median(whole))
             axes.axvline(middle, color=style.INK, linestyle="--", linewidth=1.4)
@@ -62,7 +67,8 @@ def _stacked(run: Run) -> list[tuple[str, NDArray[np.void]]]:
     own = sorted(order if len(order) <= most else order[: most - 1])
     found = [(run.walls[n].name, run.walls[n].impacts) for n in own]
     rest = [run.walls[n].impacts for n in order[len(own) :]]
-    return [*found, (OTHERS, np.concatenate(rest))] if rest else found
+    found += [(OTHERS, np.concatenate(rest))] if rest else []
+    return found or [("no impact yet", run.impacts)]
 
 
 def angle(rows: NDArray[np.void]) -> NDArray[np.float64]:
