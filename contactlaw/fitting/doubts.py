@@ -215,7 +215,8 @@ def _readings(predictor: Predictor, at: Array, error: Array) -> list[_Reading]:
     if data.radius is not None:
         half = np.multiply(data.radius, 0.5)
         meant.append(("diameters in place of radii", pair, {"radius": half}))
-    if pair.sphere != pair.plate:
+    # A body has a loss factor here if its own is unknown: exchanged, the other would need one.
+    if pair.sphere != pair.plate and all(p.unknown.field != "loss_factor" for p in parameters):
         meant.append(("sphere and plate exchanged", Pair(pair.plate, pair.sphere), {}))
     least = _square(predictor, at, error)
     found = []

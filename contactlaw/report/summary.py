@@ -26,7 +26,7 @@ CONSTANT = (
 
 def counts(run: Run) -> str:
     """Say in one line how many impacts there are, on how many walls, and of what."""
-    walls, count = len(run.walls), run.impacts.size
+    walls, count = len(np.unique(run.rows[["plate", "thickness"]])), run.impacts.size
     return f"{count} impact{'s' * (count != 1)} on {walls} wall{'s' * (walls != 1)}, {run.subject}"
 
 

@@ -91,6 +91,9 @@ def test_the_commands_say_the_same(steel, capsys):
     assert asked == "stainless-steel-304-ball on glass, law fem"
     assert names.split() == ["COR", "radius", "thickness", "speed", "68", "%", "flags"]
     assert float(row.split()[3]) == pytest.approx(steel.speed(0.9, 1e-3, 5e-3).value[0], rel=1e-3)
+    assert main(["speed", *STEEL, "--cor", "0.9,0.01", "--thickness", "inf", "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
+    assert [row["thickness"] for row in rows] == [None, None] and "remark" in rows[1]
     assert main(["thickness", *STEEL, "--cor", "0.99", "--speed", "2"]) == 1
     assert "no thickness: " in capsys.readouterr().err
     assert main(["thickness", *STEEL, "--cor", "1.2", "--speed", "2"]) == 1

@@ -255,3 +255,9 @@ def test_formats(suffix, begins, speeds, tmp_path):
     assert main([*bead.split(), "--speed", speeds, "--plot", str(path)]) == 0
     assert path.read_bytes().startswith(begins)
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
+
+
+def test_panels_have_labels_below_the_lowest_alone(drawn, tmp_path):
+    asked = "--radius 1mm --thickness 3mm,inf --speed 2 --angle 30,60 --friction 0.05:0.5:4"
+    axes = picture(drawn, tmp_path, asked, command="oblique").axes
+    assert [bool(one.get_xlabel()) for one in axes] == [False, False, True, True]

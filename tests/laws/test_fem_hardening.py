@@ -90,3 +90,15 @@ def test_the_name_holds_the_numbers_of_hardening_and_gives_the_same_law():
     assert law(made.name).follows(made)
     assert len(made.parameters) == 9
     assert len(model(IDEAL).force_law.parameters) == 5
+
+
+def test_a_stronger_body_may_not_have_strained_where_the_other_one_flows():
+    """Its strain would be below zero there, and a power of it complex."""
+    sphere, plate = cl.material("gamma-alumina"), cl.material("alloy-steel-4340")
+    weaker = dataclasses.replace(cl.material("glass"), yield_strength=56e6)
+    for bodies in ((sphere, plate), (plate, sphere), (weaker, cl.material("copper-ofhc-annealed"))):
+        ideal = [dataclasses.replace(body, hardening=None, rate=None) for body in bodies]
+        ours, theirs = (
+            model(*pair).solve(10.0, 1e-3, 1e-2).restitution for pair in (bodies, ideal)
+        )
+        assert ours == pytest.approx(theirs, rel=3e-3)

@@ -12,8 +12,8 @@ from pymunk_room import make_bead, make_plate, make_space, steps
 import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
-from contactlaw.report import surface
-from contactlaw.report.figures import places
+from contactlaw.report import summary, surface
+from contactlaw.report.figures import energy, impacts, places
 from contactlaw.report.figures.impacts import angle
 from contactlaw.report.run import CAUSES, Run
 
@@ -179,3 +179,19 @@ def test_parts_of_triangles_cover_them_and_have_their_own_points():
     assert ((inside * np.cross(b - a, c - a)).sum(axis=-1) > -1e-12).all()
     even = surface.averaged(parts, 2.5 * surface.areas(parts), 0.5)
     assert even == pytest.approx(2.5, rel=1e-12)
+
+
+@pytest.mark.parametrize("walls", [7, 10, 30])
+def test_many_walls_are_counted_and_their_names_have_room(run, walls):
+    rows = np.tile(run[1].collisions()[:1], walls)
+    rows["plate"] = np.arange(walls)
+    many = Run(rows, "beads")
+    assert f"on {walls} walls" in summary.counts(many)
+    figure = energy.draw(many)
+    figure.draw_without_rendering()
+    boxes = [text.get_window_extent() for text in figure.axes[0].get_xticklabels()]
+    assert figure.axes[0].get_xticklabels()[0].get_rotation() == 60 or not any(
+        one.x1 > other.x0 for one, other in zip(boxes, boxes[1:], strict=False)
+    )
+    names = [text.get_text() for text in impacts.draw(many).legends[0].get_texts()]
+    assert len(names) == len(set(names)) == 5

@@ -67,7 +67,9 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     elif arguments.json:
         # questions without an answer have a remark in its place
         unanswered = [
-            dict(zip(("restitution", *known), question, strict=True)) | {"remark": one.remark}
+            {name: None if value == np.inf else value  # JSON has no inf
+             for name, value in zip(("restitution", *known), question, strict=True)}
+            | {"remark": one.remark}
             for question, one in zip(asked.T.tolist(), found, strict=True) if one.remark
         ]  # fmt: skip
         print(json.dumps(impacts.records(table) + unanswered, indent=2))

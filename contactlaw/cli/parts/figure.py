@@ -97,6 +97,7 @@ def _curves(plan: Layout, found: Answers, subject: Subject) -> Figure:
     for axes in grid.flat[panels:]:
         axes.set_visible(False)
     _scale(grid[0, 0], "x", plan.axis, x, few=panels > 1)
+    grid[0, 0].set_xlabel("")
     for axes in grid.flat[max(0, panels - columns) : panels]:  # the lowest of each column
         axes.set_xlabel(label)
         axes.tick_params(labelbottom=True)

@@ -43,6 +43,8 @@ def draw(run: Run) -> Figure:
         names = ["\n".join(textwrap.wrap(name, max(10, 52 // len(walls)))) for name in names]
     for axes, what in ((left, f"energy taken [{unit}]"), (right, "share of impacts' energy [%]")):
         wall_axis(axes, names, "wall")
+        if len(walls) > 6:
+            axes.tick_params(axis="x", rotation=60)
         axes.set_ylabel(what)
         if len(walls) < 3:  # or a single bar would be as wide as its panel
             axes.set_xlim(0.5 * len(walls) - 2.0, 0.5 * len(walls) + 1.0)

@@ -63,7 +63,8 @@ def draw(run: Run) -> Figure:
 def _stacked(run: Run) -> list[tuple[str, NDArray[np.void]]]:
     """Impacts by wall; walls beyond the number of colours are one."""
     most = len(_COLOURS)
-    order = sorted(range(len(run.walls)), key=lambda n: -run.walls[n].impacts.size)
+    rank = [(wall.name == OTHERS, -wall.impacts.size) for wall in run.walls]  # the rest is last
+    order = sorted(range(len(run.walls)), key=rank.__getitem__)
     own = sorted(order if len(order) <= most else order[: most - 1])
     found = [(run.walls[n].name, run.walls[n].impacts) for n in own]
     rest = [run.walls[n].impacts for n in order[len(own) :]]
