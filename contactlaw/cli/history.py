@@ -10,7 +10,7 @@ import numpy as np
 
 from contactlaw import style
 from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
-from contactlaw.cli.parts.quantities import LENGTH, formatted
+from contactlaw.cli.parts.plots import length_of, plate_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import explain, limits_in_words
@@ -55,12 +55,9 @@ def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
 
 def _plot_history(arguments: argparse.Namespace) -> None:
     contact = _contact(arguments, chosen.model(arguments))
-    radius, thickness = (
-        formatted(size, LENGTH) for size in (arguments.radius, arguments.thickness)
-    )
     title = (
-        f"{arguments.sphere} on {arguments.plate}: radius {radius}, plate {thickness}, "
-        f"{arguments.speed:g} m/s"
+        f"{arguments.sphere} on {arguments.plate}: radius {length_of(arguments.radius)}, "
+        f"{plate_of(arguments.thickness)}, {arguments.speed:g} m/s"
     )
     _draw(contact, title, arguments.plot)
 
@@ -89,7 +86,7 @@ def _draw(contact: ForceHistory, title: str, path: str) -> None:
         plate.plot(
             contact.time * 1e6, contact.plate_displacement * 1e6, color=style.MUTED, linestyle="--"
         )
-        plate.set_ylabel("displacement of the plate [µm] (dashed)", color=style.MUTED)
+        plate.set_ylabel("plate moves [µm] (dashed)", color=style.MUTED)
         plate.set_ylim(0.0, None)
         plate.grid(visible=False)
         plate.spines["right"].set_visible(True)

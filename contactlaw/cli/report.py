@@ -87,7 +87,10 @@ def _surface(run: Run, paths: list[str], scale: float | None) -> Surface:
     wall: list[NDArray[np.int64]] = []
     triangle = np.full(rows.size, -1)
     for plate, path in zip(plates.tolist(), paths, strict=True):
-        mesh = Mesh.read(path, math.inf, scale=1.0 if scale is None else scale)
+        try:
+            mesh = Mesh.read(path, math.inf, scale=1.0 if scale is None else scale)
+        except FileNotFoundError:
+            raise wording.Refused(f"--mesh: there is no file {path}") from None
         here = np.flatnonzero(rows["plate"] == plate)
         number = np.full(max(mesh.kept.max(), rows["triangle"][here].max()) + 1, -1)
         number[mesh.kept] = np.arange(len(mesh.kept))

@@ -12,6 +12,7 @@ import json
 import math
 import os
 import re
+import shlex
 import string
 from importlib import resources
 from typing import Any
@@ -87,16 +88,16 @@ def _text(model: ImpactModel) -> str:
     registered, default = law.family in laws.names(), law.family == laws.DEFAULT
     bodies = ", ".join(_python(body) for body in pair.given)
     chosen = "" if default else f", law={law.family!r}" if registered else ", law=law"
-    options = f"--sphere {pair.sphere.name} --plate {pair.plate.name}"
+    typed = [_typed(body) for body in pair.given]
+    options = "--sphere {} --plate {}".format(*map(shlex.quote, typed))
     numbers = _numbers(model) | {
         "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
         "options": options + ("" if default else f" --law {law.family}"),
     }
-    typed = registered and all(map(_in_catalogue, pair.given))
     return string.Template(_read("explore.html")).substitute(
         title=html.escape(f"{pair.sphere.name} on {pair.plate.name}"),
         made=f"contactlaw {VERSION}; law {html.escape(f'{law.family}: {law.source}')}",
-        hidden="" if typed else " hidden",
+        hidden="" if registered and all(typed) else " hidden",
         script=_script(numbers),
     )
 
@@ -147,6 +148,19 @@ def _read(name: str) -> str:
 
 def _in_catalogue(body: Material) -> bool:
     return body.name in materials() and material(body.name) == body
+
+
+def _typed(body: Material) -> str:
+    """Write a material as the commands take it; "" if it has numbers that they do not take."""
+    if _in_catalogue(body):
+        return body.name
+    if body.hardening or body.rate or body.loss_factor:
+        return ""
+    fields = {
+        "E": body.youngs_modulus, "nu": body.poissons_ratio, "rho": body.density,
+        "yield": body.yield_strength, "hardness": body.hardness, "kind": body.kind,
+    }  # fmt: skip
+    return " ".join(f"{key}={value}" for key, value in fields.items() if value is not None)
 
 
 def _python(body: Material) -> str:

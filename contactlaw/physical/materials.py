@@ -444,7 +444,7 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     """
     try:
         return _read(tomllib.loads(Path(path).read_text("utf-8")), _tables())
-    except (ValueError, TypeError, AttributeError, KeyError) as error:
+    except (ValueError, TypeError, KeyError) as error:
         raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
 
 
@@ -462,6 +462,9 @@ def _catalogue() -> dict[str, Material]:
 def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]:
     """Materials by name and by alias; an entry may be `like` one of other tables."""
     references = others.pop("references", {}) | tables.pop("references", {})
+    for name, table in tables.items():
+        if not isinstance(table, dict):
+            raise ValueError(f"{name} = {table!r} is no material: write [{name}], then its numbers")
     found = {name: _from_table(name, tables[name], others | tables, references) for name in tables}
     return found | {one: found[name] for name in tables for one in tables[name].get("aliases", ())}
 
@@ -475,6 +478,8 @@ def _from_table(
         hint = f"did you mean {near[0]!r}? " if near else ""
         raise ValueError(f"[{name}]: unknown {key!r}; {hint}known: {', '.join(known)}")
     source = table.get("source", {})
+    if isinstance(source, str):  # of all numbers
+        source = dict.fromkeys(table.keys() & _LABELS.keys(), source)
     if "like" in table:
         if table["like"] not in tables:
             raise ValueError(f"[{name}]: like = {table['like']!r} is no entry")
@@ -505,11 +510,16 @@ def _from_table(
         stored = getattr(body, number)
         numbers = stored if isinstance(stored, tuple) else () if stored is None else (stored,)
         shown = ",".join(f" {value:g}{unit}" for value in numbers)
-        parts.append(f"{label}{shown}: {source[number].format_map(references)}")
+        parts.append(f"{label}{shown}: {_cited(source[number], references)}")
         if number in errors:
-            error, reason = errors[number][0], errors[number][1].format_map(references)
+            error, reason = errors[number][0], _cited(errors[number][1], references)
             parts.append(f"standard error of it {100.0 * error:g} %: {reason}")
     return replace(body, source="; ".join(parts))
+
+
+def _cited(text: str, references: dict[str, str]) -> str:
+    """Write out the references in a text, each the name of one in braces."""
+    return re.sub(r"\{(\w+)\}", lambda one: references.get(one[1], one[0]), text)
 
 
 def _finite(name: str, field: str, value: object, unit: str) -> float:

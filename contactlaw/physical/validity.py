@@ -136,9 +136,9 @@ _WORDS = {
     ),
     Validity.RATE_DEPENDENT: (
         "a polymer, or as soft and light as one, without a loss factor that the law takes",
-        "give its loss factor and its modulus at the frequency of the impact, take law fem, and "
-        "give the kind of what is no polymer; the COR is too high if no body flows, else too high "
-        "or too low, by how much is not known",
+        "give law fem its loss factor, and its modulus at the frequency of the impact, or its kind "
+        "if it is no polymer; the COR is too high if no body flows, else too high or too low, by "
+        "how much is not known",
     ),
     Validity.DAMAGE: (
         "a brittle body may break or flow",

@@ -27,8 +27,11 @@ _READABLE = {style.BLUE: style.BLUE, style.ORANGE: "#9A6700", style.GREEN: "#006
              style.SKY: "#1F6E9C", style.PALE: style.INK, style.MUTED: style.INK}  # fmt: skip
 
 
-def bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]]) -> None:
-    """Stack the shares, each with its number; those of small shares are beside the bar."""
+def bar(
+    axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], float]],
+    room: bool = True,
+) -> None:  # fmt: skip
+    """Stack the shares with their numbers; those of small ones are beside, if there is room."""
     bottom = beside = 0.0
     for (name, colour), share in parts:
         height = 100.0 * share
@@ -40,7 +43,7 @@ def bar(axes: Axes, x: float, width: float, parts: list[tuple[tuple[str, str], f
         if height >= _ROOM:
             ink = "white" if colour in (style.BLUE, style.MUTED, style.GREEN) else style.INK
             axes.text(x, middle, text, ha="center", va="center", color=ink, fontsize=11)
-        else:
+        elif room:
             beside = max(middle, beside + _ROOM)
             axes.text(
                 x + 0.5 * width, beside, f" {text}", va="center", color=_READABLE[colour],

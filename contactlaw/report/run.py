@@ -22,6 +22,7 @@ _NEEDED = (
     "approach_speed", "restitution", "sliding_speed", "kind", "plate", "triangle", "x", "y", "z",
     "flags", "mass", "thickness", *(f"{cause}_energy" for cause in CAUSES),
 )  # fmt: skip
+_POSITIVE = "approach_speed", "radius", "mass", "thickness"
 _MOST = 12  # walls that are told apart; beyond that, those that take the least energy are one
 OTHERS = "other walls"
 
@@ -91,7 +92,7 @@ class Run:
     Raises
     ------
     ValueError
-        If the record lacks a column, or an impact on a wall has a number that is not finite.
+        If the record lacks a column, or an impact on a wall has a number that cannot be.
     """
 
     record: Rows
@@ -108,12 +109,15 @@ class Run:
                 "engines record, with an ImpactModel and this version of contactlaw; simulate again"
             )
         on_walls = only_impacts(self.record["kind"])[0] & (self.record["plate"] >= 0)
-        for name in ("approach_speed", "restitution", "radius", "mass", *"xyz"):
-            wrong = on_walls & ~np.isfinite(self.record[name])
+        for name in ("approach_speed", "restitution", "radius", "mass", "thickness", *"xyz"):
+            values = self.record[name]
+            right = values > 0.0 if name in _POSITIVE else ~np.isnan(values)
+            wrong = on_walls & ~(right & (np.isfinite(values) | (name == "thickness")))
             if wrong.any():
                 row = int(np.argmax(wrong))
-                value = float(self.record[name][row])
-                raise ValueError(f"record: {name} of row {row} is {value!r}: leave the row out")
+                raise ValueError(
+                    f"record: {name} of row {row} is {float(values[row])!r}: leave the row out"
+                )
 
     @cached_property
     def rows(self) -> Rows:

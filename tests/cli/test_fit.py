@@ -110,6 +110,8 @@ def test_tables_as_people_write_them(head, rows, table):
             ["speed,COR", "1.0,0.5", "", "1,5,0.5"],
             "line 4 has 3 fields, '1,5,0.5', where the first",
         ),
+        (["# in May", "speed;COR", "1;2"], "element 0, line 3"),
+        (["speed,COR", "1,88.5%"], "is no number such as 1.5; units belong into the name of the"),
         (["speed,COR", "1,5,0,5"], "a decimal comma? Write numbers with a point"),
         (["speed;COR", "1;0.5;late"], "delete what is beyond the columns"),
         (["speed,COR", "# ours", "1"], "line 3 has 1 field, '1', where the first line names 2"),

@@ -58,6 +58,19 @@ def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     assert [row.split()[:2] for row in rows] == [["hard-304", "193.000"], ["my-pom", "2.800"]]
 
 
+def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_units(
+    tmp_path, capsys
+):
+    path = tmp_path / "mine.toml"
+    path.write_text('[soft]\nlike = "glass"\nyield_strength = 1e8\nsource = "tests of {May}"')
+    assert cl.read_materials(path)["soft"].source.endswith(
+        "yield strength 1e+08 Pa: tests of {May}"
+    )
+    text = "E=200GPa nu=0.3 rho=7800 hardness=62"
+    assert main(["cor", "--sphere", text, *IMPACT]) == 0
+    assert "hardness=62 is 62 Pa; HRC, HV or HB?" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
@@ -88,7 +101,7 @@ def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
         ('"stainless-steel-304"', '"304L"', r"\[hard-304\]: like = '304L' is no entry"),
         ("= 2.8e9", "= ", "mine.toml: Invalid value"),
         ("[my-pom]", "", "mine.toml: "),
-        ('"measured"', '"{key}"', "mine.toml: .*key"),
+        ("[my-pom]", "pom = 3\n[my-pom]", r"pom = 3 is no material: write \[pom\]"),
     ],
 )
 def test_a_file_with_a_mistake_is_refused(old, new, message, tmp_path):

@@ -124,8 +124,8 @@ def test_a_rain_of_the_demo(tmp_path, empty_pictures):
     [
         (
             "a.csv",
-            "velocity,radius\n1,2\n",
-            "no column of speeds in its first line, 'velocity, rad",
+            "time,radius\n1,2\n",
+            "no column of speeds in its first line, 'time, rad",
         ),
         ("a.csv", "", "no column of speeds in its first line, ''"),
         ("a.csv", "speed_m/s\n", "it has no impact on a plate"),
@@ -140,7 +140,7 @@ def test_a_rain_of_the_demo(tmp_path, empty_pictures):
             r"'speed \[mph\]': 'mph' is no unit of speed; take m/s, cm/s",
         ),
         ("a.csv", "speed,normal speed\n1,2\n", "two columns of speed, 'speed' and 'normal speed'"),
-        ("a.csv", b"\xff\xfe\x00\x01speed", "neither text, nor HDF5"),
+        ("a.csv", b"\xff\xfe\x00\x01speed", "neither text in UTF-8, nor HDF5"),
         ("a.npy", b"speed", "no file of np.save"),
         ("a.h5", b"speed", "no HDF5 file, or a damaged one"),
         (

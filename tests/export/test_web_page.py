@@ -135,12 +135,26 @@ def test_what_a_page_cannot_answer_is_refused(tmp_path, capsys):
         cl.export.page(tmp_path / "page.html", "steel")
     rated = [*EXPLORE[:2], "alloy-steel-4340", *EXPLORE[3:], str(tmp_path / "page.html")]
     assert cli.main(rated) == 1
-    assert "rate of strain" in capsys.readouterr().err
+    assert "--sphere: the strength of 'alloy-steel-4340' grows with" in capsys.readouterr().err
+    with pytest.raises(ValueError, match="rate of strain"):
+        cl.export.page(tmp_path / "page.html", cl.ImpactModel(cl.Pair(rated[2], "glass")))
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_material_of_numbers_is_asked_in_a_shell_by_these(tmp_path, page, capsys):
+    ball = "E=207GPa nu=0.29 rho=7850 yield=1.2GPa kind=metal"
+    out = tmp_path / "page.html"
+    assert cli.main(["explore", "--sphere", ball, "--plate", "alumina", "--out", str(out)]) == 0
+    page.open(out, 1280)
+    shown = page.value("document.getElementById('command').textContent")
+    capsys.readouterr()
+    assert cli.main([*shlex.split(shown)[1:], "--no-band", "--json"]) == 0
+    row = json.loads(capsys.readouterr().out)
+    assert float(page.value(COR)) == pytest.approx(row["restitution"], abs=5.1e-5)
+
+
 def test_materials_and_laws_of_ones_own_cannot_break_the_page(tmp_path, page):
-    bead = cl.Material("</script><b>", 70e9, 0.3, 2700, 2e8)
+    bead = cl.Material("</script><b>", 70e9, 0.3, 2700, 2e8, hardening=(1e8, 0.3))
     cl.export.page(tmp_path / "page.html", cl.ImpactModel(cl.Pair(bead, "glass")))
     page.complaints.clear()
     page.open(tmp_path / "page.html", 390)

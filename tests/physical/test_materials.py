@@ -158,6 +158,7 @@ def test_every_number_has_its_own_source(name: str) -> None:
 def test_every_reference_is_used() -> None:
     text = files("contactlaw.physical").joinpath("catalogue.toml").read_text("utf-8")
     assert [key for key in raw_catalogue()["references"] if f"{{{key}}}" not in text] == []
+    assert not any("{" in material(name).source for name in materials())
 
 
 @pytest.mark.parametrize("name", materials())

@@ -152,9 +152,11 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
         Run(impacts.collisions()[names], "")
     rows = impacts.collisions()
     row = int(np.flatnonzero((rows["kind"] == 0) & (rows["plate"] >= 0))[0])
-    rows["approach_speed"][row] = math.nan
-    with pytest.raises(ValueError, match=f"approach_speed of row {row} is nan: leave the row out"):
-        Run(rows, "")
+    for name, value in (("approach_speed", math.nan), ("mass", 0.0), ("thickness", math.nan)):
+        wrong = rows.copy()
+        wrong[name][row] = value
+        with pytest.raises(ValueError, match=f"{name} of row {row} is {value}: leave the row out"):
+            Run(wrong, "")
     with monkeypatch.context() as patch:
         patch.setitem(sys.modules, "matplotlib", None)
         with pytest.raises(ImportError, match="pip install 'contactlaw"):
@@ -184,7 +186,7 @@ def test_parts_of_triangles_cover_them_and_have_their_own_points():
 @pytest.mark.parametrize("walls", [7, 10, 30])
 def test_many_walls_are_counted_and_their_names_have_room(run, walls):
     rows = np.tile(run[1].collisions()[:1], walls)
-    rows["plate"] = np.arange(walls)
+    rows["plate"], rows["thickness"] = np.arange(walls), 1e-3
     many = Run(rows, "beads")
     assert f"on {walls} walls" in summary.counts(many)
     figure = energy.draw(many)

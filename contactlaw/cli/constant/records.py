@@ -60,7 +60,7 @@ class PlannedImpacts(NamedTuple):
 
 
 _COLUMNS = {
-    "speed": TextColumn(("speed", "approach_speed", "normal_speed", "impact_speed"), SPEED),
+    "speed": TextColumn(columns.SPEEDS, SPEED),
     "radius": TextColumn(("radius",), LENGTH),
     "thickness": TextColumn(("thickness",), LENGTH),
     "weights": TextColumn(("weight", "weights"), None),
@@ -78,8 +78,8 @@ def read(path: str | os.PathLike[str]) -> Recorded:
         ``np.save`` writes it (``.npy``); or else text: columns between commas, semicolons or tabs,
         with names and units in the first line, as in ``speed_m/s,radius_mm`` or ``Speed
         [m/s];Radius [mm]``. Speeds may be called speed, approach speed, normal speed or impact
-        speed; a column without a unit is in that of the SI. Columns called radius, thickness,
-        weight and plate are optional.
+        speed, or velocity; a column without a unit is in that of the SI. Columns called radius,
+        thickness, weight and plate are optional.
 
     Raises
     ------

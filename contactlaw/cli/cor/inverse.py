@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from contactlaw.answers.inverse import Solutions
 from contactlaw.cli.cor import bands
 from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
 from contactlaw.cli.parts.impacts import COLUMNS, Column, ImpactTable
@@ -65,14 +66,12 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     if arguments.csv:
         impacts.write_csv(table, sys.stdout, columns)
     elif arguments.json:
-        # questions without an answer have a remark in its place
-        unanswered = [
-            {name: None if value == np.inf else value  # JSON has no inf
-             for name, value in zip(("restitution", *known), question, strict=True)}
-            | {"remark": one.remark}
-            for question, one in zip(asked.T.tolist(), found, strict=True) if one.remark
-        ]  # fmt: skip
-        print(json.dumps(impacts.records(table) + unanswered, indent=2))
+        answers = iter(impacts.records(table))
+        rows_of = [
+            [*itertools.islice(answers, one.value.size)] or [_unanswered(question, one, table)]
+            for question, one in zip(questions, found, strict=True)
+        ]
+        print(json.dumps([*itertools.chain(*rows_of)], indent=2))
     else:
         band = next(one.band for one in found if one.band)
         said = (
@@ -80,6 +79,12 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
             f"{bands.meaning(band)}{bands.left_out(band, model.pair)}."
         )
         print(*impacts.text(table, columns), "", *textwrap.wrap(said, bands.WIDTH), sep="\n")
+
+
+def _unanswered(question: dict[str, float], one: Solutions, table: ImpactTable) -> dict[str, Any]:
+    """Row of a question without an answer, which has a remark in its place; JSON has no inf."""
+    sizes = {name: None if size == np.inf else size for name, size in question.items()}
+    return {"restitution": one.restitution} | sizes | {"remark": one.remark} | table.asked
 
 
 def _columns(unknown: str) -> tuple[Column, ...]:

@@ -25,12 +25,9 @@ _KINDS = {
     "spin": (("spin", "rebound_spin", "angular_velocity"), quantities.SPIN),
 }
 _ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
-_SPEEDS = ("speed", "approach_speed", "normal_speed", "impact_speed")
 _BEADS = ("", "bead_", "ball_", "sphere_", "particle_")
 _COLUMNS = {
-    "speed": TextColumn(
-        (*_SPEEDS, *(name.replace("speed", "velocity") for name in _SPEEDS), "v"), SPEED
-    ),  # fmt: skip
+    "speed": TextColumn(columns.SPEEDS, SPEED),
     "angle": TextColumn(("angle", "impact_angle", "angle_of_incidence"), quantities.ANGLE),
     "sliding_speed": TextColumn(("sliding_speed", "tangential_speed"), SPEED),
     "friction": TextColumn(("friction", "coefficient_of_friction", "mu"), quantities.FRICTION),
@@ -105,7 +102,9 @@ def _read(content: bytes) -> Read:
     try:
         names, rows, delimiter = columns.split_table(content)
     except ValueError:
-        raise ValueError("no text; take columns with names in the first line") from None
+        raise ValueError(
+            "no text in UTF-8, as spreadsheets save it; take columns with names in the first line"
+        ) from None
     found = columns.locate(names, _COLUMNS)
     listed = ", ".join(names)[:200]
     if "speed" not in found:

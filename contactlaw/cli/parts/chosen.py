@@ -20,10 +20,13 @@ def model(arguments: argparse.Namespace) -> ImpactModel:
     bodies = []
     for role, body in zip(("sphere", "plate"), pair(arguments).given, strict=True):
         errors = dict(getattr(arguments, f"{role}_error", ()))
-        changed = dataclasses.replace(body, uncertainty={**body.uncertainty, **errors})
+        try:
+            changed = dataclasses.replace(body, uncertainty={**body.uncertainty, **errors})
+        except ValueError as error:
+            raise wording.Refused(f"--{role}-error: {error}") from error
         for name in errors:
             if name not in changed.uncertainty:
-                raise ValueError(f"{name}: {body.name!r} has no value that could have an error")
+                raise wording.Refused(f"--{role}-error: {body.name!r} has no {name} to be wrong")
         bodies.append(changed)
     return ImpactModel(Pair(*bodies), law=arguments.law, outside=arguments.outside)
 

@@ -20,7 +20,10 @@ from contactlaw.cli.parts.quantities import Quantity
 Array = NDArray[np.float64]
 
 _BRACKET = re.compile(r"(?P<name>.*?)[_ ]*[\[(](?P<unit>[^])]*)[\])]")
+_UNIT = re.compile(r"\d\s*([^\W\d]|%)")
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
+_SPEED = "speed", "approach_speed", "normal_speed", "impact_speed"
+SPEEDS = (*_SPEED, *(name.replace("speed", "velocity") for name in _SPEED), "v")
 _MISSING = ("", "n/a", "na", "nan", "none", "-")  # cells of what was not measured
 
 
@@ -77,9 +80,10 @@ def saved(content: bytes) -> NDArray[np.void]:
 
 
 def split_table(content: bytes) -> tuple[list[str], list[str], str]:
-    r"""Split a table into the names in its first line, its rows, and the delimiter of columns.
+    r"""Split a table into the names of its columns, its rows, and the delimiter of columns.
 
-    Rows are the lines after the first; those that hold no data are empty.
+    The names are in the first line, or below comments in the first that is none. Rows are the lines
+    after the first; those that hold no data are empty.
 
     Raises
     ------
@@ -90,16 +94,21 @@ def split_table(content: bytes) -> tuple[list[str], list[str], str]:
     --------
     >>> split_table(b"Speed [m/s];COR\n0.5;0.9\n")
     (['Speed [m/s]', 'COR'], ['0.5;0.9'], ';')
+    >>> split_table(b"# in May\nspeed,COR\n0.5,0.9\n")
+    (['speed', 'COR'], ['', '0.5,0.9'], ',')
     """
     try:
-        first, *lines = content.decode("utf-8-sig").splitlines() or [""]
+        lines = content.decode("utf-8-sig").splitlines() or [""]
     except UnicodeDecodeError:
         if b"\0" in content:
-            raise ValueError("neither text") from None
-        first, *lines = content.decode("cp1252", "replace").splitlines()  # of Windows, for µ
-    delimiter = next((mark for mark in "\t;" if mark in first), ",")
-    names = [head.strip() for head in _fields(first.lstrip("#"), delimiter)]
-    rows = ["" if line.isspace() or line.startswith("#") else line for line in lines]
+            raise ValueError("neither text in UTF-8") from None
+        lines = content.decode("cp1252", "replace").splitlines()  # of Windows, for µ
+    below = next((n for n, line in enumerate(lines) if not line.startswith("#")), 0)
+    head = below if re.search("[^\\W\\d]", lines[below]) else 0  # numpy's names are a comment
+    delimiter = next((mark for mark in "\t;" if mark in lines[head]), ",")
+    names = [name.strip() for name in _fields(lines[head].lstrip("#"), delimiter)]
+    rows = ["" if line.isspace() or line.startswith("#") else line for line in lines[1:]]
+    rows[:head] = [""] * head
     while rows and not rows[-1]:
         rows.pop()
     return names, rows, delimiter
@@ -226,7 +235,8 @@ def numbers(
                 table[-1].append(_number(cells[n].strip(), delimiter, gaps))
             except ValueError:
                 where = f"line {line}, column {names[n]!r}: {cells[n].strip()!r}"
-                raise ValueError(f"{where} is no number such as 1.5") from None
+                hint = "; units belong into the name of the column" * bool(_UNIT.search(cells[n]))
+                raise ValueError(f"{where} is no number such as 1.5{hint}") from None
     return lines, np.array(table, dtype=np.float64).reshape(len(lines), len(wanted))
 
 

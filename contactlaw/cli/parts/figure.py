@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+_FLAT = 0.005  # range of a map that has no contours
 _SEEN = 0.015  # width of a band that its curve does not hide
 
 
@@ -148,7 +149,7 @@ def _map(plan: Layout, found: Answers, subject: Subject) -> Figure:
     value, flags, overload = (part[0] for part in found[:3])
     least, most = float(value.min()), float(value.max())
     nice = np.array(MaxNLocator(10, steps=[1, 2, 5, 10]).tick_values(least, most))
-    inner = nice[(nice > least) & (nice < most)]
+    inner = nice[(nice > least) & (nice < most) & (most - least > _FLAT)]
     colours = ListedColormap(colormaps["viridis"](np.linspace(0.25, 1.0, 256)))  # hatches are dark
     levels = [min(least, most - 0.01), *inner, most]
     filled = axes.contourf(x, y, value, levels, cmap=colours)

@@ -186,11 +186,14 @@ def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
     """Reader of an option from a reader of quantities, with errors that argparse reports."""
 
     def one(text: str) -> Any:
-        if quantity in (LENGTH, SPEED, SHARE) and re.match(r"\s*0,\d", text):  # none may be 0
-            raise argparse.ArgumentTypeError(
+        if re.match(r"\s*0,\d", text):
+            said = (
                 f"got {text!r}, a list that begins with 0; is it a decimal comma? "
                 f"Write {text.replace(',', '.', 1)}"
             )
+            if quantity in (LENGTH, SPEED, SHARE):  # none of these may be 0
+                raise argparse.ArgumentTypeError(said)
+            wording.print_warning(said)
         try:
             found = read(text, quantity)
         except ValueError as error:

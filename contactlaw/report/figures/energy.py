@@ -37,7 +37,7 @@ def draw(run: Run) -> Figure:
                       textcoords="offset points", fontsize=11 if len(walls) < 7 else 8)  # fmt: skip
         if wall.impacts.size:
             found = shares(wall.impacts, wall.impacts["mass"], by_cause(run.rows)[-1] > 0.0)
-            bar(right, n, 0.6, list(zip(PARTS, found, strict=True)))
+            bar(right, n, 0.6, list(zip(PARTS, found, strict=True)), len(walls) < 7)
     names = [wall.name for wall in walls]
     if len(walls) < 7:  # columns are wide enough to have their names below them
         names = ["\n".join(textwrap.wrap(name, max(10, 52 // len(walls)))) for name in names]
