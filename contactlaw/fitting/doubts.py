@@ -197,7 +197,7 @@ def _outside(predictor: Predictor, at: Array) -> str:
     ends += ", that of a half-space" if unknown == "thickness" and high[n] == grid[-2, n] else ""
     return (
         f"no {unknown} gives the {name} {f'{value:.4g} {unit}'.rstrip()} of rebound {row}, at "
-        f"{speed:.3g} m/s: attainable is {ends}"
+        f"{rounded(speed, 3)} m/s: attainable is {ends}"
     )
 
 

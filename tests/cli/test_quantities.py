@@ -83,6 +83,7 @@ def test_a_range_has_its_ends_and_even_steps(start, stop, count, log):
         ("fast", FRICTION, "expected a coefficient of friction such as 0.5 or 0.5%"),
         ("5MM", LENGTH, "'MM' is no unit of length"),
         ("0.5,1mm", LENGTH, "'0.5' has no unit and others have: write 0.5mm, or 0.5m"),
+        ("1,5mm", LENGTH, "if that is meant; 1.5mm if it is a decimal comma"),
         ("0.5:2mm:3", LENGTH, "'0.5' has no unit"),
         ("1:2", SPEED, "a range is start:stop:count"),
         ("1:2:3:4", SPEED, "a range is start:stop:count"),

@@ -176,9 +176,11 @@ def _check_units(text: str, items: list[_Item], quantity: Quantity) -> None:
     unit = next((item.unit for item in finite if item.unit), None)
     bare = next((item.number for item in finite if not item.unit), None)
     if unit and bare:
+        comma = re.fullmatch(r"\s*\d+,\d+\s*\D+", text)
+        hint = f"; {text.replace(',', '.')} if it is a decimal comma" if comma else ""
         raise ValueError(
             f"got {text!r}: {bare!r} has no unit and others have: write {bare}{unit}, or "
-            f"{bare}{quantity.si} if that is meant"
+            f"{bare}{quantity.si} if that is meant{hint}"
         )
 
 

@@ -29,7 +29,8 @@ def draw(run: Run) -> Figure:
         title = f"The impacts have a COR of {low:.2f}" if high - low < 0.005 else title
     figure = style.figure(
         13.0, style.pick(4.9, 11.0), title,
-        f"{run.subject}; {rows.size} impacts{'; ' * bool(run.left_out)}{run.left_out}",
+        f"{run.subject}; {rows.size} impact{'s' * (rows.size != 1)}"
+        f"{'; ' * bool(run.left_out)}{run.left_out}",
     )  # fmt: skip
     walls = _stacked(run)
     bins = int(np.clip(2.0 * rows.size**0.5, *_BINS)) + 1

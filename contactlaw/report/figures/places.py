@@ -33,15 +33,16 @@ _POINTS = 20_000  # most contacts that are drawn
 
 def draw(run: Run) -> Figure:
     """Draw the walls in the colours of their energies, or the contact points alone."""
-    time = f"{float(np.ptp(run.rows['time'])) * 1e3:.3g} ms"
+    time = float(np.ptp(run.rows["time"]))
+    within = f" in {1e3 * time:.3g} ms" if time > 0.0 else ""
     if run.map is None:
-        return _points(run, time)
+        return _points(run, within)
     found = run.map
     size = np.ptp(found.corners, axis=(0, 1))
     thin = np.flatnonzero(size <= _FLAT * size.max())
     views = 1 if thin.size else len(_VIEWS)
     figure = style.figure(12.0, style.pick(6.6 if thin.size else 5.8, 5.8 * views), _TITLE,
-                          f"{run.subject}; energy of all contacts per area, in {time}")  # fmt: skip
+                          f"{run.subject}; energy of all contacts per area{within}")  # fmt: skip
     panels = np.atleast_1d(figure.subplots(*style.pick((1, views), (views, 1))))
     if thin.size:
         x, y = (n for n in range(3) if n != thin[0])
@@ -76,7 +77,7 @@ def _view(axes: Axes, found: EnergyMap, towards: Floats) -> None:
     axes.axis("off")
 
 
-def _points(run: Run, time: str) -> Figure:
+def _points(run: Run, within: str) -> Figure:
     """Draw contact points as seen along the axis in which they spread the least."""
     energy, places = taken(run.rows), 1e3 * run.points[run.record["plate"] >= 0]
     spread = np.ptp(places, axis=0)
@@ -84,7 +85,7 @@ def _points(run: Run, time: str) -> Figure:
     # points on one flat wall, or a single one, need some room beside them
     wide, high = np.maximum(spread[[x, y]], 0.12 * spread.max() or 1.0)
     height = float(np.clip(style.pick(11.0, 5.2) * high / wide, 1.2, 6.0))
-    figure = style.figure(12.0, 1.9 + height, _TITLE, f"{run.subject}; contacts in {time}")
+    figure = style.figure(12.0, 1.9 + height, _TITLE, f"{run.subject}; contacts{within}")
     axes = figure.add_subplot()
     few = np.argsort(-energy)[:_POINTS]
     most = float(f"{float(np.quantile(energy, 0.98)) or 1.0:.0e}")
