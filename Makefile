@@ -7,13 +7,18 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 # Without byte code on disk each process would compile numba's sources again, for 2 s.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-engines lint package validation bench pictures clean
+.PHONY: demo test test-long test-engines lint package validation bench pictures clean
 
 demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
 
-test: .venv/test.done  ## run the tests
-	$(BIN)/python -m pytest --numprocesses auto --dist loadfile
+PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist loadfile
+
+test: .venv/test.done  ## run the tests, but for those of `test-long`
+	$(PYTEST) -m "not long"
+
+test-long: .venv/test.done  ## run long validations: whole fits, statistics, elements, the catalogue
+	$(PYTEST) -m long
 
 ENGINES := liggghts libliggghts-dev libopenmpi-dev g++
 

@@ -253,6 +253,13 @@ def test_import_is_light():
     assert done.returncode == 0, done.stderr
 
 
+FORCE = """
+from contactlaw import _jit, laws
+from contactlaw.equation import force
+_jit.enable_caching()
+law = laws.law('myc').data
+print(force.loading(law, 2.5), force.loading(law, 0.5))
+"""
 ANSWERS = """
 import numpy as np
 import contactlaw as cl
@@ -280,14 +287,22 @@ EDITS = [
 ]  # fmt: skip
 
 
-def test_a_changed_source_never_yields_an_old_result(tmp_path):
+@pytest.mark.parametrize(
+    ("code", "edits"),
+    [
+        (FORCE, [(*EDITS[1][:3], (0, 1))]),
+        pytest.param(ANSWERS, EDITS, marks=pytest.mark.long),
+    ],
+    ids=["force", "all"],
+)
+def test_a_changed_source_never_yields_an_old_result(code, edits, tmp_path):
     """This holds also if the edit is not in the file of the function that Python calls."""
     package = tmp_path / "contactlaw"
     shutil.copytree(ROOT, package, ignore=shutil.ignore_patterns("__pycache__", "engines"))
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "numba")}
 
     def answers():
-        command = [sys.executable, "-c", ANSWERS]
+        command = [sys.executable, "-c", code]
         run = subprocess.run(
             command, check=True, cwd=tmp_path, env=environment, capture_output=True, text=True
         )
@@ -296,7 +311,7 @@ def test_a_changed_source_never_yields_an_old_result(tmp_path):
     before = answers()
     assert answers() == before  # from the cache
     changed = set()
-    for name, line, edited, which in EDITS:
+    for name, line, edited, which in edits:
         source = (package / name).read_text()
         assert source.count(line) == 1, name
         (package / name).write_text(source.replace(line, edited))
@@ -305,7 +320,8 @@ def test_a_changed_source_never_yields_an_old_result(tmp_path):
     assert {n for n, (old, new) in enumerate(zip(before, after, strict=True)) if old != new} >= (
         changed
     )
-    assert after[:2] == [pytest.approx(0.5 * e, rel=1e-12) for e in before[:2]]
+    factor = 0.5 if edits is EDITS else 2.0
+    assert after[:2] == [pytest.approx(factor * e, rel=1e-12) for e in before[:2]]
     assert len(list((tmp_path / "numba").iterdir())) == 2
 
 

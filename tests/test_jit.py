@@ -271,6 +271,7 @@ def test_a_damaged_c_function_is_made_anew(kept_kernel):
             assert (value, made.cache_hits) == (42.0, hits)
 
 
+@pytest.mark.long
 def test_two_processes_that_start_at_once_both_answer(tmp_path):
     """So do processes after them, whatever has happened to the files meanwhile."""
     folder = tmp_path / "kept"

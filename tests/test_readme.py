@@ -7,7 +7,7 @@ import shlex
 import shutil
 import subprocess
 import sys
-from importlib.util import find_spec
+from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
 
 import needs
@@ -152,7 +152,24 @@ def test_links_lead_somewhere(page):
             assert anchor in slugs, target
 
 
-@pytest.mark.parametrize("script", EXAMPLES, ids=lambda path: path.stem)
+def test_a_few_beads_run_down_the_hopper(capsys):
+    """The whole example takes 12 s."""
+    spec = spec_from_file_location("hopper", ROOT / "docs/examples/hopper_pymunk.py")
+    hopper = module_from_spec(spec)
+    spec.loader.exec_module(hopper)
+    found = hopper.main(beads=3, duration=0.18)
+    assert set(found["plate"]) >= {0, 1}
+    assert len(capsys.readouterr().out.splitlines()) == 2
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        pytest.param(one, marks=pytest.mark.long) if one.stem == "hopper_pymunk" else one
+        for one in EXAMPLES
+    ],
+    ids=lambda path: path.stem,
+)
 def test_examples_run(script):
     """Run the examples as a user does; each prints a result."""
     assert len(script.read_text().splitlines()) <= 60

@@ -19,7 +19,12 @@ def impacts(count):
     return v, r, r / slenderness
 
 
-@pytest.mark.parametrize("model", polymer.MODELS, ids=lambda model: repr(model.pair))
+# The last one has a table for each strength: beside the solver also in tests/export.
+@pytest.mark.parametrize(
+    "model",
+    [*polymer.MODELS[:2], pytest.param(polymer.MODELS[2], marks=pytest.mark.long)],
+    ids=lambda model: repr(model.pair),
+)
 def test_every_way_to_a_cor_gives_that_of_the_solver(model):
     v, r, h = impacts(60)
     exact = model.solve(v, r, h)

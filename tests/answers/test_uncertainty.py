@@ -58,7 +58,10 @@ def drawn(body, deviates):
     return body
 
 
-@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize(
+    "case",
+    [*list(CASES)[:-1], pytest.param("hardening and rate", marks=pytest.mark.long)],
+)
 def test_the_band_is_that_of_random_pairs(case):
     """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones."""
     bead, plate, speed, thickness, sizes = CASES[case]
@@ -112,15 +115,30 @@ def test_one_number_alone_makes_the_band_of_its_ends():
     model = cl.ImpactModel(cl.Pair(bead, "glass"))
     cor = model.uncertainty(3.0, 1e-3, [2e-3, INF]).restitution
     assert list(cor.causes) == ["yield strength of the bead", "model"]
-    ends = [
-        cl.ImpactModel(cl.Pair(drawn(bead, [z, 0.0]), "glass")).solve(3.0, 1e-3, [2e-3, INF])
-        for z in (-1.0, 1.0)
-    ]
-    width = 0.5 * (ends[1].restitution - ends[0].restitution)
+    width = half_of_ends(bead, [0.0])
     assert cor.causes["yield strength of the bead"] == pytest.approx(width, rel=1e-5)
     assert 0.5 * (cor.high - cor.low) == pytest.approx(
         np.hypot(width, cor.causes["model"]), rel=0.02
     )
+
+
+def half_of_ends(bead, others=()):
+    """Half of what the COR on glass changes by, from one end of the first error to the other."""
+    ends = [
+        cl.ImpactModel(cl.Pair(drawn(bead, [z, *others]), "glass")).solve(3.0, 1e-3, [2e-3, INF])
+        for z in (-1.0, 1.0)
+    ]
+    return 0.5 * abs(ends[1].restitution - ends[0].restitution)
+
+
+@pytest.mark.parametrize(
+    ("number", "error", "within"), [("hardening", 0.15, 1e-4), ("rate", 0.3, 2e-3)]
+)
+def test_hardening_and_rate_have_their_part_of_a_band(number, error, within):
+    bead = known_to(COPPER, **{number: error})
+    cor = cl.ImpactModel(cl.Pair(bead, "glass")).uncertainty(3.0, 1e-3, [2e-3, INF]).restitution
+    assert list(cor.causes) == [f"{number} of the bead", "model"]
+    assert cor.causes[f"{number} of the bead"] == pytest.approx(half_of_ends(bead), rel=within)
 
 
 def test_one_material_errs_alike_in_both_bodies():

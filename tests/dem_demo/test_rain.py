@@ -3,11 +3,11 @@
 import dataclasses
 import math
 import subprocess
-import sys
 
 import h5py
 import numpy as np
 import pytest
+import unrendered
 from matplotlib.image import imread
 
 import contactlaw as cl
@@ -335,7 +335,9 @@ def test_the_balance_of_a_rain_that_was_stopped_at_once(oblique):
     [[], ["--constant-cor", "0.9"], ["--friction", "1"]],
     ids=["model", "baseline", "oblique"],
 )
-def test_a_rain_that_never_lands(more, tmp_path):
+def test_a_rain_that_never_lands(more, tmp_path, request):
+    if more:  # the same figures of nothing; rendered once
+        request.getfixturevalue("empty_pictures")
     few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01", *more]
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     assert read(tmp_path / "rain.h5").collisions.size == 0
@@ -436,7 +438,7 @@ def test_a_file_in_the_way(tmp_path, capsys):
 
 
 def test_quiet_without_a_terminal(tmp_path):
-    command = [sys.executable, "-m", "dem_demo", *SMALL, "--out", str(tmp_path / "out")]
+    command = [*unrendered.COMMAND, *SMALL, "--out", str(tmp_path / "out")]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert "Written to" in done.stdout

@@ -348,8 +348,8 @@ def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tm
 
 
 def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
-    long = ["sieve", "--beads", "60", "--duration", "9", "--plate", "glass", "--law", "myc"]
-    numbers = {"size": 30_000, "frames": 4500}
+    long = ["sieve", "--beads", "20", "--duration", "9", "--plate", "glass", "--law", "myc"]
+    numbers = {"size": 10_000, "frames": 4500}
     check_what_an_interrupt_keeps(
         long, tmp_path, Sieve, FILES, **numbers, command=unrendered.COMMAND
     )

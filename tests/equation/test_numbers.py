@@ -17,7 +17,7 @@ from contactlaw.stepping.spring import impact
 STEEL = cl.Pair("stainless-steel-304", "stainless-steel-304")
 PAIRS = [cl.Pair("gamma-alumina", "glass"), STEEL, cl.Pair("glass", "carbon-steel-1020"),
          cl.Pair("aluminium-6061-t6", "pmma"), *polymer.PAIRS[:2]]  # fmt: skip
-COUNT = 25_000  # of each pair
+COUNT = 8_000  # of each pair
 # These flags are decided before the impact is integrated.
 BEFOREHAND = (
     Validity.FAST_IMPACT | Validity.RATE_DEPENDENT | Validity.SOFT_PLATE | Validity.THIN_PLATE

@@ -138,6 +138,7 @@ def nvcc(*arguments, folder):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
+@pytest.mark.long
 def test_nvcc_compiles_all_functions_of_several_pairs_without_warnings(tmp_path):
     """For both sides; -G leaves out the optimization, of which nvcc takes minutes here."""
     texts = []
@@ -153,6 +154,7 @@ def test_nvcc_compiles_all_functions_of_several_pairs_without_warnings(tmp_path)
     nvcc("-G", "-c", "pairs.cu", folder=tmp_path)
 
 
+@pytest.mark.long
 def test_the_example_in_cuda(tmp_path):
     """Without a GPU it says so, after what one core gives."""
     text = (ROOT / "docs/examples/event_driven.cu").read_text()

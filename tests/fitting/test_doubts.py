@@ -30,13 +30,16 @@ def said(pair, data, unknown, law="fem", stated=True):
     return " | ".join(note for note in notes if DOUBT.search(note))
 
 
+@pytest.mark.parametrize(
+    "seeds", [range(3), pytest.param(range(3, 8), marks=pytest.mark.long)], ids=["few", "more"]
+)
 @pytest.mark.parametrize("stated", [True, False])
 @pytest.mark.parametrize(
     ("pair", "unknown", "speed"),
     [(STEEL, "thickness", None), (STEEL, "density", None), (ALUMINA, "yield_strength", FAST)],
 )
-def test_honest_data_raise_no_doubt(pair, unknown, speed, stated):
-    for seed in range(8):
+def test_honest_data_raise_no_doubt(pair, unknown, speed, stated, seeds):
+    for seed in seeds:
         data = rebounds(pair, noise=0.01, seed=seed, speed=speed)
         assert said(pair, data, unknown, stated=stated) == ""
 

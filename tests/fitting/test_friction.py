@@ -48,10 +48,11 @@ def test_exact_data_give_back_the_friction(kind, friction):
     assert found.notes[-1].endswith("of 8 rebounds slide all the time")
 
 
-def test_the_true_friction_is_within_the_stated_error_as_often_as_it_should():
+@pytest.mark.parametrize("sets", [6, pytest.param(18, marks=pytest.mark.long)])
+def test_the_true_friction_is_within_the_stated_error_as_often_as_it_should(sets):
     """Within 3 standard errors of 68 %; only the data err, so that their part is judged."""
     angle, inside = np.linspace(5.0, 75.0, 5), []
-    for seed in range(18):
+    for seed in range(sets):
         friction, kinds = (0.1, 0.25)[seed % 2], KINDS[seed % 3 :][:1]
         found = cl.fit(PAIR, measured(kinds, angle, friction, 0.02, seed), "friction")
         off = found.values["friction"] - friction
@@ -94,7 +95,14 @@ def test_friction_of_the_measurements_of_kharaz_and_others(column, kind):
     assert f"{len(rows)} of {len(rows)} rebounds slide all the time" in found.notes
 
 
-@pytest.mark.parametrize(("friction", "noise"), [(0.5, 0.01), (1.0, 0.03), (2.0, 0.01)])
+@pytest.mark.parametrize(
+    ("friction", "noise"),
+    [
+        (0.5, 0.01),
+        pytest.param(1.0, 0.03, marks=pytest.mark.long),
+        pytest.param(2.0, 0.01, marks=pytest.mark.long),
+    ],
+)
 def test_beads_that_stick_do_not_determine_it(friction, noise):
     data = measured(KINDS[:1], np.linspace(2.0, 12.0, 6), friction, noise)
     with pytest.raises(cl.UnidentifiedError, match="friction: any above .* larger angles") as error:

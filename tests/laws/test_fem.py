@@ -287,7 +287,9 @@ def test_an_untried_strength_of_the_stronger_body_counts_where_it_yields():
         assert bool(hit.flags[0] & Validity.UNTRIED_STRENGTH) == flagged
 
 
-@pytest.mark.parametrize("strength", [1.0, 1e6])  # the longest table, and an everyday one
+@pytest.mark.parametrize(
+    "strength", [pytest.param(1.0, marks=pytest.mark.long), 1e6]
+)  # the longest table, and an everyday one
 def test_every_soft_body_makes_a_model(strength):
     """Some tables once exceeded the settings; their errors are like those of any pair."""
     with warnings.catch_warnings():

@@ -148,12 +148,14 @@ def drawn(tmp_path_factory):
     return numbers, out
 
 
+@pytest.mark.long
 def test_every_figure_is_drawn_and_checked(drawn):
     numbers, out = drawn
     assert set(numbers) == set(NUMBERS) == set(figures.names())
     assert {path.stem for path in out.glob("*.png")} == set(NUMBERS)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", NUMBERS)
 def test_numbers_of_figures(drawn, name):
     found = drawn[0][name]
@@ -208,6 +210,7 @@ def test_eta_is_eq_10_corrected():
     assert evidence.eq_10(0.6, 0.4) == pytest.approx(closed_form.eta(PAIR), rel=1e-12)
 
 
+@pytest.mark.long
 def test_the_report_needs_no_file_but_its_figures(drawn):
     text = (drawn[1] / "index.html").read_text()
     sources = re.findall(r"<(?:img|script|link)[^>]*(?:src|href)=['\"](?!data:)([^'\"]*)", text)
@@ -217,6 +220,7 @@ def test_the_report_needs_no_file_but_its_figures(drawn):
     assert text.count("<tr>") > len(claims())
 
 
+@pytest.mark.long
 def test_the_report_states_its_size(drawn):
     text = (drawn[1] / "index.html").read_text()
     (kilobytes, count, megabytes) = re.search(
@@ -229,6 +233,7 @@ def test_the_report_states_its_size(drawn):
     assert len(text.encode()) < 2e5 and max(pictures) < 3e5 and sum(pictures) < 2.5e6
 
 
+@pytest.mark.long
 def test_the_report_says_of_calculix_what_the_docs_say(drawn):
     """docs/laws.md states the same numbers, which are tested there."""
     docs = (ROOT / "docs/laws.md").read_text()
@@ -239,6 +244,7 @@ def test_the_report_says_of_calculix_what_the_docs_say(drawn):
     assert said[0] == said[1]
 
 
+@pytest.mark.long
 def test_the_parts_of_the_report_come_in_order(drawn):
     """Parts for people who simulate come first; each figure is in its part, with an alt text."""
     text = (drawn[1] / "index.html").read_text()
@@ -252,6 +258,7 @@ def test_the_parts_of_the_report_come_in_order(drawn):
         assert not [alt for alt in words if re.search(r"[_<>^]", alt)]
 
 
+@pytest.mark.long
 def test_a_table_has_the_points_of_the_oblique_figure(drawn):
     """Its largest difference in each quantity is that of the figure's numbers."""
     text = (drawn[1] / "index.html").read_text().partition("Oblique impacts beside")[2]
@@ -263,6 +270,7 @@ def test_a_table_has_the_points_of_the_oblique_figure(drawn):
         assert max(off, key=abs) == pytest.approx(100.0 * expected, abs=0.051)
 
 
+@pytest.mark.long
 def test_people_who_simulate_meet_no_symbols_of_the_paper(drawn):
     text = (drawn[1] / "index.html").read_text()
     part = re.search(r"<section id=\"practice\">(.*?)</section>", text, flags=re.DOTALL)[1]
@@ -270,6 +278,7 @@ def test_people_who_simulate_meet_no_symbols_of_the_paper(drawn):
     assert re.findall(r"<sub>|[\u0370-\u03ff]|\bd_?Y\b|MYC", part) == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("width", [390, 1280])
 def test_the_report_fits_the_screen(drawn, page, width):
     page.complaints.clear()
@@ -289,6 +298,7 @@ def test_the_report_fits_the_screen(drawn, page, width):
     assert page.complaints == []
 
 
+@pytest.mark.long
 def test_no_formula_of_the_report_is_left_as_typed(drawn):
     text = (drawn[1] / "index.html").read_text()
     text = re.sub(r"<style>.*?</style>", "", text, flags=re.DOTALL)

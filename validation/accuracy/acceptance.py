@@ -233,7 +233,8 @@ def differences(law: str, flag: Validity, beside: Validity) -> list[float]:
     return sorted(one.law - one.fem for one in every if one.flags & flag and not one.flags & others)
 
 
-def _of_study(study: str, law: str, least: float) -> list[Member]:
+@functools.cache
+def _of_study(study: str, law: str, least: float) -> tuple[Member, ...]:
     data = store.read(study).data
     count = data["speed"].size
     impacts = [{key: values[n] for key, values in data.items()} for n in range(count)]
@@ -247,7 +248,7 @@ def _of_study(study: str, law: str, least: float) -> list[Member]:
         hit = cl.ImpactModel(pair, law).solve(speed, radius, thickness)
         for k, n in enumerate(rows):
             found[n] = _member(study, pair, impacts[n], hit, k, least)
-    return [found[n] for n in sorted(found)]
+    return tuple(found[n] for n in sorted(found))
 
 
 def _member(

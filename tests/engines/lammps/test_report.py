@@ -29,7 +29,7 @@ def numbers(path):
     return corners[cells[:, 1:]], columns
 
 
-def test_the_map_has_the_energy_and_the_area_of_the_walls(model, tmp_path):
+def test_the_map_has_the_energy_and_the_area_of_the_walls(model, tmp_path, empty_pictures):
     """Also on a wall that moves: energy is where the bead hit it, not where it was then."""
     rng = np.random.default_rng(4)
     place = [above(x=x, y=y) for x, y in rng.uniform(-0.02, 0.0, (6, 2))] + [above(2e-3, x=0.03)]
@@ -66,7 +66,7 @@ def test_the_map_has_the_energy_and_the_area_of_the_walls(model, tmp_path):
     assert bright[columns["J_per_m2"].argmax()] == bright.max()
 
 
-def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, capsys):
+def test_a_saved_record_and_its_mesh_give_the_same_map(model, tmp_path, empty_pictures, capsys):
     corners, triangles = square(3, 25.0)
     trimesh.Trimesh(corners, triangles, process=False).export(tmp_path / "part.stl")
     mesh = Mesh.read(tmp_path / "part.stl", 1e-3, scale=1e-3)

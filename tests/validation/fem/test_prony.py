@@ -46,7 +46,9 @@ def test_strained_block_stores_and_loses_as_its_springs_and_dashpots(frequency):
     assert body.work[2] - lost == pytest.approx(loss, rel=5e-3)
 
 
-@pytest.mark.parametrize("branches", ["standard solid", "constant loss"])
+@pytest.mark.parametrize(
+    "branches", ["standard solid", pytest.param("constant loss", marks=pytest.mark.long)]
+)
 def test_impact_of_lossy_bodies_is_hertzs_with_memory(branches, monkeypatch):
     """Contact of 1/37 of the radius, on a plate of ten times the modulus."""
     plate = cl.Material("plate", 3e10, NU, 3000.0, loss_factor=(LOSS, 1e4))

@@ -77,6 +77,7 @@ def test_a_plate_ends_at_its_edge(hole):
         assert np.hypot(x - 1.0 - hole, y).min() == pytest.approx(hole)
 
 
+@pytest.mark.long
 def test_a_sphere_rebounds_less_near_an_edge():
     near, far = (
         oblique_impact(PAIR, SPEED, 0.0, R, R, 0.0, across=3, distance=distance)
@@ -159,6 +160,7 @@ def test_nodes_that_slide_have_coulombs_force():
     assert np.hypot(*along) == pytest.approx(FRICTION * normal, rel=1e-9)
 
 
+@pytest.mark.long
 def test_slip_begins_in_cattaneos_annulus():
     """Drawn along slowly, a pressed sphere sticks within c = a (1 - T/(mu N))^(1/3)."""
     core, wave, still = 0.13 * R, R / 6000.0, 0.97
@@ -202,6 +204,7 @@ def test_a_sliding_impact_loses_what_coulombs_force_takes(sliding):
     assert sliding.sliding_speed / (FRICTION * SPEED) == pytest.approx(after, abs=0.15)
 
 
+@pytest.mark.long
 def test_full_sliding_is_coulombs_where_the_common_surface_does_not_tilt(sliding):
     """Tractions mu p tilt the surface of like bodies by (1 - 2 nu) mu p/(2 G)."""
     soft = cl.Material("nearly incompressible", 210e9, 0.45, 7850.0)

@@ -3,6 +3,7 @@
 import dataclasses
 
 import numpy as np
+import pytest
 
 import contactlaw as cl
 from validation.hostile import fits
@@ -41,5 +42,6 @@ def test_a_second_regime_that_fits_as_well_is_told():
     assert any("fitted as well by yield_strength" in note for note in found.notes)
 
 
-def test_random_fits_of_two_unknowns():
-    assert not list(fits.faults(8, seed=3))
+@pytest.mark.parametrize(("count", "seed"), [(2, 1), pytest.param(8, 3, marks=pytest.mark.long)])
+def test_random_fits_of_two_unknowns(count, seed):
+    assert not list(fits.faults(count, seed))

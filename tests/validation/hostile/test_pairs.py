@@ -13,8 +13,9 @@ STEEL = cl.Material("steel", 200e9, 0.28, 7800, yield_strength=300e6)
 ALUMINIUM = cl.Material("aluminium", 70e9, 0.33, 2700, yield_strength=300e6)
 
 
-def test_random_pairs_are_continuous_and_flagged():
-    assert list(pairs.faults(12, seed=1)) == []
+@pytest.mark.parametrize("count", [3, pytest.param(12, marks=pytest.mark.long)])
+def test_random_pairs_are_continuous_and_flagged(count):
+    assert list(pairs.faults(count, seed=1)) == []
 
 
 def test_the_campaign_finds_a_jump_where_the_weaker_body_changes(monkeypatch):
