@@ -432,13 +432,17 @@ print(json.dumps(found))
 
 @pytest.fixture(scope="module")
 def second(tmp_path_factory):
+    """What `in_a_second_process` gives for all commands."""
+    given = [one for one in COMMANDS if one not in IN_LAMMPS or needs.has_lammps()]
+    return in_a_second_process(given, tmp_path_factory.mktemp("commands"))
+
+
+def in_a_second_process(given, folder):
     """Status of each command, and what it compiles, in the second process that gives them all.
 
     A kernel that one of them needs is read, or compiled, by the first that needs it.
     """
-    folder = tmp_path_factory.mktemp("commands")
-    given = [one for one in COMMANDS if one not in IN_LAMMPS or needs.has_lammps()]
-    rain = next(n for n, one in enumerate(given) if one.startswith("dem-demo rain"))
+    rain = next((n for n, one in enumerate(given) if one.startswith("dem-demo rain")), None)
     given_rain = [one.replace("RAIN", str(folder / f"out{rain}")) for one in given]
     words = [
         one.replace("OUT", str(folder / f"out{n}")).split() for n, one in enumerate(given_rain)
@@ -452,6 +456,12 @@ def second(tmp_path_factory):
     return dict(zip(given, json.loads(done.stdout.splitlines()[-1]), strict=True))
 
 
+def test_a_second_process_of_common_commands_compiles_nothing(tmp_path):
+    given = [one for one in COMMANDS if one.split()[1] in ("cor", "constant", "history")]
+    assert set(map(repr, in_a_second_process(given, tmp_path).values())) == {"[0, []]"}
+
+
+@pytest.mark.long
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_second_process_compiles_nothing(command, second):
     if command in IN_LAMMPS:

@@ -48,6 +48,8 @@ CASES = {
     ),
 }  # fmt: skip
 
+SLOW = "either may flow", "hardening and rate"
+
 
 def drawn(body, deviates):
     """Take an error of each number of a body from the front of a list."""
@@ -60,7 +62,7 @@ def drawn(body, deviates):
 
 @pytest.mark.parametrize(
     "case",
-    [*list(CASES)[:-1], pytest.param("hardening and rate", marks=pytest.mark.long)],
+    [pytest.param(name, marks=pytest.mark.long) if name in SLOW else name for name in CASES],
 )
 def test_the_band_is_that_of_random_pairs(case):
     """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones."""

@@ -17,7 +17,9 @@ PICTURE = "document.getElementById('rain').toDataURL()"
 CONTACT = "document.getElementById('contact').toDataURL()"
 
 
-@pytest.fixture(scope="module", params=MORE)
+@pytest.fixture(
+    scope="module", params=["model", pytest.param("baseline", marks=pytest.mark.long), "oblique"]
+)
 def folder(request, tmp_path_factory):
     out = tmp_path_factory.mktemp("page") / "out"
     assert cli.main([*RAIN, *MORE[request.param], "--out", str(out)]) == 0

@@ -439,7 +439,12 @@ SETS = 30
 
 
 @pytest.mark.parametrize(
-    ("name", "law"), [("thickness", "fem"), ("density", "fem"), ("yield_strength", "myc")]
+    ("name", "law"),
+    [
+        pytest.param("thickness", "fem", marks=pytest.mark.long),
+        ("density", "fem"),
+        ("yield_strength", "myc"),
+    ],
 )
 def test_the_true_value_is_within_the_stated_error_as_often_as_it_should(name, law):
     """A part of `python -m validation.inverse coverage`: within 3 standard errors of 68 %."""

@@ -340,7 +340,11 @@ def test_energies_sum_to_one():
 PAIRS = [(case.sphere, case.plate) for case in census.draw(72, 20)]
 
 
-@pytest.mark.parametrize("pair", PAIRS, ids="-".join)
+@pytest.mark.parametrize(
+    "pair",
+    [*PAIRS[:5], *(pytest.param(pair, marks=pytest.mark.long) for pair in PAIRS[5:])],
+    ids="-".join,
+)
 def test_tables_are_near_the_solver(pair):
     model = model_of(*pair)
     rng = np.random.default_rng(73)

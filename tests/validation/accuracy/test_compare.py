@@ -178,6 +178,7 @@ def test_indentation_is_static_and_agrees_with_calculix():
     assert force_at("10", way) == pytest.approx(slow, rel=0.015)
 
 
+@pytest.mark.long
 def test_impact_agrees_with_calculix():
     """CalculiX, an implicit program, runs the same meshes; finer meshes agree better."""
     theirs, made = store.read("calculix_impact")

@@ -32,6 +32,7 @@ def test_hertz_is_the_limit_of_small_contacts():
     assert found.contact_time == pytest.approx(hertz.contact_time, rel=0.01)
 
 
+@pytest.mark.long
 def test_contact_radius_is_hertzs():
     """A node joins the contact when its radius a, less a part of an element, is sqrt(R d)."""
     size = 0.012
