@@ -428,7 +428,8 @@ class HardeningCurves(Curves):
         self.scale = first**2
         self.stiffening *= first / root
         self._width *= first / root
-        # the stronger body may not have strained at all where the weaker one begins to flow
+        # The stronger body may not have strained at all where the weaker one begins to flow. Its
+        # strain counts from there: of its small share of the flow it makes little difference.
         taken = taken._replace(start=min(taken.start, 0.999 * first))
         self._rise = first / (first - taken.start)  # of ln(strain) with ln(w) at yield
         self._hardening = []
