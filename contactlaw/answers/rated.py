@@ -290,13 +290,18 @@ class Nodes:
                 found += [math.log(ratios[0] / ratios[1] / z) for z in (ALONE, 1.0, 1.0 / ALONE)]
         return found
 
-    @functools.cached_property
-    def tabulated(self) -> list[Tabulated]:
-        """Tables of the nodes."""
+    @property
+    def factors(self) -> list[float]:
+        """Factors of the strength at the nodes: three for a piece, and one."""
         logs = [0.0]
         for low, high in itertools.pairwise(self.knots):
             logs += [low + 0.5 * (1.0 + place) * (high - low) for place in strengths.PLACES[1:]]
-        pairs = (stronger(self.bodies, math.exp(one)) for one in logs)
+        return [math.exp(one) for one in logs]
+
+    @functools.cached_property
+    def tabulated(self) -> list[Tabulated]:
+        """Tables of the nodes."""
+        pairs = (stronger(self.bodies, factor) for factor in self.factors)
         return [Tabulated(one, self.given, self.border) for one in pairs]
 
     @functools.cached_property

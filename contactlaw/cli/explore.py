@@ -8,7 +8,6 @@ from typing import Any
 from contactlaw import export
 from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.model import ImpactModel
-from contactlaw.physical.rate import rated
 
 
 def add(commands: Any) -> None:
@@ -23,14 +22,6 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     model = ImpactModel(chosen.pair(arguments), law=arguments.law)
-    for role in ("sphere", "plate"):
-        body = getattr(model.pair, role)
-        if body.rate and rated(model.pair, model.force_law):
-            raise wording.Refused(
-                f"--{role}: the strength of {body.name!r} grows with the rate of strain, and a "
-                "page has one law for all speeds: give --materials a file with an entry without "
-                f'rate, that says like = "{body.name}" and yield_strength'
-            )
     with wording.file_of("out", arguments.out):
         export.page(arguments.out, model)
     print(arguments.out)

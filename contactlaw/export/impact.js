@@ -1,7 +1,8 @@
 // One impact of a sphere on a plate: the functions of contactlaw.h.in, in JavaScript. `pair` has
 // the law's array and the numbers of the materials, for R = 1 m and H = 1 m. What is in capitals
 // and not defined here is a constant of the Python package.
-const { law, plate, limits } = pair, { corrections, growth } = plate;
+const { plate } = pair, { corrections, growth } = plate;
+let now = pair, { law } = pair; // of a pair with a rate those of a strength, see `atRate`
 
 function polynomial(at, degree, t) {
   let value = 0;
@@ -55,7 +56,7 @@ function numbersOf(speed, radius, thickness) { // contactlaw.equation.numbers
   const perRoot = plate.inelasticity * slower, transit = plate.transit * slower;
   let lam = perRoot * root * ratio ** 2, stiffer = 1;
   if (corrections.bulk_factor > 0) {
-    const slow = Math.min(root, plate.saturated), x = reach * slow ** 2;
+    const slow = Math.min(root, now.saturated), x = reach * slow ** 2;
     const usual = H_0 * lengthening(Math.min(lam, LONGEST)) ** 2;
     const g = 1 - 2 * usual / (transit * root / ratio + usual);
     const first = (corrections.eta + corrections.eta_h * g) * Math.min(x, DEEPEST, BROADEST / ratio);
@@ -67,7 +68,7 @@ function numbersOf(speed, radius, thickness) { // contactlaw.equation.numbers
       + corrections.plastic_growth * ratio * reach * (root ** 2 - slow ** 2);
     lam *= Math.exp(growth.wave + growth.wave_slope * Math.min(lam, 1));
   }
-  const scale = pair.scale * radius * Math.exp(growth.yield_power * grown);
+  const scale = now.scale * radius * Math.exp(growth.yield_power * grown);
   return { lam, scale, mass, time: base / (root * stiffer) };
 }
 
@@ -161,7 +162,11 @@ function note({ path, force, root, curve, y }, [q, u, t]) {
 
 // ImpactModel.solve, in SI units; null for what it refuses, and beyond lambda = 100, where a bead
 // stays and the steps would be too many. `path` takes the points of the contact.
-function solve(speed, radius, thickness, rtol = RTOL, least = 1e-7, path = null) {
+function solve(speed, radius, thickness, rtol = RTOL, least = 1e-7) {
+  const hit = atRate(speed / radius, () => solved(speed, radius, thickness, rtol, least, null));
+  return hit && Object.assign(hit, { flags: flagsOf(hit) });
+}
+function solved(speed, radius, thickness, rtol, least, path) {
   if (!(V_MIN <= speed && speed <= V_MAX && R_MIN <= radius && radius <= R_MAX
         && thickness >= Math.max(R_MIN, THINNEST * radius))) return null;
   const { lam, scale, mass, time } = numbersOf(speed, radius, thickness), unit = speed * time;
@@ -174,17 +179,42 @@ function solve(speed, radius, thickness, rtol = RTOL, least = 1e-7, path = null)
   // beyond lambda = 8 the restitution is below 1e-4, which curves take for 0
   if (!(lam > 8 && least > 1e-4) && !integrate(run, at, rtol, least)) return null;
   const other_fraction = row ? work * valueAt(row, OTHER, dm) : 0;
-  const hit = {
-    speed, radius, thickness, mass, y, unit, time, inelasticity: lam, other_fraction,
+  return { speed, radius, thickness, mass, y, unit, time, inelasticity: lam, other_fraction,
     restitution: Math.min(Math.max(-at[1], 0), 1), contact_time: at[2] * time,
     peak_force: force * loading(Math.sqrt(dm)) * mass * speed / time,
     peak_compression: dm * y * unit, residual_compression: curve.residual * y * unit,
     plastic_fraction: row ? work * valueAt(row, LOSS, dm) - other_fraction : 0,
     wave_fraction: 2 * lam * at[3] };
-  return Object.assign(hit, { flags: flagsOf(hit) });
+}
+// Of a pair with a rate of strain: a cubic in ln(strength) through the answers of four laws, at the
+// same overload. Between two knots the law is a smooth function of the strength.
+const PLACES = [-1, -0.5, 0.5, 1];
+function atRate(rate, ask) {
+  if (!pair.nodes) return ask();
+  const { knots, nodes, slope, share } = pair;
+  const at = Math.log(1 + slope * Math.max(Math.log(share * rate), 0));
+  const piece = Math.max(knots.findIndex((knot) => at <= knot) - 1, 0);
+  const [low, high] = knots.slice(piece), x = (2 * at - low - high) / (high - low);
+  if (!(x <= 1 + 1e-9)) return null;
+  const four = nodes.slice(3 * piece, 3 * piece + 4), weights = PLACES.map((own) =>
+    PLACES.reduce((part, other) => (other === own ? part : part * (x - other) / (own - other)), 1));
+  const mixed = (values) => (values.every((value) => Number.isFinite(value))
+    ? values.reduce((sum, value, n) => sum + weights[n] * value, 0) : nearest(values));
+  const nearest = (values) => values[weights.indexOf(Math.max(...weights))];
+  const each = (objects, kept) => Object.fromEntries(Object.entries(nearest(objects)).map(
+    ([name, value]) => [name, typeof value === "number" && !kept.includes(name)
+      ? mixed(objects.map((one) => one[name])) : value]));
+  const limits = each(four.map((node) => node.limits), ["always", "flags_when_yielded", "on_yield"]);
+  const between = { ...each(four, []), limits }, { scale, saturated } = between;
+  const hits = four.map((node) => {
+    [law, now] = [node.law, { ...node, scale, saturated }];
+    return ask();
+  });
+  now = between;
+  return hits.every(Boolean) ? each(hits, []) : null;
 }
 function flagsOf({ speed, radius, thickness, unit, contact_time, peak_compression, peak_force }) {
-  const share = limits.share * radius / unit;
+  const { limits } = now, share = limits.share * radius / unit;
   return limits.always
     | (peak_compression > limits.share * radius && limits.on_yield)
     | (radius > limits.slender * thickness && _THIN_PLATE)
@@ -201,9 +231,9 @@ function slid(path, y, psi) {
   const kappa = pair.tangential_ratio, clip = (wish, most) => Math.min(Math.max(wish, -most), most);
   const stiffness = (largest, d, f) => {
     const { residual, exponent } = unloading(largest / y), deep = d - residual * y;
-    const [span, work] = residual > 0 ? pair.returned : [1, 1];
+    const [span, work] = residual > 0 ? now.returned : [1, 1];
     const rise = (0.5 * exponent + 1) * work / span - 1, k = deep > 0 ? span * rise * f / deep : 0;
-    return [k / (1 + 4 / 3 * pair.stiffening / Math.sqrt(y) * k), 1 / (rise - 1)];
+    return [k / (1 + 4 / 3 * now.stiffening / Math.sqrt(y) * k), 1 / (rise - 1)];
   };
   const peak = path.reduce((most, { d, f }) => Math.max(most, stiffness(d, d, f)[0]), 0);
   const width = peak / SPRINGS, stretch = new Float64Array(SPRINGS);
@@ -233,19 +263,28 @@ function slid(path, y, psi) {
 }
 // ImpactModel.oblique of a bead without spin, from its speed and the angle from the normal [deg].
 function collide(bead, angle, radius, thickness, friction) {
-  const tilt = angle * Math.PI / 180, size = bead * Math.sin(tilt), path = [];
-  const hit = solve(bead * Math.cos(tilt), radius, thickness, RTOL, 1e-7, path);
-  if (!hit || !(friction <= ROUGHEST)) return null;
-  const limit = friction * hit.speed, psi = limit > 0 ? Math.min(size / limit, FASTEST) : 0;
-  const changed = psi > 0 ? limit * (psi - slid(path, hit.y, psi)) : 0, after = size - changed;
-  const deep = hit.peak_compression - hit.residual_compression, sum = size + Math.abs(after);
+  const tilt = angle * Math.PI / 180, speed = bead * Math.cos(tilt);
+  if (!(friction <= ROUGHEST)) return null;
+  const hit = atRate(speed / radius, () => slides(speed, bead * Math.sin(tilt), radius, thickness,
+    friction));
+  if (!hit) return null;
+  const deep = hit.peak_compression - hit.residual_compression;
+  const sum = hit.size + Math.abs(hit.sliding_speed);
   const wide = _UNLOADING * hit.peak_force / deep / (2 * pair.modulus);
-  const slide = sum > 0 ? 0.5 * (size ** 2 + after ** 2) / sum * hit.contact_time / wide : 0;
+  const slide = sum > 0
+    ? 0.5 * (hit.size ** 2 + hit.sliding_speed ** 2) / sum * hit.contact_time / wide : 0;
   const traction = friction * hit.peak_force / (Math.PI * wide ** 2) / pair.strength;
   const flows = traction >= _TRACTION || slide > _SLIDE || traction * slide > _PRODUCT;
-  if (flows && hit.residual_compression > 0) hit.flags |= pair.SLIDING_FLOW;
-  return Object.assign(hit, {
-    path, size, sliding_speed: after, along: size - changed / POINT,
-    spin: (1 - 1 / POINT) * changed / radius, normal_share: Math.cos(tilt) ** 2,
-    friction_share: changed * (size + after) / POINT / bead ** 2 });
+  const flags = flagsOf(hit) | (flows && hit.residual_compression > 0 && pair.SLIDING_FLOW);
+  return Object.assign(hit, { flags, normal_share: Math.cos(tilt) ** 2,
+    friction_share: hit.friction_share / bead ** 2 });
+}
+function slides(speed, size, radius, thickness, friction) {
+  const path = [], hit = solved(speed, radius, thickness, RTOL, 1e-7, path);
+  if (!hit) return null;
+  const limit = friction * hit.speed, psi = limit > 0 ? Math.min(size / limit, FASTEST) : 0;
+  const changed = psi > 0 ? limit * (psi - slid(path, hit.y, psi)) : 0, after = size - changed;
+  return Object.assign(hit, { path, size, sliding_speed: after, along: size - changed / POINT,
+    spin: (1 - 1 / POINT) * changed / radius,
+    friction_share: changed * (size + after) / POINT });
 }

@@ -25,7 +25,12 @@ MODELS = {
     "myc": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "myc"),
     "capped": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "stronge"),
     "hertz": cl.ImpactModel(cl.Pair("glass", "glass"), "hertz"),
+    "rate": cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-2024-t351")),
+    "two rates": cl.ImpactModel(cl.Pair("carbon-steel-1006", "copper-ofhc-annealed")),
+    "corners": cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1006")),
 }
+# Pairs with a rate lie between laws: within 3e-5, but for some beyond the range of the laws.
+BETWEEN = "rate", "two rates", "corners"
 # Errors allowed, of what is at most 1 absolutely and of sizes relatively.
 SHARES = dict.fromkeys(("restitution", "plastic_fraction", "wave_fraction", "other_fraction"), 1e-6)
 SIZES = dict.fromkeys(("peak_force", "peak_compression", "contact_time"), 1e-6)
@@ -39,9 +44,9 @@ def steel(tmp_path_factory):
     return file
 
 
-@pytest.mark.parametrize("name", MODELS)
-def test_the_browser_answers_as_python_does(name, tmp_path, page):
-    model, rng = MODELS[name], np.random.default_rng(7)
+@pytest.mark.parametrize("pair", MODELS)
+def test_the_browser_answers_as_python_does(pair, tmp_path, page):
+    model, rng = MODELS[pair], np.random.default_rng(7)
     cl.export.page(tmp_path / "page.html", model)
     speed = np.exp(rng.uniform(math.log(0.02), math.log(50.0), 200))
     radius = np.exp(rng.uniform(math.log(2e-5), math.log(2e-2), 200))
@@ -62,9 +67,14 @@ def test_the_browser_answers_as_python_does(name, tmp_path, page):
     for name, most in (SHARES | SIZES).items():
         right = np.asarray(getattr(expected, name))
         off = abs(rows[name] - right) / (right if name in SIZES else 1.0)
-        assert off[~stays if name == "contact_time" else slice(None)].max() < most, name
+        off = off[~stays if name == "contact_time" else slice(None)]
+        if pair in BETWEEN:
+            assert np.quantile(off, 0.97) < 30.0 * most, name
+            most *= 2e3
+        assert off.max() < most, name
     off = abs(rows["sliding_speed"] - expected.sliding_speed)
-    assert (off <= 2e-3 * friction * normal + 1e-12).all()
+    share = 4e-3 if pair in BETWEEN else 2e-3
+    assert (off <= share * friction * normal + 1e-12).all()
     np.testing.assert_array_equal(rows["flags"], expected.flags)
     straight = model.solve(speed, radius, thickness)
     np.testing.assert_array_equal(rows["flags_normal"], straight.flags)
@@ -133,11 +143,8 @@ def test_the_example_is_what_the_command_writes(steel):
 def test_what_a_page_cannot_answer_is_refused(tmp_path, capsys):
     with pytest.raises(TypeError, match="ImpactModel, got 'steel'"):
         cl.export.page(tmp_path / "page.html", "steel")
-    rated = [*EXPLORE[:2], "alloy-steel-4340", *EXPLORE[3:], str(tmp_path / "page.html")]
-    assert cli.main(rated) == 1
-    assert "--sphere: the strength of 'alloy-steel-4340' grows with" in capsys.readouterr().err
-    with pytest.raises(ValueError, match="rate of strain"):
-        cl.export.page(tmp_path / "page.html", cl.ImpactModel(cl.Pair(rated[2], "glass")))
+    assert cli.main([*EXPLORE[:2], "steal", *EXPLORE[3:], str(tmp_path / "page.html")]) == 1
+    assert "--sphere: unknown material 'steal'" in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 
