@@ -2,7 +2,7 @@
 // the law's array and the numbers of the materials, for R = 1 m and H = 1 m. What is in capitals
 // and not defined here is a constant of the Python package.
 const { plate } = pair, { corrections, growth } = plate;
-let now = pair, { law } = pair; // of a pair with a rate those of a strength, see `atRate`
+let [now] = pair.nodes, { law } = now; // at the strength that is asked for, see `atRate`
 
 function polynomial(at, degree, t) {
   let value = 0;
@@ -188,16 +188,15 @@ function solved(speed, radius, thickness, rtol, least, path) {
 }
 // Of a pair with a rate of strain: a cubic in ln(strength) through the answers of four laws, at the
 // same overload. Between two knots the law is a smooth function of the strength.
-const PLACES = [-1, -0.5, 0.5, 1];
 function atRate(rate, ask) {
-  if (!pair.nodes) return ask();
-  const { knots, nodes, slope, share } = pair;
+  const { knots, nodes, places, slope, share } = pair;
+  if (nodes.length === 1) return ask();
   const at = Math.log(1 + slope * Math.max(Math.log(share * rate), 0));
   const piece = Math.max(knots.findIndex((knot) => at <= knot) - 1, 0);
   const [low, high] = knots.slice(piece), x = (2 * at - low - high) / (high - low);
   if (!(x <= 1 + 1e-9)) return null;
-  const four = nodes.slice(3 * piece, 3 * piece + 4), weights = PLACES.map((own) =>
-    PLACES.reduce((part, other) => (other === own ? part : part * (x - other) / (own - other)), 1));
+  const four = nodes.slice(3 * piece, 3 * piece + 4), weights = places.map((own) =>
+    places.reduce((part, other) => (other === own ? part : part * (x - other) / (own - other)), 1));
   const mixed = (values) => (values.every((value) => Number.isFinite(value))
     ? values.reduce((sum, value, n) => sum + weights[n] * value, 0) : nearest(values));
   const nearest = (values) => values[weights.indexOf(Math.max(...weights))];

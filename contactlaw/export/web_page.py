@@ -32,7 +32,7 @@ from contactlaw.physical.materials import Material, material, materials
 from contactlaw.physical.rate import SHARE
 from contactlaw.physical.scaling import sphere_on_plate, wave_path
 from contactlaw.physical.validity import Validity, explain
-from contactlaw.table import lookup
+from contactlaw.table import lookup, strengths
 
 # Modules whose constants the scripts use; of a name in two of them the last one counts.
 _MODULES = (lookup, oblique, validity, solver, tangential, integrator, corrections, force)
@@ -105,21 +105,17 @@ def _numbers(model: ImpactModel) -> dict[str, Any]:
     contact = sphere_on_plate(pair, model.force_law, one, one)
     plate = contact.plate
     parts = {"corrections": plate.corrections._asdict(), "growth": plate.growth._asdict()}
-    return (
-        _at_strength(model._bodies)
-        | _strengths(model._bodies)
-        | {
-            "plate": plate._asdict() | parts,
-            "mass": contact.mass.item(),
-            "stiffness": contact.stiffness.item(),
-            "modulus": pair.effective_modulus,
-            "strength": min(body.strength or math.inf for body in (pair.sphere, pair.plate)),
-            "tangential_ratio": pair.tangential_ratio,
-            "wave_path": wave_path(pair.plate),
-            "words": {flag.value: explain(flag)[0] for flag in Validity},
-            "SLIDING_FLOW": Validity.SLIDING_FLOW.value,
-        }
-    )
+    return _strengths(model._bodies) | {
+        "plate": plate._asdict() | parts,
+        "mass": contact.mass.item(),
+        "stiffness": contact.stiffness.item(),
+        "modulus": pair.effective_modulus,
+        "strength": min(body.strength or math.inf for body in (pair.sphere, pair.plate)),
+        "tangential_ratio": pair.tangential_ratio,
+        "wave_path": wave_path(pair.plate),
+        "words": {flag.value: explain(flag)[0] for flag in Validity},
+        "SLIDING_FLOW": Validity.SLIDING_FLOW.value,
+    }
 
 
 def _at_strength(bodies: SphereOnPlate) -> dict[str, Any]:
@@ -138,15 +134,16 @@ def _at_strength(bodies: SphereOnPlate) -> dict[str, Any]:
 
 
 def _strengths(bodies: SphereOnPlate) -> dict[str, Any]:
-    """Laws of a pair with a rate of strain at the nodes of its tables."""
+    """Law of a pair, or of one with a rate of strain those at the nodes of its tables."""
     flow = flow_of(bodies)
     if flow is None:
-        return {}
+        return {"nodes": [_at_strength(bodies)]}
     nodes = Nodes(bodies, None, Border("raise"))
     return {
         "slope": flow.rate,
         "share": SHARE / flow.rate0,
         "knots": nodes.knots,
+        "places": strengths.PLACES,
         "nodes": [_at_strength(stronger(bodies, factor)) for factor in nodes.factors],
     }
 

@@ -444,7 +444,7 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     """
     try:
         return _read(tomllib.loads(Path(path).read_text("utf-8")), _tables())
-    except (ValueError, TypeError, KeyError) as error:
+    except (ValueError, TypeError, AttributeError, KeyError) as error:
         raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
 
 
@@ -477,15 +477,13 @@ def _from_table(
         near = difflib.get_close_matches(key, known, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""
         raise ValueError(f"[{name}]: unknown {key!r}; {hint}known: {', '.join(known)}")
-    source = table.get("source", {})
-    if isinstance(source, str):  # of all numbers
-        source = dict.fromkeys(table.keys() & _LABELS.keys(), source)
+    source = _sources(table)
     if "like" in table:
         if table["like"] not in tables:
             raise ValueError(f"[{name}]: like = {table['like']!r} is no entry")
         other = tables[table["like"]]
         table = {field: other[field] for field in _ALIKE if field in other} | table
-        theirs = other.get("source", {})
+        theirs = _sources(other)
         source = {field: theirs[field] for field in _ALIKE[1:] if field in theirs} | source
         alike = {field: e for field, e in other.get("uncertainty", {}).items() if field in _ALIKE}
         table["uncertainty"] = alike | table.get("uncertainty", {})
@@ -515,6 +513,12 @@ def _from_table(
             error, reason = errors[number][0], _cited(errors[number][1], references)
             parts.append(f"standard error of it {100.0 * error:g} %: {reason}")
     return replace(body, source="; ".join(parts))
+
+
+def _sources(table: dict[str, Any]) -> dict[str, str]:
+    """Take the sources of an entry by their numbers; a text is the source of all of them."""
+    given = table.get("source", {})
+    return dict.fromkeys(table.keys() & _LABELS.keys(), given) if isinstance(given, str) else given
 
 
 def _cited(text: str, references: dict[str, str]) -> str:

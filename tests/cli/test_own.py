@@ -101,6 +101,7 @@ def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
         ('"stainless-steel-304"', '"304L"', r"\[hard-304\]: like = '304L' is no entry"),
         ("= 2.8e9", "= ", "mine.toml: Invalid value"),
         ("[my-pom]", "", "mine.toml: "),
+        ("{yield_strength = 0.1}", "0.1", "mine.toml: "),
         ("[my-pom]", "pom = 3\n[my-pom]", r"pom = 3 is no material: write \[pom\]"),
     ],
 )

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contactlaw.cli.parts.options import reader_of
 from contactlaw.cli.parts.quantities import (
     ANGLE,
     FRICTION,
@@ -102,6 +103,14 @@ def test_what_is_refused_and_how(text, quantity, message):
     with pytest.raises(ValueError, match="^got ") as refused:
         values(text, quantity)
     assert message in str(refused.value)
+
+
+def test_a_list_that_begins_with_0_is_doubted_where_0_is_unlikely(capsys):
+    assert reader_of(values, ANGLE)("0,45") == (0.0, 45.0)
+    assert reader_of(values, FRICTION)("0,0.2,0.4") == (0.0, 0.2, 0.4)
+    assert capsys.readouterr().err == ""
+    assert reader_of(values, FRICTION)("0,5") == (0.0, 5.0)
+    assert "is it a decimal comma? Write 0.5" in capsys.readouterr().err
 
 
 def test_one_value_where_one_is_needed():

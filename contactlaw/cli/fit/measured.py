@@ -140,7 +140,7 @@ def _read(content: bytes) -> Read:
         raise ValueError("none of its rows has a number in a column of what is measured")
     picked = {name: values[measured] for name, values in picked.items()}
     empty = [line for line, one in zip(lines, measured.tolist(), strict=True) if not one]
-    lines = [line for line in lines if line not in empty]
+    lines = [line for line, one in zip(lines, measured.tolist(), strict=True) if one]
     unused = [name for n, name in enumerate(names) if name and n not in wanted]
     missing = _COLUMNS.keys() - found.keys()
     return Read(picked, tuple(name + _nearest([name], missing) for name in unused), lines, empty)

@@ -9,7 +9,7 @@ from typing import Any
 
 from contactlaw import laws
 from contactlaw.cli.parts import quantities, wording
-from contactlaw.cli.parts.quantities import LENGTH, SHARE, SPEED, Quantity
+from contactlaw.cli.parts.quantities import ANGLE, LENGTH, SHARE, SPEED, Quantity
 from contactlaw.cli.parts.wording import OWN
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, read_materials
@@ -186,10 +186,10 @@ def reader_of(read: Reader, quantity: Quantity) -> Callable[[str], Any]:
     """Reader of an option from a reader of quantities, with errors that argparse reports."""
 
     def one(text: str) -> Any:
-        if re.match(r"\s*0,\d", text):
+        pointed = quantities.decimal_comma(text)
+        if pointed.lstrip().startswith("0.") and quantity is not ANGLE:
             said = (
-                f"got {text!r}, a list that begins with 0; is it a decimal comma? "
-                f"Write {text.replace(',', '.', 1)}"
+                f"got {text!r}, a list that begins with 0; is it a decimal comma? Write {pointed}"
             )
             if quantity in (LENGTH, SPEED, SHARE):  # none of these may be 0
                 raise argparse.ArgumentTypeError(said)

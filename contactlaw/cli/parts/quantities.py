@@ -123,6 +123,17 @@ def value(text: str, quantity: Quantity) -> float:
     return found[0]
 
 
+def decimal_comma(text: str) -> str:
+    """Write a text with a decimal point if it may be one number with a comma; otherwise "".
+
+    Examples
+    --------
+    >>> decimal_comma("0,9mm"), decimal_comma("1,5,10")
+    ('0.9mm', '')
+    """
+    return text.replace(",", ".") if re.fullmatch(r"\s*\d+,\d+\s*\D*", text) else ""
+
+
 def formatted(size: float, quantity: Quantity) -> str:
     """Write a value with six digits, a length in a suitable unit.
 
@@ -176,8 +187,8 @@ def _check_units(text: str, items: list[_Item], quantity: Quantity) -> None:
     unit = next((item.unit for item in finite if item.unit), None)
     bare = next((item.number for item in finite if not item.unit), None)
     if unit and bare:
-        comma = re.fullmatch(r"\s*\d+,\d+\s*\D+", text)
-        hint = f"; {text.replace(',', '.')} if it is a decimal comma" if comma else ""
+        pointed = decimal_comma(text)
+        hint = f"; {pointed} if it is a decimal comma" if pointed else ""
         raise ValueError(
             f"got {text!r}: {bare!r} has no unit and others have: write {bare}{unit}, or "
             f"{bare}{quantity.si} if that is meant{hint}"
