@@ -52,5 +52,5 @@ def draw(run: Run) -> Figure:
     right.set_ylim(0.0, 104.0)
     handles = dict(zip(*reversed(right.get_legend_handles_labels()), strict=True))
     figure.legend(handles.values(), list(handles), loc="outside lower center",
-                  ncols=style.pick(len(handles), 2))  # fmt: skip
+                  ncols=style.pick(4 if len(handles) < 5 else 3, 2))  # fmt: skip
     return figure
