@@ -488,6 +488,7 @@ def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> s
         return _squares(predictor, predictor.at_trials(values[None])[0], error)
 
     is_strength = predictor.parameters[n].is_strength
+    other = "plate_" * (predictor.parameters[n].unknown.body == "sphere") + "yield_strength"
     trial, high = strong.copy(), squares(strong) + _EXCLUDED
     low = search.limits(predictor)[0][n]
     for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
@@ -500,7 +501,7 @@ def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> s
                 )
             return (
                 f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
-                "yield enough. Measure faster impacts"
+                f"yield enough. Measure faster impacts, or ask for {other} if that body yields"
             )
     if not is_strength:
         return "any fits as well. Measure at other angles"
