@@ -50,7 +50,7 @@ class Fit:
         Standard errors, of data and model together.
     statistical_errors, model_errors : dict of str to float
         The two parts: from the errors of the data and of the priors, and from the model's own
-        errors, which were found by comparison with finite elements.
+        errors, found by comparison with finite elements; inf, and not in `errors`, if not known.
     correlation : ndarray (k, k)
         Correlations of the unknowns, in their order.
     alternatives : tuple of dict of str to float
@@ -358,7 +358,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         values=named(at),
         errors=named(at * np.sqrt(np.diag(found.total))),
         statistical_errors=named(at * np.sqrt(np.diag(found.statistical))),
-        model_errors=named(at * np.sqrt(np.diag(found.model))),
+        model_errors=named(at * (np.inf if model is None else np.sqrt(np.diag(found.model)))),
         correlation=total / np.outer(spread, spread),
         residuals={name: off[rows] for name, rows in kinds.items()},
         rows={name: values.row[rows] for name, rows in kinds.items()},
