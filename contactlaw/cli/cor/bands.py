@@ -87,7 +87,7 @@ def left_out(band: Band, pair: Pair) -> str:
 
 def meaning(band: Band) -> str:
     """Say which impacts are in a band."""
-    return _OF_ALL if set(band.causes) > {"model"} else _OF_LAW
+    return _OF_LAW if [*band.causes] == ["model"] and not unknown(band) else _OF_ALL
 
 
 def in_caption(band: Band) -> str:
