@@ -164,7 +164,8 @@ class Material:
         Relative standard errors of the numbers above, by their names, for
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
         of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
-        lacks are left out.
+        lacks are left out. That of a strength that is a specified minimum is ``inf``, since nobody
+        knows it: answers that depend on it have no range.
 
     Raises
     ------
@@ -506,10 +507,10 @@ def _from_table(
         number: error if isinstance(error, list) else [error, ""]
         for number, error in table.get("uncertainty", {}).items()
     }
-    body = Material(
-        name, **values, kind=table.get("kind"),
-        uncertainty={number: error for number, (error, _) in errors.items()},
-    )  # fmt: skip
+    relative = {number: error for number, (error, _) in errors.items()}
+    if "{bias}" in source.get("yield_strength", ""):
+        relative.setdefault("yield_strength", math.inf)
+    body = Material(name, **values, kind=table.get("kind"), uncertainty=relative)
     parts = [table.get("grade", name)]
     for number, (label, unit) in _LABELS.items():
         if number not in source:
@@ -654,8 +655,9 @@ def _uncertainty(body: Material) -> dict[str, float]:
             near = difflib.get_close_matches(str(name), _LABELS, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise ValueError(f"{what}: unknown {name!r}; {hint}known: {', '.join(_LABELS)}")
-        error = _finite(body.name, f"uncertainty[{name!r}]", value, "-")
-        if not (0.0 <= error <= _LARGEST_ERROR):
+        minimum = name in ("yield_strength", "hardness") and str(value) == "inf"
+        error = math.inf if minimum else _finite(body.name, f"uncertainty[{name!r}]", value, "-")
+        if not (0.0 <= error <= _LARGEST_ERROR or minimum):
             raise ValueError(
                 f"{what}: {name} must be a relative standard error from 0 to {_LARGEST_ERROR:g}, "
                 f"got {value!r}"

@@ -301,7 +301,7 @@ def test_materials(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines[1:]] == list(cl.materials())
     assert main(["materials", "--json"]) == 0
-    listed = json.loads(capsys.readouterr().out)
+    listed = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     glass = next(entry for entry in listed if entry["name"] == "glass")
     assert (glass["youngs_modulus"], glass["yield_strength"]) == (73e9, None)
     assert main(["materials", "glass"]) == 0

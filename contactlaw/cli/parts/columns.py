@@ -24,7 +24,7 @@ _UNIT = re.compile(r"\d\s*([^\W\d]|%)")
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 _SPEED = "speed", "approach_speed", "normal_speed", "impact_speed"
 SPEEDS = (*_SPEED, *(name.replace("speed", "velocity") for name in _SPEED), "v")
-_MISSING = ("", "n/a", "na", "nan", "none", "-")  # cells of what was not measured
+_MISSING = ("", "n/a", "n.a.", "na", "nan", "none", "-")  # cells of what was not measured
 
 
 class TextColumn(NamedTuple):
