@@ -270,6 +270,7 @@ def test_every_option_is_explained(name, parser):
         ([*IMPACT, "--outside", "x"], "invalid choice: 'x'"),
         ([*IMPACT, "--json", "--csv"], "not allowed with argument"),
         (["history", *MANY[1:]], "expected one length"),
+        ([*IMPACT, "--materials", "/dev/zero"], "/dev/zero: it is no regular file"),
     ],
 )
 def test_wrong_usage_is_status_2(argv, message, capsys):
