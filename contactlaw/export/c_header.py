@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _atomic
+from contactlaw._escaped import c_comment
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
 from contactlaw.equation import corrections, creep, force, integrator, tangential
@@ -60,7 +61,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
     integrator: "MAX_STEPS LEAST_RESTITUTION FINER_EVERY",
     creep: "SLOW",
-    tangential: "POINT RELAXING",
+    tangential: "FLATTEST POINT RELAXING",
     solver: "RTOL",
     scaling: "NEAREST",
     stepping_friction: "SPRINGS _LEAST_SPEED _DEEPEST",
@@ -194,7 +195,7 @@ def _text(
     made = factors(model.pair, model.force_law)
     transit = made.plate.transit * made.time  # time of a shear wave through a plate of H = 1 m
     plate, groups = made.plate, list(_impact())
-    span, work = force.returned(model.force_law.data)
+    span, work, early = force.returned(model.force_law.data)
     tables = [packed(*one) for one in nodes.values()]
     numbers = [value for one in tables for value in (one if levels is None else _rounded(one))]
     values = {
@@ -209,6 +210,7 @@ def _text(
         "tangential_ratio": _number(model.pair.tangential_ratio),
         "span": _number(span),
         "work": _number(work),
+        "early": _number(early),
         "stiffening": _number(force.stiffening(model.force_law.data)),
         "plate": ", ".join(plate._fields[:4]),
         "plate_values": _array(plate[:4]),
@@ -331,12 +333,10 @@ def _body(material: Material) -> str:
 
 def _comment(text: str) -> list[str]:
     """Lines within a comment of C, which no name of a law or a material can end."""
-    plain = text.encode("ascii", "replace").decode()
-    plain = "".join(c if c.isprintable() else " " for c in plain)
-    plain = plain.replace("*/", "* /").replace("/*", "/ *").replace("\\", "/").replace("??", "?")
     return textwrap.wrap(
-        plain, _WIDTH, initial_indent=" * ", subsequent_indent=" *     ", break_on_hyphens=False
-    )
+        c_comment(text), _WIDTH, initial_indent=" * ", subsequent_indent=" *     ",
+        break_on_hyphens=False,
+    )  # fmt: skip
 
 
 def _number(value: float) -> str:
