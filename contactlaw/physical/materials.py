@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw.physical.arguments import refuse_units
 from contactlaw.physical.flow import CONSTRAINT, Flow, from_hardness
 from contactlaw.physical.hardness import pascals
@@ -445,8 +446,9 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     8000.0
     """
     try:
-        return _read(tomllib.loads(Path(path).read_text("utf-8")), _tables())
-    except (ValueError, TypeError, AttributeError, KeyError) as error:
+        text = content_of(Path(path), LARGEST_TEXT).decode("utf-8-sig")
+        return _read(tomllib.loads(text), _tables())
+    except (ValueError, TypeError, AttributeError, KeyError, RecursionError) as error:
         raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
 
 

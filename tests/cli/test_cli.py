@@ -281,6 +281,7 @@ def test_every_option_is_explained(name, parser):
         ([*IMPACT, "--outside", "x"], "invalid choice: 'x'"),
         ([*IMPACT, "--json", "--csv"], "not allowed with argument"),
         (["history", *MANY[1:]], "expected one length"),
+        ([*IMPACT, "--materials", "/dev/zero"], "/dev/zero: it is no regular file"),
         ([*COR, "--thicknes", "1mm"], "--thicknes: no such option, did you mean --thickness?"),
         ([*COR, "-Thick=1mm"], "-Thick: no such option, did you mean --thickness?"),
         ([*COR, "--edge", "2mm"], "--edge: no such option: edges are for Python, restitution("),
