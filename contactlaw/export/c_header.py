@@ -28,6 +28,8 @@ from contactlaw import _atomic
 from contactlaw._escaped import c_comment
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
+from contactlaw.answers.rated import Nodes
+from contactlaw.answers.tabulated import Border
 from contactlaw.equation import corrections, creep, force, integrator, tangential
 from contactlaw.equation.edge import KINDS
 from contactlaw.model import ImpactModel
@@ -120,7 +122,7 @@ def header(
     ValueError
         If the kind of table is unknown, or a large table would make the header exceed 500 kB; if
         the prefix is not lower-case words of letters and digits, joined by single underscores; if
-        another body may come to yield, because only one of two that yield has a rate.
+        another body may come to yield, because two that yield have not the same rate.
     OSError
         If the file cannot be written; nothing is left behind then.
 
@@ -152,7 +154,7 @@ def header(
     if len(content) > LARGEST:
         raise ValueError(
             f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
-            "a model with coarser Settings"
+            "a model with coarser Settings, or one with a rate for one of two bodies alone"
         )
     _atomic.write(path, content)
 
@@ -169,10 +171,11 @@ def _nodes(model: ImpactModel) -> dict[float, tuple[ImpactModel, Table]]:
     if flow is None:
         return {0.0: (model, thinned(model.table, ERROR))}
     bodies = model.pair.sphere, model.pair.plate
-    if all(one.flow for one in bodies) and not all(one.rate for one in bodies):
+    differ = all(one.flow for one in bodies) and bodies[0].rate != bodies[1].rate
+    if differ and len(Nodes(model._bodies, None, Border("raise")).knots) > 2:
         raise ValueError(
-            "table: as the strength grows, another body may yield, which needs more tables than a "
-            "header has room for: take 'none', and contactlaw_rebound"
+            "table: as the strengths grow, another body may yield or one outgrow the other, which "
+            "needs more tables than a header has room for: take 'none', and contactlaw_rebound"
         )
     found = {}
     for n in range(NODES):
