@@ -39,7 +39,7 @@ MESSAGES = {
     NOT_FOUND: "the yield compression of an impact that just yields was not found",
 }
 # How far `_integrate` goes, and where it notes points.
-_TO_THE_TOP, _TO_THE_END, _AT_TIMES, _AT_COMPRESSIONS = range(4)
+_TO_THE_TOP, TO_THE_END, _AT_TIMES, _AT_COMPRESSIONS = range(4)
 
 
 class Solution(NamedTuple):
@@ -86,13 +86,13 @@ def _integrate(
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
-            one = _impact(goal, law, lam[n], y[n], rtol, notes, n, edges)
+            one = follow_impact(goal, law, lam[n], y[n], rtol, notes, n, edges)
             for k in range(len(one)):
                 out[k, n] = one[k]
 
 
 @kernel
-def _impact(
+def follow_impact(
     goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int,
     edges: Edges | None,
 ) -> Solution:  # fmt: skip
@@ -140,7 +140,7 @@ def _impact(
         going = going and (goal < _AT_TIMES or noted < marks)
         if going and ends:
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
-    if goal == _TO_THE_END:
+    if goal == TO_THE_END:
         edge.look_back(
             edges,
             n,
@@ -208,7 +208,7 @@ def failure(status: Array) -> tuple[int, int]:
 
 def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
     """Solve one impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol error per step."""
-    return Solution(*(each.item() for each in _run(_TO_THE_END, law, lam, y, rtol)))
+    return Solution(*(each.item() for each in _run(TO_THE_END, law, lam, y, rtol)))
 
 
 def history(
@@ -295,7 +295,7 @@ def solve_all(
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
     y = _scale(out.yield_ratio)
-    one = _run(_TO_THE_END, law, out.inelasticity, y, rtol, few=few, edges=edges)
+    one = _run(TO_THE_END, law, out.inelasticity, y, rtol, few=few, edges=edges)
     if one.status.any():
         return failure(one.status)
     w_m = one.peak_compression.copy()
@@ -318,7 +318,7 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
         return failure(status[which])
     w_m = each[which]
     out.yield_ratio[:] = w_m / overload
-    one = _run(_TO_THE_END, law, out.inelasticity, out.yield_ratio, rtol)
+    one = _run(TO_THE_END, law, out.inelasticity, out.yield_ratio, rtol)
     _put(one, w_m, out)
     return failure(one.status)
 
