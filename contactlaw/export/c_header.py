@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _atomic
+from contactlaw._escaped import c_comment
 from contactlaw._version import VERSION
 from contactlaw.answers import solver
 from contactlaw.equation import corrections, creep, force, integrator, tangential
@@ -331,12 +332,10 @@ def _body(material: Material) -> str:
 
 def _comment(text: str) -> list[str]:
     """Lines within a comment of C, which no name of a law or a material can end."""
-    plain = text.encode("ascii", "replace").decode()
-    plain = "".join(c if c.isprintable() else " " for c in plain)
-    plain = plain.replace("*/", "* /").replace("/*", "/ *").replace("\\", "/").replace("??", "?")
     return textwrap.wrap(
-        plain, _WIDTH, initial_indent=" * ", subsequent_indent=" *     ", break_on_hyphens=False
-    )
+        c_comment(text), _WIDTH, initial_indent=" * ", subsequent_indent=" *     ",
+        break_on_hyphens=False,
+    )  # fmt: skip
 
 
 def _number(value: float) -> str:

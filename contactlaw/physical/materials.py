@@ -389,9 +389,10 @@ def find(name: str, own: Mapping[str, Material]) -> Material:
     known = _catalogue() | {_key(alias): body for alias, body in own.items()}
     key = _key(name)
     if key not in known:
-        # Names that contain the word come first ("steel"), then similar ones; each material once.
+        # Names that contain the word, similar ones and those that it contains; each material once.
         near = [one for one in known if key and key in one]
-        near += difflib.get_close_matches(key, known, n=3, cutoff=0.45)
+        near += difflib.get_close_matches(key, known, n=3)
+        near += [one for one in known if f"-{one}-" in f"-{key}-"]
         raise UnknownMaterialError(name, tuple(dict.fromkeys(known[one].name for one in near)))
     return known[key]
 
@@ -462,9 +463,17 @@ def _catalogue() -> dict[str, Material]:
 def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]:
     """Materials by name and by alias; an entry may be `like` one of other tables."""
     references = others.pop("references", {}) | tables.pop("references", {})
+    owner: dict[str, str] = {}
     for name, table in tables.items():
         if not isinstance(table, dict):
             raise ValueError(f"{name} = {table!r} is no material: write [{name}], then its numbers")
+        aliases = table.get("aliases", [])
+        if not isinstance(aliases, list) or not all(isinstance(one, str) for one in aliases):
+            raise ValueError(f"[{name}]: aliases must be a list of names, got {aliases!r}")
+        for one in (name, *aliases):
+            if (key := _key(one)) in owner:
+                raise ValueError(f"[{name}]: leave out {one!r}, a name of [{owner[key]}] already")
+            owner[key] = name
     found = {name: _from_table(name, tables[name], others | tables, references) for name in tables}
     return found | {one: found[name] for name in tables for one in tables[name].get("aliases", ())}
 

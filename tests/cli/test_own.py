@@ -86,6 +86,9 @@ def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_un
             "E=2GPa E=3GPa nu=0.35 rho=1410",
             "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice",
         ),
+        ("name=a E=2GPa nu=0.35 rho=1410 name=b", "has name twice: leave one out"),
+        ("yeild 350MPa E=207GPa nu=0.3 rho=7850", "'yeild 350MPa' has no key: write KEY=..., one"),
+        ("POM, E=2GPa nu=0.35 rho=1410", "'POM' has no key: write KEY=..."),
     ],
 )
 def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
@@ -103,6 +106,10 @@ def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
         ("[my-pom]", "", "mine.toml: "),
         ("{yield_strength = 0.1}", "0.1", "mine.toml: "),
         ("[my-pom]", "pom = 3\n[my-pom]", r"pom = 3 is no material: write \[pom\]"),
+        ('["delrin"]', '["Hard 304"]', r"\[hard-304\]: leave out 'hard-304', a name of \[my-pom\]"),
+        ('["delrin"]', '["pom-1", "POM_1"]', r"pom\]: leave out 'POM_1', a name of \[my-pom\]"),
+        ("hard-304", "My-POM", r"\[My-POM\]: leave out 'My-POM', a name of \[my-pom\]"),
+        ('["delrin"]', '"delrin"', r"\[my-pom\]: aliases must be a list of names, got 'delrin'"),
     ],
 )
 def test_a_file_with_a_mistake_is_refused(old, new, message, tmp_path):

@@ -342,6 +342,7 @@ def test_no_alias_is_ambiguous_or_unreachable() -> None:
         ("gama-alumina", "'gamma-alumina'"),
         ("stainless steel", "'stainless-steel-304'"),
         ("berring steel", "'bearing-steel-52100'"),
+        ("glass-bead", "did you mean 'glass'? "),
         ("steel", "'carbon-steel-1020' or 'stainless-steel-304' or 'stainless-steel-316'"),
     ],
 )

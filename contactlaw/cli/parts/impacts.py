@@ -14,6 +14,7 @@ from typing import NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._escaped import cell, line
 from contactlaw._jit import switched_off
 from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.rated import solver
@@ -101,9 +102,8 @@ def in_words(asked: dict[str, str]) -> str:
     """
     sphere, plate, law, *_ = asked.values()
     sizes = [(*name.split("_"), value) for name, value in [*asked.items()][3:]]
-    return ", ".join(
-        [f"{sphere} on {plate}, law {law}", *(f"{name} {one} {unit}" for name, unit, one in sizes)]
-    )
+    words = (f"{name} {one} {unit}" for name, unit, one in sizes)
+    return line(", ".join([f"{sphere} on {plate}, law {law}", *words]))
 
 
 def tabulate(
@@ -280,7 +280,7 @@ def write_csv(table: ImpactTable, out: TextIO, columns: Sequence[Column] = COLUM
     writer.writerow([*names, *table.asked, "flags"])
     values = (column.tolist() for column in table.columns.values())
     flags = ("|".join(flag_names(value)) for value in table.flags)
-    said = table.asked.values()
+    said = [cell(value) for value in table.asked.values()]
     writer.writerows([*row, *said, last] for *row, last in zip(*values, flags, strict=True))
 
 
