@@ -61,7 +61,7 @@ class C:
     def make(self, kind: Struct, parts: Sequence[str]) -> str:
         """Make a structure of its members."""
         kept = [one for one, (_, t) in zip(parts, kind.members, strict=True) if traced(t)]
-        return f"{self.name(kind.name)}_of({', '.join(kept)})"
+        return f"{self.name(f'make_{kind.name}')}({', '.join(kept)})"
 
     def member(self, text: str, name: str, kind: Type) -> str:
         """Read a member of a structure."""
@@ -123,7 +123,7 @@ class C:
             lines.append(f"    {self.type(t)}{self.variable(one)};{comment}")
         lines += [f"}} {name};", ""]
         given = ", ".join(f"{self.type(t)}{self.variable(one)}" for one, t in members)
-        lines += [f"static inline {name} {name}_of({given or 'void'})", "{", f"    {name} made;"]
+        lines += [f"static inline {name} {self.name(f'make_{kind.name}')}({given})", "{", f"    {name} made;"]
         lines += [f"    made.{v} = {v};" for v in (self.variable(one) for one, _ in members)]
         return "\n".join(_wrapped(one) for one in [*lines, "    return made;", "}"])
 

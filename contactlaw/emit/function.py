@@ -380,8 +380,6 @@ class Function:
             return Value(DOUBLE, self._language.call("pow", [left.text, self._double(right)]))
         if isinstance(node.op, ast.FloorDiv):
             return Value(INT, *self._language.quotient(left.within(9), right.within(10)))
-        if isinstance(left.type, Struct) and isinstance(right.type, Struct):
-            return self._joined(left, right)
         if type(node.op) not in _BINARY:
             self._refuse(node, "use + - * / // ** & |")
         sign, binds, act = _BINARY[type(node.op)]
@@ -407,16 +405,6 @@ class Function:
         if value.type == INT:
             return self._language.as_double(value)
         return value.within(10)
-
-    def _joined(self, left: Value, right: Value) -> Value:
-        """Write the sum of two tuples."""
-        parts = [
-            Value(kind, self._language.member(one.within(11), name, one.type))
-            for one in (left, right)
-            for name, kind in getattr(one.type, "members", ())
-        ]
-        made = self._program.tuple_of(tuple(part.type for part in parts))
-        return Value(made, self._language.make(made, [part.text for part in parts]))
 
     def _choice(self, node: ast.IfExp) -> Value:
         test = self._truth(node.test)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -26,15 +26,25 @@ class Program:
         How it is written.
     fixed : collection of str, optional
         Names of parameters for each value of which functions are made anew.
+    reserved : collection of str, optional
+        Names that are taken.
+    instead : dict of kernel to kernel, optional
+        Kernels to write in place of others.
     """
 
-    def __init__(self, language: Language, fixed: Collection[str] = ()) -> None:
-        self.language, self.fixed = language, fixed
+    def __init__(
+        self,
+        language: Language,
+        fixed: Collection[str] = (),
+        reserved: Collection[str] = (),
+        instead: Mapping[Callable[..., Any], Callable[..., Any]] | None = None,
+    ) -> None:
+        self.language, self.fixed, self._instead = language, fixed, instead or {}
         self.parts: list[str] = []
         self.constants: dict[str, str] = {}
         self._structs: dict[tuple[str, Any], Struct] = {}
         self._functions: dict[tuple[str, str, Any], tuple[str, Type] | None] = {}
-        self._names: set[str] = set()
+        self._names: set[str] = set(reserved)
         self._arrays: dict[int, str] = {}
         self.names: dict[type, str] = {}  # of NamedTuples that are not to have their own
 
@@ -42,12 +52,14 @@ class Program:
         self, kernel: Callable[..., Any], *types: Type, name: str | None = None
     ) -> tuple[str, Type]:
         """Add a kernel for these types of arguments; returns its name there, and its type."""
+        kernel = self._instead.get(kernel, kernel)
         python = getattr(kernel, "py_func", kernel)
         key = python.__module__, python.__name__, types
         if key not in self._functions:
             self._functions[key] = None
             module = python.__module__.rpartition(".")[2]
-            plain = name or self._free(f"{module}_{python.__name__.strip('_')}")
+            short = python.__name__.strip("_")
+            plain = name or self._free(short if short not in self._names else f"{module}_{short}")
             made = Function(self, python, types)
             result = made.infer()
             if result != NONE:
