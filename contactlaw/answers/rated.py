@@ -130,8 +130,8 @@ class Solved(NamedTuple):
         flags = np.zeros(self.some.size, dtype=np.int64)
         unclamped = self.units.inelasticity, self.units.yield_ratio
         return rebound(
-            self.bodies.law.data, self.bodies.limits, self.impacts, self.units.time,
-            self.contact.mass, unclamped, self.outcome, flags, self.edges,
+            self.bodies.pair, self.bodies.law.data, self.bodies.limits, self.impacts,
+            self.units.time, self.contact.mass, unclamped, self.outcome, flags, self.edges,
         )  # fmt: skip
 
 
@@ -405,8 +405,8 @@ class Nodes:
             mass = units.force[some] * units.time[some] / impacts.speed[some]
             unclamped = places.unclamped[some], units.yield_ratio[some]
             yield some, completed(
-                limits, impacts.part(some), units.time[some], mass, unclamped, at, extremes,
-                flags[some],
+                self.bodies.pair, limits, impacts.part(some), units.time[some], mass, unclamped, at,
+                extremes, flags[some],
             )  # fmt: skip
 
     def _refuse(self, places: strengths.Places, n: int) -> None:

@@ -61,7 +61,7 @@ _CONSTANTS: dict[ModuleType, str] = {
     lookup: "R_MIN R_MAX THINNEST V_MIN V_MAX",
     integrator: "MAX_STEPS LEAST_RESTITUTION FINER_EVERY",
     creep: "SLOW",
-    tangential: "POINT RELAXING",
+    tangential: "FLATTEST POINT RELAXING",
     solver: "RTOL",
     scaling: "NEAREST",
     stepping_friction: "SPRINGS _LEAST_SPEED _DEEPEST",
@@ -195,7 +195,7 @@ def _text(
     made = factors(model.pair, model.force_law)
     transit = made.plate.transit * made.time  # time of a shear wave through a plate of H = 1 m
     plate, groups = made.plate, list(_impact())
-    span, work = force.returned(model.force_law.data)
+    span, work, early = force.returned(model.force_law.data)
     tables = [packed(*one) for one in nodes.values()]
     numbers = [value for one in tables for value in (one if levels is None else _rounded(one))]
     values = {
@@ -210,6 +210,7 @@ def _text(
         "tangential_ratio": _number(model.pair.tangential_ratio),
         "span": _number(span),
         "work": _number(work),
+        "early": _number(early),
         "stiffening": _number(force.stiffening(model.force_law.data)),
         "plate": ", ".join(plate._fields[:4]),
         "plate_values": _array(plate[:4]),

@@ -229,10 +229,13 @@ function flagsOf({ speed, radius, thickness, unit, contact_time, peak_compressio
 function slid(path, y, psi) {
   const kappa = pair.tangential_ratio, clip = (wish, most) => Math.min(Math.max(wish, -most), most);
   const stiffness = (largest, d, f) => {
-    const { residual, exponent } = unloading(largest / y), deep = d - residual * y;
-    const [span, work] = residual > 0 ? now.returned : [1, 1];
-    const rise = (0.5 * exponent + 1) * work / span - 1, k = deep > 0 ? span * rise * f / deep : 0;
-    return [k / (1 + 4 / 3 * now.stiffening / Math.sqrt(y) * k), 1 / (rise - 1)];
+    const dm = largest / y, row = unloadingRow(dm), { residual, exponent } = unloading(dm);
+    let [span, work, early] = residual > 0 ? now.returned : [1, 1, 0];
+    const back = loading(Math.sqrt(dm)) * (dm - residual) / (0.5 * exponent + 1);
+    if (dm > 1 && early > 0) work += early * (work - back / (back + valueAt(row, LOSS, dm)));
+    const rise = (0.5 * exponent + 1) * work / span - 1, deep = d - residual * y;
+    const k = deep > 0 ? span * rise * f / deep : 0;
+    return [k / (1 + 4 / 3 * now.stiffening / Math.sqrt(y) * k), 1 / Math.max(rise - 1, FLATTEST)];
   };
   const peak = path.reduce((most, { d, f }) => Math.max(most, stiffness(d, d, f)[0]), 0);
   const width = peak / SPRINGS, stretch = new Float64Array(SPRINGS);

@@ -92,6 +92,7 @@ class Trouble(enum.IntEnum):
     WRONG_MASS = 12
     TOO_THIN = 13  # the plate, for this speed: its inelasticity is beyond the model's table
     FOIL = 14  # the plate is thinner, relative to the bead, than any that the model is for
+    NO_FORCE = 15  # that is finite
 
 
 # What the kernels report to their caller, who clears it.
@@ -597,6 +598,8 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         work = 0.0
         for i in range(3):
             both = row.push[i] + drag[i]
+            if not math.isfinite(both):
+                report_trouble(scene, Trouble.NO_FORCE, contact.wall, row.approach_speed, bead.r)
             bead.force[i] += both
             bead.torque[i] += torque[i]
             work += both * contact.w[i]

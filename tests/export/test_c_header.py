@@ -61,6 +61,7 @@ NAMES = [
     else name
     for name in MODELS
 ]
+MODELS["losses and flow"] = polymer.WEAK_MODEL.pair, "fem"
 DOUBLE = ctypes.c_double
 FIELDS = [one.name for one in dataclasses.fields(Rebound) if one.name not in ("overload", "flags")]
 FIELDS.insert(2, "loading_time")
@@ -459,6 +460,7 @@ def slides(law, spring, kappa, steps, v, spin, r, dt, mu, row, out):
             u[2] = 0.7 * v[2]
 
 
+@pytest.mark.parametrize("compiled", [*NAMES, "losses and flow"], indirect=True)
 def test_friction_by_steps_is_that_of_stepping(compiled):
     """In every step of some 200 impacts, of which a blow repeats most."""
     model, library, _ = compiled

@@ -22,6 +22,7 @@ MODELS = {
     "elastic": cl.ImpactModel(cl.Pair("glass", "glass")),
     "losses": polymer.MODELS[0],
     "losses of both": polymer.MODELS[1],
+    "losses and flow": polymer.WEAK_MODEL,
     "myc": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "myc"),
     "capped": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "stronge"),
     "hertz": cl.ImpactModel(cl.Pair("glass", "glass"), "hertz"),
