@@ -26,8 +26,9 @@ class Program:
         How it is written.
     fixed : collection of str, optional
         Names of parameters for each value of which functions are made anew.
-    reserved : collection of str, optional
-        Names that are taken.
+    names : dict, optional
+        Names for kernels, for NamedTuples, and for tuples by the types of their members; others get
+        their own. A name may be kept for what is not written here, under any key.
     instead : dict of kernel to kernel, optional
         Kernels to write in place of others.
     """
@@ -36,30 +37,28 @@ class Program:
         self,
         language: Language,
         fixed: Collection[str] = (),
-        reserved: Collection[str] = (),
+        names: Mapping[Any, str] | None = None,
         instead: Mapping[Callable[..., Any], Callable[..., Any]] | None = None,
     ) -> None:
-        self.language, self.fixed, self._instead = language, fixed, instead or {}
+        self.language, self.fixed, self._given = language, fixed, dict(names or {})
+        self._instead = instead or {}
         self.parts: list[str] = []
         self.constants: dict[str, str] = {}
         self._structs: dict[tuple[str, Any], Struct] = {}
         self._functions: dict[tuple[str, str, Any], tuple[str, Type] | None] = {}
-        self._names: set[str] = set(reserved)
+        self._names = {*self._given.values()}
         self._arrays: dict[int, str] = {}
-        self.names: dict[type, str] = {}  # of NamedTuples that are not to have their own
 
-    def add(
-        self, kernel: Callable[..., Any], *types: Type, name: str | None = None
-    ) -> tuple[str, Type]:
+    def add(self, kernel: Callable[..., Any], *types: Type) -> tuple[str, Type]:
         """Add a kernel for these types of arguments; returns its name there, and its type."""
         kernel = self._instead.get(kernel, kernel)
         python = getattr(kernel, "py_func", kernel)
         key = python.__module__, python.__name__, types
         if key not in self._functions:
             self._functions[key] = None
-            module = python.__module__.rpartition(".")[2]
-            short = python.__name__.strip("_")
-            plain = name or self._free(short if short not in self._names else f"{module}_{short}")
+            module, short = python.__module__.rpartition(".")[2], python.__name__.strip("_")
+            name = short if short not in self._names else f"{module}_{short}"
+            plain = self._named(kernel, name)
             made = Function(self, python, types)
             result = made.infer()
             if result != NONE:
@@ -72,37 +71,36 @@ class Program:
 
     def struct(self, source: type, members: tuple[tuple[str, Type], ...]) -> Struct:
         """Structure of a NamedTuple with these types of its members."""
-        plain = re.sub(r"(?<!^)(?=[A-Z])", "_", source.__name__).lower()
-        name = self.names.get(source, plain)
-        return self._struct(name, members, source)
+        name = re.sub(r"(?<!^)(?=[A-Z])", "_", source.__name__).lower()
+        return self._struct(source, name, members, source)
 
     def tuple_of(self, types: tuple[Type, ...]) -> Struct:
         """Structure of a tuple."""
-        name = "_".join(one.name for one in types)
-        return self._struct(name, tuple((f"f{n}", one) for n, one in enumerate(types)), None)
+        members = tuple((f"f{n}", one) for n, one in enumerate(types))
+        return self._struct(types, "_".join(one.name for one in types), members, None)
 
     def row(self, name: str, dtype: np.dtype[Any]) -> Row:
         """Row of a dtype."""
         sizes = ((one, math.prod(dtype[one].shape) * bool(dtype[one].shape))
                  for one in dtype.names or ())  # fmt: skip
-        made = Row(self._free(name), tuple(sizes))
+        made = Row(self._named(dtype, name), tuple(sizes))
         self.parts.append(self.language.row(made))
         return made
 
-    def _struct(self, name: str, members: Any, source: type | None) -> Struct:
-        key = name, members
+    def _struct(self, given: Any, name: str, members: Any, source: type | None) -> Struct:
+        key = given, members
         if key not in self._structs:
-            made = Struct(self._free(name), members, source)
+            made = Struct(self._named(given, name), members, source)
             said = dict(_COMMENT.findall(inspect.getsource(source))) if source else {}
             self._structs[key] = made
             if traced(made):
                 self.parts.append(self.language.structure(made, inspect.getdoc(source), said))
         return self._structs[key]
 
-    def _free(self, name: str) -> str:
-        """Take a name that nothing has: it, or it with a number."""
+    def _named(self, thing: Any, name: str) -> str:
+        """Name that was given for something, or this one, with a number where it is taken."""
         names = (f"{name}_{n}" if n > 1 else name for n in range(1, 99))
-        free = next(one for one in names if one not in self._names)
+        free = self._given.pop(thing, None) or next(one for one in names if one not in self._names)
         self._names.add(free)
         return free
 
@@ -136,7 +134,7 @@ class Program:
 
     def _data(self, values: Any, name: str) -> str:
         if id(values) not in self._arrays:
-            plain = self._free(name.strip("_").lower() or "data")
+            plain = self._named(id(values), name.strip("_").lower() or "data")
             self.parts.append(self.language.data(plain, values.ravel().tolist()))
             self._arrays[id(values)] = self.language.name(plain)
         return self._arrays[id(values)]
