@@ -56,7 +56,9 @@ class C:
             return self.name("data *") if kind.data else "double *"
         if isinstance(kind, Struct):
             return f"{self.name(kind.name)} "
-        return f"{self.name(kind.name)} *" if isinstance(kind, Row) else f"{kind.name} "
+        if isinstance(kind, Row):
+            return f"{self.name(kind.name)} *"
+        return f"{kind.name} "
 
     def make(self, kind: Struct, parts: Sequence[str]) -> str:
         """Make a structure of its members."""
@@ -100,10 +102,6 @@ class C:
     def tail(self, array: Value, index: Value) -> str:
         """Take an array from an element on."""
         return f"{array.within(8)} + {index.within(9)}"
-
-    def bits(self, value: Value, kind: str) -> Value:
-        """Take the bits of a number as another one."""
-        raise NotImplementedError
 
     def filled(self, name: str, size: int, value: str) -> list[str]:
         """Give all elements of an array a value."""

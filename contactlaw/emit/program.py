@@ -104,37 +104,40 @@ class Program:
         self._names.add(free)
         return free
 
-    def constant(self, value: Any, name: str = "", module: str = "") -> Value:
-        """Write an object of Python; a number that has a name there is defined by that name."""
-        known: Any = value
+    def constant(self, value: Any) -> Value:
+        """Write an object of Python."""
         match value:
             case None:
                 return Value(NONE, "", known=None)
             case bool() | np.bool_() | int() | np.integer():
-                kind, text, known = INT, str(int(value)), int(value)
+                text = str(int(value))
+                return Value(INT, text, 10 if value < 0 else 12, int(value))
             case float() | np.floating():
-                kind, text = DOUBLE, self.language.number(float(value))
-            case np.ndarray():
-                return Value(Array(data=True, shape=value.shape), self._data(value, name))
+                return Value(DOUBLE, self.language.number(float(value)), 10 if value < 0 else 12)
             case tuple() if hasattr(value, "_fields"):
                 parts = [self.constant(one) for one in value]
-                types = tuple(part.type for part in parts)
+                types = (part.type for part in parts)
                 made = self.struct(type(value), tuple(zip(value._fields, types, strict=True)))
-                kind, text = made, self.language.make(made, [part.text for part in parts])
-            case _:
-                return Value(Known(value=value), "", known=value)
-        if not name:
-            return Value(kind, text, 10 if text.startswith("-") else 12, known)
+                return Value(made, self.language.make(made, [part.text for part in parts]))
+        return Value(Known(value=value), "", known=value)
+
+    def named(self, value: Any, name: str, module: str) -> Value:
+        """Write an object that has a name in a module of Python; numbers are defined by it."""
         name = name.strip("_")
-        if self.constants.setdefault(name, text) != text:
-            name = f"{module}_{name}"
-            if self.constants.setdefault(name, text) != text:
+        if isinstance(value, np.ndarray):
+            return Value(Array(data=True, shape=value.shape), self._data(value, name.lower()))
+        found = self.constant(value)
+        if not traced(found.type) or found.text.strip("-") == self.language.number(math.inf):
+            return found
+        if self.constants.setdefault(name, found.text) != found.text:
+            name = f"{module.rpartition('.')[2]}_{name}"
+            if self.constants.setdefault(name, found.text) != found.text:
                 raise ValueError(f"{name}: two constants have this name, rename one of them")
-        return Value(kind, self.language.name(name), known=known)
+        return Value(found.type, self.language.name(name), known=found.known)
 
     def _data(self, values: Any, name: str) -> str:
         if id(values) not in self._arrays:
-            plain = self._named(id(values), name.strip("_").lower() or "data")
+            plain = self._named(id(values), name)
             self.parts.append(self.language.data(plain, values.ravel().tolist()))
             self._arrays[id(values)] = self.language.name(plain)
         return self._arrays[id(values)]
