@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw.physical.arguments import refuse_units
 from contactlaw.physical.flow import CONSTRAINT, Flow, from_hardness
 from contactlaw.physical.hardness import pascals
@@ -164,7 +165,8 @@ class Material:
         Relative standard errors of the numbers above, by their names, for
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
         of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
-        lacks are left out.
+        lacks are left out. That of a strength that is a specified minimum is ``inf``, since nobody
+        knows it: answers that depend on it have no range.
 
     Raises
     ------
@@ -444,8 +446,9 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     8000.0
     """
     try:
-        return _read(tomllib.loads(Path(path).read_text("utf-8")), _tables())
-    except (ValueError, TypeError, AttributeError, KeyError) as error:
+        text = content_of(Path(path), LARGEST_TEXT).decode("utf-8-sig")
+        return _read(tomllib.loads(text), _tables())
+    except (ValueError, TypeError, AttributeError, KeyError, RecursionError) as error:
         raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
 
 
@@ -506,10 +509,10 @@ def _from_table(
         number: error if isinstance(error, list) else [error, ""]
         for number, error in table.get("uncertainty", {}).items()
     }
-    body = Material(
-        name, **values, kind=table.get("kind"),
-        uncertainty={number: error for number, (error, _) in errors.items()},
-    )  # fmt: skip
+    relative = {number: error for number, (error, _) in errors.items()}
+    if "{bias}" in source.get("yield_strength", ""):
+        relative.setdefault("yield_strength", math.inf)
+    body = Material(name, **values, kind=table.get("kind"), uncertainty=relative)
     parts = [table.get("grade", name)]
     for number, (label, unit) in _LABELS.items():
         if number not in source:
@@ -654,8 +657,9 @@ def _uncertainty(body: Material) -> dict[str, float]:
             near = difflib.get_close_matches(str(name), _LABELS, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise ValueError(f"{what}: unknown {name!r}; {hint}known: {', '.join(_LABELS)}")
-        error = _finite(body.name, f"uncertainty[{name!r}]", value, "-")
-        if not (0.0 <= error <= _LARGEST_ERROR):
+        minimum = name in ("yield_strength", "hardness") and str(value) == "inf"
+        error = math.inf if minimum else _finite(body.name, f"uncertainty[{name!r}]", value, "-")
+        if not (0.0 <= error <= _LARGEST_ERROR or minimum):
             raise ValueError(
                 f"{what}: {name} must be a relative standard error from 0 to {_LARGEST_ERROR:g}, "
                 f"got {value!r}"

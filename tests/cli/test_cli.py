@@ -281,6 +281,7 @@ def test_every_option_is_explained(name, parser):
         ([*IMPACT, "--outside", "x"], "invalid choice: 'x'"),
         ([*IMPACT, "--json", "--csv"], "not allowed with argument"),
         (["history", *MANY[1:]], "expected one length"),
+        ([*IMPACT, "--materials", "/dev/zero"], "/dev/zero: it is no regular file"),
         ([*COR, "--thicknes", "1mm"], "--thicknes: no such option, did you mean --thickness?"),
         ([*COR, "-Thick=1mm"], "-Thick: no such option, did you mean --thickness?"),
         ([*COR, "--edge", "2mm"], "--edge: no such option: edges are for Python, restitution("),
@@ -301,7 +302,7 @@ def test_materials(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines[1:]] == list(cl.materials())
     assert main(["materials", "--json"]) == 0
-    listed = json.loads(capsys.readouterr().out)
+    listed = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     glass = next(entry for entry in listed if entry["name"] == "glass")
     assert (glass["youngs_modulus"], glass["yield_strength"]) == (73e9, None)
     assert main(["materials", "glass"]) == 0

@@ -42,7 +42,7 @@ def test_numbers_make_the_material_that_python_makes(text, more):
 
 def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     path = tmp_path / "mine.toml"
-    path.write_text(FILE)
+    path.write_text(FILE, encoding="utf-8-sig")  # as editors of Windows save it
     mine = cl.read_materials(path)
     assert mine["delrin"] == cl.Material("my-pom", **NUMBERS, yield_strength=62e6,
         source="my-pom", uncertainty={"yield_strength": 0.1})  # fmt: skip
@@ -103,6 +103,7 @@ def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
         ("density = 1410", "", r"\[my-pom\]: give density, in SI units"),
         ('"stainless-steel-304"', '"304L"', r"\[hard-304\]: like = '304L' is no entry"),
         ("= 2.8e9", "= ", "mine.toml: Invalid value"),
+        ("= 2.8e9", "= " + "[" * 3000, "mine.toml: .*recursion"),
         ("[my-pom]", "", "mine.toml: "),
         ("{yield_strength = 0.1}", "0.1", "mine.toml: "),
         ("[my-pom]", "pom = 3\n[my-pom]", r"pom = 3 is no material: write \[pom\]"),

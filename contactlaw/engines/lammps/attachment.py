@@ -292,7 +292,7 @@ class LammpsPlates:
         wrong = np.flatnonzero(np.abs(mass - solid) > SOLID * solid)[:1]
         step, bead = self._lmp.extract_global("ntimestep"), self._beads("id")
         said = [message(Trouble.WRONG_MASS, step, bead[i], -1, mass[i], solid[i]) for i in wrong]
-        if found := sum(self._comm.allgather(said), []):
+        for found in filter(None, self._comm.allgather(said)):
             raise ValueError(found[0])
 
     def _install(self) -> None:
