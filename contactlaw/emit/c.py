@@ -109,7 +109,12 @@ class C:
 
     def unpacked(self, kind: Struct, text: str, lines: list[str]) -> list[str]:
         """Take a tuple apart; it is `both` in the lines that do it."""
-        return ["{", f"    const {self.type(kind)}both = {text};", *(f"    {one}" for one in lines), "}"]
+        return [
+            "{",
+            f"    const {self.type(kind)}both = {text};",
+            *(f"    {one}" for one in lines),
+            "}",
+        ]
 
     def structure(self, kind: Struct, said: str | None, comments: dict[str, str]) -> str:
         """Declare a structure, and the function that makes it."""
@@ -121,7 +126,11 @@ class C:
             lines.append(f"    {self.type(t)}{self.variable(one)};{comment}")
         lines += [f"}} {name};", ""]
         given = ", ".join(f"{self.type(t)}{self.variable(one)}" for one, t in members)
-        lines += [f"static inline {name} {self.name(f'make_{kind.name}')}({given})", "{", f"    {name} made;"]
+        lines += [
+            f"static inline {name} {self.name(f'make_{kind.name}')}({given})",
+            "{",
+            f"    {name} made;",
+        ]
         lines += [f"    made.{v} = {v};" for v in (self.variable(one) for one, _ in members)]
         return "\n".join(_wrapped(one) for one in [*lines, "    return made;", "}"])
 
@@ -158,6 +167,3 @@ class C:
     def define(self, name: str, text: str) -> str:
         """Define a constant."""
         return f"#define {self.name(name)} {text if text[0] != '-' else f'({text})'}"
-
-
-

@@ -13,8 +13,21 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
-from contactlaw.emit.types import DOUBLE, FALSE, INT, NONE, TRUE, UNKNOWN, Array, Known, Row
-from contactlaw.emit.types import Struct, Type, Value, traced
+from contactlaw.emit.types import (
+    DOUBLE,
+    FALSE,
+    INT,
+    NONE,
+    TRUE,
+    UNKNOWN,
+    Array,
+    Known,
+    Row,
+    Struct,
+    Type,
+    Value,
+    traced,
+)
 
 if TYPE_CHECKING:
     from contactlaw.emit.program import Program
@@ -129,7 +142,9 @@ class Expressions:
                 return Value(kind, self._language.row_member(base.within(11), name), 11)
             case Array(shape=shape) if shape and name in ("size", "shape"):
                 return self._program.constant(math.prod(shape) if name == "size" else shape)
-        self.refuse(node, "an array needs a known shape for its size, and nothing else of it counts")
+        self.refuse(
+            node, "an array needs a known shape for its size, and nothing else of it counts"
+        )
 
     def _subscript(self, node: ast.Subscript) -> Value:
         base, at = self.value(node.value), node.slice
@@ -148,7 +163,9 @@ class Expressions:
             return Value(Array(data=data), tail, 8)
         if 0 in shape:
             return Value(DOUBLE, "")  # an array without elements leaves no trace
-        index, *column = [self.value(one) for one in (at.elts if isinstance(at, ast.Tuple) else [at])]
+        index, *column = [
+            self.value(one) for one in (at.elts if isinstance(at, ast.Tuple) else [at])
+        ]
         if len(shape) == 2:
             index = Value(INT, f"{index.within(9)} * {shape[1]}", 9)
             if not column:
@@ -225,7 +242,9 @@ class Expressions:
         if called in (np.zeros, np.empty):
             size = node.args[0]
             parts = size.elts if isinstance(size, ast.Tuple) else [size]
-            return Value(Array(shape=tuple(self.value(one).known for one in parts)), called.__name__)
+            return Value(
+                Array(shape=tuple(self.value(one).known for one in parts)), called.__name__
+            )
         values = [self.value(one) for one in node.args]
         if called in (min, max, np.minimum, np.maximum):
             return functools.reduce(

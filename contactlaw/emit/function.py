@@ -11,7 +11,18 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from contactlaw.emit.expressions import OPERATORS, Expressions
-from contactlaw.emit.types import FALSE, INT, TRUE, UNKNOWN, VOID, Array, Struct, Type, Value, traced
+from contactlaw.emit.types import (
+    FALSE,
+    INT,
+    TRUE,
+    UNKNOWN,
+    VOID,
+    Array,
+    Struct,
+    Type,
+    Value,
+    traced,
+)
 
 if TYPE_CHECKING:
     from contactlaw.emit.program import Program
@@ -164,7 +175,9 @@ class Function(Expressions):
                 self.refuse(target, "assign to names, elements of arrays, and members of rows")
         if not (traced(place.type) and place.text) or value.text in (place.text, "empty"):
             return []
-        if isinstance(place.type, Array) and (value.text == "zeros" or not isinstance(value.type, Array)):
+        if isinstance(place.type, Array) and (
+            value.text == "zeros" or not isinstance(value.type, Array)
+        ):
             number = "0.0" if value.text == "zeros" else value.text
             return self._language.filled(place.text, math.prod(place.type.shape), number)
         return [f"{place.text} = {value.text};"]

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from contactlaw.emit.function import Function
 from contactlaw.emit.c import C as Language
+from contactlaw.emit.function import Function
 from contactlaw.emit.types import DOUBLE, INT, NONE, Array, Known, Row, Struct, Type, Value, traced
 
 _COMMENT = re.compile(r"^    (\w+)\b.*?:.*?#\s*(.*)$", re.MULTILINE)

@@ -39,7 +39,9 @@ _DECLARED = re.compile(r"^static (inline|const)\b", re.MULTILINE)
 _MACROS = {"inline": "CONTACTLAW_FN", "const": "CONTACTLAW_DATA"}
 _PREFIX = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 _NAMES = re.compile(r"\b(contactlaw|CONTACTLAW)(?=_)")
-_OF_TABLE = re.compile(r" \* Codes that take one number per impact.*?\n \*\n(?= \* Codes that step)", re.DOTALL)
+_OF_TABLE = re.compile(
+    r" \* Codes that take one number per impact.*?\n \*\n(?= \* Codes that step)", re.DOTALL
+)
 _PUBLIC = "step flags collide set_edge friction_step vector_of store".split()
 
 

@@ -21,7 +21,7 @@ from contactlaw.equation.edge import KINDS
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
 from contactlaw.equation.tangential import POINT, kept, limited, pull, stiffness_at
 from contactlaw.model import ImpactModel
-from contactlaw.physical.oblique import FASTEST, Sliding, rebound_of, sliding, unit
+from contactlaw.physical.oblique import FASTEST, rebound_of, sliding, unit
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import factors, wave_path, wave_rate
 from contactlaw.physical.validity import Limits, flags_of
