@@ -19,13 +19,17 @@ from typing import Literal
 from contactlaw import _atomic
 from contactlaw._escaped import c_comment
 from contactlaw._version import VERSION
+from contactlaw.answers.rated import Nodes
+from contactlaw.answers.tabulated import Border
 from contactlaw.emit import DOUBLE, INT, C, Known, Program
 from contactlaw.equation.edge import KINDS
 from contactlaw.export import functions
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
+from contactlaw.physical.oblique import Sliding
 from contactlaw.physical.rate import largest_factor, rated, strengthened
 from contactlaw.physical.validity import Validity, explain
+from contactlaw.stepping.spring import Spring, State
 from contactlaw.table import Table, lookup
 from contactlaw.table.nodes import thinned
 
@@ -77,7 +81,7 @@ def header(
     ValueError
         If the kind of table is unknown, or a large table would make the header exceed 500 kB; if
         the prefix is not lower-case words of letters and digits, joined by single underscores; if
-        another body may come to yield, because only one of two that yield has a rate.
+        another body may come to yield, because two that yield have not the same rate.
     OSError
         If the file cannot be written; nothing is left behind then.
 
@@ -109,7 +113,7 @@ def header(
     if len(content) > LARGEST:
         raise ValueError(
             f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
-            "a model with coarser Settings"
+            "a model with coarser Settings, or one with a rate for one of two bodies alone"
         )
     _atomic.write(path, content)
 
@@ -120,10 +124,11 @@ def _nodes(model: ImpactModel) -> dict[float, tuple[ImpactModel, Table]]:
     if flow is None:
         return {0.0: (model, thinned(model.table, ERROR))}
     bodies = model.pair.sphere, model.pair.plate
-    if all(one.flow for one in bodies) and not all(one.rate for one in bodies):
+    differ = all(one.flow for one in bodies) and bodies[0].rate != bodies[1].rate
+    if differ and len(Nodes(model._bodies, None, Border("raise")).knots) > 2:
         raise ValueError(
-            "table: as the strength grows, another body may yield, which needs more tables than a "
-            "header has room for: take 'none', and contactlaw_rebound"
+            "table: as the strengths grow, another body may yield or one outgrow the other, which "
+            "needs more tables than a header has room for: take 'none', and contactlaw_rebound"
         )
     found = {}
     for n in range(NODES):
@@ -161,16 +166,16 @@ def _kernels(bodies: functions.Bodies) -> str:
     number, pair = DOUBLE, Known(value=bodies)
     vector = (number, number, number)
     names = {name: name for name in _PUBLIC} | {
-        vector: "vector", functions.SLIDING: "sliding", functions.Sliding: "approach",
-        functions.BeadSpring: "spring", functions.Spring: "contact_spring",
-        functions.State: "state", functions.Impact: "impact",
+        vector: "vector", functions.SLIDING: "sliding", Sliding: "approach",
+        functions.BeadSpring: "spring", Spring: "contact_spring",
+        State: "state", functions.Impact: "impact",
     }  # fmt: skip
     program = Program(C(), ("goal",), names, functions.INSTEAD)
     point, sliding = program.tuple_of(vector), program.row("sliding", functions.SLIDING)
     _, spring = program.add(functions.spring_of, pair, number, number)
     program.add(functions.at_edge, pair, spring, INT, number)
-    members = tuple((name, number) for name in functions.State._fields)
-    state = program.struct(functions.State, members)
+    members = tuple((name, number) for name in State._fields)
+    state = program.struct(State, members)
     program.add(functions.after_step, pair, spring, state, number, number)
     _, impact = program.add(functions.rebound, pair, *vector)
     program.add(functions.restitution_near, pair, *vector, INT, number)

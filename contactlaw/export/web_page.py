@@ -48,7 +48,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
     Parameters
     ----------
     path : path-like
-        File to write, below 1 MB; an existing file is replaced.
+        File to write, below 1 MB, or 2 if two bodies' rates differ; an existing file is replaced.
     model : ImpactModel
         Pair and law.
 
