@@ -136,35 +136,32 @@ SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 
 
 def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]]) -> Bodies:
-    """Numbers of a model's pair, and of tables by the logarithm of the strength, with few digits.
+    """Numbers of a model's pair, and of tables by the logarithm of the strength.
 
-    Tables err by more than 1e-6.
+    Tables have nine decimals, and laws by strength nine digits: they err by more than that.
     """
     pair, law = model.pair, model.force_law
     levels = strength.levels_of(pair, law, STEP)
-    tables = [
-        lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
-        for own, one in nodes.values()
-    ]
-    tables = [one[: int(one[lookup.OTHERS_AT])] for one in tables]  # COR alone
+    tables = []
+    for own, one in nodes.values():
+        table = lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
+        table = table[: int(table[lookup.OTHERS_AT])].copy()  # COR alone
+        table[int(table[lookup.COR_AT]) :] = table[int(table[lookup.COR_AT]) :].round(9)
+        tables.append(table)
     starts = np.cumsum([0.0, *(one.size for one in tables)])[:-1]
     return Bodies(
         law.data,
-        None if levels is None else _rounded(levels, 9),
+        None if levels is None else np.array([float(f"{one:.9g}") for one in levels]),
         unit_spring(model, 1.0)._replace(levels=None),
         model.limits,
         pair.tangential_ratio,
         np.array([response_of(one, pair.plate.poissons_ratio, size="steps") for one in KINDS]),
         wave_path(pair.plate),
         factors(pair, law).log_overload,
-        _rounded(np.concatenate(tables), 8) if tables else None,
+        np.concatenate(tables) if tables else None,
         np.array([*nodes]),
         starts,
     )
-
-
-def _rounded(values: Array, digits: int) -> Array:
-    return np.array([float(f"{value:.{digits}g}") for value in values])
 
 
 @kernel
@@ -225,7 +222,8 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
     """State at the end of a step; its force is NaN where the simulation has blown up."""
     moved, largest = state.plate_displacement, state.largest_compression
     if not (
-        -math.inf < overlap <= 2.0 * bead.radius + moved
+        -math.inf < overlap < math.inf
+        and overlap <= 2.0 * bead.radius + moved
         and overlap <= moved + largest + V_MAX * dt
         and 0.0 < dt <= bead.relaxation
         and bead.mass > 0.0

@@ -586,7 +586,12 @@ def test_the_data_are_those_that_python_reads(compiled):
         inside = re.search(rf"contactlaw_{array}\[\] = {{(.*?)}}", text, re.DOTALL)[1]
         found = np.array(inside.replace("HUGE_VAL", "inf").split(","), dtype=np.float64)
         assert found.size == (values.size if array == "law" else table[lookup.OTHERS_AT])
-        assert found == pytest.approx(values[: found.size], rel=0.0 if array == "law" else 1e-8)
+        # splines have nine decimals
+        bound = np.where(np.arange(found.size) < table[lookup.COR_AT], 0.0, 5e-10)
+        assert (
+            abs(np.nan_to_num(found) - np.nan_to_num(values[: found.size]))
+            <= bound * (array == "tables")
+        ).all()
 
 
 def test_a_table_of_ones_own_without_a_certificate(tmp_path):
@@ -606,7 +611,7 @@ def test_a_table_of_ones_own_without_a_certificate(tmp_path):
         'int main(void) { printf("%.17g", contactlaw_restitution(9.0, 0.9e-3, 1e-3)); return 0; }\n'
     )
     found = subprocess.run([build(tmp_path, program)], capture_output=True, text=True).stdout
-    assert float(found) == pytest.approx(model.restitution(9.0, 0.9e-3, 1e-3), abs=1e-12)
+    assert float(found) == pytest.approx(model.restitution(9.0, 0.9e-3, 1e-3), abs=5e-10)
 
 
 @pytest.mark.parametrize(

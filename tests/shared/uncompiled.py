@@ -43,5 +43,7 @@ if __name__ == "__main__":
     np.seterr(all="ignore")
     with open(sys.argv[1], "rb") as file:
         pairs, impacts = pickle.load(file)
-    made = [[answers(functions.Bodies(*pair), *one) for one in impacts] for pair in pairs]
+    # numpy's numbers give inf for a division by zero, as C and compiled kernels do
+    given = np.array(impacts)
+    made = [[answers(functions.Bodies(*pair), *one) for one in given] for pair in pairs]
     np.save(sys.argv[2], np.array(made, dtype=float))
