@@ -31,7 +31,7 @@ class C:
 
     reserved = frozenset("auto char const double else enum extern float goto int long near far "
                          "register short signed static struct switch union unsigned void "
-                         "class delete new operator private public template this".split())  # fmt: skip
+                         "both class delete new operator private public template this".split())  # fmt: skip
 
     def __init__(self, prefix: str = "contactlaw_") -> None:
         self._prefix = prefix

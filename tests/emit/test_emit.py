@@ -1,4 +1,4 @@
-"""The generator: what it writes for small kernels, and what it refuses with file, line and remedy."""
+"""The generator: what it writes for small kernels, and what it refuses with line and remedy."""
 
 import ctypes
 import inspect
