@@ -31,7 +31,7 @@ def asks_for_few(words: Sequence[str]) -> bool:
     >>> asks_for_few(["cor", "--speed", "1:5:50", "--radius", "1mm"])
     False
     """
-    if words[:1] != ["cor"] or any(":" in word or word.startswith("--plo") for word in words):
+    if words[:1] != ["cor"] or any(":" in word or word.startswith("--plot") for word in words):
         return False
     count = 1
     for word in words:

@@ -329,7 +329,8 @@ def _code_folder() -> Path | None:
         home = home.expanduser().absolute()
         folder = home / f"contactlaw-{fingerprint()}"
         if not folder.is_dir():
-            folder.mkdir(parents=True, exist_ok=True)
+            home.mkdir(0o700, parents=True, exist_ok=True)
+            folder.mkdir(0o700, exist_ok=True)
             _sweep(home)
             if sys.stderr is not None and sys.stderr.isatty():
                 print(
@@ -337,6 +338,8 @@ def _code_folder() -> Path | None:
                     f"minute; kept in {home}",
                     file=sys.stderr,
                 )
+        if not (_folder.is_private(home, sticky=True) and _folder.is_private(folder)):
+            return None
         os.utime(folder)  # marks it as used; raises if it is not ours to write
         return folder
     except (OSError, RuntimeError) as error:

@@ -229,7 +229,7 @@ class Contacts:
         )
         self._longest = float(self._springs.relaxation.min(initial=math.inf))
         self._states = State(*(np.zeros(r.size) for _ in State._fields))
-        self._tangential = model.pair.tangential_ratio
+        self._pair, self._tangential = model.pair, model.pair.tangential_ratio
         self._rows = np.zeros(r.size, FRICTION)
         self._deepest, self._overlap, self._step = np.zeros(r.size), np.zeros(r.size), 0.0
         self._sliding = np.zeros((r.size, 3))
@@ -337,6 +337,8 @@ class Contacts:
             self._law, self._tangential, self._springs, self._states, self._rows, self._deepest,
             float(friction), self._overlap, normals, velocities, self._step, self._sliding,
         )  # fmt: skip
+        for n in np.flatnonzero(~np.isfinite(self._sliding.sum(axis=1))):
+            raise ValueError(f"velocity: no finite friction at {velocities[n]} m/s, {self._pair}")
         return self._sliding
 
     def _refuse(self, overlap: float, n: int) -> NoReturn:

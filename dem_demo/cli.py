@@ -16,6 +16,7 @@ import traceback
 from collections.abc import Sequence
 
 import dem_demo
+from contactlaw.parser import Parser
 from dem_demo.kit.options import Refused
 from dem_demo.kit.signals import Interrupted, interruptible
 
@@ -39,7 +40,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv = sys.argv[1:] if argv is None else list(argv)
     try:
         with interruptible():
-            arguments = parser().parse_args(_joined(argv))
+            arguments = parser().parse_args(argv)
             status = int(arguments.start(arguments, shlex.join(["dem-demo", *argv])))
         return _stopped(status) if status else 0
     except Interrupted as stop:
@@ -68,22 +69,13 @@ def scenes() -> list[str]:
 
 def parser() -> argparse.ArgumentParser:
     """Make the parser of ``dem-demo``."""
-    made = argparse.ArgumentParser(
+    made = Parser(
         prog="dem-demo", description="Simulations that show what contactlaw gives an engine."
     )
     commands = made.add_subparsers(required=True, metavar="COMMAND")
     for name in scenes():
         importlib.import_module(f"dem_demo.{name}.command").add(commands)
     return made
-
-
-def _joined(words: Sequence[str]) -> Sequence[str]:
-    """Join options with negative quantities; a help page need not load contactlaw for that."""
-    if all(word[:1] != "-" or word[:2] in ("--", "-h") for word in words):
-        return words
-    from contactlaw.cli import joined
-
-    return joined(words)
 
 
 def _rank() -> int:

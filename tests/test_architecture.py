@@ -16,7 +16,7 @@ ROOT = Path(contactlaw.__file__).parent
 # From the bottom to the top; what stands in one layer imports from layers below and from its own.
 LAYERS = [
     {"_version"},
-    {"_folder", "_atomic", "_readable", "style"},
+    {"_folder", "_atomic", "_content", "_escaped", "_readable", "parser", "style"},
     {"_jit"},
     {"equation"},  # no units
     {"laws"},

@@ -5,12 +5,12 @@ What takes long to import is imported inside `_write`, where Ctrl-C is already c
 
 from __future__ import annotations
 
-import argparse
 import collections
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from contactlaw.parser import Parser
 from dem_demo.kit.place import results
 from dem_demo.kit.signals import Interrupted, interruptible
 
@@ -24,7 +24,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         0: done; 1: a file cannot be read or written; 128 + signal: interrupted. Wrong usage exits
         with 2.
     """
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="python -m validation",
         description="Say how accurate the model is, and reproduce the paper: its figures and "
         "numbers, and what holds of its claims.",

@@ -88,8 +88,9 @@ class Beads:
         found, flags = self._border.look_up(self.law, self.table.packed, units)
         unclamped = units.inelasticity, units.yield_ratio
         return rebound(
-            self.law.data, self.limits, impacts, units.time, contact.mass, unclamped, found, flags
-        )
+            self.pair, self.law.data, self.limits, impacts, units.time, contact.mass, unclamped,
+            found, flags,
+        )  # fmt: skip
 
     def restitutions(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike

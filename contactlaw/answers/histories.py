@@ -14,7 +14,7 @@ from contactlaw.answers.rated import solver
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.history import ForceHistory
-from contactlaw.physical.rebound import Impacts
+from contactlaw.physical.rebound import Impacts, check_finite
 
 
 class Histories:
@@ -73,4 +73,6 @@ class Histories:
         bodies = self._tabulated.bodies
         by: Backend = self._tabulated if method == "table" else solver(bodies)
         impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
-        return near_edges(by, solver(bodies), impacts).histories(impacts, samples)
+        found = near_edges(by, solver(bodies), impacts).histories(impacts, samples)
+        check_finite(bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in found))
+        return found

@@ -44,7 +44,7 @@ class Solutions:
         Solutions, rising; none if no value gives the COR; a thickness of ``inf`` is a half-space.
     low, high : ndarray, shape (n,)
         Ends of the range about each solution in which the COR that was asked for lies within the
-        band of `ImpactModel.uncertainty`, that of two in three impacts.
+        band of `ImpactModel.uncertainty`, that of two in three impacts; or -inf and inf.
     flags : ndarray of int64, shape (n,)
         `Validity` limits that the impact exceeds.
     attainable, attained_at : (float, float)
@@ -234,6 +234,7 @@ class Inverse(Uncertain):
             most = np.maximum(2.0 * wanted - band.low, wanted)
             for n, one in enumerate(zip(x, least, most, strict=True)):
                 ends[:, n] = [curve.leaves(wanted, *one, up=up) for up in (False, True)]
+            ends[:, np.isinf(band.low)] = [[-0.0], [0.0]]  # reciprocals of -inf and inf
         last = [int(curve.e.argmin()), int(curve.e.argmax())]
         with np.errstate(divide="ignore"):
             value, low, high, at = 1.0 / x, *(1.0 / ends), 1.0 / curve.x[last]

@@ -20,7 +20,7 @@ from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, edges_as_given
+from contactlaw.physical.rebound import Impacts, check_finite, edges_as_given
 from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
@@ -174,6 +174,8 @@ class Oblique:
             impacts = Impacts(speed[beyond], r[beyond], h[beyond], None)
             found, changed[beyond] = _answer(tabulated, impacts, mu[beyond], size[beyond])
             e[beyond] = found.restitution
+        hit = np.where(speed < lookup.V_MIN, 0.0, e + changed)
+        check_finite(tabulated.bodies.pair, Impacts(speed, r, h, None), hit)
         oblique.rebound_all(v, omega, n, w, r, e, changed)
         return v.reshape(shape), omega.reshape(shape)
 

@@ -130,8 +130,8 @@ class Solved(NamedTuple):
         flags = np.zeros(self.some.size, dtype=np.int64)
         unclamped = self.units.inelasticity, self.units.yield_ratio
         return rebound(
-            self.bodies.law.data, self.bodies.limits, self.impacts, self.units.time,
-            self.contact.mass, unclamped, self.outcome, flags, self.edges,
+            self.bodies.pair, self.bodies.law.data, self.bodies.limits, self.impacts,
+            self.units.time, self.contact.mass, unclamped, self.outcome, flags, self.edges,
         )  # fmt: skip
 
 
@@ -253,8 +253,10 @@ class Nodes:
     def knots(self) -> list[float]:
         """Ends of the pieces in ln k, between which the law is a smooth function of k.
 
-        It is not where the bodies' strengths are alike, where the stronger one begins to yield, and
-        where a formula of the law's has a corner.
+        It is not where the bodies' strengths are alike, where the stronger one begins to yield,
+        where a formula of the law's has a corner, and where the second of two strengths begins to
+        grow. Pieces are narrower where one strength grows faster than k, and is no straight line in
+        ln k, and where two that share the flow grow apart.
         """
         last = math.log(rate.largest_factor(self.flow))
         if not stronger(self.bodies, math.exp(last)).law.yields:  # where does that begin?
@@ -270,11 +272,23 @@ class Nodes:
             (before,) = np.nonzero(values[:-1] * values[1:] < 0.0)
             share = values[before] / (values[before] - values[before + 1])
             inner += (logs[before] + share * (logs[1] - logs[0])).tolist()
-        ends = [0.0, *(one for one in sorted(inner) if _NEAR < one < last - _NEAR), last]
+        flows = rate.flows(self.bodies.pair)
+        starts = {round(math.log(self.flow.factor(one.rate0)), 9) for one in flows}
+        ends = list({0.0, last, *(one for one in starts if one < last - _CLOSE)})
+        for one in sorted(inner):
+            if min(abs(one - end) for end in ends) > _NEAR:
+                ends.append(one)
+        rates = [rate.rate_at(self.flow, math.exp(one)) for one in logs]
+        grown = np.log([[one.strength * one.factor(at) for one in flows] for at in rates])
+        steps = np.diff(grown, axis=0)
+        width = np.maximum(logs[1], 2.0 * steps.max(axis=1) - logs[1])
+        both = np.ptp(grown[1:], axis=1) < -math.log(ALONE)  # how they share the flow changes
+        run = np.append(0.0, np.cumsum(width + 0.5 * both * np.ptp(steps, axis=1)))
         knots = [0.0]
-        for low, high in itertools.pairwise(ends):
-            if high - low > _NEAR or high == last:
-                knots += np.linspace(low, high, math.ceil((high - low) / _WIDEST) + 1)[1:].tolist()
+        for low, high in itertools.pairwise(sorted(ends)):
+            first, final = np.interp((low, high), logs, run)
+            inside = np.linspace(first, final, math.ceil((final - first) / _WIDEST) + 1)[1:-1]
+            knots += [*np.interp(inside, run, logs).tolist(), high]
         return knots
 
     def _corners(self, log_factor: float) -> list[float]:
@@ -405,8 +419,8 @@ class Nodes:
             mass = units.force[some] * units.time[some] / impacts.speed[some]
             unclamped = places.unclamped[some], units.yield_ratio[some]
             yield some, completed(
-                limits, impacts.part(some), units.time[some], mass, unclamped, at, extremes,
-                flags[some],
+                self.bodies.pair, limits, impacts.part(some), units.time[some], mass, unclamped, at,
+                extremes, flags[some],
             )  # fmt: skip
 
     def _refuse(self, places: strengths.Places, n: int) -> None:

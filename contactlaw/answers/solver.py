@@ -64,8 +64,8 @@ class Solver:
         flags = np.zeros(impacts.speed.size, dtype=np.int64)
         unclamped = units.inelasticity, units.yield_ratio
         return rebound(
-            self.bodies.law.data, self.bodies.limits, impacts, units.time, contact.mass, unclamped,
-            found, flags, edges,
+            self.bodies.pair, self.bodies.law.data, self.bodies.limits, impacts, units.time,
+            contact.mass, unclamped, found, flags, edges,
         ), found, edges  # fmt: skip
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:

@@ -168,8 +168,8 @@ class Tabulated:
         found, flags, unclamped, root = self._outcomes(impacts)
         r, made = impacts.radius, self.bodies.factors
         return rebound(
-            self.bodies.law.data, self.bodies.limits, impacts, made.time * r / root,
-            made.mass * (r * r * r), unclamped, found, flags,
+            self.bodies.pair, self.bodies.law.data, self.bodies.limits, impacts,
+            made.time * r / root, made.mass * (r * r * r), unclamped, found, flags,
         ), found  # fmt: skip
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:

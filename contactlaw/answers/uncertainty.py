@@ -52,6 +52,8 @@ _LARGEST_ERROR = 1.0
 _LEAST_COR = 1e-12  # the lower end of a range that reaches below zero
 _LARGEST = {"poissons_ratio": 0.5, "rate": 0.5, "loss_factor": 1.0}  # a material refuses more
 _STRENGTHS = "yield_strength", "hardness"
+# A specified minimum matters if a strength 10 % higher changes an answer by more than 1e-4 of it.
+_STRONGER, _MATTERS = 0.1, 1e-4
 _BODIES = {("sphere",): "the bead", ("plate",): "the plate", ("sphere", "plate"): "both bodies"}
 
 
@@ -62,10 +64,11 @@ class Band:
     Attributes
     ----------
     low, high
-        Quantiles of 16 and 84 %: of three real impacts two are between them.
+        Quantiles of 16 and 84 %: of three real impacts two are between them. Or -inf and inf.
     causes : dict of str to float or ndarray
         Half the width of the band that each cause alone makes: ``"yield strength of the bead"``,
-        ``"thickness"``, ..., and ``"model"``, the law beside finite elements, if it is known.
+        ``"thickness"``, ..., and ``"model"``, the law beside finite elements. It is inf, and
+        no range known, of a law of your own and of a specified minimum that matters.
     """
 
     low: float | Array
@@ -107,12 +110,14 @@ class Variants:
     def __init__(self, bodies: SphereOnPlate) -> None:
         self.bodies, self.given = bodies, dict(zip(_ROLES, bodies.pair.given, strict=True))
         alike = self.given["sphere"] == self.given["plate"]
-        self.changes = [
+        changes = [
             Change(name, error, roles)
             for roles in ([("sphere", "plate")] if alike else [("sphere",), ("plate",)])
             for name, error in self.given[roles[0]].uncertainty.items()
             if error
         ]
+        self.changes = [one for one in changes if one.error < math.inf]
+        self.minima = [one._replace(error=_STRONGER) for one in changes if one.error == math.inf]
         self.solver = functools.cache(self._solver)
         self.rated = rated.flow_of(bodies) is not None
 
@@ -358,6 +363,14 @@ def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) ->
     if curves.by_law is not None:
         causes["model"] = width(np.array([-curves.by_law, curves.by_law]))
         causes["model"][0] = curves.cor_by_law
+    else:
+        causes["model"] = np.full_like(low, math.inf)
+    for one in variants.minima:
+        matters = np.abs(curves.moved((one, 1.0))[:3]).max(axis=0) > _MATTERS
+        if matters.any():
+            causes[one.cause] = np.where(matters, math.inf, np.zeros_like(low))
+    unknown = np.isinf(np.sum([*causes.values()], axis=0))
+    low, high = np.where(unknown, -math.inf, low), np.where(unknown, math.inf, high)
     bands = (
         Band(
             shaped(low[n], impacts.shape),

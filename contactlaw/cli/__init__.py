@@ -2,7 +2,7 @@
 
 Each file or folder but `parts` is a subcommand: its function `add` adds the parser and options to
 argparse's subparsers. Code that several subcommands share is in `parts`. Another command line, as
-that of dem-demo, takes `joined`, `quantities` and `sentence` from here.
+that of dem-demo, takes `quantities` and `sentence` from here.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from collections.abc import Sequence
 
 from contactlaw._version import VERSION
 from contactlaw.cli.parts import quantities, wording
-from contactlaw.cli.parts.options import joined
 from contactlaw.cli.parts.wording import sentence
+from contactlaw.parser import Parser
 
-__all__ = ["joined", "main", "parser", "quantities", "sentence"]
+__all__ = ["main", "parser", "quantities", "sentence"]
 
 _DONE, _REFUSED, _INTERRUPTED = 0, 1, 130  # argparse itself exits with 2 on wrong usage
 
@@ -43,7 +43,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     ...
       "restitution": 0.7...
     """
-    arguments = parser().parse_args(joined(sys.argv[1:] if argv is None else argv))
+    arguments = parser().parse_args(argv)
     if sys.stdout is None:  # the shell has closed it by >&-
         wording.print_message("the standard output is closed")
         return _REFUSED
@@ -77,9 +77,7 @@ def parser() -> argparse.ArgumentParser:
     >>> run.__module__, run.__name__
     ('contactlaw.cli.table', '_info')
     """
-    made = argparse.ArgumentParser(
-        prog="contactlaw", description="Restitution of beads that hit thin plates."
-    )
+    made = Parser(prog="contactlaw", description="Restitution of beads that hit thin plates.")
     made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}",
                       help="print the version and exit")  # fmt: skip
     commands = made.add_subparsers(required=True, metavar="COMMAND", help="what to do")

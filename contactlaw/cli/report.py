@@ -11,9 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._content import content_of
 from contactlaw.cli.parts import columns, options, quantities, wording
 from contactlaw.cli.parts.quantities import LENGTH
 from contactlaw.engines import hdf5, layout
+from contactlaw.engines.record import typed
 from contactlaw.report import files
 from contactlaw.report.run import Run
 from contactlaw.report.surface import Surface
@@ -48,12 +50,9 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     path = Path(arguments.record)
-    content = columns.content_of(path)
     read = _hdf5 if path.suffix.lower() in _HDF5 else _npy
-    try:
-        run = read(content, path.name)
-    except ValueError as error:
-        raise wording.Refused(f"{path}: {error}") from None
+    with wording.reading(path):
+        run = read(content_of(path), path.name)
     if arguments.mesh:
         surface = _surface(run, arguments.mesh, arguments.scale)
         run = dataclasses.replace(run, surface=surface)
@@ -64,12 +63,13 @@ def _run(arguments: argparse.Namespace) -> None:
 
 
 def _npy(content: bytes, name: str) -> Run:
-    return Run(columns.saved(content), name)
+    return Run(typed(columns.saved(content)), name)
 
 
 def _hdf5(content: bytes, name: str) -> Run:
     with hdf5.opened(content) as file:
         sphere, plate = (material.name for material in layout.materials(file))
+        layout.hits(file)  # refuses the numbers of plates and beads that the file does not have
         rows = layout.impacts(file)
     plates = (plate,) * (int(rows["plate"].max(initial=-1)) + 1)
     return Run(rows, f"{sphere} on {plate}, {name}", plates)
@@ -87,18 +87,15 @@ def _surface(run: Run, paths: list[str], scale: float | None) -> Surface:
     wall: list[NDArray[np.int64]] = []
     triangle = np.full(rows.size, -1)
     for plate, path in zip(plates.tolist(), paths, strict=True):
-        try:
+        with wording.reading(path):
             mesh = Mesh.read(path, math.inf, scale=1.0 if scale is None else scale)
-        except FileNotFoundError:
-            raise wording.Refused(f"--mesh: there is no file {path}") from None
         here = np.flatnonzero(rows["plate"] == plate)
-        number = np.full(max(mesh.kept.max(), rows["triangle"][here].max()) + 1, -1)
-        number[mesh.kept] = np.arange(len(mesh.kept))
-        found = number[rows["triangle"][here]]
-        if (found < 0).any():
+        hit = rows["triangle"][here]
+        found = np.searchsorted(mesh.kept, hit).clip(max=len(mesh.kept) - 1)
+        if (lacks := mesh.kept[found] != hit).any():
             raise wording.Refused(
-                f"--mesh: {path} has no triangle {rows['triangle'][here][found < 0][0]}, which the "
-                f"record has hits on: it is not the mesh of wall {plate}"
+                f"--mesh: {path} has no triangle {hit[lacks][0]}, which the record has hits on: it "
+                f"is not the mesh of wall {plate}"
             )
         triangle[here] = found + sum(len(one) for one in corners)
         corners.append(mesh.vertices[mesh.triangles])

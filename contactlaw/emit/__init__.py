@@ -6,7 +6,8 @@ subset of Python: numbers, NamedTuples, tuples, arrays, rows of a dtype, loops, 
 is refused with file, line and remedy.
 """
 
+from contactlaw.emit.c import C
 from contactlaw.emit.program import Program
 from contactlaw.emit.types import DOUBLE, INT, NONE, Array, Known, Row, Type
 
-__all__ = ["DOUBLE", "INT", "NONE", "Array", "Known", "Program", "Row", "Type"]
+__all__ = ["DOUBLE", "INT", "NONE", "Array", "C", "Known", "Program", "Row", "Type"]

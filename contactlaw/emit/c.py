@@ -56,12 +56,14 @@ class C:
             return self.name("data *") if kind.data else "double *"
         if isinstance(kind, Struct):
             return f"{self.name(kind.name)} "
-        return f"{self.name(kind.name)} *" if isinstance(kind, Row) else f"{kind.name} "
+        if isinstance(kind, Row):
+            return f"{self.name(kind.name)} *"
+        return f"{kind.name} "
 
     def make(self, kind: Struct, parts: Sequence[str]) -> str:
         """Make a structure of its members."""
         kept = [one for one, (_, t) in zip(parts, kind.members, strict=True) if traced(t)]
-        return f"{self.name(kind.name)}_of({', '.join(kept)})"
+        return f"{self.name(f'make_{kind.name}')}({', '.join(kept)})"
 
     def member(self, text: str, name: str, kind: Type) -> str:
         """Read a member of a structure."""
@@ -101,17 +103,18 @@ class C:
         """Take an array from an element on."""
         return f"{array.within(8)} + {index.within(9)}"
 
-    def bits(self, value: Value, kind: str) -> Value:
-        """Take the bits of a number as another one."""
-        raise NotImplementedError
-
     def filled(self, name: str, size: int, value: str) -> list[str]:
         """Give all elements of an array a value."""
         return [f"{self.name('fill')}({name}, {size}, {value});"]
 
     def unpacked(self, kind: Struct, text: str, lines: list[str]) -> list[str]:
         """Take a tuple apart; it is `both` in the lines that do it."""
-        return ["{", f"    const {self.type(kind)}both = {text};", *(f"    {one}" for one in lines), "}"]
+        return [
+            "{",
+            f"    const {self.type(kind)}both = {text};",
+            *(f"    {one}" for one in lines),
+            "}",
+        ]
 
     def structure(self, kind: Struct, said: str | None, comments: dict[str, str]) -> str:
         """Declare a structure, and the function that makes it."""
@@ -123,7 +126,11 @@ class C:
             lines.append(f"    {self.type(t)}{self.variable(one)};{comment}")
         lines += [f"}} {name};", ""]
         given = ", ".join(f"{self.type(t)}{self.variable(one)}" for one, t in members)
-        lines += [f"static inline {name} {name}_of({given or 'void'})", "{", f"    {name} made;"]
+        lines += [
+            f"static inline {name} {self.name(f'make_{kind.name}')}({given})",
+            "{",
+            f"    {name} made;",
+        ]
         lines += [f"    made.{v} = {v};" for v in (self.variable(one) for one, _ in members)]
         return "\n".join(_wrapped(one) for one in [*lines, "    return made;", "}"])
 
@@ -160,6 +167,3 @@ class C:
     def define(self, name: str, text: str) -> str:
         """Define a constant."""
         return f"#define {self.name(name)} {text if text[0] != '-' else f'({text})'}"
-
-
-

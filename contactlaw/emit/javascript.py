@@ -114,7 +114,7 @@ class JavaScript(C):
     def data(self, name: str, values: Sequence[float]) -> str:
         """Write an array of constants."""
         numbers = textwrap.wrap(", ".join(map(self.number, values)), _WIDTH)
-        return "\n".join([f"const {self.name(name)} = Float64Array.of(", *numbers, ");"])
+        return "\n".join([f"const {self.name(name)} = new Float64Array([", *numbers, "]);"])
 
     def define(self, name: str, text: str) -> str:
         """Define a constant."""

@@ -13,7 +13,7 @@ class Type:
     name: str
 
 
-DOUBLE, INT, NONE = Type("double"), Type("int"), Type("none")
+DOUBLE, INT, NONE, VOID = Type("double"), Type("int"), Type("none"), Type("void")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -90,3 +90,6 @@ class Value(NamedTuple):
     def within(self, binds: int) -> str:
         """Text of an operand of an operator that binds as tightly as this."""
         return self.text if self.binds >= binds else f"({self.text})"
+
+
+TRUE, FALSE = (Value(INT, str(n), known=n) for n in (1, 0))

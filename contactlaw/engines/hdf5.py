@@ -73,7 +73,8 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
             f"{where} has {dataset.size} rows, expected {size} as in the other columns"
         )
     try:
-        return np.asarray(dataset[()])
+        found = np.asarray(dataset[()])  # limits of numbers would overflow in two bytes
+        return found.astype(np.float64) if found.dtype.kind == "f" else found
     except _DAMAGED as error:
         raise ValueError(f"{where} is damaged: {error}") from None
 

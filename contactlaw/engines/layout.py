@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.engines import hdf5
-from contactlaw.engines.record import COLUMNS, IMPACT, only_impacts
+from contactlaw.engines.record import COLUMNS, IMPACT, only_impacts, typed
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 
@@ -85,11 +85,12 @@ def write_impacts(file: h5py.File, rows: NDArray[np.void], description: str) -> 
 def impacts(file: h5py.File) -> NDArray[np.void]:
     """Read all impacts by time, with the columns of the record that the file has."""
     group = hdf5.group(file, "collisions")
-    columns = {name: group[name][()] for name in IMPACT.names or () if name in group}
-    table = np.empty(columns["time"].size, [(name, IMPACT[name]) for name in columns])
+    size = hdf5.numbers(group, "time").size
+    columns = {n: hdf5.numbers(group, n, size) for n in IMPACT.names or () if n in group}
+    table = np.empty(size, [(name, column.dtype) for name, column in columns.items()])
     for name, column in columns.items():
         table[name] = column
-    return table[np.argsort(table["time"], kind="stable")]
+    return typed(table)[np.argsort(table["time"], kind="stable")]
 
 
 def materials(file: h5py.File) -> tuple[Material, Material]:

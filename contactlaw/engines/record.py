@@ -80,6 +80,22 @@ _NAMES = tuple(column.name for column in COLUMNS)
 OBSERVED = _NAMES[: _NAMES.index("sliding_speed_after")]
 
 
+def typed(rows: NDArray[np.void]) -> NDArray[np.void]:
+    """Give the columns of a record from a file the types of `IMPACT`; refuse what has no such."""
+    names = [name for name in rows.dtype.names or () if name in _NAMES]
+    found = np.empty(rows.size, [(name, IMPACT[name]) for name in names])
+    for name in names:
+        if (kind := rows.dtype[name]).kind not in "iuf":
+            raise ValueError(f"column {name} holds values of type {kind}, expected numbers")
+        with np.errstate(invalid="ignore", over="ignore"):  # what is lost by it is refused
+            found[name] = rows[name]
+        wrong = (found[name] != rows[name]) & (IMPACT[name].kind == "i")
+        if wrong.any():
+            row = int(np.argmax(wrong))
+            raise ValueError(f"{name} of row {row} is {rows[name][row]}, expected a whole number")
+    return found
+
+
 def fill(rows: NDArray[np.void], rebound: Rebound, energy: NDArray[np.float64]) -> None:
     """Complete impacts whose observed columns are known.
 

@@ -42,6 +42,7 @@ Array = NDArray[np.float64]
 # the centre and m R^2/I = 5/2 for the spin.
 POINT = 3.5
 SPRINGS = 64  # of a reference solution
+FLATTEST = 1e-9  # least exponent of unloading, less 1; there all shares are alike
 RELAXING = 1.5  # relative loss of stretch, over (1 - y/d) times the relative growth of d
 
 
@@ -79,7 +80,8 @@ def stiffness_at(
     finite elements in three dimensions by as much again.
 
     Bodies with losses unload along a steeper curve than the radius of their contact says: k is that
-    of the curve along which they would unload without losses.
+    of the curve along which they would unload without losses. Bodies that flow have less energy
+    left at the largest compression, of which a part is lost before, and so give more of it back.
 
     Where a capped law unloads along its loading curve, k is that of the curve beside it: the radius
     of a contact does not jump as the slope does there.
@@ -88,10 +90,14 @@ def stiffness_at(
     if largest > y * force.leaves_hertz(law):
         curve = force.unloading(law, largest / y)
         exponent, left = 0.5 * curve.exponent, curve.residual * y
-    span, work = force.returned(law) if left > 0.0 else (1.0, 1.0)
+    span, work, early = force.returned(law) if left > 0.0 else (1.0, 1.0, 0.0)
     if work < 1.0:
+        dm = largest / y
+        if dm > 1.0:
+            back = force.loading(law, math.sqrt(dm)) * (dm - left / y) / (exponent + 1.0)
+            work += early * (work - back / (back + force.loss(law, dm)))
         exponent = (exponent + 1.0) * work / span - 1.0
-    power = 2.0 if exponent == 1.5 else 1.0 / (exponent - 1.0)
+    power = 2.0 if exponent == 1.5 else 1.0 / max(exponent - 1.0, FLATTEST)
     k = span * exponent * f / (d - left) if d > left else 0.0
     missing = 2.0 * (2.0 / 3.0) * force.stiffening(law) / (unit * math.sqrt(y))
     return Stiffness(k / (1.0 + missing * k), power)

@@ -11,6 +11,7 @@ import string
 from importlib import resources
 
 from contactlaw import _atomic
+from contactlaw._escaped import line
 from contactlaw._version import VERSION
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS
@@ -83,9 +84,9 @@ def _texts(model: ImpactModel, beads: Pair) -> dict[str, str]:
     pair = model.pair
     values = {
         "version": VERSION,
-        "sphere": pair.sphere.name,
-        "plate": pair.plate.name,
-        "law": model.force_law.family,
+        "sphere": line(pair.sphere.name),
+        "plate": line(pair.plate.name),
+        "law": line(model.force_law.family),
         "tangential": repr(8.0 * pair.effective_shear_modulus),
         "tangential_beads": repr(8.0 * beads.effective_shear_modulus),
         "contact_time": repr(CONTACT_TIME),

@@ -24,18 +24,16 @@ from contactlaw.answers.rated import stronger
 from contactlaw.emit import DOUBLE, Known, Program
 from contactlaw.emit.javascript import HELPERS, JavaScript
 from contactlaw.export import page_functions
-from contactlaw.export.functions import Bodies
+from contactlaw.export.functions import Bodies, bodies_of
 from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material, material, materials
-from contactlaw.physical.rate import largest_factor, rated
 from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.validity import Validity, explain
-from contactlaw.stepping.spring import unit_spring
-from contactlaw.stepping.strength import COUNT, STEP, levels_of
+from contactlaw.stepping.strength import COUNT, STEP
 
-# Largest step of ln(factor) between laws of a pair with a rate, and most steps: 1 MB holds them.
-_STEP, _MOST_STEPS = 0.025, 16
+# Step of ln(factor) between two laws of a pair with a rate, unless far more numbers follow.
+_STEP, _MOST = 0.025, 120_000
 
 
 def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
@@ -47,7 +45,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
     Parameters
     ----------
     path : path-like
-        File to write, below 1 MB; an existing file is replaced.
+        File to write, below 1 MB, or 2 if two bodies' rates differ; an existing file is replaced.
     model : ImpactModel
         Pair and law.
 
@@ -62,7 +60,8 @@ def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
     -----
     The answers are those of `ImpactModel.solve` and `ImpactModel.oblique`. For a pair whose
     strength grows with the rate of strain the page has laws at some strengths: the COR is within
-    1e-4, and the sliding speed within 1e-3 of friction times speed. Curves are within 3e-4.
+    1e-4, and the sliding speed within 1e-3 of friction times speed; 1e-3 and 3e-3 if two bodies'
+    rates differ and the strength grows fourfold. Curves are within 3e-4.
 
     Examples
     --------
@@ -100,30 +99,26 @@ def _text(model: ImpactModel) -> str:
 
 
 def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
-    """Numbers of a pair; what the page does not need is None."""
-    pair, law, limits, levels, rows = model.pair, model.force_law, model.limits, None, None
-    if (flow := rated(pair, law)) is not None:
-        levels = levels_of(pair, law, max(_STEP, math.log(largest_factor(flow)) / _MOST_STEPS))
-    if levels is not None:
+    """Numbers of a pair."""
+    pair, rows, coarse = model.pair, None, 4.0 * _STEP
+    bodies = bodies_of(model, {}, coarse)
+    if bodies.levels is not None:
+        bodies = bodies_of(model, {}, max(_STEP, coarse * bodies.levels.size / _MOST))
+        levels = bodies.levels
         logs = levels[STEP] * np.arange(levels[COUNT])
         rows = np.array([stronger(model._bodies, math.exp(one)).limits for one in logs])
-        levels = np.array([f"{one:.9g}" for one in levels], dtype=np.float64)
-    unit, kappa = unit_spring(model, 1.0)._replace(levels=None), pair.tangential_ratio
-    numbers = {"law": law.data, "levels": levels, "unit": unit, "limits": limits}
-    bodies = dict.fromkeys(Bodies._fields) | numbers | {"tangential_ratio": kappa}
     weaker = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
-    flag = Validity.SLIDING_FLOW.value
-    return Bodies(**bodies), Page(rows, pair.effective_modulus, weaker, flag)
+    return bodies, Page(rows, pair.effective_modulus, weaker, Validity.SLIDING_FLOW.value)
 
 
 def _kernels(bodies: Bodies, page: Page) -> str:
     """Kernels of `page_functions` for a pair, in JavaScript."""
     program, pair = Program(JavaScript(), fixed=("goal", "samples")), Known(value=bodies)
     asked, more = 3 * (DOUBLE,), Known(value=page)
-    _, hit = program.add(page_functions.for_curve, pair, *asked, name="for_curve")
-    program.add(page_functions.flags, pair, more, hit, *asked, name="flags")
-    program.add(page_functions.shown, pair, hit, *asked, name="shown")
-    program.add(page_functions.collide, pair, more, *asked, DOUBLE, DOUBLE, name="collide")
+    _, hit = program.add(page_functions.for_curve, pair, *asked)
+    program.add(page_functions.flags, pair, more, hit, *asked)
+    program.add(page_functions.shown, pair, hit, *asked)
+    program.add(page_functions.collide, pair, more, *asked, DOUBLE, DOUBLE)
     return f"{HELPERS}\n{program.text()}"
 
 

@@ -17,7 +17,7 @@ from contactlaw.fitting.identify import UnidentifiedError
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.notes import listed
 from contactlaw.fitting.predictions import Predictor
-from contactlaw.fitting.unknowns import centre
+from contactlaw.fitting.unknowns import Parameter, centre
 from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
@@ -41,6 +41,7 @@ class _Reading(NamedTuple):
     words: str
     predictor: Predictor
     at: Array
+    allowed: errors.ModelCovariance | None
     gained: float  # by how much -2 ln(likelihood) is lower than that of the data as given
 
 
@@ -202,34 +203,40 @@ def _outside(predictor: Predictor, at: Array) -> str:
 
 
 def _readings(predictor: Predictor, at: Array, error: Array) -> list[_Reading]:
-    """Fit the data as if speeds or radii had other units, and with the bodies exchanged."""
+    """Fit with other units, the bodies exchanged, or the strength of the other body unknown."""
     pair, data, parameters = predictor.pair, predictor.data, predictor.parameters
     freedom = predictor.values.value.size - sum(one.prior is None for one in parameters)
     if freedom < 1:
         return []
-    meant: list[tuple[str, Pair, dict[str, Any]]] = []
+    meant: list[tuple[str, Pair, dict[str, Any], list[Parameter]]] = []
     for words, factor in _SPEEDS.items():
         slide = None if data.sliding_speed is None else np.multiply(data.sliding_speed, factor)
         speeds = {"speed": np.multiply(data.speed, factor), "sliding_speed": slide}
-        meant.append((words, pair, speeds))
+        meant.append((words, pair, speeds, parameters))
     if data.radius is not None:
         half = np.multiply(data.radius, 0.5)
-        meant.append(("diameters in place of radii", pair, {"radius": half}))
+        meant.append(("diameters in place of radii", pair, {"radius": half}, parameters))
     # A body has a loss factor here if its own is unknown: exchanged, the other would need one.
     if pair.sphere != pair.plate and all(p.unknown.field != "loss_factor" for p in parameters):
-        meant.append(("sphere and plate exchanged", Pair(pair.plate, pair.sphere), {}))
+        meant.append(("sphere and plate exchanged", Pair(pair.plate, pair.sphere), {}, parameters))
+    asked = {p.name for p in parameters if p.is_strength and p.prior is None}
+    for other, body in (("yield_strength", pair.sphere), ("plate_yield_strength", pair.plate)):
+        if asked and body.strength is not None and all(p.name != other for p in parameters):
+            swapped = [replace(p, name=other) if p.name in asked else p for p in parameters]
+            meant.append((f"{other} as the unknown", pair, {}, swapped))
     least = _square(predictor, at, error)
     found = []
-    for words, bodies, changes in meant:
+    for words, bodies, changes, varied in meant:
         try:
             read = replace(data, **changes)
-            moved = [replace(p, centre=centre(bodies, read, p.unknown)) for p in parameters]
-            other = Predictor(bodies, predictor.law, read, moved, predictor.values)
-            values = search.basins(other)[0].at
-            gained = freedom * math.log(least / _square(other, values, error))
-        except (UnsolvedError, ValueError):  # impossible bodies, or speeds beyond the model
+            moved = [replace(p, centre=centre(bodies, read, p.unknown)) for p in varied]
+            trial = Predictor(bodies, predictor.law, read, moved, predictor.values)
+            values = search.basins(trial)[0].at
+            allowed = errors.model_covariance(trial, values, trial.impacts(values))
+            gained = freedom * math.log(least / _square(trial, values, error))
+        except (UnsolvedError, ValueError):  # no such bodies, no law for them, or too fast
             continue
-        found.append(_Reading(words, other, values, gained))
+        found.append(_Reading(words, trial, values, allowed, gained))
     return sorted(found, key=lambda one: _strangeness(one) - one.gained)
 
 
@@ -252,8 +259,7 @@ def _better(predictor: Predictor, at: Array, others: list[_Reading]) -> Iterator
     """Name the readings that are far more likely, by more than the model's own errors explain."""
     scatter, most = _scatter(predictor, at), max((one.gained for one in others), default=0.0)
     for one in others:
-        allowed = errors.model_covariance(one.predictor, one.at, one.predictor.impacts(one.at))
-        size = 0.0 if allowed is None else allowed.size / predictor.values.value
+        size = 0.0 if one.allowed is None else one.allowed.size / predictor.values.value
         unlikely = scatter > 2.0 * np.sqrt(np.mean(np.square(size)))
         if unlikely and one.gained > max(_EVIDENCE, most - _EVIDENCE):
             off = f"{percent(_scatter(one.predictor, one.at))} off (rms) in place of"

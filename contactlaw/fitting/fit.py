@@ -50,7 +50,7 @@ class Fit:
         Standard errors, of data and model together.
     statistical_errors, model_errors : dict of str to float
         The two parts: from the errors of the data and of the priors, and from the model's own
-        errors, which were found by comparison with finite elements.
+        errors, found by comparison with finite elements; inf, and not in `errors`, if not known.
     correlation : ndarray (k, k)
         Correlations of the unknowns, in their order.
     alternatives : tuple of dict of str to float
@@ -358,7 +358,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
         values=named(at),
         errors=named(at * np.sqrt(np.diag(found.total))),
         statistical_errors=named(at * np.sqrt(np.diag(found.statistical))),
-        model_errors=named(at * np.sqrt(np.diag(found.model))),
+        model_errors=named(at * (np.inf if model is None else np.sqrt(np.diag(found.model)))),
         correlation=total / np.outer(spread, spread),
         residuals={name: off[rows] for name, rows in kinds.items()},
         rows={name: values.row[rows] for name, rows in kinds.items()},
@@ -488,6 +488,7 @@ def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> s
         return _squares(predictor, predictor.at_trials(values[None])[0], error)
 
     is_strength = predictor.parameters[n].is_strength
+    other = "plate_" * (predictor.parameters[n].unknown.body == "sphere") + "yield_strength"
     trial, high = strong.copy(), squares(strong) + _EXCLUDED
     low = search.limits(predictor)[0][n]
     for factor in np.geomspace(1.0, low / strong[n], _TRIALS):
@@ -500,7 +501,7 @@ def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> s
                 )
             return (
                 f"any above {trial[n] / 1e6:.3g} MPa or so fits as well, since the body does not "
-                "yield enough. Measure faster impacts"
+                f"yield enough. Measure faster impacts, or ask for {other} if that body yields"
             )
     if not is_strength:
         return "any fits as well. Measure at other angles"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
@@ -64,7 +65,7 @@ class Measurements:
         Sizes of beads and plates [m], one for each or one for all; ``inf`` is the half-space. A
         size that is left out has to be an unknown of the fit.
     restitution, contact_time, peak_force : array_like, optional
-        Measured quantities [-, s, N], at least one; NaN where a rebound lacks it.
+        Measured quantities [-, s, N]; NaN where a rebound lacks it. One without any is left out.
     angle : array_like, optional
         Angles of incidence from the plate's normal [deg], 0 to below 90. Afterwards `speed` is the
         normal part and `sliding_speed` the other one.
@@ -82,7 +83,7 @@ class Measurements:
     Raises
     ------
     ValueError
-        A value out of its range, a rebound without any quantity, or errors without their quantity.
+        A value out of its range, no quantity at all, or errors without their quantity.
 
     Examples
     --------
@@ -119,6 +120,11 @@ class Measurements:
             raise ValueError(f"data: have to hold at least one of {', '.join(KINDS)}, got none")
         *arrays, _ = broadcast(**{name: _missing(values) for name, values in given.items()})
         flat: dict[str, Array] = dict(zip(given, arrays, strict=True))
+        missing = np.all([np.isnan(flat[name]) for name in KINDS if name in flat], axis=0)
+        if missing.any() and not missing.all():
+            said = f"data: rebounds {np.flatnonzero(missing)} have no quantity and are left out"
+            warnings.warn(said, stacklevel=4)
+            flat = {name: values[~missing] for name, values in flat.items()}
         sizes = {name: flat[name] for name in INPUTS if name in flat}
         if flat["speed"].size == 0:
             raise ValueError("data: got no rebound, at least one is needed")
@@ -128,12 +134,6 @@ class Measurements:
             _check_kind(name, kind, flat)
             if name in OBLIQUE and name in flat:
                 _check_sliding(name, flat)
-        measured = [np.isfinite(flat[name]) for name in KINDS if name in flat]
-        none = ~np.any(measured, axis=0)
-        if none.any():
-            raise ValueError(
-                f"data: rebound {int(np.argmax(none))} has none of {', '.join(KINDS)}: leave it out"
-            )
         object.__setattr__(self, "angle", None)
         for name, values in flat.items():
             values.flags.writeable = False

@@ -225,7 +225,8 @@ def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values:
     for parameter, value in zip(parameters, values.tolist(), strict=True):
         body, field = parameter.unknown.body, parameter.unknown.field
         if body:
-            changed: dict[str, Any] = {field: value}
+            errors = {of: e for of, e in bodies[body].uncertainty.items() if of != field}
+            changed: dict[str, Any] = {field: value, "uncertainty": errors}
             if field == "loss_factor":
                 changed[field] = value, bodies[body].loss_factor[1]
             if field == "yield_strength" and _by_hardness(bodies[body]):

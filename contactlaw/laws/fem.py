@@ -33,8 +33,9 @@ Up to complete flow, similarity makes g, h and k functions of q; beyond, they ar
 those of the softest body that was pressed (`Curves`).
 
 Where a body hardens, its flow stress is A + B strain^n at a representative strain, c (w - b w_Y),
-with w_Y the w at which flow begins. The curves at a depth are those of ideal bodies of the strength
-there (`HardeningCurves`). `validation.fem.metals` has the impacts to which c was fitted.
+with w_Y the w at which flow begins, for a Poisson's ratio of 0.3; b w_Y is at most 0.995 of the w
+at which it does. The curves at a depth are those of ideal bodies of the strength there
+(`HardeningCurves`). `validation.fem.metals` has the impacts to which c was fitted.
 
 A body with losses gives back less of the work and is left compressed, which it recovers from later:
 
@@ -70,6 +71,7 @@ RATIOS = (11.0, 2000.0)  # E*/sigma_Y of the campaign; beyond, `Curves` goes by 
 _FLOWN = (20.0, 10.0)  # q at which flow is complete: the first for all sums but v, the second for v
 _DEEPEST = (23.0, 0.2), (40.0, 0.1)  # two E*/sigma_Y, each with its deepest contacts, d/R
 _USUAL = 0.3  # Poisson's ratio of the yield compression from which strains are counted
+_LATEST = 0.995  # greatest share of the sqrt(d/R) of yield, before any strain, where strain begins
 _TYPICAL = 0.1  # sqrt(d/R) at which bodies that harden are compared with each other
 _WIDEST = 1.0  # sqrt(d/R) below which every body that yields has yielded
 _SMALLEST = 1e-8  # d/R; below, the contact radius is under 1e-4 R and the stiffening negligible
@@ -423,14 +425,14 @@ class HardeningCurves(Curves):
             ]
             return np.prod([(then / now) ** share for share, then, now in known], axis=0)
 
+        # A body of a low Poisson's ratio yields before its strain begins. The steep rise of its
+        # strength there would stop the flow again, so that its strain begins before yield, too.
+        taken = taken._replace(start=min(taken.start, _LATEST * root * float(stronger(0.0))))
         # yield begins where the compression passes that of the strength there
         first = float(bisect(lambda w: w < root * stronger(w), 0.0, _WIDEST))
         self.scale = first**2
         self.stiffening *= first / root
         self._width *= first / root
-        # The stronger body may not have strained at all where the weaker one begins to flow. Its
-        # strain counts from there: of its small share of the flow it makes little difference.
-        taken = taken._replace(start=min(taken.start, 0.999 * first))
         self._rise = first / (first - taken.start)  # of ln(strain) with ln(w) at yield
         self._hardening = []
         hardening = (given.sphere_hardening, given.plate_hardening)

@@ -37,6 +37,11 @@ _LARGEST = 200.0  # [d_Y]; the force has to rise up to here
 @functools.lru_cache(maxsize=64)  # a fit to measurements makes a law for every trial
 def law(modulus_ratio: float, poissons_ratio: float) -> Law:
     """Law of a pair with these E*/sigma_Y and Poisson's ratio of the sphere."""
+    if modulus_ratio < _SOFTEST:
+        raise ValueError(
+            f"law: 'jackson_green' with E*/sigma_Y = {modulus_ratio:g}: must be {_SOFTEST:g} or "
+            'more, it was fitted above 120; take law="fem"'
+        )
     c = 1.295 * math.exp(0.736 * poissons_ratio)
     half_b = 0.07 * math.exp(23.0 / modulus_ratio)
     radius_at_yield = 0.5 * math.pi * c / modulus_ratio / 1.9**half_b
@@ -78,15 +83,10 @@ def _meeting(plastic: Formula, modulus_ratio: float, poissons_ratio: float) -> f
     low, high = _etsion.KINK, 10.0
     force = plastic(np.geomspace(high, _LARGEST, 200))
     above, below = (plastic(np.array(d)) > d**1.5 for d in (low, high))
-    if modulus_ratio < _SOFTEST:
-        raise ValueError(
-            f"law: 'jackson_green' with E*/sigma_Y = {modulus_ratio:g}: must be {_SOFTEST:g} or "
-            "more, it was fitted above 120; take another law"
-        )
     if not above or below or (np.diff(force) <= 0.0).any():
         raise ValueError(
             f"law: 'jackson_green' with E*/sigma_Y = {modulus_ratio:g} and Poisson's ratio "
             f"{poissons_ratio:g} does not leave Hertz's curve after yield and rise: it was fitted "
-            "for E*/sigma_Y above 120; take another law"
+            'for E*/sigma_Y above 120; take law="fem"'
         )
     return float(bisect(lambda d: plastic(d) > d**1.5, low, high))

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._content import LARGEST_TEXT, content_of
 from contactlaw.physical.arguments import refuse_units
 from contactlaw.physical.flow import CONSTRAINT, Flow, from_hardness
 from contactlaw.physical.hardness import pascals
@@ -164,7 +165,8 @@ class Material:
         Relative standard errors of the numbers above, by their names, for
         `ImpactModel.uncertainty`: ``{"yield_strength": 0.15}`` is 15 %. That of ``hardening`` is
         of B, of ``rate`` of C, of ``loss_factor`` of tan delta; those of numbers that the material
-        lacks are left out.
+        lacks are left out. That of a strength that is a specified minimum is ``inf``, since nobody
+        knows it: answers that depend on it have no range.
 
     Raises
     ------
@@ -389,9 +391,10 @@ def find(name: str, own: Mapping[str, Material]) -> Material:
     known = _catalogue() | {_key(alias): body for alias, body in own.items()}
     key = _key(name)
     if key not in known:
-        # Names that contain the word come first ("steel"), then similar ones; each material once.
+        # Names that contain the word, similar ones and those that it contains; each material once.
         near = [one for one in known if key and key in one]
-        near += difflib.get_close_matches(key, known, n=3, cutoff=0.45)
+        near += difflib.get_close_matches(key, known, n=3)
+        near += [one for one in known if f"-{one}-" in f"-{key}-"]
         raise UnknownMaterialError(name, tuple(dict.fromkeys(known[one].name for one in near)))
     return known[key]
 
@@ -443,8 +446,9 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     8000.0
     """
     try:
-        return _read(tomllib.loads(Path(path).read_text("utf-8")), _tables())
-    except (ValueError, TypeError, AttributeError, KeyError) as error:
+        text = content_of(Path(path), LARGEST_TEXT).decode("utf-8-sig")
+        return _read(tomllib.loads(text), _tables())
+    except (ValueError, TypeError, AttributeError, KeyError, RecursionError) as error:
         raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
 
 
@@ -462,9 +466,17 @@ def _catalogue() -> dict[str, Material]:
 def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]:
     """Materials by name and by alias; an entry may be `like` one of other tables."""
     references = others.pop("references", {}) | tables.pop("references", {})
+    owner: dict[str, str] = {}
     for name, table in tables.items():
         if not isinstance(table, dict):
             raise ValueError(f"{name} = {table!r} is no material: write [{name}], then its numbers")
+        aliases = table.get("aliases", [])
+        if not isinstance(aliases, list) or not all(isinstance(one, str) for one in aliases):
+            raise ValueError(f"[{name}]: aliases must be a list of names, got {aliases!r}")
+        for one in (name, *aliases):
+            if (key := _key(one)) in owner:
+                raise ValueError(f"[{name}]: leave out {one!r}, a name of [{owner[key]}] already")
+            owner[key] = name
     found = {name: _from_table(name, tables[name], others | tables, references) for name in tables}
     return found | {one: found[name] for name in tables for one in tables[name].get("aliases", ())}
 
@@ -497,10 +509,10 @@ def _from_table(
         number: error if isinstance(error, list) else [error, ""]
         for number, error in table.get("uncertainty", {}).items()
     }
-    body = Material(
-        name, **values, kind=table.get("kind"),
-        uncertainty={number: error for number, (error, _) in errors.items()},
-    )  # fmt: skip
+    relative = {number: error for number, (error, _) in errors.items()}
+    if "{bias}" in source.get("yield_strength", ""):
+        relative.setdefault("yield_strength", math.inf)
+    body = Material(name, **values, kind=table.get("kind"), uncertainty=relative)
     parts = [table.get("grade", name)]
     for number, (label, unit) in _LABELS.items():
         if number not in source:
@@ -645,8 +657,9 @@ def _uncertainty(body: Material) -> dict[str, float]:
             near = difflib.get_close_matches(str(name), _LABELS, n=1)
             hint = f"did you mean {near[0]!r}? " if near else ""
             raise ValueError(f"{what}: unknown {name!r}; {hint}known: {', '.join(_LABELS)}")
-        error = _finite(body.name, f"uncertainty[{name!r}]", value, "-")
-        if not (0.0 <= error <= _LARGEST_ERROR):
+        minimum = name in ("yield_strength", "hardness") and str(value) == "inf"
+        error = math.inf if minimum else _finite(body.name, f"uncertainty[{name!r}]", value, "-")
+        if not (0.0 <= error <= _LARGEST_ERROR or minimum):
             raise ValueError(
                 f"{what}: {name} must be a relative standard error from 0 to {_LARGEST_ERROR:g}, "
                 f"got {value!r}"

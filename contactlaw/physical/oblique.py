@@ -20,7 +20,7 @@ from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import ROUGHEST, shaped
 from contactlaw.physical.materials import sphere_mass
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, Rebound, shaped_flags
+from contactlaw.physical.rebound import Impacts, Rebound, check_finite, shaped_flags
 from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup, strengths
 from contactlaw.table.slides import change
@@ -253,6 +253,7 @@ def of(
         "impulse_ratio": changed / POINT / ((1.0 + e) * impacts.speed),
         "friction_energy": mass / (2.0 * POINT) * changed * (size + after),
     }
+    check_finite(pair, impacts, found["impulse_ratio"], found["friction_energy"])
     found = {name: shaped(values, impacts.shape) for name, values in found.items()}
     strength = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
     flow = flows(

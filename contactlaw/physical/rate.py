@@ -3,7 +3,8 @@
 A flowing contact's strength is that at a representative rate, a share of V0/R: at the deepest
 point, which decides about the rebound, the flow has nearly come to rest. Both the yield strength
 and the hardening of a body grow by its factor 1 + C ln(rate/rate0). Where both bodies have one, the
-factor is that of the weaker body; the other body's follows from the rate that it stands for.
+pair's factor is that of the larger C and the lower rate0, so that it stands for one rate wherever
+one of the bodies grows stronger, and each has its own factor at that rate.
 """
 
 from __future__ import annotations
@@ -27,9 +28,8 @@ _FASTEST = 1e7  # V0/R [1/s] up to which tables reach: 100 m/s at 10 micrometres
 
 
 def rated(pair: Pair, law: Law) -> Flow | None:
-    """Flow whose rate strengthens a pair in a law; None if nothing does at rates of impacts."""
-    flow = _leading(pair) if "sphere_ratio" in law.from_pair else None
-    return flow if flow and largest_factor(flow) > 1.0 else None
+    """Flow whose factor is that of a pair in a law; None if no impact strengthens it."""
+    return _leading(pair) if "sphere_ratio" in law.from_pair else None
 
 
 def factors(flow: Flow, speed: Array, radius: Array) -> Array:
@@ -46,18 +46,29 @@ def largest_factor(flow: Flow) -> float:
 def strengthened(pair: Pair, factor: float) -> Pair:
     """Pair without rate, with the strengths that its bodies have where the factor is this one.
 
-    A factor of 1 stands for rate0 of the body whose factor it is.
+    A factor of 1 stands for rate0, or the lower one of two.
     """
     flow = _leading(pair)
-    rate = flow.rate0 * math.exp((factor - 1.0) / flow.rate) if flow else 0.0
+    rate = rate_at(flow, factor) if flow else 0.0
     return Pair(*(_strengthened(body, rate) for body in (pair.sphere, pair.plate)))
 
 
-def _leading(pair: Pair) -> Flow | None:
-    """Flow of the weakest body that has a rate."""
+def rate_at(flow: Flow, factor: float) -> float:
+    """Rate [1/s] at which a flow is stronger by a factor."""
+    return flow.rate0 * math.exp((factor - 1.0) / flow.rate)
+
+
+def flows(pair: Pair) -> list[Flow]:
+    """Flows of the bodies that impacts strengthen."""
     known = [body.flow for body in (pair.sphere, pair.plate) if body.flow is not None]
-    with_rate = [flow for flow in known if flow.rate]
-    return min(with_rate, key=lambda flow: flow.strength) if with_rate else None
+    return [flow for flow in known if largest_factor(flow) > 1.0]
+
+
+def _leading(pair: Pair) -> Flow | None:
+    """Flow of a body, with the largest C and the lowest rate0 of both."""
+    known = flows(pair)
+    slopes, starts = [one.rate for one in known], [one.rate0 for one in known]
+    return known[0]._replace(rate=max(slopes), rate0=min(starts)) if known else None
 
 
 def scaled(body: Material, factor: float) -> Material:

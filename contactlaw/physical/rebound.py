@@ -15,6 +15,7 @@ from contactlaw.equation import zener
 from contactlaw.equation.edge import KINDS, Edges
 from contactlaw.equation.outcome import Extremes, Outcome
 from contactlaw.physical.arguments import broadcast, check, shaped
+from contactlaw.physical.pair import Pair
 from contactlaw.physical.validity import Limits, Validity, edge_flags, flags_of
 
 Array = NDArray[np.float64]
@@ -122,6 +123,14 @@ def check_kind(edge: str) -> None:
         raise ValueError(f"edge: must be one of {', '.join(KINDS)}, got {edge!r}")
 
 
+def check_finite(pair: Pair, impacts: Impacts, *answers: Array) -> None:
+    """Refuse answers, one number per impact, that are not finite."""
+    for n in np.flatnonzero(~np.isfinite(sum(answers))):
+        v, r, h = impacts.speed[n], impacts.radius[n], impacts.thickness[n]
+        impact = f"{pair} at {v:g} m/s, radius {r:g} m, thickness {h:g} m"
+        raise RuntimeError(f"{impact}: no finite answer; please report it")
+
+
 class Units(NamedTuple):
     """Fields of `Rebound` that `_with_units` computes."""
 
@@ -170,6 +179,7 @@ def _with_units(
 
 
 def rebound(
+    pair: Pair,
     law: Array,
     limits: Limits,
     impacts: Impacts,
@@ -194,10 +204,11 @@ def rebound(
                 impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge_distance[n],
                 edges.again[n],
             )  # fmt: skip
-    return completed(limits, impacts, time, mass, unclamped, outcome, found, flags)
+    return completed(pair, limits, impacts, time, mass, unclamped, outcome, found, flags)
 
 
 def completed(
+    pair: Pair,
     limits: Limits,
     impacts: Impacts,
     time: Array,
@@ -216,6 +227,7 @@ def completed(
     )  # fmt: skip
     shape = impacts.shape
     named = {**out._asdict(), **found._asdict(), "restitution": outcome.restitution}
+    check_finite(pair, impacts, *named.values())
     return Rebound(
         **{name: shaped(values, shape) for name, values in named.items()},
         inelasticity=shaped(inelasticity, shape),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
@@ -13,16 +14,24 @@ from contactlaw.answers.constant import Constant, constant
 from contactlaw.physical.kind import only_impacts
 from contactlaw.report.limits import label
 from contactlaw.report.surface import EnergyMap, Surface, energy_map
+from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
+from contactlaw.walls.motion import FARTHEST
 
 Floats = NDArray[np.float64]
 Rows = NDArray[np.void]
 
 CAUSES = "wave", "plastic", "other", "friction"
+_CAUSED = tuple(f"{cause}_energy" for cause in CAUSES)
 _NEEDED = (
     "approach_speed", "restitution", "sliding_speed", "kind", "plate", "triangle", "x", "y", "z",
-    "flags", "mass", "thickness", *(f"{cause}_energy" for cause in CAUSES),
+    "flags", "radius", "mass", "thickness", *_CAUSED,
 )  # fmt: skip
-_POSITIVE = "approach_speed", "radius", "mass", "thickness"
+# Least and largest numbers that can be; in contacts that are no impacts of the energies alone.
+_LIMITS = {
+    "approach_speed": (V_MIN, V_MAX), "restitution": (-1.0, 2.0), "sliding_speed": (-V_MAX, V_MAX),
+    "radius": (R_MIN, R_MAX), "mass": (1e-40, 1e40), "thickness": (R_MIN, math.inf),
+    **dict.fromkeys("xyz", (-FARTHEST, FARTHEST)), **dict.fromkeys(_CAUSED, (-1e50, 1e50)),
+}  # fmt: skip
 _MOST = 12  # walls that are told apart; beyond that, those that take the least energy are one
 OTHERS = "other walls"
 
@@ -108,15 +117,16 @@ class Run:
                 f"record: has no column {', '.join(missing)}: a report needs all columns that the "
                 "engines record, with an ImpactModel and this version of contactlaw; simulate again"
             )
-        on_walls = only_impacts(self.record["kind"])[0] & (self.record["plate"] >= 0)
-        for name in ("approach_speed", "restitution", "radius", "mass", "thickness", *"xyz"):
+        on_walls, impacts = self.record["plate"] >= 0, only_impacts(self.record["kind"])[0]
+        for name, (least, most) in _LIMITS.items():
             values = self.record[name]
-            right = values > 0.0 if name in _POSITIVE else ~np.isnan(values)
-            wrong = on_walls & ~(right & (np.isfinite(values) | (name == "thickness")))
+            unknown = np.isnan(values) if name in _CAUSED else ~impacts
+            wrong = on_walls & ~((least <= values) & (values <= most) | unknown)
             if wrong.any():
                 row = int(np.argmax(wrong))
                 raise ValueError(
-                    f"record: {name} of row {row} is {float(values[row])!r}: leave the row out"
+                    f"record: {name} of row {row} is {float(values[row])!r}: leave the row out; "
+                    f"it must lie between {least:g} and {most:g}"
                 )
 
     @cached_property

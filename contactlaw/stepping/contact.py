@@ -24,7 +24,7 @@ from contactlaw.stepping import energy
 from contactlaw.stepping.edge import REACH, Near, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
-from contactlaw.stepping.plate_rows import limits_of, spring_of, with_levels
+from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of, with_levels
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     RELAXATION,
@@ -45,7 +45,6 @@ Array = NDArray[np.float64]
 AT_REST = 1e-3  # [r] overlap with which a bead may be put down on a wall
 # A touching bead that is 1 % faster than when it arrived was struck by another: a new impact.
 _FASTER = 1.01
-_SOLID = 1e-6  # largest relative difference of a bead's mass from that of the model's solid sphere
 
 # State of a contact between two steps. All fields are float64, so that an engine can keep them in
 # any array of numbers that it stores with its beads.
@@ -93,6 +92,7 @@ class Trouble(enum.IntEnum):
     WRONG_MASS = 12
     TOO_THIN = 13  # the plate, for this speed: its inelasticity is beyond the model's table
     FOIL = 14  # the plate is thinner, relative to the bead, than any that the model is for
+    NO_FORCE = 15  # that is finite
 
 
 # What the kernels report to their caller, who clears it.
@@ -234,7 +234,7 @@ def _begin(
     for j in range(len(bead.contacts) if contact.touching else 0):
         if j != k and bead.contacts[j].force > 0.0:
             row.arrival = SLIDING
-    if not abs(bead.mass - spring.mass) <= _SOLID * spring.mass:
+    if not abs(bead.mass - spring.mass) <= SOLID * spring.mass:
         report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
         _check_step(scene, clock, wall, spring, u)
@@ -598,6 +598,8 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
         work = 0.0
         for i in range(3):
             both = row.push[i] + drag[i]
+            if not math.isfinite(both):
+                report_trouble(scene, Trouble.NO_FORCE, contact.wall, row.approach_speed, bead.r)
             bead.force[i] += both
             bead.torque[i] += torque[i]
             work += both * contact.w[i]

@@ -28,6 +28,7 @@ from contactlaw.walls.memory import array_at
 from contactlaw.walls.plate import by_type
 
 Rows = NDArray[np.void]
+SOLID = 1e-6  # largest relative difference of a bead's mass from that of the model's solid sphere
 
 PLATE_ROW = np.dtype(
     [
@@ -137,6 +138,12 @@ def spring_of(row: Any, r: float) -> Spring:
         plate, None,
     )  # fmt: skip
     return resized(unit, r)
+
+
+@kernel
+def solid_mass(row: Any, r: float) -> float:
+    """Mass of a solid sphere of the row's material [kg]; NaN where there is no model."""
+    return row.mass * r * r * r if row.law != 0 else math.nan
 
 
 @kernel

@@ -25,13 +25,13 @@ from contactlaw.equation import force
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.laws import Law
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import SHARE, largest_factor, rated, strengthened
+from contactlaw.physical.rate import SHARE, flows, largest_factor, rated, strengthened
 from contactlaw.physical.scaling import law_of
 
 Array = NDArray[np.float64]
 
 # Largest step of ln(factor) between two levels: the COR is within 3e-4 of itself of that of a law
-# made for the factor, measured for E*/sigma_Y 70 to 2700.
+# made for the factor, measured for E*/sigma_Y 70 to 2700; within 4e-4 for bodies with two rate0.
 _STEP = 0.07
 # A header, then the levels: number of levels, room of each, C, representative rate over rate0 of an
 # impact at one d_Y per second, step of ln(factor).
@@ -44,12 +44,17 @@ _STRIDE, _FINE = 4096.0, 4096.0
 
 @functools.lru_cache(maxsize=16)
 def levels_of(pair: Pair, law: Law, step: float = _STEP) -> Array | None:
-    """Levels of a pair for kernels, at most this step apart; None for a pair without a rate."""
+    """Levels for kernels, strengths at most a step of ln apart; None for a pair without a rate."""
     flow = rated(pair, law)
-    if flow is None or largest_factor(flow) == 1.0:
+    if flow is None:
         return None
     most = math.log(largest_factor(flow))
-    steps = math.ceil(most / step)
+    # the second of two strengths grows fastest where it begins to; that corner is to be a level
+    starts = [(one.rate / flow.rate, flow.factor(one.rate0)) for one in flows(pair)]
+    least = math.ceil(most / step * max(share * factor for share, factor in starts))
+    counts = np.arange(least, 2 * least + 1)[:, None]
+    places = counts * [math.log(factor) / most for _, factor in starts]
+    steps = least + int(np.argmin(np.abs(places - np.round(places)).max(axis=1)))
     pairs = [strengthened(pair, math.exp(n / steps * most)) for n in range(steps + 1)]
     made = [law_of(one, law.family) for one in pairs]
     scales = [one.scale or 1.0 for one in made]

@@ -106,7 +106,7 @@ def cached_slides(table: Table, kappa: float) -> Array:
     made = slides.build(table, kappa)
     if path is not None:
         with contextlib.suppress(OSError):
-            path.parent.mkdir(parents=True, exist_ok=True)
+            path.parent.mkdir(0o700, parents=True, exist_ok=True)
             _atomic.write(path, hashlib.sha256(made.tobytes()).digest() + made.tobytes())
     return made
 
@@ -131,7 +131,7 @@ def _kept(
         found, _ = _usable(path, law, settings)
         if found is not None and is_whole(found):
             return found
-        place.mkdir(parents=True, exist_ok=True)
+        place.mkdir(0o700, parents=True, exist_ok=True)
         with _locked(path):
             # another process may have built it while this one waited
             found, fault = _usable(path, law, settings)

@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _atomic
+from contactlaw._content import content_of
 from contactlaw._version import VERSION
 from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
@@ -205,7 +206,7 @@ def read(path: str | os.PathLike[str]) -> Table:
     path = Path(path)
     remedy = "Build it again with: contactlaw table build --law LAW --out FILE"
     try:
-        content = _content(path)
+        content = content_of(path, LARGEST)
     except FileNotFoundError:
         raise FileNotFoundError(f"table: there is no file {path}. {remedy}") from None
     except ValueError as error:
@@ -214,16 +215,6 @@ def read(path: str | os.PathLike[str]) -> Table:
         return _parse(content)
     except (OSError, LookupError, ValueError, TypeError, RuntimeError, AttributeError) as error:
         raise DamagedTableError(f"table: cannot use {path}: {error}. {remedy}") from error
-
-
-def _content(path: Path) -> bytes:
-    """Bytes of a file; a pipe would make the reader wait, and a device may have no end."""
-    if not path.is_file() and (path.exists() or path.is_symlink()):
-        raise ValueError("it is no regular file, nor a link to one")
-    size = path.stat().st_size
-    if size > LARGEST:
-        raise ValueError(f"it has {size} bytes, and no table more than {LARGEST}")
-    return path.read_bytes()
 
 
 def _parse(content: bytes) -> Table:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import math
+import re
 import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -185,7 +187,12 @@ class Mesh:
         if not Path(path).is_file():
             raise FileNotFoundError(f"path: no file {str(path)!r}")
         try:
-            found = trimesh.load_mesh(str(path), process=False)
+            with warnings.catch_warnings():
+                # trimesh would take the corners before a number that cannot be read for all
+                warnings.filterwarnings("error", "string or file could not be read")
+                stl = Path(path).suffix.lower() == ".stl"
+                source, kind = (_stl(path), "stl") if stl else (str(path), None)
+                found = trimesh.load_mesh(source, kind, process=False)
             vertices, triangles = np.asarray(found.vertices), np.asarray(found.faces)
             if not len(triangles):
                 raise ValueError("no triangles")
@@ -321,6 +328,15 @@ class Mesh:
         return cls(
             np.vstack((middle + radius * around, middle)), fan, thickness, model, motion, edges
         )
+
+
+def _stl(path: str | Path) -> io.BytesIO:
+    """Content of an STL file as trimesh knows it: no bytes after the last triangle, "endsolid"."""
+    content = Path(path).read_bytes()
+    end = 84 + 50 * int.from_bytes(content[80:84], "little")  # of a binary one; text has > 7e9
+    if 84 < end <= len(content):
+        return io.BytesIO(content[:end])
+    return io.BytesIO(re.sub(rb"(?i)\bend[ \t]+solid", b"endsolid", content))
 
 
 def _circle(axis: Floats, facets: int) -> Floats:

@@ -2,6 +2,7 @@
 
 import numba
 import numpy as np
+import polymer
 import pytest
 
 import contactlaw as cl
@@ -10,6 +11,7 @@ PAIRS = {
     "myc": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc"),
     "fem": cl.ImpactModel(cl.Pair("alumina", "aluminium-6061-t6")),
     "hertz": cl.ImpactModel(cl.Pair("alumina", "glass"), law="hertz"),
+    "losses and flow": polymer.WEAK_MODEL,
 }
 REST = np.zeros(3)
 
@@ -83,8 +85,9 @@ def random_beads(count):
     return velocity, generator.normal(size=(count, 3)) * 500, normal
 
 
-def test_collide_keeps_momenta_and_agrees_with_oblique():
-    model, count = PAIRS["myc"], 1000
+@pytest.mark.parametrize("law", ["myc", "losses and flow"])
+def test_collide_keeps_momenta_and_agrees_with_oblique(law):
+    model, count = PAIRS[law], 1000
     velocity, spin, normal = random_beads(count)
     wall = np.random.default_rng(4).normal(size=(count, 3)) * 0.3
     radius, thickness, friction = 1e-3, 4e-3, 0.25

@@ -30,8 +30,9 @@ PAIRS = {
     "a corner of the law": cl.Pair(HARD, "glass"),
 }
 # Each needs about ten tables; those of the others are of the same kinds.
+LONG = pytest.mark.long
 NAMES = [
-    pytest.param(name, marks=pytest.mark.long) if name in ("plate", "a corner of the law") else name
+    pytest.param(name, marks=LONG) if name in ("plate", "a corner of the law") else name
     for name in PAIRS
 ]
 FIELDS = [name for name in cl.Rebound.__dataclass_fields__ if name != "flags"]
@@ -89,6 +90,38 @@ def test_tables_are_certified(name):
     shares = found.plastic_fraction + found.wave_fraction + found.other_fraction
     assert shares == pytest.approx(1.0 - found.restitution**2, abs=1e-14)
     assert np.count_nonzero(found.flags != exact.flags) <= 2  # some lie on a limit
+
+
+@pytest.mark.parametrize("seed", [1, 8, *(pytest.param(n, marks=LONG) for n in (0, 2, 3, 5, 7, 9))])
+def test_two_bodies_with_rates_of_their_own(seed):
+    """Of published size and absurd ones: tables knew the rate of the weaker body alone."""
+    rng = np.random.default_rng(seed)
+    slopes, rates = ((0.005, 0.3), (1e-3, 1e4)) if seed % 2 else ((0.005, 0.06), (1e-2, 1e3))
+
+    def between(low, high):
+        return math.exp(rng.uniform(math.log(low), math.log(high)))
+
+    def body():
+        strength = between(90e6, 800e6)
+        hardening = strength * rng.uniform(0.2, 3.0), rng.uniform(0.2, 0.7)
+        known = rng.uniform(60e9, 220e9), rng.uniform(0.25, 0.35), 7850, strength
+        flow = {"hardening": hardening, "rate": (between(*slopes), between(*rates))}
+        return cl.Material("random", *known, kind="metal", **flow)
+
+    bodies = body(), body()
+    coarse = Settings(0.5, 40.0, inelasticity_nodes=25, log_overload_step=0.1, rtol=1e-9)
+    one = cl.ImpactModel(cl.Pair(*bodies), table=coarse)
+    r, v = (np.exp(rng.uniform(*np.log(ends), 2000)) for ends in ((2e-5, 2e-2), (1e-2, 1e2)))
+    inside = np.array([one.kernel(*at) >= 0.0 for at in zip(v, r, 4.0 * r, strict=True)])
+    v, r = v[inside][:200], r[inside][:200]
+    exact = one.solve(v, r, 4.0 * r).restitution
+    assert v.size == 200
+    assert np.abs(one.restitution(v, r, 4.0 * r) - exact).max() < 1e-5
+    assert np.abs(one.lookup(v, r, 4.0 * r).restitution - exact).max() < 1e-5
+    for n in range(3):  # each body is as strong as at the rate of the impact
+        at = [rate.scaled(b, b.flow.factor(rate.SHARE * v[n] / r[n])) for b in bodies]
+        alone = cl.ImpactModel(cl.Pair(*(dataclasses.replace(b, rate=None) for b in at)))
+        assert alone.solve(v[n], r[n], 4.0 * r[n]).restitution == pytest.approx(exact[n], abs=5e-6)
 
 
 @pytest.mark.parametrize("name", ["sphere", "both"])

@@ -4,11 +4,13 @@ import dataclasses
 import math
 
 import numpy as np
+import own_laws
 import pytest
 from scipy.stats import norm, qmc
 
 import contactlaw as cl
 from contactlaw.answers import law_errors
+from contactlaw.cli.cor import bands
 from validation.accuracy import acceptance
 
 INF = math.inf
@@ -191,3 +193,27 @@ def test_the_range_of_a_cor_near_zero_is_as_wide_as_the_law_is_wrong():
     cor = cl.ImpactModel(cl.Pair(steel, "glass")).uncertainty(1.0, 1e-3, 0.25e-3).restitution
     assert cor.low < 1e-3 and 0.0 < cor.high < 0.006
     assert cor.causes == {"model": pytest.approx(0.0169 * 0.3)}
+
+
+def test_a_specified_minimum_has_no_range_where_a_stronger_body_rebounds_otherwise():
+    """Not below yield, nor beside a body so weak that it alone flows."""
+    band = range_of("soda-lime-glass", "steel-s235", [1e-3, 1.0])
+    assert band.causes["yield strength of the plate"].tolist() == [0.0, INF]
+    assert (band.low[1], band.high[1]) == (-INF, INF)
+    weak = range_of("lead", "steel-s235", [1e-3, 1.0])
+    known = range_of("soda-lime-glass", known_to("steel-s235", yield_strength=0.15), [1.0])
+    ends = [band.low[0], band.high[0], *weak.low, *weak.high, *known.low, *known.high]
+    assert 0.0 < min(ends) < max(ends) <= 1.0
+
+
+@pytest.mark.parametrize("law", [own_laws.own(), own_laws.measured()], ids=["own", "measured"])
+def test_a_law_whose_errors_nobody_knows_has_no_range(law):
+    band = range_of(*own_laws.PAIR.given, 12.0, law)
+    assert (band.low, band.high, band.causes) == (-INF, INF, {"model": INF})
+    found = cl.ImpactModel(own_laws.PAIR, law=law).thickness(0.6, 12.0, 0.9e-3)
+    assert (found.low.tolist(), found.high.tolist()) == ([-INF], [INF])
+    assert "how far the law is from finite elements" in bands.unknown(found.band)
+
+
+def range_of(bead, plate, speed, law="fem"):
+    return cl.ImpactModel(cl.Pair(bead, plate), law).uncertainty(speed, 1e-3, 5e-3).restitution

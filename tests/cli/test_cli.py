@@ -146,6 +146,17 @@ def test_csv_has_units_in_its_header_and_every_digit(model, capsys):
     assert len(capsys.readouterr().out.splitlines()) == 2
 
 
+@pytest.mark.parametrize("command", ["cor", "constant"])
+@pytest.mark.parametrize("name", ["=1+1", "@SUM(1)", "glass"])
+def test_a_spreadsheet_computes_no_name(command, name, capsys):
+    named = f"E=70GPa nu=0.2 rho=2500 yield=2GPa name={name}"
+    argv = [command, *IMPACT[3:], "--sphere", named, "--csv"]
+    assert main([*argv, *["--no-band"] * (command == "cor")]) == 0
+    (row,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
+    assert row["sphere"] == ("glass" if name == "glass" else f"'{name}")
+    assert 0.0 < float(row["restitution"]) < 1.0
+
+
 def test_a_table_with_a_plate_too_thin_for_a_yield_speed(capsys):
     thin = ["--thickness", "0.05mm,1mm", "--speed", "5", "--outside", "solve"]
     assert main([*MANY, *thin, "--csv"]) == 0
@@ -270,6 +281,11 @@ def test_every_option_is_explained(name, parser):
         ([*IMPACT, "--outside", "x"], "invalid choice: 'x'"),
         ([*IMPACT, "--json", "--csv"], "not allowed with argument"),
         (["history", *MANY[1:]], "expected one length"),
+        ([*IMPACT, "--materials", "/dev/zero"], "/dev/zero: it is no regular file"),
+        ([*COR, "--thicknes", "1mm"], "--thicknes: no such option, did you mean --thickness?"),
+        ([*COR, "-Thick=1mm"], "-Thick: no such option, did you mean --thickness?"),
+        ([*COR, "--edge", "2mm"], "--edge: no such option: edges are for Python, restitution("),
+        (["--verison"], "--verison: no such option, did you mean --version?"),
     ],
 )
 def test_wrong_usage_is_status_2(argv, message, capsys):
@@ -286,7 +302,7 @@ def test_materials(capsys):
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines[1:]] == list(cl.materials())
     assert main(["materials", "--json"]) == 0
-    listed = json.loads(capsys.readouterr().out)
+    listed = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)
     glass = next(entry for entry in listed if entry["name"] == "glass")
     assert (glass["youngs_modulus"], glass["yield_strength"]) == (73e9, None)
     assert main(["materials", "glass"]) == 0

@@ -193,9 +193,22 @@ def test_the_band_is_that_of_the_model(capsys):
 
 def test_strengths_without_an_error_are_named(capsys):
     """A band of moduli alone would look as if the COR were known."""
-    table = " ".join(printed("cor --sphere carbon-steel-1020 --plate glass --radius 1e-3 "
+    table = " ".join(printed("cor --sphere aluminium-6061-t6 --plate glass --radius 1e-3 "
                              "--thickness 1e-2 --speed 1,2", capsys).split())  # fmt: skip
     assert "by the errors that are known (the strength of the bead has none)." in table
+
+
+def test_no_range_is_printed_where_a_specified_minimum_matters(capsys):
+    asked = "--sphere soda-lime-glass --plate steel-s235 --radius 1.5mm --speed 2.43"
+    why = "(no range: the yield strength of the plate is a specified minimum"
+    for command in (f"cor {asked} --thickness 5mm", f"thickness {asked} --cor 0.4"):
+        assert why in " ".join(printed(command, capsys).split())
+        (row,) = csv.DictReader(printed(f"{command} --csv", capsys).splitlines())
+        ends = [cell for name, cell in row.items() if "_low" in name or "_high" in name]
+        assert len(ends) > 1 and set(ends) == {""}
+    record = json.loads(printed(f"{command} --json", capsys))[0]
+    assert record["thickness_low"] is record["thickness_high"] is None
+    assert " 0.6408        -  6.951" in printed(f"cor {asked},1e-3 --thickness 5mm", capsys)
 
 
 def test_without_errors_of_materials_it_says_so(capsys):

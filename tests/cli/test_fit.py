@@ -70,7 +70,7 @@ def test_text_has_the_value_its_error_and_each_rebound(usual, found, capsys):
         ("speed,restitution,contact_time", ["1,0.5,", "2,,7.5e-6"]),
         ("Velocity (m/s);CoR;Duration [µs]", ["1,0;0,5;n/a", "2;-;7,5", ";;"]),
         ("v;e;time_us;diameter_mm", ["1,0;0,5;NA;2,0", "2,0;;7,5;2"]),
-        ("v;e;time_us", ["1,0;0,5;", "1,5;;n/a", "2,0;;7,5"]),  # one row has no rebound
+        ("v;e;time_us", ["1,0;0,5;", "1,5;;n.a.", "2,0;;7,5"]),  # one row has no rebound
         ("impact_velocity_mm/s,cor,duration_ns,bead_radius_um", ["1e3,.5,,1e3", "2e3,,7500,1e3"]),
     ],
 )

@@ -74,6 +74,14 @@ def script(style, types):
     return "\n".join([box, *put, f"set group all diameter {2 * R} density 879", *move])
 
 
+@pytest.mark.parametrize("engine", ["lammps", "liggghts", "yade"])
+def test_no_name_is_a_command(engine, capsys):
+    named = 'E=12.23GPa nu=0.21 rho=879 yield=472.5MPa name=a\nrun 1 """ &'
+    plain = lines(engine, capsys).splitlines()
+    found = lines(engine, capsys, "--sphere", named).splitlines()
+    assert found[1:] == plain[1:] and found[0].startswith("#") and '"""' not in found[0]
+
+
 def test_lammps_reads_them(capsys, tmp_path, wanted):
     from lammps_box import quiet
 

@@ -42,7 +42,7 @@ def test_numbers_make_the_material_that_python_makes(text, more):
 
 def test_a_file_is_read_as_the_catalogue_is(tmp_path, capsys):
     path = tmp_path / "mine.toml"
-    path.write_text(FILE)
+    path.write_text(FILE, encoding="utf-8-sig")  # as editors of Windows save it
     mine = cl.read_materials(path)
     assert mine["delrin"] == cl.Material("my-pom", **NUMBERS, yield_strength=62e6,
         source="my-pom", uncertainty={"yield_strength": 0.1})  # fmt: skip
@@ -86,6 +86,9 @@ def test_one_source_for_all_numbers_and_bare_numbers_that_were_meant_in_other_un
             "E=2GPa E=3GPa nu=0.35 rho=1410",
             "--sphere: 'E=2GPa E=3GPa nu=0.35 rho=1410' has E twice",
         ),
+        ("name=a E=2GPa nu=0.35 rho=1410 name=b", "has name twice: leave one out"),
+        ("yeild 350MPa E=207GPa nu=0.3 rho=7850", "'yeild 350MPa' has no key: write KEY=..., one"),
+        ("POM, E=2GPa nu=0.35 rho=1410", "'POM' has no key: write KEY=..."),
     ],
 )
 def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
@@ -100,9 +103,14 @@ def test_what_is_no_material_is_refused_with_the_remedy(text, message, capsys):
         ("density = 1410", "", r"\[my-pom\]: give density, in SI units"),
         ('"stainless-steel-304"', '"304L"', r"\[hard-304\]: like = '304L' is no entry"),
         ("= 2.8e9", "= ", "mine.toml: Invalid value"),
+        ("= 2.8e9", "= " + "[" * 3000, "mine.toml: .*recursion"),
         ("[my-pom]", "", "mine.toml: "),
         ("{yield_strength = 0.1}", "0.1", "mine.toml: "),
         ("[my-pom]", "pom = 3\n[my-pom]", r"pom = 3 is no material: write \[pom\]"),
+        ('["delrin"]', '["Hard 304"]', r"\[hard-304\]: leave out 'hard-304', a name of \[my-pom\]"),
+        ('["delrin"]', '["pom-1", "POM_1"]', r"pom\]: leave out 'POM_1', a name of \[my-pom\]"),
+        ("hard-304", "My-POM", r"\[My-POM\]: leave out 'My-POM', a name of \[my-pom\]"),
+        ('["delrin"]', '"delrin"', r"\[my-pom\]: aliases must be a list of names, got 'delrin'"),
     ],
 )
 def test_a_file_with_a_mistake_is_refused(old, new, message, tmp_path):

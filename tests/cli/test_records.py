@@ -2,12 +2,14 @@
 
 import math
 import random
+from pathlib import Path
 
 import h5py
 import numpy as np
 import pytest
 from rains import write_rain
 
+import contactlaw as cl
 from contactlaw import cli as cli_of_contactlaw
 from contactlaw.cli.constant.records import Recorded, _npy, combined, completed, read
 from contactlaw.engines.record import IMPACT
@@ -27,6 +29,7 @@ SPEED, RADIUS = [0.5, 1.2, 3.0], [0.9e-3, 1.1e-3, 1.0e-3]
             "Approach speed (mm/s)\tother\tRADIUS_um",
             ["500\tx\t900", "1200\ty\t1100", "3e3\tz\t1e3"],
         ),
+        ("v;Bead diameter [mm]", ["0.5;1.8", "1.2;2.2", "3;2"]),
         ("# normal_speed m/s, time_s, radius mm", ["0.5, 1, 0.9", "1.2, 2, 1.1", "3, 3, 1.0"]),
         ('"impact speed [km/h]","radius [cm]"', ['"1.8",0.09', "4.32,0.11", "10.8,0.1"]),
         ("\\ufeffspeed_m/s,radius_mm", ["0.5,0.9", "# a remark", "1.2,1.1", "3,1", ""]),
@@ -76,10 +79,12 @@ def recorded(path, kinds):
     rows = np.zeros(len(kinds), IMPACT)
     rows["approach_speed"], rows["kind"] = 1.0 + np.arange(len(kinds)), kinds
     rows["restitution"], rows["radius"], rows["thickness"] = 0.9, 1e-3, 1e-3
+    rows["mass"] = 4 / 3 * math.pi * 1e-9 * cl.material("gamma-alumina").density
     if path.suffix == ".npy":
         np.save(path, rows)
     else:
         np.savetxt(path, rows, fmt="%g", delimiter=",", header=",".join(IMPACT.names))
+    return rows
 
 
 @pytest.mark.parametrize("name", ["a.npy", "a.csv"])
@@ -98,6 +103,17 @@ def test_what_is_no_impact_is_left_out_and_said(name, tmp_path, capsys):
     assert cli_of_contactlaw.main(command) == 1
     words = "it has no impact on a plate: 2 of 2 rows are no impacts and left out: 2 sliding on"
     assert words in capsys.readouterr().err
+
+
+def test_beads_of_two_materials_are_not_taken_for_one(tmp_path, capsys):
+    rows = recorded(tmp_path / "a.npy", [0] * 5)
+    rows["mass"][3:] *= cl.material("glass").density / cl.material("gamma-alumina").density
+    np.save(tmp_path / "a.npy", rows)
+    for sphere, others in (("glass", "3 of 879"), ("gamma-alumina", "2 of 2500")):
+        command = ["constant", "--sphere", sphere, "--plate", "glass", "--record"]
+        assert cli_of_contactlaw.main([*command, str(tmp_path / "a.npy")]) == 1
+        said = capsys.readouterr().err
+        assert f"a.npy: {others[0]} of 5 impacts are" in said and f"{others} kg/m3: save" in said
 
 
 def test_a_column_called_kind_in_another_table(tmp_path):
@@ -316,23 +332,18 @@ DAMAGES = [
 ]  # fmt: skip
 
 
-def constant(path, capsys):
-    """Exit status and messages of the command."""
-    status = cli_of_contactlaw.main(["constant", "--record", str(path), "--csv"])
-    return status, capsys.readouterr()
-
-
 @pytest.mark.parametrize(("damage", "place", "message"), DAMAGES)
 def test_a_damaged_rain_is_refused_in_words(damage, place, message, rain, tmp_path, capsys):
     path = tmp_path / "rain.h5"
     path.write_bytes(rain)
     with h5py.File(path, "r+") as file:
         damage(file, place)
-    status, captured = constant(path, capsys)
-    assert (status, captured.out) == (1, "")
-    assert message in captured.err
-    assert len(captured.err) < 400 and captured.err.count("\n") == 1
-    assert str(path) in captured.err or message == "law"  # the option --law may be named instead
+    for command in (["constant", "--csv", "--record"], ["report"])[: 1 if "got" in message else 2]:
+        assert cli_of_contactlaw.main([*command, str(path)]) == 1
+        captured = capsys.readouterr()
+        assert captured.out == "" and message in captured.err
+        assert len(captured.err) < 400 and captured.err.count("\n") == 1
+        assert str(path) in captured.err or message == "law"  # the option --law may be named
 
 
 def test_a_rain_that_ends_early(rain, tmp_path):
@@ -398,3 +409,41 @@ def test_a_damaged_head_of_an_array_is_refused_in_words(head):
     content = b"\x93NUMPY\x01\x00\x40\x00" + head.ljust(64)
     with pytest.raises(ValueError, match="damaged file of np.save"):
         _npy(content)
+
+
+ASKED = ["--sphere", "gamma-alumina", "--plate", "glass", "--law", "myc", "--radius", "1mm"]
+ASKED += ["--thickness", "1mm", "--csv"]
+GOOD = {
+    "a.csv": (["constant", *ASKED, "--record"], b"v,weight,plate\n1,1,0\n2.5,3,1\n"),
+    "a.toml": (["cor", *ASKED, "--speed", "1", "--materials"],
+               b"# harmless here\n[a]\nlike = 'glass'\nhardness = '60 HV'  # and here\n"),
+    "a.stl": (["report", "whole.npy", "--mesh"],
+              b"solid a\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendsolid a\n"),
+    "a.npy": (["report"], b""),
+}  # fmt: skip
+TOKENS = [b"", b"\0", b"nan", b"-1", b"1e999", b"[" * 3000, b"\xff", b"'", b",", b"=", b"\n", b"x"]
+
+
+@pytest.mark.parametrize("name", GOOD)
+def test_damaged_files_are_answered_or_refused_by_name(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("contactlaw.report.figures.names", lambda: [])  # these take seconds
+    rows, choose, refused = recorded(Path("whole.npy"), [0] * 3), random.Random(1), 0
+    for _ in range(60):
+        if name == "a.npy":
+            kind, column = choose.choice(["f8", ">f4", "S9", "c16"]), choose.choice(IMPACT.names)
+            other = rows.astype([(n, kind if n == column else IMPACT[n]) for n in IMPACT.names])
+            other[column] = choose.choice([math.nan, math.inf, -1.0, 0.0, 0.5, 300.0, 1e12])
+            np.save(name, other)
+        else:
+            good, at = GOOD[name][1], choose.randrange(len(GOOD[name][1]))
+            end = good[at + choose.randrange(3) :] * choose.randrange(3)
+            Path(name).write_bytes(good[:at] + choose.choice(TOKENS) + end)
+        try:
+            status = cli_of_contactlaw.main([*GOOD[name][0], name])
+        except SystemExit as stop:
+            status = stop.code
+        said = capsys.readouterr()
+        assert "nan" not in said.out and (status == 0 or name in said.err), said
+        refused += status != 0
+    assert 10 < refused < 60

@@ -418,7 +418,7 @@ def test_quantities_may_have_units():
 
 @pytest.mark.parametrize(
     "argv",
-    [[], ["snow"], ["rain", "--plates", "thin"], ["rain", "--radius", "1e-3"], ["rain", "--x"]],
+    [[], ["snow"], ["rain", "--plates", "thin"], ["rain", "--radius", "1e-3"], ["rain", "--dur=1"]],
     ids=" ".join,
 )
 def test_wrong_usage_is_status_2(argv, capsys):

@@ -37,10 +37,17 @@ def test_it_says_what_it_is(library):
     assert np.isnan(library("looked_up", 1.0, 1e-3, 1e-5))
 
 
-def test_a_table_is_refused_where_another_body_comes_to_yield(tmp_path):
+@pytest.mark.parametrize("other_rate", [None, (0.02, 1.0)])
+def test_a_table_is_refused_where_another_body_comes_to_yield(other_rate, tmp_path):
     """Its COR was wrong by 0.014."""
-    other = dataclasses.replace(metal.PLAIN.sphere, yield_strength=300e6)
+    other = dataclasses.replace(metal.PLAIN.sphere, yield_strength=300e6, rate=other_rate)
     model = cl.ImpactModel(cl.Pair(metal.PAIR.sphere, other))
     with pytest.raises(ValueError, match=r"another body may yield.*contactlaw_rebound"):
         cl.export.header(tmp_path / "contactlaw.h", model)
     cl.export.header(tmp_path / "contactlaw.h", model, table="none")
+
+
+def test_a_header_is_refused_where_one_body_far_outgrows_the_other(tmp_path):
+    """The few laws that it had for such pairs knew the rate of the weaker body alone."""
+    with pytest.raises(ValueError, match="above 500000.*a rate for one of two bodies"):
+        cl.export.header(tmp_path / "contactlaw.h", cl.ImpactModel(metal.STEEP), "none")

@@ -5,6 +5,7 @@ import math
 import re
 import shlex
 
+import metal
 import numpy as np
 import polymer
 import pytest
@@ -23,14 +24,16 @@ MODELS = {
     "elastic": cl.ImpactModel(cl.Pair("glass", "glass")),
     "losses": polymer.MODELS[0],
     "losses of both": polymer.MODELS[1],
+    "losses and flow": polymer.WEAK_MODEL,
     "myc": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "myc"),
     "capped": cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), "stronge"),
     "hertz": cl.ImpactModel(cl.Pair("glass", "glass"), "hertz"),
     "rate": cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-2024-t351")),
-    "two rates": cl.ImpactModel(cl.Pair("carbon-steel-1006", "copper-ofhc-annealed")),
+    "two rates": cl.ImpactModel(metal.STEEP),
     "corners": cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1006")),
 }
-RATED = "rate", "two rates", "corners"  # lie between laws at some strengths
+# Errors of COR, and of the sliding speed over friction times speed, between laws at some strengths.
+BETWEEN = {"rate": (1e-4, 1e-3), "two rates": (1e-3, 3e-3), "corners": (1e-4, 1e-3)}
 COR = "document.getElementById('cor').textContent"
 
 
@@ -45,7 +48,7 @@ def steel(tmp_path_factory):
 def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     model, rng = MODELS[pair], np.random.default_rng(7)
     cl.export.page(tmp_path / "page.html", model)
-    assert (tmp_path / "page.html").stat().st_size < 1e6
+    assert (tmp_path / "page.html").stat().st_size < (2e6 if pair == "two rates" else 1e6)
     speed = np.exp(rng.uniform(math.log(0.02), math.log(50.0), 200))
     radius = np.exp(rng.uniform(math.log(2e-5), math.log(2e-2), 200))
     thickness = radius * np.exp(rng.uniform(math.log(0.2), math.log(50.0), 200))
@@ -64,11 +67,12 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     np.testing.assert_array_equal(rows["flags"], expected.flags)
     mass = model.pair.sphere.density * 4 / 3 * math.pi * radius**3
     rows["friction_energy"] = rows["friction_share"] * 0.5 * mass * speed**2
-    share, slide = (1e-4, 1e-3) if pair in RATED else (1e-12, 1e-12)
+    share, slide = BETWEEN.get(pair, (1e-12, 1e-12))
     for name in ("peak_force", "peak_compression", "contact_time"):
-        np.testing.assert_allclose(rows[name], getattr(expected, name), rtol=share)
-    for name in ("restitution", "plastic_fraction", "wave_fraction", "other_fraction"):
-        np.testing.assert_allclose(rows[name], getattr(expected, name), rtol=0, atol=share)
+        np.testing.assert_allclose(rows[name], getattr(expected, name), rtol=3 * share)
+    for name in ("plastic_fraction", "wave_fraction", "other_fraction"):
+        np.testing.assert_allclose(rows[name], getattr(expected, name), rtol=0, atol=3 * share)
+    np.testing.assert_allclose(rows["restitution"], expected.restitution, rtol=0, atol=share)
     off = abs(rows["sliding_speed"] - expected.sliding_speed)
     assert (off <= slide * friction * normal + 1e-14 * along).all()
     np.testing.assert_allclose(rows["curve"], rows["restitution"], rtol=0, atol=3e-4)
@@ -142,7 +146,7 @@ def press(page, key, code):
 
 def test_the_example_is_what_the_command_writes(steel):
     """The numbers of the pair aside, which another processor may round differently."""
-    data, version = r"Float64Array\.of\([^)]*\)|-?\d[\d.]{9,}(e-?\d+)?", r"(?<=contactlaw )[\d.]+\d"
+    data, version = r"Float64Array\(\[[^]]*\]\)|-?\d[\d.]{9,}(e-?\d+)?", r"(?<=contactlaw )[\d.]+\d"
     made, kept = (
         re.sub(version, "", re.sub(data, "", text))
         for text in (steel.read_text(), (ROOT / "docs/explore.html").read_text())

@@ -10,6 +10,7 @@ import sys
 import tracemalloc
 
 import numpy as np
+import own_laws
 import pytest
 from places import ROOT
 from rebounds import KINDS, RADIUS, STEEL, THICKNESS, rebounds
@@ -19,6 +20,7 @@ from scipy.optimize import least_squares
 import contactlaw as cl
 from contactlaw.answers import law_errors
 from contactlaw.cli import main
+from contactlaw.cli.fit import printed
 from contactlaw.fitting import errors, notes
 from contactlaw.fitting.predictions import Predictor, Values, impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
@@ -315,6 +317,21 @@ def test_missing_values_are_left_out():
     assert found.rows["contact_time"].tolist() == list(range(1, 12))
 
 
+def test_rebounds_of_which_nothing_was_measured_are_left_out_as_on_the_command_line():
+    data = rebounds(STEEL, without=("thickness",))
+    gaps = {k: np.insert(v, [0, 5], np.nan) if np.ndim(v) else v for k, v in data.items()}
+    with pytest.warns(UserWarning, match=r"rebounds \[0 6\] have no quantity and are left out"):
+        found = cl.fit(STEEL, gaps, "thickness")
+    assert found.values == cl.fit(STEEL, data, "thickness").values
+
+
+def test_the_errors_of_a_law_of_ones_own_are_not_known():
+    data = rebounds(own_laws.PAIR, "myc", without=("thickness",))
+    found = cl.fit(own_laws.PAIR, data, "thickness", own_laws.own())
+    assert printed.record(found)["model_errors"] == {"thickness": None}
+    assert "from the data, nothing known from the model" in "".join(printed.text(found, []))
+
+
 def test_a_size_of_each_rebound_with_a_prior():
     """Each rebound has a radius of its own, and all radii are off by the same factor."""
     data = rebounds(STEEL, kinds=KINDS, without=("thickness",))
@@ -330,7 +347,7 @@ def test_a_size_of_each_rebound_with_a_prior():
         ({"speed": [1.0, np.nan]}, "thickness", "speed: got nan"),
         ({"restitution": [0.5, 85.0]}, "thickness", r"restitution: got 85.0 .*per cent\?"),
         ({"restitution": None}, "thickness", "at least one of restitution"),
-        ({"restitution": [np.nan, 0.5]}, "thickness", "rebound 0 has none of"),
+        ({"restitution": [np.nan, np.nan]}, "thickness", "restitution: no rebound has one"),
         ({"restitution_error": [0.0, 0.1]}, "thickness", "restitution_error: got 0.0"),
         ({"restitution_error": [np.nan, 0.1]}, "thickness", "restitution_error: got nan"),
         ({"contact_time": 5.0e-6, "contact_time_error": -1.0}, "thickness", "contact_time_error"),

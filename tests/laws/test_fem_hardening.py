@@ -38,7 +38,10 @@ def test_without_any_rise_the_answers_are_those_of_an_ideal_body(speed):
 @pytest.mark.parametrize("role", ["sphere", "plate"])
 @pytest.mark.parametrize("depth", [1e-3, 1e-2, 5e-2])
 def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
-    """Force and residual compression, by the flow stress at c (w - b w_Y)."""
+    """Force and residual compression, by the flow stress at c (w - b w_Y).
+
+    The strain of the plate, whose Poisson's ratio is 0.22, begins with 0.995 of its own w_Y.
+    """
     ratio, times, n = 400.0, 2.0, 0.4
     numbers = {"modulus_share": 0.4, "poissons_ratio": 0.3, "plate_poissons_ratio": 0.22}
     none = {"sphere_ratio": 0.0, "plate_ratio": 0.0}
@@ -48,7 +51,11 @@ def test_at_each_depth_the_curves_are_those_of_the_strength_there(role, depth):
     )  # fmt: skip
     onset = law("fem", **numbers, **{**none, f"{role}_ratio": ratio}).scale
     assert hard.onset == pytest.approx(onset)
-    strain = SHARE * (math.sqrt(depth) - LATE * math.sqrt(fem.yield_scale(ratio, 0.3)))
+    begins = {
+        "sphere": LATE * math.sqrt(fem.yield_scale(ratio, 0.3)),
+        "plate": 0.995 * math.sqrt(fem.yield_scale(ratio, 0.22)),
+    }
+    strain = SHARE * (math.sqrt(depth) - begins[role])
     there = {**none, f"{role}_ratio": ratio / (1.0 + times * strain**n)}
     ideal = fem.law(*{**there, **numbers}.values())
     for one in (hard, ideal):
@@ -103,3 +110,24 @@ def test_a_stronger_body_may_not_have_strained_where_the_other_one_flows():
             model(*pair).solve(10.0, 1e-3, 1e-2).restitution for pair in (bodies, ideal)
         )
         assert ours == pytest.approx(theirs, rel=3e-3)
+
+
+@pytest.mark.parametrize("role", ["sphere", "plate"])
+def test_all_metals_that_harden_have_a_law_and_flow_on_from_yield(role):
+    """Bodies of a low Poisson's ratio yielded before they strained, and then no longer flowed."""
+    other = "plate" if role == "sphere" else "sphere"
+    draw = np.random.default_rng(20261213)
+    for _ in range(40):
+        share, nu, nu_other, n = draw.uniform([0.01, 0.0, 0.0, 0.2], [0.99, 0.5, 0.5, 0.7])
+        ratio, times = np.exp(draw.uniform(np.log([15.0, 0.2]), np.log([1200.0, 4.0])))
+        made = fem.law_of(
+            fem.Given(**{
+                "modulus_share": share, f"{role}_ratio": ratio, f"{other}_ratio": ratio / 4.0,
+                "poissons_ratio": nu, "plate_poissons_ratio": nu_other,
+                f"{role}_hardening": times, f"{role}_exponent": n,
+            }),
+            fem.numbers(),
+        )  # fmt: skip
+        dm = np.geomspace(1.0, made.range[1], 50)
+        left = np.array([made.residual(one) for one in dm])
+        assert (np.diff(left / dm) > 0.0).all()

@@ -21,15 +21,15 @@ def flow_of(pair):
     return rate.rated(pair, law_of(pair, "fem"))
 
 
-def test_each_body_has_its_own_strength_at_the_rate_of_the_impact():
-    pair = cl.Pair(ALLOY, IRON)
+@pytest.mark.parametrize(("slope", "rate0"), [(0.06, 1.0), (0.06, 1e3), (1e-9, 1e9), (0.3, 1e-3)])
+def test_each_body_has_its_own_strength_at_the_rate_of_the_impact(slope, rate0):
+    """Below rate0 of the weaker body, or above it alone, the other one had a strength too high."""
+    pair = cl.Pair(ALLOY, dataclasses.replace(IRON, rate=(slope, rate0)))
     flow = flow_of(pair)
-    assert flow == IRON.flow  # the weaker body's
     speed, radius = np.array([2.0]), np.array([1e-3])
-    factor = rate.factors(flow, speed, radius).item()
     at = rate.SHARE * 2000.0  # representative rate [1/s]
-    assert factor == pytest.approx(1.0 + 0.06 * math.log(at))
-    stronger = rate.strengthened(pair, factor)
+    factor = 1.0 + slope * math.log(max(at / rate0, 1.0))
+    stronger = rate.strengthened(pair, rate.factors(flow, speed, radius).item())
     assert stronger.plate.yield_strength == pytest.approx(175e6 * factor)
     assert stronger.plate.hardening == pytest.approx((380e6 * factor, 0.32))
     assert stronger.sphere.yield_strength == pytest.approx(

@@ -152,7 +152,8 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
         Run(impacts.collisions()[names], "")
     rows = impacts.collisions()
     row = int(np.flatnonzero((rows["kind"] == 0) & (rows["plate"] >= 0))[0])
-    for name, value in (("approach_speed", math.nan), ("mass", 0.0), ("thickness", math.nan)):
+    for name, value in (("approach_speed", math.nan), ("mass", 0.0), ("thickness", math.nan),
+                        ("restitution", 300.0), ("wave_energy", math.inf)):  # fmt: skip
         wrong = rows.copy()
         wrong[name][row] = value
         with pytest.raises(ValueError, match=f"{name} of row {row} is {value}: leave the row out"):

@@ -9,6 +9,10 @@ METAL = dataclasses.replace(cl.material("stainless-steel-304"), hardening=(300e6
 PLAIN = cl.Pair(METAL, "glass")
 PAIR = cl.Pair(dataclasses.replace(METAL, rate=(0.07, 1.0)), "glass")
 MODEL = cl.ImpactModel(PAIR)
+# the sphere's strength begins to grow where its plate's has long done so, and grows far faster
+FLOW = {"hardening": (196e6, 0.97), "rate": (0.265, 7712.0)}
+QUICK = cl.Material("quick", 200e9, 0.34, 8900, yield_strength=315e6, kind="metal", **FLOW)
+STEEP = cl.Pair(QUICK, "aluminium-2024-t351")
 # radius, thickness and speed: factors of 1.05 to 1.43, COR 0.33 to 0.94
 DROPS = [(r, h, v) for r, h in ((1e-3, 5e-3), (0.2e-3, 1e-3)) for v in (0.1, 2.0, 15.0)]
 

@@ -48,6 +48,16 @@ def test_levels_stand_for_all_strengths_between_them(strength_of_steel):
             assert losses[0] == pytest.approx(c**2.5 * lost, abs=1e-3 * peak * dm)
 
 
+@pytest.mark.parametrize("speed", [16.0, 24.0])
+def test_two_bodies_have_rates_of_their_own(speed):
+    """Levels knew that of the weaker body alone, which reaches the other's rate0 at 15.9 m/s."""
+    model, radius, thickness = cl.ImpactModel(metal.STEEP), 0.12178e-3, 0.57e-3
+    hit = model.solve(speed, radius, thickness)
+    spring = resized(unit_spring(model, thickness), radius)
+    found = drop(model.force_law.data, spring, speed, hit.contact_time / 200, 0.3)
+    assert found == pytest.approx(hit.restitution, rel=4e-4)
+
+
 def test_below_its_rate0_a_pair_is_as_without_a_rate():
     slow = cl.Pair(dataclasses.replace(metal.PAIR.sphere, rate=(0.07, 1e5)), "glass")
     slow = cl.ImpactModel(slow)

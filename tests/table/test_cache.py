@@ -18,7 +18,7 @@ import platformdirs
 import pytest
 import tqdm
 
-from contactlaw import laws, table
+from contactlaw import _folder, _jit, laws, table
 from contactlaw.table import cache, slides
 from contactlaw.table import file as store
 
@@ -74,7 +74,7 @@ def in_child(function, *arguments):
 
 def test_a_table_is_built_once_and_kept(path, expected, monkeypatch):
     assert same(cache.cached(MYC, SMALL), expected)
-    assert path.exists()
+    assert path.exists() and path.parent.stat().st_mode & 0o777 == 0o700
     cache.cached.cache_clear()
     monkeypatch.setattr(table, "build", None)  # a second build would fail
     assert same(cache.cached(MYC, SMALL), expected)
@@ -156,7 +156,7 @@ def in_its_place(make):
     ],
 )
 def test_a_damaged_file_is_rebuilt(place, path, expected, damage):
-    place.mkdir()
+    place.mkdir(0o700)
     store.write(expected, path)
     damage(path)
     with pytest.warns(UserWarning, match=f"{path}.*CONTACTLAW_CACHE_DIR") as caught:
@@ -168,7 +168,7 @@ def test_a_damaged_file_is_rebuilt(place, path, expected, damage):
 
 
 def test_another_table_under_the_name_is_rebuilt(place, path, expected):
-    place.mkdir()
+    place.mkdir(0o700)
     store.write(table.build(MYC, table.Settings(inelasticity_nodes=5, log_overload_step=0.5)), path)
     with pytest.warns(UserWarning, match="other settings.*CONTACTLAW_CACHE_DIR"):
         assert same(cache.cached(MYC, SMALL), expected)
@@ -181,7 +181,7 @@ def test_a_folder_in_the_place_of_the_file(path, expected):
 
 def test_a_damaged_file_in_a_full_folder(place, path, expected):
     """Two things are wrong, and a single warning names the one that matters."""
-    place.mkdir()
+    place.mkdir(0o700)
     path.write_bytes(b"")
 
     def fill():
@@ -217,7 +217,7 @@ def test_two_processes_build_one_table(place, path, expected):
 
 
 def test_a_writer_killed_at_any_moment_leaves_a_whole_file_or_none(place, path, expected):
-    place.mkdir()
+    place.mkdir(0o700)
     rng = np.random.default_rng(1)
 
     def write_for_ever():
@@ -311,11 +311,39 @@ def test_a_user_without_a_home(expected, chosen):
 
 def test_a_full_disk(place, expected):
     def fill():
-        place.mkdir()
+        place.mkdir(0o700)
         resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
 
     check_one_warning(in_child(warned, fill), expected, os.strerror(errno.EFBIG))
     assert [p.suffix for p in place.iterdir()] == [".lock"]  # neither a table nor a part of one
+
+
+@pytest.mark.parametrize("whose", ["theirs", "everybody's"])
+def test_a_folder_that_others_may_write_is_not_used(place, expected, monkeypatch, whose):
+    place.mkdir(0o700)
+    if whose != "theirs":
+        place.chmod(0o777)
+    elif os.geteuid() == 0:
+        os.chown(place, 65534, -1)
+    else:
+        monkeypatch.setattr(os, "geteuid", lambda: 65534)
+    monkeypatch.setattr(_jit.config, "CACHE_DIR", "")
+    with pytest.warns(UserWarning, match=f"{place} is not used.*chmod go-w") as said:
+        assert same(cache.cached(MYC, SMALL), expected)
+        assert cache.folder() is None and _jit._code_folder.__wrapped__() is None
+    assert len(said) == 1 and list(place.iterdir()) == []
+
+
+def test_the_folder_of_machine_code_is_the_users_alone(tmp_path, monkeypatch):
+    """It may be in one for all, as /tmp, where nobody else can replace it."""
+    tmp_path.chmod(0o1777)
+    monkeypatch.setattr(_jit.config, "CACHE_DIR", str(tmp_path))
+    folder = _jit._code_folder.__wrapped__()
+    assert folder.stat().st_mode & 0o777 == 0o700
+    folder.chmod(0o770)
+    _folder.is_private.cache_clear()
+    with pytest.warns(UserWarning, match=f"{folder} is not used"):
+        assert _jit._code_folder.__wrapped__() is None
 
 
 def test_a_file_where_the_folder_should_be(place, expected):
@@ -325,7 +353,7 @@ def test_a_file_where_the_folder_should_be(place, expected):
 
 def test_a_lock_that_is_held_for_ever(place, path, expected, monkeypatch):
     monkeypatch.setattr(cache, "_PATIENCE", 0.2)
-    place.mkdir()
+    place.mkdir(0o700)
     with filelock.FileLock(path.with_suffix(".lock")):
         check_one_warning(in_child(warned, lambda: None), expected, "lock")
 

@@ -209,7 +209,7 @@ def make_sparse(path):
         (lambda path: path.symlink_to(path.parent), "no regular file"),
         (lambda path: path.mkdir(), "no regular file"),
         (make_socket, "no regular file"),
-        (make_sparse, "1099511627776 bytes, and no table more than"),
+        (make_sparse, "1099511627776 bytes, and no such file more than"),
     ],
     ids=["pipe", "device", "cycle", "lost link", "link to a folder", "folder", "socket", "sparse"],
 )

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 import importlib
 import platform
 import sys
 
 from tqdm import tqdm
+
+from contactlaw.parser import Parser
 
 SUBJECTS = (
     "lookups",
@@ -30,7 +31,7 @@ SUBJECTS = (
 
 def main(arguments: list[str] | None = None) -> int:
     """Print each row as it is measured; 0 if all targets are met, 1 if not."""
-    parser = argparse.ArgumentParser(prog="python -m validation.bench", description=__doc__)
+    parser = Parser(prog="python -m validation.bench", description=__doc__)
     parser.add_argument("name", nargs="*", default=list(SUBJECTS), choices=SUBJECTS)
     names = parser.parse_args(arguments).name
     print(f"{platform.processor() or platform.machine()}, Python {platform.python_version()}")

@@ -7,7 +7,6 @@ of the stored results with the model, ``acceptance`` the errors of the law and t
 
 from __future__ import annotations
 
-import argparse
 import os
 import sys
 import time
@@ -16,6 +15,7 @@ from concurrent.futures.process import BrokenProcessPool
 
 from tqdm import tqdm
 
+from contactlaw.parser import Parser
 from validation.accuracy import acceptance, compare
 from validation.fem import fit, store
 from validation.fem.studies import STUDIES
@@ -29,7 +29,7 @@ def main(arguments: list[str] | None = None) -> int:
         "report": _report,
         "acceptance": _acceptance,
     }
-    parser = argparse.ArgumentParser(prog="python -m validation.fem")
+    parser = Parser(prog="python -m validation.fem")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(steps)}")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args(arguments)

@@ -7,11 +7,11 @@ where the model flags that friction makes a body flow.
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
 
 import contactlaw as cl
+from contactlaw.parser import Parser
 from validation.fem3d import cases, edges
 
 _COLUMNS = (
@@ -24,7 +24,7 @@ _NAMES = *cases.SEEDS, edges.NAME
 
 def main(arguments: list[str] | None = None) -> int:
     """Compute the named impacts, or all; 0: done, 2: wrong usage, 130: Ctrl-C."""
-    parser = argparse.ArgumentParser(prog="python -m validation.fem3d")
+    parser = Parser(prog="python -m validation.fem3d")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(_NAMES)}")
     options = parser.parse_args(arguments)
     if wrong := set(options.names) - set(_NAMES):

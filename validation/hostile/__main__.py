@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import argparse
 import importlib
 import pkgutil
 import sys
 import time
 
 import validation.hostile
+from contactlaw.parser import Parser
 
 CAMPAIGNS = tuple(
     module.name
@@ -19,7 +19,7 @@ CAMPAIGNS = tuple(
 
 def main(arguments: list[str] | None = None) -> int:
     """Print the faults that each campaign finds; 1 if there is any, 0 if there is none."""
-    parser = argparse.ArgumentParser(prog="python -m validation.hostile", description=__doc__)
+    parser = Parser(prog="python -m validation.hostile", description=__doc__)
     parser.add_argument("name", nargs="*", default=list(CAMPAIGNS), choices=CAMPAIGNS)
     parser.add_argument("--count", type=int, help="cases to try; by default the whole campaign")
     parser.add_argument("--seed", type=int, default=0, help="seed of the random cases (default 0)")

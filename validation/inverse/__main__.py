@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import argparse
-
+from contactlaw.parser import Parser
 from validation.inverse import coverage, elements, model
 
 REPORTS = {
@@ -16,7 +15,7 @@ REPORTS = {
 
 def main(arguments: list[str] | None = None) -> None:
     """Print the reports that are named, or all."""
-    parser = argparse.ArgumentParser(prog="python -m validation.inverse", description=__doc__)
+    parser = Parser(prog="python -m validation.inverse", description=__doc__)
     parser.add_argument("name", nargs="*", default=list(REPORTS), choices=REPORTS)
     for name in parser.parse_args(arguments).name:
         print(REPORTS[name](), flush=True)

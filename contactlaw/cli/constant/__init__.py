@@ -77,4 +77,7 @@ def _recorded(arguments: argparse.Namespace) -> records.PlannedImpacts:
     found = records.read(arguments.record)
     if found.left_out:
         wording.print_warning(f"{arguments.record}: {found.left_out}")
+    sphere = chosen.pair(arguments, found.pair).sphere
+    with wording.reading(arguments.record):
+        records.check_sphere(found, sphere)
     return records.completed(found, *sizes)

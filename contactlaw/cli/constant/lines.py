@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from contactlaw._escaped import line
 from contactlaw._version import VERSION
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.constant import Constant, Keep, constant
@@ -125,7 +126,7 @@ def _name(wall: Wall) -> str:
 
 def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Iterator[str]:
     """Lines of a comment: the source of the numbers, and the errors of each."""
-    pair = f"{model.pair.sphere.name} on {model.pair.plate.name}"
+    pair = line(f"{model.pair.sphere.name} on {model.pair.plate.name}")
     yield f"{mark} contactlaw {VERSION}: {pair}, law {model.force_law.family}; SI units"
     yield from (f"{mark} {sentence}." for sentence in meaning(keep).rstrip(".").split(". "))
     for n, wall in enumerate(found, start=1):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -10,12 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.cli.parts import columns
+from contactlaw._content import content_of
+from contactlaw.cli.parts import columns, wording
 from contactlaw.cli.parts.columns import TextColumn
-from contactlaw.cli.parts.quantities import LENGTH, SPEED
+from contactlaw.cli.parts.quantities import SPEED
 from contactlaw.engines import hdf5, layout
 from contactlaw.engines.record import only_impacts
 from contactlaw.physical.arguments import check
+from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 
 Array = NDArray[np.float64]
@@ -30,8 +33,8 @@ class Recorded(NamedTuple):
         Normal approach speed [m/s], radius of the bead and thickness of the plate [m].
     weights
         Relative frequency of each impact.
-    plate
-        Number of the plate that is hit.
+    plate, mass
+        Number of the plate that is hit, and mass of the bead [kg] in an engine's record.
     pair, law
         Materials and name of the law of the run.
     left_out
@@ -43,6 +46,7 @@ class Recorded(NamedTuple):
     thickness: Array | None = None
     weights: Array | None = None
     plate: NDArray[np.int64] | None = None
+    mass: Array | None = None
     pair: Pair | None = None
     law: str | None = None
     left_out: str = ""
@@ -59,10 +63,10 @@ class PlannedImpacts(NamedTuple):
     law: str | None = None
 
 
+_SAME = 1e-3  # relative difference of densities; six digits of radius and mass make 2e-5
 _COLUMNS = {
     "speed": TextColumn(columns.SPEEDS, SPEED),
-    "radius": TextColumn(("radius",), LENGTH),
-    "thickness": TextColumn(("thickness",), LENGTH),
+    **columns.SIZES,
     "weights": TextColumn(("weight", "weights"), None),
     "plate": TextColumn(("plate",), None),
 }
@@ -78,8 +82,8 @@ def read(path: str | os.PathLike[str]) -> Recorded:
         ``np.save`` writes it (``.npy``); or else text: columns between commas, semicolons or tabs,
         with names and units in the first line, as in ``speed_m/s,radius_mm`` or ``Speed
         [m/s];Radius [mm]``. Speeds may be called speed, approach speed, normal speed or impact
-        speed, or velocity; a column without a unit is in that of the SI. Columns called radius,
-        thickness, weight and plate are optional.
+        speed, or velocity; a column without a unit is in that of the SI. Columns called radius or
+        diameter, thickness, weight and plate are optional.
 
     Raises
     ------
@@ -100,13 +104,9 @@ def read(path: str | os.PathLike[str]) -> Recorded:
     (array([0.5, 1.2]), array([0.0009, 0.0011]))
     """
     readers = {".h5": _hdf5, ".hdf5": _hdf5, ".npy": _npy}
-    path = Path(path)
-    content = columns.content_of(path)
-    try:
-        found = readers.get(path.suffix.lower(), _text)(content)
+    with wording.reading(path):
+        found = readers.get(Path(path).suffix.lower(), _text)(content_of(Path(path)))
         _check(found)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
     return found
 
 
@@ -114,7 +114,7 @@ def _check(found: Recorded) -> None:
     if found.speed.size == 0:
         why = f": {found.left_out}" if found.left_out else ""
         raise ValueError(f"it has no impact on a plate{why}")
-    sizes = {name: getattr(found, name) for name in ("speed", "radius", "thickness")}
+    sizes = {name: getattr(found, name) for name in ("speed", "radius", "thickness", "weights")}
     check(**{name: values for name, values in sizes.items() if values is not None})
 
 
@@ -169,6 +169,22 @@ def completed(
     )
 
 
+def check_sphere(found: Recorded, sphere: Material) -> None:
+    """Refuse a record with beads of another material, which their density betrays."""
+    if found.mass is None or found.radius is None:
+        return
+    density = found.mass / sphere_mass(1.0, found.radius)
+    others = density[~np.isclose(density, sphere.density, rtol=_SAME)]
+    if others.size:
+        counts = Counter(f"{one:.4g}" for one in others.tolist())
+        listed = ", ".join(f"{n} of {one} kg/m3" for one, n in counts.most_common(5))
+        raise ValueError(
+            f"{len(others)} of {len(density)} impacts are of beads of other material than "
+            f"{sphere.name!r} of {sphere.density:g} kg/m3: {listed}: save those of each material "
+            "in a file of its own, and name it with --sphere"
+        )
+
+
 def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
     if values is None:
         raise ValueError(f"{name}: has to be given, no record says it")
@@ -207,7 +223,7 @@ def _npy(content: bytes) -> Recorded:
                 raise ValueError(
                     f"column {names[n]} holds values of type {rows.dtype[n]}, expected numbers"
                 )
-        return np.column_stack([rows[names[n]] for n in wanted])
+        return np.column_stack([rows[names[n]] for n in wanted]).astype(np.float64)
 
     return _columns(names, numbers)
 
@@ -222,9 +238,9 @@ def _text(content: bytes) -> Recorded:
 
 def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Recorded:
     """Pick the columns that are known by their names, and give them SI units."""
-    # Only in an engine's record does a column of this name say what is an impact.
-    kind = {"kind": TextColumn(("kind",), None)} if "sliding_speed" in heads else {}
-    found = columns.locate(heads, _COLUMNS | kind)
+    # Only in an engine's record does a column kind say what is an impact, and mass what of.
+    more = ("kind", "mass") if "sliding_speed" in heads else ()
+    found = columns.locate(heads, _COLUMNS | {one: TextColumn((one,), None) for one in more})
     if "speed" not in found:
         raise ValueError(
             f"no column of speeds in its first line, {', '.join(heads)[:200]!r}: call one speed_m/s"
@@ -234,6 +250,7 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
         field: column / one.per_unit
         for (field, one), column in zip(found.items(), rows.T, strict=True)
     }
+    columns.halve_diameters(picked)
     if "plate" in picked:
         plate = picked["plate"]
         whole = (plate == np.floor(plate)) & (abs(plate) < hdf5.LARGEST)

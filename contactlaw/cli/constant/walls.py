@@ -9,6 +9,7 @@ from typing import NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._escaped import cell
 from contactlaw._readable import rounded
 from contactlaw.answers.constant import Constant, Keep
 from contactlaw.cli.constant.records import PlannedImpacts
@@ -126,4 +127,5 @@ def write_csv(found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, str])
     for wall in found:
         flags = "|".join(f"{flag.name}:{count}" for flag, count in wall.best.flags.items())
         values = (getattr(wall.best, name) for name in numbers)
-        writer.writerow([wall.thickness, wall.best.impacts, keep, *values, *asked.values(), flags])
+        said = map(cell, asked.values())
+        writer.writerow([wall.thickness, wall.best.impacts, keep, *values, *said, flags])

@@ -109,9 +109,9 @@ def _plot_cor(arguments: argparse.Namespace) -> None:
             hit = (model.solve if arguments.solve else model.lookup)(*impact)
             known = None if errors is None else model.uncertainty(*impact, **errors).restitution
         cor, flags, overload = map(np.asarray, (hit.restitution, hit.flags, hit.overload))
-        if known is None:
+        if known is None or np.isinf(known.low).all():
             return layout.Answers(cor, flags, overload, cor, cor)
-        low, high = np.asarray(known.low), np.asarray(known.high)
+        low, high = (np.where(np.isfinite(end), end, cor) for end in (known.low, known.high))
         return layout.Answers(cor, flags, overload, low, high, bands.in_caption(known))
 
     about = f"{model.pair.sphere.name} on {model.pair.plate.name}, law {arguments.law}"

@@ -32,8 +32,18 @@ def with_bands(
             low, high = f"{column.name}_low", f"{column.name}_high"
             shown = "68 %" if column.name == "restitution" else ""
             columns += [Column(low, column.unit, shown, to=high), Column(high, column.unit)]
-            values |= {low: np.asarray(band.low), high: np.asarray(band.high)}
+            for name, end in ((low, band.low), (high, band.high)):
+                values[name] = np.where(np.isfinite(end), end, np.nan)
     return dataclasses.replace(table, columns=values), tuple(columns)
+
+
+def unknown(band: Band) -> str:
+    """Say which errors that matter are not known; empty if all are."""
+    names = [name for name, size in band.causes.items() if np.isinf(size).any()]
+    minimum = "is a specified minimum, and nobody knows how far the real one exceeds it"
+    law = "how far the law is from finite elements is not known"
+    said = (law if name == "model" else f"the {name} {minimum}" for name in names)
+    return f"no range: {'; '.join(said)}" if names else ""
 
 
 def in_brackets(band: Band) -> str:
@@ -45,7 +55,7 @@ def in_brackets(band: Band) -> str:
     '(0.41 to 0.55; model 0.0031)'
     """
     low, high = (np.ravel(end).item() for end in (band.low, band.high))
-    return f"({low:.3g} to {high:.3g}; {_causes(band)})"
+    return "(no range)" if np.isinf(low) else f"({low:.3g} to {high:.3g}; {_causes(band)})"
 
 
 def explained(band: Band, pair: Pair) -> Iterator[str]:
@@ -53,7 +63,7 @@ def explained(band: Band, pair: Pair) -> Iterator[str]:
     yield ""
     said = f"68 %: in this range is the COR of {meaning(band)}{left_out(band, pair)}."
     yield from textwrap.wrap(said, WIDTH)
-    if meaning(band) is _OF_ALL:
+    if meaning(band) is _OF_ALL and np.isfinite(band.low).any():
         yield from textwrap.wrap(f"Half its width by cause: {_causes(band)}", WIDTH)
 
 
@@ -66,7 +76,7 @@ def left_out(band: Band, pair: Pair) -> str:
         for role, body in roles.items()
         if body.strength is not None and not body.uncertainty.keys() & known
     ]
-    parts = []
+    parts = list(filter(None, [unknown(band)]))
     if names and meaning(band) is _OF_ALL:
         subject, verb = ("strength", "has") if len(names) == 1 else ("strengths", "have")
         parts.append(f"the {subject} of {' and '.join(names)} {verb} none")
@@ -77,18 +87,21 @@ def left_out(band: Band, pair: Pair) -> str:
 
 def meaning(band: Band) -> str:
     """Say which impacts are in a band."""
-    return _OF_ALL if set(band.causes) > {"model"} else _OF_LAW
+    return _OF_LAW if [*band.causes] == ["model"] and not unknown(band) else _OF_ALL
 
 
 def in_caption(band: Band) -> str:
     """Say which impacts are in a band, and which of several causes makes it widest."""
     cause = max(band.causes, key=lambda name: np.max(band.causes[name]), default="")
+    if why := unknown(band):
+        return f"{meaning(band)}; {why}"
     return meaning(band) + (f", mostly by the {cause}" if len(band.causes) > 1 else "")
 
 
 def _causes(band: Band) -> str:
     """Causes with the half widths that they alone make, the largest ones first."""
-    sizes = {name: np.asarray(size) for name, size in band.causes.items()}
+    known = {name: size for name, size in band.causes.items() if np.isfinite(size).all()}
+    sizes = {name: np.asarray(size) for name, size in known.items()}
     most = max((size.max() for size in sizes.values()), default=0.0)
     largest = sorted(sizes, key=lambda name: -sizes[name].max())[:_MOST]
     counted = (name for name in largest if sizes[name].max() >= _LEAST * most)

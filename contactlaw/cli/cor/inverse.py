@@ -61,6 +61,9 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
     rows = dict(zip(("restitution", *known), np.repeat(asked, counts, axis=1), strict=True))
     for name, field in ((unknown, "value"), (f"{unknown}_low", "low"), (f"{unknown}_high", "high")):
         rows[name] = np.concatenate([getattr(one, field) for one in found])
+    unsure = np.isinf(rows[f"{unknown}_low"])
+    for end in ("low", "high"):
+        rows[f"{unknown}_{end}"][unsure] = np.nan
     flags = np.concatenate([one.flags for one in found])
     table, columns = ImpactTable(rows, flags, impacts.asked(model)), _columns(unknown)
     if arguments.csv:
@@ -73,7 +76,7 @@ def _run(unknown: str, arguments: argparse.Namespace) -> None:
         ]
         print(json.dumps([*itertools.chain(*rows_of)], indent=2))
     else:
-        band = next(one.band for one in found if one.band)
+        band = max((one.band for one in found if one.band), key=bands.unknown)
         said = (
             f"68 %: a {unknown} in this range has the COR that was asked in the band of "
             f"{bands.meaning(band)}{bands.left_out(band, model.pair)}."

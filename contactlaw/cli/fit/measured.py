@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactlaw.cli.parts import columns, quantities
+from contactlaw._content import LARGEST_TEXT, content_of
+from contactlaw.cli.parts import columns, quantities, wording
 from contactlaw.cli.parts.columns import TextColumn
-from contactlaw.cli.parts.quantities import FORCE, LENGTH, SHARE, SPEED, TIME
+from contactlaw.cli.parts.quantities import FORCE, SHARE, SPEED, TIME
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.measurements import INPUTS
 
@@ -25,15 +26,12 @@ _KINDS = {
     "spin": (("spin", "rebound_spin", "angular_velocity"), quantities.SPIN),
 }
 _ERRORS = ("error", "standard_error", "std", "sd", "sigma", "uncertainty")
-_BEADS = ("", "bead_", "ball_", "sphere_", "particle_")
 _COLUMNS = {
     "speed": TextColumn(columns.SPEEDS, SPEED),
     "angle": TextColumn(("angle", "impact_angle", "angle_of_incidence"), quantities.ANGLE),
     "sliding_speed": TextColumn(("sliding_speed", "tangential_speed"), SPEED),
     "friction": TextColumn(("friction", "coefficient_of_friction", "mu"), quantities.FRICTION),
-    "radius": TextColumn(tuple(f"{of}radius" for of in _BEADS), LENGTH),
-    "diameter": TextColumn(tuple(f"{of}diameter" for of in _BEADS), LENGTH),
-    "thickness": TextColumn(("thickness", "plate_thickness"), LENGTH),
+    **columns.SIZES,
     **{field: TextColumn(names, quantity) for field, (names, quantity) in _KINDS.items()},
     **{
         f"{field}_error": TextColumn(
@@ -90,12 +88,8 @@ def read(path: str | os.PathLike[str]) -> Read:
     >>> found.columns["restitution"], found.unused, found.empty
     (array([0.91]), ('No',), [3])
     """
-    path = Path(path)
-    content = columns.content_of(path)
-    try:
-        return _read(content)
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
+    with wording.reading(path):
+        return _read(content_of(Path(path), LARGEST_TEXT))
 
 
 def _read(content: bytes) -> Read:
@@ -131,10 +125,7 @@ def _read(content: bytes) -> Read:
         name: values / one.per_unit
         for (name, one), values in zip(found.items(), table.T, strict=True)
     }
-    if "diameter" in picked:
-        if "radius" in picked:
-            raise ValueError("columns of radius and of diameter: leave one out")
-        picked["radius"] = picked.pop("diameter") / 2.0
+    columns.halve_diameters(picked)
     measured = np.any([~np.isnan(picked[kind]) for kind in _KINDS if kind in picked], axis=0)
     if not measured.any():
         raise ValueError("none of its rows has a number in a column of what is measured")

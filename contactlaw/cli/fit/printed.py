@@ -30,7 +30,8 @@ def text(found: Fit, lines: list[int]) -> Iterator[str]:
         _, size = scale_of(max(abs(found.values[name]), found.errors[name]), UNKNOWNS[name].unit)
         data, model = found.statistical_errors[name] / size, found.model_errors[name] / size
         yield f"{UNKNOWNS[name].title:{width}s}  {_number(found, name)}"
-        yield f"{'':{width}s}  of it {rounded(data)} from the data, {rounded(model)} from the model"
+        by_law = rounded(model) if np.isfinite(model) else "nothing known"
+        yield f"{'':{width}s}  of it {rounded(data)} from the data, {by_law} from the model"
     for n, name in enumerate(found.unknown):
         for m in range(n):
             yield f"correlation of {found.unknown[m]} and {name}: {found.correlation[n, m]:.2f}"
@@ -79,7 +80,7 @@ def record(found: Fit) -> dict[str, Any]:
         "values": found.values,
         "errors": found.errors,
         "statistical_errors": found.statistical_errors,
-        "model_errors": found.model_errors,
+        "model_errors": {k: e if e < np.inf else None for k, e in found.model_errors.items()},
         "units": {name: UNKNOWNS[name].unit for name in found.unknown},
         "correlation": found.correlation.tolist(),
         "alternatives": list(found.alternatives),

@@ -12,6 +12,8 @@ from string import Template
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._escaped import c_comment, line
+
 Array = NDArray[np.float64]
 
 _FLUENT = Template("""\
@@ -80,7 +82,7 @@ def fluent(about: str, version: str, angle: Array, normal: Array, tangential: Ar
     """Write a user-defined function; angles rise and are from the wall [deg]."""
     rows = zip(angle, normal, tangential, strict=True)
     table = ",\n".join(f"    {{{a:.10g}, {n:.6g}, {t:.6g}}}" for a, n, t in rows)
-    return _FLUENT.substitute(about=about, version=version, rows=angle.size, table=table)
+    return _FLUENT.substitute(about=c_comment(about), version=version, rows=angle.size, table=table)
 
 
 def acusolve(about: str, version: str, speed: Array, normal: Array, tangential: Array) -> str:
@@ -89,4 +91,4 @@ def acusolve(about: str, version: str, speed: Array, normal: Array, tangential: 
         name: "\n".join(f"        {v:.10g}, {e:.6g} ;" for v, e in zip(speed, values, strict=True))
         for name, values in (("normal", normal), ("tangential", tangential))
     }
-    return _ACUSOLVE.substitute(about=about, version=version, **columns)
+    return _ACUSOLVE.substitute(about=line(about), version=version, **columns)

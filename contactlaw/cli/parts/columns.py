@@ -9,13 +9,12 @@ import math
 import re
 import tokenize
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.cli.parts.quantities import Quantity
+from contactlaw.cli.parts.quantities import LENGTH, Quantity
 
 Array = NDArray[np.float64]
 
@@ -24,7 +23,7 @@ _UNIT = re.compile(r"\d\s*([^\W\d]|%)")
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 _SPEED = "speed", "approach_speed", "normal_speed", "impact_speed"
 SPEEDS = (*_SPEED, *(name.replace("speed", "velocity") for name in _SPEED), "v")
-_MISSING = ("", "n/a", "na", "nan", "none", "-")  # cells of what was not measured
+_MISSING = ("", "n/a", "n.a.", "na", "nan", "none", "-")  # cells of what was not measured
 
 
 class TextColumn(NamedTuple):
@@ -34,25 +33,19 @@ class TextColumn(NamedTuple):
     quantity: Quantity | None  # None for bare numbers
 
 
+_BEADS = ("", "bead_", "ball_", "sphere_", "particle_")
+SIZES = {
+    "radius": TextColumn(tuple(f"{of}radius" for of in _BEADS), LENGTH),
+    "diameter": TextColumn(tuple(f"{of}diameter" for of in _BEADS), LENGTH),
+    "thickness": TextColumn(("thickness", "plate_thickness"), LENGTH),
+}
+
+
 class Located(NamedTuple):
     """Index of a column, and the number of its units in one SI unit."""
 
     place: int
     per_unit: float  # values are divided by this, which rounds only once
-
-
-def content_of(path: Path) -> bytes:
-    """Read a file that a user names; a device might never end.
-
-    Examples
-    --------
-    >>> content_of(Path("/dev/zero"))
-    Traceback (most recent call last):
-    ValueError: /dev/zero: it is a device, not a file
-    """
-    if path.is_char_device() or path.is_block_device():
-        raise ValueError(f"{path}: it is a device, not a file")
-    return path.read_bytes()
 
 
 def saved(content: bytes) -> NDArray[np.void]:
@@ -104,7 +97,8 @@ def split_table(content: bytes) -> tuple[list[str], list[str], str]:
             raise ValueError("neither text in UTF-8") from None
         lines = content.decode("cp1252", "replace").splitlines()  # of Windows, for µ
     below = next((n for n, line in enumerate(lines) if not line.startswith("#")), 0)
-    head = below if re.search("[^\\W\\d]", lines[below]) else 0  # numpy's names are a comment
+    words = re.sub(r"\d[eE][-+]?\d|nan|inf", "", lines[below])
+    head = below if re.search(r"[^\W\d]", words) else 0  # numpy's names are a comment
     delimiter = next((mark for mark in "\t;" if mark in lines[head]), ",")
     names = [name.strip() for name in _fields(lines[head].lstrip("#"), delimiter)]
     rows = ["" if line.isspace() or line.startswith("#") else line for line in lines[1:]]
@@ -143,6 +137,14 @@ def locate(names: Sequence[str], columns: dict[str, TextColumn]) -> dict[str, Lo
                 )
             found[field] = Located(n, _per_unit(head, unit, column.quantity))
     return found
+
+
+def halve_diameters(picked: dict[str, Array]) -> None:
+    """Put radii in the place of a column of diameters."""
+    if "diameter" in picked:
+        if "radius" in picked:
+            raise ValueError("columns of radius and of diameter: leave one out")
+        picked["radius"] = picked.pop("diameter") / 2.0
 
 
 def nearest(head: str, columns: Mapping[str, TextColumn]) -> str:

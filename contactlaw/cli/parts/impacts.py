@@ -14,6 +14,7 @@ from typing import NamedTuple, TextIO
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._escaped import cell, line
 from contactlaw._jit import switched_off
 from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.rated import solver
@@ -67,7 +68,7 @@ class ImpactTable:
     columns : dict of str to ndarray
         For normal impacts speed, radius, thickness, the fields of a `Rebound` except its flags,
         and the yield speed, which is inf if nothing yields or an impact at yield is outside the
-        table.
+        table. Ends of a range that is not known are NaN: "-", an empty cell or null.
     flags : ndarray of int64
         `Validity` limits that an impact exceeds.
     asked : dict of str to str
@@ -101,9 +102,8 @@ def in_words(asked: dict[str, str]) -> str:
     """
     sphere, plate, law, *_ = asked.values()
     sizes = [(*name.split("_"), value) for name, value in [*asked.items()][3:]]
-    return ", ".join(
-        [f"{sphere} on {plate}, law {law}", *(f"{name} {one} {unit}" for name, unit, one in sizes)]
-    )
+    words = (f"{name} {one} {unit}" for name, unit, one in sizes)
+    return line(", ".join([f"{sphere} on {plate}, law {law}", *words]))
 
 
 def tabulate(
@@ -224,7 +224,7 @@ def _cells(table: ImpactTable, column: Column) -> Iterator[str]:
     if not column.to:
         return (f"{value:.4g}" for value in values)
     ends = zip(values, table.columns[column.to] * column.scale, strict=True)
-    return (f"{low:.3g}-{high:.3g}" for low, high in ends)
+    return ("-" if math.isnan(low) else f"{low:.3g}-{high:.3g}" for low, high in ends)
 
 
 def aligned(columns: Sequence[Sequence[str]]) -> Iterator[str]:
@@ -278,9 +278,10 @@ def write_csv(table: ImpactTable, out: TextIO, columns: Sequence[Column] = COLUM
     writer = csv.writer(out, lineterminator="\n")
     names = [f"{column.name}_{column.unit}" if column.unit else column.name for column in columns]
     writer.writerow([*names, *table.asked, "flags"])
-    values = (column.tolist() for column in table.columns.values())
+    shown = (np.where(np.isnan(one), "", one.astype(object)) for one in table.columns.values())
+    values = (column.tolist() for column in shown)
     flags = ("|".join(flag_names(value)) for value in table.flags)
-    said = table.asked.values()
+    said = [cell(value) for value in table.asked.values()]
     writer.writerows([*row, *said, last] for *row, last in zip(*values, flags, strict=True))
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -22,29 +21,6 @@ LISTS = (
     "Several are a list, 1,5,10, or a range start:stop:count, 0.1:10:50, with logarithmic steps "
     "0.1:10:50log; every combination of speeds, radii and thicknesses is an impact."
 )
-
-
-_NEGATIVE = re.compile(r"-(?:\.?\d|inf)")
-
-
-def joined(words: Iterable[str]) -> list[str]:
-    """Join an option with a negative quantity that follows it.
-
-    argparse takes -1 for a number but -1mm for an option. The reader of the quantity decides
-    whether it may be negative.
-
-    Examples
-    --------
-    >>> joined(["cor", "--thickness", "-1mm", "--csv"])
-    ['cor', '--thickness=-1mm', '--csv']
-    """
-    found: list[str] = []
-    for word in words:
-        if found and _NEGATIVE.match(word) and re.fullmatch("--[a-z-]+", found[-1]):
-            found[-1] += f"={word}"
-        else:
-            found.append(word)
-    return found
 
 
 def command(commands: Any, name: str, about: str, run: Run) -> argparse.ArgumentParser:

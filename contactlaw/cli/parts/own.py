@@ -48,14 +48,16 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
     try:
         if "=" not in text:
             return find(text, own)
-        given: dict[str, object] = {"name": text}
+        given: dict[str, object] = {}
+        if first := re.split(r"\w+\s*=", text, maxsplit=1)[0].strip(" \t\n,;"):
+            raise ValueError(f"{first!r} has no key: write KEY=..., one of {', '.join(_READERS)}")
         for key, word in _NUMBER.findall(text):
             if key not in _READERS:
                 near = difflib.get_close_matches(key, _READERS, n=1)
                 hint = f"did you mean {near[0]}? " if near else ""
                 raise ValueError(f"unknown {key!r}; {hint}known: {', '.join(_READERS)}")
             field, read = _READERS[key]
-            if field in given and key != "name":
+            if field in given:
                 raise ValueError(f"{text!r} has {key} twice: leave one out")
             given[field] = found = read(word)
             least, likely = _LIKELY.get(key, (0.0, ""))
@@ -63,6 +65,6 @@ def material_of(option: str, text: str, own: Mapping[str, Material]) -> Material
                 wording.print_warning(f"{key}={word} is {word} {likely}?")
         if missing := [key for key in ("E", "nu", "rho") if _READERS[key][0] not in given]:
             raise ValueError(f"{text!r} lacks {' and '.join(missing)}, as in {wording.OWN}")
-        return Material(**given)  # type: ignore[arg-type]
+        return Material(**{"name": text} | given)  # type: ignore[arg-type]
     except ValueError as error:
         raise wording.Refused(f"--{option}: {wording.sentence(error, ())}") from error

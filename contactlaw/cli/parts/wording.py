@@ -96,6 +96,18 @@ def check_suffix(name: str, path: str | os.PathLike[str], suffixes: Sequence[str
 
 
 @contextmanager
+def reading(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Name the file whose content is refused, or makes its reader fail in a way not foreseen."""
+    try:
+        yield
+    except (OSError, ImportError):  # these name the file, or the package that is missing
+        raise
+    except Exception as error:  # readers of damaged files raise errors of many types
+        what = "" if isinstance(error, ValueError) else f"cannot read it: {type(error).__name__}: "
+        raise Refused(f"{path}: {what}{error}") from error
+
+
+@contextmanager
 def file_of(option: str, path: str | os.PathLike[str]) -> Iterator[None]:
     """Name the option and the file that could not be written.
 

@@ -30,8 +30,9 @@ from contactlaw.engines.lammps.memory import (
 from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import warn_of_metres
-from contactlaw.stepping import WallContacts
+from contactlaw.stepping import Trouble, WallContacts
 from contactlaw.stepping.friction import check_friction
+from contactlaw.stepping.plate_rows import SOLID
 from contactlaw.walls.frame import Wall
 from contactlaw.walls.plate import Models, by_type, check_models
 
@@ -165,10 +166,8 @@ def _checked(walls: Any, models: Any, types: int) -> tuple[list[Wall], dict[int,
                     f"plates: have a model for atom type {kind}, for which attach() got none; give "
                     f"them a dict of models for the atom types {sorted(own)}"
                 )
-            if (model.force_law.family, model.pair.sphere) != (
-                beads.force_law.family,
-                beads.pair.sphere,
-            ):
+            one, two = ((m.force_law.family, m.pair.sphere) for m in (model, beads))
+            if one != two:
                 raise ValueError(
                     f"plates: {model!r} is for another law or other beads than {beads!r}; plates "
                     "may differ in their own material only"
@@ -210,17 +209,12 @@ def _check_simulation(lmp: lammps) -> None:
                 f"lmp: has a {kind} {name!r} already: detach() the plates that it belongs to, or "
                 "give yours another name"
             )
-    if lmp.has_id("group", HISTORY) and _members(lmp, HISTORY):  # a restart brings an empty one
-        raise RuntimeError(f"lmp: has a group {HISTORY!r} with beads in it; give it another name")
-
-
-def _members(lmp: lammps, group: str) -> int:
-    """Count the beads of a group, on all ranks."""
-    name = f"{HISTORY}_error"
-    lmp.command(f"variable {name} equal count({group})")
-    count = int(lmp.extract_variable(name))
-    lmp.command(f"variable {name} delete")
-    return count
+    if lmp.has_id("group", HISTORY):  # a restart brings an empty one
+        lmp.command(f"variable {HISTORY}_error equal count({HISTORY})")
+        members = lmp.extract_variable(f"{HISTORY}_error")
+        lmp.command(f"variable {HISTORY}_error delete")
+        if members:
+            raise RuntimeError(f"lmp: has a group {HISTORY!r} with beads in it; rename it")
 
 
 def _remove(lmp: lammps) -> None:
@@ -268,6 +262,7 @@ class LammpsPlates:
         )
         self._fixes: list[str] = []
         self._warned: set[str] = set()
+        self._check_masses()
         self._warn_of_walls()
         try:
             self._install()
@@ -278,12 +273,27 @@ class LammpsPlates:
         for name in _WRAPPED:
             setattr(lmp, name, self._wrapped(name, getattr(lmp, name)))
 
+    def _beads(self, name: str) -> NDArray[Any]:
+        """Read a number of each bead on this rank, in LAMMPS's units."""
+        n = self._lmp.extract_setting("nlocal")  # LAMMPS may have no array for no bead
+        return self._lmp.numpy.extract_atom(name)[:n] if n else np.zeros(0, dtype=int)
+
     def _largest_radius(self) -> float:
         """Radius of the largest bead on all ranks so far [m]."""
-        here = self._lmp.extract_setting("nlocal")
-        radius = self._lmp.numpy.extract_atom("radius")[:here] if here else np.zeros(1)
-        length = _UNITS[self._lmp.extract_global("units")][0]
-        return float(max(self._comm.allgather(float(radius.max())))) * length
+        length, largest = _UNITS[self._lmp.extract_global("units")][0], self._beads("radius")
+        return float(max(self._comm.allgather(float(largest.max(initial=0.0))))) * length
+
+    def _check_masses(self) -> None:
+        """Refuse beads that are no solid spheres of their model's material; all ranks call it."""
+        length, _, unit = _UNITS[self._lmp.extract_global("units")]
+        rows = self._contacts.scene.plate_rows[self._beads("type") - 1, 0]
+        mass, radius = unit * self._beads("rmass"), length * self._beads("radius")
+        solid = np.where(rows["law"] != 0, rows["mass"], np.nan) * radius**3
+        wrong = np.flatnonzero(np.abs(mass - solid) > SOLID * solid)[:1]
+        step, bead = self._lmp.extract_global("ntimestep"), self._beads("id")
+        said = [message(Trouble.WRONG_MASS, step, bead[i], -1, mass[i], solid[i]) for i in wrong]
+        for found in filter(None, self._comm.allgather(said)):
+            raise ValueError(found[0])
 
     def _install(self) -> None:
         """Make the adapter's parts in LAMMPS; a restart file may have left contacts there."""
@@ -310,15 +320,9 @@ class LammpsPlates:
         """Fill the memory that the C function reads."""
         locate = _c_function(self._lmp, "lammps_extract_global", ctypes.c_void_p, 2)
         handle = ctypes.cast(self._lmp.lmp, ctypes.c_void_p).value
-        self._names = {
-            field: ctypes.create_string_buffer(name.encode())
-            for field, name in (
-                *((name, name) for name in ("v", "f", "radius", "rmass", "type")),
-                *((name, name) for name in ("omega", "torque", "elapsed")),
-                ("history", f"d2_{HISTORY}"),
-                ("last", f"d_{_LAST}"),
-            )
-        }
+        names = {name: name for name in "v f radius rmass type omega torque elapsed".split()}
+        names |= {"history": f"d2_{HISTORY}", "last": f"d_{_LAST}"}
+        self._names = {k: ctypes.create_string_buffer(name.encode()) for k, name in names.items()}
         shared = np.zeros(1, SHARED)
         shared["lammps"] = handle
         for function in ("extract_atom", "get_thermo", "is_running"):
@@ -464,8 +468,7 @@ class LammpsPlates:
         """Return the contact state of this rank's beads, with the spare rows, and their IDs."""
         spare = self._lmp.extract_setting("nmax")
         history = self._lmp.numpy.extract_atom(f"d2_{HISTORY}", nelem=spare) if spare else None
-        n = self._lmp.extract_setting("nlocal")
-        return None if history is None else (history, self._lmp.numpy.extract_atom("id")[:n])
+        return None if history is None else (history, self._beads("id"))
 
     def _clear_marks(self) -> list[int]:
         """Remove the error marks, so that the next run goes on; return this rank's marked beads."""

@@ -42,7 +42,7 @@ from contactlaw.stepping import Bead, Clock, Trouble, interact
 from contactlaw.stepping.bead import touches
 from contactlaw.stepping.contact import CONTACT, STATUS, WallScene
 from contactlaw.stepping.friction import FRICTION
-from contactlaw.stepping.plate_rows import PLATE_ROW
+from contactlaw.stepping.plate_rows import PLATE_ROW, SOLID, solid_mass
 from contactlaw.walls.frame import FACET, FRAME
 from contactlaw.walls.grid import MARGIN
 from contactlaw.walls.memory import array_at, carray
@@ -50,7 +50,7 @@ from contactlaw.walls.motion import move
 from contactlaw.walls.surface import OVERLAP, ROOM, box, near
 
 _SAME = 1e-6  # largest relative change of a radius or a mass that counts as rounding
-_EVERY = 100  # steps between searches for beads that fly further than their radius in a step
+_EVERY = 100  # steps between looks at all beads, which happen in the first step of a run, too
 
 _pointer: Any = types.CPointer
 _SIGNATURE = types.void(
@@ -70,11 +70,11 @@ def _head(history: Any, i: int) -> Any:
 
 
 @kernel
-def _look_for_jumps(
+def _look_at_all(
     shared: Any, clock: Clock, step: int, scene: WallScene, tags: Any, v: Any, radius: Any,
-    history: Any, last: Any,
+    mass: Any, kind: Any, history: Any, last: Any,
 ) -> None:  # fmt: skip
-    """Report beads that could jump through a wall in one step, or that have another radius now.
+    """Report beads that could jump through a wall in one step, or of another radius or density.
 
     A new bead in the row of a removed one does not inherit the last COR.
     """
@@ -94,6 +94,11 @@ def _look_for_jumps(
             # `_check_sphere` misses a bead that has become so small that no wall is near it.
             mark_error(shared, step, tags[i], head, RESIZED, -1, size, head.radius)
             _forget(history[i])
+        if head.owner != tags[i] or head.radius == 0.0:  # `_check_sphere` has the others
+            solid = solid_mass(scene.plate_rows[kind[i] - 1, 0], size)
+            if abs(shared.mass * mass[i] - solid) > SOLID * solid:
+                code = Trouble.WRONG_MASS.value
+                mark_error(shared, step, tags[i], head, code, -1, shared.mass * mass[i], solid)
 
 
 @kernel
@@ -156,10 +161,8 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
         return
     length, seconds = shared.length, shared.time
     dt = array_at(shared.dt, 1, np.float64)[0] * seconds
-    time, at_step = (
-        array_at(shared.atime, 1, np.float64),
-        array_at(shared.atimestep, 1, np.int64),
-    )
+    time = array_at(shared.atime, 1, np.float64)
+    at_step = array_at(shared.atimestep, 1, np.int64)
     before = shared.before if shared.before > 0.0 else dt
     if advancing:
         shared.before = dt
@@ -188,26 +191,20 @@ def _each_step(memory: Any, step: int, n: int, tags: Any, positions: Any, forces
     if shared.friction > 0.0:
         torque = matrix_at(extract(shared, shared.torque), n, 3)
         sliding = shared.places
-    if step % _EVERY == 0:
-        _look_for_jumps(shared, clock, step, scene, tags, v, radius, history, last)
+    if step % _EVERY == 0 or not advancing:
+        _look_at_all(shared, clock, step, scene, tags, v, radius, mass, kind, history, last)
     x, force = carray(positions[0], (n, 3)), matrix_at(extract(shared, shared.f), n, 3)
     per, status, loads = length / seconds, scene.status[0], np.zeros((2, 3))
     x0, y0, z0, x1, y1, z1 = box(scene.frames)
     for i in range(n):
-        centre, reach = (
-            (x[i, 0] * length, x[i, 1] * length, x[i, 2] * length),
-            MARGIN * radius[i] * length,
-        )
-        if (
-            centre[2] > z1 + reach
-            or centre[2] < z0 - reach
-            or centre[0] > x1 + reach
-            or centre[0] < x0 - reach
-            or centre[1] > y1 + reach
-            or centre[1] < y0 - reach
+        centre = x[i, 0] * length, x[i, 1] * length, x[i, 2] * length
+        reach = MARGIN * radius[i] * length
+        if not (
+            z0 - reach <= centre[2] <= z1 + reach
+            and x0 - reach <= centre[0] <= x1 + reach
+            and y0 - reach <= centre[1] <= y1 + reach
+            and near(scene.frames, centre, radius[i] * length)
         ):
-            continue
-        if not near(scene.frames, centre, radius[i] * length):
             continue
         row, head = history[i], _head(history, i)
         if head.owner != tags[i]:

@@ -44,7 +44,7 @@ def draw(run: Run) -> Figure:
         values = [column(hits) for _, hits in walls]
         whole = np.concatenate(values)
         ends = np.quantile(whole, [0.002, 0.998]) if whole.size else (0.0, 1.0)
-        edges = np.linspace(ends[0] if least is None else least, most or ends[1], bins)
+        edges = np.sort(np.linspace(ends[0] if least is None else least, most or ends[1], bins))
         axes.hist([one.clip(edges[0], edges[-1]) for one in values], list(edges), stacked=True,
                   label=[name for name, _ in walls], color=_COLOURS[: len(walls)],
                   edgecolor="white", linewidth=0.3)  # fmt: skip

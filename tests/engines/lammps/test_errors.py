@@ -3,6 +3,7 @@
 import math
 import re
 
+import lammps_box as box
 import numpy as np
 import pytest
 from lammps_box import (
@@ -53,6 +54,17 @@ def test_impacts_that_are_refused(model, position, speed, dt, commands, words):
     lmp, _ = scene(model, None, position, (0, 0, -speed), dt=dt)
     with pytest.raises(RuntimeError, match=words):
         lmp.commands_string(f"{commands}\nrun 5000")
+
+
+def test_a_density_that_is_a_little_off_is_seen_before_any_impact(model):
+    """By `attach`, and in the first step: not when such a bead comes to a wall, hours later."""
+    far = above(0.02)
+    with pytest.raises(ValueError, match="bead 1 at step 0: density: its mass is 2.69488e-06 kg"):
+        scene(model, position=far, density=1.004 * box.DENSITY)
+    lmp, _ = scene(model, position=[ABOVE, far])
+    lmp.command(f"set atom 2 density {1.004 * box.DENSITY}")
+    with pytest.raises(RuntimeError, match="bead 2 at step 0: density: its mass is 2.69488e-06 kg"):
+        lmp.command("run 0")
 
 
 def test_a_bead_that_is_put_down_on_a_plate(model):
@@ -133,7 +145,7 @@ def test_an_error_is_told_once_whatever_lammps_says(model):
     """The error is raised once even if LAMMPS fails after it, and the records are kept."""
     lmp, walls = scene(model, None, [ABOVE, above(1e-6, x=0.02), above(x=0.03)])
     lmp.command("set atom 3 density 900")
-    with pytest.raises(RuntimeError, match="bead 3 on plate 0.*density"):
+    with pytest.raises(RuntimeError, match="bead 3 at step 0: density"):
         lmp.commands_string("run 230\nno_such_command")
     assert walls.collisions()["bead"].tolist() == [2]
     lmp.command("print hi")

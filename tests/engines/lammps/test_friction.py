@@ -23,9 +23,8 @@ def slid(model, thickness, speed, steps):
     dt = float(model.solve(speed, R, thickness).contact_time) / steps
     places = [above(3.3 * dt * speed, x=0.008 * n - 0.036) for n in range(PSI.size)]
     along = np.column_stack((PSI * MU * speed, 0 * PSI, -speed + 0 * PSI))
-    lmp, _ = scene(model, [flat(thickness)], places, along, friction=MU, dt=dt)
-    # the model's mass, which is not that of the box's beads for another pair
-    lmp.command(f"set group all density {model.pair.sphere.density}")
+    density = model.pair.sphere.density
+    lmp, _ = scene(model, [flat(thickness)], places, along, friction=MU, dt=dt, density=density)
     lmp.command(f"run {int(1.2 * steps) + 8}")
     now = state(lmp)
     assert (now["v"][:, 2] > 0).all()
@@ -105,8 +104,11 @@ def test_the_record_accounts_for_all_energy(motion):
     places = [
         above(2e-6, x=0.01 * (n % 10) - 0.045, y=0.01 * (n // 10) - 0.045) for n in range(count)
     ]
-    lmp, plates = scene(model, [flat(1e-3, motion=motion)], places, start, friction=0.3, dt=5e-8)
-    lmp.commands_string(f"set group all density {model.pair.sphere.density}\nrun 0")
+    lmp, plates = scene(
+        model, [flat(1e-3, motion=motion)], places, start, friction=0.3, dt=5e-8,
+        density=model.pair.sphere.density,
+    )  # fmt: skip
+    lmp.command("run 0")
     spin = lmp.numpy.extract_atom("omega")[:count]
     spin[:] = generator.normal(size=(count, 3)) * 3.0 / R
     mass = lmp.numpy.extract_atom("rmass")[0]

@@ -27,3 +27,10 @@ def test_drops_are_those_of_the_solver(model):
         assert row["other_energy"] / energy == pytest.approx(hit.other_fraction, abs=3e-3)
         assert box.lost(row) == pytest.approx(energy * (1 - row["restitution"] ** 2), rel=1e-9)
         assert row["flags"] == hit.flags
+
+
+def test_no_slip_is_larger_than_coulomb_allows():
+    bead = {"radius": 1e-3, "density": 1200, "friction": 0.3, "dt": 2e-7}
+    _, now = box.dropped(polymer.WEAK_MODEL, [box.flat(5e-3)], (0, 0, 1.1e-3), (5, 0, -3), **bead)
+    x, _, z = now["v"][0]
+    assert 0.29 * (3.0 + z) < 5.0 - x < 0.3 * (3.0 + z) * (1.0 + 1e-9)

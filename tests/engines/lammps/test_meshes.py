@@ -238,6 +238,9 @@ def test_files_are_read(tmp_path, kind, binary):
     else:
         options = {} if kind != "ply" else {"encoding": "binary" if binary else "ascii"}
         sphere.export(path, **options)
+    if kind == "stl":  # as some programs write it
+        content = path.read_bytes()
+        path.write_bytes(content + b"\0\0" if binary else content.replace(b"endsol", b"End Sol"))
     mesh = Mesh.read(path, 2e-3, scale=1e-3)
     assert mesh.area.sum() == pytest.approx(sphere.area * 1e-6, rel=1e-6)
     assert len(mesh.triangles) == len(sphere.faces) and mesh.dropped == 0
@@ -248,7 +251,7 @@ def test_files_that_are_no_mesh(tmp_path):
     with pytest.raises(FileNotFoundError, match="path: no file.*gone.stl"):
         Mesh.read(tmp_path / "gone.stl", 1e-3)
     wrong = tmp_path / "wrong.stl"
-    wrong.write_text("hello")
+    wrong.write_text("solid\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nvertex 1 x\nendsolid")
     with pytest.raises(ValueError, match="path: .*wrong.stl. is no mesh that trimesh reads"):
         Mesh.read(wrong, 1e-3)
     with pytest.raises(ValueError, match="scale: must be positive"):
