@@ -7,7 +7,7 @@ import textwrap
 from collections.abc import Sequence
 
 from contactlaw.emit.c import C, Variables
-from contactlaw.emit.types import INT, Array, Row, Struct, Type, Value, traced
+from contactlaw.emit.types import INT, Array, Struct, Type, Value, traced
 
 _WIDTH = 100
 HELPERS = """const $min = (one, other) => other < one ? other : one;
@@ -16,9 +16,9 @@ const $copysign = (x, sign) => sign < 0 || 1 / sign < 0 ? -Math.abs(x) : Math.ab
 
 
 class JavaScript(C):
-    """JavaScript; NamedTuples are objects, tuples arrays, arrays of numbers Float64Arrays.
+    """JavaScript without rows; NamedTuples are objects, tuples arrays, arrays Float64Arrays.
 
-    Names begin with $, so that no variable hides them. what Math lacks is in `HELPERS`.
+    Names begin with $, so that no variable hides them; what Math lacks is in `HELPERS`.
     """
 
     reserved = frozenset("arguments await case catch class const debugger default delete do enum "
@@ -54,10 +54,6 @@ class JavaScript(C):
         names, types = zip(*kind.members, strict=True)
         return f"{text}[{sum(map(traced, types[: names.index(name)]))}]"
 
-    def row_member(self, text: str, name: str) -> str:
-        """Read a member of a row, an object."""
-        return f"{text}.{name}"
-
     def call(self, name: str, texts: Sequence[str]) -> str:
         """Call a function of mathematics."""
         return f"{'$' if name == 'copysign' else 'Math.'}{name}({', '.join(texts)})"
@@ -89,10 +85,6 @@ class JavaScript(C):
         return [f"{name}.fill({value}, 0, {size});"]
 
     def structure(self, kind: Struct, said: str | None, comments: dict[str, str]) -> str:
-        """Declare nothing."""
-        return ""
-
-    def row(self, kind: Row) -> str:
         """Declare nothing."""
         return ""
 

@@ -88,32 +88,25 @@ def for_curve(pair: Bodies, speed: float, radius: float, thickness: float) -> Im
 
 
 @kernel
-def limits_at(pair: Bodies, page: Page, speed: float, radius: float) -> Limits:
-    """Limits of the model at the strength of an impact."""
-    if pair.levels is None:
-        return pair.limits
-    place = strength.place_at(pair.levels, speed, pair.unit.scale * radius)
-    n = min(int(place), page.limits.shape[0] - 2)
-    a, b, s = page.limits[n], page.limits[n + 1], place - n
-    near = b if s > 0.5 else a
-    # of two that are inf the limit is NaN, which is not exceeded either
-    share, deepest = a[7] + s * (b[7] - a[7]), a[8] + s * (b[8] - a[8])
-    bending = a[9] + s * (b[9] - a[9])
-    return Limits(
-        near[0], near[1], int(near[2]), int(near[3]), near[4], near[5], near[6], share, deepest,
-        bending, near[10], int(near[11]),
-    )  # fmt: skip
-
-
-@kernel
 def flags(
     pair: Bodies, page: Page, hit: Impact, speed: float, radius: float, thickness: float
 ) -> int:
-    """Limits of the model that an impact exceeds."""
+    """Limits of the model that an impact exceeds, at its own strength."""
+    limits, units = pair.limits, numbers_of(pair, speed, radius, thickness)
+    if pair.levels is not None:
+        place = strength.place_at(pair.levels, speed, pair.unit.scale * radius)
+        n = min(int(place), page.limits.shape[0] - 2)
+        a, b, s = page.limits[n], page.limits[n + 1], place - n
+        near = b if s > 0.5 else a
+        # of two that are inf the limit is NaN, which is not exceeded either
+        share, deepest = a[7] + s * (b[7] - a[7]), a[8] + s * (b[8] - a[8])
+        limits = Limits(
+            near[0], near[1], int(near[2]), int(near[3]), near[4], near[5], near[6], share,
+            deepest, a[9] + s * (b[9] - a[9]), near[10], int(near[11]),
+        )  # fmt: skip
     return flags_of(
-        limits_at(pair, page, speed, radius), radius, thickness,
-        numbers_of(pair, speed, radius, thickness).compression, hit.contact_time,
-        hit.peak_compression, hit.peak_force,
+        limits, radius, thickness, units.compression, hit.contact_time, hit.peak_compression,
+        hit.peak_force,
     )  # fmt: skip
 
 
