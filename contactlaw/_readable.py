@@ -99,6 +99,17 @@ def percent(share: float, digits: int = 2) -> str:
     return f"{rounded(100.0 * share, digits) if share else 0} %"
 
 
+def relative(error: float, form: str = ".1%") -> str:
+    """Write a relative error of at least -1; beyond 1000 % its digits mean nothing.
+
+    Examples
+    --------
+    >>> relative(0.44), relative(-0.01, "+z.2%"), relative(float("inf"))
+    ('44.0%', '-1.00%', '>1000%')
+    """
+    return format(error, form) if error <= 10.0 else ">1000%"
+
+
 def _exponent(size: float) -> int:
     return int(f"{size:e}".partition("e")[2])
 

@@ -34,7 +34,8 @@ class Constant:
         Energy that the wall dissipates in total with this COR, over that with each impact's own
         COR, minus 1 [-]; 0 where the energy is kept.
     rebound_error
-        Relative error of the rebound height that 95 % of the impacts do not exceed [-].
+        Relative error of the rebound height that 95 % of the impacts do not exceed [-]; infinite
+        where more of them do not rebound at all, but with the constant would.
     mean, mean_energy_error
         The plain mean of the CORs, and the `energy_error` of that [-].
     impacts
@@ -106,6 +107,7 @@ def _energy_error(one: float, e: Array, energy: Array) -> float:
 
 
 def _rebound_error(one: float, e: Array, share: Array) -> float:
-    height = np.maximum(e**2, np.finfo(float).tiny)
-    errors = np.abs(one**2 - e**2) / height
+    height, off = e**2, np.abs(one**2 - e**2)
+    with np.errstate(over="ignore"):
+        errors = np.divide(off, height, out=np.where(off > 0.0, np.inf, 0.0), where=height > 0.0)
     return float(np.quantile(errors, _BEADS, weights=share, method="inverted_cdf"))

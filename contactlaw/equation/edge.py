@@ -185,8 +185,8 @@ def longest(edges: Edges | None) -> float:
 
 
 @kernel
-def settles(edges: Edges | None, n: int, stays: bool, restitution: float) -> bool:
-    """Whether the plate takes what is left: of a sphere that stays, or has no speed of its own.
+def settles(edges: Edges | None, n: int, stays: bool, possible: bool) -> bool:
+    """Whether the plate takes what is left: of a sphere that stays, or of an impossible rebound.
 
     A sphere that stays is flagged as struck again.
     """
@@ -194,7 +194,7 @@ def settles(edges: Edges | None, n: int, stays: bool, restitution: float) -> boo
         return False
     if stays:
         edges.again[n] = 1.0
-    return stays or not 0.0 < restitution < 1.0
+    return stays or not possible
 
 
 @kernel

@@ -168,7 +168,7 @@ def _follow(
     for steps in range(1, MAX_STEPS):
         trial, error = _step(contact, leg, kind, state, h, scale)
         if event == NONE:
-            if error > 1.0:
+            if not error <= 1.0:  # NaN, too: the step was so long that it overflowed
                 h *= max(0.2, 0.9 / math.sqrt(math.sqrt(error)))  # pow is slower than a step
                 continue
             if loading and trial.dq < 0.0:

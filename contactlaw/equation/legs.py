@@ -71,9 +71,9 @@ def force_on(leg: Leg, kind: int, law: Array, q: float) -> float:
         return (leg.c0 + leg.c1 * q) + (q * q) * (leg.c2 + leg.c3 * q)
     if kind == POWER:
         return force.power_force(leg.c3, leg.exponent, q)
-    k = leg.first
     # a trial step may pass the end of a loading leg: the next piece of the law goes on there
-    while q >= force.start_of(law, k + 1) and (k < leg.last or leg.part == _LOADING):
+    k, last = leg.first, int(law[force.PIECES]) - 1 if leg.part == _LOADING else leg.last
+    while k < last and q >= force.start_of(law, k + 1):
         k += 1
     return force.piece_force(law, k, q)
 

@@ -34,8 +34,8 @@ Array = NDArray[np.float64]
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 OK, TOO_MANY_STEPS, BAD_INPUT, NOT_FOUND = range(4)  # status of a solution
 MESSAGES = {
-    TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; the plate is far thinner than the model allows",
-    BAD_INPUT: "lambda must be finite and >= 0, the yield compression finite and > 0",
+    TOO_MANY_STEPS: f"more than {MAX_STEPS} steps; thickness is far below what the model allows",
+    BAD_INPUT: "lambda must be >= 0, the yield compression > 0, both of a size that can be",
     NOT_FOUND: "the yield compression of an impact that just yields was not found",
 }
 # How far `_integrate` goes, and where it notes points.
@@ -89,6 +89,8 @@ def _integrate(
             one = follow_impact(goal, law, lam[n], y[n], rtol, notes, n, edges)
             for k in range(len(one)):
                 out[k, n] = one[k]
+                if out[0, n] == OK and not abs(one[k]) < math.inf:
+                    out[0, n] = BAD_INPUT
 
 
 @kernel
@@ -124,10 +126,10 @@ def follow_impact(
         ends = event != TIME and (event != LEVEL or level == leg.level)
         if ends:
             turns = loading and (event == integrator.TURN or state.dq <= 0.0)
-            going = not (event == integrator.NONE or (event == LEVEL and legs.is_last(leg)))
+            going = longest < MAX_STEPS and not (event == LEVEL and legs.is_last(leg))
             here = noted if going else marks
         if turns:
-            top, going = state, goal != TO_THE_TOP
+            top, going = state, going and goal != TO_THE_TOP
             here = marks // 2 if goal == _AT_COMPRESSIONS else noted
         for k in range(noted, here):
             notes.time[n, k], notes.speed[n, k] = state.t / scale.t, state.u / scale.u
@@ -153,13 +155,14 @@ def follow_impact(
     dm = top.q * top.q
     residual, plastic, other = losses.at_the_contact(law, dm)
     lost = losses.shares(plastic, state.work, other, contact.plate.mobility, scale.u)
-    rebound = min(max(-state.u / scale.u, 0.0), 1.0)  # a step's error may put it outside
+    most = 1.0 if edges is None else math.sqrt(max(1.0 - lost.plastic - lost.other, 0.0))
+    rebound = min(max(-state.u / scale.u, 0.0), most)  # a step's error may put it outside
     wave_rate = 2.0 * scale.t * state.work.wave / scale.u**2
     # the plate has what the sphere still has, or what the fit of its response is off by
-    if edge.settles(edges, n, stays, rebound):
-        wave = 1.0 - rebound * rebound - lost.plastic - lost.other
+    if edge.settles(edges, n, stays, 0.0 < rebound < most and wave_rate >= 0.0):
+        wave = max(1.0 - rebound * rebound - lost.plastic - lost.other, 0.0)
         lost = Losses(lost.plastic, wave, lost.other)
-        wave_rate = lost.wave / lam
+        wave_rate = wave / lam if lam > 0.0 else 0.0
     return Solution(
         float(OK if longest < MAX_STEPS else TOO_MANY_STEPS),
         float(total),

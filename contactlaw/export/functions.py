@@ -140,7 +140,8 @@ def bodies_of(
 ) -> Bodies:
     """Numbers of a model's pair, and of tables by the logarithm of the strength.
 
-    Tables have nine decimals, and laws by strength nine digits: they err by more than that.
+    Tables have nine decimals, those of several strengths six, and laws by strength nine digits:
+    they err by more than that.
     """
     pair, law = model.pair, model.force_law
     levels = strength.levels_of(pair, law, step)
@@ -148,7 +149,8 @@ def bodies_of(
     for own, one in nodes.values():
         table = lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
         table = table[: int(table[lookup.OTHERS_AT])].copy()  # COR alone
-        table[int(table[lookup.COR_AT]) :] = table[int(table[lookup.COR_AT]) :].round(9)
+        splines = table[int(table[lookup.COR_AT]) :]
+        splines[:] = splines.round(9 if len(nodes) == 1 else 6)
         tables.append(table)
     starts = np.cumsum([0.0, *(one.size for one in tables)])[:-1]
     return Bodies(

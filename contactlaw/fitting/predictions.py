@@ -22,6 +22,7 @@ from contactlaw.equation.tangential import POINT
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting
 from contactlaw.laws import Law
+from contactlaw.physical.arguments import check
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
@@ -147,7 +148,8 @@ class Predictor:
 
 
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
-    """Integrate rebounds of any bodies, without a table."""
+    """Integrate rebounds of any bodies that `ImpactModel` takes, without a table."""
+    check(speed=speed, radius=at.radius, thickness=at.thickness)
     own = dataclasses.replace(law_for_pair(at.pair, law), from_pair=law.from_pair)
     backend = solver(SphereOnPlate(at.pair, own), _RTOL)
     given = Impacts(speed, at.radius, at.thickness, speed.shape)

@@ -6,6 +6,7 @@ import html
 
 import numpy as np
 
+from contactlaw._readable import relative
 from contactlaw.report import page
 from contactlaw.report.limits import exceeded, limits_lines
 from contactlaw.report.run import CAUSES, Run, WallRow, by_cause
@@ -59,8 +60,8 @@ def _impacts(wall: WallRow) -> tuple[str, ...]:
     low, middle, high = np.quantile(rows["restitution"], [0.05, 0.5, 0.95])
     return (
         wall.name, f"{rows.size}", f"{np.median(rows['approach_speed']):.3g} m/s", f"{middle:.3f}",
-        f"{low:.3f}-{high:.3f}", f"{best.restitution:.4f}", f"{best.rebound_error:.1%}",
-        f"{best.mean_energy_error:+z.1%}",
+        f"{low:.3f}-{high:.3f}", f"{best.restitution:.4f}", relative(best.rebound_error),
+        relative(best.mean_energy_error, "+z.1%"),
     )  # fmt: skip
 
 

@@ -648,10 +648,10 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     outside = 0
     for n in range(out.inelasticity.size):
         x = out.inelasticity[n] / (out.inelasticity[n] + table[STRETCH])
-        inside_x = min(x, table[X_MAX])
+        inside_x = x if 0.0 <= x <= table[X_MAX] else table[X_MAX]  # also where lambda is infinite
         log_w = log_elastic(table, inside_x)
         log_chi = log_w - math.log(out.yield_ratio[n])
-        inside_chi = min(log_chi, table[LOG_CHI_MAX])
+        inside_chi = log_chi if log_chi <= table[LOG_CHI_MAX] else table[LOG_CHI_MAX]
         if not (inside_x == x and inside_chi == log_chi):
             outside += 1
             if not clamp:

@@ -105,8 +105,8 @@ def change(slides: Array, x: float, log_chi: float, e: float, psi: float) -> flo
     place = size * kappa
     if place > 1.0:
         place = 1.0 + (size - 1.0 / kappa) / _range(kappa, e)
-    if place >= 2.0:
-        return math.copysign(full, psi)
+    if not place < 2.0:
+        return math.copysign(full, psi) if place >= 2.0 else math.nan
     second = place > 1.0
     along = (place - 1.0 if second else math.sqrt(place)) * (_NODES - 1)
     cell = min(int(along), _NODES - 2)

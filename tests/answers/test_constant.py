@@ -90,6 +90,14 @@ def test_a_loss_of_a_rounding_has_no_error(e):
     assert (best.energy_error, best.mean_energy_error) == (0.0, 0.0)
 
 
+@pytest.mark.parametrize("e, error", [([0.0, 0.2], math.inf), ([1e-170, 0.1], math.inf),
+                                      ([0.0, 0.0], 0.0)])  # fmt: skip
+def test_a_height_of_nothing_has_no_finite_error(e, error):
+    one = np.ones(2)
+    best = constant(one, one, one, np.array(e), np.zeros(2, dtype=int), "energy")
+    assert best.rebound_error == error
+
+
 def drops(model, speed, radius):
     """Rebound speeds of beads that fly at a plate in pymunk."""
     space = pymunk.Space()

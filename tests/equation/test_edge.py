@@ -214,6 +214,13 @@ def test_few_steps_answer_as_the_integrator(y):
         assert np.abs(found - wanted.restitution).max() < 1e-3
 
 
+def test_a_plate_gives_no_more_energy_than_it_was_given():
+    """Its fitted response drives a force by up to 1e-4: right at a supported edge, all it does."""
+    one = solved(MYC, np.full(1, 3.0), np.full(1, 0.1), near("supported", 0.2, 2.5e5))
+    assert one.wave_fraction[0] >= 0.0
+    assert one.restitution[0] ** 2 + one.plastic_fraction[0] == pytest.approx(1.0, abs=1e-7)
+
+
 def test_a_plate_that_comes_back_presses_harder_than_the_impact():
     """The largest force of such a contact is the second one; it is on the loading curve again."""
     edges = near("clamped", 0.3, 0.25)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracle import ALL_LAWS, RATIO, impact, impact_of, yield_ratio
+from oracle import ALL_LAWS, FEM, RATIO, impact, impact_of, yield_ratio
 from scipy.integrate import quad, solve_ivp
 from staying import STAYING
 
@@ -128,6 +128,13 @@ def test_linear_branch_is_an_oscillator():
     peak = math.exp(-damping * t) * (x0 * math.cos(omega * t) + b * math.sin(omega * t)) + shift
     one = zener.solve(laws.law("myc").data, lam, y, 1e-12)
     assert one.peak_compression == pytest.approx(peak, rel=1e-10)
+
+
+@pytest.mark.parametrize("law", [*ALL_LAWS, FEM], ids=lambda law: law.name)
+def test_absurd_impacts_end_with_a_status_or_with_numbers(law):
+    for lam, y in (1.0, 1e-90), (1e200, 1e-200), (5e20, 1.49e7), (1e300, 1e300):
+        one = zener.solve(law.data, lam, y, 1e-9)
+        assert one.status != zener.OK or np.isfinite(one).all()
 
 
 @pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)

@@ -10,8 +10,8 @@ from scipy import stats
 
 import contactlaw as cl
 from contactlaw.fitting import doubts
-from contactlaw.fitting.predictions import Predictor, Values
-from contactlaw.fitting.unknowns import parameters
+from contactlaw.fitting.predictions import Predictor, Values, impacts
+from contactlaw.fitting.unknowns import Setting, parameters
 from contactlaw.physical.scaling import law_of
 
 DOUBT = re.compile(r"trend with|times (above|below) that|fit better|above 1:|no \w+ gives")
@@ -114,6 +114,13 @@ def test_what_no_thickness_gives_is_refused_with_what_is_attainable():
     with pytest.raises(cl.UnidentifiedError, match=words):
         cl.fit(STEEL, one, "thickness")
     assert said(STEEL, one | {"restitution": half_space - 0.01}, "thickness") == ""
+
+
+def test_foils_are_refused_before_they_are_integrated():
+    """A product of thickness and density was sought down to 0.45 um, with lambda up to 4e96."""
+    sizes = np.array([1e-3]), np.array([4.53e-7])
+    with pytest.raises(ValueError, match="R/H = 2208"):
+        impacts(Setting(ALUMINA, *sizes), law_of(ALUMINA, "fem"), np.array([400.0]))
 
 
 def test_a_restitution_above_one_is_named_by_its_rebound():

@@ -84,6 +84,13 @@ def test_the_constant_is_that_of_the_model(run):
         assert found.flags == best.flags
 
 
+def test_a_rebound_of_next_to_nothing_has_no_long_number(run):
+    rows = run[1].collisions()[:2]
+    rows["restitution"] = 0.0, 0.3
+    rows["plate"], rows["thickness"], rows["kind"] = 0, 0.5e-3, 0
+    assert summary.impacts(Run(rows, ""))[1][6] == ">1000%"
+
+
 @pytest.mark.parametrize("beads", [1, 5])
 def test_contacts_on_one_flat_plate_have_room(beads):
     space = make_space()

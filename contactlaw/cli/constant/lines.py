@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from contactlaw._escaped import line
+from contactlaw._readable import relative
 from contactlaw._version import VERSION
 from contactlaw.answers.backend import OutsideTableError
 from contactlaw.answers.constant import Constant, Keep, constant
@@ -133,8 +134,8 @@ def _head(mark: str, model: ImpactModel, found: list[Wall], keep: Keep) -> Itera
         best = wall.best
         yield (
             f"{mark} wall{n}, {_name(wall)}: {best.impacts} impacts, COR {best.restitution:.6g}, "
-            f"spread {best.spread:.4f}, energy {best.energy_error:+z.2%} (mean "
-            f"{best.mean_energy_error:+z.2%}), rebound {best.rebound_error:.1%}"
+            f"spread {best.spread:.4f}, energy {relative(best.energy_error, '+z.2%')} (mean "
+            f"{relative(best.mean_energy_error, '+z.2%')}), rebound {relative(best.rebound_error)}"
         )
         for flag, count in best.flags.items():
             (words,) = explain(flag)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._escaped import cell
-from contactlaw._readable import rounded
+from contactlaw._readable import relative
 from contactlaw.answers.constant import Constant, Keep
 from contactlaw.cli.constant.records import PlannedImpacts
 from contactlaw.cli.parts import wording
@@ -106,10 +106,10 @@ def text(found: list[Wall], keep: Keep) -> Iterator[str]:
             ["impacts", "[-]", *(f"{one.impacts}" for one in best)],
             ["COR", "[-]", *(f"{one.restitution:.4f}" for one in best)],
             ["spread", "[-]", *(f"{one.spread:.4f}" for one in best)],
-            ["energy", "[%]", *(f"{100 * one.energy_error:z.2f}" for one in best)],
-            ["rebound", "[%]", *(rounded(100.0 * one.rebound_error, 3) for one in best)],
+            ["energy", "[%]", *(relative(one.energy_error, "z.2%")[:-1] for one in best)],
+            ["rebound", "[%]", *(relative(one.rebound_error)[:-1] for one in best)],
             ["mean", "[-]", *(f"{one.mean:.4f}" for one in best)],
-            ["energy", "[%]", *(f"{100 * one.mean_energy_error:z.2f}" for one in best)],
+            ["energy", "[%]", *(relative(one.mean_energy_error, "z.2%")[:-1] for one in best)],
             ["flags", "", *(", ".join(str(flag.name) for flag in one.flags) for one in best)],
         ]
     )

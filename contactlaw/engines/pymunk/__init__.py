@@ -10,7 +10,8 @@ Impacts
     bead that hits more slowly is back within about a step, and a pile would give an endless series
     of such hops; their contacts rest: restitution 0, never passed to the model, not recorded but
     counted in ``resting``. A shaken plate adds its acceleration to ``|g|``. Separation is no
-    impact, nor is a contact of a ``sensor``.
+    impact, nor is a contact of a ``sensor``. Where beads touch, a contact that
+    separates while its neighbours hit has a restitution of 1, as less could add energy.
 Beads and plates
     A bead is a circle, a plate a segment or a polygon, whose sides are faces of one plate. Where
     plates share an end or a corner, a bead hits the nearest of them, or of equally near ones the

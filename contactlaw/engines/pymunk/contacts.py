@@ -60,6 +60,7 @@ class Contacts:
         self.error: BaseException | None = None
         self.stranger: str | None = None
         self._resting_speed = 0.0
+        self._anew = 0.0  # contacts that approach more slowly do not rest [m/s]
         self._fall = 0.0, 0.0  # change of the velocity in free fall in this step [m/s]
         self._rubbing: dict[int, Rubbing] = {}  # by row of the record
 
@@ -69,6 +70,7 @@ class Contacts:
         self._fall = gx * dt, gy * dt
         self._rubbing.clear()
         self._resting_speed = max(RESTING * math.hypot(gx, gy) * dt, ROUNDING * reach / dt)
+        self._anew = -self._resting_speed if gx or gy else math.inf
         self.time += dt
         self.steps += 1
 
@@ -194,10 +196,19 @@ class Contacts:
         bead.ceded[plate.index] = self.steps
 
     def _rest(self, arbiter: pymunk.Arbiter, speed: float) -> None:
-        """Let a contact rest that is too slow for an impact."""
-        arbiter.restitution = 0.0
-        if speed > 0.0:  # at other speeds the bodies separate or stay together
+        """Let a contact rest that is too slow for an impact, or separate.
+
+        The contacts of one step add the energy sum(j (1 - e) u) / 2, with their impulses j >= 0
+        and speeds u of separation before. An e of 1 where u > 0 makes that no gain, whatever the
+        restitution of the others: neighbours may turn a contact round that separates.
+        """
+        if speed > 0.0:
+            arbiter.restitution = 0.0
             self.resting += 1
+        else:
+            arbiter.restitution = 1.0
+        if speed < self._anew:
+            _begin_anew(arbiter)
 
     def _slide(
         self,
@@ -321,6 +332,7 @@ class Contacts:
                 f"restitution must lie in [0, 1], the model gave {restitution!r} {where}"
             )
         arbiter.restitution = restitution
+        _begin_anew(arbiter)
         return restitution
 
     def _describe(self, bead: BeadShape, other: BeadShape | PlateShape, speed: float) -> str:
@@ -348,6 +360,17 @@ def _call(
         raise overridden(_types(arbiter), "restitution", arbiter.restitution)
     if answered and arbiter.friction != friction:
         raise overridden(_types(arbiter), "friction", arbiter.friction)
+
+
+def _begin_anew(arbiter: Any) -> None:
+    """Let the solver find the impulse of a contact from 0, in this step and in the next.
+
+    It would begin with that of the step before. That suits a contact that rests, but an impact is
+    over then, and what is left of its impulse after the last iteration adds energy.
+    """
+    contact = arbiter._arbiter.contacts[0]  # a circle has no other
+    contact.jnAcc = contact.jtAcc = 0.0
+    contact.hash += 1  # the impulse goes to a contact of the same hash
 
 
 def _types(arbiter: pymunk.Arbiter) -> tuple[int, int]:

@@ -150,6 +150,61 @@ def test_separation_is_left_alone():
     assert len(impacts.collisions()) == impacts.resting == 0
 
 
+@pytest.mark.parametrize("between", [False, True], ids=["chain", "between plates"])
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+@pytest.mark.parametrize("iterations", [1, 10, 100])
+def test_beads_that_touch_gain_no_energy(iterations, friction, between):
+    """Whatever the COR of each impact; some contacts separate while their neighbours hit."""
+    rng = np.random.default_rng(3)
+    starts = [([R] * 4, [3.633, -0.1, 0.173, -2.974])]
+    starts += [
+        (R * rng.uniform(0.4, 1, n % 9 + 2), rng.uniform(-4, 4, n % 9 + 2)) for n in range(27)
+    ]
+    for radii, speeds in starts:
+        space = make_space(0.0)
+        space.iterations = iterations
+        ends = [sum(radii[:n]) * 1.9998 for n in range(len(radii) + 1)]
+        beads = [
+            make_bead(space, (x + r, 0), (v, friction * rng.uniform(-4, 4)), r)
+            for x, r, v in zip(ends, radii, speeds, strict=False)
+        ]
+        plates = [make_plate(space, (x, -1), (x, 1)) for x in (ends[0], ends[-1]) if between]
+        for shape in beads + plates:
+            shape.friction = friction
+        room.registered(space, Stub(lambda speed: speed * 1e6 % 1), beads, plates)
+        energy = [sum(bead.body.kinetic_energy for bead in beads)]
+        for _ in range(8):
+            space.step(1e-7)
+            energy.append(sum(bead.body.kinetic_energy for bead in beads))
+            assert energy[-1] <= energy[-2] * (1 + EXACT)
+
+
+def test_a_dense_box_gains_no_energy():
+    rng, space = np.random.default_rng(3), make_space(0.0)
+    d, w, h = 2.04 * R, 18.36 * R, 14.28 * R
+    ends = ((0, 0), (w, 0)), ((0, h), (w, h)), ((0, 0), (0, h)), ((w, 0), (w, h))
+    speeds = enumerate(rng.normal(0, 2, (63, 2)).tolist())
+    beads = [make_bead(space, ((n % 9 + 0.5) * d, (n // 9 + 0.5) * d), v) for n, v in speeds]
+    room.registered(space, Stub(0.9), beads, [make_plate(space, a, b) for a, b in ends])
+    energy = math.inf
+    for _ in range(400):
+        space.step(2e-5)
+        before, energy = energy, sum(bead.body.kinetic_energy for bead in beads)
+        assert energy <= before * (1 + EXACT)
+
+
+def test_a_column_of_beads_comes_to_rest():
+    space = make_space()
+    beads = [make_bead(space, (0, (2 * n + 1) * R)) for n in range(40)]
+    sides = ((-R, 0), (R, 0)), ((-1.001 * R, 0), (-1.001 * R, 1)), ((1.001 * R, 0), (1.001 * R, 1))
+    plates = [make_plate(space, a, b) for a, b in sides]
+    impacts = room.registered(space, Stub(0.9), beads, plates)
+    room.steps(space, 800)
+    assert impacts.collisions()["time"].max() < 0.5 * impacts.time
+    assert max(abs(bead.body.velocity.y) for bead in beads) < 0.1 * G * DT
+    assert beads[-1].body.position.y == pytest.approx(79 * R, abs=0.1 * R)
+
+
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 0.95])
 def test_bouncing_ends_in_rest(restitution):
     model = Stub(restitution)

@@ -1,0 +1,80 @@
+"""No kernel reads outside its arrays, whatever floats it gets: run as Python, indices checked."""
+
+import importlib
+import pkgutil
+from functools import partial
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from oracle import ALL_LAWS, FEM
+
+from contactlaw import equation
+from contactlaw.equation import edge, few_steps, force, integrator, legs, outcome, tangential, zener
+from contactlaw.physical.responses import response_of
+from contactlaw.table import file, lookup, slides
+
+PARTS = [f"{equation.__name__}.{one.name}" for one in pkgutil.iter_modules(equation.__path__)]
+MODULES = [lookup, *map(importlib.import_module, PARTS)]
+READ = {"law", "table", "response", "r"}  # arrays in which floats lead to places
+READING = {
+    kernel: [*kernel.py_func.__annotations__.items()][:-1]
+    for kernel in (kernel for module in MODULES for kernel in vars(module).values())
+    if hasattr(kernel, "py_func") and READ & kernel.py_func.__annotations__.keys()
+}
+INNER = "following", "locate", "cor_at"  # take a leg that has ended, or a place in the table
+FLOATS = st.sampled_from([np.nan, np.inf, 0.5, 1.5]) | st.floats()
+CALLED = set()
+
+
+class Strict(np.ndarray):
+    def __getitem__(
+        self, key
+    ):  # Python counts negative indices from the end, machine code does not
+        assert isinstance(key, slice | tuple) or key >= 0, f"index {key} is negative"
+        return super().__getitem__(key)
+
+
+LAWS = [law.data.view(Strict) for law in (*ALL_LAWS, FEM)]
+TABLE = file.packaged(ALL_LAWS[3]).packed.view(Strict)
+EDGE = response_of("free", 0.3).view(Strict)
+
+
+def attempt(data):
+    many = data.draw(arrays(float, (20, 3, 4), elements=FLOATS, fill=st.nothing())).view(Strict)
+    law = LAWS[data.draw(st.integers(0, len(LAWS) - 1))]
+    for row in many[12:].reshape(8, 12):
+        curve, loads = force.unloading(law, row[0]), bool(row[2] > 0.0)
+        leg = legs.up_again(law, row[1]) if loads else legs.first_down(law, curve, row[1])
+        known = {"law": law, "table": TABLE, "response": EDGE, "kind": leg.kind}
+        typed = {"Array": many[0, 0], "Outcome": outcome.at(*many[1, :2]), "bool": loads}
+        typed |= {"Extremes": outcome.extremes(4), "UnloadingCurve": curve, "Leg": leg}
+        for kernel, hints in READING.items():
+            given = [known.get(n, typed.get(t, x)) for (n, t), x in zip(hints, row, strict=False)]
+            if all({n, t} & {*known, *typed, "float"} for n, t in hints):
+                kernel.__name__ in INNER or run(kernel, *given)
+    many[:8, :, 0] = 0.4  # an ordinary impact beside three others
+    edges, notes = edge.Edges(np.tile(EDGE, (4, 1)), *many[2]), zener.Notes(*many[3:8, :2].mT)
+    for goal, near in ((0, None), (1, None), (1, edges), (2, edges), (3, None)):
+        zener._integrate(goal, law, *many[0, :2], 1e-3, notes, np.empty((12, 4)), near)
+    tangential.slide_all(law, many[0, 0], many[1, 0, 0], outcome.History(*many[8:12]), many[2], 3)
+
+
+def run(kernel, *arguments):
+    CALLED.add(kernel)
+    return kernel.py_func(*arguments)
+
+
+def test_no_float_leads_out_of_an_array(monkeypatch):
+    for module in MODULES:
+        monkeypatch.setattr(module, "math", np, raising=False)  # gives inf where math raises
+        for name, kernel in list(vars(module).items()):
+            if hasattr(kernel, "py_func"):
+                monkeypatch.setattr(module, name, partial(run, kernel))
+    for module, most in ((integrator, "MAX_STEPS"), (zener, "MAX_STEPS"), (few_steps, "_MOST")):
+        monkeypatch.setattr(module, most, 12)
+    with np.errstate(all="ignore"):
+        settings(max_examples=15, deadline=None, derandomize=True)(given(st.data())(attempt))()
+    assert READING.keys() == CALLED & READING.keys()
+    assert np.isnan(slides.change.py_func(np.ones(64), 0.5, 0.0, 0.5, np.nan))
