@@ -145,4 +145,4 @@ class Program:
     def text(self) -> str:
         """Definitions of all constants, structures and functions."""
         defined = [self.language.define(name, text) for name, text in self.constants.items()]
-        return "\n\n".join(["\n".join(defined), *self.parts])
+        return "\n\n".join(["\n".join(defined), *filter(None, self.parts)])

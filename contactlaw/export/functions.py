@@ -135,14 +135,16 @@ STEP = 0.15  # of ln(strength) between two laws of a pair with a rate
 SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 
 
-def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]]) -> Bodies:
+def bodies_of(
+    model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]], step: float = STEP
+) -> Bodies:
     """Numbers of a model's pair, and of tables by the logarithm of the strength.
 
     Tables have nine decimals, those of several strengths six, and laws by strength nine digits:
     they err by more than that.
     """
     pair, law = model.pair, model.force_law
-    levels = strength.levels_of(pair, law, STEP)
+    levels = strength.levels_of(pair, law, step)
     tables = []
     for own, one in nodes.values():
         table = lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
