@@ -29,9 +29,11 @@ class C:
     Structures are made by functions, since a literal of one is not C++.
     """
 
-    reserved = frozenset("auto char const double else enum extern float goto int long near far "
-                         "register short signed static struct switch union unsigned void "
-                         "both class delete new operator private public template this".split())  # fmt: skip
+    reserved = frozenset(
+        "auto both char class const delete double else enum extern far float goto int long near "
+        "new operator private public register short signed static struct switch template this "
+        "union unsigned void".split()
+    )
 
     def __init__(self, prefix: str = "contactlaw_") -> None:
         self._prefix = prefix

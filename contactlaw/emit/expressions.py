@@ -9,7 +9,7 @@ import math
 import operator
 from collections.abc import Callable
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -29,9 +29,6 @@ from contactlaw.emit.types import (
     traced,
 )
 
-if TYPE_CHECKING:
-    from contactlaw.emit.program import Program
-
 # Operators: how they are written, how tightly they bind, and what they do to known numbers.
 OPERATORS: dict[type, tuple[str, int, Callable[[Any, Any], Any]]] = {
     ast.Add: ("+", 8, operator.add), ast.Sub: ("-", 8, operator.sub),
@@ -46,7 +43,7 @@ OPERATORS: dict[type, tuple[str, int, Callable[[Any, Any], Any]]] = {
 class Expressions:
     """Expressions in the body of a kernel, with the types of its variables."""
 
-    def __init__(self, program: Program, python: Callable[..., Any], first: int) -> None:
+    def __init__(self, program: Any, python: Callable[..., Any], first: int) -> None:
         self._program, self._language = program, program.language
         self._python, self._first = python, first
         self._scope = python.__globals__ | inspect.getclosurevars(python)._asdict()["builtins"]
@@ -238,7 +235,7 @@ class Expressions:
         return Value(INT, f" {sign} ".join(one.within(3) for one in kept), binds)
 
     def _call(self, node: ast.Call) -> Value:
-        called = self.value(node.func).known
+        called: Any = self.value(node.func).known
         if called in (np.zeros, np.empty):
             size = node.args[0]
             parts = size.elts if isinstance(size, ast.Tuple) else [size]
@@ -260,9 +257,9 @@ class Expressions:
         by_name = {one.arg: self.value(one.value) for one in node.keywords}
         if isinstance(called, type) and hasattr(called, "_fields"):
             defaults = {n: self._program.constant(v) for n, v in called._field_defaults.items()}
-            parts = defaults | dict(zip(called._fields, values, strict=False)) | by_name
-            texts = [parts[name].text for name in called._fields]
-            members = tuple((name, parts[name].type) for name in called._fields)
+            given = defaults | dict(zip(called._fields, values, strict=False)) | by_name
+            texts = [given[name].text for name in called._fields]
+            members = tuple((name, given[name].type) for name in called._fields)
             kind = self._program.struct(called, members)
             return Value(kind, self._language.make(kind, texts))
         if not inspect.isfunction(getattr(called, "py_func", called)):

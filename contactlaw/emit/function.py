@@ -8,7 +8,7 @@ import math
 import re
 import textwrap
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from contactlaw.emit.expressions import OPERATORS, Expressions
 from contactlaw.emit.types import (
@@ -24,19 +24,15 @@ from contactlaw.emit.types import (
     traced,
 )
 
-if TYPE_CHECKING:
-    from contactlaw.emit.program import Program
-
 
 class Function(Expressions):
-    """A kernel and the types of its arguments; statements are lists of lines."""
+    """A kernel of a `Program` and the types of its arguments; statements are lists of lines."""
 
-    def __init__(
-        self, program: Program, python: Callable[..., Any], types: tuple[Type, ...]
-    ) -> None:
+    def __init__(self, program: Any, python: Callable[..., Any], types: tuple[Type, ...]) -> None:
         lines, first = inspect.getsourcelines(python)
         super().__init__(program, python, first)
-        self._node: Any = ast.parse(textwrap.dedent("".join(lines))).body[0]
+        self._node: Any
+        (self._node,) = ast.parse(textwrap.dedent("".join(lines))).body
         self._parameters = [one.arg for one in self._node.args.args]
         left = python.__defaults__ or ()
         left = left[len(left) + len(types) - len(self._parameters) :]

@@ -124,7 +124,7 @@ def plain_exp(x: float) -> float:
 
 
 # What is quick in compiled Python by other ways than those of a language's library.
-INSTEAD = {
+INSTEAD: dict[Any, Any] = {
     lookup.log_and_root: plain_log_and_root,
     lookup.series_at: series_of,
     lookup.exp: plain_exp,

@@ -114,6 +114,7 @@ def yield_growth(levels: Array, place: float) -> float:
 
 @kernel
 def law_at(levels: Array, at: int) -> tuple[float, Array]:
+    """Yield compression over that of the first level, and law, of the level that begins there."""
     return levels[at], levels[at + 1 : at + int(levels[ROOM])]
 
 
