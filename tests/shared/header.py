@@ -22,7 +22,7 @@ double time_of(double v, double r, double h) { return contactlaw_rebound(v, r, h
 double drops(double v, double r, double h)
 {
     const contactlaw_spring spring = contactlaw_spring_of(r, h);
-    const double dt = contactlaw_rebound(v, r, h).contact_time / 40.0;
+    const double dt = contactlaw_numbers_of(&spring, v).time / 12.0;
     contactlaw_state state = CONTACTLAW_APART;
     double x = -0.3 * v * dt, u = v;
     int n;
@@ -55,7 +55,7 @@ double rubs(double v, double r, double h)
 {
     const double normal[3] = { 0.0, 0.0, 1.0 }, velocity[3] = { 0.5, 0.1, -v };
     const contactlaw_spring spring = contactlaw_spring_of(r, h);
-    const double dt = contactlaw_rebound(v, r, h).contact_time / 40.0;
+    const double dt = contactlaw_numbers_of(&spring, v).time / 12.0;
     contactlaw_state state = CONTACTLAW_APART;
     contactlaw_sliding sliding = CONTACTLAW_STILL;
     int n;

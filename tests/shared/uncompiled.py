@@ -1,8 +1,8 @@
-"""What C has to give to the last bit: the kernels of the header, run as Python.
+"""What C has to give to the last bit: the kernels of `export.functions`, run as Python.
 
 ``python uncompiled.py IN OUT`` reads pickled bodies and impacts, a row each of speed, radius,
-thickness, kind and distance of an edge, friction and time step, and writes an array of `answers`
-for each body. Numba has to be switched off.
+thickness, kind and distance of an edge, friction and time step, and writes a row of `answers` for
+each impact. Numba has to be switched off.
 """
 
 import pickle
@@ -42,8 +42,7 @@ def answers(pair, v, r, h, edge, distance, mu, dt):
 if __name__ == "__main__":
     np.seterr(all="ignore")
     with open(sys.argv[1], "rb") as file:
-        pairs, impacts = pickle.load(file)
+        pair, impacts = pickle.load(file)
     # numpy's numbers give inf for a division by zero, as C and compiled kernels do
-    given = np.array(impacts)
-    made = [[answers(functions.Bodies(*pair), *one) for one in given] for pair in pairs]
+    made = [answers(functions.Bodies(*pair), *one) for one in np.array(impacts)]
     np.save(sys.argv[2], np.array(made, dtype=float))
