@@ -18,6 +18,7 @@ LAYERS = [
     {"_version"},
     {"_folder", "_atomic", "_content", "_escaped", "_readable", "parser", "style"},
     {"_jit"},
+    {"emit"},  # kernels in other languages; knows none of them
     {"equation"},  # no units
     {"laws"},
     {"table"},
@@ -48,7 +49,8 @@ FILES = {
                  "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
                 "doubts", "fit"],
-    "export": ["c_header", "liggghts_wall", "web_page"],
+    "emit": ["types", "c", "javascript", "expressions", "function", "program"],
+    "export": ["functions", "page_functions", "c_header", "liggghts_wall", "web_page"],
     "report": ["limits", "gallery", "page", "surface", "run", "summary", "charts", "figures",
                "files"],
     "engines": ["record", "hdf5", "layout", "needs"],

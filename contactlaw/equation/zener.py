@@ -39,7 +39,7 @@ MESSAGES = {
     NOT_FOUND: "the yield compression of an impact that just yields was not found",
 }
 # How far `_integrate` goes, and where it notes points.
-_TO_THE_TOP, _TO_THE_END, _AT_TIMES, _AT_COMPRESSIONS = range(4)
+TO_THE_TOP, TO_THE_END, AT_TIMES, _AT_COMPRESSIONS = range(4)
 
 
 class Solution(NamedTuple):
@@ -86,7 +86,7 @@ def _integrate(
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
-            one = _impact(goal, law, lam[n], y[n], rtol, notes, n, edges)
+            one = follow_impact(goal, law, lam[n], y[n], rtol, notes, n, edges)
             for k in range(len(one)):
                 out[k, n] = one[k]
                 if out[0, n] == OK and not abs(one[k]) < math.inf:
@@ -94,7 +94,7 @@ def _integrate(
 
 
 @kernel
-def _impact(
+def follow_impact(
     goal: int, law: Array, lam: float, y: float, rtol: float, notes: Notes, n: int,
     edges: Edges | None,
 ) -> Solution:  # fmt: skip
@@ -107,7 +107,7 @@ def _impact(
     stays = False
     while going:
         level, until, loading = leg.level, edge.longest(edges) * scale.t, legs.is_loading(leg)
-        if goal == _AT_TIMES:
+        if goal == AT_TIMES:
             until = notes.at[n, noted] * scale.t
         elif goal == _AT_COMPRESSIONS and loading == (2 * noted < marks):
             mark = math.sqrt(max(notes.at[n, noted] / y - leg.residual, 0.0))
@@ -116,7 +116,7 @@ def _impact(
         high = math.inf
         if edges is not None and not loading:
             high = math.sqrt(top.q * top.q - leg.residual)
-        event, turns, here = TIME, False, noted + (goal >= _AT_TIMES)
+        event, turns, here = TIME, False, noted + (goal >= AT_TIMES)
         if until > state.t:
             state, event, h, steps = integrator.follow(
                 contact, leg, state, h, scale, level, high, until
@@ -129,20 +129,20 @@ def _impact(
             going = longest < MAX_STEPS and not (event == LEVEL and legs.is_last(leg))
             here = noted if going else marks
         if turns:
-            top, going = state, going and goal != _TO_THE_TOP
+            top, going = state, going and goal != TO_THE_TOP
             here = marks // 2 if goal == _AT_COMPRESSIONS else noted
         for k in range(noted, here):
             notes.time[n, k], notes.speed[n, k] = state.t / scale.t, state.u / scale.u
             notes.force[n, k] = state.f * y * math.sqrt(y)
             notes.compression[n, k] = (leg.residual + state.q * state.q) * y
         noted = here
-        if event == TIME and goal != _AT_TIMES:  # the sphere stays on the plate
+        if event == TIME and goal != AT_TIMES:  # the sphere stays on the plate
             stays = True
             break
-        going = going and (goal < _AT_TIMES or noted < marks)
+        going = going and (goal < AT_TIMES or noted < marks)
         if going and ends:
             curve, leg, state = integrator.after(contact, curve, leg, event, state)
-    if goal == _TO_THE_END:
+    if goal == TO_THE_END:
         edge.look_back(
             edges,
             n,
@@ -211,7 +211,7 @@ def failure(status: Array) -> tuple[int, int]:
 
 def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
     """Solve one impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol error per step."""
-    return Solution(*(each.item() for each in _run(_TO_THE_END, law, lam, y, rtol)))
+    return Solution(*(each.item() for each in _run(TO_THE_END, law, lam, y, rtol)))
 
 
 def history(
@@ -224,7 +224,7 @@ def history(
     """
     at = np.ascontiguousarray(np.atleast_2d(time))
     notes = Notes(at, *np.empty((4, *at.shape)))
-    status, n = failure(_run(_AT_TIMES, law, lam, y, rtol, notes, edges=edges).status)
+    status, n = failure(_run(AT_TIMES, law, lam, y, rtol, notes, edges=edges).status)
     if status != OK:
         raise RuntimeError(f"the contact of impact {n} did not solve: {MESSAGES[status]}")
     f, w, u = (each.reshape(time.shape) for each in (notes.force, notes.compression, notes.speed))
@@ -250,7 +250,7 @@ def shape(
     Returns the status of each impact, times [T_H] and speeds [V0]: 2 n of each for n rising shares
     up to 1, first while loading, then back down to 0, separation.
     """
-    top = _run(_TO_THE_TOP, law, lam, y, rtol)
+    top = _run(TO_THE_TOP, law, lam, y, rtol)
     w, left = top.peak_compression[:, None], top.residual_compression[:, None]
     inner, ends = shares[:-1] ** 2, np.full_like(w, math.inf)
     falling = left + (w - left) * inner[::-1]
@@ -267,7 +267,7 @@ def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) ->
     """
     hertz, before = force.is_hertz(law), np.ones(np.size(lam))
     for _ in range(100):
-        found = _run(_TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol, few=few)
+        found = _run(TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol, few=few)
         w_m = found.peak_compression
         moved = ~(abs(w_m - before) < 1e-11 * before)
         if hertz or found.status.any() or not moved.any():
@@ -298,7 +298,7 @@ def solve_all(
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
     y = _scale(out.yield_ratio)
-    one = _run(_TO_THE_END, law, out.inelasticity, y, rtol, few=few, edges=edges)
+    one = _run(TO_THE_END, law, out.inelasticity, y, rtol, few=few, edges=edges)
     if one.status.any():
         return failure(one.status)
     w_m = one.peak_compression.copy()
@@ -321,7 +321,7 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
         return failure(status[which])
     w_m = each[which]
     out.yield_ratio[:] = w_m / overload
-    one = _run(_TO_THE_END, law, out.inelasticity, out.yield_ratio, rtol)
+    one = _run(TO_THE_END, law, out.inelasticity, out.yield_ratio, rtol)
     _put(one, w_m, out)
     return failure(one.status)
 
@@ -334,7 +334,7 @@ def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float, few: boo
 
     def gap(log_chi: Array) -> Array:
         y = w_m / np.exp(log_chi)
-        found = _run(_TO_THE_TOP, law, lam, y, rtol, few=few)
+        found = _run(TO_THE_TOP, law, lam, y, rtol, few=few)
         reached = np.log(found.peak_compression.reshape(y.shape) / (y * dm))
         return np.where(found.status.reshape(y.shape) == OK, reached, math.nan)
 

@@ -48,8 +48,8 @@ function show() {
   const { speed, radius, thickness, angle, friction } = asked;
   const tilt = Math.cos(angle * Math.PI / 180);
   const curve = ([, , low, high], at) => Array.from({ length: 73 }, (_, n) => {
-    const x = low * (high / low) ** (n / 72), one = solve(...at(x), 1e-5, 1e-3);
-    return one ? [x, one.restitution, one.flags] : [x, NaN, 0];
+    const x = low * (high / low) ** (n / 72), question = at(x), one = $for_curve(...question);
+    return [x, one.restitution, one.restitution >= 0 ? $flags(one, ...question) : 0];
   });
   curves = { speed: curve(SLIDERS.speed, (v) => [v * tilt, radius, thickness]),
     thickness: curve(SLIDERS.thickness, (h) => [speed * tilt, radius, h]) };
@@ -91,17 +91,14 @@ function show() {
     + (angle > 0 ? `--angle ${angle} --friction ${friction}` : "--solve");
   redraws.forEach((redraw) => redraw());
 }
+function collide(speed, angle, radius, thickness, friction) { // null for what is refused
+  const { impact, ...oblique } = $collide(speed, angle, radius, thickness, friction);
+  return impact.restitution >= 0 ? { ...impact, ...oblique, radius, thickness } : null;
+}
 function sample(one) { // the contact at even times, as drawHit takes it; the tail of a long one is cut
-  const { path, unit } = one, end = Math.min(path.at(-1).t, 12);
-  const even = (of) => Array.from({ length: 129 }, (_, n) => {
-    const t = n / 128 * end, k = Math.max(path.findIndex((point) => point.t >= t), 1);
-    const [a, b] = [path[k - 1], path[k]];
-    return of(a) + (t - a.t) / (b.t - a.t) * (of(b) - of(a));
-  });
-  Object.assign(one, { duration: end * one.time, model: one.restitution,
-    force: even(({ f }) => f * one.mass * one.speed / one.time),
-    compression: even(({ d }) => d * unit),
-    displacement: even(({ u }) => one.inelasticity * (1 - u) * unit),
+  const path = $shown(one, one.speed, one.radius, one.thickness);
+  Object.assign(one, { duration: path.time.at(-1), model: one.restitution, force: path.force,
+    compression: path.compression, displacement: path.impulse,
     spread: pair.wave_path * Math.min(one.thickness, 4 * one.radius) });
   const most = Math.max(...one.compression.map((d, n) => d + one.displacement[n])) / one.radius;
   larger = Math.max(1, Math.min(0.35 / most, 3 * one.radius / (one.size * one.duration)));
@@ -158,7 +155,7 @@ function drawForce(pen, width, tall) {
   const end = hit.duration * 1e6, up = [0, Math.max(...hit.force) * 1.08], now = bounded(phase, 0, 1);
   const [X, Y] = axes(pen, width, tall, [0, end], up, ["time since touch [µs]", "contact force [N]"]);
   pen.beginPath();
-  hit.force.forEach((f, n) => pen.lineTo(X(n / 128 * end), Y(f)));
+  hit.force.forEach((f, n) => pen.lineTo(X(n / (hit.force.length - 1) * end), Y(f)));
   pen.stroke();
   dot(pen, X(now * end), Y(sampled(hit.force, now)));
 }

@@ -1,7 +1,7 @@
 """One page of a pair of materials for a browser, with sliders; it integrates the law itself.
 
-``impact.js`` has the equation, ``drawing.js`` what the pages of the demo draw with, too, and
-``explore.js`` the page of ``explore.html``. Their constants are those of Python's modules.
+It computes by the package's own kernels, written in JavaScript (`contactlaw.emit`). ``drawing.js``
+has what the pages of the demo draw with, too, and ``explore.js`` the page of ``explore.html``.
 """
 
 from __future__ import annotations
@@ -11,7 +11,6 @@ import html
 import json
 import math
 import os
-import re
 import shlex
 import string
 from importlib import resources
@@ -21,29 +20,27 @@ import numpy as np
 
 from contactlaw import _atomic, laws
 from contactlaw._version import VERSION
-from contactlaw.answers import solver
-from contactlaw.answers.backend import SphereOnPlate
-from contactlaw.answers.rated import Nodes, flow_of, stronger
-from contactlaw.answers.tabulated import Border
-from contactlaw.equation import corrections, force, integrator, tangential
+from contactlaw.answers.rated import stronger
+from contactlaw.emit import DOUBLE, Known, Program
+from contactlaw.emit.javascript import HELPERS, JavaScript
+from contactlaw.export import page_functions
+from contactlaw.export.functions import Bodies, bodies_of
+from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
-from contactlaw.physical import oblique, validity
 from contactlaw.physical.materials import Material, material, materials
-from contactlaw.physical.rate import SHARE
-from contactlaw.physical.scaling import sphere_on_plate, wave_path
+from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.validity import Validity, explain
-from contactlaw.table import lookup, strengths
+from contactlaw.stepping.strength import COUNT, STEP
 
-# Modules whose constants the scripts use; of a name in two of them the last one counts.
-_MODULES = (lookup, oblique, validity, solver, tangential, integrator, corrections, force)
-_CAPITALS = re.compile(r"\b_?[A-Z][A-Z_0-9]+\b")
+# Step of ln(factor) between two laws of a pair with a rate, unless far more numbers follow.
+_STEP, _MOST = 0.025, 120_000
 
 
 def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
     """Write a page for a browser that answers for a pair of materials, without a network.
 
     It has sliders for speed, radius, thickness, angle and friction, curves of the COR, where the
-    energy goes, the force over time and flags. It integrates the law in JavaScript.
+    energy goes, the force over time and flags. It integrates the law.
 
     Parameters
     ----------
@@ -61,10 +58,10 @@ def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
 
     Notes
     -----
-    The COR is within 1e-6 of `ImpactModel.solve`, the sliding speed within 2e-3 of friction times
-    speed of `ImpactModel.oblique`. For a pair whose strength grows with the rate of strain the page
-    has laws at some strengths: the COR is within 3e-5, or 2e-3 beyond the range of the law, and the
-    sliding speed within 4e-3 of friction times speed.
+    The answers are those of `ImpactModel.solve` and `ImpactModel.oblique`. For a pair whose
+    strength grows with the rate of strain the page has laws at some strengths: the COR is within
+    1e-4, and the sliding speed within 1e-3 of friction times speed; 1e-3 and 3e-3 if two bodies'
+    rates differ and the strength grows fourfold. Curves are within 3e-4.
 
     Examples
     --------
@@ -87,7 +84,9 @@ def _text(model: ImpactModel) -> str:
     chosen = "" if default else f", law={law.family!r}" if registered else ", law=law"
     typed = [_typed(body) for body in pair.given]
     options = "--sphere {} --plate {}".format(*map(shlex.quote, typed))
-    numbers = _numbers(model) | {
+    shown = {
+        "wave_path": wave_path(pair.plate),
+        "words": {flag.value: explain(flag)[0] for flag in Validity},
         "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
         "options": options + ("" if default else f" --law {law.family}"),
     }
@@ -95,72 +94,40 @@ def _text(model: ImpactModel) -> str:
         title=html.escape(f"{pair.sphere.name} on {pair.plate.name}"),
         made=f"contactlaw {VERSION}; law {html.escape(f'{law.family}: {law.source}')}",
         hidden="" if registered and all(typed) else " hidden",
-        script=_script(numbers),
+        script=_script(model, shown),
     )
 
 
-def _numbers(model: ImpactModel) -> dict[str, Any]:
-    """Numbers of a pair, for a bead of radius 1 m on a plate of 1 m."""
-    pair, one = model.pair, np.ones(())
-    contact = sphere_on_plate(pair, model.force_law, one, one)
-    plate = contact.plate
-    parts = {"corrections": plate.corrections._asdict(), "growth": plate.growth._asdict()}
-    return _strengths(model._bodies) | {
-        "plate": plate._asdict() | parts,
-        "mass": contact.mass.item(),
-        "stiffness": contact.stiffness.item(),
-        "modulus": pair.effective_modulus,
-        "strength": min(body.strength or math.inf for body in (pair.sphere, pair.plate)),
-        "tangential_ratio": pair.tangential_ratio,
-        "wave_path": wave_path(pair.plate),
-        "words": {flag.value: explain(flag)[0] for flag in Validity},
-        "SLIDING_FLOW": Validity.SLIDING_FLOW.value,
-    }
+def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
+    """Numbers of a pair."""
+    pair, rows, coarse = model.pair, None, 4.0 * _STEP
+    bodies = bodies_of(model, {}, coarse)
+    if bodies.levels is not None:
+        bodies = bodies_of(model, {}, max(_STEP, coarse * bodies.levels.size / _MOST))
+        levels = bodies.levels
+        logs = levels[STEP] * np.arange(levels[COUNT])
+        rows = np.array([stronger(model._bodies, math.exp(one)).limits for one in logs])
+    weaker = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
+    return bodies, Page(rows, pair.effective_modulus, weaker, Validity.SLIDING_FLOW.value)
 
 
-def _at_strength(bodies: SphereOnPlate) -> dict[str, Any]:
-    """Numbers that depend on the strengths."""
-    law, one = bodies.law, np.ones(())
-    contact = sphere_on_plate(bodies.pair, law, one, one)
-    return {
-        "law": law.data.tolist(),
-        "limits": bodies.limits._asdict(),
-        # a law that never yields has no scale of its own
-        "scale": min(contact.yield_compression.item(), 1.0),
-        "saturated": contact.plate.saturated,
-        "returned": force.returned(law.data),
-        "stiffening": force.stiffening(law.data),
-    }
+def _kernels(bodies: Bodies, page: Page) -> str:
+    """Kernels of `page_functions` for a pair, in JavaScript."""
+    program, pair = Program(JavaScript(), fixed=("goal", "samples")), Known(value=bodies)
+    asked, more = 3 * (DOUBLE,), Known(value=page)
+    _, hit = program.add(page_functions.for_curve, pair, *asked)
+    program.add(page_functions.flags, pair, more, hit, *asked)
+    program.add(page_functions.shown, pair, hit, *asked)
+    program.add(page_functions.collide, pair, more, *asked, DOUBLE, DOUBLE)
+    return f"{HELPERS}\n{program.text()}"
 
 
-def _strengths(bodies: SphereOnPlate) -> dict[str, Any]:
-    """Law of a pair, or of one with a rate of strain those at the nodes of its tables."""
-    flow = flow_of(bodies)
-    if flow is None:
-        return {"nodes": [_at_strength(bodies)]}
-    nodes = Nodes(bodies, None, Border("raise"))
-    return {
-        "slope": flow.rate,
-        "share": SHARE / flow.rate0,
-        "knots": nodes.knots,
-        "places": strengths.PLACES,
-        "nodes": [_at_strength(stronger(bodies, factor)) for factor in nodes.factors],
-    }
-
-
-def _script(numbers: dict[str, Any]) -> str:
-    """Scripts of the page, and the constants of Python that they use."""
-    drawing, impact, explore = map(_read, ("drawing.js", "impact.js", "explore.js"))
-    found = {
-        name: getattr(module, name)
-        for module in _MODULES
-        for name in _CAPITALS.findall(impact)
-        if hasattr(module, name)
-    }
-    constants = ", ".join(f"{name} = {found[name]!r}" for name in sorted(found))
-    # JavaScript reads what json writes for inf; the name of a material could end the script
-    data = json.dumps(numbers, separators=(",", ":")).replace("<", "\\u003c")
-    return f"{drawing}\nconst {constants};\nconst pair = {data};\n{impact}\n{explore}"
+def _script(model: ImpactModel, shown: dict[str, Any]) -> str:
+    """Scripts of the page, the kernels that they call, and what they show of a pair."""
+    # the name of a material could end the script
+    data = json.dumps(shown, separators=(",", ":")).replace("<", "\\u003c")
+    kernels, drawing, explore = _kernels(*_bodies(model)), _read("drawing.js"), _read("explore.js")
+    return f"{drawing}\nconst pair = {data};\n{kernels}\n{explore}"
 
 
 def _read(name: str) -> str:

@@ -33,6 +33,7 @@ _TRACTION = 0.5  # mu p/sigma_Y
 _SLIDE = 0.3  # of the contact's radius
 _PRODUCT = 0.02
 _UNLOADING = 1.4  # exponent of unloading, 1.35 to 1.5 where a body has flowed
+_AT_REST = 1e-300  # [m/s]
 
 FASTEST = 1e9  # psi from which the digits of a sliding speed no longer matter
 
@@ -219,29 +220,22 @@ def rebound_all(
                 velocity[i, k], spin[i, k] = v[k], omega[k]
 
 
-def flow_flags(
-    pair: Pair, normal: Rebound, impacts: Impacts, friction: Array, size: Array, after: Array
-) -> NDArray[np.int64]:
-    """`Validity.SLIDING_FLOW` where friction makes a body flow along the surface, else 0.
+def flows(
+    strength: Any, modulus: float, force: Any, deepest: Any, left: Any, time: Any, friction: Any,
+    size: Any, after: Any,
+) -> Any:  # fmt: skip
+    """Whether friction makes a body flow along the surface; numbers, or arrays of them.
 
     Finite elements in three dimensions: the loss of COR is some 0.5 of the product of the two
     ratios, so it is below 1 % up to 0.02.
     """
-    strength = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
-    force, deepest, left, time = (
-        np.ravel(values) for values in (
-            normal.peak_force, normal.peak_compression, normal.residual_compression,
-            normal.contact_time,
-        )
-    )  # fmt: skip
     # F ~ d^1.4 of unloading, with the slope 2 E* a
-    contact = _UNLOADING * force / (deepest - left) / (2.0 * pair.effective_modulus)
-    with np.errstate(invalid="ignore"):
-        speed = 0.5 * (size**2 + after**2) / (np.abs(size) + np.abs(after))  # 0/0: no sliding
-    slide = np.nan_to_num(speed) * time / contact
-    traction = friction * force / (math.pi * contact**2) / strength
+    contact = _UNLOADING * force / (deepest - left) / (2.0 * modulus)
+    sliding = np.maximum(abs(size) + abs(after), _AT_REST)
+    slide = 0.5 * (size * size + after * after) / sliding * time / contact
+    traction = friction * force / (math.pi * contact * contact) / strength
     beyond = (traction >= _TRACTION) | (slide > _SLIDE) | (traction * slide > _PRODUCT)
-    return np.where(beyond & (left > 0.0), int(Validity.SLIDING_FLOW), 0)
+    return beyond & (left > 0.0)
 
 
 def of(
@@ -261,6 +255,13 @@ def of(
     }
     check_finite(pair, impacts, found["impulse_ratio"], found["friction_energy"])
     found = {name: shaped(values, impacts.shape) for name, values in found.items()}
-    flags = np.ravel(normal.flags) | flow_flags(pair, normal, impacts, friction, size, after)
+    strength = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
+    flow = flows(
+        strength, pair.effective_modulus, np.ravel(normal.peak_force),
+        np.ravel(normal.peak_compression), np.ravel(normal.residual_compression),
+        np.ravel(normal.contact_time), friction, size, after,
+    )  # fmt: skip
+    beyond: NDArray[np.int64] = np.where(flow, int(Validity.SLIDING_FLOW), 0)
+    flags = np.ravel(normal.flags) | beyond
     found["flags"] = shaped_flags(flags, impacts.shape)
     return ObliqueRebound(**vars(normal) | found)

@@ -84,17 +84,24 @@ def _width(law: Array, spring: Spring, speed: float, k: float) -> float:
 
 
 @kernel
+def _tangent(given: Point, n: Point) -> tuple[Point, float]:
+    """Part of a vector along the wall, and its size."""
+    up = dot(given, n)
+    a = given[0] - up * n[0], given[1] - up * n[1], given[2] - up * n[2]
+    return a, math.sqrt(dot(a, a))
+
+
+@kernel
 def _directions(row: Any, n: Point, slip: Point) -> tuple[Point, Point]:
     """Two tangents at right angles, the first as near as can be to that of the last step."""
     # without a direction so far, that of sliding; any one will do for a bead that does not slide
-    across = (1.0, 0.0, 0.0) if abs(n[0]) < 0.6 else (0.0, 1.0, 0.0)
-    a, size = (0.0, 0.0, 0.0), 0.0
-    for given in ((row.along[0], row.along[1], row.along[2]), slip, across):
-        up = dot(given, n)
-        a = given[0] - up * n[0], given[1] - up * n[1], given[2] - up * n[2]
-        size = math.sqrt(dot(a, a))
-        if size > _NO_DIRECTION * math.sqrt(dot(given, given)):
-            break
+    given = row.along[0], row.along[1], row.along[2]
+    a, size = _tangent(given, n)
+    if not size > _NO_DIRECTION * math.sqrt(dot(given, given)):
+        given = slip
+        a, size = _tangent(given, n)
+    if not size > _NO_DIRECTION * math.sqrt(dot(given, given)):
+        a, size = _tangent((1.0, 0.0, 0.0) if abs(n[0]) < 0.6 else (0.0, 1.0, 0.0), n)
     a = a[0] / size, a[1] / size, a[2] / size
     row.along[0], row.along[1], row.along[2] = a
     return a, (

@@ -93,7 +93,7 @@ def split(held: float) -> tuple[float, float]:
 
 
 @kernel
-def _beside(levels: Array, place: float) -> tuple[int, int, float]:
+def beside(levels: Array, place: float) -> tuple[int, int, float]:
     """Where the two levels beside a place begin, and the share of the upper one."""
     n = min(int(place), int(levels[COUNT]) - 2)
     room = int(levels[ROOM])
@@ -108,26 +108,27 @@ def yield_growth(levels: Array, place: float) -> float:
     It is not quite the square of the strength: bodies that harden have hardened by more where they
     yield later.
     """
-    low, high, share = _beside(levels, place)
+    low, high, share = beside(levels, place)
     return math.pow(levels[low], 1.0 - share) * math.pow(levels[high], share)
 
 
 @kernel
-def _law_at(levels: Array, at: int) -> tuple[float, Array]:
+def law_at(levels: Array, at: int) -> tuple[float, Array]:
+    """Yield compression over that of the first level, and law, of the level that begins there."""
     return levels[at], levels[at + 1 : at + int(levels[ROOM])]
 
 
 @kernel
 def nearest(levels: Array, place: float) -> tuple[Array, float]:
     """Law of the nearest level, and its yield compression over that of the first level."""
-    low, high, share = _beside(levels, place)
-    c, law = _law_at(levels, low if share < 0.5 else high)
+    low, high, share = beside(levels, place)
+    c, law = law_at(levels, low if share < 0.5 else high)
     return law, c
 
 
 @kernel
 def _loading(levels: Array, at: int, q: float) -> float:
-    c, law = _law_at(levels, at)
+    c, law = law_at(levels, at)
     root = math.sqrt(c)
     return c * root * force.loading(law, q / root)
 
@@ -137,7 +138,7 @@ def loading(law: Array, levels: Array | None, place: float, q: float) -> float:
     """Force while the compression q^2 grows."""
     if levels is None:
         return force.loading(law, q)
-    low, high, share = _beside(levels, place)
+    low, high, share = beside(levels, place)
     return (1.0 - share) * _loading(levels, low, q) + share * _loading(levels, high, q)
 
 
@@ -146,7 +147,7 @@ def lossless(law: Array, levels: Array | None) -> float:
     """Largest compression from which a contact unloads without a loss."""
     if levels is None:
         return force.lossless(law)
-    return force.lossless(_law_at(levels, LEVELS)[1])
+    return force.lossless(law_at(levels, LEVELS)[1])
 
 
 @kernel
@@ -154,7 +155,7 @@ def unloading(law: Array, levels: Array | None, place: float, dm: float) -> Unlo
     """Find the unloading curve from dm."""
     if levels is None:
         return force.unloading(law, dm)
-    low, high, share = _beside(levels, place)
+    low, high, share = beside(levels, place)
     one, other = _unloading(levels, low, dm), _unloading(levels, high, dm)
     left = (1.0 - share) * one.residual + share * other.residual
     exponent = (1.0 - share) * one.exponent + share * other.exponent
@@ -165,7 +166,7 @@ def unloading(law: Array, levels: Array | None, place: float, dm: float) -> Unlo
 
 @kernel
 def _unloading(levels: Array, at: int, dm: float) -> UnloadingCurve:
-    c, law = _law_at(levels, at)
+    c, law = law_at(levels, at)
     curve = force.unloading(law, dm / c)
     return UnloadingCurve(c * curve.residual, 0.0, curve.exponent, 0.0, 0.0)
 
@@ -175,7 +176,7 @@ def losses(law: Array, levels: Array | None, place: float, dm: float) -> tuple[f
     """Loss of a contact that was loaded to dm, and the part of it that is not plastic work."""
     if levels is None:
         return force.loss(law, dm), force.other_loss(law, dm)
-    low, high, share = _beside(levels, place)
+    low, high, share = beside(levels, place)
     one, other = _works(levels, low, dm), _works(levels, high, dm)
     curve = unloading(law, levels, place, dm)
     peak = loading(law, levels, place, math.sqrt(dm))
@@ -189,7 +190,7 @@ def losses(law: Array, levels: Array | None, place: float, dm: float) -> tuple[f
 @kernel
 def _works(levels: Array, at: int, dm: float) -> tuple[float, float]:
     """Work of loading to dm at a level, and the loss that is not plastic work."""
-    c, law = _law_at(levels, at)
+    c, law = law_at(levels, at)
     d, unit = dm / c, c * c * math.sqrt(c)
     curve = force.unloading(law, d)
     back = force.loading(law, math.sqrt(d)) * (d - curve.residual) / (0.5 * curve.exponent + 1.0)

@@ -219,7 +219,7 @@ def evaluate(c: tuple[float, ...], t: float) -> float:
 
 
 @kernel
-def _log_elastic(table: Array, x: float) -> float:
+def log_elastic(table: Array, x: float) -> float:
     """Logarithm of w_m at x."""
     return evaluate(series_at(table, HEADER), 2.0 / table[X_MAX] * x - 1.0)
 
@@ -227,7 +227,7 @@ def _log_elastic(table: Array, x: float) -> float:
 @kernel(cache=True)
 def log_elastic_compression(table: Array, lam: float) -> float:
     """Logarithm of w_m at an inelasticity inside the table."""
-    return _log_elastic(table, lam / (lam + table[STRETCH]))
+    return log_elastic(table, lam / (lam + table[STRETCH]))
 
 
 @kernel(inline=True)
@@ -425,7 +425,7 @@ def place_of(
     x = lam / (lam + table[STRETCH])
     if not 0.0 <= x <= table[X_MAX]:
         return math.nan, math.nan
-    log_chi = c_chi + 0.8 * log_speed + _log_elastic(table, x)
+    log_chi = c_chi + 0.8 * log_speed + log_elastic(table, x)
     if not log_chi <= table[LOG_CHI_MAX]:
         return math.nan, math.nan
     return x, log_chi
@@ -649,7 +649,7 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     for n in range(out.inelasticity.size):
         x = out.inelasticity[n] / (out.inelasticity[n] + table[STRETCH])
         inside_x = x if 0.0 <= x <= table[X_MAX] else table[X_MAX]  # also where lambda is infinite
-        log_w = _log_elastic(table, inside_x)
+        log_w = log_elastic(table, inside_x)
         log_chi = log_w - math.log(out.yield_ratio[n])
         inside_chi = log_chi if log_chi <= table[LOG_CHI_MAX] else table[LOG_CHI_MAX]
         if not (inside_x == x and inside_chi == log_chi):
@@ -687,5 +687,5 @@ def yield_speeds(
             if not 0.0 <= x <= table[X_MAX]:
                 break
             stiffer = eta + (0.4 + given.growth.yield_power) * growth
-            log_speed -= (c_chi - stiffer + 0.8 * log_speed + _log_elastic(table, x)) / 0.75
+            log_speed -= (c_chi - stiffer + 0.8 * log_speed + log_elastic(table, x)) / 0.75
         out[n] = math.exp(log_speed) if 0.0 <= x <= table[X_MAX] else math.nan

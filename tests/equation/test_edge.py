@@ -147,7 +147,7 @@ def test_no_force_is_driven_by_the_plate(size):
 
 
 def solved(law, lam, y, edges):
-    return zener._run(zener._TO_THE_END, law, lam, y, 1e-9, edges=edges)
+    return zener._run(zener.TO_THE_END, law, lam, y, 1e-9, edges=edges)
 
 
 def near(kind, poisson, rate):

@@ -14,6 +14,7 @@ from places import ROOT
 
 import contactlaw as cl
 from contactlaw import cli
+from contactlaw.export import page_functions, web_page
 
 STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
 EXPLORE = ["explore", "--sphere", STEEL.sphere.name, "--plate", STEEL.plate.name, "--out"]
@@ -31,11 +32,8 @@ MODELS = {
     "two rates": cl.ImpactModel(metal.STEEP),
     "corners": cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1006")),
 }
-# Pairs with a rate lie between laws: within 3e-5, but for some beyond the range of the laws.
-BETWEEN = "rate", "two rates", "corners"
-# Errors allowed, of what is at most 1 absolutely and of sizes relatively.
-SHARES = dict.fromkeys(("restitution", "plastic_fraction", "wave_fraction", "other_fraction"), 1e-6)
-SIZES = dict.fromkeys(("peak_force", "peak_compression", "contact_time"), 1e-6)
+# Errors of COR, and of the sliding speed over friction times speed, between laws at some strengths.
+BETWEEN = {"rate": (1e-4, 1e-3), "two rates": (1e-3, 3e-3), "corners": (1e-4, 1e-3)}
 COR = "document.getElementById('cor').textContent"
 
 
@@ -50,6 +48,7 @@ def steel(tmp_path_factory):
 def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     model, rng = MODELS[pair], np.random.default_rng(7)
     cl.export.page(tmp_path / "page.html", model)
+    assert (tmp_path / "page.html").stat().st_size < (2e6 if pair == "two rates" else 1e6)
     speed = np.exp(rng.uniform(math.log(0.02), math.log(50.0), 200))
     radius = np.exp(rng.uniform(math.log(2e-5), math.log(2e-2), 200))
     thickness = radius * np.exp(rng.uniform(math.log(0.2), math.log(50.0), 200))
@@ -60,29 +59,44 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     settings = np.stack([speed, angle, radius, thickness, friction], axis=1).tolist()
     page.open(tmp_path / "page.html", 1280)
     found = page.value(
-        f"{json.dumps(settings)}.map((one) => ({{...collide(...one), path: 0,"
-        " flags_normal: solve(one[0], one[2], one[3]).flags}))"
+        f"{json.dumps(settings)}.map((one) => collide(...one)).map((hit) => ({{...hit,"
+        " curve: $for_curve(hit.speed, hit.radius, hit.thickness).restitution}))"
     )
-    rows = {name: np.array([one[name] for one in found]) for name in found[0] if name != "path"}
+    rows = {name: np.array([one[name] for one in found]) for name in found[0]}
     expected = model.oblique(normal, along, radius, thickness, friction, method="solve")
-    stays = expected.restitution < 1e-6  # the page follows such a bead for less time
-    for name, most in (SHARES | SIZES).items():
-        right = np.asarray(getattr(expected, name))
-        off = abs(rows[name] - right) / (right if name in SIZES else 1.0)
-        off = off[~stays if name == "contact_time" else slice(None)]
-        if pair in BETWEEN:
-            assert np.quantile(off, 0.97) < 30.0 * most, name
-            most *= 2e3
-        assert off.max() < most, name
-    off = abs(rows["sliding_speed"] - expected.sliding_speed)
-    share = 4e-3 if pair in BETWEEN else 2e-3
-    assert (off <= share * friction * normal + 1e-12).all()
     np.testing.assert_array_equal(rows["flags"], expected.flags)
-    straight = model.solve(speed, radius, thickness)
-    np.testing.assert_array_equal(rows["flags_normal"], straight.flags)
     mass = model.pair.sphere.density * 4 / 3 * math.pi * radius**3
-    share = expected.friction_energy / (0.5 * mass * speed**2)
-    np.testing.assert_allclose(rows["friction_share"], share, atol=1e-3)
+    rows["friction_energy"] = rows["friction_share"] * 0.5 * mass * speed**2
+    share, slide = BETWEEN.get(pair, (1e-12, 1e-12))
+    for name in ("peak_force", "peak_compression", "contact_time"):
+        np.testing.assert_allclose(rows[name], getattr(expected, name), rtol=3 * share)
+    for name in ("plastic_fraction", "wave_fraction", "other_fraction"):
+        np.testing.assert_allclose(rows[name], getattr(expected, name), rtol=0, atol=3 * share)
+    np.testing.assert_allclose(rows["restitution"], expected.restitution, rtol=0, atol=share)
+    off = abs(rows["sliding_speed"] - expected.sliding_speed)
+    assert (off <= slide * friction * normal + 1e-14 * along).all()
+    np.testing.assert_allclose(rows["curve"], rows["restitution"], rtol=0, atol=3e-4)
+    np.testing.assert_allclose(rows["friction_energy"], expected.friction_energy, rtol=10 * slide)
+
+
+ABSURD = [0.0, -1.0, 1e-300, 1e300, math.inf, math.nan]
+
+
+@pytest.mark.parametrize("pair", ["fem", "losses", "capped", "hertz", "two rates"])
+def test_a_kernel_in_the_browser_does_as_in_python(pair, tmp_path, page):
+    """Each of these impacts takes as many steps in both, of a pair with a rate too."""
+    cl.export.page(tmp_path / "page.html", MODELS[pair])
+    page.open(tmp_path / "page.html", 1280)
+    usual, bodies = [3.0, 0.0, 1e-3, 2e-3, 0.3], web_page._bodies(MODELS[pair])
+    settings = [[7.0, 40.0, 1e-3, 5e-4, 0.3], [0.01, 0.0, 1e-3, math.inf, 0.0], usual]
+    settings += [[*usual[:n], x, *usual[n + 1 :]] for n in (0, 2, 3, 4) for x in ABSURD]
+    texts = page.value(
+        f"{json.dumps(settings)}.map((one) => (({{ impact, ...rest }}) => ["
+        "...Object.values(impact), ...Object.values(rest)].map(String))($collide(...one)))"
+    )
+    for one, found in zip(settings, texts, strict=True):
+        impact, *rest = page_functions.collide(*bodies, *one)
+        np.testing.assert_allclose(np.array(found, float), [*impact, *rest], rtol=1e-12, atol=1e-15)
 
 
 @pytest.mark.parametrize("angle", [0, 35])
@@ -132,9 +146,9 @@ def press(page, key, code):
 
 def test_the_example_is_what_the_command_writes(steel):
     """The numbers of the pair aside, which another processor may round differently."""
-    data, version = re.compile(r"(?<=^const pair = ).*$", re.M), r"(?<=contactlaw )[\d.]+\d"
+    data, version = r"Float64Array\(\[[^]]*\]\)|-?\d[\d.]{9,}(e-?\d+)?", r"(?<=contactlaw )[\d.]+\d"
     made, kept = (
-        re.sub(version, "", data.sub(lambda one: re.sub(r"[-+.\de]+", "", one[0]), text))
+        re.sub(version, "", re.sub(data, "", text))
         for text in (steel.read_text(), (ROOT / "docs/explore.html").read_text())
     )
     assert made == kept

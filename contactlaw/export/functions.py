@@ -1,0 +1,489 @@
+"""What the C header offers, as kernels in SI units: a bead on a plate, a step, a whole impact.
+
+The header is made of them by `contactlaw.emit`, with the numbers of one pair of materials
+(`Bodies`); their docstrings are its comments. Bad input gives NaN.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw._jit import kernel
+from contactlaw.answers.solver import RTOL
+from contactlaw.equation import zener
+from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.edge import KINDS
+from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
+from contactlaw.equation.tangential import POINT, kept, limited, pull, stiffness_at
+from contactlaw.model import ImpactModel
+from contactlaw.physical.oblique import FASTEST, rebound_of, sliding, unit
+from contactlaw.physical.responses import response_of
+from contactlaw.physical.scaling import factors, wave_path, wave_rate
+from contactlaw.physical.validity import Limits, flags_of
+from contactlaw.stepping import strength
+from contactlaw.stepping.edge import Near
+from contactlaw.stepping.energy import Point, dot
+from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
+from contactlaw.stepping.spring import (
+    Spring,
+    State,
+    advance,
+    impact,
+    nearest_level,
+    resized,
+    strengthened,
+    unit_spring,
+)
+from contactlaw.table import Table, lookup
+from contactlaw.table.lookup import R_MAX, R_MIN, THINNEST, V_MAX, V_MIN
+
+Array = NDArray[np.float64]
+
+EDGES = len(KINDS)  # kinds of edges, numbered from 1; 0 is none
+NEAR_STEPS = 100  # of a contact near an edge
+NEAR_CONTACTS = 100  # a sphere that has not left after so many contact times stays on the plate
+SLIDING_STEPS, SLIDING_SPRINGS = 400, 32  # of an oblique impact
+FEW_DIGITS = 1e-6  # error of a step where only the difference of two integrations counts
+
+
+class Bodies(NamedTuple):
+    """What a pair of materials fixes."""
+
+    law: Any  # data of the force law
+    levels: Any  # laws by strength of a pair with a rate, else None
+    unit: Spring  # of a bead of radius 1 m on a plate of 1 m, with the moduli of the pair
+    limits: Limits
+    tangential_ratio: float
+    responses: Any  # of a plate near edges of each kind, for steps
+    wave_path: float  # sqrt(D/(rho2 H))/H of a plate [m/s]
+    log_overload: float  # ln(chi/w_m) at 1 m/s
+    tables: Any  # of COR, one after the other, at logarithms of the strength, and where they begin
+    strengths: Any
+    starts: Any
+
+
+class BeadSpring(NamedTuple):
+    """One bead on one plate."""
+
+    mass: float  # of the bead [kg]
+    stiffness: float  # K in F = K d^1.5 [N/m^1.5]
+    mobility: float  # speed of a thin plate per force [m/(s N)]
+    scale: float  # yield compression, or the radius for a law that never yields [m]
+    relaxation: float  # time in which the plate's displacement relaxes [s]
+    ratio: float  # radius over thickness
+    radius: float  # [m]
+    edge_rate: float  # 1/tau of an edge near the contact [1/s]; 0 without
+    edge: int  # kind of that edge
+    plate: PlateConstants
+
+
+class Impact(NamedTuple):
+    """One impact."""
+
+    restitution: float  # rebound speed over impact speed [-]
+    contact_time: float  # from touch to separation [s]
+    loading_time: float  # from touch to the largest compression [s]
+    peak_force: float  # [N]
+    peak_compression: float  # largest approach of sphere and plate after first touch [m]
+    residual_compression: float  # left after the impact [m]
+    plastic_fraction: float  # share of the kinetic energy lost to plastic flow at the contact [-]
+    wave_fraction: float  # share carried off by the bending wave in the plate [-]
+    other_fraction: float  # share that the law leaves in vibration and locked-in stress [-]
+    inelasticity: float  # lambda of the modified Zener model [-]
+
+
+class Collision(NamedTuple):
+    """A bead after an impact."""
+
+    status: int  # 1; 0 for a bead that recedes; -1 for bad input
+    velocity: Point
+    spin: Point
+
+
+@kernel
+def plain_log_and_root(v: float) -> tuple[float, float]:
+    """Logarithm and fifth root."""
+    return math.log(v), math.pow(v, 0.2)
+
+
+@kernel
+def series_of(table: Array, k: int) -> Array:
+    """Coefficients of a power series, which begin at k."""
+    return table[k:]
+
+
+@kernel
+def plain_exp(x: float) -> float:
+    """Exponential."""
+    return math.exp(x)
+
+
+# What is quick in compiled Python by other ways than those of a language's library.
+INSTEAD: dict[Any, Any] = {
+    lookup.log_and_root: plain_log_and_root,
+    lookup.series_at: series_of,
+    lookup.exp: plain_exp,
+}
+NOTHING = Impact(*[math.nan] * 10)
+BLOWN_UP = State(0.0, 0.0, math.nan)
+STEP = 0.15  # of ln(strength) between two laws of a pair with a rate
+SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
+
+
+def bodies_of(
+    model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]], step: float = STEP
+) -> Bodies:
+    """Numbers of a model's pair, and of tables by the logarithm of the strength.
+
+    Tables have nine decimals, those of several strengths six, and laws by strength nine digits:
+    they err by more than that.
+    """
+    pair, law = model.pair, model.force_law
+    levels = strength.levels_of(pair, law, step)
+    tables = []
+    for own, one in nodes.values():
+        table = lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
+        table = table[: int(table[lookup.OTHERS_AT])].copy()  # COR alone
+        splines = table[int(table[lookup.COR_AT]) :]
+        splines[:] = splines.round(9 if len(nodes) == 1 else 6)
+        tables.append(table)
+    starts = np.cumsum([0.0, *(one.size for one in tables)])[:-1]
+    return Bodies(
+        law.data,
+        None if levels is None else np.array([float(f"{one:.9g}") for one in levels]),
+        unit_spring(model, 1.0)._replace(levels=None),
+        model.limits,
+        pair.tangential_ratio,
+        np.array([response_of(one, pair.plate.poissons_ratio, size="steps") for one in KINDS]),
+        wave_path(pair.plate),
+        factors(pair, law).log_overload,
+        np.concatenate(tables) if tables else None,
+        np.array([*nodes]),
+        starts,
+    )
+
+
+@kernel
+def fits(radius: float, thickness: float) -> bool:
+    """Whether a bead and a plate are of sizes that the model is for."""
+    return R_MIN <= radius <= R_MAX and thickness >= R_MIN and THINNEST * radius <= thickness
+
+
+@kernel
+def on_plate(pair: Bodies, radius: float, thickness: float) -> Spring:
+    """Spring of a bead of radius 1 m, on a plate of this thickness, in a bead of this radius."""
+    unit, h = pair.unit, thickness
+    if not fits(radius, thickness):
+        radius = h = math.nan
+    return Spring(
+        unit.mass, unit.stiffness, unit.mobility / (h * h), unit.scale, unit.relaxation,
+        unit.ratio / h, unit.plate, pair.levels,
+    )  # fmt: skip
+
+
+@kernel
+def spring_of(pair: Bodies, radius: float, thickness: float) -> BeadSpring:
+    """Return a bead of this radius on a plate of this thickness; all is NaN for bad input."""
+    if not fits(radius, thickness):
+        radius = math.nan
+    one = resized(on_plate(pair, radius, thickness), radius)
+    return BeadSpring(
+        one.mass, one.stiffness, one.mobility, one.scale, one.relaxation, one.ratio, radius, 0.0, 0,
+        one.plate,
+    )  # fmt: skip
+
+
+@kernel
+def at_edge(pair: Bodies, bead: BeadSpring, edge: int, distance: float) -> BeadSpring:
+    """Bead at this distance [m] from an edge of a kind."""
+    rate = 0.0
+    if not (0 <= edge <= EDGES and distance >= 0.0):
+        rate = math.nan
+    elif edge > 0:
+        rate = wave_rate(pair.wave_path, bead.radius / bead.ratio, distance)
+    return BeadSpring(
+        bead.mass, bead.stiffness, bead.mobility, bead.scale, bead.relaxation, bead.ratio,
+        bead.radius, rate, edge, bead.plate,
+    )  # fmt: skip
+
+
+@kernel
+def contact_spring(pair: Bodies, bead: BeadSpring) -> Spring:
+    """Spring of a bead on a plate, as steps take it."""
+    return Spring(
+        bead.mass, bead.stiffness, bead.mobility, bead.scale, bead.relaxation, bead.ratio,
+        bead.plate, pair.levels,
+    )  # fmt: skip
+
+
+@kernel
+def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt: float) -> State:
+    """State at the end of a step; its force is NaN where the simulation has blown up."""
+    moved, largest = state.plate_displacement, state.largest_compression
+    if not (
+        -math.inf < overlap < math.inf
+        and overlap <= 2.0 * bead.radius + moved
+        and overlap <= moved + largest + V_MAX * dt
+        and 0.0 < dt <= bead.relaxation
+        and bead.mass > 0.0
+        and bead.stiffness > 0.0
+        and bead.scale > 0.0
+        and bead.mobility >= 0.0
+        and bead.edge_rate >= 0.0
+        and largest >= 0.0
+        and state.force >= 0.0
+    ):
+        return BLOWN_UP
+    near = Near(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
+    new = advance(pair.law, contact_spring(pair, bead), state, overlap, dt, near)
+    return new if 0.0 <= new.force < math.inf else BLOWN_UP
+
+
+@kernel
+def numbers_of(pair: Bodies, speed: float, radius: float, thickness: float) -> Numbers:
+    """Dimensionless numbers of an impact, with the moduli at its own frequency."""
+    one, r = on_plate(pair, radius, thickness), radius
+    one = Spring(
+        one.mass * (r * r * r), one.stiffness * math.sqrt(r), one.mobility, one.scale * r,
+        one.relaxation * r, one.ratio * r, one.plate, one.levels,
+    )  # fmt: skip
+    if pair.levels is not None:
+        place = strength.place_at(pair.levels, speed, one.scale)
+        one = strengthened(one, place)
+        growth = strength.yield_growth(pair.levels, place)
+        return numbers(
+            one.plate, one.mass, one.stiffness, growth * one.scale, speed, one.ratio
+        )  # fmt: skip
+    return impact(one, speed)
+
+
+@kernel
+def solved(law: Array, units: Numbers, rtol: float) -> zener.Solution:
+    """Integrate an impact to its end."""
+    notes = zener.Notes(
+        np.empty((0, 0)), np.empty((0, 0)), np.empty((0, 0)), np.empty((0, 0)), np.empty((0, 0))
+    )
+    return zener.follow_impact(
+        zener.TO_THE_END, law, units.inelasticity, units.yield_ratio, rtol, notes, 0, None
+    )
+
+
+@kernel
+def in_si(one: zener.Solution, units: Numbers) -> Impact:
+    """Solution in SI units; NaN where the integration has not come to its end."""
+    if one.status != 0.0:
+        return NOTHING
+    return Impact(
+        one.restitution, one.contact_time * units.time, one.loading_time * units.time,
+        one.peak_force * units.force, one.peak_compression * units.compression,
+        one.residual_compression * units.compression, one.plastic_fraction, one.wave_fraction,
+        one.other_fraction, units.inelasticity,
+    )  # fmt: skip
+
+
+@kernel
+def moved(hit: Impact, share: float, a: Impact, b: Impact) -> Impact:
+    """Impact that is moved by a share of the way from one to another."""
+    e = hit.restitution + share * (b.restitution - a.restitution)
+    return Impact(
+        min(max(e, 0.0), 1.0),
+        hit.contact_time + share * (b.contact_time - a.contact_time),
+        hit.loading_time + share * (b.loading_time - a.loading_time),
+        hit.peak_force + share * (b.peak_force - a.peak_force),
+        hit.peak_compression + share * (b.peak_compression - a.peak_compression),
+        hit.residual_compression + share * (b.residual_compression - a.residual_compression),
+        hit.plastic_fraction + share * (b.plastic_fraction - a.plastic_fraction),
+        hit.wave_fraction + share * (b.wave_fraction - a.wave_fraction),
+        hit.other_fraction + share * (b.other_fraction - a.other_fraction),
+        hit.inelasticity,
+    )
+
+
+@kernel
+def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Impact:
+    """One impact, integrated with an error of RTOL in each step; all members are NaN for bad input.
+
+    For a pair with a rate it lies between those of the two laws beside its strength, at the same
+    inelasticity and overload. Their difference is small, and needs few digits.
+    """
+    if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
+        return NOTHING
+    units = numbers_of(pair, speed, radius, thickness)
+    if not (0.0 <= units.inelasticity < math.inf and 0.0 < units.yield_ratio < math.inf):
+        return NOTHING
+    if pair.levels is not None:
+        place = strength.place_at(pair.levels, speed, pair.unit.scale * radius)
+        low, high, share = strength.beside(pair.levels, place)
+        if share > 0.5:
+            low, high, share = high, low, 1.0 - share
+        law, other = strength.law_at(pair.levels, low)[1], strength.law_at(pair.levels, high)[1]
+        one, two = solved(law, units, FEW_DIGITS), solved(other, units, FEW_DIGITS)
+        hit = in_si(solved(law, units, RTOL), units)
+        return moved(hit, share, in_si(one, units), in_si(two, units))
+    return in_si(solved(pair.law, units, RTOL), units)
+
+
+@kernel
+def restitution(pair: Bodies, speed: float, radius: float, thickness: float) -> float:
+    """Rebound speed over impact speed, from the table; NaN outside the table and for bad input.
+
+    That is numbers that are not positive, a speed above V_MAX m/s, a radius above R_MAX m, lengths
+    below R_MIN m, a plate thinner than THINNEST radii. For a pair with a rate it is a cubic in
+    ln(strength) through four tables.
+    """
+    if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
+        return math.nan
+    if pair.levels is None:
+        c_lam, ratio = pair.unit.plate.inelasticity, radius / thickness
+        return lookup.restitution(pair.tables, c_lam, pair.log_overload, speed, radius, ratio)
+    units, levels = numbers_of(pair, speed, radius, thickness), pair.levels
+    place = levels[strength.STEP] * strength.place_at(levels, speed, pair.unit.scale * radius)
+    log_y, value = math.log(units.yield_ratio), 0.0
+    for j in range(pair.strengths.size):
+        table, weight = pair.tables[int(pair.starts[j]) :], 1.0
+        x = units.inelasticity / (units.inelasticity + table[lookup.STRETCH])
+        if not 0.0 <= x <= table[lookup.X_MAX]:
+            return math.nan
+        log_chi = lookup.log_elastic(table, x) - log_y
+        if not log_chi <= table[lookup.LOG_CHI_MAX]:
+            return math.nan
+        for k in range(pair.strengths.size):
+            if k != j:
+                at = pair.strengths[k]
+                weight *= (place - at) / (pair.strengths[j] - at)
+        value += weight * lookup.cor_at(table, x, log_chi)
+    return min(max(value, 0.0), 1.0)
+
+
+@kernel
+def restitution_near(
+    pair: Bodies, speed: float, radius: float, thickness: float, edge: int, distance: float
+) -> float:
+    """COR at this distance [m] from an edge, by some 100 steps.
+
+    It errs by less than 1e-3 from a third of a thickness on. Without an edge it is that of
+    `rebound`.
+    """
+    bead = at_edge(pair, spring_of(pair, radius, thickness), edge, distance)
+    if bead.edge_rate == 0.0:
+        return rebound(pair, speed, radius, thickness).restitution
+    if not V_MIN <= speed <= V_MAX:
+        return math.nan
+    dt = CONTACT_TIME / NEAR_STEPS * impact(contact_spring(pair, bead), speed).time
+    state, x, u = State(0.0, 0.0, 0.0), -0.5 * dt * speed, speed
+    for _ in range(NEAR_STEPS * NEAR_CONTACTS):
+        u -= 0.5 * dt * state.force / bead.mass
+        x += dt * u
+        state = after_step(pair, bead, state, x, dt)
+        u -= 0.5 * dt * state.force / bead.mass
+        if not state.force > 0.0:
+            break
+    return min(max(-u / speed, 0.0), 1.0) if state.force >= 0.0 else math.nan
+
+
+@kernel
+def exceeded(pair: Bodies, hit: Impact, speed: float, radius: float, thickness: float) -> int:
+    """Limits of the model that an impact exceeds; -1 for an impact that is NaN."""
+    if not (hit.restitution >= 0.0 and fits(radius, thickness)):
+        return -1
+    return flags_of(
+        pair.limits, radius, thickness, numbers_of(pair, speed, radius, thickness).compression,
+        hit.contact_time, hit.peak_compression, hit.peak_force,
+    )  # fmt: skip
+
+
+@kernel
+def _at_strength(pair: Bodies, spring: Spring, state: State) -> tuple[Array, Spring, State]:
+    """Law of a contact, with spring and state for it."""
+    if pair.levels is None:
+        return pair.law, spring, state
+    return nearest_level(pair.law, pair.levels, spring, state)
+
+
+@kernel
+def rub(
+    pair: Bodies, bead: BeadSpring, state: State, row: Any, overlap: float, dt: float, n: Point,
+    velocity: Point, friction: float,
+) -> Point:  # fmt: skip
+    """Friction in the step that has just been taken; the row knows the compression before it."""
+    up, before = dot(velocity, n), row.largest_compression
+    slip = velocity[0] - up * n[0], velocity[1] - up * n[1], velocity[2] - up * n[2]
+    row.largest_compression = state.largest_compression
+    if state.force == 0.0:
+        clear_friction(row)
+        return 0.0, 0.0, 0.0
+    law, spring, pressed = _at_strength(pair, contact_spring(pair, bead), state)
+    return tangential_force(
+        row, friction, pair.tangential_ratio, law, spring, pressed, before, overlap, -up, n, slip,
+        dt, 0.0,
+    )  # fmt: skip
+
+
+@kernel
+def slid(pair: Bodies, hit: Impact, speed: float, bead: BeadSpring, along: float) -> float:
+    """Change of the contact point's speed along the plate; both over the friction [m/s].
+
+    The normal motion is stepped through. What the steps miss of its impulse is made up for, so that
+    a contact which slides all the time gets all of it.
+    """
+    own, dt, first = contact_spring(pair, bead), hit.contact_time / SLIDING_STEPS, along
+    stretch, path, total = np.zeros((SLIDING_SPRINGS, 1)), np.zeros(1), np.zeros(1)
+    state, u, x, before, width = State(0.0, 0.0, 0.0), speed, 0.0, 0.0, 0.0
+    law, y = pair.law, bead.scale
+    if pair.levels is not None:
+        law, y = strength.nearest(pair.levels, strength.place_at(pair.levels, speed, bead.scale))
+        y *= bead.scale
+    peak, kappa = hit.peak_compression, pair.tangential_ratio
+    width = stiffness_at(law, y, own.stiffness, peak, peak, hit.peak_force).normal / SLIDING_SPRINGS
+    ratio = limited(kappa * along / speed, 1.0)
+    for _ in range(2 * SLIDING_STEPS):
+        start, largest = u, state.largest_compression
+        u -= 0.5 * dt * state.force / bead.mass
+        x += u * dt
+        state = after_step(pair, bead, state, x, dt)
+        u -= 0.5 * dt * state.force / bead.mass
+        half = 0.5 * POINT * (start - u)
+        along -= half * ratio
+        law, spring, pressed = _at_strength(pair, own, state)
+        d = x - pressed.plate_displacement
+        stiffer = pressed.stiffening if pressed.stiffening > 0.0 else 1.0
+        now = stiffness_at(
+            law, spring.scale, spring.stiffness * stiffer, pressed.largest_compression, d,
+            pressed.force,
+        )  # fmt: skip
+        if now.normal > 0.0:
+            path[0] = along * dt
+            left = kept(y, largest, state.largest_compression)
+            pull(stretch, width, kappa, before, now, state.force, left, path, total)
+            ratio, before = total[0] / state.force, now.normal
+        along -= half * ratio
+        if state.force == 0.0 and u < 0.0:
+            break
+    return (first - along) * (1.0 + hit.restitution) * speed / (speed - u)
+
+
+@kernel
+def collided(
+    pair: Bodies, v: Point, omega: Point, n: Point, w: Point, radius: float, thickness: float,
+    friction: float,
+) -> Collision:  # fmt: skip
+    """Velocity and spin after an impact on a plate that moves with w."""
+    came, nan = sliding(v, omega, unit(n), w, radius), math.nan
+    if came.speed < V_MIN and fits(radius, thickness) and friction >= 0.0:
+        return Collision(0, v, omega)
+    hit = rebound(pair, came.speed, radius, thickness)
+    if not (hit.restitution >= 0.0 and came.size < math.inf and 0.0 <= friction < math.inf):
+        return Collision(-1, (nan, nan, nan), (nan, nan, nan))
+    changed = 0.0
+    if came.size > 0.0 and friction > 0.0:
+        bead = spring_of(pair, radius, thickness)
+        along = min(came.size / friction, FASTEST * came.speed)
+        most = POINT * (1.0 + hit.restitution) * came.speed
+        changed = friction * min(slid(pair, hit, came.speed, bead, along), most)
+    after, spin = rebound_of(v, omega, unit(n), came, radius, hit.restitution, changed)
+    return Collision(1, after, spin)
