@@ -7,12 +7,13 @@ import functools
 import inspect
 import math
 import operator
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from types import ModuleType
-from typing import Any, NoReturn
+from typing import Any, NoReturn, Protocol
 
 import numpy as np
 
+from contactlaw.emit.c import C
 from contactlaw.emit.types import (
     DOUBLE,
     FALSE,
@@ -40,10 +41,23 @@ OPERATORS: dict[type, tuple[str, int, Callable[[Any, Any], Any]]] = {
 }  # fmt: skip
 
 
+class _Program(Protocol):
+    """What expressions ask of the program that they are a part of."""
+
+    language: C
+    fixed: Collection[str]
+
+    def add(self, kernel: Any, *types: Type) -> tuple[str, Type]: ...
+    def struct(self, source: Any, members: tuple[tuple[str, Type], ...]) -> Struct: ...
+    def tuple_of(self, types: tuple[Type, ...]) -> Struct: ...
+    def constant(self, value: Any) -> Value: ...
+    def named(self, value: Any, name: str, module: str) -> Value: ...
+
+
 class Expressions:
     """Expressions in the body of a kernel, with the types of its variables."""
 
-    def __init__(self, program: Any, python: Callable[..., Any], first: int) -> None:
+    def __init__(self, program: _Program, python: Callable[..., Any], first: int) -> None:
         self._program, self._language = program, program.language
         self._python, self._first = python, first
         self._scope = python.__globals__ | inspect.getclosurevars(python)._asdict()["builtins"]
@@ -256,7 +270,8 @@ class Expressions:
             return Value(DOUBLE, self._language.call(called.__name__, texts))
         by_name = {one.arg: self.value(one.value) for one in node.keywords}
         if isinstance(called, type) and hasattr(called, "_fields"):
-            defaults = {n: self._program.constant(v) for n, v in called._field_defaults.items()}
+            left = getattr(called, "_field_defaults", {})
+            defaults = {n: self._program.constant(v) for n, v in left.items()}
             given = defaults | dict(zip(called._fields, values, strict=False)) | by_name
             texts = [given[name].text for name in called._fields]
             members = tuple((name, given[name].type) for name in called._fields)
