@@ -17,7 +17,6 @@ pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[
 
 import trimesh  # noqa: E402
 import unrendered  # noqa: E402
-from beds import check_what_an_interrupt_keeps  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
 from contactlaw import cli as cli_of_contactlaw  # noqa: E402
@@ -345,14 +344,6 @@ def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tm
     for word in words:
         assert word in errors
     assert list(tmp_path.iterdir()) == []
-
-
-def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
-    long = ["sieve", "--beads", "20", "--duration", "9", "--plate", "glass", "--law", "myc"]
-    numbers = {"size": 10_000, "frames": 4500}
-    check_what_an_interrupt_keeps(
-        long, tmp_path, Sieve, FILES, **numbers, command=unrendered.COMMAND
-    )
 
 
 def test_the_step_divides_a_frame():
