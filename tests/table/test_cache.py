@@ -2,7 +2,6 @@
 
 import dataclasses
 import errno
-import io
 import multiprocessing
 import os
 import pwd
@@ -12,7 +11,6 @@ import time
 import warnings
 
 import filelock
-import h5py
 import numpy as np
 import platformdirs
 import pytest
