@@ -289,10 +289,7 @@ EDITS = [
 
 @pytest.mark.parametrize(
     ("code", "edits"),
-    [
-        (FORCE, [(*EDITS[1][:3], (0, 1))]),
-        pytest.param(ANSWERS, EDITS, marks=pytest.mark.long),
-    ],
+    [(FORCE, [(*EDITS[1][:3], (0, 1))]), pytest.param(ANSWERS, EDITS, marks=pytest.mark.long)],
     ids=["force", "all"],
 )
 def test_a_changed_source_never_yields_an_old_result(code, edits, tmp_path):

@@ -31,29 +31,14 @@ FIELDS = (
     "inelasticity",
     "overload",
 )
-NOT_POSITIVE = [
-    -1.0,
-    0.0,
-    math.nan,
-    -math.inf,
-    "5",
-    "five",
-    None,
-    True,
-    1j,
-    [1.0, -1.0],
-]
+NOT_POSITIVE = [-1.0, 0.0, math.nan, -math.inf, "5", "five", None, True, 1j, [1.0, -1.0]]
 
 
 @pytest.fixture(scope="module")
 def small_table():
     return table.build(
         laws.law("myc"),
-        table.Settings(
-            largest_inelasticity=1.0,
-            largest_overload=5.0,
-            inelasticity_nodes=41,
-        ),
+        table.Settings(largest_inelasticity=1.0, largest_overload=5.0, inelasticity_nodes=41),
     )
 
 
@@ -119,11 +104,7 @@ def test_momentum_and_force_scale(model):
 
 
 @settings(deadline=None, max_examples=200)
-@given(
-    speed=st.floats(1e-6, 500),
-    radius=st.floats(1e-5, 1e-2),
-    ratio=st.floats(0, 5),
-)
+@given(speed=st.floats(1e-6, 500), radius=st.floats(1e-5, 1e-2), ratio=st.floats(0, 5))
 def test_energy_is_shared_out(speed, radius, ratio):
     model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
     thickness = radius / ratio if ratio > 1e-6 else math.inf

@@ -75,11 +75,7 @@ def test_the_kernel_answers_as_the_solver(kind):
     for distance, error in ((0.0, 3e-3), (1e-3, 5e-4), (3e-3, 5e-4), (20e-3, 1e-4)):
         exact = STEEL.solve(SPEED, R, H, edge=kind, edge_distance=distance).restitution
         assert kernel(SPEED, R, H, distance) == pytest.approx(exact, abs=error)
-    for wrong in (
-        (-1.0, R, H, R),
-        (SPEED, R, H, -R),
-        (SPEED, R, H, math.nan),
-    ):
+    for wrong in ((-1.0, R, H, R), (SPEED, R, H, -R), (SPEED, R, H, math.nan)):
         assert math.isnan(kernel(*wrong))
     bulk = STEEL.solve(SPEED, R, math.inf).restitution
     assert kernel(SPEED, R, math.inf, R) == pytest.approx(bulk, abs=1e-4)

@@ -138,11 +138,7 @@ def test_a_rain_of_the_demo(tmp_path, empty_pictures):
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        (
-            "a.csv",
-            "time,radius\n1,2\n",
-            "no column of speeds in its first line, 'time, rad",
-        ),
+        ("a.csv", "time,radius\n1,2\n", "no column of speeds in its first line, 'time, rad"),
         ("a.csv", "", "no column of speeds in its first line, ''"),
         ("a.csv", "speed_m/s\n", "it has no impact on a plate"),
         ("a.csv", "speed,plate\n1,-1\n", "it has no impact on a plate"),

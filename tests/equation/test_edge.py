@@ -110,10 +110,7 @@ def test_the_response_near_holes_is_that_of_finite_elements(radius, p):
 # between those of the fit; at a clamped and at a supported edge they make no difference
 @pytest.mark.parametrize(
     ("poisson", "kind"),
-    [
-        *((0.15, kind) for kind in KINDS),
-        pytest.param(0.4, "free", marks=pytest.mark.long),
-    ],
+    [*((0.15, kind) for kind in KINDS), pytest.param(0.4, "free", marks=pytest.mark.long)],
 )
 def test_the_fitted_response_does_the_work_of_the_exact_one(kind, poisson):
     assert error_of_work(kind, poisson, "equation") < 0.005
