@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from oracle import ALL_LAWS, impact_of
+from oracle import ALL_LAWS, impact
 
 import contactlaw as cl
 from contactlaw import laws
@@ -33,7 +33,7 @@ def integrated(name, pair, speed, thickness):
         law = laws.exact(name, **pair_numbers(pair, name))
     units = scales(sphere_on_plate(pair, law, np.array(RADIUS), np.array(thickness)), speed)
     y = units.yield_ratio if law.yields else 1.0
-    return math.log(impact_of(law, units.inelasticity, y)[0])
+    return math.log(impact(units.inelasticity, y, law)[0])
 
 
 def quotient(function, step=1e-4):

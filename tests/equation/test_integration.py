@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracle import ALL_LAWS, RATIO, impact, impact_of, yield_ratio
+from oracle import ALL_LAWS, RATIO, impact, yield_ratio
 from scipy.integrate import quad, solve_ivp
 from staying import STAYING
 
@@ -69,31 +69,16 @@ def test_half_space_is_eq_21(v):
     assert one.restitution == pytest.approx((1 - (1 - v**-0.8) ** 2) ** 0.25, abs=1e-10)
 
 
-def test_against_an_independent_integration():
-    # 200 points over lambda 0 to 3 and v 0.05 to 20; scipy at 1e-11 is good to about 1e-9
-    rng = np.random.default_rng(20210326)
-    lams, speeds = rng.uniform(0, 3, 200), np.exp(rng.uniform(*np.log([0.05, 20]), 200))
-    functions = laws.law("myc").data
-    worst = np.zeros(3)
-    for lam, v in zip(lams, speeds, strict=True):
-        y = yield_ratio(v)
-        one = zener.solve(functions, lam, y, 1e-10)
-        e, time, peak = impact(lam, y)
-        errors = one.restitution - e, one.contact_time / time - 1, one.peak_compression / peak - 1
-        worst = np.maximum(worst, np.abs(errors))
-    assert worst[0] < 1e-7
-    assert worst[1] < 1e-7
-    assert worst[2] < 1e-7
-
-
 @pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
 def test_every_law_against_an_independent_integration(law):
-    rng = np.random.default_rng(1997)
-    lams, speeds = rng.uniform(0, 1, 12), np.exp(rng.uniform(*np.log([0.5, 20]), 12))
+    """Over lambda 0 to 3 and v 0.05 to 20; scipy at 1e-11 is good to about 1e-9."""
+    rng = np.random.default_rng(20210326)
+    count = 200 if law.name == "myc" else 12
+    lams, speeds = rng.uniform(0, 3, count), np.exp(rng.uniform(*np.log([0.05, 20]), count))
     for lam, v in zip(lams, speeds, strict=True):
         y = yield_ratio(v)
         one = zener.solve(law.data, lam, y, 1e-10)
-        e, time, peak = impact_of(law, lam, y)
+        e, time, peak = impact(lam, y, law)
         assert one.restitution == pytest.approx(e, abs=1e-7)
         assert one.contact_time == pytest.approx(time, rel=1e-7)
         assert one.peak_compression == pytest.approx(peak, rel=1e-7)

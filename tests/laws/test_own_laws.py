@@ -9,7 +9,7 @@ import pickle
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
-from oracle import impact_of
+from oracle import impact
 from own_laws import CUT_OFF, PAIR, H, R, measured, own, points, residual
 
 import contactlaw as cl
@@ -50,7 +50,7 @@ def test_the_solver_agrees_with_an_independent_integration(model):
     for speed, thickness in ((5.0, 1e-3), (12.0, 0.7e-3), (30.0, math.inf), (80.0, 2e-3)):
         contact = sphere_on_plate(PAIR, law, np.array(R), np.array(thickness))
         units = scales(contact, np.array(speed))
-        e, time, largest = impact_of(law, float(units.inelasticity), float(units.yield_ratio))
+        e, time, largest = impact(float(units.inelasticity), float(units.yield_ratio), law)
         hit = model.solve(speed, R, thickness)
         assert hit.restitution == pytest.approx(e, abs=1e-7)
         assert hit.contact_time == pytest.approx(time * units.time, rel=1e-7)

@@ -263,15 +263,6 @@ def test_any_truncation_is_found(path):
             store.read(path)
 
 
-def test_hdf5_programs_read_it(path):
-    with h5py.File(path) as file:
-        assert file.attrs["complete"]
-        assert file["fields/restitution"].shape == (
-            SMALL.inelasticity_nodes,
-            sum(one["shares"].size for one in file["axes/log_overload"].values()),
-        )
-
-
 def test_a_missing_file_is_named(tmp_path):
     with pytest.raises(FileNotFoundError, match="nothing.h5"):
         store.read(tmp_path / "nothing.h5")
