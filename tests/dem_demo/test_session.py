@@ -15,6 +15,7 @@ from typing import NamedTuple
 import h5py
 import numpy as np
 import pytest
+from demos import names
 
 from contactlaw.engines.record import IMPACT
 from contactlaw.report.gallery import Picture
@@ -91,10 +92,6 @@ def dust(monkeypatch):
 
 def main(out):
     return cli.main(["dust", "--out", str(out)])
-
-
-def names(folder):
-    return {path.name for path in folder.iterdir()}
 
 
 def fails(error):

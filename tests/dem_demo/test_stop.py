@@ -7,21 +7,15 @@ import time
 
 import pytest
 import unrendered
+from demos import RAIN, files, names
 
 import contactlaw as cl
 from dem_demo import cli
 from dem_demo.rain import figures
 from dem_demo.rain.record import read
 
-SMALL = ["rain", "--beads", "40", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.3"]
-SMALL += ["--law", "myc"]
-FILES = {"rain.h5", "summary.txt", "index.html", "rain.gif"}
-FILES |= {f"{name}.png" for name in figures.names()}
+FILES = files("rain", figures)
 LONG = ["rain", "--beads", "300", "--duration", "6", "--law", "myc", "--out", "out"]  # is stopped
-
-
-def names(folder):
-    return {path.name for path in folder.iterdir()}
 
 
 # The command, which prints a line when the rain has begun.
@@ -97,7 +91,7 @@ def test_a_failing_impact_keeps_those_before_it(empty_pictures, monkeypatch, tmp
     failing = Failing(ValueError("in the middle"))
     monkeypatch.setattr(cl.ImpactModel, "_real_curve", cl.ImpactModel.curve, raising=False)
     monkeypatch.setattr(cl.ImpactModel, "curve", lambda *arguments: failing.curve(*arguments))
-    assert cli.main([*SMALL, "--out", str(tmp_path / "out")]) == 1
+    assert cli.main([*RAIN, "--out", str(tmp_path / "out")]) == 1
     errors = capsys.readouterr().err
     assert "Traceback" not in errors
     last = errors.splitlines()[-1]
