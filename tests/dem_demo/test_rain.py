@@ -309,9 +309,8 @@ def test_the_balance_of_a_rain_that_was_stopped_at_once(oblique):
     [[], ["--constant-cor", "0.9"], ["--friction", "1"]],
     ids=["model", "baseline", "oblique"],
 )
-def test_a_rain_that_never_lands(more, tmp_path, request):
-    if more:  # the same figures of nothing; rendered once
-        request.getfixturevalue("empty_pictures")
+def test_a_rain_that_never_lands(more, tmp_path, empty_pictures):
+    """Its page is rendered in test_page.py."""
     few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01", *more]
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     assert read(tmp_path / "rain.h5").collisions.size == 0
