@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from verlet import drop
 
-import contactlaw as cl
 from contactlaw._jit import kernel
 from contactlaw.equation import force
 from contactlaw.softsphere import PARTED, Contacts, State, advance, resized, time_step, unit_spring
@@ -196,14 +195,6 @@ def test_a_bead_that_slides_is_that_of_the_integration(model):
     assert (contacts.slide(n, point, mu) == 0.0).all()
     point = ((velocity - R * np.cross(spin, n)) * way).sum(axis=1)
     assert np.abs(point - hit.sliding_speed).max() < 0.012 * mu * v
-
-
-def test_an_elastic_law_needs_no_yield_strength():
-    model = cl.ImpactModel(cl.Pair("glass", "glass"), law="hertz")
-    contacts = Contacts(model, R, math.inf)
-    force = contacts.advance(np.array([1e-5]), 1e-15)
-    expected = 4 / 3 * model.pair.effective_modulus * math.sqrt(R) * 1e-5**1.5
-    assert force == pytest.approx([expected], rel=1e-9)
 
 
 @pytest.mark.parametrize("error", [4e-4, 1e-4])
