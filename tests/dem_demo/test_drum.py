@@ -162,7 +162,7 @@ def test_an_interrupt_between_the_runs_keeps_the_first(
         create(self)
 
     monkeypatch.setattr(lammps._Simulation, "_create", stop)
-    assert cli.main([*DRUM, "--out", str(tmp_path / "out")]) == 130
+    assert cli.main([*DRUM, "--duration", "0.02", "--out", str(tmp_path / "out")]) == 130
     errors = capsys.readouterr().err
     assert "Traceback" not in errors and errors.rstrip().endswith(": interrupted by SIGINT")
     assert names(tmp_path / "out") == FILES - {"constant.h5"}

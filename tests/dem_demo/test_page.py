@@ -87,7 +87,7 @@ def test_a_bead_turns_on_from_piece_to_piece(folder):
 
 
 def test_a_page_of_an_empty_rain(tmp_path, page):
-    few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01"]
+    few = "rain --law myc --beads 2 --speed 0.5,0.6 --duration 0.01".split()
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     page.complaints.clear()
     page.open(tmp_path / "index.html", 390)

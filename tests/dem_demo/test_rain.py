@@ -311,7 +311,7 @@ def test_the_balance_of_a_rain_that_was_stopped_at_once(oblique):
 )
 def test_a_rain_that_never_lands(more, tmp_path, empty_pictures):
     """Its page is rendered in test_page.py."""
-    few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01", *more]
+    few = ["rain", "--law", "myc", *"--beads 2 --speed 0.5,0.6 --duration 0.01".split(), *more]
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     assert read(tmp_path / "rain.h5").collisions.size == 0
     assert "all impacts on plates are inside" in (tmp_path / "summary.txt").read_text()
@@ -402,7 +402,7 @@ def test_wrong_usage_is_status_2(argv, capsys):
 
 
 def test_quiet_without_a_terminal(tmp_path):
-    command = [*unrendered.COMMAND, *RAIN, "--out", str(tmp_path / "out")]
+    command = [*unrendered.COMMAND, *RAIN, "--beads", "3", "--out", str(tmp_path / "out")]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert "Written to" in done.stdout

@@ -182,7 +182,7 @@ def test_a_writer_killed_at_any_moment_leaves_a_whole_file_or_none(place, path, 
         return [*place.glob("*.part"), *place.glob(".*.part")]
 
     interrupted = 0
-    for n in range(60):
+    for n in range(30):
         writer = FORK.Process(target=write_for_ever)
         before = path.stat().st_mtime_ns if path.exists() else None
         writer.start()
@@ -196,7 +196,7 @@ def test_a_writer_killed_at_any_moment_leaves_a_whole_file_or_none(place, path, 
         writer.join()
         assert same(store.read(path), expected)
         interrupted += len(unfinished()) > left
-    assert interrupted > 5  # the kills did hit writes
+    assert interrupted > 2  # the kills did hit writes
     path.unlink(missing_ok=True)
     assert same(cache.cached(MYC, SMALL), expected)
     assert not list(place.glob(".*.part"))  # what the killed ones left is gone
