@@ -136,7 +136,9 @@ def test_no_force_in_the_dent_and_none_apart(model, law):
     assert advance(law, spring, inside, math.nan, 1e-8) == PARTED
 
 
-@pytest.mark.parametrize("thickness", [0.3e-3, 1e-3, 3e-3])
+@pytest.mark.parametrize(
+    "thickness", [0.3e-3, *(pytest.param(h, marks=pytest.mark.long) for h in (1e-3, 3e-3))]
+)
 def test_a_bead_at_rest_is_finite_and_quiet(model, law, thickness):
     spring = spring_of(model, thickness)
     weight = 9.81 * spring.mass

@@ -50,7 +50,7 @@ CASES = {
     ),
 }  # fmt: skip
 
-SLOW = "either may flow", "hardening and rate"
+SLOW = "the bead flows", "either may flow", "hardening and rate"
 
 
 def drawn(body, deviates):

@@ -35,7 +35,7 @@ def drops(model, thickness, speed, steps, phases):
 PHASES = np.linspace(0.0, 1.0, 13)
 
 
-@pytest.mark.parametrize("steps", [21, 50])
+@pytest.mark.parametrize("steps", [21, pytest.param(50, marks=pytest.mark.long)])
 def test_an_elastic_bead_keeps_its_energy_for_ten_thousand_bounces(steps):
     """The bead bounces between two plates, and first touches at ever another phase of a step."""
     dt = float(HERTZ.solve(3.0, R, math.inf).contact_time) / steps
