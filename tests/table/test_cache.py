@@ -21,7 +21,7 @@ from contactlaw.table import cache, slides
 from contactlaw.table import file as store
 
 MYC = laws.law("myc")
-SMALL = table.Settings(inelasticity_nodes=9, log_overload_step=0.5)
+SMALL, OTHER = (table.Settings(inelasticity_nodes=count, log_overload_step=0.5) for count in (9, 5))
 # children are forked, so that they need not compile the solver again; what they import lazily is
 # loaded here, since a child that gave up its rights may not read the packages any more
 FORK = multiprocessing.get_context("fork")
@@ -91,16 +91,13 @@ def test_the_name_depends_on_all_that_the_content_does(monkeypatch):
     assert len(names) == 5
 
 
-def test_folder(monkeypatch, tmp_path):
-    assert cache.folder() == tmp_path / "cache"
+def test_the_folder_may_be_chosen_and_switched_off(place, expected, monkeypatch):
+    assert cache.folder() == place
     monkeypatch.delenv("CONTACTLAW_CACHE_DIR")
     assert cache.folder() == platformdirs.user_cache_path("contactlaw", appauthor=False)
     monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
     assert cache.folder() is None
-
-
-def test_switched_off_writes_nothing(place, expected, monkeypatch):
-    monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
+    monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(place))
     assert same(cache.cached(MYC, SMALL), expected)
     assert not place.exists()
 
@@ -122,8 +119,9 @@ def in_its_place(make):
         in_its_place(lambda path: path.symlink_to("/dev/zero")),
         in_its_place(lambda path: path.symlink_to(path)),
         lambda path: os.truncate(path, 1 << 40),
+        lambda path: store.write(table.build(MYC, OTHER), path),
     ],
-    ids=["flipped bits", "pipe", "device", "cyclic link", "sparse"],
+    ids=["flipped bits", "pipe", "device", "cyclic link", "sparse", "of other settings"],
 )
 def test_a_damaged_file_is_rebuilt(place, path, expected, damage):
     place.mkdir(0o700)
@@ -135,13 +133,6 @@ def test_a_damaged_file_is_rebuilt(place, path, expected, damage):
     assert same(store.read(path), expected)  # and the file is whole again
     cache.cached.cache_clear()
     assert same(cache.cached(MYC, SMALL), expected)  # without a warning
-
-
-def test_another_table_under_the_name_is_rebuilt(place, path, expected):
-    place.mkdir(0o700)
-    store.write(table.build(MYC, table.Settings(inelasticity_nodes=5, log_overload_step=0.5)), path)
-    with pytest.warns(UserWarning, match="other settings.*CONTACTLAW_CACHE_DIR"):
-        assert same(cache.cached(MYC, SMALL), expected)
 
 
 def test_two_processes_build_one_table(place, path, expected):

@@ -130,17 +130,6 @@ def test_nodes_lie_on_both_kinks():
         assert row[-1] == math.log(SMALL.largest_overload)
 
 
-def test_nodes_hold_what_the_solver_says():
-    built = table.build(MYC, SMALL)
-    lam, log_chi = built.grid.nodes()
-    for at in ((0, 0), (5, 3), (20, -1)):
-        w_m = zener.elastic_compression(HERTZ, lam[at], 1e-13)[1]
-        exact = zener.solve(MYC.data, lam[at], w_m / math.exp(log_chi[at]), 1e-12)
-        assert built.fields["restitution"][at] == pytest.approx(exact.restitution, abs=1e-11)
-        compression = built.fields["compression_ratio"][at] * w_m
-        assert compression == pytest.approx(exact.peak_compression, rel=1e-10)
-
-
 def test_restitution_falls_with_overload_and_with_inelasticity():
     packed = file.packaged(MYC).packed
     lam = np.linspace(0, 5, 201)
@@ -195,6 +184,19 @@ def test_a_bad_table_is_found():
 
 
 @pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: splines.spline_coefficients(np.ones(4)), "at least 5 nodes, got 4"),
+        (lambda: table.build(laws.law("hertz")), "'hertz' never yields"),
+        (lambda: table.certify(file.packaged(MYC), points=10), "points: at least 100"),
+    ],
+)
+def test_what_makes_no_table(call, message):
+    with pytest.raises(ValueError, match=message):
+        call()
+
+
+@pytest.mark.parametrize(
     "wrong",
     [
         {"largest_inelasticity": -1.0},
@@ -210,25 +212,11 @@ def test_settings_out_of_range(wrong):
         table.Settings(**wrong)
 
 
-def test_a_certificate_needs_points():
-    with pytest.raises(ValueError, match="points: at least 100"):
-        table.certify(file.packaged(MYC), points=10)
-
-
 def test_packaged_table_is_what_this_version_builds():
     packaged, built = file.packaged(MYC), table.build(MYC)
     assert packaged.settings == built.settings
     for name, values in built.fields.items():
         np.testing.assert_allclose(packaged.fields[name], values, rtol=1e-9, err_msg=name)
-
-
-def test_splines_reproduce_cubics():
-    x = np.arange(9.0)
-    c = splines.spline_coefficients(x**3 - 4 * x**2 + 2)
-    for position in (0.0, 0.3, 3.7, 7.99):
-        i = int(position)
-        value = sum(w / 6 * c[i + k] for k, w in enumerate(lookup.weights(position - i)))
-        assert value == pytest.approx(position**3 - 4 * position**2 + 2, abs=1e-12)
 
 
 def test_a_table_may_have_one_axis_more():
@@ -262,16 +250,6 @@ def test_a_table_may_have_one_axis_more():
         part = coefficients[tuple(slice(n, n + 3) for n in (*place[:2], column))]
         found = np.einsum("ijk,i,j,k", part, weights, weights, weights)
         assert found == pytest.approx(held[place], rel=1e-12, abs=1e-12)
-
-
-def test_a_spline_needs_five_nodes():
-    with pytest.raises(ValueError, match="at least 5 nodes, got 4"):
-        splines.spline_coefficients(np.ones(4))
-
-
-def test_an_elastic_law_needs_no_table():
-    with pytest.raises(ValueError, match="'hertz' never yields"):
-        table.build(laws.law("hertz"))
 
 
 def test_a_node_that_does_not_solve_fails_the_build(monkeypatch):
