@@ -139,8 +139,9 @@ def test_a_law_and_its_model_travel(model):
     assert there.restitution(12.0, R, H) == model.restitution(12.0, R, H)
 
 
-def test_a_worker_answers(model, monkeypatch):
+def test_a_worker_answers(monkeypatch):
     monkeypatch.setenv("CONTACTLAW_NO_CACHE", "1")
+    model = cl.ImpactModel(PAIR, law=own())
     context = multiprocessing.get_context("spawn")
     with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
         answer = pool.submit(model.restitution, 12.0, R, H).result(timeout=120)
