@@ -26,7 +26,14 @@ def impacts(count, seed=0):
     return speed, sliding, radius, radius * 10 ** generator.uniform(0, 1.5, count), friction
 
 
-@pytest.mark.parametrize("law", PAIRS)
+@pytest.mark.parametrize(
+    "law",
+    [
+        "myc",
+        "losses and flow",
+        *(pytest.param(law, marks=pytest.mark.long) for law in ("fem", "hertz")),
+    ],
+)
 def test_table_is_within_its_promise(law):
     model, (v, s, r, h, mu) = PAIRS[law], impacts(1000)
     table, solved = (model.oblique(v, s, r, h, mu, method=how) for how in ("table", "solve"))
