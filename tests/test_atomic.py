@@ -4,6 +4,7 @@ import os
 import stat
 import threading
 import tty
+from unittest.mock import MagicMock
 
 import pytest
 
@@ -14,44 +15,33 @@ HEADER = ["export", "header", "--sphere", "gamma-alumina", "--plate", "glass", "
           "--table", "none", "--out"]  # fmt: skip
 
 
-def reads_in_thread(descriptor, size):
-    """Collect what comes out at the other end, which has to be open before something goes in."""
+@pytest.mark.parametrize("kind", ["pipe", "terminal"])
+def test_what_is_no_file_passes_the_content_on_and_stays_one(kind, tmp_path):
+    """The folder of a terminal takes no other file; a pipe does not hold the content."""
+    content, pipe = b"a line\n" * 20_000, tmp_path / "pipe"
+    if kind == "pipe":
+        os.mkfifo(pipe)
+        ours = its = os.open(pipe, os.O_RDWR)
+    else:
+        ours, its = os.openpty()
+        tty.setraw(its)
+    name = pipe if kind == "pipe" else os.ttyname(its)
     found = []
 
     def read():
-        while sum(map(len, found)) < size and (part := os.read(descriptor, 65536)):
+        """Collect what comes out at the other end, which is open before something goes in."""
+        while sum(map(len, found)) < len(content) and (part := os.read(ours, 65536)):
             found.append(part)
 
     thread = threading.Thread(target=read, daemon=True)
     thread.start()
-    return thread, found
-
-
-def test_a_named_pipe_passes_the_content_on(tmp_path):
-    pipe, content = tmp_path / "pipe", b"0123456789" * 50_000  # more than a pipe holds
-    os.mkfifo(pipe)
-    ours = os.open(pipe, os.O_RDWR)
-    thread, found = reads_in_thread(ours, len(content))
-    _atomic.write(pipe, content)
-    thread.join(timeout=20)
-    os.close(ours)
-    assert b"".join(found) == content
-    assert stat.S_ISFIFO(os.lstat(pipe).st_mode)
-    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
-
-
-def test_a_device_takes_the_content_and_stays_one():
-    """The device is a terminal, whose folder takes no other file."""
-    ours, its = os.openpty()
-    tty.setraw(its)
-    name, content = os.ttyname(its), b"a line\n" * 1000
-    thread, found = reads_in_thread(ours, len(content))
     _atomic.write(name, content)
     thread.join(timeout=20)
     assert b"".join(found) == content
-    assert stat.S_ISCHR(os.stat(name).st_mode)
-    os.close(ours)
-    os.close(its)
+    assert (stat.S_ISFIFO if kind == "pipe" else stat.S_ISCHR)(os.lstat(name).st_mode)
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe"] * (kind == "pipe")
+    for descriptor in {ours, its}:
+        os.close(descriptor)
 
 
 @pytest.mark.parametrize("there", [True, False], ids=["to a file", "to nothing yet"])
@@ -69,58 +59,38 @@ def test_a_link_stays_and_what_it_leads_to_is_written(there, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["disk", "first", "second"]
 
 
-def test_links_to_no_file_are_refused(tmp_path):
+@pytest.mark.parametrize(
+    ("target", "reason"),
+    [("folder", "Is a directory"), ("no/such/file", "no such folder"), ("x", "Too many levels")],
+)
+def test_links_to_no_file_are_refused(target, reason, tmp_path):
     (tmp_path / "folder").mkdir()
-    (tmp_path / "to folder").symlink_to("folder")
-    (tmp_path / "nowhere").symlink_to("no/such/file")
-    (tmp_path / "round").symlink_to("round")
-    before = sorted(tmp_path.rglob("*"))
-    for name, reason in (
-        ("to folder", "Is a directory"),
-        ("nowhere", "no such folder"),
-        ("round", "Too many levels"),
-    ):
-        with pytest.raises(OSError, match=reason):
-            _atomic.write(tmp_path / name, b"after")
-    assert sorted(tmp_path.rglob("*")) == before
-    assert all(os.readlink(tmp_path / name) for name in ("to folder", "nowhere", "round"))
-
-
-def test_the_command_follows_links_and_says_what_it_was_told(tmp_path, capsys):
-    (tmp_path / "law.h").symlink_to("elsewhere.h")
-    assert main([*HEADER, str(tmp_path / "law.h")]) == 0
-    assert capsys.readouterr().out == f"{tmp_path / 'law.h'}\n"
-    assert "contactlaw_step" in (tmp_path / "elsewhere.h").read_text()
-    assert (tmp_path / "law.h").is_symlink()
+    (tmp_path / "x").symlink_to(target)
+    with pytest.raises(OSError, match=reason):
+        _atomic.write(tmp_path / "x", b"after")
+    assert {path.name for path in tmp_path.rglob("*")} == {"folder", "x"}
+    assert os.readlink(tmp_path / "x") == target
 
 
 def test_a_full_device_is_an_error_in_words(tmp_path, monkeypatch, capsys):
     """A stand-in for /dev/full, which root would lose if this failed."""
     ours, its = os.openpty()
 
-    class Full:
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            return None
-
-        def write(self, _):
-            raise OSError(28, "No space left on device")
-
-    name = os.ttyname(its)
-    monkeypatch.setattr(_atomic, "open", lambda *_: Full(), raising=False)
+    name, full = os.ttyname(its), MagicMock()
+    full.__enter__().write.side_effect = OSError(28, "No space left on device")
+    monkeypatch.setattr(_atomic, "open", lambda *_: full, raising=False)
     assert main([*HEADER, name]) == 1
     assert f"--out: cannot write {name}: No space left on device" in capsys.readouterr().err
     os.close(ours)
     os.close(its)
 
 
-def test_a_folder_for_liggghts_may_be_a_link(tmp_path):
+def test_a_folder_for_liggghts_may_be_a_link(tmp_path, capsys):
     (tmp_path / "disk").mkdir()
     (tmp_path / "out").symlink_to("disk")
     (tmp_path / "disk" / "build.sh").symlink_to("kept.sh")
     assert main(["export", "liggghts", *HEADER[2:8], "--out", str(tmp_path / "out")]) == 0
+    assert capsys.readouterr().out.startswith(str(tmp_path / "out"))  # what the command was told
     assert (tmp_path / "out").is_symlink() and (tmp_path / "out" / "build.sh").is_symlink()
     assert (tmp_path / "disk" / "kept.sh").read_text().startswith("#!")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["disk", "out"]

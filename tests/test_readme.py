@@ -13,14 +13,12 @@ from pathlib import Path
 import needs
 import numpy as np
 import pytest
-from oracle import ALL_LAWS
 from places import ROOT
 from rains import write_rain
 
 import contactlaw as cl
-from contactlaw import cli, laws, table
+from contactlaw import cli, laws
 from contactlaw.table import file
-from contactlaw.table.grid import on_demand
 
 PAGES = {
     page.stem: page.read_text() for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
@@ -195,26 +193,11 @@ def test_the_index_lists_every_page_and_example():
 
 
 def test_the_stated_accuracy_is_that_of_the_certificate():
+    """Tables of other laws are compared with the solver in tests/table."""
+    assert "Tables of other laws are within 1e-6 in COR and 1e-5 in other fields" in SAID
     largest = dict(file.packaged(laws.law("myc")).certificate.largest)
     assert "within 5e-8 of the integrated equation in COR and within 3e-6" in SAID
     assert largest.pop("restitution") < 5e-8
     assert "histories from the table are within 1e-4 of their peak" in SAID
     assert largest.pop("force_history") < 1e-4
     assert max(largest.values()) < 3e-6
-
-
-@pytest.mark.parametrize(
-    "law",
-    [
-        # that of one law is built in make test too
-        law if law.name.startswith("stronge") else pytest.param(law, marks=pytest.mark.long)
-        for law in ALL_LAWS
-        if law.yields
-    ],
-    ids=lambda law: law.name,
-)
-def test_the_stated_accuracy_of_tables_of_other_laws(law):
-    assert "Tables of other laws are within 1e-6 in COR and 1e-5 in other fields" in SAID
-    built = table.with_shapes(table.build(law, on_demand(law)), points=10_000)
-    next_to_yield = {"plastic_fraction", "residual_compression"}  # they begin there at zero
-    assert set(built.certificate.exceeded()) <= next_to_yield

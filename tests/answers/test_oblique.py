@@ -26,7 +26,14 @@ def impacts(count, seed=0):
     return speed, sliding, radius, radius * 10 ** generator.uniform(0, 1.5, count), friction
 
 
-@pytest.mark.parametrize("law", PAIRS)
+@pytest.mark.parametrize(
+    "law",
+    [
+        "myc",
+        "losses and flow",
+        *(pytest.param(law, marks=pytest.mark.long) for law in ("fem", "hertz")),
+    ],
+)
 def test_table_is_within_its_promise(law):
     model, (v, s, r, h, mu) = PAIRS[law], impacts(1000)
     table, solved = (model.oblique(v, s, r, h, mu, method=how) for how in ("table", "solve"))
@@ -134,21 +141,6 @@ def test_kernel_is_collide():
         assert turned == pytest.approx(ours[1][n], rel=1e-13)
     down, up = (0.0, 0.0, -1e3), (0.0, 0.0, 1.0)
     assert np.isnan(collide(down, (0.0, 0.0, 0.0), up, 1e-3, 4e-3, 0.25, (0.0, 0.0, 0.0))[0][2])
-
-
-def test_many_bounces_make_no_energy():
-    # a billiard in a box of four plates, without gravity: 100 beads, 1000 impacts each
-    model = PAIRS["hertz"]
-    generator = np.random.default_rng(5)
-    velocity, spin = generator.normal(size=(100, 3)), generator.normal(size=(100, 3)) * 1000
-    energy = 0.5 * (velocity**2).sum(axis=1) + 0.2e-6 * (spin**2).sum(axis=1)
-    for _ in range(1000):
-        normal = generator.normal(size=(100, 3))
-        normal *= -np.sign((velocity * normal).sum(axis=1))[:, None]
-        velocity, spin = model.collide(velocity, spin, normal, 1e-3, 1.0, 0.3)
-        now = 0.5 * (velocity**2).sum(axis=1) + 0.2e-6 * (spin**2).sum(axis=1)
-        assert (now <= energy * (1 + 1e-14)).all()
-        energy = now
 
 
 def test_shapes():

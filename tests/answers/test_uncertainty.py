@@ -50,7 +50,7 @@ CASES = {
     ),
 }  # fmt: skip
 
-SLOW = "either may flow", "hardening and rate"
+SLOW = "the bead flows", "either may flow", "hardening and rate"
 
 
 def drawn(body, deviates):
@@ -63,8 +63,7 @@ def drawn(body, deviates):
 
 
 @pytest.mark.parametrize(
-    "case",
-    [pytest.param(name, marks=pytest.mark.long) if name in SLOW else name for name in CASES],
+    "case", [pytest.param(name, marks=pytest.mark.long) if name in SLOW else name for name in CASES]
 )
 def test_the_band_is_that_of_random_pairs(case):
     """Of 512 of a Sobol sequence, whose quantiles err less than those of 2000 independent ones."""

@@ -249,10 +249,11 @@ def test_every_curve_is_named_and_nothing_overlaps(drawn, tmp_path, radii, plate
     ("suffix", "begins"), [("png", b"\x89PNG"), ("svg", b"<?xml"), ("PDF", b"%PDF")]
 )
 @pytest.mark.parametrize("speeds", ["1,5", "1:60:9"])
-def test_formats(suffix, begins, speeds, tmp_path):
+def test_formats(suffix, begins, speeds, tmp_path, capsys):
     path = tmp_path / f"cor.{suffix}"
     bead = "cor --sphere gamma-alumina --plate glass --radius 0.9mm --thickness 1mm:2mm:9 --no-band"
     assert main([*bead.split(), "--speed", speeds, "--plot", str(path)]) == 0
+    assert capsys.readouterr().out == f"{path}\n"
     assert path.read_bytes().startswith(begins)
     assert [file.name for file in tmp_path.iterdir()] == [path.name]
 

@@ -13,8 +13,6 @@ import contactlaw as cl
 from contactlaw import cli as cli_of_contactlaw
 from contactlaw.cli.constant.records import Recorded, _npy, combined, completed, read
 from contactlaw.engines.record import IMPACT
-from dem_demo import cli
-from dem_demo.rain import record as reader
 
 SPEED, RADIUS = [0.5, 1.2, 3.0], [0.9e-3, 1.1e-3, 1.0e-3]
 
@@ -121,28 +119,10 @@ def test_a_column_called_kind_in_another_table(tmp_path):
     assert read(tmp_path / "a.csv").speed.tolist() == [1.0, 2.0]
 
 
-def test_a_rain_of_the_demo(tmp_path, empty_pictures):
-    rain = ["rain", "--beads", "12", "--plates", "0.5e-3,inf", "--duration", "0.2", "--seed", "3"]
-    assert cli.main([*rain, "--out", str(tmp_path / "rain")]) == 0
-    found, run = read(tmp_path / "rain/rain.h5"), reader.read(tmp_path / "rain/rain.h5")
-    rows = run.impacts[run.impacts["plate"] >= 0]
-    assert rows.size > 5
-    assert found.speed.tolist() == rows["approach_speed"].tolist()
-    assert found.radius.tolist() == run.scene.beads.radius[rows["bead"]].tolist()
-    plates = np.array([0.5e-3, math.inf])
-    assert found.thickness.tolist() == plates[rows["plate"]].tolist()
-    assert found.pair == run.model.pair
-    assert found.law == run.law
-
-
 @pytest.mark.parametrize(
     ("name", "content", "message"),
     [
-        (
-            "a.csv",
-            "time,radius\n1,2\n",
-            "no column of speeds in its first line, 'time, rad",
-        ),
+        ("a.csv", "time,radius\n1,2\n", "no column of speeds in its first line, 'time, rad"),
         ("a.csv", "", "no column of speeds in its first line, ''"),
         ("a.csv", "speed_m/s\n", "it has no impact on a plate"),
         ("a.csv", "speed,plate\n1,-1\n", "it has no impact on a plate"),

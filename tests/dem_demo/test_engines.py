@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from demos import files, names
 
 import dem_demo
 from dem_demo import cli
@@ -126,9 +127,7 @@ def test_a_new_file_is_a_new_engine(falling, empty_pictures, tmp_path, capsys):
     assert "falling: nothing but free fall" in text
     out = tmp_path / "out"
     assert cli.main([*RAIN, "--out", str(out)]) == 0
-    written = {"rain.h5", "summary.txt", "index.html", "rain.gif"}
-    written |= {f"{name}.png" for name in figures.names()}
-    assert {path.name for path in out.iterdir()} == written
+    assert names(out) == files("rain", figures)
     run = read(out / "rain.h5")
     assert (run.engine, run.scene.duration, run.time.size) == ("falling", 0.25, 26)
     summary = (out / "summary.txt").read_text()

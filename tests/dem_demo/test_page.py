@@ -10,20 +10,13 @@ from dem_demo import cli
 from dem_demo.rain import paths
 from dem_demo.rain.record import read
 
-RAIN = ["rain", "--beads", "60", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.4"]
-RAIN += ["--law", "myc"]
-MORE = {"model": [], "baseline": ["--constant-cor", "0.9"], "oblique": ["--friction", "0.2"]}
 PICTURE = "document.getElementById('rain').toDataURL()"
 CONTACT = "document.getElementById('contact').toDataURL()"
 
 
-@pytest.fixture(
-    scope="module", params=["model", pytest.param("baseline", marks=pytest.mark.long), "oblique"]
-)
-def folder(request, tmp_path_factory):
-    out = tmp_path_factory.mktemp("page") / "out"
-    assert cli.main([*RAIN, *MORE[request.param], "--out", str(out)]) == 0
-    return out
+@pytest.fixture(params=["rain", pytest.param("baseline", marks=pytest.mark.long), "oblique"])
+def folder(request):
+    return request.getfixturevalue(request.param)
 
 
 def test_the_page_needs_nothing_else_and_is_small(folder):
@@ -94,7 +87,7 @@ def test_a_bead_turns_on_from_piece_to_piece(folder):
 
 
 def test_a_page_of_an_empty_rain(tmp_path, page):
-    few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01"]
+    few = "rain --law myc --beads 2 --speed 0.5,0.6 --duration 0.01".split()
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     page.complaints.clear()
     page.open(tmp_path / "index.html", 390)

@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 import pytest
 import unrendered
+from demos import RAIN, files, names
 from matplotlib.image import imread
 
 import contactlaw as cl
@@ -19,48 +20,21 @@ from dem_demo.rain import figures, nozzles, report
 from dem_demo.rain.measure import balance, limits, model_shares, outside, plate_rows
 from dem_demo.rain.record import read
 
-# Numbers are those of the paper's law, whichever is the default.
-SMALL = ["rain", "--beads", "40", "--plates", "0.5e-3,1e-3,inf", "--duration", "0.3"]
-SMALL += ["--law", "myc"]
-PICTURES = {f"{name}.png" for name in figures.names()}
-FILES = {"rain.h5", "summary.txt", "index.html", "rain.gif", *PICTURES}
+FILES = files("rain", figures)
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A small rain, shared by the tests that only read."""
-    out = tmp_path_factory.mktemp("rain") / "out"
-    assert cli.main([*SMALL, "--out", str(out)]) == 0
-    return out
+def run(rain):
+    return read(rain / "rain.h5")
 
 
-@pytest.fixture(scope="module")
-def run(folder):
-    return read(folder / "rain.h5")
+def test_all_files_are_there_and_nothing_else(rain):
+    assert names(rain) == FILES
+    assert names(rain.parent) == {"out"}
 
 
-@pytest.fixture(scope="module")
-def oblique(tmp_path_factory):
-    """A rain with friction, from tilted nozzles."""
-    out = tmp_path_factory.mktemp("oblique") / "out"
-    assert cli.main([*SMALL, "--friction", "0.2", "--out", str(out)]) == 0
-    return out
-
-
-@pytest.fixture(scope="module")
-def baseline(tmp_path_factory):
-    out = tmp_path_factory.mktemp("baseline") / "out"
-    assert cli.main([*SMALL, "--constant-cor", "0.9", "--out", str(out)]) == 0
-    return out
-
-
-def test_all_files_are_there_and_nothing_else(folder):
-    assert {path.name for path in folder.iterdir()} == FILES
-    assert [path.name for path in folder.parent.iterdir()] == ["out"]
-
-
-def test_file_explains_itself(folder):
-    with h5py.File(folder / "rain.h5") as file:
+def test_file_explains_itself(rain):
+    with h5py.File(rain / "rain.h5") as file:
         assert file.attrs["format"] == "contactlaw-rain"
         assert file.attrs["seed"] == 1
         assert file.attrs["law"] == "myc"
@@ -82,9 +56,9 @@ def test_file_explains_itself(folder):
     assert {"collisions/wave_energy", "trajectories/position", "beads/mass"} <= set(seen)
 
 
-def test_collisions_are_the_one_record_of_impacts(folder, run):
+def test_collisions_are_the_one_record_of_impacts(rain, run):
     assert run.collisions.dtype == IMPACT
-    with h5py.File(folder / "rain.h5") as file:
+    with h5py.File(rain / "rain.h5") as file:
         group = file["collisions"]
         assert set(group) == set(IMPACT.names)
         for column in COLUMNS:
@@ -176,8 +150,8 @@ def test_energy_is_shared_out(run):
     assert (lost >= 0).all()
 
 
-def test_summary_is_that_of_the_file(folder, run):
-    text = (folder / "summary.txt").read_text()
+def test_summary_is_that_of_the_file(rain, run):
+    text = (rain / "summary.txt").read_text()
     for n, row in enumerate(plate_rows(run)):
         mine = run.collisions[run.collisions["plate"] == n]
         assert row.impacts == mine.size
@@ -210,7 +184,7 @@ def test_beads_fly_on_parabolas(run):
 def test_the_same_seed_gives_the_same_rain(run, tmp_path, empty_pictures):
     for seed, same in (("1", True), ("2", False)):
         out = tmp_path / seed
-        assert cli.main([*SMALL, "--seed", seed, "--out", str(out)]) == 0
+        assert cli.main([*RAIN, "--seed", seed, "--out", str(out)]) == 0
         again = read(out / "rain.h5").collisions
         assert (again.tobytes() == run.collisions.tobytes()) is same
 
@@ -221,10 +195,10 @@ def test_baseline(baseline):
     assert not {"wave_energy", "plastic_energy"} & set(run.collisions.dtype.names)
     assert run.constant_cor == 0.9
     assert "COR 0.9 everywhere" in (baseline / "summary.txt").read_text()
-    assert {path.name for path in baseline.iterdir()} == FILES
+    assert names(baseline) == FILES
 
 
-@pytest.mark.parametrize(("which", "times"), [("folder", 0), ("baseline", 1)])
+@pytest.mark.parametrize(("which", "times"), [("rain", 0), ("baseline", 1)])
 def test_no_impact_is_looked_up_a_second_time(request, which, times, monkeypatch):
     """Only the baseline needs a lookup of its impacts; other records have the results."""
     run = read(request.getfixturevalue(which) / "rain.h5")
@@ -295,16 +269,16 @@ def test_friction_spins_beads_and_takes_energy(oblique):
     assert f"friction {found.friction / found.given:.1%}, bead on bead" in summary(oblique)
 
 
-def summary(folder):
-    return (folder / "summary.txt").read_text()
+def summary(rain):
+    return (rain / "summary.txt").read_text()
 
 
-def test_without_friction_nothing_tells_of_it(folder, run):
-    with h5py.File(folder / "rain.h5") as file:
+def test_without_friction_nothing_tells_of_it(rain, run):
+    with h5py.File(rain / "rain.h5") as file:
         assert "spin" not in file["trajectories"]
     assert not run.collisions["spin_z"].any() and not run.collisions["friction_energy"].any()
-    assert "friction" not in summary(folder)
-    assert '"spin"' not in (folder / "index.html").read_text()
+    assert "friction" not in summary(rain)
+    assert '"spin"' not in (rain / "index.html").read_text()
 
 
 def test_beads_of_tilted_nozzles_land_on_plates():
@@ -335,31 +309,30 @@ def test_the_balance_of_a_rain_that_was_stopped_at_once(oblique):
     [[], ["--constant-cor", "0.9"], ["--friction", "1"]],
     ids=["model", "baseline", "oblique"],
 )
-def test_a_rain_that_never_lands(more, tmp_path, request):
-    if more:  # the same figures of nothing; rendered once
-        request.getfixturevalue("empty_pictures")
-    few = ["rain", "--beads", "2", "--speed", "0.5,0.6", "--duration", "0.01", *more]
+def test_a_rain_that_never_lands(more, tmp_path, empty_pictures):
+    """Its page is rendered in test_page.py."""
+    few = ["rain", "--law", "myc", *"--beads 2 --speed 0.5,0.6 --duration 0.01".split(), *more]
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     assert read(tmp_path / "rain.h5").collisions.size == 0
     assert "all impacts on plates are inside" in (tmp_path / "summary.txt").read_text()
 
 
 @pytest.mark.parametrize("narrow", [False, True])
-@pytest.mark.parametrize("which", ["folder", "baseline", "oblique"])
-@pytest.mark.parametrize("name", figures.names())
-def test_no_label_runs_into_the_title(request, name, which, narrow):
+@pytest.mark.parametrize("which", ["rain", "baseline", "oblique"])
+def test_no_label_runs_into_the_title(request, which, narrow):
     run = read(request.getfixturevalue(which) / "rain.h5")
-    with style.applied(narrow=narrow):
-        drawn = figures.module(name).draw(run)
-        drawn.draw_without_rendering()
-        heads = [text.get_window_extent() for text in drawn.texts]
-        for axes in drawn.axes:
-            for label in (axes.xaxis.label, axes.yaxis.label):
-                place = label.get_window_extent()
-                assert not (label.get_text() and any(map(place.overlaps, heads))), label
+    for name in figures.names():
+        with style.applied(narrow=narrow):
+            drawn = figures.module(name).draw(run)
+            drawn.draw_without_rendering()
+            heads = [text.get_window_extent() for text in drawn.texts]
+            for axes in drawn.axes:
+                for label in (axes.xaxis.label, axes.yaxis.label):
+                    place = label.get_window_extent()
+                    assert not (label.get_text() and any(map(place.overlaps, heads))), label
 
 
-@pytest.mark.parametrize("which", ["folder", "baseline"])
+@pytest.mark.parametrize("which", ["rain", "baseline"])
 @pytest.mark.parametrize("name", figures.names())
 def test_figures_are_pictures(request, which, name):
     picture = imread(request.getfixturevalue(which) / f"{name}.png")
@@ -400,7 +373,7 @@ def test_figures_are_pictures(request, which, name):
     ids=" ".join,
 )
 def test_refused_physics_is_one_sentence(flags, message, tmp_path, capsys):
-    assert cli.main([*SMALL, *flags, "--out", str(tmp_path / "out")]) == 1
+    assert cli.main([*RAIN, *flags, "--out", str(tmp_path / "out")]) == 1
     captured = capsys.readouterr()
     assert captured.err.startswith("dem-demo: ")
     assert message in captured.err
@@ -428,17 +401,8 @@ def test_wrong_usage_is_status_2(argv, capsys):
     assert "usage:" in capsys.readouterr().err
 
 
-def test_a_file_in_the_way(tmp_path, capsys):
-    (tmp_path / "out").write_text("mine")
-    assert cli.main([*SMALL, "--out", str(tmp_path / "out")]) == 1
-    path = tmp_path / "out"
-    message = f"dem-demo: --out: {path} is a file, not a folder; name a folder, which may be new\n"
-    assert capsys.readouterr().err == message
-    assert path.read_text() == "mine"
-
-
 def test_quiet_without_a_terminal(tmp_path):
-    command = [*unrendered.COMMAND, *SMALL, "--out", str(tmp_path / "out")]
+    command = [*unrendered.COMMAND, *RAIN, "--beads", "3", "--out", str(tmp_path / "out")]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert "Written to" in done.stdout

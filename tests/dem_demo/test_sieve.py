@@ -1,14 +1,11 @@
 """`dem-demo sieve`: its deck, its record, its energy, and what it leaves when it is stopped."""
 
-import csv
 import dataclasses
-import io
 import math
 import subprocess
 import sys
 from pathlib import Path
 
-import h5py
 import numpy as np
 import pytest
 
@@ -17,84 +14,30 @@ pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[
 
 import trimesh  # noqa: E402
 import unrendered  # noqa: E402
-from beds import check_what_an_interrupt_keeps  # noqa: E402
+from demos import SIEVE  # noqa: E402
+from verlet import fallen  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
-from contactlaw import cli as cli_of_contactlaw  # noqa: E402
-from contactlaw.cli.constant import records  # noqa: E402
-from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
+from contactlaw.engines.record import IMPACT  # noqa: E402
 from contactlaw.report.surface import areas  # noqa: E402
 from contactlaw.softsphere import Contacts, time_step  # noqa: E402
-from dem_demo import cli  # noqa: E402
 from dem_demo.kit import lammps  # noqa: E402
 from dem_demo.kit.constant import constant_model  # noqa: E402
 from dem_demo.kit.lammps import Gathering  # noqa: E402
-from dem_demo.kit.measure import account, kept  # noqa: E402
-from dem_demo.kit.runs import read, read_one  # noqa: E402
-from dem_demo.sieve import figures, measure  # noqa: E402
+from dem_demo.kit.measure import kept  # noqa: E402
+from dem_demo.kit.runs import read  # noqa: E402
+from dem_demo.sieve import measure  # noqa: E402
+from dem_demo.sieve import scene as scenes  # noqa: E402
 from dem_demo.sieve.deck import FORM, Deck, write_stl  # noqa: E402
-from dem_demo.sieve.scene import Sieve, sieve  # noqa: E402
+from dem_demo.sieve.scene import Sieve  # noqa: E402
 
-SMALL = ["sieve", "--beads", "12", "--duration", "0.016", "--speed", "2.5", "--friction", "0"]
-SMALL += ["--plate", "glass", "--law", "myc"]  # its table comes with the package
-PICTURES = {f"{name}.png" for name in figures.names()}
-SIMULATED = {"deck.stl", "sieve.h5", "constant.h5", "sieve.lammpstrj"}
-FILES = {*SIMULATED, "summary.txt", "index.html", "sieve.gif", *PICTURES}
 PAIR, LAW = cl.Pair("gamma-alumina", "glass"), "myc"
 HOLE = 2.5e-3 * 16 / math.pi * math.sin(math.pi / 16)  # [m], of a circle as long as the rim
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """A few beads that never meet, shared by the tests that only read."""
-    out = tmp_path_factory.mktemp("sieve") / "out"
-    assert cli.main([*SMALL, "--out", str(out)]) == 0
-    return out
-
-
-@pytest.fixture(scope="module")
-def runs(folder):
-    return read(folder, Sieve)
-
-
-def test_all_files_are_there_and_nothing_else(folder):
-    assert {path.name for path in folder.iterdir()} == FILES
-    assert [path.name for path in folder.parent.iterdir()] == ["out"]
-    page = (folder / "index.html").read_text()
-    assert page.count("<figure") == len(PICTURES) and "$" not in page.partition("<section>")[2]
-
-
-@pytest.mark.parametrize("name", ["sieve.h5", "constant.h5"])
-def test_the_record_gives_a_constant(name, folder, capsys):
-    """The record gives the same constant as the impacts with the radii of the scene."""
-    run = read_one(folder / name, Sieve)
-    found = records.read(folder / name)
-    rows = run.impacts
-    assert rows.size > 3
-    assert np.array_equal(found.speed, rows["approach_speed"])
-    assert np.array_equal(found.radius, run.scene.radius[rows["bead"]])
-    assert set(found.thickness) == {run.scene.thickness}
-    assert (found.pair, found.law) == (run.pair, run.law)
-    capsys.readouterr()
-    assert cli_of_contactlaw.main(["constant", "--record", str(folder / name), "--csv"]) == 0
-    (wall,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
-    model = cl.ImpactModel(run.pair, law=run.law)
-    one = model.constant(found.speed, found.radius, found.thickness)
-    assert float(wall["restitution"]) == pytest.approx(one.restitution, rel=1e-12)
-
-
-def test_the_record_explains_itself(folder):
-    for name in ("sieve.h5", "constant.h5"):
-        with h5py.File(folder / name) as file:
-            assert file.attrs["format"] == "contactlaw-sieve"
-            assert "--beads 12" in file.attrs["command"]
-            assert set(file["collisions"]) == set(IMPACT.names)
-            for column in COLUMNS:
-                assert file["collisions"][column.name].attrs["units"] == column.unit
-            assert file["trajectories/position"].shape == (9, 12, 3)
-            for group in ("beads", "deck", "trajectories"):
-                for dataset in file[group].values():
-                    assert dataset.attrs["units"] and dataset.attrs["description"]
+def runs(sieve):
+    return read(sieve, Sieve)
 
 
 @pytest.mark.parametrize("opening", [2e-3, 5e-3])
@@ -157,7 +100,7 @@ def test_only_impacts_near_an_opening_differ_from_those_on_a_sheet_without_any(t
     places = [((n + 1.5) * p + r + s, 1.5 * p) for n, s in enumerate((0.5e-3, 1.5e-3, 2.5e-3))]
     places += [(2.0 * p, 2.0 * p), (2e-3, 2e-3), (78e-3, 3e-3)]
     scene = dataclasses.replace(
-        sieve(beads=6, thickness=1e-3, plate="glass", amplitude=0.0, friction=0.0),
+        scenes.sieve(beads=6, thickness=1e-3, plate="glass", amplitude=0.0, friction=0.0),
         radius=np.full(6, 0.9e-3), position=np.array([(x, y, 2e-3) for x, y in places]),
         velocity=np.array([0.0, 0.0, -2.0]),
     )  # fmt: skip
@@ -206,26 +149,13 @@ def test_impacts_on_the_flat_have_the_cor_of_the_law_and_the_constant(runs):
     assert kept(constant, flat) == pytest.approx(constant.constant_cor, abs=1e-3)
 
 
-def test_the_account_of_energy_closes_where_beads_meet_only_the_deck(runs):
-    """Without friction, the energy from gravity and the deck is kinetic or was lost at the deck."""
-    for run in runs.every:
-        energy = account(run)
-        assert abs(energy.walls[-1]) > 0.05 * energy.start[0]
-        assert np.abs(energy.others).max() < 2e-3 * energy.start[0]
-
-
 @pytest.mark.parametrize("restitution", [0.2, 0.5, 0.9, 1.0])
 @pytest.mark.parametrize("speed", [0.02, 0.3, 4.0])
 def test_the_law_of_a_constant_cor_has_it_at_any_speed(restitution, speed):
     model, radius = constant_model(PAIR, restitution), 2e-3
-    contacts = Contacts(model, radius, math.inf)
     dt = time_step(cl.ImpactModel(PAIR, LAW), speed, radius, math.inf)
-    overlap, v = np.zeros(1), np.array([speed])
-    while v > 0.0 or contacts.force > 0.0:
-        v -= 0.5 * dt * contacts.force / contacts.mass
-        overlap += dt * v
-        v -= 0.5 * dt * contacts.advance(overlap, dt) / contacts.mass
-    assert -v[0] / speed == pytest.approx(restitution, abs=5e-3 if restitution < 0.5 else 1e-3)
+    found = fallen(Contacts(model, radius, math.inf), speed, dt)
+    assert found == pytest.approx(restitution, abs=5e-3 if restitution < 0.5 else 1e-3)
 
 
 def test_energy_in_proportion_to_area_has_one_density(runs):
@@ -277,7 +207,7 @@ def test_an_impact_that_began_early_and_ended_late_is_told_once():
 
 def test_two_ranks_give_the_same_bits(runs, tmp_path):
     mpirun = Path(sys.executable).with_name("mpirun")
-    command = [mpirun, "-np", "2", *unrendered.COMMAND, *SMALL, "--out", tmp_path / "o"]
+    command = [mpirun, "-np", "2", *unrendered.COMMAND, *SIEVE, "--out", tmp_path / "o"]
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("Written to") == 1
@@ -289,15 +219,8 @@ def test_two_ranks_give_the_same_bits(runs, tmp_path):
             assert np.array_equal(one.collisions[name], other.collisions[name]), name
 
 
-def test_the_summary_says_both_and_how_long_it_took(folder, runs):
-    text = (folder / "summary.txt").read_text()
-    constant = f"COR {runs.constant.constant_cor:g}"
-    for part in ("law myc", constant, "dissipated at the deck", "computed in", "by the openings"):
-        assert part in text, part
-
-
-def test_the_dump_has_the_last_cor_of_each_bead(folder, runs):
-    text = (folder / "sieve.lammpstrj").read_text()
+def test_the_dump_has_the_last_cor_of_each_bead(sieve, runs):
+    text = (sieve / "sieve.lammpstrj").read_text()
     lines = text.rpartition("ITEM: TIMESTEP")[2].splitlines()
     head = next(n for n, line in enumerate(lines) if line.startswith("ITEM: ATOMS"))
     columns = lines[head].split()[2:]
@@ -316,7 +239,7 @@ def test_the_dump_has_the_last_cor_of_each_bead(folder, runs):
 
 
 def test_a_feed_has_two_sizes_and_no_overlap():
-    scene = sieve(beads=400, seed=3)
+    scene = scenes.sieve(beads=400, seed=3)
     away = np.linalg.norm(scene.position[:, None] - scene.position, axis=-1)
     np.fill_diagonal(away, np.inf)
     assert (away - scene.radius[:, None] - scene.radius).min() > 0.0
@@ -326,37 +249,8 @@ def test_a_feed_has_two_sizes_and_no_overlap():
     assert np.abs(scene.position[:, 1] - 0.5 * scene.deck.width).max() < 0.5 * scene.deck.width
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        (["--radius", "1mm,2mm"], ["radius", "pass the opening"]),
-        (["--thickness", "0"], ["thickness", "positive"]),
-        (["--constant-cor", "1.2"], ["--constant-cor: must lie between 0.2 and 1, got 1.2"]),
-        (["--duration", "1e-9"], ["duration", "at least one frame"]),
-        (["--beads", "0"], ["beads", "at least one"]),
-        (["--sphere", "stele"], ["stele"]),
-        (["--law", "hertzz"], ["law", "hertz"]),
-    ],
-)
-def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tmp_path, capsys):
-    assert cli.main(["sieve", *options, "--out", str(tmp_path / "out")]) == 1
-    errors = capsys.readouterr().err
-    assert errors.startswith("dem-demo: ") and errors.count("\n") == 1
-    for word in words:
-        assert word in errors
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_an_interrupt_keeps_what_has_been_computed(tmp_path):
-    long = ["sieve", "--beads", "20", "--duration", "9", "--plate", "glass", "--law", "myc"]
-    numbers = {"size": 10_000, "frames": 4500}
-    check_what_an_interrupt_keeps(
-        long, tmp_path, Sieve, FILES, **numbers, command=unrendered.COMMAND
-    )
-
-
 def test_the_step_divides_a_frame():
-    scene = sieve(beads=100)
+    scene = scenes.sieve(beads=100)
     step = lammps.time_step(scene, cl.ImpactModel(PAIR, LAW, outside="clamp"))
     steps = 1.0 / (scene.FRAME_RATE * step)
     assert steps == pytest.approx(round(steps)) and 0.2e-6 < step < 1e-6

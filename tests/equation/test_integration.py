@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from oracle import ALL_LAWS, FEM, RATIO, impact, impact_of, yield_ratio
+from oracle import ALL_LAWS, FEM, RATIO, impact, yield_ratio
 from scipy.integrate import quad, solve_ivp
 from staying import STAYING
 
@@ -28,13 +28,6 @@ def elastic(lam, rtol=1e-11):
 @pytest.mark.parametrize(("lam", "e"), [(0.1, 0.84334), (0.5, 0.43690), (1.0, 0.18412)])
 def test_elastic_values(lam, e):
     assert elastic(lam).restitution == pytest.approx(e, abs=5e-6)  # all printed digits
-
-
-def test_slope_at_small_inelasticity():
-    # a difference quotient; Richardson's extrapolation removes its term of order lam
-    h = 1e-4
-    near, far = (elastic(lam, 1e-13).restitution - 1 for lam in (h, 2 * h))
-    assert (4 * near - far) / (2 * h) == pytest.approx(-1.7302, abs=5e-5)
 
 
 def test_slope_from_the_lossless_contact():
@@ -62,72 +55,19 @@ def test_lossless_contact():
     assert one.peak_force == pytest.approx(wm**1.5, rel=1e-10)
 
 
-@pytest.mark.parametrize("v", [1.0, 1.5, 3.0, 4.19])
-def test_half_space_is_eq_21(v):
-    # exact as long as loading follows Hertz's curve, to v = (d_P/d_Y)^(5/4) = 4.19
-    one = zener.solve(laws.law("myc").data, 0.0, yield_ratio(v), 1e-12)
-    assert one.restitution == pytest.approx((1 - (1 - v**-0.8) ** 2) ** 0.25, abs=1e-10)
-
-
-def test_against_an_independent_integration():
-    # 200 points over lambda 0 to 3 and v 0.05 to 20; scipy at 1e-11 is good to about 1e-9
-    rng = np.random.default_rng(20210326)
-    lams, speeds = rng.uniform(0, 3, 200), np.exp(rng.uniform(*np.log([0.05, 20]), 200))
-    functions = laws.law("myc").data
-    worst = np.zeros(3)
-    for lam, v in zip(lams, speeds, strict=True):
-        y = yield_ratio(v)
-        one = zener.solve(functions, lam, y, 1e-10)
-        e, time, peak = impact(lam, y)
-        errors = one.restitution - e, one.contact_time / time - 1, one.peak_compression / peak - 1
-        worst = np.maximum(worst, np.abs(errors))
-    assert worst[0] < 1e-7
-    assert worst[1] < 1e-7
-    assert worst[2] < 1e-7
-
-
 @pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
 def test_every_law_against_an_independent_integration(law):
-    rng = np.random.default_rng(1997)
-    lams, speeds = rng.uniform(0, 1, 12), np.exp(rng.uniform(*np.log([0.5, 20]), 12))
+    """Over lambda 0 to 3 and v 0.05 to 20; scipy at 1e-11 is good to about 1e-9."""
+    rng = np.random.default_rng(20210326)
+    count = 200 if law.name == "myc" else 12
+    lams, speeds = rng.uniform(0, 3, count), np.exp(rng.uniform(*np.log([0.05, 20]), count))
     for lam, v in zip(lams, speeds, strict=True):
         y = yield_ratio(v)
         one = zener.solve(law.data, lam, y, 1e-10)
-        e, time, peak = impact_of(law, lam, y)
+        e, time, peak = impact(lam, y, law)
         assert one.restitution == pytest.approx(e, abs=1e-7)
         assert one.contact_time == pytest.approx(time, rel=1e-7)
         assert one.peak_compression == pytest.approx(peak, rel=1e-7)
-
-
-def test_linear_branch_is_an_oscillator():
-    # beyond d_P the loading is k (w + s): a damped harmonic oscillator; its peak in closed form
-    lam, y = 0.3, yield_ratio(12.0)
-    p = RATIO * y
-    k = 1.5 * math.sqrt(p)
-    shift = p / 3  # F = k (w - p/3)
-
-    # state at w = p from the solver of the elastic stretch alone: scipy, stopped at p
-    def at_p(t, s):
-        return s[0] - p
-
-    at_p.terminal = True
-    run = solve_ivp(
-        lambda t, s: [s[1] - lam * max(s[0], 0) ** 1.5, -(max(s[0], 0) ** 1.5)],
-        [0, 10],
-        [0, 1],
-        events=at_p,
-        method="DOP853",
-        rtol=1e-12,
-        atol=1e-14,
-    )
-    x0, rate0 = p - shift, run.y[1, -1] - lam * p**1.5
-    damping, omega = lam * k / 2, math.sqrt(k - (lam * k / 2) ** 2)
-    b = (rate0 + damping * x0) / omega
-    # x = exp(-damping t)(x0 cos + b sin); its first maximum
-    t = math.atan2(omega * b - damping * x0, omega * x0 + damping * b) / omega
-    peak = math.exp(-damping * t) * (x0 * math.cos(omega * t) + b * math.sin(omega * t)) + shift
-    one = zener.solve(laws.law("myc").data, lam, y, 1e-12)
-    assert one.peak_compression == pytest.approx(peak, rel=1e-10)
 
 
 @pytest.mark.parametrize("law", [*ALL_LAWS, FEM], ids=lambda law: law.name)
@@ -170,18 +110,12 @@ def largest_imbalance(law, lam, chi):
 # Errors of single steps, 1e-10, add up: 6e-10 at most. Of the energy a hundredth of a thousandth
 # was lost where a step ran across a corner of an unloading curve.
 @pytest.mark.parametrize("law", ALL_LAWS, ids=lambda law: law.name)
-class TestEnergyBalance:
-    def test_over_the_whole_table(self, law):
-        rng = np.random.default_rng(2147)
-        lam = 5 * np.sort(rng.uniform(0, 1, 4000)) ** 3
-        chi = np.exp(rng.uniform(math.log(0.3), math.log(100), 4000))
-        worst = largest_imbalance(law, lam, chi)
-        assert worst[0] < 1e-8, worst
-
-    def test_on_the_half_space(self, law):
-        chi = np.geomspace(0.5, 100, 2000)
-        worst = largest_imbalance(law, np.zeros(2000), chi)
-        assert worst[0] < 1e-8, worst
+def test_energy_balance_over_the_whole_table_and_on_the_half_space(law):
+    rng = np.random.default_rng(2147)
+    lam = 5 * np.append(np.zeros(2000), np.sort(rng.uniform(0, 1, 4000)) ** 3)
+    chi = np.exp(rng.uniform(math.log(0.3), math.log(100), 6000))
+    worst = largest_imbalance(law, lam, chi)
+    assert worst[0] < 1e-8, worst
 
 
 @pytest.mark.parametrize("law", [law for law in ALL_LAWS if law.yields], ids=lambda law: law.name)

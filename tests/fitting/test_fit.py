@@ -57,7 +57,7 @@ def test_the_strength_of_a_bead_that_yields():
     assert found.pair.sphere.yield_strength == found.values["yield_strength"]
 
 
-@pytest.mark.parametrize("law", ["myc", "jackson_green", "thornton"])
+@pytest.mark.parametrize("law", ["myc", "jackson_green"])
 def test_other_laws(law):
     pair = cl.Pair("gamma-alumina", "glass")
     data = rebounds(pair, law, speed=np.geomspace(2.0, 40.0, 9), without=("thickness",))

@@ -82,8 +82,7 @@ def test_units_are_not_lost(model):
         array = np.atleast_1d(np.asarray(value, dtype=np.float64))
         for bad in (Quantity(value), Quantity(array), array.view(UnitArray), [Quantity(value)]):
             with pytest.raises(
-                ValueError,
-                match=rf'^{name}.*convert it to SI .*: x.to\(".*"\).magnitude with pint',
+                ValueError, match=rf'^{name}.*convert it to SI .*: x.to\(".*"\).magnitude with pint'
             ):
                 call(bad)
 

@@ -93,13 +93,6 @@ def test_a_way_back_with_corners(model):
     assert (np.abs(table - solved).max(axis=1) / solved.max(axis=1)).max() < 1e-4
 
 
-def test_momentum(model):
-    speed, radius, thickness = impacts(model, 500, seed=3)
-    contact = model.force_history(speed, radius, thickness)
-    expected = mass(model, radius) * speed * (1 + model.restitution(speed, radius, thickness))
-    assert np.trapezoid(contact.force, contact.time) == pytest.approx(expected, rel=1e-4)
-
-
 @pytest.mark.parametrize("method", ["table", "solve"])
 def test_impulse(model, method):
     """Integral of the force, up to lambda = 5, where the force has a long tail."""

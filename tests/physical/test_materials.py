@@ -18,49 +18,20 @@ from contactlaw.physical.materials import Material, material, materials
 
 NUMBERS = ("youngs_modulus", "poissons_ratio", "density", "yield_strength", "hardness")
 FLOW = ("hardening", "rate")
-REQUIRED = {
-    "gamma-alumina",
-    "glass",
-    "soda-lime-glass",
-    "carbon-steel-1020",
-    "stainless-steel-304",
-    "stainless-steel-316",
-    "bearing-steel-52100",
-    "aluminium-6061-t6",
-    "aluminium-2024-t3",
-    "titanium-ti-6al-4v",
-    "copper-c11000",
-    "brass-c26000",
-    "tungsten-carbide",
-    "alumina",
-    "zirconia",
-    "pmma",
-    "ptfe",
-    "nylon-66",
-    "hdpe",
-    "pom",
-    "polypropylene",
-    "polycarbonate",
-    "natural-rubber",
-    "epdm",
-}
+REQUIRED = set(
+    "gamma-alumina glass soda-lime-glass carbon-steel-1020 stainless-steel-304 stainless-steel-316 "
+    "bearing-steel-52100 aluminium-6061-t6 aluminium-2024-t3 titanium-ti-6al-4v copper-c11000 "
+    "brass-c26000 tungsten-carbide alumina zirconia pmma ptfe nylon-66 hdpe pom polypropylene "
+    "polycarbonate natural-rubber epdm".split()
+)
 RUBBERS = {"natural-rubber", "epdm"}  # neither yield nor break here
-BRITTLE = {
-    "glass",
-    "soda-lime-glass",
-    "tungsten-carbide",
-    "alumina",
-    "zirconia",
-    "silicon-nitride",
-    "polystyrene",
-}
+BRITTLE = set(
+    "glass soda-lime-glass tungsten-carbide alumina zirconia silicon-nitride polystyrene".split()
+)
 # Metals of which the hardness is known and no yield strength.
-BALLS = {
-    "bearing-steel-52100-ball",
-    "cast-steel-shot",
-    "stainless-steel-304-ball",
-    "stainless-steel-440c",
-}
+BALLS = set(
+    "bearing-steel-52100-ball cast-steel-shot stainless-steel-304-ball stainless-steel-440c".split()
+)
 # Johnson & Cook 1983, Table 1: A, B [MPa], n and C, at 1 per second.
 JOHNSON_COOK = {
     "alloy-steel-4340": (792, 510, 0.26, 0.014),
@@ -84,22 +55,12 @@ HARD = {"soda-lime-glass", "alumina", "zirconia", "silicon-nitride"}
 # they know nothing of the tensile tests and handbooks behind the catalogue. Polymers are absent:
 # at ultrasonic rates they are much stiffer.
 ULTRASONIC = {
-    "carbon-steel-1020": 5900.0,
-    "bearing-steel-52100": 5900.0,
-    "stainless-steel-304": 5790.0,
-    "stainless-steel-316": 5790.0,
-    "aluminium-6061-t6": 6300.0,
-    "aluminium-2024-t3": 6300.0,
-    "titanium-ti-6al-4v": 6240.0,
-    "copper-c11000": 4700.0,
-    "brass-c26000": 4370.0,
-    "lead": 2160.0,
-    "stainless-steel-440c": 5900.0,
-    "tungsten": 5180.0,
-    "alumina": 10200.0,
-    "zirconia": 7040.0,
+    "carbon-steel-1020": 5900.0, "bearing-steel-52100": 5900.0, "stainless-steel-304": 5790.0,
+    "stainless-steel-316": 5790.0, "aluminium-6061-t6": 6300.0, "aluminium-2024-t3": 6300.0,
+    "titanium-ti-6al-4v": 6240.0, "copper-c11000": 4700.0, "brass-c26000": 4370.0, "lead": 2160.0,
+    "stainless-steel-440c": 5900.0, "tungsten": 5180.0, "alumina": 10200.0, "zirconia": 7040.0,
     "silicon-nitride": 10800.0,
-}
+}  # fmt: skip
 
 
 def raw_catalogue() -> dict[str, dict[str, object]]:
@@ -303,25 +264,16 @@ def test_a_metal_in_another_temper_is_as_stiff_and_dense() -> None:
 @pytest.mark.parametrize(
     ("alias", "name"),
     [
-        ("304", "stainless-steel-304"),
-        ("AISI 304", "stainless-steel-304"),
-        ("aisi_316", "stainless-steel-316"),
-        ("gamma-Al2O3", "gamma-alumina"),
-        ("  Gamma Alumina ", "gamma-alumina"),
-        ("100Cr6", "bearing-steel-52100"),
-        ("Ti-6Al-4V", "titanium-ti-6al-4v"),
-        ("6061-T6", "aluminium-6061-t6"),
-        ("aluminum 2024 t3", "aluminium-2024-t3"),
-        ("Y-TZP", "zirconia"),
-        ("PTFE", "ptfe"),
-        ("Nylon 6,6", "nylon-66"),
-        ("polyethylene", "hdpe"),
-        ("GLASS", "glass"),
-        ("304 ball", "stainless-steel-304-ball"),
-        ("S235JR", "steel-s235"),
+        ("304", "stainless-steel-304"), ("AISI 304", "stainless-steel-304"),
+        ("aisi_316", "stainless-steel-316"), ("gamma-Al2O3", "gamma-alumina"),
+        ("  Gamma Alumina ", "gamma-alumina"), ("100Cr6", "bearing-steel-52100"),
+        ("Ti-6Al-4V", "titanium-ti-6al-4v"), ("6061-T6", "aluminium-6061-t6"),
+        ("aluminum 2024 t3", "aluminium-2024-t3"), ("Y-TZP", "zirconia"), ("PTFE", "ptfe"),
+        ("Nylon 6,6", "nylon-66"), ("polyethylene", "hdpe"), ("GLASS", "glass"),
+        ("304 ball", "stainless-steel-304-ball"), ("S235JR", "steel-s235"),
         ("cast iron", "ductile-iron-80-55-06"),
     ],
-)
+)  # fmt: skip
 def test_names_are_found_however_they_are_typed(alias: str, name: str) -> None:
     assert material(alias).name == name
 

@@ -1,7 +1,7 @@
-"""The modified Zener model by scipy alone; `impact` shares no code with contactlaw.
+"""The modified Zener model by scipy; of contactlaw it takes the laws, see `reference_laws`.
 
-First-order form of Eq. (1) of Peng et al. 2021 with the MYC law of Eqs. 16-18, on Hertz's scale:
-w' = u - lam f(w), u' = -f(w), w(0) = 0, u(0) = 1; d_Y = y there.
+First-order form of Eq. (1) of Peng et al. 2021 on Hertz's scale: w' = u - lam f(w), u' = -f(w),
+w(0) = 0, u(0) = 1; d_Y = y there.
 """
 
 import math
@@ -11,7 +11,8 @@ from scipy.integrate import solve_ivp
 
 from contactlaw import laws
 
-RATIO = 2.14 / 0.68  # d_P/d_Y
+MYC = laws.law("myc")
+RATIO = 2.14 / 0.68  # d_P/d_Y of it
 # Numbers besides d_Y that laws take from the pair, for gamma-alumina on glass.
 NUMBERS = {
     "modulus_ratio": 23.1922, "poissons_ratio": 0.21,
@@ -29,102 +30,39 @@ def yield_ratio(speed_ratio):
     return (5 / 4) ** 0.4 * speed_ratio**-0.8
 
 
-def loading(w, y):
-    p = RATIO * y
-    return w**1.5 if w < p else p**1.5 + 1.5 * math.sqrt(p) * (w - p)
-
-
-def impact(lam, y, law="myc"):
-    """COR, contact time and largest compression of one impact."""
-    return _integrated(lam, y, law)[:3]
+def impact(lam, y, law=MYC):
+    """COR, contact time and largest compression of one impact, in terms of w."""
+    return _integrated(law, lam, y)[:3]
 
 
 def force_history(lam, y, share):
-    """Force and speed of the sphere at shares of the contact time."""
-    _, end, _, at = _integrated(lam, y, "myc", dense_output=True)
+    """Force and speed of the sphere at shares of the contact time, under the law MYC."""
+    _, end, _, at = _integrated(MYC, lam, y, dense_output=True)
     return np.array([at(t)[:2] for t in end * share]).T
 
 
 def contact(lam, y):
     """Contact time, largest compression, and force and compression as functions of time."""
-    _, end, largest, at = _integrated(lam, y, "myc", dense_output=True)
-
-    def force_and_compression(time):
-        force, _, compression = at(time)
-        return force, compression
-
-    return end, largest, force_and_compression
+    _, end, largest, at = _integrated(MYC, lam, y, dense_output=True)
+    return end, largest, lambda time: at(time)[::2]
 
 
-def _integrated(lam, y, law, **options):
-
-    def force(w):
-        w = max(w, 0.0)
-        return loading(w, y) if law == "myc" else w**1.5
-
-    def turned(t, s):
-        return s[1] - lam * force(s[0])
-
-    def reached_kink(t, s):
-        return s[0] - RATIO * y
-
-    turned.terminal, turned.direction = True, -1
-    reached_kink.terminal, reached_kink.direction = True, 1
-
-    def rise(t, s):
-        f = force(s[0])
-        return [s[1] - lam * f, -f]
-
-    # The linear branch begins with a jump of F'': the integration stops there to keep its order.
-    options |= OPTIONS
-    run = solve_ivp(rise, [0, 100], [0, 1], events=[turned, reached_kink], **options)
-    parts = [(run, force)]
-    if run.t_events[1].size:
-        run = solve_ivp(rise, [run.t[-1], 100], run.y[:, -1], events=[turned], **options)
-        parts.append((run, force))
-    t, wm, u = run.t[-1], run.y[0, -1], run.y[1, -1]
-
-    plastic = law == "myc" and wm >= y
-    left = wm - y * math.sqrt(2 * wm / y - 1) if plastic else 0.0
-    fm = force(wm)
-
-    def unloading(w):
-        return fm * (max(w - left, 0.0) / (wm - left)) ** 1.5
-
-    def fall(t, s):
-        f = unloading(s[0])
-        return [s[1] - lam * f, -f]
-
-    def parted(t, s):
-        return s[0] - left
-
-    parted.terminal, parted.direction = True, -1
-    run = solve_ivp(fall, [t, t + 1000], [wm, u], events=[parted], **options)
-    parts.append((run, unloading))
-    assert run.t_events[0].size == 1
-
-    def at(time):
-        part, law_there = next(p for p in parts if time <= p[0].t[-1] or p is parts[-1])
-        w, speed = part.sol(time)
-        return law_there(w), speed, w
-
-    return -run.y[1, -1], run.t[-1], wm, at
-
-
-def impact_of(law, lam, y):
-    """COR, contact time and largest compression under any law's force, in terms of w."""
+def _integrated(law, lam, y, **options):
     scale = y * math.sqrt(y)  # F_Y and d_Y on Hertz's scale
+    parts = []
 
     def event(function, direction):
         function.terminal, function.direction = True, direction
         return function
 
-    def follow(force, t, s, events):
+    def follow(force, t, state, events):
         def rates(t, s):
             f = force(s[0])
             return [s[1] - lam * f, -f]
 
-        return solve_ivp(rates, [t, t + 1000], s, events=events, **OPTIONS)
+        run = solve_ivp(rates, [t, t + 1000], state, events=events, **OPTIONS, **options)
+        parts.append((run, force))
+        return run, run.t[-1], run.y[:, -1]
 
     def up(w):
         return scale * law.loading(math.sqrt(max(w, 0.0) / y))
@@ -132,8 +70,8 @@ def impact_of(law, lam, y):
     t, state = 0.0, [0.0, 1.0]
     turned = event(lambda t, s: s[1] - lam * up(s[0]), -1)
     for kink in (*law.loading_kinks, math.inf):  # the method keeps its order between kinks
-        run = follow(up, t, state, [turned, event(lambda t, s, k=kink: s[0] - k * y, 1)])
-        t, state = run.t[-1], run.y[:, -1]
+        reached = event(lambda t, s, k=kink: s[0] - k * y, 1)
+        run, t, state = follow(up, t, state, [turned, reached])
         if run.t_events[0].size:
             break
     largest = state[0]
@@ -142,6 +80,12 @@ def impact_of(law, lam, y):
     def down(w):
         return scale * law.unloading(math.sqrt(max(w / y - left, 0.0)), curve)
 
-    run = follow(down, t, state, [event(lambda t, s: s[0] - left * y, -1)])
+    run, t, state = follow(down, t, state, [event(lambda t, s: s[0] - left * y, -1)])
     assert run.t_events[0].size == 1
-    return -run.y[1, -1], run.t[-1], largest
+
+    def at(time):
+        part, force = next(p for p in parts if time <= p[0].t[-1] or p is parts[-1])
+        w, speed = part.sol(time)
+        return force(w), speed, w
+
+    return -state[1], t, largest, at

@@ -23,11 +23,7 @@ def own(name="mine", **changes):
     options = {
         "source": "a test",
         "yield_coefficient": 0.5,
-        "loading": [
-            Loading(0.0, HERTZ),
-            CUT_OFF,
-            Loading(6.0, lambda d: 8.5 * (d / 6.0) ** 1.1),
-        ],
+        "loading": [Loading(0.0, HERTZ), CUT_OFF, Loading(6.0, lambda d: 8.5 * (d / 6.0) ** 1.1)],
         "unloading": [
             Unloading(1.0, residual, lambda dm: 1.5 - 0.4 * residual(dm) / dm),
             Unloading(3.0, residual, 1.5 - 0.4 * residual(3.0) / 3.0),

@@ -44,9 +44,7 @@ def power(start, factor, exponent):
 def line(start, at, force, slope):
     """Straight line through a point."""
     return Branch(
-        start,
-        lambda d: force + slope * (d - at),
-        lambda d: force * d + slope * (d - at) ** 2 / 2,
+        start, lambda d: force + slope * (d - at), lambda d: force * d + slope * (d - at) ** 2 / 2
     )
 
 
@@ -216,11 +214,7 @@ def stronge():
 
     return Reference(
         (mpf("3.3") / 4) ** 2,
-        [
-            HERTZ,
-            Branch(mpf(1), force, integral),
-            line(d_p, mpf("0.5"), mpf(0), 2 * plastic),
-        ],
+        [HERTZ, Branch(mpf(1), force, integral), line(d_p, mpf("0.5"), mpf(0), 2 * plastic)],
         lambda dm: dm - sqrt(2 * dm - 1),
         lambda dm: mpf("1.5"),
         (1, root(start, "1.01", "2.2"), root(at_yield, "1.01", 3)),

@@ -10,9 +10,8 @@ from places import ROOT
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT
-from contactlaw.softsphere import time_step
 from contactlaw.stepping import Bead, Clock, WallContacts, interact
-from contactlaw.walls import Mesh, Plate, Translation, move
+from contactlaw.walls import Mesh, Plate
 
 pytest.importorskip("trimesh", reason="trimesh is missing: pip install contactlaw[lammps]")
 
@@ -65,39 +64,6 @@ def test_it_stops_at_a_step_that_is_too_long(example):
         RuntimeError, match=r"STEP_TOO_LARGE on wall 0: got 3, the limit is 2\.3\de-07"
     ):
         walls.collisions()
-
-
-@numba.njit
-def hit(scene, contacts, friction, speed, mass, radius, dt, steps):
-    """One bead above the plate z = 0, without gravity; its speed afterwards."""
-    x, v, force, torque = 1.001 * radius, -speed, np.zeros(3), np.zeros(3)
-    for step in range(steps):
-        move(scene.frames, step * dt, dt)
-        v += 0.5 * dt * force[2] / mass
-        x += dt * v
-        force[:] = 0.0
-        clock = Clock(step * dt, dt, dt, True)
-        interact(scene, clock, Bead(0, 0, (0.0, 0.0, x), (0.0, 0.0, v), (0.0, 0.0, 0.0), radius,
-                                    mass, force, torque, contacts, friction))  # fmt: skip
-        v += 0.5 * dt * force[2] / mass
-    return v
-
-
-@pytest.mark.parametrize("rising", [0.0, 1.5, 3.0])
-def test_a_plate_that_rises_hits_as_hard_as_the_bead_that_falls(example, rising):
-    """Only the relative speed counts (Galilean invariance)."""
-    model, r = cl.ImpactModel(example.PAIR), example.RADIUS
-    motion = Translation((0.0, 0.0, rising)) if rising else None
-    plate = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3, motion=motion)
-    walls = WallContacts([plate], model, r, np.zeros(9, IMPACT))
-    dt = time_step(model, 6.0, r, 1e-3)
-    mass = 4 / 3 * math.pi * r**3 * example.PAIR.sphere.density
-    (contacts,), (friction,) = walls.memory(1)
-    leaves = hit(walls.scene, contacts, friction, 3.0 - rising, mass, r, dt, 4000)
-    (row,) = walls.collisions()
-    assert row["approach_speed"] == pytest.approx(3.0, rel=1e-9)
-    assert (leaves - rising) / 3.0 == pytest.approx(row["restitution"], rel=1e-6)
-    assert row["restitution"] == pytest.approx(model.restitution(3.0, r, 1e-3), abs=1e-4)
 
 
 @numba.njit

@@ -44,25 +44,17 @@ def test_round_trip_is_exact(built, path):
         np.testing.assert_array_equal(read.fields[name], values)
 
 
-def test_parameters_of_a_law_are_numbers_in_its_file(tmp_path):
-    law = laws.law("jackson_green(120,0.3)")
-    store.write(table.build(law, SMALL), tmp_path / "t.h5")
-    with h5py.File(tmp_path / "t.h5") as file:
-        assert file.attrs["law"] == "jackson_green"
-        assert dict(file["law/parameters"].attrs) == {"modulus_ratio": 120.0, "poissons_ratio": 0.3}
-    read = store.read(tmp_path / "t.h5").law
-    assert (read.family, read.parameters) == (law.family, law.parameters)
-    assert read.name == "jackson_green(120,0.3)"
-
-
-def test_parameters_of_a_law_keep_their_order(tmp_path):
+def test_parameters_of_a_law_are_numbers_in_its_file_and_keep_their_order(tmp_path):
     """The law's name lists them in order, but HDF5 sorts attributes by name by default."""
     law = law_of(cl.Pair("gamma-alumina", "glass"), "fem")
     assert list(law.parameters) != sorted(law.parameters)
     store.write(table.build(law, SMALL), tmp_path / "t.h5")
+    with h5py.File(tmp_path / "t.h5") as file:
+        assert file.attrs["law"] == "fem"
+        assert dict(file["law/parameters"].attrs) == law.parameters
     read = store.read(tmp_path / "t.h5").law
-    assert list(read.parameters) == list(law.parameters)
-    assert read.name == law.name
+    assert (read.family, read.name) == (law.family, law.name)
+    assert list(read.parameters.items()) == list(law.parameters.items())
 
 
 def test_file_explains_itself(path):
@@ -136,30 +128,19 @@ def put_group(file):
         (lambda f: f.pop("fields/contact_time"), "contact_time"),
         (put("fields/restitution", np.nan), "restitution holds nan, outside 0 to 1"),
         (lambda f: f.attrs.modify("inelasticity_nodes", 10), "axes are not those of its settings"),
-        (
-            lambda f: f["fields/restitution"].write_direct(
-                np.full(f["fields/restitution"].shape, 7.0)
-            ),
-            "outside 0 to 1",
-        ),
         (put("law/outcome_kinks", 1.5, 0), "kinks"),
-        (put("axes/inelasticity/0/shares", 0.4, 3), "axes are not those of its settings"),
         (put("axes/inelasticity/0/shares", 0.4, 2), "axes along inelasticity do not rise"),
-        (put("axes/inelasticity/0/end", 4.0, ...), "axes are not those of its settings"),
         (put("axes/log_overload/0/shares", 0.0, 1), "axes along log_overload do not rise"),
         (put("axes/log_overload/1/start", 1.0, ...), "along log_overload do not meet"),
         (put("axes/log_overload/1/end", 3.0, ...), "axes are not those of its settings"),
         (lambda f: f["axes/inelasticity"].pop("0"), "along inelasticity do not meet"),
         (lambda f: f["axes/log_overload"].attrs.modify("stretch", 9.0), "axes are not those"),
-        (lambda f: f.attrs.modify("stretch", 3.0), "axes"),
         (put("fields/wave_rate", -0.5), "wave_rate holds -0.5"),
         (put("fields/contact_time", 1e300), r"contact_time holds 1e\+300"),
         (put("fields/contact_time", 0.0), "contact_time holds 0"),
         (put("fields/compression_ratio", -1.0), "compression_ratio holds -1"),
-        (put("elastic_compression", 2.0), "elastic_compression holds 2"),
         (put("elastic_compression", np.inf), "elastic_compression holds inf"),
         (put("shapes/states", -1.0, 0, 0, 0, 5), "times that do not grow"),
-        (put("shapes/states", np.nan, 0, 0, 1, 5), "shapes/states holds nan"),
         (put("shapes/states", np.inf, 0, 0, 1, 5), "shapes/states holds inf"),
         (put("shapes/states", 9e3, 0, 0, 0, 5), "times that do not grow"),
         (declare_huge, r"shape \(1000000, 1000000\), not float64 of shape \(9, "),
@@ -171,14 +152,12 @@ def put_group(file):
         (store_anew("law/waves", dtype="f4"), "law/waves holds float32"),
         (lambda f: f.attrs.create("stretch", np.nan), "stretch"),
         (lambda f: f.attrs.create("inelasticity_nodes", 48.5), "axes are not those"),
-        (other_law(0, 1e6), "there is a whole number up to"),
         (other_law(0, 2.5), "there is a whole number up to"),
         (other_law(1, 500), "ends within its"),
         (other_law(force.HEADER + 3 + force.AT, 1e5), "whole number up to"),
         (other_law(force.HEADER + 1, -1.0), "do not follow each other"),
         (other_law(force.HEADER + 4, np.nan), "law/data holds nan"),
         (lambda f: f.attrs.create("certificate", 3), "JSON"),
-        (lambda f: f.attrs.create("certificate", "[]"), "argument"),
         (lambda f: f.attrs.create("certificate", "[" * 60_000), "recursion"),
     ],
 )
@@ -232,13 +211,6 @@ def test_no_file_is_written_that_would_not_be_read(built, tmp_path, monkeypatch)
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("content", [b"", b"no table", b"\x89HDF\r\n\x1a\n" * 100])
-def test_what_is_no_table_is_refused(tmp_path, content):
-    (tmp_path / "x.h5").write_bytes(content)
-    with pytest.raises(store.DamagedTableError, match="cannot use .*x.h5: it is not a table"):
-        store.read(tmp_path / "x.h5")
-
-
 def test_any_altered_byte_is_found(path):
     content = path.read_bytes()
     rng = np.random.default_rng(3)
@@ -259,22 +231,8 @@ def test_any_truncation_is_found(path):
     content = path.read_bytes()
     for length in [*range(0, len(content), 997), len(content) - 1]:
         path.write_bytes(content[:length])
-        with pytest.raises(store.DamagedTableError):
+        with pytest.raises(store.DamagedTableError, match=f"cannot use .*{path.name}: "):
             store.read(path)
-
-
-def test_hdf5_programs_read_it(path):
-    with h5py.File(path) as file:
-        assert file.attrs["complete"]
-        assert file["fields/restitution"].shape == (
-            SMALL.inelasticity_nodes,
-            sum(one["shares"].size for one in file["axes/log_overload"].values()),
-        )
-
-
-def test_a_missing_file_is_named(tmp_path):
-    with pytest.raises(FileNotFoundError, match="nothing.h5"):
-        store.read(tmp_path / "nothing.h5")
 
 
 def test_a_failed_write_leaves_the_old_file_and_nothing_else(built, path, monkeypatch):
@@ -291,9 +249,10 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(built, path, monkey
     assert path.read_bytes() == before
 
 
-def test_a_folder_that_is_not_there(built, tmp_path):
-    with pytest.raises(FileNotFoundError, match="missing"):
-        store.write(built, tmp_path / "missing" / "t.h5")
+def test_what_is_not_there_is_named(built, tmp_path):
+    for act in (lambda path: store.write(built, path), store.read):
+        with pytest.raises(FileNotFoundError, match="missing"):
+            act(tmp_path / "missing" / "t.h5")
 
 
 def test_a_file_of_another_numpy_is_read(monkeypatch, path):

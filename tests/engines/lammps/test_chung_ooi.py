@@ -253,7 +253,13 @@ MEASURED_TURN = [(9.72, -1.06), (20.31, -8.53), (30.16, -2.55), (39.12, 9.91), (
                  (59.90, 50.0), (70.46, 66.9), (78.86, 78.9), (84.78, 85.7)]  # fmt: skip
 
 
-@pytest.fixture(scope="module", params=[OXIDE_4, ALLOY_4], ids=["aluminium oxide", "alloy"])
+@pytest.fixture(
+    scope="module",
+    params=[
+        pytest.param(OXIDE_4, id="aluminium oxide"),
+        pytest.param(ALLOY_4, id="alloy", marks=pytest.mark.long),
+    ],
+)
 def oblique(request):
     case, angle = request.param, np.radians(ANGLES)
     along, normal = case.speed * np.sin(angle), case.speed * np.cos(angle)
@@ -316,7 +322,13 @@ ELEMENTS = [(0.27, -0.03), (0.59, -0.03), (0.88, -0.08), (1.19, -0.21), (1.55, -
             (4.76, -1.71), (5.76, -1.20), (7.12, 0.13), (9.12, 2.15), (12.36, 5.43)]  # fmt: skip
 
 
-@pytest.mark.parametrize("case", [STEEL, POLYETHYLENE], ids=["steel", "polyethylene"])
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(STEEL, id="steel"),
+        pytest.param(POLYETHYLENE, id="polyethylene", marks=pytest.mark.long),
+    ],
+)
 def test_5_tangential_speeds(case):
     """Compare with 400 springs, with a rigid bead that slides, and with published results.
 

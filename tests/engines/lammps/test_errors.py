@@ -6,19 +6,7 @@ import re
 import lammps_box as box
 import numpy as np
 import pytest
-from lammps_box import (
-    ABOVE,
-    PAIR,
-    R,
-    above,
-    attach,
-    dropped,
-    flat,
-    make,
-    quiet,
-    restarted,
-    scene,
-)
+from lammps_box import ABOVE, PAIR, R, above, attach, dropped, flat, make, quiet, restarted, scene
 
 import contactlaw as cl
 from contactlaw.engines.lammps import Plate

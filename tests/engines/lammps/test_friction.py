@@ -41,7 +41,9 @@ def test_sliding_speed_is_that_of_the_integration(law, thickness, speed):
         assert np.abs(error).max() < bound
 
 
-@pytest.mark.parametrize("share", [0.5, 0.97, 1.03, 2.0])
+@pytest.mark.parametrize(
+    "share", [0.97, 1.03, *(pytest.param(far, marks=pytest.mark.long) for far in (0.5, 2.0))]
+)
 @pytest.mark.parametrize("thickness", [0.5e-3, math.inf])
 def test_a_bead_that_cannot_roll_rests_on_an_incline_or_slides(share, thickness):
     """On the half-space, which takes no energy, it jumps and creeps by 1e-9 R a step for ever."""

@@ -99,19 +99,6 @@ def test_the_work_of_the_wall_closes_the_account(model, motion):
     assert energy(now) - before == pytest.approx(row["wall_work"] - lost(row), abs=1e-7 * before)
 
 
-def test_a_wall_that_stands_still_does_no_work(model):
-    (row,), _ = dropped(model, None, PLACE, (3, 0, -5), friction=0.3)
-    assert row["wall_work"] == 0.0
-
-
-def test_a_table_of_a_constant_velocity_is_a_translation(model):
-    ends = []
-    for motion in (Translation((0, 0, 2.0)), Tabulated([0, 1e-3], [[0, 0, 0], [0, 0, 2e-3]])):
-        _, now = dropped(model, [flat(1e-3, motion=motion)], PLACE, (0, 0, -3))
-        ends.append(now["v"][0, 2])
-    assert ends[0] == pytest.approx(ends[1], rel=1e-9)
-
-
 def test_a_plate_carries_a_bead(model):
     """The bead rises as fast as the plate, which carries its weight."""
     plate = flat(0.5e-3, motion=Translation((0, 0, 0.2)))

@@ -35,10 +35,7 @@ def test_a_users_pre_solve_and_the_model_are_both_heard(key, register):
     space, body, impacts = drop(Stub(0.6), gravity=0.0)
     seen = []
     register(
-        space,
-        *key(impacts),
-        pre_solve=lambda arbiter, space, data: seen.append(data),
-        data="mine",
+        space, *key(impacts), pre_solve=lambda arbiter, space, data: seen.append(data), data="mine"
     )
     space.step(DT)
     assert body.velocity.y == pytest.approx(2 * 0.6, abs=EXACT)

@@ -118,8 +118,7 @@ def test_discretisation_error():
     found = compare.discretisation()
     assert all(off.max() < 0.007 for off in found.values())
     stated = re.search(
-        r"error of (\S+) % in COR, (\S+) % in peak force, (\S+) % in contact time and (\S+) %",
-        SAID,
+        r"error of (\S+) % in COR, (\S+) % in peak force, (\S+) % in contact time and (\S+) %", SAID
     )
     for value, name in zip(stated.groups(), found, strict=True):
         assert float(value) == pytest.approx(100 * found[name].max(), abs=0.006), name

