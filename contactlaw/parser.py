@@ -25,7 +25,7 @@ class Parser(argparse.ArgumentParser):
         mine = (lambda word: word[:1] == "-") if self._subparsers else (lambda word: word != "--")
         for word in itertools.takewhile(mine, words):
             name = word.partition("=")[0]
-            named = re.fullmatch(r"--?(?!inf$)[^\W\d][\w-]*", name)
+            named = re.fullmatch(r"--?(?!inf(?:inity)?$)[^\W\d][\w-]*", name)
             if named and name not in self._option_string_actions:
                 self.error(f"{name}: no such option{self._hint(name)}")
         return super().parse_known_args(words, namespace)

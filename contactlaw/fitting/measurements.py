@@ -123,7 +123,7 @@ class Measurements:
         missing = np.all([np.isnan(flat[name]) for name in KINDS if name in flat], axis=0)
         if missing.any() and not missing.all():
             said = f"data: rebounds {np.flatnonzero(missing)} have no quantity and are left out"
-            warnings.warn(said, stacklevel=4)
+            warnings.warn(f"{said}; the others are numbered from 0 anew", stacklevel=4)
             flat = {name: values[~missing] for name, values in flat.items()}
         sizes = {name: flat[name] for name in INPUTS if name in flat}
         if flat["speed"].size == 0:

@@ -446,7 +446,7 @@ def read_materials(path: str | os.PathLike[str]) -> dict[str, Material]:
     8000.0
     """
     try:
-        text = content_of(Path(path), LARGEST_TEXT).decode("utf-8-sig")
+        text = content_of(Path(path), LARGEST_TEXT, pipe=True).decode("utf-8-sig")
         return _read(tomllib.loads(text), _tables())
     except (ValueError, TypeError, AttributeError, KeyError, RecursionError) as error:
         raise ValueError(f"materials: {os.fspath(path)}: {error}") from error
@@ -474,7 +474,8 @@ def _read(tables: dict[str, Any], others: dict[str, Any]) -> dict[str, Material]
         if not isinstance(aliases, list) or not all(isinstance(one, str) for one in aliases):
             raise ValueError(f"[{name}]: aliases must be a list of names, got {aliases!r}")
         for one in (name, *aliases):
-            if (key := _key(one)) in owner:
+            # an alias may spell the name of its own entry in another way
+            if (key := _key(one)) in owner and not (one != name and key == _key(name)):
                 raise ValueError(f"[{name}]: leave out {one!r}, a name of [{owner[key]}] already")
             owner[key] = name
     found = {name: _from_table(name, tables[name], others | tables, references) for name in tables}

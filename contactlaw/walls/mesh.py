@@ -336,7 +336,7 @@ def _stl(path: str | Path) -> io.BytesIO:
     end = 84 + 50 * int.from_bytes(content[80:84], "little")  # of a binary one; text has > 7e9
     if 84 < end <= len(content):
         return io.BytesIO(content[:end])
-    return io.BytesIO(re.sub(rb"(?i)\bend[ \t]+solid", b"endsolid", content))
+    return io.BytesIO(re.sub(rb"(?im)^([ \t]*)end[ \t]+solid", rb"\1endsolid", content))
 
 
 def _circle(axis: Floats, facets: int) -> Floats:

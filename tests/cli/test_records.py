@@ -1,6 +1,7 @@
 """Impacts that have happened, as files have them; each column against what was written."""
 
 import math
+import os
 import random
 from pathlib import Path
 
@@ -48,6 +49,14 @@ def test_sizes_are_those_that_would_be_typed(tmp_path):
         f"1,{size}" for size in (0.1, 0.3, 0.7, 0.9, 1.1)))  # fmt: skip
     found = read(tmp_path / "a.csv").thickness.tolist()
     assert found == [0.1e-3, 0.3e-3, 0.7e-3, 0.9e-3, 1.1e-3]
+
+
+def test_a_pipe_is_read_to_its_end():
+    reader, writer = os.pipe()
+    os.write(writer, b"speed_m/s,radius_mm\n0.5,0.9\n1.2,1.1\n")
+    os.close(writer)
+    assert read(f"/dev/fd/{reader}").speed.tolist() == [0.5, 1.2]
+    os.close(reader)
 
 
 def test_weights_and_plates_and_a_half_space(tmp_path):

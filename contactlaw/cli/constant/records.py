@@ -105,7 +105,8 @@ def read(path: str | os.PathLike[str]) -> Recorded:
     """
     readers = {".h5": _hdf5, ".hdf5": _hdf5, ".npy": _npy}
     with wording.reading(path):
-        found = readers.get(Path(path).suffix.lower(), _text)(content_of(Path(path)))
+        reader = readers.get(Path(path).suffix.lower(), _text)
+        found = reader(content_of(Path(path), pipe=reader is _text))
         _check(found)
     return found
 

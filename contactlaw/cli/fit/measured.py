@@ -89,7 +89,7 @@ def read(path: str | os.PathLike[str]) -> Read:
     (array([0.91]), ('No',), [3])
     """
     with wording.reading(path):
-        return _read(content_of(Path(path), LARGEST_TEXT))
+        return _read(content_of(Path(path), LARGEST_TEXT, pipe=True))
 
 
 def _read(content: bytes) -> Read:
