@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from contactlaw import _atomic
 from contactlaw import table as tables
 from contactlaw._folder import folder
-from contactlaw._jit import fingerprint
+from contactlaw._kept import fingerprint
 from contactlaw.laws import Law
 from contactlaw.table import file, slides
 from contactlaw.table.grid import Settings, on_demand

@@ -1,0 +1,79 @@
+"""Kernels that only kernels call, compiled by what numba keeps to itself.
+
+With what numba offers to all, first processes would take half as long again.
+"""
+
+from __future__ import annotations
+
+import gc
+from typing import Any
+
+import numba
+from llvmlite import binding as llvm
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
+from numba.core.registry import CPUDispatcher
+
+
+class _InnerCode(JITCodeLibrary):
+    """The code of one kernel that only kernels call: as written, without that of those it calls.
+
+    Numba would optimize it, and translate it to machine code, together with all that it calls, at
+    each level of calls. Here the kernel that Python calls links each of them once.
+    """
+
+    def finalize(self) -> None:
+        self._finalized = True
+
+    def _get_module_for_linking(self) -> Any:
+        if self._shared_module is None:
+            module, parts = self._final_module.clone(), [self]
+            for part in parts:  # which grows; the libraries of numba have what they call
+                calls = part._linking_libraries if isinstance(part, _InnerCode) else []
+                parts += [one for one in dict.fromkeys(calls) if one not in parts]
+            for part in sorted(parts[1:], key=lambda one: not isinstance(one, _InnerCode)):
+                inner = isinstance(part, _InnerCode)
+                code = part._final_module if inner else part._get_module_for_linking()
+                module.link_in(code, preserve=True)
+            for function in module.functions:  # as numba does: one of several copies is used
+                if not function.is_declaration and function.linkage == llvm.Linkage.external:
+                    function.linkage = "linkonce_odr"
+            self._shared_module = module
+        return self._shared_module
+
+
+class InnerCompiler(Compiler):
+    """Compiles a kernel into `_InnerCode`."""
+
+    def define_pipelines(self) -> Any:
+        codegen, name = self.state.targetctx.codegen(), self.state.func_id.func_qualname
+        self.state.library = _InnerCode(codegen, name)  # type: ignore[no-untyped-call]
+        self.state.flags.no_compile = True
+        return super().define_pipelines()  # type: ignore[no-untyped-call]
+
+
+class Inner(CPUDispatcher):
+    """A kernel that only other kernels call; a call from Python runs the Python function.
+
+    An entry for Python takes as long to compile as a small kernel itself. Without it a kernel
+    cannot print, nor raise an error whose arguments it computes.
+    """
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.py_func(*arguments)
+
+    def compile(self, types: Any) -> Any:
+        """Compile for the types of arguments, not anew for each constant among them."""
+        before = gc.get_threshold()
+        gc.set_threshold(50_000, 20, 100)  # numba makes millions of objects, but hardly a loop
+        try:
+            return super().compile(tuple(map(numba.types.unliteral, types)))
+        finally:
+            gc.set_threshold(*before)
+
+    def add_overload(self, result: Any) -> None:
+        # Callers find the code by this object; other kernels have their entry for Python here.
+        result = result._replace(entry_point=object())
+        self.overloads[tuple(result.signature.args)] = result
+        target: Any = self.targetctx
+        target.insert_user_function(result.entry_point, result.fndesc, [result.library])
