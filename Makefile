@@ -12,10 +12,10 @@ unexport PYTHONDONTWRITEBYTECODE
 demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
 
-PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist loadfile
+PYTEST := $(BIN)/python -m pytest --numprocesses auto --dist worksteal
 
-test: .venv/test.done  ## run the tests, but for those of `test-long`
-	$(PYTEST) -m "not long"
+test: .venv/test.done  ## run the tests, but for those of `test-long`; of a part: PART=tests/laws
+	$(PYTEST) -m "not long" $(PART)
 
 test-long: .venv/test.done  ## run long validations: whole fits, statistics, elements, the catalogue
 	$(PYTEST) -m long

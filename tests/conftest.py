@@ -1,26 +1,22 @@
-"""Shared set-up; numba must find a fresh cache folder before anything imports it."""
+"""Shared set-up; numba must find its cache folder before anything imports it."""
 
 import os
 import signal
+import subprocess
 import sys
-import tempfile
 from pathlib import Path
 
-# A stale cache would let an old result pass; and the tests must not write into a user's folders.
-# Workers of one run share theirs.
-if "PYTEST_XDIST_WORKER" not in os.environ:
-    _CACHE = tempfile.TemporaryDirectory(prefix="contactlaw-numba-")
-    os.environ["NUMBA_CACHE_DIR"] = _CACHE.name
+# Not a user's. A run finds what earlier ones compiled: the name of the folder in it is a hash of
+# the sources, so that no old result can pass.
+ROOT = Path(__file__).parent.parent
+os.environ["NUMBA_CACHE_DIR"] = str(ROOT / ".pytest_cache/machine-code")
 
 # Tests start hundreds of processes, and each would compile numba's sources again, for 2 s.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-# A shell starts background jobs with Ctrl-C ignored, nohup all with SIGHUP, and so would be what
-# the tests start.
+# A shell starts background jobs with Ctrl-C ignored, and so would be what the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
-if hasattr(signal, "SIGHUP"):
-    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 import pytest  # noqa: E402
 
@@ -32,6 +28,20 @@ pytest.register_assert_rewrite(
 from browser import CHROMIUM, browser  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
+from contactlaw import _kept  # noqa: E402
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_sessionstart(session):
+    """Compile what most tests need before workers start: each of them would compile the same."""
+    kept = Path(os.environ["NUMBA_CACHE_DIR"], f"contactlaw-{_kept.fingerprint()}")
+    if session.config.getoption("dist", "no") != "no" and not kept.exists():
+        every = "from validation.bench.processes import EVERY_METHOD; exec(EVERY_METHOD)"
+        commands = ["-c", every], ["docs/examples/plates_lammps.py"]  # which fails without LAMMPS
+        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": ROOT}
+        running = [subprocess.Popen([sys.executable, *one], **quiet) for one in commands]
+        for process in running:
+            process.wait()
 
 
 @pytest.fixture(scope="session")
