@@ -15,8 +15,11 @@ os.environ["NUMBA_CACHE_DIR"] = str(ROOT / ".pytest_cache/machine-code")
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-# A shell starts background jobs with Ctrl-C ignored, and so would be what the tests start.
+# A shell starts background jobs with Ctrl-C ignored, nohup all with SIGHUP, and so would be what
+# the tests start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
+if hasattr(signal, "SIGHUP"):
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 import pytest  # noqa: E402
 
