@@ -75,15 +75,15 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # How many lines of code each folder may have. Lines are a cost: what goes above its number takes
 # lines out elsewhere in its folder first; a higher number has its reason beside it.
 BUDGETS = {
-    # the generator, and what header and page offer as kernels, stand beside the templates of C that
-    # they are to replace
-    "contactlaw": 34_500,
+    # 32,500 was meant with the generator in it; the generator and what header and page offer as
+    # kernels are 1,570 lines, for 2,060 of C and JavaScript that went
+    "contactlaw": 34_300,
     "contactlaw/answers": 3_450,
     "contactlaw/cli": 4_500,
-    "contactlaw/emit": 1_050,
+    "contactlaw/emit": 900,  # 700 was meant
     "contactlaw/engines": 4_300,
     "contactlaw/equation": 2_500,
-    "contactlaw/export": 1_350,
+    "contactlaw/export": 1_250,
     "contactlaw/fitting": 2_300,
     "contactlaw/laws": 1_950,
     "contactlaw/physical": 2_900,
@@ -91,10 +91,10 @@ BUDGETS = {
     "contactlaw/stepping": 2_250,
     "contactlaw/table": 3_050,
     "contactlaw/walls": 2_000,
-    "contactlaw templates": 2_500,  # sources of other languages
+    "contactlaw templates": 1_050,  # sources of other languages
     "dem_demo": 6_350,
     "validation": 14_550,
-    "tests": 26_900,
+    "tests": 26_450,
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

@@ -3,44 +3,51 @@
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 from collections.abc import Sequence
 
-from contactlaw.emit.types import DOUBLE, INT, Array, Row, Struct, Type, Value, traced
+from contactlaw.emit.types import Array, Row, Struct, Type, traced
 
-_WIDTH = 100
+WIDTH = 100
 Variables = Sequence[tuple[Type, str]]
 
 
-def _wrapped(line: str) -> str:
+def wrapped(line: str, end: str = "") -> str:
     """Break a line that is too long at its spaces."""
-    if len(line) <= _WIDTH:
-        return line
     indent = line[: len(line) - len(line.lstrip())] + 8 * " "
-    broken = textwrap.wrap(
-        line, _WIDTH, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False
-    )
-    return "\n".join(broken)
+    lines = textwrap.wrap(line, WIDTH - len(end), subsequent_indent=indent, break_long_words=False,
+                          break_on_hyphens=False)  # fmt: skip
+    return line if len(line) <= WIDTH else f"{end}\n".join(lines)
 
 
 class C:
     """C99 that is C++11, CUDA, HIP and OpenCL C too; names get a prefix.
 
-    Structures are made by functions, since a literal of one is not C++.
+    `operations` are patterns, how tightly they bind, and how tightly their operands have to. A
+    structure is made by ``PREFIXnew``, as a literal of one is not the same in C and in C++.
     """
 
-    reserved = frozenset(
-        "auto both char class const delete double else enum extern far float goto int long near "
-        "new operator private public register short signed static struct switch template this "
-        "union unsigned void".split()
+    operations = {
+        "float": ("(double){}", 10, (10,)), "int": ("(int){}", 10, (10,)),
+        "abs": ("fabs({})", 12, (0,)), "quotient": ("{} / {}", 9, (9, 10)),
+        "tail": ("{} + {}", 8, (8, 9)), "of_row": ("{}->{}", 11, (11, 0)),
+    }  # fmt: skip
+    head, array, local, unused = "static inline {}{}({})\n{{", "double {}[{}];", "", "(void){};"
+    fill, define, data = (
+        "{}fill({}, {}, {});",
+        "#define {} {}",
+        ("static const double {}[] = {{", "};"),
     )
+    comment, typed, maths, own = ("/* ", " * ", " */"), True, "", frozenset[str]()
+    nan, inf, whole = "(double)NAN", "HUGE_VAL", "_int"  # and what min and max of integers end with
+    reserved = frozenset("auto bool both char class const constant delete double else enum extern "
+                         "far float global goto half int kernel local long near new operator "
+                         "private public register short signed static struct switch template this "
+                         "union unsigned void".split())  # fmt: skip
 
     def __init__(self, prefix: str = "contactlaw_") -> None:
-        self._prefix = prefix
-
-    def name(self, name: str) -> str:
-        """Write a name that the program gives."""
-        return self._prefix + name
+        self.prefix = prefix
 
     def variable(self, name: str) -> str:
         """Write the name of a variable."""
@@ -48,124 +55,72 @@ class C:
 
     def number(self, value: float) -> str:
         """Write a number."""
-        if math.isnan(value):
-            return "(double)NAN"
-        return repr(value) if math.isfinite(value) else "-HUGE_VAL"[value > 0 :]
+        if math.isinf(value):
+            return self.inf if value > 0.0 else f"-{self.inf}"
+        return self.nan if math.isnan(value) else repr(value)
 
     def type(self, kind: Type) -> str:
         """Write a type, with a space if a name may follow directly."""
         if isinstance(kind, Array):
-            return self.name("data *") if kind.data else "double *"
-        if isinstance(kind, Struct):
-            return f"{self.name(kind.name)} "
-        if isinstance(kind, Row):
-            return f"{self.name(kind.name)} *"
-        return f"{kind.name} "
+            return f"{self.prefix}data *" * self.typed if kind.data else "double *" * self.typed
+        own = self.prefix if isinstance(kind, Struct | Row) else ""
+        return f"{own}{kind.name} {'*' * isinstance(kind, Row)}" * self.typed
 
-    def make(self, kind: Struct, parts: Sequence[str]) -> str:
+    def make(self, kind: Struct, parts: dict[str, str]) -> str:
         """Make a structure of its members."""
-        kept = [one for one, (_, t) in zip(parts, kind.members, strict=True) if traced(t)]
-        return f"{self.name(f'make_{kind.name}')}({', '.join(kept)})"
+        return f"{self.prefix}new({kind.name}){{ {', '.join(parts.values())} }}"
 
     def member(self, text: str, name: str, kind: Type) -> str:
         """Read a member of a structure."""
         return f"{text}.{self.variable(name)}"
 
-    def row_member(self, text: str, name: str) -> str:
-        """Read a member of a row."""
-        return f"{text}->{name}"
-
     def call(self, name: str, texts: Sequence[str]) -> str:
         """Call a function of mathematics."""
-        return f"{name}({', '.join(texts)})"
+        return f"{self.prefix if name in self.own else self.maths}{name}({', '.join(texts)})"
 
-    def extreme(self, name: str, kind: Type, one: str, other: str) -> str:
-        """Take the smaller or larger of two numbers as Python does, also of a NaN."""
-        return f"{self.name(name)}{'_int' if kind == INT else ''}({one}, {other})"
-
-    def cast(self, name: str, value: Value) -> Value:
-        """Convert a number."""
-        if name == "abs":
-            return Value(value.type, f"fabs({value.text})")
-        if name == "int" and value.type == DOUBLE:
-            return Value(INT, f"(int){value.within(10)}", 10)
-        if name == "float" and value.type == INT:
-            return Value(DOUBLE, f"(double){value.within(10)}", 10)
-        return value
-
-    def as_double(self, value: Value) -> str:
-        """Convert an integer that is to be divided."""
-        return f"(double){value.within(10)}"
-
-    def quotient(self, one: str, other: str) -> tuple[str, int]:
-        """Divide whole numbers that are not negative."""
-        return f"{one} / {other}", 9
-
-    def tail(self, array: Value, index: Value) -> str:
-        """Take an array from an element on."""
-        return f"{array.within(8)} + {index.within(9)}"
-
-    def filled(self, name: str, size: int, value: str) -> list[str]:
-        """Give all elements of an array a value."""
-        return [f"{self.name('fill')}({name}, {size}, {value});"]
-
-    def unpacked(self, kind: Struct, text: str, lines: list[str]) -> list[str]:
-        """Take a tuple apart; it is `both` in the lines that do it."""
-        return [
-            "{",
-            f"    const {self.type(kind)}both = {text};",
-            *(f"    {one}" for one in lines),
-            "}",
-        ]
-
-    def structure(self, kind: Struct, said: str | None, comments: dict[str, str]) -> str:
-        """Declare a structure, and the function that makes it."""
-        name, members = self.name(kind.name), [one for one in kind.members if traced(one[1])]
-        lines = [f"/* {said.splitlines()[0]} */"] if said and kind.source else []
-        lines.append(f"typedef struct {name} {{")
-        for one, t in members:
-            comment = f" /* {comments[one]} */" if one in comments else ""
-            lines.append(f"    {self.type(t)}{self.variable(one)};{comment}")
-        lines += [f"}} {name};", ""]
-        given = ", ".join(f"{self.type(t)}{self.variable(one)}" for one, t in members)
-        lines += [
-            f"static inline {name} {self.name(f'make_{kind.name}')}({given})",
-            "{",
-            f"    {name} made;",
-        ]
-        lines += [f"    made.{v} = {v};" for v in (self.variable(one) for one, _ in members)]
-        return "\n".join(_wrapped(one) for one in [*lines, "    return made;", "}"])
-
-    def row(self, kind: Row) -> str:
-        """Declare a row."""
-        members = (f"    double {one}[{size}];" if size else f"    double {one};"
-                   for one, size in kind.members)  # fmt: skip
-        name = self.name(kind.name)
-        return "\n".join([f"typedef struct {name} {{", *members, f"}} {name};"])
+    def structure(self, kind: Struct | Row, said: str, comments: dict[str, str]) -> str:
+        """Declare a structure, or a row, whose members are numbers and arrays of a size."""
+        lines = [f"/* {said} */"] if said else []
+        lines.append(f"typedef struct {self.prefix}{kind.name} {{")
+        for one, t in kind.members:
+            if isinstance(kind, Row):
+                lines.append(f"    double {one}[{t}];" if t else f"    double {one};")
+            elif traced(t):
+                comment = f" /* {comments[one]} */" if one in comments else ""
+                lines.append(f"    {self.type(t)}{self.variable(one)};{comment}")
+        return "\n".join([*map(wrapped, lines), f"}} {self.prefix}{kind.name};"])
 
     def function(
         self, name: str, result: Type, given: Variables, own: Variables, body: list[str], said: str
     ) -> str:
         """Write a function."""
-        comment = textwrap.wrap(f"/* {said.replace('`', '')} */", _WIDTH, subsequent_indent=" * ")
-        parameters = ", ".join(f"{self.type(kind)}{one}" for kind, one in given) or "void"
-        lines = [f"static inline {self.type(result)}{self.name(name)}({parameters})", "{"]
-        by_type: dict[str, list[str]] = {}
+        begin, line, end = self.comment
+        text = f"{begin}{said.replace('`', '')}{end}"
+        comment = textwrap.wrap(text, WIDTH, subsequent_indent=line)
+        parameters = ", ".join(f"{self.type(kind)}{one}" for kind, one in given)
+        parameters = parameters or "void" * self.typed
+        lines = self.head.format(self.type(result), self.prefix + name, parameters).split("\n")
+        # an array that is assigned to is another name of one
+        assigned, by_type = (
+            {one.strip().partition(" = ")[0] for one in body},
+            dict[str, list[str]](),
+        )
         for kind, one in own:
-            array = isinstance(kind, Array) and not kind.data and kind.shape
-            sized = f"{one}[{math.prod(kind.shape)}]" if array else one  # type: ignore[attr-defined]
-            by_type.setdefault("double " if array else self.type(kind), []).append(sized)
+            if isinstance(kind, Array) and kind.shape and not kind.data and one not in assigned:
+                lines.append(f"    {self.array.format(one, math.prod(kind.shape))}")
+            else:
+                by_type.setdefault(self.type(kind), []).append(one)
         for text, names in by_type.items():
             joined = ", *".join(names) if text.endswith("*") else ", ".join(names)
-            lines.append(f"    {text}{joined};")
-        lines += [*(f"    {line}" for line in body), "}"]
-        return "\n".join([*comment, *(_wrapped(line) for line in lines)])
+            lines.append(f"    {self.local}{text}{joined};")
+        return "\n".join([*comment, *map(wrapped, [*lines, *(f"    {one}" for one in body), "}"])])
 
-    def data(self, name: str, values: Sequence[float]) -> str:
-        """Write an array of constants."""
-        numbers = textwrap.wrap(", ".join(map(self.number, values)), _WIDTH)
-        return "\n".join([f"static const double {self.name(name)}[] = {{", *numbers, "};"])
-
-    def define(self, name: str, text: str) -> str:
-        """Define a constant."""
-        return f"#define {self.name(name)} {text if text[0] != '-' else f'({text})'}"
+    def constant(self, name: str, value: str | Sequence[float]) -> str:
+        """Define a constant, a text or an array."""
+        name = f"{self.prefix}{name}"
+        if isinstance(value, str):
+            text = self.define.format(name, value if value[0] != "-" else f"({value})")
+            return wrapped(text, " \\" if text.startswith("#") else "")
+        numbers = (re.sub(r"\b0(?=\.)", "", self.number(one).removesuffix(".0")) for one in value)
+        text = "\n".join(textwrap.wrap(", ".join(numbers), WIDTH)).replace(", ", ",")
+        return f"{self.data[0].format(name)}\n{text}\n{self.data[1]}"

@@ -13,27 +13,15 @@ from typing import Any, NoReturn, Protocol
 
 import numpy as np
 
+from contactlaw.emit import types
 from contactlaw.emit.c import C
-from contactlaw.emit.types import (
-    DOUBLE,
-    FALSE,
-    INT,
-    NONE,
-    TRUE,
-    UNKNOWN,
-    Array,
-    Known,
-    Row,
-    Struct,
-    Type,
-    Value,
-    traced,
-)
+from contactlaw.emit.types import DOUBLE, INT, NONE, UNKNOWN, Array, Known, Row, Struct, Type, Value
 
 # Operators: how they are written, how tightly they bind, and what they do to known numbers.
 OPERATORS: dict[type, tuple[str, int, Callable[[Any, Any], Any]]] = {
     ast.Add: ("+", 8, operator.add), ast.Sub: ("-", 8, operator.sub),
     ast.Mult: ("*", 9, operator.mul), ast.Div: ("/", 9, operator.truediv),
+    ast.Mod: ("%", 9, operator.mod), ast.RShift: (">>", 7, operator.rshift),
     ast.BitOr: ("|", 3, operator.or_), ast.BitAnd: ("&", 4, operator.and_),
     ast.Lt: ("<", 6, operator.lt), ast.LtE: ("<=", 6, operator.le),
     ast.Gt: (">", 6, operator.gt), ast.GtE: (">=", 6, operator.ge),
@@ -42,7 +30,7 @@ OPERATORS: dict[type, tuple[str, int, Callable[[Any, Any], Any]]] = {
 
 
 class _Program(Protocol):
-    """What expressions ask of the program that they are a part of."""
+    """What expressions ask of the `Program` that they are a part of."""
 
     language: C
     fixed: Collection[str]
@@ -55,13 +43,13 @@ class _Program(Protocol):
 
 
 class Expressions:
-    """Expressions in the body of a kernel, with the types of its variables."""
+    """Expressions in the body of a kernel of a `Program`, with the types of its variables."""
 
     def __init__(self, program: _Program, python: Callable[..., Any], first: int) -> None:
         self._program, self._language = program, program.language
         self._python, self._first = python, first
-        self._scope = python.__globals__ | inspect.getclosurevars(python)._asdict()["builtins"]
-        self._scope |= inspect.getclosurevars(python).nonlocals
+        found = inspect.getclosurevars(python)
+        self._scope = {**python.__globals__, **found.builtins, **found.nonlocals}
         self._types: dict[str, Type] = {}
 
     def refuse(self, node: Any, remedy: str) -> NoReturn:
@@ -83,48 +71,63 @@ class Expressions:
         self.refuse(node, f"a variable has one type, not {one.name} and {other.name}")
 
     def value(self, node: Any) -> Value:
-        """Write an expression."""
-        match node:
-            case ast.Constant(value=value):
-                return self._program.constant(value)
-            case ast.Name():
-                return self._name(node)
-            case ast.Attribute():
-                return self._attribute(node)
-            case ast.Subscript():
-                return self._subscript(node)
-            case ast.Tuple(elts=parts):
-                values = [self.value(one) for one in parts]
-                made = self._program.tuple_of(tuple(one.type for one in values))
-                return Value(made, self._language.make(made, [one.text for one in values]))
-            case ast.UnaryOp(op=ast.USub(), operand=operand):
-                one = self.value(operand)
-                known = UNKNOWN if one.known is UNKNOWN else -one.known
-                return Value(one.type, f"-{one.within(11)}", 10, known)
-            case ast.UnaryOp(op=ast.Not(), operand=operand):
-                one = self.value(operand)
-                if one.known is not UNKNOWN:
-                    return FALSE if one.known else TRUE
-                return Value(INT, f"!{one.within(11)}", 10)
-            case ast.BoolOp():
-                return self._connected(node)
-            case ast.Compare():
-                return self._comparison(node)
-            case ast.BinOp():
-                return self._binary(node, self.value(node.left), self.value(node.right))
-            case ast.IfExp():
-                return self._choice(node)
-            case ast.Call():
-                return self._call(node)
-        self.refuse(node, "use numbers, NamedTuples, arrays, operators and calls of kernels")
+        """Write an expression, by the method of its kind."""
+        name = f"_{type(node).__name__.lower()}"
+        write: Callable[[Any], Value] | None = getattr(self, name, None)
+        if write is None:
+            self.refuse(node, "use numbers, NamedTuples, arrays, operators and calls of kernels")
+        return write(node)
+
+    def _constant(self, node: ast.Constant) -> Value:
+        return self._program.constant(node.value)
+
+    def _tuple(self, node: ast.Tuple) -> Value:
+        values = [self.value(one) for one in node.elts]
+        made = self._program.tuple_of(tuple(one.type for one in values))
+        return self.made(made, [one.text for one in values])
+
+    def _unaryop(self, node: ast.UnaryOp) -> Value:
+        one, negates = self.value(node.operand), isinstance(node.op, ast.USub)
+        if not negates and one.known is not UNKNOWN:
+            return types.FALSE if one.known else types.TRUE
+        known = UNKNOWN if one.known is UNKNOWN else -one.known
+        sign, kind = ("-", one.type) if negates else ("!", INT)
+        return Value(kind, f"{sign}{one.within(11)}", 10, known)
+
+    def _ifexp(self, node: ast.IfExp) -> Value:
+        test = self.value(node.test)
+        if test.known is not UNKNOWN:
+            return self.value(node.body if test.known else node.orelse)
+        one, other = self.value(node.body), self.value(node.orelse)
+        text = f"{test.within(1)} ? {one.within(1)} : {other.within(1)}"
+        return Value(self.unified(node, one.type, other.type), text, 0)
+
+    def made(self, kind: Struct, texts: list[str]) -> Value:
+        """Make a structure; members that leave no trace are left out."""
+        parts = {name: text for (name, one), text in zip(kind.members, texts, strict=True)
+                 if types.traced(one)}  # fmt: skip
+        return Value(kind, self._language.make(kind, parts))
 
     def member(self, base: Value, name: str) -> Value:
         """Read a member of a structure."""
-        kind = dict(getattr(base.type, "members", ()))[name]
+        kind = dict(base.type.members)[name]
         if isinstance(kind, Known):
             return Value(kind, "", known=kind.value)
-        text = self._language.member(base.within(11), name, base.type)
-        return Value(kind, text, 11, None if kind == NONE else UNKNOWN)
+        if not types.traced(kind):
+            return Value(kind, "", known=None if kind == NONE else UNKNOWN)
+        return Value(kind, self._language.member(base.within(11), name, base.type), 11)
+
+    def double(self, value: Value) -> str:
+        """Text of a number that is to be one of floating point."""
+        if isinstance(value.known, int) and value.text.lstrip("-").isdigit():
+            return f"{value.text}.0"
+        return value.within(10) if value.type == DOUBLE else self._written("float", value).text
+
+    def _written(self, name: str, *values: Value, kind: Type = DOUBLE) -> Value:
+        """Write one of the language's operations."""
+        pattern, binds, operands = self._language.operations[name]
+        texts = (one.within(least) for one, least in zip(values, operands, strict=True))
+        return Value(kind, pattern.format(*texts), binds)
 
     def _name(self, node: ast.Name) -> Value:
         kind = self._types.get(node.id)
@@ -150,7 +153,7 @@ class Expressions:
             case Row(members=members):
                 size = dict(members)[name]
                 kind = Array(shape=(size,)) if size else DOUBLE
-                return Value(kind, self._language.row_member(base.within(11), name), 11)
+                return self._written("of_row", base, Value(kind, name), kind=kind)
             case Array(shape=shape) if shape and name in ("size", "shape"):
                 return self._program.constant(math.prod(shape) if name == "size" else shape)
         self.refuse(
@@ -170,81 +173,64 @@ class Expressions:
             self.refuse(node, "only arrays and tuples have elements")
         shape, data = base.type.shape, base.type.data
         if isinstance(at, ast.Slice):
-            tail = self._language.tail(base, self.value(at.lower))
-            return Value(Array(data=data), tail, 8)
+            return self._written("tail", base, self.value(at.lower), kind=Array(data=data))
         if 0 in shape:
             return Value(DOUBLE, "")  # an array without elements leaves no trace
-        index, *column = [
-            self.value(one) for one in (at.elts if isinstance(at, ast.Tuple) else [at])
-        ]
+        index, *column = map(self.value, at.elts if isinstance(at, ast.Tuple) else [at])
         if len(shape) == 2:
             index = Value(INT, f"{index.within(9)} * {shape[1]}", 9)
             if not column:
-                kind = Array(data=data, shape=shape[1:])
-                return Value(kind, self._language.tail(base, index), 8)
+                return self._written("tail", base, index, kind=Array(data=data, shape=shape[1:]))
             index = Value(INT, f"{index.text} + {column[0].within(9)}", 8)
         elif column:
             self.refuse(node, "an array of rows needs a known shape")
         return Value(DOUBLE, f"{base.within(11)}[{index.text}]", 11)
 
-    def _binary(self, node: ast.BinOp, left: Value, right: Value) -> Value:
+    def _binop(self, node: ast.BinOp) -> Value:
+        left, right = self.value(node.left), self.value(node.right)
         if isinstance(node.op, ast.Pow):
             return Value(DOUBLE, self._language.call("pow", [left.text, self.double(right)]))
         if isinstance(node.op, ast.FloorDiv):
-            return Value(INT, *self._language.quotient(left.within(9), right.within(10)))
+            return self._written("quotient", left, right, kind=INT)
         if type(node.op) not in OPERATORS:
-            self.refuse(node, "use + - * / // ** & |")
+            self.refuse(node, "use + - * / // % ** & | >>")
         sign, binds, act = OPERATORS[type(node.op)]
-        kind, known = self.unified(node, left.type, right.type), UNKNOWN
         divides = isinstance(node.op, ast.Div)
-        if isinstance(left.known, int) and isinstance(right.known, int) and not divides:
-            known = act(left.known, right.known)
-        kind = DOUBLE if divides else kind
+        kind = DOUBLE if divides else self.unified(node, left.type, right.type)
+        whole = isinstance(left.known, int) and isinstance(right.known, int) and not divides
         a, b = (
             # a known number in a formula of doubles is one of them
             self.double(one) if kind == DOUBLE and (divides or one.known is not UNKNOWN) else
             one.within(12 if binds < 5 and one.binds < 11 else binds + (one is right))
             for one in (left, right)
         )  # fmt: skip
-        return Value(kind, f"{a} {sign} {b}", binds, known)
+        return Value(
+            kind, f"{a} {sign} {b}", binds, act(left.known, right.known) if whole else UNKNOWN
+        )
 
-    def double(self, value: Value) -> str:
-        """Text of a number that is to be one of floating point."""
-        if isinstance(value.known, int) and value.text.lstrip("-").isdigit():
-            return f"{value.text}.0"
-        return value.within(10) if value.type == DOUBLE else self._language.as_double(value)
-
-    def _choice(self, node: ast.IfExp) -> Value:
-        test = self.value(node.test)
-        if test.known is not UNKNOWN:
-            return self.value(node.body if test.known else node.orelse)
-        one, other = self.value(node.body), self.value(node.orelse)
-        kind = self.unified(node, one.type, other.type)
-        return Value(kind, f"{test.within(1)} ? {one.within(1)} : {other.within(1)}", 0)
-
-    def _comparison(self, node: ast.Compare) -> Value:
+    def _compare(self, node: ast.Compare) -> Value:
         values = [self.value(one) for one in (node.left, *node.comparators)]
         if isinstance(node.ops[0], ast.Is | ast.IsNot):
             is_none = values[0].type == NONE
-            return TRUE if is_none == isinstance(node.ops[0], ast.Is) else FALSE
+            return types.TRUE if is_none == isinstance(node.ops[0], ast.Is) else types.FALSE
         texts = []
         for op, left, right in zip(node.ops, values, values[1:], strict=False):
             sign, binds, act = OPERATORS[type(op)]
             if UNKNOWN not in (left.known, right.known):
-                return TRUE if act(left.known, right.known) else FALSE
+                return types.TRUE if act(left.known, right.known) else types.FALSE
             texts.append(f"{left.within(8)} {sign} {right.within(8)}")
         return Value(INT, " && ".join(texts), 2 if len(texts) > 1 else binds)
 
-    def _connected(self, node: ast.BoolOp) -> Value:
+    def _boolop(self, node: ast.BoolOp) -> Value:
         """Write `and` or `or`; what is decided already is left out, or decides."""
         either, kept = isinstance(node.op, ast.Or), []
         for one in map(self.value, node.values):
             if one.known is UNKNOWN:
                 kept.append(one)
             elif bool(one.known) == either:
-                return TRUE if either else FALSE
+                return types.TRUE if either else types.FALSE
         if len(kept) < 2:
-            return kept[0] if kept else FALSE if either else TRUE
+            return kept[0] if kept else types.FALSE if either else types.TRUE
         sign, binds = ("||", 1) if either else ("&&", 2)
         return Value(INT, f" {sign} ".join(one.within(3) for one in kept), binds)
 
@@ -253,47 +239,45 @@ class Expressions:
         if called in (np.zeros, np.empty):
             size = node.args[0]
             parts = size.elts if isinstance(size, ast.Tuple) else [size]
-            return Value(
-                Array(shape=tuple(self.value(one).known for one in parts)), called.__name__
-            )
+            shape = tuple(self.value(one).known for one in parts)
+            return Value(Array(shape=shape), called.__name__)
         values = [self.value(one) for one in node.args]
+        name = getattr(called, "__name__", "")
         if called in (min, max, np.minimum, np.maximum):
-            return functools.reduce(
-                lambda a, b: self._extreme(node, called.__name__[:3], a, b), values
-            )
+            return functools.reduce(lambda a, b: self._extreme(node, name[:3], a, b), values)
         if called is len:
-            return self._program.constant(len(getattr(values[0].type, "members", ())))
+            return self._program.constant(len(values[0].type.members))
         if called in (int, bool, float, abs, np.uint64, np.int64, np.float64):
-            return self._language.cast(called.__name__, values[0])
+            kind = {"int": INT, "float": DOUBLE, "abs": values[0].type}.get(name)
+            if kind is None or kind == values[0].type and name != "abs":
+                return values[0]
+            return self._written(name, values[0], kind=kind)
         if getattr(called, "__module__", "") == "math" or isinstance(called, np.ufunc):
             texts = [one.text if one.type == DOUBLE else self.double(one) for one in values]
-            return Value(DOUBLE, self._language.call(called.__name__, texts))
+            return Value(DOUBLE, self._language.call(name, texts))
         by_name = {one.arg: self.value(one.value) for one in node.keywords}
         if isinstance(called, type) and hasattr(called, "_fields"):
-            left = getattr(called, "_field_defaults", {})
-            defaults = {n: self._program.constant(v) for n, v in left.items()}
-            given = defaults | dict(zip(called._fields, values, strict=False)) | by_name
-            texts = [given[name].text for name in called._fields]
-            members = tuple((name, given[name].type) for name in called._fields)
-            kind = self._program.struct(called, members)
-            return Value(kind, self._language.make(kind, texts))
+            defaults = getattr(called, "_field_defaults", {})
+            given = {n: self._program.constant(v) for n, v in defaults.items()}
+            given |= dict(zip(called._fields, values, strict=False)) | by_name
+            members = tuple((one, given[one].type) for one in called._fields)
+            texts = [given[one].text for one in called._fields]
+            return self.made(self._program.struct(called, members), texts)
         if not inspect.isfunction(getattr(called, "py_func", called)):
             self.refuse(node, "call kernels, NamedTuples, and functions of math")
-        return self._kernel(called, values, by_name)
+        names = list(inspect.signature(getattr(called, "py_func", called)).parameters)
+        values += [by_name[one] for one in names if one in by_name]
+        kinds = tuple(
+            Known(value=value.known) if one in self._program.fixed and value.known is not UNKNOWN
+            else value.type
+            for one, value in zip(names, values, strict=False)
+        )  # fmt: skip
+        name, result = self._program.add(called, *kinds)
+        texts = [one.text for one, kind in zip(values, kinds, strict=True) if types.traced(kind)]
+        text = f"{self._language.prefix}{name}({', '.join(texts)})"
+        return Value(NONE, "", known=None) if result == NONE else Value(result, text)
 
     def _extreme(self, node: Any, name: str, one: Value, other: Value) -> Value:
-        kind = self.unified(node, one.type, other.type)
-        return Value(kind, self._language.extreme(name, kind, one.text, other.text))
-
-    def _kernel(self, kernel: Any, values: list[Value], by_name: dict[Any, Value]) -> Value:
-        names = list(inspect.signature(getattr(kernel, "py_func", kernel)).parameters)
-        values = [*values, *(by_name[name] for name in names if name in by_name)]
-        types = tuple(
-            Known(value=one.known) if name in self._program.fixed and one.known is not UNKNOWN
-            else one.type
-            for name, one in zip(names, values, strict=False)
-        )  # fmt: skip
-        name, result = self._program.add(kernel, *types)
-        texts = [one.text for one, kind in zip(values, types, strict=True) if traced(kind)]
-        text = f"{self._language.name(name)}({', '.join(texts)})"
-        return Value(NONE, "", known=None) if result == NONE else Value(result, text)
+        kind, language = self.unified(node, one.type, other.type), self._language
+        ending = language.whole if kind == INT else ""
+        return Value(kind, f"{language.prefix}{name}{ending}({one.text}, {other.text})")

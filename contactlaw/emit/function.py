@@ -10,33 +10,23 @@ import textwrap
 from collections.abc import Callable
 from typing import Any
 
+from contactlaw.emit import types
 from contactlaw.emit.expressions import OPERATORS, Expressions
-from contactlaw.emit.types import (
-    FALSE,
-    INT,
-    TRUE,
-    UNKNOWN,
-    VOID,
-    Array,
-    Struct,
-    Type,
-    Value,
-    traced,
-)
+from contactlaw.emit.types import INT, UNKNOWN, VOID, Array, Struct, Type, Value, traced
 
 
 class Function(Expressions):
     """A kernel of a `Program` and the types of its arguments; statements are lists of lines."""
 
-    def __init__(self, program: Any, python: Callable[..., Any], types: tuple[Type, ...]) -> None:
+    def __init__(self, program: Any, python: Callable[..., Any], given: tuple[Type, ...]) -> None:
         lines, first = inspect.getsourcelines(python)
         super().__init__(program, python, first)
-        self._node: Any
-        (self._node,) = ast.parse(textwrap.dedent("".join(lines))).body
+        tree: Any = ast.parse(textwrap.dedent("".join(lines)))
+        self._node = tree.body[0]
         self._parameters = [one.arg for one in self._node.args.args]
         left = python.__defaults__ or ()
-        left = left[len(left) + len(types) - len(self._parameters) :]
-        kinds = [*types, *(program.constant(one).type for one in left)]
+        left = left[len(left) + len(given) - len(self._parameters) :]
+        kinds = [*given, *(program.constant(one).type for one in left)]
         self._types = dict(zip(self._parameters, kinds, strict=True))
         self._result: Type | None = None
 
@@ -48,19 +38,19 @@ class Function(Expressions):
             self._block(self._node.body)
         return self._result or VOID
 
-    def text(self, name: str) -> str:
-        """Write the function."""
+    def text(self, name: str, said: str) -> str:
+        """Write the function, which a comment says something of."""
         body = self._block(self._node.body)
         words = set(re.findall(r"\w+", " ".join(body)))
-        variables = [
-            (one in self._parameters, kind, self._language.variable(one))
-            for one, kind in self._types.items()
-            if traced(kind)
-        ]
-        given = [(kind, one) for is_given, kind, one in variables if is_given]
-        own = [(kind, one) for is_given, kind, one in variables if not is_given and one in words]
-        body = [f"(void){one};" for _, one in given if one not in words] + body
-        said = inspect.getdoc(self._python) or ""
+        given, own = [], []
+        for one, kind in self._types.items():
+            variable = kind, self._language.variable(one)
+            if traced(kind) and one in self._parameters:
+                given.append(variable)
+            elif traced(kind) and variable[1] in words:
+                own.append(variable)
+        unused = (self._language.unused.format(one) for _, one in given if one not in words)
+        body = [*filter(None, unused), *body]
         return self._language.function(name, self._result or VOID, given, own, body, said)
 
     def _block(self, nodes: list[Any]) -> list[str]:
@@ -126,16 +116,16 @@ class Function(Expressions):
             return self._block(node.body if test.known else node.orelse)
         body, other = self._block(node.body), self._block(node.orelse)
         lines = self._braced(f"if ({test.text}) {{", body)
-        if other and isinstance(node.orelse[0], ast.If) and other[0].startswith("if"):
-            if len(node.orelse) == 1:
-                return [*lines[:-1], f"}} else {other[0]}", *other[1:]]
+        chained = len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If)
+        if other and chained and other[0].startswith("if"):
+            return [*lines[:-1], f"}} else {other[0]}", *other[1:]]
         lines = [*lines[:-1], *self._braced("} else {", other)] if other else lines
         return lines if body or other else []
 
     def _for(self, node: Any) -> list[str]:
         bounds = [self.value(one) for one in node.iter.args]
-        start, stop = ([FALSE, *bounds] if len(bounds) == 1 else bounds)[:2]
-        step = bounds[2] if len(bounds) == 3 else TRUE
+        start, stop = ([types.FALSE, *bounds] if len(bounds) == 1 else bounds)[:2]
+        step = bounds[2] if len(bounds) == 3 else types.TRUE
         self._types[node.target.id] = INT
         body, name = self._block(node.body), self._language.variable(node.target.id)
         head = f"for ({name} = {start.text}; {name} < {stop.within(7)}; {name} += {step.text}) {{"
@@ -154,7 +144,8 @@ class Function(Expressions):
         both = Value(whole.type, "both")
         pairs = zip(target.elts, [self.member(both, n) for n, _ in whole.type.members], strict=True)
         lines = [line for one, value in pairs for line in self._assign(one, value)]
-        return self._language.unpacked(whole.type, whole.text, lines)
+        head = f"    const {self._language.type(whole.type)}both = {whole.text};"
+        return ["{", head, *(f"    {one}" for one in lines), "}"]
 
     def _assign(self, target: Any, value: Value) -> list[str]:
         match target:
@@ -171,9 +162,8 @@ class Function(Expressions):
                 self.refuse(target, "assign to names, elements of arrays, and members of rows")
         if not (traced(place.type) and place.text) or value.text in (place.text, "empty"):
             return []
-        if isinstance(place.type, Array) and (
-            value.text == "zeros" or not isinstance(value.type, Array)
-        ):
-            number = "0.0" if value.text == "zeros" else value.text
-            return self._language.filled(place.text, math.prod(place.type.shape), number)
+        zeros, language = value.text == "zeros", self._language
+        if isinstance(place.type, Array) and (zeros or not isinstance(value.type, Array)):
+            number, size = "0.0" if zeros else value.text, math.prod(place.type.shape)
+            return [language.fill.format(language.prefix, place.text, size, number)]
         return [f"{place.text} = {value.text};"]

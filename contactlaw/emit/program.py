@@ -27,8 +27,8 @@ class Program:
     fixed : collection of str, optional
         Names of parameters for each value of which functions are made anew.
     names : dict, optional
-        Names for kernels, for NamedTuples, and for tuples by the types of their members; others get
-        their own. A name may be kept for what is not written here, under any key.
+        Names for kernels, NamedTuples and dtypes, and for tuples by the types of their members;
+        others get their own. A name may be kept for what is not written here, under any key.
     instead : dict of kernel to kernel, optional
         Kernels to write in place of others.
     """
@@ -41,12 +41,11 @@ class Program:
         instead: Mapping[Callable[..., Any], Callable[..., Any]] | None = None,
     ) -> None:
         self.language, self.fixed, self._given = language, fixed, dict(names or {})
-        self._instead = instead or {}
-        self.parts: list[str] = []
-        self.constants: dict[str, str] = {}
-        self._structs: dict[tuple[str, Any], Struct] = {}
-        self._functions: dict[tuple[str, str, Any], tuple[str, Type] | None] = {}
-        self._names = {*self._given.values()}
+        self._instead, self._names = instead or {}, {*self._given.values()}
+        self._parts: list[str] = []
+        self._constants: dict[str, str] = {}
+        self._structs: dict[Any, Struct] = {}
+        self._functions: dict[Any, tuple[str, Type] | None] = {}
         self._arrays: dict[int, str] = {}
 
     def add(self, kernel: Callable[..., Any], *types: Type) -> tuple[str, Type]:
@@ -55,15 +54,16 @@ class Program:
         python = getattr(kernel, "py_func", kernel)
         key = python.__module__, python.__name__, types
         if key not in self._functions:
+            outermost = None not in self._functions.values()
             self._functions[key] = None
             module, short = python.__module__.rpartition(".")[2], python.__name__.strip("_")
-            name = short if short not in self._names else f"{module}_{short}"
-            plain = self._named(kernel, name)
-            made = Function(self, python, types)
+            name = self._named(kernel, short if short not in self._names else f"{module}_{short}")
+            made, said = Function(self, python, types), inspect.getdoc(python) or ""
             result = made.infer()
-            if result != NONE:
-                self.parts.append(made.text(plain))
-            self._functions[key] = plain, result
+            if result != NONE:  # users read all of a docstring that is for them
+                whole = outermost and self.language.typed
+                self._parts.append(made.text(name, said if whole else said.partition("\n")[0]))
+            self._functions[key] = name, result
         found = self._functions[key]
         if found is None:
             raise RecursionError(f"{python.__module__}.{python.__name__} calls itself")
@@ -71,31 +71,38 @@ class Program:
 
     def struct(self, source: type, members: tuple[tuple[str, Type], ...]) -> Struct:
         """Structure of a NamedTuple with these types of its members."""
-        name = re.sub(r"(?<!^)(?=[A-Z])", "_", source.__name__).lower()
-        return self._struct(source, name, members, source)
+        if (source, members) not in self._structs:
+            name = re.sub(r"(?<!^)(?=[A-Z])", "_", source.__name__).lower()
+            made = Struct(self._named(source, name), members, source)
+            said, of_members = (
+                inspect.getdoc(source) or "",
+                _COMMENT.findall(inspect.getsource(source)),
+            )
+            self._structs[source, members] = made
+            self._declare(made, said.partition("\n")[0], dict(of_members))
+        return self._structs[source, members]
 
     def tuple_of(self, types: tuple[Type, ...]) -> Struct:
         """Structure of a tuple."""
-        members = tuple((f"f{n}", one) for n, one in enumerate(types))
-        return self._struct(types, "_".join(one.name for one in types), members, None)
+        if types not in self._structs:
+            members = tuple((f"f{n}", one) for n, one in enumerate(types))
+            self._structs[types] = Struct(self._named(types, "tuple"), members)
+            self._declare(self._structs[types])
+        return self._structs[types]
 
     def row(self, name: str, dtype: np.dtype[Any]) -> Row:
         """Row of a dtype."""
         sizes = ((one, math.prod(dtype[one].shape) * bool(dtype[one].shape))
                  for one in dtype.names or ())  # fmt: skip
         made = Row(self._named(dtype, name), tuple(sizes))
-        self.parts.append(self.language.row(made))
+        self._declare(made)
         return made
 
-    def _struct(self, given: Any, name: str, members: Any, source: type | None) -> Struct:
-        key = given, members
-        if key not in self._structs:
-            made = Struct(self._named(given, name), members, source)
-            said = dict(_COMMENT.findall(inspect.getsource(source))) if source else {}
-            self._structs[key] = made
-            if traced(made):
-                self.parts.append(self.language.structure(made, inspect.getdoc(source), said))
-        return self._structs[key]
+    def _declare(
+        self, kind: Struct | Row, said: str = "", comments: dict[str, str] | None = None
+    ) -> None:
+        if traced(kind) and self.language.typed:
+            self._parts.append(self.language.structure(kind, said, comments or {}))
 
     def _named(self, thing: Any, name: str) -> str:
         """Name that was given for something, or this one, with a number where it is taken."""
@@ -110,39 +117,35 @@ class Program:
             case None:
                 return Value(NONE, "", known=None)
             case bool() | np.bool_() | int() | np.integer():
-                text = str(int(value))
-                return Value(INT, text, 10 if value < 0 else 12, int(value))
+                return Value(INT, str(int(value)), 10 if value < 0 else 12, int(value))
             case float() | np.floating():
                 return Value(DOUBLE, self.language.number(float(value)), 10 if value < 0 else 12)
             case tuple() if hasattr(value, "_fields"):
-                parts = [self.constant(one) for one in value]
-                types = (part.type for part in parts)
-                made = self.struct(type(value), tuple(zip(value._fields, types, strict=True)))
-                return Value(made, self.language.make(made, [part.text for part in parts]))
+                parts = dict(zip(value._fields, map(self.constant, value), strict=True))
+                made = self.struct(type(value), tuple((n, one.type) for n, one in parts.items()))
+                texts = {n: one.text for n, one in parts.items() if traced(one.type)}
+                return Value(made, self.language.make(made, texts))
         return Value(Known(value=value), "", known=value)
 
     def named(self, value: Any, name: str, module: str) -> Value:
         """Write an object that has a name in a module of Python; numbers are defined by it."""
         name = name.strip("_")
         if isinstance(value, np.ndarray):
-            return Value(Array(data=True, shape=value.shape), self._data(value, name.lower()))
+            if id(value) not in self._arrays:
+                self._arrays[id(value)] = plain = self._named(id(value), name.lower())
+                self._parts.append(self.language.constant(plain, value.ravel().tolist()))
+            text = f"{self.language.prefix}{self._arrays[id(value)]}"
+            return Value(Array(data=True, shape=value.shape), text)
         found = self.constant(value)
-        if not traced(found.type) or found.text.strip("-") == self.language.number(math.inf):
+        if not traced(found.type) or found.text.strip("-") == self.language.inf:
             return found
-        if self.constants.setdefault(name, found.text) != found.text:
+        if self._constants.setdefault(name, found.text) != found.text:
             name = f"{module.rpartition('.')[2]}_{name}"
-            if self.constants.setdefault(name, found.text) != found.text:
+            if self._constants.setdefault(name, found.text) != found.text:
                 raise ValueError(f"{name}: two constants have this name, rename one of them")
-        return Value(found.type, self.language.name(name), known=found.known)
-
-    def _data(self, values: Any, name: str) -> str:
-        if id(values) not in self._arrays:
-            plain = self._named(id(values), name)
-            self.parts.append(self.language.data(plain, values.ravel().tolist()))
-            self._arrays[id(values)] = self.language.name(plain)
-        return self._arrays[id(values)]
+        return Value(found.type, f"{self.language.prefix}{name}", known=found.known)
 
     def text(self) -> str:
         """Definitions of all constants, structures and functions."""
-        defined = [self.language.define(name, text) for name, text in self.constants.items()]
-        return "\n\n".join(["\n".join(defined), *filter(None, self.parts)])
+        defined = [self.language.constant(name, text) for name, text in self._constants.items()]
+        return "\n\n".join(["\n".join(defined), *self._parts])

@@ -11,6 +11,7 @@ class Type:
     """A number, or nothing: None is a type that leaves no trace."""
 
     name: str
+    members: tuple[tuple[str, Any], ...] = ()
 
 
 DOUBLE, INT, NONE, VOID = Type("double"), Type("int"), Type("none"), Type("void")
@@ -18,14 +19,14 @@ DOUBLE, INT, NONE, VOID = Type("double"), Type("int"), Type("none"), Type("void"
 
 @dataclasses.dataclass(frozen=True)
 class Struct(Type):
-    """A NamedTuple, or a tuple, whose members are f0, f1, ..."""
+    """A NamedTuple, or a tuple, whose members are f0, f1, ... and have types."""
 
-    members: tuple[tuple[str, Type], ...]
     source: type | None = dataclasses.field(default=None, compare=False)
 
-    def member(self, name: str) -> Type:
-        """Type of a member."""
-        return dict(self.members)[name]
+
+@dataclasses.dataclass(frozen=True)
+class Row(Type):
+    """A row of a dtype, passed by its address; members are numbers, of length 0, and arrays."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -41,35 +42,19 @@ class Array(Type):
 
 
 @dataclasses.dataclass(frozen=True)
-class Row(Type):
-    """A row of a dtype, passed by its address; members are numbers, of length 0, and arrays."""
-
-    members: tuple[tuple[str, int], ...] = ()
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
 class Known(Type):
     """An argument that has this value, an object of Python; it leaves no trace either."""
 
     name: str = "known"
-    value: Any = None
+    value: Any = dataclasses.field(default=None, compare=False)
+    key: Any = dataclasses.field(init=False)  # numbers are equal by value, all else by identity
 
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, Known) and self._key() == other._key()
-
-    def __hash__(self) -> int:
-        return hash(self._key())
-
-    def _key(self) -> Any:
-        """Numbers are equal by value, all else is by identity, as arrays cannot be hashed."""
-        return self.value if isinstance(self.value, int) else id(self.value)
+    def __post_init__(self) -> None:
+        value = self.value
+        object.__setattr__(self, "key", value if isinstance(value, int) else id(value))
 
 
-class _Unknown:
-    pass
-
-
-UNKNOWN: Any = _Unknown()
+UNKNOWN: Any = object()
 
 
 def traced(kind: Type) -> bool:

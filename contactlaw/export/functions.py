@@ -19,7 +19,8 @@ from contactlaw.equation import zener
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
-from contactlaw.equation.tangential import POINT, kept, limited, pull, stiffness_at
+from contactlaw.equation.outcome import History
+from contactlaw.equation.tangential import POINT, slide
 from contactlaw.model import ImpactModel
 from contactlaw.physical.oblique import FASTEST, rebound_of, sliding, unit
 from contactlaw.physical.responses import response_of
@@ -47,14 +48,15 @@ Array = NDArray[np.float64]
 EDGES = len(KINDS)  # kinds of edges, numbered from 1; 0 is none
 NEAR_STEPS = 100  # of a contact near an edge
 NEAR_CONTACTS = 100  # a sphere that has not left after so many contact times stays on the plate
-SLIDING_STEPS, SLIDING_SPRINGS = 400, 32  # of an oblique impact
+SAMPLES, SPRINGS = 401, 32  # of an oblique impact: times, springs across the contact
+FAR = 50.0  # overload from which on, up to twice this, an impact comes to be far above yield
 FEW_DIGITS = 1e-6  # error of a step where only the difference of two integrations counts
 
 
 class Bodies(NamedTuple):
     """What a pair of materials fixes."""
 
-    law: Any  # data of the force law
+    law: Any  # data of the force law; the levels where there are some
     levels: Any  # laws by strength of a pair with a rate, else None
     unit: Spring  # of a bead of radius 1 m on a plate of 1 m, with the moduli of the pair
     limits: Limits
@@ -95,6 +97,13 @@ class Impact(NamedTuple):
     wave_fraction: float  # share carried off by the bending wave in the plate [-]
     other_fraction: float  # share that the law leaves in vibration and locked-in stress [-]
     inelasticity: float  # lambda of the modified Zener model [-]
+
+
+class Strength(NamedTuple):
+    """An impact at a strength for which there is a law."""
+
+    law: Array
+    units: Numbers
 
 
 class Collision(NamedTuple):
@@ -140,12 +149,13 @@ def bodies_of(
 ) -> Bodies:
     """Numbers of a model's pair, and of tables by the logarithm of the strength.
 
-    Tables have nine decimals, those of several strengths six, and laws by strength nine digits:
-    they err by more than that.
+    Tables have nine decimals, those of several strengths six, a law has 14 digits, laws by
+    strength nine: they err by more than that.
     """
     pair, law = model.pair, model.force_law
-    levels = strength.levels_of(pair, law, step)
-    tables = []
+    levels, tables = strength.levels_of(pair, law, step), []
+    if levels is not None:
+        levels = np.array([float(f"{one:.9g}") for one in levels])
     for own, one in nodes.values():
         table = lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
         table = table[: int(table[lookup.OTHERS_AT])].copy()  # COR alone
@@ -154,8 +164,8 @@ def bodies_of(
         tables.append(table)
     starts = np.cumsum([0.0, *(one.size for one in tables)])[:-1]
     return Bodies(
-        law.data,
-        None if levels is None else np.array([float(f"{one:.9g}") for one in levels]),
+        np.array([float(f"{one:.14g}") for one in law.data]) if levels is None else levels,
+        levels,
         unit_spring(model, 1.0)._replace(levels=None),
         model.limits,
         pair.tangential_ratio,
@@ -222,6 +232,13 @@ def contact_spring(pair: Bodies, bead: BeadSpring) -> Spring:
 
 
 @kernel
+def law_of(pair: Bodies) -> Array:
+    """Law of a pair; of one with a rate that of its first level."""
+    law: Array = pair.law if pair.levels is None else pair.law[strength.LEVELS + 1 :]
+    return law
+
+
+@kernel
 def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt: float) -> State:
     """State at the end of a step; its force is NaN where the simulation has blown up."""
     moved, largest = state.plate_displacement, state.largest_compression
@@ -239,8 +256,12 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
         and state.force >= 0.0
     ):
         return BLOWN_UP
+    if pair.levels is not None:  # a state that is not one of these steps
+        _, place = strength.split(state.stiffening)
+        if not 0.0 <= place < pair.levels[strength.COUNT]:
+            return BLOWN_UP
     near = Near(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
-    new = advance(pair.law, contact_spring(pair, bead), state, overlap, dt, near)
+    new = advance(law_of(pair), contact_spring(pair, bead), state, overlap, dt, near)
     return new if 0.0 <= new.force < math.inf else BLOWN_UP
 
 
@@ -263,13 +284,44 @@ def numbers_of(pair: Bodies, speed: float, radius: float, thickness: float) -> N
 
 
 @kernel
-def solved(law: Array, units: Numbers, rtol: float) -> zener.Solution:
+def _at_level(levels: Array, at: int, units: Numbers, growth: float) -> Strength:
+    """Impact with the law of a level; the growth is that of its own yield compression.
+
+    Moderate impacts of the same overload are alike. Those far above yield meet the sizes of the
+    bodies, and are alike that have the same compression.
+    """
+    c, law = strength.law_at(levels, at)
+    far = min(max(math.log(FAR * units.yield_ratio) / math.log(0.5), 0.0), 1.0)
+    return Strength(
+        law,
+        Numbers(
+            units.inelasticity, units.yield_ratio * math.pow(c / growth, far), units.time,
+            units.compression, units.force, units.stiffer,
+        ),
+    )  # fmt: skip
+
+
+@kernel
+def beside(
+    pair: Bodies, units: Numbers, speed: float, radius: float
+) -> tuple[Strength, Strength, float]:
+    """Impact at the two strengths beside its own, and the share of the second."""
+    if pair.levels is None:
+        return Strength(pair.law, units), Strength(pair.law, units), 0.0
+    place = strength.place_at(pair.levels, speed, pair.unit.scale * radius)
+    low, high, share = strength.beside(pair.levels, place)
+    growth = strength.yield_growth(pair.levels, place)
+    one = _at_level(pair.levels, low, units, growth)
+    return one, _at_level(pair.levels, high, units, growth), share
+
+
+@kernel
+def solved(at: Strength, rtol: float) -> zener.Solution:
     """Integrate an impact to its end."""
-    notes = zener.Notes(
-        np.empty((0, 0)), np.empty((0, 0)), np.empty((0, 0)), np.empty((0, 0)), np.empty((0, 0))
-    )
+    none, units = np.empty((0, 0)), at.units
+    notes = zener.Notes(none, none, none, none, none)
     return zener.follow_impact(
-        zener.TO_THE_END, law, units.inelasticity, units.yield_ratio, rtol, notes, 0, None
+        zener.TO_THE_END, at.law, units.inelasticity, units.yield_ratio, rtol, notes, 0, None
     )
 
 
@@ -288,10 +340,11 @@ def in_si(one: zener.Solution, units: Numbers) -> Impact:
 
 @kernel
 def moved(hit: Impact, share: float, a: Impact, b: Impact) -> Impact:
-    """Impact that is moved by a share of the way from one to another."""
-    e = hit.restitution + share * (b.restitution - a.restitution)
+    """Impact that is moved by a share of the way from one to another, each energy for itself."""
+    left = hit.restitution * hit.restitution
+    left += share * (b.restitution * b.restitution - a.restitution * a.restitution)
     return Impact(
-        min(max(e, 0.0), 1.0),
+        math.sqrt(min(max(left, 0.0), 1.0)),
         hit.contact_time + share * (b.contact_time - a.contact_time),
         hit.loading_time + share * (b.loading_time - a.loading_time),
         hit.peak_force + share * (b.peak_force - a.peak_force),
@@ -308,24 +361,21 @@ def moved(hit: Impact, share: float, a: Impact, b: Impact) -> Impact:
 def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Impact:
     """One impact, integrated with an error of RTOL in each step; all members are NaN for bad input.
 
-    For a pair with a rate it lies between those of the two laws beside its strength, at the same
-    inelasticity and overload. Their difference is small, and needs few digits.
+    For a pair with a rate it lies between those of the two laws beside its strength. Their
+    difference is small, and needs few digits.
     """
     if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
         return NOTHING
     units = numbers_of(pair, speed, radius, thickness)
     if not (0.0 <= units.inelasticity < math.inf and 0.0 < units.yield_ratio < math.inf):
         return NOTHING
-    if pair.levels is not None:
-        place = strength.place_at(pair.levels, speed, pair.unit.scale * radius)
-        low, high, share = strength.beside(pair.levels, place)
-        if share > 0.5:
-            low, high, share = high, low, 1.0 - share
-        law, other = strength.law_at(pair.levels, low)[1], strength.law_at(pair.levels, high)[1]
-        one, two = solved(law, units, FEW_DIGITS), solved(other, units, FEW_DIGITS)
-        hit = in_si(solved(law, units, RTOL), units)
-        return moved(hit, share, in_si(one, units), in_si(two, units))
-    return in_si(solved(pair.law, units, RTOL), units)
+    if pair.levels is None:
+        return in_si(solved(Strength(pair.law, units), RTOL), units)
+    low, high, share = beside(pair, units, speed, radius)
+    if share > 0.5:
+        low, high, share = high, low, 1.0 - share
+    one, two = solved(low, FEW_DIGITS), solved(high, FEW_DIGITS)
+    return moved(in_si(solved(low, RTOL), units), share, in_si(one, units), in_si(two, units))
 
 
 @kernel
@@ -342,21 +392,24 @@ def restitution(pair: Bodies, speed: float, radius: float, thickness: float) -> 
         c_lam, ratio = pair.unit.plate.inelasticity, radius / thickness
         return lookup.restitution(pair.tables, c_lam, pair.log_overload, speed, radius, ratio)
     units, levels = numbers_of(pair, speed, radius, thickness), pair.levels
-    place = levels[strength.STEP] * strength.place_at(levels, speed, pair.unit.scale * radius)
+    place = strength.place_at(levels, speed, pair.unit.scale * radius)
     log_y, value = math.log(units.yield_ratio), 0.0
+    weakest = log_y - math.log(strength.yield_growth(levels, place))
+    place *= levels[strength.STEP]
     for j in range(pair.strengths.size):
         table, weight = pair.tables[int(pair.starts[j]) :], 1.0
+        most = table[lookup.LOG_CHI_MAX]
         x = units.inelasticity / (units.inelasticity + table[lookup.STRETCH])
         if not 0.0 <= x <= table[lookup.X_MAX]:
             return math.nan
-        log_chi = lookup.log_elastic(table, x) - log_y
-        if not log_chi <= table[lookup.LOG_CHI_MAX]:
+        log_w = lookup.log_elastic(table, x)
+        if j == 0 and not log_w - weakest <= most:  # stronger bodies yield later
             return math.nan
         for k in range(pair.strengths.size):
             if k != j:
                 at = pair.strengths[k]
                 weight *= (place - at) / (pair.strengths[j] - at)
-        value += weight * lookup.cor_at(table, x, log_chi)
+        value += weight * lookup.cor_at(table, x, min(log_w - log_y, most))
     return min(max(value, 0.0), 1.0)
 
 
@@ -402,7 +455,7 @@ def _at_strength(pair: Bodies, spring: Spring, state: State) -> tuple[Array, Spr
     """Law of a contact, with spring and state for it."""
     if pair.levels is None:
         return pair.law, spring, state
-    return nearest_level(pair.law, pair.levels, spring, state)
+    return nearest_level(law_of(pair), pair.levels, spring, state)
 
 
 @kernel
@@ -425,46 +478,52 @@ def rub(
 
 
 @kernel
-def slid(pair: Bodies, hit: Impact, speed: float, bead: BeadSpring, along: float) -> float:
-    """Change of the contact point's speed along the plate; both over the friction [m/s].
+def history(given: Strength, end: float, notes: zener.Notes) -> History:
+    """Contact at even times from touch to an end, on Hertz's scale, in the arrays of the notes."""
+    units, samples = given.units, notes.at.shape[1]
+    for n in range(samples):
+        notes.at[0, n] = end * n / (samples - 1)
+    zener.follow_impact(
+        zener.AT_TIMES, given.law, units.inelasticity, units.yield_ratio, RTOL, notes, 0, None
+    )
+    for n in range(samples):
+        notes.speed[0, n] = 1.0 - notes.speed[0, n]
+    return History(notes.at[0], notes.force[0], notes.compression[0], notes.speed[0])
 
-    The normal motion is stepped through. What the steps miss of its impulse is made up for, so that
-    a contact which slides all the time gets all of it.
+
+@kernel
+def slid(given: Strength, kappa: float, psi: float, samples: int, springs: int) -> float:
+    """Change of the sliding speed psi of the contact point; both over friction and speed."""
+    at, time, speed = np.empty((1, samples)), np.empty((1, samples)), np.empty((1, samples))
+    force, compression = np.empty((1, samples)), np.empty((1, samples))
+    after, stretch = np.empty(1), np.empty((springs, 1))
+    end, notes = solved(given, RTOL).contact_time, zener.Notes(at, time, speed, force, compression)
+    path = history(given, end, notes)
+    path.force[samples - 1] = 0.0
+    after[0] = psi
+    slide(given.law, given.units.yield_ratio, kappa, path, after, stretch)
+    return float(psi - after[0])
+
+
+@kernel
+def rubbed(
+    pair: Bodies, speed: float, size: float, radius: float, thickness: float, friction: float,
+    samples: int, springs: int,
+) -> float:  # fmt: skip
+    """Change of the contact point's speed along the plate in an impact [m/s].
+
+    For a pair with a rate it lies between those of the two laws beside its strength, which both
+    yield where the impact does, as springs lose their stretch from there on.
     """
-    own, dt, first = contact_spring(pair, bead), hit.contact_time / SLIDING_STEPS, along
-    stretch, path, total = np.zeros((SLIDING_SPRINGS, 1)), np.zeros(1), np.zeros(1)
-    state, u, x, before, width = State(0.0, 0.0, 0.0), speed, 0.0, 0.0, 0.0
-    law, y = pair.law, bead.scale
-    if pair.levels is not None:
-        law, y = strength.nearest(pair.levels, strength.place_at(pair.levels, speed, bead.scale))
-        y *= bead.scale
-    peak, kappa = hit.peak_compression, pair.tangential_ratio
-    width = stiffness_at(law, y, own.stiffness, peak, peak, hit.peak_force).normal / SLIDING_SPRINGS
-    ratio = limited(kappa * along / speed, 1.0)
-    for _ in range(2 * SLIDING_STEPS):
-        start, largest = u, state.largest_compression
-        u -= 0.5 * dt * state.force / bead.mass
-        x += u * dt
-        state = after_step(pair, bead, state, x, dt)
-        u -= 0.5 * dt * state.force / bead.mass
-        half = 0.5 * POINT * (start - u)
-        along -= half * ratio
-        law, spring, pressed = _at_strength(pair, own, state)
-        d = x - pressed.plate_displacement
-        stiffer = pressed.stiffening if pressed.stiffening > 0.0 else 1.0
-        now = stiffness_at(
-            law, spring.scale, spring.stiffness * stiffer, pressed.largest_compression, d,
-            pressed.force,
-        )  # fmt: skip
-        if now.normal > 0.0:
-            path[0] = along * dt
-            left = kept(y, largest, state.largest_compression)
-            pull(stretch, width, kappa, before, now, state.force, left, path, total)
-            ratio, before = total[0] / state.force, now.normal
-        along -= half * ratio
-        if state.force == 0.0 and u < 0.0:
-            break
-    return (first - along) * (1.0 + hit.restitution) * speed / (speed - u)
+    if not (speed * friction > 0.0 and size > 0.0):
+        return 0.0
+    units, psi = numbers_of(pair, speed, radius, thickness), min(size / friction / speed, FASTEST)
+    low, high, share = beside(pair, units, speed, radius)
+    change = slid(Strength(low.law, units), pair.tangential_ratio, psi, samples, springs)
+    if share > 0.0:
+        other = slid(Strength(high.law, units), pair.tangential_ratio, psi, samples, springs)
+        change += share * (other - change)
+    return friction * speed * change
 
 
 @kernel
@@ -479,11 +538,10 @@ def collided(
     hit = rebound(pair, came.speed, radius, thickness)
     if not (hit.restitution >= 0.0 and came.size < math.inf and 0.0 <= friction < math.inf):
         return Collision(-1, (nan, nan, nan), (nan, nan, nan))
-    changed = 0.0
-    if came.size > 0.0 and friction > 0.0:
-        bead = spring_of(pair, radius, thickness)
-        along = min(came.size / friction, FASTEST * came.speed)
-        most = POINT * (1.0 + hit.restitution) * came.speed
-        changed = friction * min(slid(pair, hit, came.speed, bead, along), most)
+    changed = rubbed(
+        pair, came.speed, came.size, radius, thickness, friction, SAMPLES, SPRINGS
+    )  # fmt: skip
+    most = friction * POINT * (1.0 + hit.restitution) * came.speed
+    changed = min(changed, most)
     after, spin = rebound_of(v, omega, unit(n), came, radius, hit.restitution, changed)
     return Collision(1, after, spin)

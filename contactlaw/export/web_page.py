@@ -113,7 +113,7 @@ def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
 
 def _kernels(bodies: Bodies, page: Page) -> str:
     """Kernels of `page_functions` for a pair, in JavaScript."""
-    program, pair = Program(JavaScript(), fixed=("goal", "samples")), Known(value=bodies)
+    program, pair = Program(JavaScript(), fixed=("goal", "samples", "springs")), Known(value=bodies)
     asked, more = 3 * (DOUBLE,), Known(value=page)
     _, hit = program.add(page_functions.for_curve, pair, *asked)
     program.add(page_functions.flags, pair, more, hit, *asked)

@@ -36,8 +36,8 @@ from contactlaw.stepping.spring import (
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
 
-# zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6: a least-squares fit
-_ZETA = (-0.0254854, -0.3118187, -0.5477877, -0.1623330, 0.0284945, -0.0079223, 0.0013675)
+# zeta(-3/2, 1 + t) for t from 0 to 1, within 1e-6, highest power first: a least-squares fit
+_ZETA = np.array([0.0013675, -0.0079223, 0.0284945, -0.1623330, -0.5477877, -0.3118187, -0.0254854])
 # Largest correction of the rebound speed, times (steps per contact)^2.5: twice the scheme's error
 # (`contactlaw.softsphere.time_step`). If more energy is missing, another bead struck this one, and
 # its speed is not corrected. The correction is relative to the larger of the rebound and the
@@ -86,8 +86,8 @@ def step(
 def _first_step_correction(spring: Spring, x: float, path: float) -> Any:
     """Correction of the force in the first step, because a contact begins inside that [N]."""
     t, zeta = x / path, 0.0
-    for coefficient in _ZETA[::-1]:
-        zeta = zeta * t + coefficient
+    for k in range(_ZETA.size):
+        zeta = zeta * t + _ZETA[k]
     return -(t * math.sqrt(t) + zeta) * spring.stiffness * path * math.sqrt(path)
 
 

@@ -312,6 +312,6 @@ def place(row: Any, time: float, dt: float) -> None:
 @kernel(entry=True)
 def move(frames: Any, time: float, dt: float) -> None:
     """Move all walls to their positions at a time, the end of a step of length dt [s]."""
-    for frame in frames:
-        if frame.moves != 0:
-            place(frame, time, dt)
+    for f in range(len(frames)):
+        if frames[f].moves != 0:
+            place(frames[f], time, dt)

@@ -125,7 +125,8 @@ def _insert(found: Any, count: int, facet: int, touch: Touch) -> int:
 def box(frames: Any) -> tuple[float, float, float, float, float, float]:
     """Box around all walls at their present positions: three lowest coordinates, three highest."""
     low, high = np.full(3, math.inf), np.full(3, -math.inf)
-    for frame in frames:
+    for f in range(len(frames)):
+        frame = frames[f]
         small, large, turn = frame.low, frame.high, frame.turn
         for k in range(3):
             if frame.moves == 0:
@@ -227,7 +228,8 @@ def pass_gradient(frames: Any, facets: Any, x: Point, r: float, one: Any, other:
     dx, dy, dz = 0.0, 0.0, 0.0
     for k in range(3):
         change = 0.0
-        for sign in (-1.0, 1.0):
+        for side in range(2):
+            sign = 2.0 * side - 1.0
             p = (
                 x[0] + (sign * step if k == 0 else 0.0),
                 x[1] + (sign * step if k == 1 else 0.0),

@@ -15,6 +15,11 @@ from contactlaw.emit import DOUBLE, INT, Array, C, Known, Program
 PLAIN = """
 #include <math.h>
 typedef const double k_data;
+#ifdef __cplusplus
+#define k_new(type) k_##type
+#else
+#define k_new(type) (k_##type)
+#endif
 static inline double k_min(double a, double b) { return b < a ? b : a; }
 static inline double k_max(double a, double b) { return b > a ? b : a; }
 static inline int k_min_int(int a, int b) { return b < a ? b : a; }
@@ -116,7 +121,7 @@ def test_constants_keep_their_names_and_arrays_are_written_once():
     program.add(of_pair, law, DOUBLE)
     text = program.text()
     assert "#define k_FACTOR 3\n" in text and "k_FACTOR * " in text
-    assert text.count("static const double k_one[] = {\n2.0, 5.0, 7.0, 0.5, HUGE_VAL\n};") == 1
+    assert text.count("static const double k_one[] = {\n2,5,7,.5,HUGE_VAL\n};") == 1
     assert "#define k_TWO 3.0" in text and "(double x)" in text
 
 
@@ -167,7 +172,7 @@ def every(x):
         (formatted, 1, "use numbers, NamedTuples, arrays"),
         (caught, 1, "use assignments, if, while, for in a range"),
         (early, 1, "give the variable a value before it is read"),
-        (changed, 2, "a variable has one type, not double and double_double"),
+        (changed, 2, "a variable has one type, not double and tuple"),
         (powered, 1, "use + - "),
         (every, 1, "use assignments, if, while, for in a range"),
     ],

@@ -1,9 +1,12 @@
-"""The C header: compiled by gcc and g++, called through ctypes, beside what Python answers."""
+"""The C header, by gcc and g++: to the last bit what uncompiled Python computes, and the model."""
 
 import ctypes
 import dataclasses
 import functools
+import itertools
 import math
+import os
+import pickle
 import re
 import shlex
 import shutil
@@ -12,6 +15,8 @@ import sys
 import tempfile
 from pathlib import Path
 
+import header
+import metal
 import numpy as np
 import polymer
 import pytest
@@ -23,116 +28,106 @@ from verlet import drop
 import contactlaw as cl
 from contactlaw import Validity, cli, laws
 from contactlaw import table as tables
-from contactlaw._jit import kernel
 from contactlaw._version import VERSION
-from contactlaw.equation import force, zener
-from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation import zener
 from contactlaw.equation.edge import KINDS
-from contactlaw.export import c_header
+from contactlaw.export import c_header, functions
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
-from contactlaw.physical import validity
-from contactlaw.physical.oblique import surface_velocity
-from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.physical.validity import flags_of
-from contactlaw.softsphere import PARTED, Contacts, State, advance, resized, unit_spring
-from contactlaw.stepping.edge import Near, rate_of
-from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
-from contactlaw.stepping.spring import RELAXATION
-from contactlaw.table import Settings, lookup, nodes
+from contactlaw.softsphere import Contacts, resized, unit_spring
+from contactlaw.table import Settings, nodes
 from contactlaw.table.nodes import POINTS
 from validation.hostile import headers
 
 COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
-WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 PAIR = cl.Pair("gamma-alumina", "glass")
 STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
 # Every registered law; fem, which has corrections to the thin-plate dashpot, for three kinds of
-# bodies; and two laws of a user's own.
+# bodies; two laws of a user's own; bodies with losses, with a rate of strain.
 MODELS = {name: (PAIR, name) for name in laws.names()}
 MODELS |= {"fem, metals": (STEEL, "fem"), "fem, elastic": (cl.Pair("glass", "glass"), "fem")}
-MODELS |= {"own": (PAIR, own()), "measured": (PAIR, measured())}
-# Headers of these laws differ from that of myc in their numbers alone.
-NAMES = [
-    pytest.param(name, marks=pytest.mark.long)
-    if name in ("jackson_green", "kogut_etsion", "stronge", "thornton")
-    else name
-    for name in MODELS
-]
+MODELS |= {"own": (PAIR, own()), "measured": (PAIR, measured()), "a rate": (metal.PAIR, "fem")}
+MODELS |= {"losses": (polymer.PAIRS[0], "fem"), "both": (polymer.PAIRS[2], "fem")}
 MODELS["losses and flow"] = polymer.WEAK_MODEL.pair, "fem"
+# Headers of other laws differ from that of myc in their numbers alone.
+QUICK = "fem", "fem, metals", "myc", "own", "losses and flow", "a rate"
+NAMES = [one if one in QUICK else pytest.param(one, marks=pytest.mark.long) for one in MODELS]
+RATED = {"a rate": 1e-3, "both": 5e-3}  # whose laws are made at a few strengths, and their error
+# Errors of steps near an edge, where they are not below 1e-3.
+STEPS_NEAR = {"a rate": 2e-3, "both": 2e-3, "fem, elastic": 2e-3, "losses and flow": 5e-3}
+FIELDS = functions.Impact._fields
 DOUBLE = ctypes.c_double
-FIELDS = [one.name for one in dataclasses.fields(Rebound) if one.name not in ("overload", "flags")]
-FIELDS.insert(2, "loading_time")
-
-
-class SpringOfC(ctypes.Structure):
-    """The last number holds the kind of an edge."""
-
-    _fields_ = [("v", DOUBLE * 11)]
-
-
-LINKAGE = """
+# `answers` is the same as in uncompiled.py.
+SOURCE = """
 #include "contactlaw.h"
+#include <string.h>
 #ifdef __cplusplus
 #define CALLED extern "C"
 #else
 #define CALLED
 #endif
-"""
-LOOKUPS = """
+
+CALLED void answers(int n, const double *in, double *out)
+{
+    for (; n > 0; --n, in += 7) {
+        const double v = in[0], r = in[1], h = in[2], mu = in[5], dt = in[6];
+        const double normal[3] = { 0.0, 0.6, 0.8 }, still[3] = { 0.0, 0.0, 0.0 };
+        const double leaning[3] = { 0.1, 0.0, 1.0 };
+        const double surface[3] = { 0.3 * v, -0.7 * v, 0.1 * v };
+        double velocity[3] = { 0.4 * v, 0.1 * v, -v }, spin[3] = { 3.0, 5.0, 7.0 };
+        const contactlaw_impact hit = contactlaw_rebound(v, r, h);
+        contactlaw_spring bead = contactlaw_spring_of(r, h);
+        contactlaw_state state = CONTACTLAW_APART;
+        contactlaw_sliding row = CONTACTLAW_STILL;
+        double x = 0.0, u = v;
+        int k, step;
+        memcpy(out, &hit, sizeof hit);
+        out += sizeof hit / sizeof *out;
+        *out++ = contactlaw_flags(&hit, v, r, h);
+        *out++ = contactlaw_restitution(v, r, h);
+        *out++ = contactlaw_restitution_near(v, r, h, (int)in[3], in[4]);
+        contactlaw_set_edge(&bead, (int)in[3], in[4]);
+        for (step = 0; step < 45; ++step) {
+            u -= 0.5 * dt * state.force / bead.mass;
+            x += dt * u;
+            *out++ = contactlaw_step(&bead, &state, x, dt);
+            u -= 0.5 * dt * state.force / bead.mass;
+            contactlaw_friction_step(&bead, &state, &row, x, dt, normal, surface, mu);
+            *out++ = state.largest_compression;
+            for (k = 0; k < 3; ++k)
+                *out++ = row.force[k];
+        }
+        out[6] = contactlaw_collide(velocity, spin, leaning, still, r, h, mu);
+        memcpy(out, velocity, sizeof velocity);
+        memcpy(out + 3, spin, sizeof spin);
+        out += 7;
+    }
+}
+
+CALLED void impacts(int n, const double *v, const double *r, const double *h, double *flags,
+                    double *cor, contactlaw_impact *hits)
+{
+    for (--n; n >= 0; --n) {
+        hits[n] = contactlaw_rebound(v[n], r[n], h[n]);
+        flags[n] = contactlaw_flags(hits + n, v[n], r[n], h[n]);
+        cor[n] = contactlaw_restitution(v[n], r[n], h[n]);
+    }
+}
+
 CALLED void lookups(int n, const double *v, const double *r, const double *h, double *out)
 {
-    int k;
-    for (k = 0; k < n; ++k)
-        out[k] = contactlaw_restitution(v[k], r[k], h[k]);
-}
-"""
-CALLS = """
-CALLED void rebounds(int n, const double *v, const double *r, const double *h,
-                     contactlaw_impact *out)
-{
-    int k;
-    for (k = 0; k < n; ++k)
-        out[k] = contactlaw_rebound(v[k], r[k], h[k]);
+    for (--n; n >= 0; --n)
+        out[n] = contactlaw_restitution(v[n], r[n], h[n]);
 }
 
-CALLED void flagged(int n, const double *v, const double *r, const double *h, double *out)
-{
-    int k;
-    for (k = 0; k < n; ++k) {
-        const contactlaw_impact impact = contactlaw_rebound(v[k], r[k], h[k]);
-        out[k] = contactlaw_flags(&impact, v[k], r[k], h[k]);
-    }
-}
-
-CALLED void collided(int n, const double *v, const double *omega, const double *r,
-                     const double *h, const double *mu, double *out)
+CALLED void collided(int n, double *v, double *spin, const double *r, const double *h,
+                     const double *mu, double *status)
 {
     const double normal[3] = { 0.0, -3.0, 4.0 }, still[3] = { 0.0, 0.0, 0.0 };
-    int k;
-    for (k = 0; k < n; ++k) {
-        memcpy(out + 7 * k, v + 3 * k, 3 * sizeof *v);
-        memcpy(out + 7 * k + 3, omega + 3 * k, 3 * sizeof *v);
-        out[7 * k + 6] = contactlaw_collide(out + 7 * k, out + 7 * k + 3, normal, still, r[k], h[k],
-                                            mu[k]);
-    }
-}
-
-CALLED double step(const contactlaw_spring *spring, contactlaw_state *state, double x, double dt)
-{
-    return contactlaw_step(spring, state, x, dt);
-}
-
-CALLED contactlaw_spring spring_of(double radius, double thickness)
-{
-    return contactlaw_spring_of(radius, thickness);
-}
-
-CALLED void set_edge(contactlaw_spring *spring, int edge, double distance)
-{
-    contactlaw_set_edge(spring, edge, distance);
+    for (--n; n >= 0; --n)
+        status[n] = contactlaw_collide(v + 3 * n, spin + 3 * n, normal, still, r[n], h[n], mu[n]);
 }
 
 CALLED double near_edge(double v, double r, double h, int edge, double distance)
@@ -140,58 +135,21 @@ CALLED double near_edge(double v, double r, double h, int edge, double distance)
     return contactlaw_restitution_near(v, r, h, edge, distance);
 }
 
-/* Friction on beads in each step; the wall rocks, and another bead strikes them in the middle. */
-CALLED void slides(int n, int steps, const double *v, const double *spin, const double *r,
-                   const double *h, const double *dt, const double *mu, double *out)
-{
-    int i, j, k;
-    for (k = 0; k < n; ++k) {
-        const contactlaw_spring spring = contactlaw_spring_of(r[k], h[k]);
-        contactlaw_state state = CONTACTLAW_APART;
-        contactlaw_sliding sliding = CONTACTLAW_STILL;
-        double u[3] = { v[3 * k], v[3 * k + 1], v[3 * k + 2] }, x = 0.3 * dt[k] * u[2];
-        for (i = 0; i < steps; ++i) {
-            const double lean = 0.01 * (i % 20), size = sqrt(1.0 + lean * lean);
-            const double normal[3] = { lean / size, 0.0, 1.0 / size };
-            double point[3];
-            x -= dt[k] * u[2];
-            contactlaw_step(&spring, &state, x, dt[k]);
-            for (j = 0; j < 3; ++j) {
-                const int a = (j + 1) % 3, b = (j + 2) % 3;
-                const double *w = spin + 3 * k;
-                point[j] = u[j] - r[k] * (w[a] * normal[b] - w[b] * normal[a]);
-            }
-            contactlaw_friction_step(&spring, &state, &sliding, x, dt[k], normal, point, mu[k]);
-            u[2] += dt[k] * state.force / spring.mass;
-            for (j = 0; j < 3; ++j) {
-                u[j] += dt[k] * sliding.force[j] / spring.mass;
-                out[3 * (k * steps + i) + j] = sliding.force[j];
-            }
-            if (i == steps / 2)
-                u[2] = 0.7 * v[3 * k + 2];
-        }
-    }
-}
-
 CALLED void drops(int n, const double *v, const double *r, const double *h, const double *dt,
-           const double *phase, double *out)
+                  const double *phase, double *out)
 {
-    int i, k;
-    for (k = 0; k < n; ++k) {
-        const contactlaw_spring spring = contactlaw_spring_of(r[k], h[k]);
+    for (--n; n >= 0; --n) {
+        const contactlaw_spring spring = contactlaw_spring_of(r[n], h[n]);
         contactlaw_state state = CONTACTLAW_APART;
-        double x = -phase[k] * v[k] * dt[k], u = v[k];
-        out[k] = (double)NAN;
-        for (i = 0; i < 10000000; ++i) {
-            u -= 0.5 * dt[k] * state.force / spring.mass;
-            x += u * dt[k];
-            contactlaw_step(&spring, &state, x, dt[k]);
-            u -= 0.5 * dt[k] * state.force / spring.mass;
-            if (i > 2 && state.force == 0.0 && u < 0.0) {
-                out[k] = -u / v[k];
-                break;
-            }
+        double x = -phase[n] * v[n] * dt[n], u = v[n];
+        int i;
+        for (i = 0; i < 4 || (i < 1000000 && (state.force > 0.0 || u > 0.0)); ++i) {
+            u -= 0.5 * dt[n] * state.force / spring.mass;
+            x += u * dt[n];
+            contactlaw_step(&spring, &state, x, dt[n]);
+            u -= 0.5 * dt[n] * state.force / spring.mass;
         }
+        out[n] = -u / v[n];
     }
 }
 """
@@ -215,9 +173,10 @@ def thinned_once():
         yield
 
 
-def model_of(name, **options):
+@functools.cache
+def model_of(name):
     pair, law = MODELS[name]
-    return cl.ImpactModel(pair, law=law, **options)
+    return cl.ImpactModel(pair, law=law)
 
 
 @functools.cache
@@ -244,25 +203,18 @@ def build(folder, source, *flags, compiler="gcc", out="out"):
 
 @pytest.fixture(scope="module", params=NAMES, ids=str)
 def compiled(request, tmp_path_factory):
-    """A model, its header's table, and the header as a library."""
-    model, folder = model_of(request.param), tmp_path_factory.mktemp("header")
+    """A model's name, and its header as a library."""
+    folder = tmp_path_factory.mktemp("header")
     write_header(folder, request.param)
-    source = LINKAGE + LOOKUPS + CALLS
-    library = ctypes.CDLL(build(folder, source, "-O2", "-shared", "-fPIC", *WARNINGS, out="out.so"))
-    return model, library, folder
+    flags = "-O2", "-ffp-contract=off", "-shared", "-fPIC", *header.WARNINGS
+    return request.param, ctypes.CDLL(build(folder, SOURCE, *flags, out="out.so"))
 
 
-def pointer(values):
-    return values.ctypes.data_as(ctypes.c_void_p)
-
-
-def called(function, size, *columns, fields=1):
-    """Call a C function of arrays; rows of what it gives."""
-    out = np.full((size, fields), -1.0)
-    columns = [np.ascontiguousarray(column, dtype=np.float64) for column in columns]
-    assert all(column.size == size for column in columns)
-    function(ctypes.c_int(size), *map(pointer, columns), pointer(out))
-    return out[:, 0] if fields == 1 else out
+def called(function, *columns):
+    """Call a C function of arrays, into the last of which it writes."""
+    assert all(one.flags.c_contiguous and one.dtype == float for one in columns)
+    function(len(columns[0]), *(one.ctypes.data_as(ctypes.c_void_p) for one in columns))
+    return columns[-1]
 
 
 def impacts(count, seed):
@@ -275,91 +227,114 @@ def impacts(count, seed):
     return v, r, h
 
 
-@kernel(entry=True)
-def lookups(table, c_lam, c_chi, v, r, h, out):
-    for n in range(out.size):
-        out[n] = lookup.restitution_on_plate(table, c_lam, c_chi, v[n], r[n], h[n])
-
-
-def test_a_lookup_is_that_of_numba_in_the_same_table(compiled):
-    """Compare 1e5 random impacts, some of them outside the table."""
-    model, library, _ = compiled
-    table = thinned(model.table, c_header.ERROR)
-    bare = dataclasses.replace(table, certificate=None)  # of which a model would warn
-    peer = cl.ImpactModel(model.pair, model.force_law, table=bare)
-    v, r, h = impacts(100_000, seed=1)
-    expected = np.empty(v.size)
-    lookups(peer._tabulated.packed, peer._tabulated.c_lam, peer._tabulated.c_chi, v, r, h, expected)
-    found = called(library.lookups, v.size, v, r, h)
-    outside = np.isnan(expected)
-    assert 0.005 < outside.mean() < 0.6
-    assert (np.isnan(found) == outside).all()
-    assert np.abs(found - expected)[~outside].max() < 1e-12
-    whole = np.empty(v.size)
-    lookups(model._tabulated.packed, model._tabulated.c_lam, model._tabulated.c_chi, v, r, h, whole)
-    assert np.abs(found - whole)[~outside].max() < 1e-5
-    assert table.certificate.largest["restitution"] < 1e-5
-
-
-def test_a_contact_by_steps_is_that_of_softsphere(compiled):
-    """Compare 2000 random impacts at 15 to 120 steps per contact."""
-    model, library, _ = compiled
-    v, r, h = impacts(2000, seed=2)
-    rng = np.random.default_rng(3)
+def rebounding(model, count, seed, largest):
+    """Impacts up to an inelasticity."""
+    v, r, h = impacts(count, seed)
     units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
-    keep = units.inelasticity < 3.0  # beyond 3 spheres do not rebound
-    v, r, h = v[keep], r[keep], h[keep]
-    dt = 3.2 * units.time[keep] / np.exp(rng.uniform(math.log(15.0), math.log(120.0), v.size))
-    phase = rng.uniform(0.02, 0.98, v.size)
-    expected = np.array(
-        [
-            drop(
-                model.force_law.data, resized(unit_spring(model, h[n]), r[n]), v[n], dt[n], phase[n]
-            )
-            for n in range(v.size)
-        ]
-    )
-    found = called(library.drops, v.size, v, r, h, dt, phase)
-    assert v.size > 1000
-    assert 0.0 < found.min() <= found.max() <= 1.001
-    assert np.abs(found - expected).max() < 1e-10
+    keep = units.inelasticity < largest
+    return v[keep], r[keep], h[keep]
+
+
+def given():
+    """Impacts near and far from edges of each kind, with friction; then absurd ones."""
+    rng, rows = np.random.default_rng(3), []
+    for n in range(4):
+        v, r = 10 ** rng.uniform(-1.0, 1.2), 10 ** rng.uniform(-3.5, -2.7)
+        h, dt = r / rng.uniform(0.2, 2.0), 6e-3 * r * v**-0.2 / rng.uniform(20.0, 60.0)
+        rows.append((v, r, h, n, h * rng.uniform(0.3, 3.0), rng.uniform(0.05, 0.6), dt))
+    usual = (3.0, 1e-3, 1e-3, 1, 1e-3, 0.3, 1e-7)
+    for place, odd in itertools.product((0, 1, 2, 4, 6), (0.0, -1.0, math.nan, math.inf, 1e300)):
+        rows.append((*usual[:place], odd, *usual[place + 1 :]))
+    return np.array(rows)
+
+
+def uncompiled(name, folder):
+    """What Python gives for `given` impacts."""
+    model = model_of(name)
+    bodies = functions.bodies_of(model, c_header._nodes(model))
+    (folder / "in").write_bytes(pickle.dumps((tuple(bodies), given())))
+    script = ROOT / "tests/shared/uncompiled.py"
+    subprocess.run(
+        [sys.executable, script, folder / "in", folder / "out.npy"],
+        check=True, env={**os.environ, "NUMBA_DISABLE_JIT": "1"},
+    )  # fmt: skip
+    return np.load(folder / "out.npy")
+
+
+def test_c_computes_what_uncompiled_python_does(compiled, tmp_path):
+    """To the last bit: integrations, lookups, flags, steps near edges, friction, collisions."""
+    name, library = compiled
+    expected = uncompiled(name, tmp_path)
+    found = called(library.answers, given(), np.full_like(expected, -2.0))
+    assert np.isfinite(expected[:4]).all() and np.isnan(expected[4:, 0]).sum() > 10
+    different = (found != expected) & ~(np.isnan(found) & np.isnan(expected))
+    assert not different.any(), (found[different], expected[different])
+
+
+def test_a_lookup_is_the_models(compiled):
+    """Of 1e5 random impacts, some of them outside of the table."""
+    name, library = compiled
+    model, (v, r, h) = model_of(name), impacts(100_000, seed=1)
+    found, cor = called(library.lookups, v, r, h, np.empty(v.size)), model.kernel
+    expected = np.array([cor(*one) for one in zip(v, r, h, strict=True)])
+    outside = np.isnan(found)
+    assert 0.005 < outside.mean() < 0.6
+    # several tables reach a little less far than one made for the strength
+    assert (outside | ~np.isnan(expected)).all()
+    assert (np.isnan(expected) != outside).mean() <= (0.01 if name == "both" else 0.0)
+    error = np.abs(found - expected)[~outside]
+    assert error.max() < (1e-2 if name in RATED else 1e-5)
+    assert np.quantile(error, 0.98) < 4e-3
 
 
 def test_a_rebound_is_the_solvers(compiled):
-    model, library, _ = compiled
-    v, r, h = impacts(300, seed=4)
+    name, library = compiled
+    model = model_of(name)
+    v, r, h = rebounding(model, 300, 4, 10.0)
+    flags, cor, found = np.empty(v.size), np.empty(v.size), np.empty((v.size, len(FIELDS)))
+    called(library.impacts, v, r, h, flags, cor, found)
+    hit = model.solve(v, r, h)
     units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
-    keep = units.inelasticity < 10.0
-    v, r, h = v[keep], r[keep], h[keep]
-    found = called(library.rebounds, v.size, v, r, h, fields=len(FIELDS))
-    expected = dataclasses.asdict(model.solve(v, r, h))
-    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
-    y = np.where(np.isfinite(units.yield_ratio), units.yield_ratio, 1.0)
-    solved = [
-        zener.solve(model.force_law.data, *at, 1e-10)
-        for at in zip(units.inelasticity, y, strict=True)
-    ]
-    expected["loading_time"] = [one.loading_time for one in solved] * units.time
-    for name, values in zip(FIELDS, found.T, strict=True):
+    expected = dataclasses.asdict(hit)
+    if name not in RATED:
+        y = np.where(np.isfinite(units.yield_ratio), units.yield_ratio, 1.0)
+        solved = [
+            zener.solve(model.force_law.data, *at, 1e-10)
+            for at in zip(units.inelasticity, y, strict=True)
+        ]
+        expected["loading_time"] = [one.loading_time for one in solved] * units.time
+    for field, values in zip(FIELDS, found.T, strict=True):
+        if field not in expected:
+            continue
         # residual compression begins at yield as (chi - 1)^2; lambda is 0 on a half-space
-        absolute = name.endswith("fraction") or name in ("restitution", "inelasticity")
-        whole = name.replace("residual", "peak")
-        scale = 1.0 if absolute else expected[whole]
+        absolute = field.endswith("fraction") or field in ("restitution", "inelasticity")
+        scale = 1.0 if absolute else expected[field.replace("residual", "peak")]
         # both integrate to 1e-10 a step, in other steps; neither controls the error of the time
-        bound = 1e-7 if name.endswith("time") else 1e-9
-        assert np.abs((values - expected[name]) / scale).max() < bound, name
-    lost = [name.endswith("_fraction") for name in FIELDS]
+        bound = 1e-7 if field.endswith("time") else 1e-9
+        bound = RATED.get(name, bound)
+        assert np.abs((values - expected[field]) / scale).max() < bound, field
+    lost = [field.endswith("_fraction") for field in FIELDS]
     energy = found[:, 0] ** 2 + found[:, lost].sum(axis=1)
-    assert np.abs(energy - 1.0).max() < 1e-8
+    assert np.abs(energy - 1.0).max() < (1e-6 if name in RATED else 1e-8)
+    assert len(set(flags)) > 1
+    if name in RATED:  # whose limits are those of the slowest impacts
+        assert (flags != hit.flags).mean() < 0.05
+        return
+    # only impacts within the integration's error of a limit may have other flags
+    for n in np.flatnonzero(flags != hit.flags):
+        at = hit.contact_time[n], hit.peak_compression[n], hit.peak_force[n]
+        low, high = (
+            flags_of(model.limits, r[n], h[n], one * units.compression[n], *(one * x for x in at))
+            for one in (1.0 - 1e-9, 1.0 + 1e-9)
+        )
+        assert low != high
 
 
 def test_an_oblique_impact_is_that_of_the_integration(compiled):
-    model, library, _ = compiled
-    v, r, h = impacts(400, seed=5)
-    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
-    keep = units.inelasticity < 2.0
-    v, r, h, count = v[keep], r[keep], h[keep], keep.sum()
-    rng = np.random.default_rng(6)
+    name, library = compiled
+    model = model_of(name)
+    v, r, h = rebounding(model, 300, 5, 2.0)
+    rng, count = np.random.default_rng(6), v.size
     mu = rng.uniform(0.0, 0.6, count)
     n, across = np.array([0.0, -0.6, 0.8]), np.array([1.0, 0.0, 0.0])
     turned = np.cross(n, across)
@@ -367,233 +342,85 @@ def test_an_oblique_impact_is_that_of_the_integration(compiled):
     along = np.cos(angle)[:, None] * across + np.sin(angle)[:, None] * turned
     spin = rng.normal(size=(count, 3)) * (v / r)[:, None]
     velocity = size[:, None] * along - v[:, None] * n + r[:, None] * np.cross(spin, n)
-    out = np.empty((count, 7))
-    given = (np.ascontiguousarray(one) for one in (velocity, spin, r, h, mu))
-    library.collided(ctypes.c_int(count), *map(pointer, given), pointer(out))
-    assert (out[:, 6] == 1.0).all()
+    new, turns = velocity.copy(), spin.copy()
+    assert (called(library.collided, new, turns, r, h, mu, np.empty(count)) == 1.0).all()
     hit = model.oblique(v, size, r, h, mu, method="solve")
-    new, turns = out[:, :3], out[:, 3:6]
     point = new - r[:, None] * np.cross(turns, n)
     error = (point * along).sum(axis=1) - hit.sliding_speed
-    assert np.abs(error / np.maximum(mu * v, 1e-3 * v)).max() < 2e-3
-    assert (new @ n) / v == pytest.approx(hit.restitution, abs=1e-8)
+    bound = {"a rate": 3e-3, "both": 1e-2}.get(name, 2e-3)
+    assert np.abs(error / np.maximum(mu * v, 1e-3 * v)).max() < bound
+    assert (new @ n) / v == pytest.approx(hit.restitution, abs=RATED.get(name, 1e-8))
     # all forces act at the contact point
     shift = np.cross(-r[:, None] * n, new - velocity) - 0.4 * (r**2)[:, None] * (turns - spin)
     assert np.abs(shift / (r * v)[:, None]).max() < 1e-12
     bad = np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 1.0], [math.nan, 0.0, -1.0], [0.0, 0.0, -1.0]])
-    sizes = np.array([1e-3, 1e-3, 1e-3, -1e-3])
-    given = bad, np.zeros((4, 3)), sizes, np.full(4, 1e-2), np.full(4, 0.1)
-    out = np.empty((4, 7))
-    library.collided(ctypes.c_int(4), *map(pointer, given), pointer(out))
-    assert out[:, 6].tolist() == [1.0, 0.0, -1.0, -1.0]
-    assert np.array_equal(out[1, :6], [0, 0, 1, 0, 0, 0])
-    assert np.isnan(out[2:, :6]).all()
+    sizes, spins = np.array([1e-3, 1e-3, 1e-3, -1e-3]), np.zeros((4, 3))
+    rest = sizes, np.full(4, 1e-2), np.full(4, 0.1), np.empty(4)
+    assert called(library.collided, bad, spins, *rest).tolist() == [1.0, 0.0, -1.0, -1.0]
+    assert np.array_equal([*bad[1], *spins[1]], [0, 0, 1, 0, 0, 0])
+    assert np.isnan([bad[2:], spins[2:]]).all()
 
 
-@pytest.mark.parametrize("pair", [STEEL, polymer.PAIRS[1]], ids=["metals", "losses"])
-def test_a_step_near_an_edge_is_that_of_softsphere(pair, tmp_path):
-    """Compare the whole state in each step of an impact, 1.5 thicknesses from each kind of edge."""
-    model, v, r, h, s = cl.ImpactModel(pair), 2.0, 1e-3, 1e-3, 1.5e-3
-    library, spring = without_a_table(tmp_path, model), resized(unit_spring(model, h), r)
-    library.spring_of.restype, dt = SpringOfC, float(model.solve(v, r, h).contact_time) / 50
-    for n, kind in enumerate(KINDS, 1):
-        near = Near(
-            response_of(kind, pair.plate.poissons_ratio, size="steps"),
-            float(rate_of(pair.plate, h, s)),
-        )
-        peer = library.spring_of(DOUBLE(r), DOUBLE(h))
-        library.set_edge(ctypes.byref(peer), n, DOUBLE(s))
-        x, u, state, expected, found = -0.3 * v * dt, v, PARTED, [], [np.zeros(len(PARTED))]
-        while not expected or state.force > 0.0:
-            u -= 0.5 * dt * state.force / spring.mass
-            x += dt * u
-            state = advance(model.force_law.data, spring, state, x, dt, near)
-            u -= 0.5 * dt * state.force / spring.mass
-            expected.append(state)
-            found.append(found[-1].copy())
-            library.step(ctypes.byref(peer), pointer(found[-1]), DOUBLE(x), DOUBLE(dt))
-        size = np.abs(expected).max(axis=0)
-        assert (size[5:] > 0.0).all()
-        assert (np.abs(np.subtract(found[1:], expected)).max(axis=0) <= 1e-12 * size).all()
-
-
-@pytest.mark.parametrize("pair", [STEEL, polymer.PAIRS[0]], ids=["metals", "losses"])
-def test_restitution_near_an_edge_is_the_solvers(pair, tmp_path):
-    model, drop = cl.ImpactModel(pair), (2.0, 1e-3, 1e-3)
-    near = without_a_table(tmp_path, model).near_edge
+def test_restitution_near_an_edge_is_the_solvers(compiled):
+    (name, library), at = compiled, (2.0, 1e-3, 1e-3)
+    model, near, bound = model_of(name), library.near_edge, STEPS_NEAR.get(name, 1e-3)
     near.restype, near.argtypes = DOUBLE, [DOUBLE] * 3 + [ctypes.c_int, DOUBLE]
     for n, kind in enumerate(KINDS, 1):
         for s in (0.5e-3, 1e-3, 3e-3):
-            hit = model.solve(*drop, edge=kind, edge_distance=s)
-            assert near(*drop, n, s) == pytest.approx(hit.restitution, abs=1e-3)
+            hit = model.solve(*at, edge=kind, edge_distance=s)
+            assert near(*at, n, s) == pytest.approx(hit.restitution, abs=bound)
+    whole = model.solve(*at).restitution
     for n, s in ((1, math.inf), (0, 1e-3)):
-        assert near(*drop, n, s) == pytest.approx(model.solve(*drop).restitution, abs=1e-9)
+        assert near(*at, n, s) == pytest.approx(whole, abs=RATED.get(name, 1e-9))
     for n, s in ((1, -1e-3), (2, math.nan), (4, 1e-3), (-1, 1e-3)):
-        assert math.isnan(near(*drop, n, s))
+        assert math.isnan(near(*at, n, s))
 
 
-@kernel(entry=True)
-def slides(law, spring, kappa, steps, v, spin, r, dt, mu, row, out):
-    """Friction on a bead in `contactlaw.stepping`, in each step of what `slides` does in C."""
-    u, x, state, speed = v.copy(), 0.3 * dt * v[2], PARTED, 0.0
-    for i in range(steps):
-        lean = 0.01 * (i % 20)
-        size = math.sqrt(1.0 + lean * lean)
-        n = (lean / size, 0.0, 1.0 / size)
-        x -= dt * u[2]
-        before, last = state.largest_compression, state.force
-        state = advance(law, spring, state, x, dt)
-        slip = surface_velocity((u[0], u[1], u[2]), (spin[0], spin[1], spin[2]), r, n)
-        if last == 0.0:
-            clear_friction(row)
-            speed = -(slip[0] * n[0] + slip[2] * n[2])
-        force = (0.0, 0.0, 0.0)
-        if state.force > 0.0:
-            force = tangential_force(
-                row, mu, kappa, law, spring, state, before, x, speed, n, slip, dt, 0.0
-            )
-        u[2] += dt * state.force / spring.mass
-        for j in range(3):
-            u[j] += dt * force[j] / spring.mass
-            out[i, j] = force[j]
-        if i == steps // 2:
-            u[2] = 0.7 * v[2]
-
-
-@pytest.mark.parametrize("compiled", [*NAMES, "losses and flow"], indirect=True)
-def test_friction_by_steps_is_that_of_stepping(compiled):
-    """In every step of some 200 impacts, of which a blow repeats most."""
-    model, library, _ = compiled
-    v, r, h = impacts(200, seed=7)
+def test_a_contact_by_steps_is_that_of_softsphere(compiled):
+    """Compare random impacts at 15 to 120 steps per contact."""
+    name, library = compiled
+    model, rng = model_of(name), np.random.default_rng(3)
+    v, r, h = rebounding(model, 500, 2, 3.0)
     units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
-    keep = units.inelasticity < 2.0
-    v, r, h, count, steps = v[keep], r[keep], h[keep], keep.sum(), 120
-    rng = np.random.default_rng(8)
-    mu, dt = rng.uniform(0.0, 0.6, count), 3.2 * units.time[keep] / rng.uniform(15.0, 80.0, count)
-    velocity = rng.normal(size=(count, 3)) * v[:, None] * (1, 1, 0) - np.outer(v, (0, 0, 1))
-    spin = rng.normal(size=(count, 3)) * (v / r)[:, None]
-    found, expected = np.empty((count, steps, 3)), np.empty((count, steps, 3))
-    given = (velocity, spin, r, h, dt, mu)
-    library.slides(ctypes.c_int(count), ctypes.c_int(steps), *map(pointer, given), pointer(found))
-    kappa, law = model.pair.tangential_ratio, model.force_law.data
-    for n in range(count):
-        spring = resized(unit_spring(model, h[n]), r[n])
-        row = np.recarray(1, FRICTION)[0]
-        given = velocity[n], spin[n], r[n], dt[n], mu[n], row, expected[n]
-        slides(law, spring, kappa, steps, *given)
-    largest = np.abs(expected).max(axis=(1, 2))
-    assert (largest > 0.0).all()
-    assert (np.abs(found - expected).max(axis=(1, 2)) < 1e-9 * largest).all()
+    dt = 3.2 * units.time / np.exp(rng.uniform(math.log(15.0), math.log(120.0), v.size))
+    phase = rng.uniform(0.02, 0.98, v.size)
+    springs = [resized(unit_spring(model, h[n]), r[n]) for n in range(v.size)]
+    law = model.force_law.data
+    expected = [drop(law, springs[n], v[n], dt[n], phase[n]) for n in range(v.size)]
+    found = called(library.drops, v, r, h, dt, phase, np.empty(v.size))
+    assert v.size > 200
+    assert 0.0 < found.min() <= found.max() <= 1.001
+    assert np.abs(found - expected).max() < (2e-3 if name in RATED else 1e-10)
 
 
-def test_flags_are_those_of_the_solver(compiled):
-    """Of 1e5 impacts only those within the integration's error of a limit may have other flags."""
-    model, library, _ = compiled
-    v, r, h = impacts(10_000, seed=11)
-    units = scales(sphere_on_plate(model.pair, model.force_law, r, h), v)
-    keep = units.inelasticity < 10.0
-    v, r, h, scale = v[keep], r[keep], h[keep], units.compression[keep]
-    found, hit = called(library.flagged, v.size, v, r, h), model.solve(v, r, h)
-    assert len(set(found)) > 1
-    for n in np.flatnonzero(found != hit.flags):
-        at = hit.contact_time[n], hit.peak_compression[n], hit.peak_force[n]
-        low, high = (
-            flags_of(model.limits, r[n], h[n], share * scale[n], *(share * x for x in at))
-            for share in (1.0 - 1e-9, 1.0 + 1e-9)
-        )
-        assert low != high
-    assert called(library.flagged, 1, *np.array([[math.nan], [1e-3], [1e-3]])) == -1.0
+def test_a_header_names_the_flags_of_validity():
+    found = re.findall(r"^    CONTACTLAW_([A-Z_]+) = (\d+),?$", text_of("myc"), re.MULTILINE)
+    assert dict(found) == {one.name: str(one.value) for one in Validity}
 
 
-def test_a_header_names_the_flags_of_validity(compiled):
-    text = (compiled[2] / "contactlaw.h").read_text()
-    names = dict(re.findall(r"^    CONTACTLAW_([A-Z_]+) = (\d+),?$", text, re.MULTILINE))
-    assert names == {one.name: str(one.value) for one in Validity}
-
-
-CONSTANTS = [
-    (module, name) for module, names in c_header._CONSTANTS.items() for name in names.split()
-]
-OFFSETS = [(force, name) for name in c_header._IN_LAW.split()]
-OFFSETS += [(lookup, name) for name in c_header._IN_TABLE.split()]
-
-
-def test_the_header_follows_the_definitions(monkeypatch):
-    """Each constant of Python is in the template, and in the header as Python has it."""
-    template = (Path(c_header.__file__).parent / "contactlaw.h.in").read_text()
-    for module, name in [*CONSTANTS, *OFFSETS]:
-        is_offset = (module, name) in OFFSETS
-        assert f"contactlaw_{name}" in template if is_offset else f"${name}" in template, name
-        with monkeypatch.context() as patch:
-            patch.setattr(module, name, 12345)
-            found = c_header._definitions()
-        if is_offset:
-            found = found["law_offsets" if module is force else "table_offsets"]
-            assert f"    contactlaw_{name} = 12345" in found.replace(",", "").split("\n")
-        else:
-            assert found[name] == "12345"
-
-
-def test_a_field_of_an_impact_adds_itself_to_the_header(monkeypatch):
-    @dataclasses.dataclass(frozen=True)
-    class Longer(Rebound):
-        __doc__ = Rebound.__doc__.replace(
-            "    inelasticity\n", "    slip_fraction\n        Lost to slip [-].\n    inelasticity\n"
-        )
-        slip_fraction: float = 0.0
-
-    monkeypatch.setattr(c_header, "Rebound", Longer)
-    text = c_header._text(model_of("myc"), {})
-    assert "    /* Lost to slip [-]. */\n    double slip_fraction;\n" in text
-    none = re.search(r"contactlaw_impact impact = { (.*) };", text)[1]
-    assert none.count("none") == len(FIELDS) + 1
-
-
-def test_a_state_in_c_is_softspheres():
-    text = c_header._text(model_of("myc"), {})
-    inside = re.search(r"struct contactlaw_state {(.*?)}", text, re.DOTALL)[1]
-    assert re.findall(r"double (\w+);", inside) == list(State._fields[:5])
-    assert "double memory[6];" in inside
-    assert len(State._fields) == 5 + 6
-
-
-def test_no_constant_of_python_is_repeated_in_the_template():
-    """Constants with distinctive values are searched for; small whole numbers mean many things."""
-    folder = Path(c_header.__file__).parent
-    values = {float(getattr(module, name)): name for module, name in CONSTANTS}
-    values |= {RELAXATION: "RELAXATION", validity.SLENDER: "THINNEST"}
-    del values[1.5]  # RELAXING, but also Hertz's exponent
-    del values[1e-3]  # NEAREST, but also a bound of the integration
-    number = re.compile(r"(?<![\w.$])\d+(?:\.\d*)?(?:e-?\d+)?(?![\w.])")
-    for path in (folder / "contactlaw.h.in", *folder.glob("liggghts/*.h.in")):
-        code = path.read_text().partition("BSD 3-Clause License")[0]
-        found = {float(one) for one in number.findall(code)}
-        repeated = {values[one] for one in found & values.keys() if one % 1.0 or one > 10.0}
-        assert repeated == set()
-
-
-def without_a_table(folder, model):
-    """Library of a header without a table, which integrates."""
+def solved_in_c(folder, model, v, r, h):
+    """Impacts by a header without a table."""
     cl.export.header(folder / "contactlaw.h", model, table="none")
-    return ctypes.CDLL(build(folder, LINKAGE + CALLS, "-O2", "-shared", "-fPIC", *WARNINGS))
+    source = re.sub(r"contactlaw_restitution\(.*?\)", "0.0", SOURCE)
+    library = ctypes.CDLL(build(folder, source, "-O2", "-shared", "-fPIC"))
+    found = np.empty((v.size, len(FIELDS)))
+    called(library.impacts, v, r, h, np.empty(v.size), np.empty(v.size), found)
+    return functions.Impact(*found.T)
 
 
 def test_a_rebound_of_a_sphere_that_stays_is_the_solvers(tmp_path):
     """The COR is 1e-2 to 0: the contact ends once its remaining energy is negligible."""
     model = cl.ImpactModel(STAYING)
-    library = without_a_table(tmp_path, model)
     v, h = np.array(np.meshgrid(np.geomspace(1e-6, 1.0, 16), np.geomspace(1.5e-4, 4e-3, 9)))
     v, h = v.ravel(), h.ravel()
     r = np.full_like(v, 1e-3)
     lam = scales(sphere_on_plate(model.pair, model.force_law, r, h), v).inelasticity
     v, r, h = v[lam < 60.0], r[lam < 60.0], h[lam < 60.0]
-    found = called(library.rebounds, v.size, v, r, h, fields=len(FIELDS))
-    expected = model.solve(v, r, h)
+    found, expected = solved_in_c(tmp_path, model, v, r, h), model.solve(v, r, h)
     assert expected.restitution.min() < 2e-6 < 1e-2 < expected.restitution.max()
-    assert np.abs(found[:, 0] - expected.restitution).max() < 1e-10
-    assert found[:, 1] == pytest.approx(expected.contact_time, rel=1e-7)
-    waves = FIELDS.index("wave_fraction")
-    assert np.abs(found[:, waves] - expected.wave_fraction).max() < 1e-8
+    assert np.abs(found.restitution - expected.restitution).max() < 1e-10
+    assert found.contact_time == pytest.approx(expected.contact_time, rel=1e-7)
+    assert np.abs(found.wave_fraction - expected.wave_fraction).max() < 1e-8
 
 
 def test_the_series_is_not_for_the_loading_curve(tmp_path):
@@ -602,28 +429,32 @@ def test_the_series_is_not_for_the_loading_curve(tmp_path):
     law = Law.of(name="stiffening", source="s", yield_coefficient=None, scale=1e-5,
                  loading=[Loading(0.0, stiffening)])  # fmt: skip
     model = cl.ImpactModel(cl.Pair("zirconia", "glass"), law)
-    library = without_a_table(tmp_path, model)
-    (found,) = called(library.rebounds, 1, [100.0], [1e-3], [0.2e-3], fields=len(FIELDS))
-    expected = model.solve(100.0, 1e-3, 0.2e-3)
-    assert found[1] == pytest.approx(expected.contact_time, rel=1e-6)
-    assert found[FIELDS.index("wave_fraction")] == pytest.approx(1.0, abs=1e-9)
+    at = np.array([[100.0], [1e-3], [0.2e-3]])
+    found, expected = solved_in_c(tmp_path, model, *at), model.solve(*at[:, 0])
+    assert found.contact_time[0] == pytest.approx(expected.contact_time, rel=1e-6)
+    assert found.wave_fraction[0] == pytest.approx(1.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("table", ["cor", "none"])
 @pytest.mark.parametrize("name", NAMES)
-def test_compilers_have_nothing_to_say(name, table, tmp_path):
-    write_header(tmp_path, name, table)
-    assert (tmp_path / "contactlaw.h").stat().st_size <= 500_000
-    source = LINKAGE + LOOKUPS + CALLS if table == "cor" else LINKAGE
-    # `compiled` has built the header with gcc and the same warnings already.
-    for compiler in COMPILERS if table == "none" else ["g++"]:
-        build(tmp_path, source, "-c", "-O1", *WARNINGS, compiler=compiler)
+def test_compilers_have_nothing_to_say(name, tmp_path):
+    """`compiled` has built the header with a table by gcc and the same warnings already."""
+    write_header(tmp_path, name)
+    text = (tmp_path / "contactlaw.h").read_text()
+    assert len(text) <= 500_000
+    assert all(len(line) <= 100 for line in text.splitlines())
+    build(tmp_path, SOURCE, "-c", "-O1", *header.WARNINGS, compiler="g++")
+    write_header(tmp_path, name, "none")
+    for compiler in COMPILERS:
+        source = '#include "contactlaw.h"\n'
+        build(tmp_path, source, "-c", *header.WARNINGS, compiler=compiler)
 
 
 # Calls with numbers of all kinds, in any order: a call without a valid answer has to give NaN.
 ANY_INPUT = """
 #include "contactlaw.h"
+#include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 
 static uint64_t seed = 88172645463325252u;
 
@@ -683,7 +514,6 @@ int main(void)
             spring.mobility = near(spring.mobility);
             spring.scale = near(spring.scale);
             spring.relaxation = near(spring.relaxation);
-            spring.transit = near(spring.transit);
             spring.ratio = near(spring.ratio);
         }
         if (uniform() < 0.3)
@@ -773,19 +603,6 @@ def test_the_first_lines_say_which_flags_the_pair_has(sphere, law, words, tmp_pa
     assert f" * flags of {words}" in text.partition("SPDX")[0]
 
 
-def test_the_data_are_those_that_python_reads(compiled):
-    model, _, folder = compiled
-    text = (folder / "contactlaw.h").read_text()
-    table = thinned(model.table, c_header.ERROR).packed.copy()
-    plate = slice(lookup.TRANSIT, lookup.HEADER)
-    table[plate] = model._tabulated.packed[plate]  # the pair adds these constants of the plate
-    for array, values in (("law", model.force_law.data), ("table", table)):
-        inside = re.search(rf"contactlaw_{array}\[\] = {{(.*?)}}", text, re.DOTALL)[1]
-        found = np.array(inside.replace("HUGE_VAL", "inf").split(","), dtype=np.float64)
-        assert found.size == (values.size if array == "law" else table[lookup.OTHERS_AT])
-        assert (found == values[: found.size]).all()
-
-
 def test_a_table_of_ones_own_without_a_certificate(tmp_path):
     """A table too coarse to be thinned is exported as it is, and the header states its error."""
     settings = Settings(
@@ -803,7 +620,7 @@ def test_a_table_of_ones_own_without_a_certificate(tmp_path):
         'int main(void) { printf("%.17g", contactlaw_restitution(9.0, 0.9e-3, 1e-3)); return 0; }\n'
     )
     found = subprocess.run([build(tmp_path, program)], capture_output=True, text=True).stdout
-    assert float(found) == pytest.approx(model.restitution(9.0, 0.9e-3, 1e-3), abs=1e-12)
+    assert float(found) == pytest.approx(model.restitution(9.0, 0.9e-3, 1e-3), abs=5e-10)
 
 
 @pytest.mark.parametrize(
@@ -818,19 +635,19 @@ def test_whatever_a_law_or_a_material_is_called(name, tmp_path):
     assert "int x;" not in re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
     for compiler in COMPILERS:
         source = '#include "contactlaw.h"\n'
-        build(tmp_path, source, "-c", *WARNINGS, compiler=compiler)
+        build(tmp_path, source, "-c", *header.WARNINGS, compiler=compiler)
 
 
 def test_nothing_that_threads_could_share(tmp_path):
     """The header has functions and constants only, and calls only the mathematical library."""
     write_header(tmp_path, "fem")
-    compiled = build(tmp_path, LINKAGE + LOOKUPS + CALLS, "-c", "-O1", out="out.o")
+    compiled = build(tmp_path, SOURCE, "-c", "-O1", out="out.o")
     done = subprocess.run(["nm", compiled], capture_output=True, text=True)
     symbols = done.stdout.split("\n")
     kinds = {tuple(line.split()[-2:]) for line in symbols if line}
     assert {kind for kind, _ in kinds} <= {"T", "t", "r", "U"}
     outside = {name for kind, name in kinds if kind == "U"}
-    known = {"sqrt", "pow", "exp", "expm1", "log"}
+    known = {"sqrt", "pow", "exp", "expm1", "log", "floor", "memcpy"}
     assert outside <= known | {"_GLOBAL_OFFSET_TABLE_", "__stack_chk_fail"}
 
 
@@ -845,29 +662,14 @@ def test_several_source_files_may_include_it(tmp_path):
         '#include "contactlaw.h"\ndouble f(double v);\n'
         "int main(void) { return f(5.0) != contactlaw_restitution(5.0, 1e-3, 1e-3); }\n"
     )
-    assert subprocess.run([build(tmp_path, source, *WARNINGS, other)]).returncode == 0
-
-
-def test_a_spring_is_that_of_softsphere(compiled):
-    model, library, _ = compiled
-    for radius, thickness in ((0.9e-3, 1e-3), (1e-9, math.inf), (1e3, 10.0), (1e-7, 1e-9)):
-        library.spring_of.argtypes = (ctypes.c_double, ctypes.c_double)
-        library.spring_of.restype = SpringOfC
-        found = list(library.spring_of(radius, thickness).v)[:8]
-        spring = resized(unit_spring(model, thickness), radius)
-        plate = model.pair.plate
-        shear = 0.5 * plate.youngs_modulus / (1.0 + plate.poissons_ratio)
-        transit = thickness * math.sqrt(plate.density / shear) / CONTACT_TIME
-        theirs = *spring[:5], transit, spring.ratio, radius
-        assert found == pytest.approx(theirs, rel=1e-14)
-    for radius, thickness in ((0.0, 1e-3), (-1.0, 1e-3), (1e-3, 0.0), (1e-3, math.nan), (2e3, 1.0)):
-        assert np.isnan(list(library.spring_of(radius, thickness).v)[:8]).all()
+    assert subprocess.run([build(tmp_path, source, *header.WARNINGS, other)]).returncode == 0
 
 
 def test_a_blown_up_simulation_is_told_and_leaves_the_state(tmp_path):
     write_header(tmp_path, "myc", "none")
     source = """
 #include "contactlaw.h"
+#include <string.h>
 int main(void)
 {
     const contactlaw_spring spring = contactlaw_spring_of(1e-3, 1e-3);
@@ -887,7 +689,7 @@ int main(void)
     return !good;
 }
 """
-    assert subprocess.run([build(tmp_path, source, *WARNINGS)]).returncode == 0
+    assert subprocess.run([build(tmp_path, source, *header.WARNINGS)]).returncode == 0
 
 
 def test_what_is_refused(tmp_path, monkeypatch):
@@ -963,7 +765,7 @@ def example(folder, name):
     (folder / path.name).write_text(text)
     done = subprocess.run([sys.executable, "-m", *shlex.split(export)], cwd=folder)
     assert done.returncode == 0
-    command = compilation.replace("cc ", "gcc -std=c99 " + " ".join(WARNINGS) + " ")
+    command = compilation.replace("cc ", "gcc -std=c99 " + " ".join(header.WARNINGS) + " ")
     done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     numbers = re.compile(r"(?<![\w.])-?\d+\.\d+")
@@ -996,7 +798,7 @@ def test_the_documented_c_compiles(tmp_path):
     arguments += "const double *wall_velocity, double distance"
     body = f"{calls} return e + near + force + impact.peak_force + flags;"
     source = f"{include}\ndouble f({arguments});\ndouble f({arguments}) {{ {body} }}\n"
-    build(tmp_path, source, "-c", *WARNINGS)
+    build(tmp_path, source, "-c", *header.WARNINGS)
 
 
 def test_the_soft_sphere_example_is_pythons(tmp_path):
@@ -1069,7 +871,7 @@ def test_several_pairs_live_in_one_source_file(compiler, tmp_path):
     calls = ", ".join(f"{prefix}_restitution(5.0, 1e-3, 2e-3)" for prefix in models)
     source = "".join(f'#include "{prefix}.h"\n' for prefix in models) + "#include <stdio.h>\n"
     source += f'int main(void) {{ printf("%.17g %.17g %.17g", {calls}); return 0; }}\n'
-    program = build(tmp_path, source, *WARNINGS, compiler=compiler)
+    program = build(tmp_path, source, *header.WARNINGS, compiler=compiler)
     found = subprocess.run([program], capture_output=True, text=True).stdout.split()
     for one, model in zip(found, models.values(), strict=True):
         assert float(one) == pytest.approx(model.restitution(5.0, 1e-3, 2e-3), abs=1e-5)
@@ -1086,3 +888,19 @@ def test_a_prefix_that_c_does_not_take_is_refused(prefix, tmp_path):
 def test_the_first_lines_warn_of_polymers(sphere, tmp_path):
     text = exported(tmp_path, cl.ImpactModel(cl.Pair(sphere, "glass")), table="none")
     assert ("WARNING: a polymer" in text.split("\n")[2]) == (sphere == "pom")
+
+
+@pytest.mark.parametrize("other_rate", [None, (0.02, 1.0)])
+def test_a_table_is_refused_where_another_body_comes_to_yield(other_rate, tmp_path):
+    """Its COR was wrong by 0.014."""
+    other = dataclasses.replace(metal.PLAIN.sphere, yield_strength=300e6, rate=other_rate)
+    model = cl.ImpactModel(cl.Pair(metal.PAIR.sphere, other))
+    with pytest.raises(ValueError, match=r"another body may yield.*contactlaw_rebound"):
+        cl.export.header(tmp_path / "contactlaw.h", model)
+    cl.export.header(tmp_path / "contactlaw.h", model, table="none")
+
+
+def test_a_header_is_refused_where_one_body_far_outgrows_the_other(tmp_path):
+    """The few laws that it had for such pairs knew the rate of the weaker body alone."""
+    with pytest.raises(ValueError, match="above 500000.*a rate for one of two bodies"):
+        cl.export.header(tmp_path / "contactlaw.h", cl.ImpactModel(metal.STEEP), "none")

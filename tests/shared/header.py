@@ -8,6 +8,7 @@ import pytest
 
 import contactlaw as cl
 
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
 SOURCE = """
 #include "contactlaw.h"
 double looked_up(double v, double r, double h) { return contactlaw_restitution(v, r, h); }
@@ -22,7 +23,7 @@ double time_of(double v, double r, double h) { return contactlaw_rebound(v, r, h
 double drops(double v, double r, double h)
 {
     const contactlaw_spring spring = contactlaw_spring_of(r, h);
-    const double dt = contactlaw_numbers_of(&spring, v).time / 12.0;
+    const double dt = contactlaw_rebound(v, r, h).contact_time / 40.0;
     contactlaw_state state = CONTACTLAW_APART;
     double x = -0.3 * v * dt, u = v;
     int n;
@@ -55,7 +56,7 @@ double rubs(double v, double r, double h)
 {
     const double normal[3] = { 0.0, 0.0, 1.0 }, velocity[3] = { 0.5, 0.1, -v };
     const contactlaw_spring spring = contactlaw_spring_of(r, h);
-    const double dt = contactlaw_numbers_of(&spring, v).time / 12.0;
+    const double dt = contactlaw_rebound(v, r, h).contact_time / 40.0;
     contactlaw_state state = CONTACTLAW_APART;
     contactlaw_sliding sliding = CONTACTLAW_STILL;
     int n;
@@ -76,8 +77,7 @@ class Library:
             pytest.skip("no gcc on PATH: the header is not compiled")
         cl.export.header(folder / "contactlaw.h", model)
         (folder / "source.c").write_text(SOURCE)
-        warn = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
-        command = ["gcc", "-std=c99", "-O2", *warn, "-shared", "-fPIC", "source.c", "-o", "out"]
+        command = ["gcc", "-std=c99", "-O2", *WARNINGS, "-shared", "-fPIC", "source.c", "-o", "out"]
         subprocess.run([*command, "-lm"], cwd=folder, check=True)
         self.text = (folder / "contactlaw.h").read_text()
         self._compiled = ctypes.CDLL(folder / "out")
