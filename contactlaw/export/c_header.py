@@ -149,10 +149,8 @@ def _nodes(model: ImpactModel) -> dict[float, tuple[ImpactModel, Table]]:
 
 def kernels(bodies: Bodies) -> str:
     """Write all functions for a pair in C, `functions.restitution` if it has tables."""
-    program, pair = (
-        Program(C(), ("goal", "samples", "springs"), _PUBLIC, functions.INSTEAD),
-        Known(value=bodies),
-    )
+    fixed, pair = ("goal", "samples", "springs"), Known(value=bodies)
+    program = Program(C(), fixed, _PUBLIC, functions.INSTEAD)
     point, sliding = program.tuple_of(_VECTOR), program.row("sliding", functions.SLIDING)
     state = program.struct(State, tuple((name, DOUBLE) for name in State._fields))
     if bodies.tables is not None:
@@ -173,11 +171,9 @@ def kernels(bodies: Bodies) -> str:
 def _text(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]], prefix: str) -> str:
     """Fill the template."""
     template = resources.files("contactlaw.export").joinpath("contactlaw.h.in").read_text("utf-8")
-    template = _TABLE.sub(r"\1" if nodes else "", template)
+    filled = string.Template(_TABLE.sub(r"\1" if nodes else "", template))
     about, written = "\n".join(_about(model, nodes)), kernels(bodies_of(model, nodes))
-    text = string.Template(
-        template
-    ).substitute(
+    text = filled.substitute(
         version=VERSION,
         about="$about",  # filled in last, as names of materials do not take the prefix
         guard=hashlib.sha256((VERSION + written + about).encode()).hexdigest()[:16],

@@ -50,7 +50,7 @@ NEAR_STEPS = 100  # of a contact near an edge
 NEAR_CONTACTS = 100  # a sphere that has not left after so many contact times stays on the plate
 SAMPLES, SPRINGS = 401, 32  # of an oblique impact: times, springs across the contact
 FAR = 50.0  # overload from which on, up to twice this, an impact comes to be far above yield
-FEW_DIGITS = 1e-6  # error of a step where only the difference of two integrations counts
+FEW_DIGITS = 1e-7  # error of a step of an impact that is only to be interpolated with
 
 
 class Bodies(NamedTuple):
@@ -339,21 +339,21 @@ def in_si(one: zener.Solution, units: Numbers) -> Impact:
 
 
 @kernel
-def moved(hit: Impact, share: float, a: Impact, b: Impact) -> Impact:
+def moved(a: Impact, share: float, b: Impact) -> Impact:
     """Impact that is moved by a share of the way from one to another, each energy for itself."""
-    left = hit.restitution * hit.restitution
-    left += share * (b.restitution * b.restitution - a.restitution * a.restitution)
+    left = a.restitution * a.restitution
+    left += share * (b.restitution * b.restitution - left)
     return Impact(
         math.sqrt(min(max(left, 0.0), 1.0)),
-        hit.contact_time + share * (b.contact_time - a.contact_time),
-        hit.loading_time + share * (b.loading_time - a.loading_time),
-        hit.peak_force + share * (b.peak_force - a.peak_force),
-        hit.peak_compression + share * (b.peak_compression - a.peak_compression),
-        hit.residual_compression + share * (b.residual_compression - a.residual_compression),
-        hit.plastic_fraction + share * (b.plastic_fraction - a.plastic_fraction),
-        hit.wave_fraction + share * (b.wave_fraction - a.wave_fraction),
-        hit.other_fraction + share * (b.other_fraction - a.other_fraction),
-        hit.inelasticity,
+        a.contact_time + share * (b.contact_time - a.contact_time),
+        a.loading_time + share * (b.loading_time - a.loading_time),
+        a.peak_force + share * (b.peak_force - a.peak_force),
+        a.peak_compression + share * (b.peak_compression - a.peak_compression),
+        a.residual_compression + share * (b.residual_compression - a.residual_compression),
+        a.plastic_fraction + share * (b.plastic_fraction - a.plastic_fraction),
+        a.wave_fraction + share * (b.wave_fraction - a.wave_fraction),
+        a.other_fraction + share * (b.other_fraction - a.other_fraction),
+        a.inelasticity,
     )
 
 
@@ -361,8 +361,8 @@ def moved(hit: Impact, share: float, a: Impact, b: Impact) -> Impact:
 def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Impact:
     """One impact, integrated with an error of RTOL in each step; all members are NaN for bad input.
 
-    For a pair with a rate it lies between those of the two laws beside its strength. Their
-    difference is small, and needs few digits.
+    For a pair with a rate it lies between those of the two laws beside its strength, of which the
+    farther one needs fewer digits.
     """
     if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
         return NOTHING
@@ -374,8 +374,8 @@ def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Impa
     low, high, share = beside(pair, units, speed, radius)
     if share > 0.5:
         low, high, share = high, low, 1.0 - share
-    one, two = solved(low, FEW_DIGITS), solved(high, FEW_DIGITS)
-    return moved(in_si(solved(low, RTOL), units), share, in_si(one, units), in_si(two, units))
+    hit = in_si(solved(low, RTOL), units)
+    return moved(hit, share, in_si(solved(high, FEW_DIGITS), units))
 
 
 @kernel

@@ -84,7 +84,7 @@ def for_curve(pair: Bodies, speed: float, radius: float, thickness: float) -> Im
     units = numbers_of(pair, speed, radius, thickness)
     low, high, share = beside(pair, units, speed, radius)
     one = quick(low)
-    return one if share == 0.0 else functions.moved(one, share, one, quick(high))
+    return one if share == 0.0 else functions.moved(one, share, quick(high))
 
 
 @kernel

@@ -390,16 +390,6 @@ def at_largest(law: Array, spring: Spring, state: State) -> Largest:
 
 
 @kernel
-def shifted(
-    law: Array, levels: Array, place: float, own: Array, growth: float, scale: float, most: float
-) -> float:
-    """Residual compression of a contact [m], less that of the law of a level; `scale` is d_Y."""
-    dm = most / scale
-    left = strength.unloading(law, levels, place, dm).residual
-    return scale * (left - growth * forces.residual(own, dm / growth))
-
-
-@kernel
 def nearest_level(
     law: Array, levels: Array, spring: Spring, state: State
 ) -> tuple[Array, Spring, State]:
@@ -409,8 +399,9 @@ def nearest_level(
     """
     stiffening, place = strength.split(state.stiffening)
     own, growth = strength.nearest(levels, place)
-    most = state.largest_compression
-    shift = shifted(law, levels, place, own, growth, spring.scale, most)
+    dm = state.largest_compression / spring.scale
+    left = strength.unloading(law, levels, place, dm).residual
+    shift = spring.scale * (left - growth * forces.residual(own, dm / growth))
     return (
         own,
         Spring(
