@@ -50,7 +50,7 @@ FILES = {
                  "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
                 "doubts", "fit"],
-    "emit": ["types", "c", "javascript", "expressions", "function", "program"],
+    "emit": ["types", "languages", "program", "function"],
     "export": ["functions", "page_functions", "c_header", "liggghts_wall", "web_page"],
     "report": ["limits", "gallery", "page", "surface", "run", "summary", "charts", "figures",
                "files"],
@@ -80,7 +80,7 @@ BUDGETS = {
     "contactlaw": 34_300,
     "contactlaw/answers": 3_450,
     "contactlaw/cli": 4_500,
-    "contactlaw/emit": 900,  # 700 was meant
+    "contactlaw/emit": 700,
     "contactlaw/engines": 4_300,
     "contactlaw/equation": 2_500,
     "contactlaw/export": 1_250,

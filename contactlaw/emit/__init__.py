@@ -1,13 +1,13 @@
 """Kernels as C and JavaScript: the one text of the physics, in Python, in other languages too.
 
-`Program` takes kernels and the types of their arguments, and writes them with all that they call.
-A function is made once for each tuple of argument types, as numba does. Kernels are in an annotated
-subset of Python: numbers, NamedTuples, tuples, arrays, rows of a dtype, loops, calls. Anything else
-is refused with file, line and remedy.
+`add` writes a kernel into a `Program`, with all that it calls; each function once for each tuple of
+argument types, as numba does. Kernels are in an annotated subset of Python: numbers, NamedTuples,
+tuples, arrays, rows of a dtype, loops, calls. Anything else is refused with file, line and remedy.
 """
 
-from contactlaw.emit.c import C
+from contactlaw.emit.function import add
+from contactlaw.emit.languages import C, JavaScript
 from contactlaw.emit.program import Program
-from contactlaw.emit.types import DOUBLE, INT, NONE, Array, Known, Row, Type
+from contactlaw.emit.types import DOUBLE, INT, Array, Known
 
-__all__ = ["DOUBLE", "INT", "NONE", "Array", "C", "Known", "Program", "Row", "Type"]
+__all__ = ["DOUBLE", "INT", "Array", "C", "JavaScript", "Known", "Program", "add"]

@@ -3,163 +3,154 @@
 from __future__ import annotations
 
 import ast
+import functools
 import inspect
 import math
+import operator
 import re
 import textwrap
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, NoReturn
+
+import numpy as np
 
 from contactlaw.emit import types
-from contactlaw.emit.expressions import OPERATORS, Expressions
-from contactlaw.emit.types import INT, UNKNOWN, VOID, Array, Struct, Type, Value, traced
+from contactlaw.emit.program import Program
+from contactlaw.emit.types import DOUBLE, INT, UNKNOWN, Array, Known, Struct, Type, Value, traced
+
+# Operators: how they are written, how tightly they bind, what they make of known whole numbers.
+OPERATORS: dict[type, tuple[str, int, Callable[..., Any]]] = {
+    ast.Add: ("+", 8, operator.add), ast.Sub: ("-", 8, operator.sub),
+    ast.Mult: ("*", 9, operator.mul), ast.Div: ("/", 9, lambda *_: UNKNOWN),
+    ast.Mod: ("%", 9, operator.mod), ast.RShift: (">>", 7, operator.rshift),
+    ast.BitOr: ("|", 3, operator.or_), ast.BitAnd: ("&", 4, operator.and_),
+    ast.Lt: ("<", 6, operator.lt), ast.LtE: ("<=", 6, operator.le),
+    ast.Gt: (">", 6, operator.gt), ast.GtE: (">=", 6, operator.ge),
+    ast.Eq: ("==", 5, operator.eq), ast.NotEq: ("!=", 5, operator.ne),
+    ast.USub: ("-", 10, operator.neg), ast.Not: ("!", 10, operator.not_),
+}  # fmt: skip
 
 
-class Function(Expressions):
-    """A kernel of a `Program` and the types of its arguments; statements are lists of lines."""
+class Function:
+    """A kernel in lines, for certain types of its arguments, and the types of all its variables."""
 
-    def __init__(self, program: Any, python: Callable[..., Any], given: tuple[Type, ...]) -> None:
-        lines, first = inspect.getsourcelines(python)
-        super().__init__(program, python, first)
+    def __init__(self, program: Program, python: Callable[..., Any], given: Sequence[Type]) -> None:
+        self._program, self._language, self._python = program, program.language, python
+        lines, self._first = inspect.getsourcelines(python)
         tree: Any = ast.parse(textwrap.dedent("".join(lines)))
-        self._node = tree.body[0]
-        self._parameters = [one.arg for one in self._node.args.args]
-        left = python.__defaults__ or ()
-        left = left[len(left) + len(given) - len(self._parameters) :]
-        kinds = [*given, *(program.constant(one).type for one in left)]
-        self._types = dict(zip(self._parameters, kinds, strict=True))
-        self._result: Type | None = None
+        found = inspect.getclosurevars(python)
+        self._scope = {**python.__globals__, **found.builtins, **found.nonlocals}
+        given_types = self._bound(python, *(Value(one, "") for one in given))
+        self.types = {name: one.type for name, one in given_types.items()}
+        self.given = len(self.types)
+        self.result, before = types.VOID, None
+        while before != (self.types, self.result):  # until no type is wider than before
+            before = dict(self.types), self.result
+            self.body = self._block(tree.body[0].body)
 
-    def infer(self) -> Type:
-        """Find the types of all variables, and that of the result."""
-        before: Any = None
-        while before != (self._types, self._result):
-            before = dict(self._types), self._result
-            self._block(self._node.body)
-        return self._result or VOID
+    def refuse(self, node: Any, remedy: str) -> NoReturn:
+        """Say where a kernel leaves the subset of Python, and what to write instead."""
+        file, line = inspect.getsourcefile(self._python), self._first + node.lineno - 1
+        raise SyntaxError(
+            f"{file}:{line}: {ast.unparse(node)!r} is not in the subset of Python that kernels are "
+            f"written in, and cannot be in C or JavaScript; {remedy}"
+        )
 
-    def text(self, name: str, said: str) -> str:
-        """Write the function, which a comment says something of."""
-        body = self._block(self._node.body)
-        words = set(re.findall(r"\w+", " ".join(body)))
-        given, own = [], []
-        for one, kind in self._types.items():
-            variable = kind, self._language.variable(one)
-            if traced(kind) and one in self._parameters:
-                given.append(variable)
-            elif traced(kind) and variable[1] in words:
-                own.append(variable)
-        unused = (self._language.unused.format(one) for _, one in given if one not in words)
-        body = [*filter(None, unused), *body]
-        return self._language.function(name, self._result or VOID, given, own, body, said)
+    def unified(self, node: Any, one: Type, other: Type) -> Type:
+        """Type that holds values of both."""
+        if one in (types.VOID, other):
+            return other
+        if {one, other} != {INT, DOUBLE}:
+            self.refuse(node, f"a variable has one type, not {one.name} and {other.name}")
+        return DOUBLE
 
-    def _block(self, nodes: list[Any]) -> list[str]:
+    def _bound(self, python: Any, *given: Value, **named: Value) -> dict[str, Value]:
+        """Arguments of a call by the names of the parameters, with those that are left out."""
+        bound = inspect.signature(python).bind(*given, **named)
+        bound.apply_defaults()
+        return {name: one if isinstance(one, Value) else self._program.constant(one)
+                for name, one in bound.arguments.items()}  # fmt: skip
+
+    def _block(self, nodes: list[ast.stmt]) -> list[str]:
         lines: list[str] = []
         for node in nodes:
             lines += self._statement(node)
-            if self._ends(node):
-                break
+            if lines and re.match(r"(return|break|continue)\b", lines[-1]):
+                break  # nothing after it is reached
         return lines
-
-    def _ends(self, node: Any) -> bool:
-        """Whether nothing after a statement can be reached."""
-        if isinstance(node, ast.If):
-            known = self.value(node.test).known
-            branch = node.body if known is UNKNOWN or known else node.orelse
-            return known is not UNKNOWN and any(map(self._ends, branch))
-        return isinstance(node, ast.Return | ast.Break | ast.Continue)
 
     def _statement(self, node: Any) -> list[str]:
         match node:
-            case ast.Expr(value=ast.Constant()):
-                return []
-            case ast.Expr(value=ast.Call() as call):
-                text = self.value(call).text
+            case ast.Expr(value=value):
+                text = self.value(value).text
                 return [f"{text};"] if text else []
-            case ast.Return(value=None):
-                return ["return;"]
+            case ast.Return(value=None) | ast.Break() | ast.Continue():
+                return [f"{type(node).__name__.lower()};"]
             case ast.Return(value=value):
                 found = self.value(value)
-                self._result = self.unified(node, self._result, found.type)
-                return [f"return {found.text};" if traced(self._result) else "return;"]
-            case ast.Break() | ast.Continue():
-                return [f"{type(node).__name__.lower()};"]
-            case ast.Assign(targets=[ast.Tuple() as target], value=value):
-                return self._unpack(target, value)
+                self.result = self.unified(node, self.result, found.type)
+                return [f"return {found.text};" if traced(self.result) else "return;"]
+            case ast.Assign(targets=[ast.Tuple(elts=places)], value=value):
+                pairs = zip(*self._unpacked(places, value), strict=True)
+                each = [ast.copy_location(ast.Assign([place], one), node) for place, one in pairs]
+                return self._block([ast.fix_missing_locations(one) for one in each])
+            case ast.Assign(targets=[target], value=value):
+                return self._assign(target, self.value(value))
             case ast.Assign(targets=targets, value=value):
-                found = self.value(value)
-                return [line for one in targets for line in self._assign(one, found)]
+                return self._block([ast.Assign([one], value) for one in targets])
             case ast.AnnAssign(target=target, value=ast.expr() as value):
                 return self._assign(target, self.value(value))
-            case ast.AugAssign(target=target, op=op, value=right):
-                whole = ast.copy_location(ast.BinOp(target, op, right), node)
-                lines, found = self._assign(target, self.value(whole)), self.value(right)
-                text = found.text if self.value(target).type == INT else self.double(found)
-                sign = OPERATORS[type(op)][0]
-                return [f"{self.value(target).text} {sign}= {text};"] if lines else []
+            case ast.AugAssign(target=target, op=op, value=value):
+                whole = ast.copy_location(ast.BinOp(target, op, value), node)
+                lines = self._assign(target, self.value(whole))
+                return [re.sub(r"^(.+) = \1 (\S+) ", r"\1 \2= ", one) for one in lines]
             case ast.If():
                 return self._if(node)
             case ast.While(test=test, body=inside, orelse=[]):
-                return self._braced(f"while ({self.value(test).text}) {{", self._block(inside))
+                return [f"while ({self.value(test).text}) {{", *self._block(inside), "}"]
             case ast.For(target=ast.Name(), iter=ast.Call(func=ast.Name("range")), orelse=[]):
                 return self._for(node)
         self.refuse(node, "use assignments, if, while, for in a range, break and return")
-
-    def _braced(self, head: str, lines: list[str]) -> list[str]:
-        if lines and lines[0] == "{" and lines.index("}") == len(lines) - 1:  # a block of its own
-            return [head, *lines[1:]]
-        return [head, *(f"    {line}" for line in lines), "}"]
 
     def _if(self, node: ast.If) -> list[str]:
         test = self.value(node.test)
         if test.known is not UNKNOWN:
             return self._block(node.body if test.known else node.orelse)
         body, other = self._block(node.body), self._block(node.orelse)
-        lines = self._braced(f"if ({test.text}) {{", body)
-        chained = len(node.orelse) == 1 and isinstance(node.orelse[0], ast.If)
-        if other and chained and other[0].startswith("if"):
-            return [*lines[:-1], f"}} else {other[0]}", *other[1:]]
-        lines = [*lines[:-1], *self._braced("} else {", other)] if other else lines
-        return lines if body or other else []
+        if other and len(node.orelse) == 1 and other[0].startswith("if"):
+            other = [f"}} else {other[0]}", *other[1:]]
+        elif other:
+            other = ["} else {", *other, "}"]
+        return [f"if ({test.text}) {{", *body, *(other or "}")] if body or other else []
 
     def _for(self, node: Any) -> list[str]:
-        bounds = [self.value(one) for one in node.iter.args]
-        start, stop = ([types.FALSE, *bounds] if len(bounds) == 1 else bounds)[:2]
-        step = bounds[2] if len(bounds) == 3 else types.TRUE
-        self._types[node.target.id] = INT
+        args = [ast.Constant(0), *node.iter.args, ast.Constant(1)][len(node.iter.args) > 1 :]
+        start, stop, step = map(self.value, args[:3])
+        self.types[node.target.id] = INT
         body, name = self._block(node.body), self._language.variable(node.target.id)
         head = f"for ({name} = {start.text}; {name} < {stop.within(7)}; {name} += {step.text}) {{"
-        return self._braced(head, body) if body else []
+        return [head, *body, "}"] if body else []
 
-    def _unpack(self, target: Any, node: Any) -> list[str]:
-        if isinstance(node, ast.Tuple):
-            later = [ast.unparse(one) for one in node.elts]
-            written = [rf"\b{re.escape(ast.unparse(one))}(?!\w)" for one in target.elts]
-            if not any(re.search(w, one) for n, w in enumerate(written) for one in later[n + 1 :]):
-                pairs = zip(target.elts, [self.value(one) for one in node.elts], strict=True)
-                return [line for one, value in pairs for line in self._assign(one, value)]
-        whole = self.value(node)
-        if not isinstance(whole.type, Struct):
-            self.refuse(node, "unpack tuples only")
-        both = Value(whole.type, "both")
-        pairs = zip(target.elts, [self.member(both, n) for n, _ in whole.type.members], strict=True)
-        lines = [line for one, value in pairs for line in self._assign(one, value)]
-        head = f"    const {self._language.type(whole.type)}both = {whole.text};"
-        return ["{", head, *(f"    {one}" for one in lines), "}"]
+    def _unpacked(self, places: list[Any], value: Any) -> tuple[list[Any], list[Any]]:
+        """Places and values by which a tuple is assigned; one of several may be read later on."""
+        read = [ast.unparse(one) for one in getattr(value, "elts", ())]
+        written = [rf"\b{re.escape(ast.unparse(one))}(?!\w)" for one in places]
+        if read and not any(re.search(w, r) for n, w in enumerate(written) for r in read[n + 1 :]):
+            return places, value.elts
+        whole = ast.Name(f"{self.value(value).type.name}_")
+        parts = [ast.Subscript(whole, ast.Constant(n)) for n in range(len(places))]
+        return [whole, *places], [value, *parts]
 
-    def _assign(self, target: Any, value: Value) -> list[str]:
+    def _assign(self, target: ast.expr, value: Value) -> list[str]:
         match target:
             case ast.Name(id="_"):
                 return []
             case ast.Name(id=name):
-                kind = self._types[name] = self.unified(target, self._types.get(name), value.type)
-                place = Value(kind, self._language.variable(name))
-            case ast.Subscript(value=base, slice=ast.Slice(lower=None)):
-                place = self.value(base)
-            case ast.Subscript() | ast.Attribute():
-                place = self.value(target)
-            case _:
-                self.refuse(target, "assign to names, elements of arrays, and members of rows")
+                before = self.types.get(name, types.VOID)
+                self.types[name] = self.unified(target, before, value.type)
+            case ast.Subscript(value=whole, slice=ast.Slice(lower=None, upper=None)):
+                target = whole
+        place = self.value(target)
         if not (traced(place.type) and place.text) or value.text in (place.text, "empty"):
             return []
         zeros, language = value.text == "zeros", self._language
@@ -167,3 +158,193 @@ class Function(Expressions):
             number, size = "0.0" if zeros else value.text, math.prod(place.type.shape)
             return [language.fill.format(language.prefix, place.text, size, number)]
         return [f"{place.text} = {value.text};"]
+
+    def value(self, node: Any) -> Value:
+        """Write an expression, by the method of its kind."""
+        make: Callable[[Any], Value] | None = getattr(self, "_" + type(node).__name__.lower(), None)
+        if make is None:
+            self.refuse(node, "use numbers, NamedTuples, arrays, operators and calls of kernels")
+        return make(node)
+
+    def _constant(self, node: ast.Constant) -> Value:
+        return self._program.constant(node.value)
+
+    def _tuple(self, node: ast.Tuple) -> Value:
+        parts = {f"f{n}": self.value(one) for n, one in enumerate(node.elts)}
+        return self._program.make(tuple, parts)
+
+    def _ifexp(self, node: ast.IfExp) -> Value:
+        test = self.value(node.test)
+        if test.known is not UNKNOWN:
+            return self.value(node.body if test.known else node.orelse)
+        one, other = self.value(node.body), self.value(node.orelse)
+        text = f"{test.within(1)} ? {one.within(1)} : {other.within(1)}"
+        return Value(self.unified(node, one.type, other.type), text, 0)
+
+    def _member(self, base: Value, whole: Struct, name: str) -> Value:
+        kind = dict(whole.members)[name]
+        text = self._language.member(base.within(11), name, whole) if traced(kind) else ""
+        return Value(kind, text, 11, getattr(kind, "value", UNKNOWN))
+
+    def double(self, value: Value) -> Value:
+        """Write a number as one of floating point."""
+        if isinstance(value.known, int) and value.text.lstrip("-").isdigit():
+            return Value(DOUBLE, f"{value.text}.0", value.binds)
+        return value if value.type == DOUBLE else self._language.operation("float", value)
+
+    def _name(self, node: ast.Name) -> Value:
+        kind = self.types.get(node.id)
+        if isinstance(kind, Known) and isinstance(kind.value, int):
+            return self._program.constant(kind.value)
+        if kind is not None:
+            text = self._language.variable(node.id)
+            return Value(kind, text, known=getattr(kind, "value", UNKNOWN))
+        if node.id not in self._scope:
+            self.refuse(node, "give the variable a value before it is read")
+        return self._program.named(self._scope[node.id], node.id, self._python.__module__)
+
+    def _attribute(self, node: ast.Attribute) -> Value:
+        base, name = self.value(node.value), node.attr
+        match base.type:
+            case Known(value=value):
+                module = getattr(value, "__name__", "")
+                return self._program.named(getattr(value, name), name.upper(), module)
+            case Struct() as kind:
+                return self._member(base, kind, name)
+            case Array(shape=shape) if shape and name in ("size", "shape"):
+                return self._program.constant(math.prod(shape) if name == "size" else shape)
+        self.refuse(node, "of an array only the size counts, where its shape is known")
+
+    def _subscript(self, node: ast.Subscript) -> Value:
+        base, at = self.value(node.value), node.slice
+        places = [at.lower] if isinstance(at, ast.Slice) else getattr(at, "elts", [at])
+        index, *column = map(self.value, places)
+        match base.type:
+            case Known(value=value) if index.known is not UNKNOWN:
+                return self._program.constant(value[index.known])
+            case Struct() as kind if index.known is not UNKNOWN:
+                return self._member(base, kind, kind.members[index.known][0])
+            case Array(shape=shape) if 0 in shape:
+                return Value(DOUBLE, "")  # an array without elements leaves no trace
+            case Array(data=data) if isinstance(at, ast.Slice):
+                return self._language.operation("tail", base, index, kind=Array(data=data))
+            case Array(data=data, shape=(_, size)):
+                index, kind = (
+                    Value(INT, f"{index.within(9)} * {size}", 9),
+                    Array("array", data, (size,)),
+                )
+                if not column:
+                    return self._language.operation("tail", base, index, kind=kind)
+                index = Value(INT, f"{index.text} + {column[0].within(9)}", 8)
+            case kind if column or not isinstance(kind, Array):
+                self.refuse(node, "index arrays, rows of known shape, tuples by known numbers")
+        return Value(DOUBLE, f"{base.within(11)}[{index.text}]", 11)
+
+    def _unaryop(self, node: ast.UnaryOp) -> Value:
+        one = self.value(node.operand)
+        sign, binds, known = self._operator(node, node.op, one)
+        kind = INT if isinstance(node.op, ast.Not) else one.type
+        return Value(kind, f"{sign}{one.within(11)}", binds, known)
+
+    def _binop(self, node: ast.BinOp) -> Value:
+        left, right = self.value(node.left), self.value(node.right)
+        if isinstance(node.op, ast.Pow):
+            return self._language.operation("pow", left, self.double(right))
+        if isinstance(node.op, ast.FloorDiv):
+            return self._language.operation("quotient", left, right, kind=INT)
+        sign, binds, known = self._operator(node, node.op, left, right)
+        divides = isinstance(node.op, ast.Div)
+        kind = DOUBLE if divides else self.unified(node, left.type, right.type)
+        if kind == DOUBLE:  # a known number in a formula of doubles is one of them
+            left, right = (self.double(one) if divides or one.known is not UNKNOWN else one
+                           for one in (left, right))  # fmt: skip
+        a, b = (one.within(12 if binds < 5 and one.binds < 11 else binds + (one is right))
+                for one in (left, right))  # fmt: skip
+        return Value(kind, f"{a} {sign} {b}", binds, known)
+
+    def _operator(self, node: Any, op: Any, *operands: Value) -> tuple[str, int, Any]:
+        """Sign of an operator, how tightly it binds, and its result where that is known."""
+        if type(op) not in OPERATORS:
+            self.refuse(node, "use + - * / // % ** & | >>")
+        sign, binds, act = OPERATORS[type(op)]
+        known = [one.known for one in operands]
+        return sign, binds, UNKNOWN if UNKNOWN in known else act(*known)
+
+    def _compare(self, node: ast.Compare) -> Value:
+        if len(node.ops) > 1:
+            terms = zip([node.left, *node.comparators], node.ops, node.comparators, strict=False)
+            pairs: Any = [ast.copy_location(ast.Compare(a, [op], [b]), node) for a, op, b in terms]
+            return self._boolop(ast.BoolOp(ast.And(), pairs))
+        left, right, op = self.value(node.left), self.value(node.comparators[0]), node.ops[0]
+        if isinstance(op, ast.Is | ast.IsNot):
+            return self._program.constant((left.known is None) == isinstance(op, ast.Is))
+        sign, binds, known = self._operator(node, op, left, right)
+        if known is not UNKNOWN:
+            return self._program.constant(bool(known))
+        return Value(INT, f"{left.within(8)} {sign} {right.within(8)}", binds)
+
+    def _boolop(self, node: ast.BoolOp) -> Value:
+        """Write `and` or `or`; what is decided already is left out, or decides."""
+        either, kept = isinstance(node.op, ast.Or), []
+        for one in map(self.value, node.values):
+            if one.known is UNKNOWN:
+                kept.append(one)
+            elif bool(one.known) == either:
+                return self._program.constant(either)
+        if len(kept) < 2:
+            return kept[0] if kept else self._program.constant(not either)
+        sign, binds = ("||", 1) if either else ("&&", 2)
+        return Value(INT, f" {sign} ".join(one.within(3) for one in kept), binds)
+
+    def _call(self, node: ast.Call) -> Value:
+        called: Any = self.value(node.func).known
+        name, module = (getattr(called, one, "") for one in ("__name__", "__module__"))
+        if called in (np.zeros, np.empty):
+            sizes = getattr(node.args[0], "elts", node.args[:1])
+            return Value(Array(shape=tuple(self.value(one).known for one in sizes)), name)
+        values = [self.value(one) for one in node.args]
+        if called in (min, max, np.minimum, np.maximum):
+            kind = functools.reduce(functools.partial(self.unified, node), [v.type for v in values])
+            name = f"{self._language.prefix}{name[:3]}{self._language.whole * (kind == INT)}"
+            text = functools.reduce(lambda a, b: f"{name}({a}, {b})", [one.text for one in values])
+            return Value(kind, text)
+        if called in (bool, int, float, np.uint64):
+            kind = {"int": INT, "float": DOUBLE}.get(name, values[0].type)
+            same = kind == values[0].type
+            return values[0] if same else self._language.operation(name, *values, kind=kind)
+        if called is abs or module == "math" or isinstance(called, np.ufunc):
+            return self._language.operation(name, *map(self.double, values))
+        python = getattr(called, "py_func", called)
+        if not (inspect.isfunction(python) or hasattr(called, "_fields")):
+            self.refuse(node, "call kernels, NamedTuples, and functions of math")
+        named = {str(one.arg): self.value(one.value) for one in node.keywords}
+        given = self._bound(python, *values, **named)
+        if hasattr(called, "_fields"):
+            return self._program.make(called, given)
+        kinds = [Known(value=one.known) if key in self._program.fixed and one.known is not UNKNOWN
+                 else one.type for key, one in given.items()]  # fmt: skip
+        name, result = add(self._program, called, *kinds)
+        texts = [one.text for one, kind in zip(given.values(), kinds, strict=True) if traced(kind)]
+        text = f"{self._language.prefix}{name}({', '.join(texts)})"
+        return Value(result, text) if traced(result) else self._program.constant(None)
+
+
+def add(program: Program, kernel: Callable[..., Any], *given: Type) -> tuple[str, Type]:
+    """Add a kernel for these types of arguments; returns its name there, and its type."""
+    kernel = program.instead.get(kernel, kernel)
+    python = getattr(kernel, "py_func", kernel)
+    key = python.__module__, python.__name__, given
+    if key not in program.functions:
+        outermost = None not in program.functions.values()
+        program.functions[key] = None
+        module, short = python.__module__.rpartition(".")[2], python.__name__.strip("_")
+        name = program.free_name(kernel, short, f"{module}_{short}")
+        made, said = Function(program, python, given), inspect.getdoc(python) or ""
+        if made.result != types.NONE:  # users read all of a docstring that is for them
+            said = said if outermost and program.language.typed else said.partition("\n")[0]
+            program.parts.append(program.language.function(name, said, made))
+        program.functions[key] = name, made.result
+    found = program.functions[key]
+    if found is None:
+        raise RecursionError(f"{python.__module__}.{python.__name__} calls itself")
+    return found

@@ -8,33 +8,26 @@ from typing import Any, NamedTuple
 
 @dataclasses.dataclass(frozen=True)
 class Type:
-    """A number, or nothing: None is a type that leaves no trace."""
+    """A number, or what a function gives that returns nothing."""
 
     name: str
-    members: tuple[tuple[str, Any], ...] = ()
 
 
-DOUBLE, INT, NONE, VOID = Type("double"), Type("int"), Type("none"), Type("void")
+DOUBLE, INT, VOID = Type("double"), Type("int"), Type("void")
 
 
 @dataclasses.dataclass(frozen=True)
 class Struct(Type):
-    """A NamedTuple, or a tuple, whose members are f0, f1, ... and have types."""
+    """A NamedTuple; a tuple, with members f0, f1, ...; a row of a dtype, passed by its address."""
 
-    source: type | None = dataclasses.field(default=None, compare=False)
-
-
-@dataclasses.dataclass(frozen=True)
-class Row(Type):
-    """A row of a dtype, passed by its address; members are numbers, of length 0, and arrays."""
+    members: tuple[tuple[str, Type], ...] = ()
+    source: Any = dataclasses.field(default=tuple, compare=False)
+    row: bool = False
 
 
 @dataclasses.dataclass(frozen=True)
 class Array(Type):
-    """Numbers in a row, or rows of them; with its shape where the kernel asks for it.
-
-    `data` lies in the memory of constants; other arrays are the caller's, and may be written.
-    """
+    """Numbers in a row, or rows of them, whose shape may be known; `data` is in constant memory."""
 
     name: str = "array"
     data: bool = False
@@ -43,17 +36,17 @@ class Array(Type):
 
 @dataclasses.dataclass(frozen=True)
 class Known(Type):
-    """An argument that has this value, an object of Python; it leaves no trace either."""
+    """What has this value, an object of Python, in every call; it leaves no trace in the text."""
 
     name: str = "known"
     value: Any = dataclasses.field(default=None, compare=False)
-    key: Any = dataclasses.field(init=False)  # numbers are equal by value, all else by identity
 
-    def __post_init__(self) -> None:
-        value = self.value
-        object.__setattr__(self, "key", value if isinstance(value, int) else id(value))
+    def __post_init__(self) -> None:  # numbers are equal by value, all else by identity
+        key = self.value if isinstance(self.value, int) else id(self.value)
+        object.__setattr__(self, "name", f"known {key}")
 
 
+NONE = Known()
 UNKNOWN: Any = object()
 
 
@@ -61,7 +54,7 @@ def traced(kind: Type) -> bool:
     """Whether something of this type is in the generated text at all."""
     if isinstance(kind, Struct):
         return any(traced(one) for _, one in kind.members)
-    return kind != NONE and not isinstance(kind, Known) and 0 not in getattr(kind, "shape", ())
+    return not isinstance(kind, Known) and 0 not in getattr(kind, "shape", ())
 
 
 class Value(NamedTuple):
@@ -75,6 +68,3 @@ class Value(NamedTuple):
     def within(self, binds: int) -> str:
         """Text of an operand of an operator that binds as tightly as this."""
         return self.text if self.binds >= binds else f"({self.text})"
-
-
-TRUE, FALSE = (Value(INT, str(n), known=n) for n in (1, 0))

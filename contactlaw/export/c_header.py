@@ -21,7 +21,7 @@ from contactlaw._escaped import c_comment
 from contactlaw._version import VERSION
 from contactlaw.answers.rated import Nodes
 from contactlaw.answers.tabulated import Border
-from contactlaw.emit import DOUBLE, INT, C, Known, Program
+from contactlaw.emit import DOUBLE, INT, C, Known, Program, add
 from contactlaw.equation.edge import KINDS
 from contactlaw.export import functions
 from contactlaw.export.functions import Bodies, bodies_of
@@ -151,20 +151,21 @@ def kernels(bodies: Bodies) -> str:
     """Write all functions for a pair in C, `functions.restitution` if it has tables."""
     fixed, pair = ("goal", "samples", "springs"), Known(value=bodies)
     program = Program(C(), fixed, _PUBLIC, functions.INSTEAD)
-    point, sliding = program.tuple_of(_VECTOR), program.row("sliding", functions.SLIDING)
-    state = program.struct(State, tuple((name, DOUBLE) for name in State._fields))
+    point = program.struct(tuple, dict(zip(("f0", "f1", "f2"), _VECTOR, strict=True)))
+    sliding = program.row(functions.SLIDING)
+    state = program.struct(State, dict.fromkeys(State._fields, DOUBLE))
     if bodies.tables is not None:
-        program.add(functions.restitution, pair, *_VECTOR)
-    _, bead = program.add(functions.spring_of, pair, DOUBLE, DOUBLE)
-    _, impact = program.add(functions.rebound, pair, *_VECTOR)
-    program.add(functions.at_edge, pair, bead, INT, DOUBLE)
-    program.add(functions.after_step, pair, bead, state, DOUBLE, DOUBLE)
-    program.add(functions.restitution_near, pair, *_VECTOR, INT, DOUBLE)
-    program.add(functions.exceeded, pair, impact, *_VECTOR)
-    program.add(
-        functions.rub, pair, bead, state, sliding, DOUBLE, DOUBLE, point, point, DOUBLE
+        add(program, functions.restitution, pair, *_VECTOR)
+    _, bead = add(program, functions.spring_of, pair, DOUBLE, DOUBLE)
+    _, impact = add(program, functions.rebound, pair, *_VECTOR)
+    add(program, functions.at_edge, pair, bead, INT, DOUBLE)
+    add(program, functions.after_step, pair, bead, state, DOUBLE, DOUBLE)
+    add(program, functions.restitution_near, pair, *_VECTOR, INT, DOUBLE)
+    add(program, functions.exceeded, pair, impact, *_VECTOR)
+    add(
+        program, functions.rub, pair, bead, state, sliding, DOUBLE, DOUBLE, point, point, DOUBLE
     )  # fmt: skip
-    program.add(functions.collided, pair, point, point, point, point, *_VECTOR)
+    add(program, functions.collided, pair, point, point, point, point, *_VECTOR)
     return program.text()
 
 

@@ -9,6 +9,9 @@ const BEFORE = 0.7, AFTER = 2.6, LOOP = 6; // contact times before and after tou
 let hit, curves, phase = still ? 0.5 : -BEFORE, playing = !still, larger = 1, last = null;
 const round = (x, digits = 3) => Number(x.toPrecision(digits));
 const place = ([low, high], x) => (low > 0 ? Math.log(x / low) / Math.log(high / low) : x / high);
+const $min = (one, other) => other < one ? other : one; // what the kernels call beside Math
+const $max = (one, other) => other > one ? other : one;
+const $copysign = (x, sign) => sign < 0 || 1 / sign < 0 ? -Math.abs(x) : Math.abs(x);
 const bounded = (x, low, high) => Math.min(Math.max(x, low), high);
 
 for (const [id, [unit, size, low, high]] of Object.entries(SLIDERS)) {

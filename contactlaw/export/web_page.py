@@ -21,8 +21,7 @@ import numpy as np
 from contactlaw import _atomic, laws
 from contactlaw._version import VERSION
 from contactlaw.answers.rated import stronger
-from contactlaw.emit import DOUBLE, Known, Program
-from contactlaw.emit.javascript import HELPERS, JavaScript
+from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
 from contactlaw.export import page_functions
 from contactlaw.export.functions import Bodies, bodies_of
 from contactlaw.export.page_functions import Page
@@ -113,13 +112,14 @@ def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
 
 def _kernels(bodies: Bodies, page: Page) -> str:
     """Kernels of `page_functions` for a pair, in JavaScript."""
-    program, pair = Program(JavaScript(), fixed=("goal", "samples", "springs")), Known(value=bodies)
+    program = Program(JavaScript("$"), fixed=("goal", "samples", "springs"))
+    pair = Known(value=bodies)
     asked, more = 3 * (DOUBLE,), Known(value=page)
-    _, hit = program.add(page_functions.for_curve, pair, *asked)
-    program.add(page_functions.flags, pair, more, hit, *asked)
-    program.add(page_functions.shown, pair, hit, *asked)
-    program.add(page_functions.collide, pair, more, *asked, DOUBLE, DOUBLE)
-    return f"{HELPERS}\n{program.text()}"
+    _, hit = add(program, page_functions.for_curve, pair, *asked)
+    add(program, page_functions.flags, pair, more, hit, *asked)
+    add(program, page_functions.shown, pair, hit, *asked)
+    add(program, page_functions.collide, pair, more, *asked, DOUBLE, DOUBLE)
+    return program.text()
 
 
 def _script(model: ImpactModel, shown: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from contactlaw.emit import DOUBLE, INT, Array, C, Known, Program
+from contactlaw.emit import DOUBLE, INT, Array, C, Known, Program, add
 
 PLAIN = """
 #include <math.h>
@@ -108,7 +108,7 @@ def compiled(folder, program, name, types):
 @pytest.mark.parametrize(("kernel", "types", "inputs"), CASES, ids=lambda one: str(one)[:20])
 def test_c_gives_what_python_gives(kernel, types, inputs, tmp_path):
     program = Program(C("k_"))
-    name, _ = program.add(kernel, *types)
+    name, _ = add(program, kernel, *types)
     answer = compiled(tmp_path, program, name, types)
     for one in inputs:
         assert answer(*one) == pytest.approx(kernel(*one), rel=0.0, abs=0.0, nan_ok=True)
@@ -118,7 +118,7 @@ def test_c_gives_what_python_gives(kernel, types, inputs, tmp_path):
 def test_constants_keep_their_names_and_arrays_are_written_once():
     program = Program(C("k_"))
     law = Known(value=Pair(np.array([2.0, 5.0, 7.0, 0.5, math.inf]), 3.0))
-    program.add(of_pair, law, DOUBLE)
+    add(program, of_pair, law, DOUBLE)
     text = program.text()
     assert "#define k_FACTOR 3\n" in text and "k_FACTOR * " in text
     assert text.count("static const double k_one[] = {\n2,5,7,.5,HUGE_VAL\n};") == 1
@@ -180,7 +180,7 @@ def every(x):
 def test_what_is_not_in_the_subset_is_refused_with_file_line_and_remedy(kernel, where, remedy):
     line = inspect.getsourcelines(kernel)[1] + where
     with pytest.raises(SyntaxError, match=remedy.replace("+", r"\+")) as caught:
-        Program(C()).add(kernel, DOUBLE)
+        add(Program(C()), kernel, DOUBLE)
     assert str(caught.value).startswith(f"{__file__}:{line}: ")
 
 
@@ -190,13 +190,14 @@ def recursive(x):
 
 def test_a_kernel_that_calls_itself_is_refused():
     with pytest.raises(RecursionError, match="recursive calls itself"):
-        Program(C()).add(recursive, DOUBLE)
+        add(Program(C()), recursive, DOUBLE)
 
 
 def test_a_row_of_numbers_is_passed_by_its_address():
-    program = Program(C("k_"))
-    row = program.row("spot", np.dtype([("at", "f8", 3), ("size", "f8")]))
-    name, _ = program.add(grown, row, Array(), DOUBLE)
+    spot = np.dtype([("at", "f8", 3), ("size", "f8")])
+    program = Program(C("k_"), names={spot: "spot"})
+    row = program.row(spot)
+    name, _ = add(program, grown, row, Array(), DOUBLE)
     text = program.text()
     assert "typedef struct k_spot {\n    double at[3];\n    double size;\n} k_spot;" in text
     assert f"void k_{name}(k_spot *row, double *to, double x)" in text

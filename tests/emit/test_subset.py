@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 import contactlaw
-from contactlaw.emit.expressions import OPERATORS
+from contactlaw.emit.function import OPERATORS
 from contactlaw.export import functions
 
 ROOT = Path(contactlaw.__file__).parent
