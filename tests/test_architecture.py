@@ -76,7 +76,7 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # lines out elsewhere in its folder first; a higher number has its reason beside it.
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
-    # kernels are 1,570 lines, for 2,060 of C and JavaScript that went
+    # kernels are 1,400 lines, for 2,060 of C and JavaScript that went
     "contactlaw": 34_300,
     "contactlaw/answers": 3_450,
     "contactlaw/cli": 4_500,

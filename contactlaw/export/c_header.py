@@ -24,7 +24,7 @@ from contactlaw.answers.tabulated import Border
 from contactlaw.emit import DOUBLE, INT, C, Known, Program, add
 from contactlaw.equation.edge import KINDS
 from contactlaw.export import functions
-from contactlaw.export.functions import Bodies, bodies_of
+from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
 from contactlaw.physical.oblique import Sliding
@@ -149,8 +149,7 @@ def _nodes(model: ImpactModel) -> dict[float, tuple[ImpactModel, Table]]:
 
 def kernels(bodies: Bodies) -> str:
     """Write all functions for a pair in C, `functions.restitution` if it has tables."""
-    fixed, pair = ("goal", "samples", "springs"), Known(value=bodies)
-    program = Program(C(), fixed, _PUBLIC, functions.INSTEAD)
+    program, pair = Program(C(), FIXED, _PUBLIC, functions.INSTEAD), Known(value=bodies)
     point = program.struct(tuple, dict(zip(("f0", "f1", "f2"), _VECTOR, strict=True)))
     sliding = program.row(functions.SLIDING)
     state = program.struct(State, dict.fromkeys(State._fields, DOUBLE))

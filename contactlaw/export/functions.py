@@ -138,6 +138,8 @@ INSTEAD: dict[Any, Any] = {
     lookup.series_at: series_of,
     lookup.exp: plain_exp,
 }
+# Parameters for each value of which a kernel is written anew: what they are decides what it has.
+FIXED = "goal", "samples", "springs"
 NOTHING = Impact(*[math.nan] * 10)
 BLOWN_UP = State(0.0, 0.0, math.nan)
 STEP = 0.15  # of ln(strength) between two laws of a pair with a rate
@@ -316,13 +318,13 @@ def beside(
 
 
 @kernel
-def solved(at: Strength, rtol: float) -> zener.Solution:
-    """Integrate an impact to its end."""
+def solved(at: Strength, rtol: float, goal: int = zener.TO_THE_END) -> zener.Solution:
+    """Integrate an impact to its end, or to another goal that needs no notes."""
     none, units = np.empty((0, 0)), at.units
     notes = zener.Notes(none, none, none, none, none)
     return zener.follow_impact(
-        zener.TO_THE_END, at.law, units.inelasticity, units.yield_ratio, rtol, notes, 0, None
-    )
+        goal, at.law, units.inelasticity, units.yield_ratio, rtol, notes, 0, None
+    )  # fmt: skip
 
 
 @kernel

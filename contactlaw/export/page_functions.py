@@ -68,12 +68,7 @@ def quick(at: Strength) -> Impact:
     units = at.units
     if units.inelasticity <= DEAD:
         return in_si(functions.solved(at, FOR_CURVES), units)
-    none = np.empty((0, 0))
-    lam, notes = units.inelasticity, zener.Notes(none, none, none, none, none)
-    top = zener.follow_impact(
-        zener.TO_THE_TOP, at.law, lam, units.yield_ratio, FOR_CURVES, notes, 0, None
-    )
-    return in_si(top, units)
+    return in_si(functions.solved(at, FOR_CURVES, zener.TO_THE_TOP), units)
 
 
 @kernel

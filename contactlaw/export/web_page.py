@@ -23,7 +23,7 @@ from contactlaw._version import VERSION
 from contactlaw.answers.rated import stronger
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
 from contactlaw.export import page_functions
-from contactlaw.export.functions import Bodies, bodies_of
+from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material, material, materials
@@ -112,8 +112,7 @@ def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
 
 def _kernels(bodies: Bodies, page: Page) -> str:
     """Kernels of `page_functions` for a pair, in JavaScript."""
-    program = Program(JavaScript("$"), fixed=("goal", "samples", "springs"))
-    pair = Known(value=bodies)
+    program, pair = Program(JavaScript("$"), FIXED), Known(value=bodies)
     asked, more = 3 * (DOUBLE,), Known(value=page)
     _, hit = add(program, page_functions.for_curve, pair, *asked)
     add(program, page_functions.flags, pair, more, hit, *asked)

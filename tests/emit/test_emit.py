@@ -35,8 +35,8 @@ class Pair(NamedTuple):
     two: float = 2.0
 
 
-def doubled(a, b):
-    return 2.0 * a, 2.0 * b
+def doubled(a, b, factor=2.0):
+    return factor * a, factor * b
 
 
 def swapped(x, n):
@@ -46,7 +46,7 @@ def swapped(x, n):
     pair = Pair(a, two=b)
     c, d = doubled(a, b)
     both = Pair(x)
-    return pair.one - 2 * pair.two + c * d + both.two + pair[1]
+    return pair.one - 2 * pair.two + c * d + both.two + (pair[1] if 0 < FACTOR < n else x)
 
 
 def looped(x, n):
