@@ -31,7 +31,10 @@ pytest.register_assert_rewrite(
 from browser import CHROMIUM, browser  # noqa: E402
 
 import contactlaw as cl  # noqa: E402
-from contactlaw import _kept  # noqa: E402
+from contactlaw import _jit, _kept  # noqa: E402
+
+# Or what tests use before they make a model would be compiled in each run anew.
+_jit.enable_caching()
 
 
 @pytest.hookimpl(tryfirst=True)

@@ -1,23 +1,23 @@
 """Without numba's compiler, and without a folder to keep its code in."""
 
-import importlib.util
 import json
 import math
 import os
-import random
-import shutil
+import runpy
 import subprocess
 import sys
 from pathlib import Path
+from warnings import catch_warnings, simplefilter
 
 import needs
 import numpy as np
 import pytest
 from command_line import parsers
+from forked import fill_disk, in_child, lose_home
 from places import ROOT
 
 import contactlaw as cl
-from contactlaw import _jit, cli
+from contactlaw import _folder, _jit, _kept, cli
 from contactlaw.softsphere import Contacts
 from dem_demo.cli import scenes
 
@@ -59,32 +59,22 @@ def answers(**oblique):
     return {name: np.ravel(value).tolist() for name, value in found.items()}
 
 
-def start(code, tmp_path, stderr=subprocess.PIPE, **variables):
-    """Start a process in a home of its own; a variable that is None is taken away."""
-    environment = {
-        **os.environ,
+def run(code, tmp_path, stderr=subprocess.PIPE, **variables):
+    """Output of a process in a home of its own."""
+    for folder in ("home", "tmp"):
+        (tmp_path / folder).mkdir(exist_ok=True)
+    home = {
         "HOME": str(tmp_path / "home"),
         "XDG_CACHE_HOME": str(tmp_path / "home" / "cache"),
         "TMPDIR": str(tmp_path / "tmp"),
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "NUMBA_CACHE_DIR": None,
-    } | variables
-    (tmp_path / "home").mkdir(exist_ok=True)
-    (tmp_path / "tmp").mkdir(exist_ok=True)
-    return subprocess.Popen(
-        [sys.executable, "-c", code],
-        env={name: value for name, value in environment.items() if value is not None},
-        stdout=subprocess.PIPE,
-        stderr=stderr,
-        text=True,
-    )
-
-
-def output(process):
-    """Output of a process, and its warnings."""
-    out, errors = process.communicate(timeout=200)
-    assert process.returncode == 0, errors
-    return out, errors
+        "NUMBA_CACHE_DIR": "",
+    }
+    done = subprocess.run(
+        [sys.executable, "-c", code], env=os.environ | home | variables, timeout=200,
+        stdout=subprocess.PIPE, stderr=stderr, text=True,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    return done.stdout
 
 
 WITHOUT = f"""
@@ -108,10 +98,8 @@ for attempt in asked + [scene] * needs.has_lammps():
 
 
 def test_without_the_compiler_all_answers_are_there_and_c_functions_are_refused(tmp_path):
-    process = start(WITHOUT, tmp_path, NUMBA_DISABLE_JIT="1")
-    compiled = answers(method="solve")
-    printed, *refusals = output(process)[0].splitlines()
-    interpreted = json.loads(printed)
+    printed, *refusals = run(WITHOUT, tmp_path, NUMBA_DISABLE_JIT="1").splitlines()
+    compiled, interpreted = answers(method="solve"), json.loads(printed)
     assert interpreted.keys() == compiled.keys()
     for name, values in compiled.items():
         # Here both integrate; but `collide` has a table when compiled, with an error of its own.
@@ -123,113 +111,107 @@ def test_without_the_compiler_all_answers_are_there_and_c_functions_are_refused(
         assert line.startswith("numba is switched off (NUMBA_DISABLE_JIT is set), and ")
 
 
-FIRST = """
-import contactlaw as cl
-model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-print(model.restitution(5.0, 0.9e-3, 1e-3), model.force_law.loading(2.5))
-"""  # kernels that take little time to compile
-HOMELESS = """
-import os, pwd
-del os.environ["HOME"]
-pwd.getpwuid = pwd.getpwnam = {}.__getitem__  # as in a container of a user without an entry
-"""
-FULL = "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))"
+@pytest.fixture
+def twice(tmp_path, monkeypatch):
+    """Call a kernel as the next process would, and tell where its machine code is."""
+    (tmp_path / "little.py").write_text("def twice(x):\n    return 2.0 * x\n")
+    python = runpy.run_path(str(tmp_path / "little.py"))["twice"]
+    monkeypatch.setattr(_jit, "_cached", [])
+    monkeypatch.setattr(_kept.config, "CACHE_DIR", "")
+    monkeypatch.setenv("CONTACTLAW_CACHE_DIR", str(tmp_path / "kept"))
 
+    def called():
+        for cached in (_kept._code_folder, _kept._warn_once, _folder.is_private):
+            cached.cache_clear()
+        kernel = _jit.kernel(cache=True)(python)
+        assert kernel(21.0) == 42.0
+        return kernel.stats
 
-def check_first(out):
-    assert [float(word) for word in out.split()] == pytest.approx([0.908113, 13.839771], abs=1e-6)
+    yield called
+    _kept._code_folder.cache_clear()
 
 
 @pytest.mark.parametrize(
-    ("code", "variables", "warned"),
+    ("change", "given", "warnings"),
     [
-        (FIRST, {"CONTACTLAW_CACHE_DIR": "/proc/x"}, 1),
-        (HOMELESS + FIRST, {"XDG_CACHE_HOME": None, "CONTACTLAW_CACHE_DIR": None}, 1),
-        (FULL + FIRST, {}, 1),
-        (FIRST, {"CONTACTLAW_NO_CACHE": "1", "CONTACTLAW_CACHE_DIR": None}, 0),
+        (lambda: None, {"CONTACTLAW_CACHE_DIR": "/proc/x"}, 1),
+        (lose_home, {}, 1),
+        (fill_disk, {}, 1),
+        (lambda: None, {"CONTACTLAW_NO_CACHE": "1"}, 0),
     ],
     ids=["a folder that cannot be made", "no home", "a full disk", "switched off"],
 )
 def test_without_a_folder_there_is_an_answer_and_at_most_one_warning(
-    tmp_path, code, variables, warned
+    change, given, warnings, twice, tmp_path
 ):
-    out, errors = output(start(code, tmp_path, **variables))
-    check_first(out)
-    assert errors.count("Warning") == warned
-    assert errors.count("numba cannot keep compiled code on disk") == warned
-    assert errors.count("set NUMBA_CACHE_DIR to a writable folder") == warned
-    if not warned:
-        assert {path.name for path in tmp_path.rglob("*")} == {"home", "tmp"}
-        assert list(Path(cl.__file__).parent.rglob("*.nb?")) == []
+    def said():
+        os.environ.update(given)
+        change()
+        with catch_warnings(record=True) as caught:
+            simplefilter("always")
+            twice()
+        return [str(one.message) for one in caught]
+
+    found = in_child(said)
+    assert len(found) == warnings
+    for one in found:
+        assert one.startswith("numba cannot keep compiled code on disk")
+        assert "set NUMBA_CACHE_DIR to a writable folder" in one
+    assert [*tmp_path.rglob("*.nbc")] == []
 
 
 DAMAGES = {
-    "emptied": lambda content, at: b"",
-    "truncated": lambda content, at: content[: at + 1],
-    "one bit": lambda content, at: content[:at] + bytes([content[at] ^ 4]) + content[at + 1 :],
-    "lengthened": lambda content, at: content + b"\0",
+    "emptied": lambda content: b"",
+    "truncated": lambda content: content[:99],
+    "one bit": lambda content: content[:99] + bytes([content[99] ^ 4]) + content[100:],
+    "its last bit": lambda content: content[:-1] + bytes([content[-1] ^ 1]),
+    "lengthened": lambda content: content + b"\0",
 }
 
 
 @pytest.mark.parametrize("suffix", ["nbi", "nbc"])
 @pytest.mark.parametrize("damage", DAMAGES.values(), ids=DAMAGES)
-def test_a_damaged_file_of_machine_code_is_made_anew(damage, suffix, tmp_path):
-    (tmp_path / "little.py").write_text("def twice(x):\n    return 2.0 * x\n")
-    spec = importlib.util.spec_from_file_location("little", tmp_path / "little.py")
-    little = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(little)
-    _jit.enable_caching()  # from here on a kernel has the disk when it is made
-
-    def hits():
-        """Of a kernel made as the next process would."""
-        kernel = _jit.kernel(cache=True)(little.twice)
-        del _jit._cached[-1:]
-        assert kernel(21.0) == 42.0
-        return sum(kernel.stats.cache_hits.values()), Path(kernel.stats.cache_path)
-
-    folder = hits()[1]
+def test_a_damaged_file_of_machine_code_is_made_anew(damage, suffix, twice, tmp_path, monkeypatch):
+    monkeypatch.setattr(_kept.config, "CACHE_DIR", str(tmp_path / "kept"))
+    folder = Path(twice().cache_path)
     (path,) = folder.glob(f"little.twice*.{suffix}")
-    choose, found = random.Random(1), []
-    for _ in range(8):
-        content = path.read_bytes()
-        path.write_bytes(damage(content, choose.randrange(len(content) - 1)))
-        found += [hits()[0], hits()[0]]
-    assert found == [0, 1] * 8  # compiled, and then read
+    path.write_bytes(damage(path.read_bytes()))
+    hits = [sum(twice().cache_hits.values()) for _ in range(2)]
+    assert hits == [0, 1]  # compiled, and then read
     assert len(list(folder.iterdir())) == 2
-    shutil.rmtree(folder)
 
 
 TWINS = """
 from math import cos, sin
-from contactlaw import _jit
+from contactlaw._jit import enable_caching, kernel
 
 def made_with(sign):
-    @_jit.kernel
+    @kernel
     def value(x):
         y = x
         TERMS
         return sign(y)
     return value
 
-@_jit.kernel
+@kernel
 def plus(y):
     return y
 
-@_jit.kernel
+@kernel
 def minus(y):
     return -y
 
 above, below = made_with(plus), made_with(minus)
 
-@_jit.kernel(cache=True)
+@kernel(cache=True)
 def first(x):
     return above(x)
 
-@_jit.kernel(cache=True)
+@kernel(cache=True)
 def second(x):
     return below(x)
 
-_jit.enable_caching()
+enable_caching()
 """.replace("TERMS", "y += sin(y) * cos(y + x);" * 60)  # too much to be inlined
 
 
@@ -237,29 +219,28 @@ def test_kernels_of_one_name_stay_apart_in_the_code_of_several_processes(tmp_pat
     """Kernels of the equation's legs share a name: the same lines make each from its own force."""
     (tmp_path / "twins.py").write_text(TWINS)
     folder = {"CONTACTLAW_CACHE_DIR": str(tmp_path / "kept"), "PYTHONPATH": str(tmp_path)}
-    code = "import twins as t; print(t.{}(0.1), t.{}(0.1))"
-    outputs = [
-        output(start(code.format(*names), tmp_path, **folder))[0].split()
-        for names in (("first", "first"), ("second", "second"), ("first", "second"))
-    ]
-    (one, _), (other, _), both = (list(map(float, words)) for words in outputs)
-    assert one == -other and both == [one, other]
+    calls = "t.first(0.1)", "t.second(0.1)", "t.first(0.1), t.second(0.1)"
+    one, other, both = (
+        [*map(float, run(f"import twins as t; print({call})", tmp_path, **folder).split())]
+        for call in calls
+    )
+    assert one[0] == -other[0] and both == one + other
+
+
+KEEP = """
+from contactlaw import _jit, model  # with kernels, which are not compiled here
+_jit.enable_caching()
+"""
 
 
 def test_the_first_process_says_that_it_compiles(tmp_path):
-    """It says so once, and on a terminal only; the tests above show that pipes stay quiet.
-
-    An import writes nothing at all; the first answer, machine code where numba keeps it.
-    """
-    import pty
-
+    """It says so once, and on a terminal only; an import writes nothing at all."""
     folder = {"NUMBA_CACHE_DIR": str(tmp_path / "numba")}
-    output(start("import contactlaw", tmp_path, **folder))
+    run("import contactlaw", tmp_path, **folder)
+    assert not (tmp_path / "numba").exists()
     for expected in (1, 0):
-        assert {path.name for path in tmp_path.rglob("*")} >= {"home", "tmp"}
-        assert (tmp_path / "numba").exists() == (expected == 0)
-        ours, its = pty.openpty()
-        check_first(output(start(FIRST, tmp_path, its, **folder))[0])
+        ours, its = os.openpty()
+        run(KEEP, tmp_path, its, **folder)
         os.write(its, b"end\n")
         said = ""
         while not said.endswith("end\r\n"):  # a terminal gives line by line
@@ -267,7 +248,7 @@ def test_the_first_process_says_that_it_compiles(tmp_path):
         assert said.count("compiles") == expected and said.count("\n") == expected + 1
         os.close(ours)
         os.close(its)
-        assert list(tmp_path.glob("home/*")) == list(tmp_path.glob("tmp/*")) == []
+    assert list(tmp_path.glob("home/*")) == list(tmp_path.glob("tmp/*")) == []
 
 
 # Every subcommand with what it needs; in the folder of the examples.
@@ -343,14 +324,16 @@ def test_a_second_process_compiles_nothing(given, tmp_path):
         one.replace("RAIN", f"{tmp_path}/out{rain}").replace("OUT", f"{tmp_path}/out{n}").split()
         for n, one in enumerate(given)
     ]
+    nothing = [[0, []]] * len(given)
     for _ in range(2):
         done = subprocess.run(
             [sys.executable, "-c", COUNTED], input=json.dumps(words),
             cwd=ROOT / "docs/examples", capture_output=True, text=True,
         )  # fmt: skip
         assert done.returncode == 0, done.stderr
-    found = dict(zip(given, json.loads(done.stdout.splitlines()[-1]), strict=True))
-    assert {one: seen for one, seen in found.items() if seen != [0, []]} == {}
+        if (found := json.loads(done.stdout.splitlines()[-1])) == nothing:
+            break
+    assert dict(zip(given, found, strict=True)) == dict(zip(given, nothing, strict=True))
 
 
 def test_every_subcommand_has_its_second_process():

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import pytest
 
 from contactlaw._jit import kernel
 from contactlaw.table import lookup
@@ -19,9 +18,7 @@ def compiled(inner):
     return outer
 
 
-log_and_root, exp, evaluate, weights = map(
-    compiled, (lookup.log_and_root, lookup.exp, lookup.evaluate, lookup.weights)
-)
+log_and_root, exp = compiled(lookup.log_and_root), compiled(lookup.exp)
 
 
 def test_logarithm_and_fifth_root():
@@ -35,22 +32,6 @@ def test_logarithm_and_fifth_root():
 def test_logarithm_and_root_do_not_crash_on_what_is_no_speed():
     for v in (0.0, -1.0, math.inf, -math.inf, math.nan, 5e-324, 1e308):
         log_and_root(v)  # garbage, but an index within the table of roots
-
-
-def test_power_series_is_horners():
-    c = tuple(np.random.default_rng(0).normal(size=21))
-    for t in (-1.0, -0.3, 0.0, 0.7, 1.0):
-        assert evaluate(c, t) == pytest.approx(np.polyval(c[::-1], t), rel=1e-13)
-
-
-def test_weights_are_the_b_splines():
-    from scipy.interpolate import BSpline
-
-    for t in (0.0, 0.25, 0.9, 1.0):
-        # the uniform cubic B-spline on [0, 4]; each weight is one of its four pieces
-        spline = BSpline.basis_element(np.arange(5.0), extrapolate=False)
-        expected = [float(spline(3.0 - k + t)) if 3.0 - k + t < 4.0 else 0.0 for k in range(4)]
-        assert np.array(weights(t)) / 6 == pytest.approx(expected, abs=1e-15)
 
 
 def test_exponential():
