@@ -1,12 +1,18 @@
 """Runs of the demo that several files of tests read."""
 
+import os
+
 import pytest
 from demos import DRUM, RAIN, SIEVE
+from filelock import FileLock
+from unrendered import blank
 
 from dem_demo import cli
 
 
-def made(name, *options):
+def made(name, *options, rendered=False):
+    """Make a fixture: a folder that the processes of a parallel run share, for none changes it."""
+
     @pytest.fixture(scope="session", name=name)
     def folder(tmp_path_factory):
         if options[0] != "rain":
@@ -16,15 +22,29 @@ def made(name, *options):
             pytest.importorskip(
                 "mpi4py", reason="mpi4py is missing: pip install contactlaw[lammps]"
             )
-        out = tmp_path_factory.mktemp(name) / "out"
-        assert cli.main([*options, "--out", str(out)]) == 0
+        base = tmp_path_factory.getbasetemp()
+        if "PYTEST_XDIST_WORKER" in os.environ:
+            base = base.parent
+        out = base / name / "out"
+        with FileLock(base / f"{name}.lock"), pytest.MonkeyPatch.context() as patch:
+            out.parent.mkdir(exist_ok=True)
+            if not rendered:
+                patch.setattr("contactlaw.style.png", blank)
+            if not out.exists():
+                assert cli.main([*options, "--out", str(out)]) == 0
         return out
 
     return folder
 
 
-rain = made("rain", *RAIN)
+rain = made("rain", *RAIN, rendered=True)
 baseline = made("baseline", *RAIN, "--constant-cor", "0.9")
 oblique = made("oblique", *RAIN, "--friction", "0.2")  # from tilted nozzles
 drum = made("drum", *DRUM)
-sieve = made("sieve", *SIEVE)
+sieve = made("sieve", *SIEVE, rendered=True)
+
+
+@pytest.fixture
+def nothing_drawn(monkeypatch):
+    """Runs leave their record and summary alone: to draw takes most of a short one."""
+    monkeypatch.setattr("dem_demo.kit.session.make", lambda show, run, folder: {})

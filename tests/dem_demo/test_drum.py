@@ -42,6 +42,7 @@ def runs(drum):
 def test_each_panel_names_its_run(name, runs):
     with style.applied():
         figure = figures.module(name).draw(runs)
+        figure.draw_without_rendering()
     titles = [axes.get_title("left") + axes.get_title() for axes in figure.axes]
     named = [title for title in titles if title]
     assert len(named) == 2 and named[0].startswith("contactlaw") and named[1].startswith("constant")

@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from browser import WIDE
+from unrendered import blank
 
 from dem_demo import cli
 from dem_demo.rain import paths
@@ -86,7 +87,12 @@ def test_a_bead_turns_on_from_piece_to_piece(folder):
     )
 
 
-def test_a_page_of_an_empty_rain(tmp_path, page):
+def test_a_page_of_an_empty_rain(tmp_path, page, monkeypatch):
+    def laid_out(figure):
+        figure.draw_without_rendering()
+        return blank(figure)
+
+    monkeypatch.setattr("contactlaw.style.png", laid_out)
     few = "rain --law myc --beads 2 --speed 0.5,0.6 --duration 0.01".split()
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     page.complaints.clear()

@@ -2,12 +2,10 @@
 
 import dataclasses
 import math
-import subprocess
 
 import h5py
 import numpy as np
 import pytest
-import unrendered
 from demos import RAIN, files, names
 from matplotlib.image import imread
 
@@ -103,7 +101,7 @@ def test_each_collision_has_the_cor_of_the_model(run):
     np.testing.assert_allclose(pairs["restitution"], both, rtol=0, atol=1e-10)
 
 
-def test_impacts_near_edges_are_on_the_lines_of_the_model(tmp_path, monkeypatch, empty_pictures):
+def test_impacts_near_edges_are_on_the_lines_of_the_model(tmp_path, monkeypatch, nothing_drawn):
     """In the record, and in the figure of the COR over the distance from the edge."""
     monkeypatch.setattr(nozzles, "WIDTH", 0.01)
     monkeypatch.setattr(nozzles, "MARGIN", 1e-4)
@@ -122,7 +120,7 @@ def test_impacts_near_edges_are_on_the_lines_of_the_model(tmp_path, monkeypatch,
     assert (rows["restitution"] < endless - 0.02).sum() > 3
     flagged = (rows["flags"] & cl.Validity.NEAR_EDGE) != 0
     assert 0 < flagged.sum() == outside(run).sum()
-    assert "near an edge" not in summary(tmp_path)
+    assert "near an edge" not in report.summary(run)
     with style.applied():
         panels = figures.module("edge_distance").draw(run).axes[:3]
     apart = [
@@ -181,7 +179,7 @@ def test_beads_fly_on_parabolas(run):
     assert checked > 100
 
 
-def test_the_same_seed_gives_the_same_rain(run, tmp_path, empty_pictures):
+def test_the_same_seed_gives_the_same_rain(run, tmp_path, nothing_drawn):
     for seed, same in (("1", True), ("2", False)):
         out = tmp_path / seed
         assert cli.main([*RAIN, "--seed", seed, "--out", str(out)]) == 0
@@ -309,16 +307,19 @@ def test_the_balance_of_a_rain_that_was_stopped_at_once(oblique):
     [[], ["--constant-cor", "0.9"], ["--friction", "1"]],
     ids=["model", "baseline", "oblique"],
 )
-def test_a_rain_that_never_lands(more, tmp_path, empty_pictures):
-    """Its page is rendered in test_page.py."""
+def test_a_rain_that_never_lands(more, tmp_path, empty_pictures, capfd):
+    """Its page is shown in test_page.py. Without a terminal it is quiet."""
     few = ["rain", "--law", "myc", *"--beads 2 --speed 0.5,0.6 --duration 0.01".split(), *more]
     assert cli.main([*few, "--out", str(tmp_path)]) == 0
     assert read(tmp_path / "rain.h5").collisions.size == 0
     assert "all impacts on plates are inside" in (tmp_path / "summary.txt").read_text()
+    said, errors = capfd.readouterr()
+    assert "Written to" in said and errors == ""
 
 
-@pytest.mark.parametrize("narrow", [False, True])
-@pytest.mark.parametrize("which", ["rain", "baseline", "oblique"])
+@pytest.mark.parametrize(
+    ("which", "narrow"), [("rain", True), ("oblique", False), ("baseline", False)]
+)
 def test_no_label_runs_into_the_title(request, which, narrow):
     run = read(request.getfixturevalue(which) / "rain.h5")
     for name in figures.names():
@@ -332,10 +333,9 @@ def test_no_label_runs_into_the_title(request, which, narrow):
                     assert not (label.get_text() and any(map(place.overlaps, heads))), label
 
 
-@pytest.mark.parametrize("which", ["rain", "baseline"])
 @pytest.mark.parametrize("name", figures.names())
-def test_figures_are_pictures(request, which, name):
-    picture = imread(request.getfixturevalue(which) / f"{name}.png")
+def test_figures_are_pictures(rain, name):
+    picture = imread(rain / f"{name}.png")
     height, width, _ = picture.shape
     assert width > 1200
     assert height > 600
@@ -399,13 +399,6 @@ def test_wrong_usage_is_status_2(argv, capsys):
         cli.main(argv)
     assert stop.value.code == 2
     assert "usage:" in capsys.readouterr().err
-
-
-def test_quiet_without_a_terminal(tmp_path):
-    command = [*unrendered.COMMAND, *RAIN, "--beads", "3", "--out", str(tmp_path / "out")]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert (done.returncode, done.stderr) == (0, "")
-    assert "Written to" in done.stdout
 
 
 def test_scene_spreads_over_its_ranges():

@@ -4,6 +4,7 @@ All figures are drawn and all files written, but pictures are empty. Tests of pi
 render them; this is for tests of what happens around them.
 """
 
+import io
 import sys
 
 FIRST = "from contactlaw import style; style.png = lambda figure: b''\n"
@@ -12,3 +13,12 @@ COMMAND = [  # takes the words that follow `dem-demo`
     "-c",
     f"{FIRST}import sys; from dem_demo import cli; sys.exit(cli.main())",
 ]
+
+
+def blank(figure):
+    """Make a picture of the size of a figure, for a page that a browser shows."""
+    from PIL import Image
+
+    made = io.BytesIO()
+    Image.new("1", tuple(map(int, figure.get_size_inches() * figure.dpi))).save(made, "PNG")
+    return made.getvalue()
