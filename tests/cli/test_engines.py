@@ -126,8 +126,9 @@ def test_a_constant_as_csv(keep, model, capsys):
             assert float(row[name]) == pytest.approx(getattr(best, name), rel=1e-12, abs=1e-13)
 
 
-def test_a_constant_from_the_record_of_a_run(tmp_path, capsys):
+def test_a_constant_from_the_record_of_a_run(tmp_path, monkeypatch, capsys):
     """Materials, law, radii and plates are those of the run, and as much energy is lost."""
+    monkeypatch.setattr("dem_demo.kit.session.make", lambda *_: {})  # draws nothing
     rain = ["rain", "--beads", "20", "--plates", "0.5e-3,3e-3", "--duration", "0.2"]
     rain += ["--law", "fem", "--sphere", "glass"]
     assert demo.main([*rain, "--out", str(tmp_path / "rain")]) == 0

@@ -38,7 +38,7 @@ def true(pair, name):
     "asked",
     [("thickness",), ("radius",), ("density",), ("plate_density",), ("youngs_modulus",),
      ("plate_youngs_modulus",), ("plate_yield_strength",), ("plate_yield_strength", "thickness"),
-     ("radius", "thickness", "plate_yield_strength")],
+     pytest.param(("radius", "thickness", "plate_yield_strength"), marks=pytest.mark.long)],
     ids="+".join,
 )  # fmt: skip
 def test_exact_data_give_back_what_made_them(asked):

@@ -8,7 +8,7 @@ from contactlaw._jit import kernel
 from contactlaw.softsphere import PARTED, advance
 
 
-@kernel(entry=True)
+@kernel(cache=True)
 def drop(law, spring, speed, step, phase):
     """COR of one bead that first touches at this phase of a step."""
     x, u, state = -phase * speed * step, speed, PARTED

@@ -3,9 +3,9 @@
 import itertools
 import math
 
-import numba
 import numpy as np
 import pytest
+from loops import loop
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT, Kind
@@ -19,7 +19,7 @@ MASS = 4 / 3 * math.pi * R**3 * MODEL.pair.sphere.density
 SIDE = 0.05
 
 
-@numba.njit
+@loop
 def run(scene, contacts, friction, x, v, omega, gravity, dt, steps, mass=MASS):
     """Path of one bead by velocity Verlet: energy, place, force of the wall, in each step."""
     force, torque, path = np.zeros(3), np.zeros(3), np.zeros((steps, 5))

@@ -2,9 +2,9 @@
 
 import math
 
-import numba
 import numpy as np
 import pytest
+from loops import loop
 
 import contactlaw as cl
 from contactlaw.engines.record import IMPACT, Kind
@@ -20,7 +20,7 @@ DT = 1e-7
 WIDE = Plate((-0.05, -0.05, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), 1e-3)
 
 
-@numba.njit
+@loop
 def fly(scene, contacts, friction, x, v, gravity, kick, when, mass, radius, dt, steps):
     """Move a bead by velocity Verlet; `kick` is added to its velocity at step `when`."""
     force, torque, omega = np.zeros(3), np.zeros(3), np.zeros(3)

@@ -3,9 +3,9 @@
 import importlib.util
 import math
 
-import numba
 import numpy as np
 import pytest
+from loops import loop
 from places import ROOT
 
 import contactlaw as cl
@@ -66,7 +66,7 @@ def test_it_stops_at_a_step_that_is_too_long(example):
         walls.collisions()
 
 
-@numba.njit
+@loop
 def strike_in_dent(scene, contacts, friction, mass, radius, dt, steps):
     """A bead that slides over the plate z = 0 and, in its dent, is thrown back without sliding.
 

@@ -128,7 +128,7 @@ def test_half_space_of_miller_and_pursey() -> None:
     assert half_space(0.25) * ratio(0.25) ** -1.5 * 2.0 * math.pi == pytest.approx(4.836, rel=2e-4)
 
 
-@pytest.mark.parametrize("poisson", [0.2, 0.3, 0.35])
+@pytest.mark.parametrize("poisson", [0.2, 0.35])
 def test_energy_of_an_impact(poisson: float) -> None:
     echo = 0.5 / math.sqrt(ratio(poisson))
     first = 8.0 * kirchhoff(poisson) / 5.0 * MEAN
@@ -140,7 +140,7 @@ def test_energy_of_an_impact(poisson: float) -> None:
         return float((thin**power + (thick * h**2) ** power) ** (1.0 / power))
 
     assert energy(0.01, poisson) == pytest.approx(1.0 + first * 0.01, abs=1e-4)
-    for h in (0.05, 0.2, 0.4, 0.6):
+    for h in (0.05, 0.3, 0.6):
         assert energy(h, poisson) == pytest.approx(fit(h), rel=8e-3)
     # an echo needs the time 2 H/c_L: beyond h = c_L/(2 c) the plate is a half-space, exactly
     assert energy(1.05 * echo, poisson) == pytest.approx(thick * (1.05 * echo) ** 2, rel=3e-4)
@@ -154,11 +154,11 @@ def phi(one: corrections.PlateCorrections, h: float) -> float:
     return one.bulk_factor * h * h + corrections.near_field(one, h)
 
 
-@pytest.mark.parametrize("poisson", [0.0, 0.1, 0.25, 0.3, 0.45])
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.45])
 def test_the_model_has_the_energy_of_an_impact(poisson: float) -> None:
     """The model is within 1.2 % of the integral, on plates of any thickness."""
     one = corrections.plate_corrections(poisson)
-    for x in (0.1, 0.3, 0.5, 0.65, 0.8, 1.0):
+    for x in (0.1, 0.4, 0.65, 1.0):
         h = x * 0.5 / math.sqrt(ratio(poisson))
         assert phi(one, h) == pytest.approx(energy(h, poisson), rel=1.2e-2)
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from places import ROOT
+from unrendered import blank
 
 from validation import figures, report
 from validation.__main__ import main
@@ -350,6 +351,7 @@ def test_a_thin_run_is_a_report(tmp_path, monkeypatch, capsys):
     few = ["fig09b_energy", "fig12_sensitivity", "fig20_limits"]
     monkeypatch.setattr(figures, "names", lambda: few)
     monkeypatch.setattr("validation.paper.claims.ROWS", ROWS[:7])
+    monkeypatch.setattr("contactlaw.style.png", blank)
     assert main(["--out", str(tmp_path)]) == 0
     text = (tmp_path / "index.html").read_text()
     assert sorted(re.findall(r"<figure id='(\w*)'", text)) == few
