@@ -207,7 +207,7 @@ def test_an_impact_that_began_early_and_ended_late_is_told_once():
 
 def test_two_ranks_give_the_same_bits(runs, tmp_path):
     mpirun = Path(sys.executable).with_name("mpirun")
-    command = [mpirun, "-np", "2", *unrendered.COMMAND, *SIEVE, "--out", tmp_path / "o"]
+    command = [mpirun, "-np", "2", *unrendered.UNDRAWN, *SIEVE, "--out", tmp_path / "o"]
     done = subprocess.run(list(map(str, command)), capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.count("Written to") == 1

@@ -19,9 +19,14 @@ from validation.accuracy import edges as independent
 from validation.derivations import edges as exact
 
 MYC = laws.law("myc").data
-USUAL = (exact.DURATIONS > 0.05) & (exact.DURATIONS < 1000.0)
+USUAL = exact.DURATIONS[(exact.DURATIONS > 0.05) & (exact.DURATIONS < 1000.0)]
 # Mobility at a free edge over that far from it, `shared/PHYSICS.md`, section 9.
 AT_THE_EDGE = {0.0: 3.27, 0.2: 3.53, 0.3: 3.70, 0.5: 4.18}
+
+
+@pytest.fixture(autouse=True)
+def a_few_durations(monkeypatch):
+    monkeypatch.setattr(exact, "DURATIONS", USUAL[::3])
 
 
 @functools.cache
@@ -36,7 +41,7 @@ def error_of_work(kind, poisson, size, radius=math.inf):
         blocks = part[:12].reshape(3, 4)[:, :3]
         added = added + np.tensordot(part[12:], exact.columns(exact.rates_of(blocks)), 1)
     wanted = exact_work(kind, poisson, radius)
-    return np.abs((exact.work(added) - wanted) / np.maximum(1.0 + wanted, 0.3))[USUAL].max()
+    return np.abs((exact.work(added) - wanted) / np.maximum(1.0 + wanted, 0.3)).max()
 
 
 def test_a_supported_edge_is_an_image_of_opposite_sign():

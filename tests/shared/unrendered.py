@@ -7,11 +7,16 @@ render them; this is for tests of what happens around them.
 import io
 import sys
 
-FIRST = "from contactlaw import style; style.png = lambda figure: b''\n"
-COMMAND = [  # takes the words that follow `dem-demo`
+RUN = "import sys; from dem_demo import cli; sys.exit(cli.main())"  # takes what follows `dem-demo`
+COMMAND = [
     sys.executable,
     "-c",
-    f"{FIRST}import sys; from dem_demo import cli; sys.exit(cli.main())",
+    f"from contactlaw import style; style.png = lambda figure: b''; {RUN}",
+]
+UNDRAWN = [  # leaves the record alone
+    sys.executable,
+    "-c",
+    f"from dem_demo.kit import session; session.make = lambda *_: {{}}; {RUN}",
 ]
 
 
