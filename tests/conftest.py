@@ -37,13 +37,25 @@ from contactlaw import _jit, _kept  # noqa: E402
 _jit.enable_caching()
 
 
+# So many impacts that they are not integrated in Python.
+FIRST = """
+from validation.bench.processes import EVERY_METHOD; exec(EVERY_METHOD)
+import numpy as np
+from contactlaw.softsphere import Contacts
+speed, sizes = np.linspace(1.0, 20.0, 2000), (0.9e-3, 1e-3)
+for edges in {}, {"edge": "free", "edge_distance": 1e-3}:
+    model.solve(speed, *sizes, **edges)
+    Contacts(model, *sizes, **edges).advance(np.array([1e-6]), 1e-9)
+model.oblique(speed, 1.0, *sizes, 0.2, method="solve")
+"""
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_sessionstart(session):
     """Compile what most tests need before workers start: each of them would compile the same."""
     kept = Path(os.environ["NUMBA_CACHE_DIR"], f"contactlaw-{_kept.fingerprint()}")
     if session.config.getoption("dist", "no") != "no" and not kept.exists():
-        every = "from validation.bench.processes import EVERY_METHOD; exec(EVERY_METHOD)"
-        commands = ["-c", every], ["docs/examples/plates_lammps.py"]  # which fails without LAMMPS
+        commands = ["-c", FIRST], ["docs/examples/plates_lammps.py"]  # which fails without LAMMPS
         quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": ROOT}
         running = [subprocess.Popen([sys.executable, *one], **quiet) for one in commands]
         for process in running:
