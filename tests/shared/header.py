@@ -1,88 +1,159 @@
-"""A C header of a model, compiled with functions that a test calls."""
+"""A C header, compiled with a function that calls all functions of it."""
 
 import ctypes
-import shutil
+import math
 import subprocess
 
-import pytest
+import numpy as np
+import uncompiled
 
-import contactlaw as cl
+from contactlaw.export import functions
 
+COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
-SOURCE = """
+FIELDS = functions.Impact._fields
+GIVEN, WIDTH = 7, len(FIELDS) + 3 + 5 * uncompiled.STEPS + 7
+# The same as `uncompiled.answers`; in CUDA and OpenCL, too.
+SOURCE = f"""
 #include "contactlaw.h"
-double looked_up(double v, double r, double h) { return contactlaw_restitution(v, r, h); }
-double rebounds(double v, double r, double h) { return contactlaw_rebound(v, r, h).restitution; }
-double kept(double v, double r, double h)
-{
+#ifdef __OPENCL_VERSION__
+#define AT __global
+#else
+#define AT
+#endif
+
+CONTACTLAW_FN void contactlaw_answer(AT const double *in, AT double *out)
+{{
+    const double v = in[0], r = in[1], h = in[2], mu = in[5], dt = in[6];
+    const int edge = (int)in[3];
+    const double normal[3] = {{ 0.0, 0.6, 0.8 }}, still[3] = {{ 0.0, 0.0, 0.0 }};
+    const double leaning[3] = {{ 0.1, 0.0, 1.0 }};
+    const double surface[3] = {{ 0.3 * v, -0.7 * v, 0.1 * v }};
+    double velocity[3] = {{ 0.4 * v, 0.1 * v, -v }}, spin[3] = {{ 3.0, 5.0, 7.0 }};
     const contactlaw_impact hit = contactlaw_rebound(v, r, h);
-    return hit.restitution * hit.restitution + hit.plastic_fraction + hit.wave_fraction
-         + hit.other_fraction;
-}
-double time_of(double v, double r, double h) { return contactlaw_rebound(v, r, h).contact_time; }
-double drops(double v, double r, double h)
-{
-    const contactlaw_spring spring = contactlaw_spring_of(r, h);
-    const double dt = contactlaw_rebound(v, r, h).contact_time / 40.0;
+    contactlaw_spring bead = contactlaw_spring_of(r, h);
     contactlaw_state state = CONTACTLAW_APART;
-    double x = -0.3 * v * dt, u = v;
-    int n;
-    for (n = 0; n < 200 && (n < 3 || state.force > 0.0); ++n) {
-        u -= 0.5 * dt * state.force / spring.mass;
-        x += u * dt;
-        contactlaw_step(&spring, &state, x, dt);
-        u -= 0.5 * dt * state.force / spring.mass;
-    }
-    return -u / v;
-}
-double slides(double v, double r, double h)
-{
-    double velocity[3] = { 1.0, 0.0, 0.0 }, spin[3] = { 0.0, 0.0, 0.0 };
-    const double normal[3] = { 0.0, 0.0, 1.0 }, still[3] = { 0.0, 0.0, 0.0 };
-    velocity[2] = -v;
-    contactlaw_collide(velocity, spin, normal, still, r, h, 0.2);
-    return velocity[0] - r * spin[1];
-}
-double near(double v, double r, double h)
-{
-    return contactlaw_restitution_near(v, r, h, CONTACTLAW_FREE_EDGE, h);
-}
-double flags(double v, double r, double h)
-{
-    const contactlaw_impact hit = contactlaw_rebound(v, r, h);
-    return contactlaw_flags(&hit, v, r, h);
-}
-double rubs(double v, double r, double h)
-{
-    const double normal[3] = { 0.0, 0.0, 1.0 }, velocity[3] = { 0.5, 0.1, -v };
-    const contactlaw_spring spring = contactlaw_spring_of(r, h);
-    const double dt = contactlaw_rebound(v, r, h).contact_time / 40.0;
-    contactlaw_state state = CONTACTLAW_APART;
-    contactlaw_sliding sliding = CONTACTLAW_STILL;
-    int n;
-    for (n = 1; n < 8; ++n) {
-        contactlaw_step(&spring, &state, n * v * dt, dt);
-        contactlaw_friction_step(&spring, &state, &sliding, n * v * dt, dt, normal, velocity, 0.2);
-    }
-    return sliding.force[0] / state.force;
-}
+    contactlaw_sliding row = CONTACTLAW_STILL;
+    double x = 0.0, u = v;
+    int k, step;
+    for (k = 0; k < {len(FIELDS)}; ++k)
+        *out++ = ((const double *)&hit)[k];
+    *out++ = contactlaw_flags(&hit, v, r, h);
+    *out++ = contactlaw_restitution(v, r, h);
+    *out++ = contactlaw_restitution_near(v, r, h, edge, in[4]);
+    contactlaw_set_edge(&bead, edge, in[4]);
+    for (step = 0; step < {uncompiled.STEPS}; ++step) {{
+        u -= 0.5 * dt * state.force / bead.mass;
+        x += dt * u;
+        *out++ = contactlaw_step(&bead, &state, x, dt);
+        u -= 0.5 * dt * state.force / bead.mass;
+        contactlaw_friction_step(&bead, &state, &row, x, dt, normal, surface, mu);
+        *out++ = state.largest_compression;
+        for (k = 0; k < 3; ++k)
+            *out++ = row.force[k];
+    }}
+    out[6] = contactlaw_collide(velocity, spin, leaning, still, r, h, mu);
+    for (k = 0; k < 3; ++k) {{
+        out[k] = velocity[k];
+        out[k + 3] = spin[k];
+    }}
+}}
+
+#ifdef __OPENCL_VERSION__
+__kernel void contactlaw_all(__global const double *in, __global double *out)
+{{
+    contactlaw_answer(in + {GIVEN} * get_global_id(0), out + {WIDTH} * get_global_id(0));
+}}
+#else
+void contactlaw_answers(int n, const double *in, double *out)
+{{
+    for (; n > 0; --n, in += {GIVEN}, out += {WIDTH})
+        contactlaw_answer(in, out);
+}}
+#endif
+#ifdef __CUDACC__
+__global__ void contactlaw_all(const double *in, double *out)
+{{
+    contactlaw_answer(in, out);
+}}
+#endif
 """
 
 
+def compiled(folder, source, *flags, compiler="gcc", out="out"):
+    """Run a compiler on a source beside a header."""
+    (folder / "source.c").write_text(source)
+    command = [compiler, *COMPILERS[compiler], *flags, "source.c", "-o", out, "-lm"]
+    return subprocess.run(list(map(str, command)), cwd=folder, capture_output=True, text=True)
+
+
+def build(folder, source, *flags, **options):
+    """Compile a source without a complaint; the file that comes of it."""
+    done = compiled(folder, source, *flags, **options)
+    assert (done.returncode, done.stderr[:2000]) == (0, "")
+    return folder / options.get("out", "out")
+
+
 class Library:
-    """Compiled functions of speed, radius and thickness, and the text of the header."""
+    """`SOURCE` as a library, beside the header in a folder."""
 
-    def __init__(self, folder, model):
-        if not shutil.which("gcc"):
-            pytest.skip("no gcc on PATH: the header is not compiled")
-        cl.export.header(folder / "contactlaw.h", model)
-        (folder / "source.c").write_text(SOURCE)
-        command = ["gcc", "-std=c99", "-O2", *WARNINGS, "-shared", "-fPIC", "source.c", "-o", "out"]
-        subprocess.run([*command, "-lm"], cwd=folder, check=True)
-        self.text = (folder / "contactlaw.h").read_text()
-        self._compiled = ctypes.CDLL(folder / "out")
+    def __init__(self, folder, *flags, out="out.so"):
+        self._compiled = ctypes.CDLL(
+            build(folder, SOURCE, "-O2", "-shared", "-fPIC", *WARNINGS, *flags, out=out)
+        )
 
-    def __call__(self, name, *numbers):
-        function = self._compiled[name]
-        function.restype, function.argtypes = ctypes.c_double, [ctypes.c_double] * 3
-        return function(*numbers)
+    def answers(self, rows):
+        """All answers for impacts, which are rows as `uncompiled` has them."""
+        rows, out = np.ascontiguousarray(rows, float), np.full((len(rows), WIDTH), -2.0)
+        places = [ctypes.c_void_p(one.ctypes.data) for one in (rows, out)]
+        self._compiled.contactlaw_answers(len(rows), *places)
+        return out
+
+
+def rows(count, seed):
+    """Impacts: lambda from 0 to 100, speeds far below and above yield; plates with edges."""
+    rng = np.random.default_rng(seed)
+
+    def between(low, high):
+        return np.exp(rng.uniform(np.log(low), np.log(high), count))
+
+    v, r, ratio = between(1e-3, 60.0), between(1e-4, 1e-2), between(0.05, 30.0)
+    ratio[rng.random(count) < 0.05] = np.inf
+    edge = np.where(ratio < np.inf, np.arange(count) % 4, 0)
+    h, dt = r * ratio, 6e-3 * r * v**-0.2 / between(15.0, 60.0)
+    return np.column_stack([v, r, h, edge, h * between(0.5, 3.0), between(0.03, 2.0), dt])
+
+
+def errors(given, found, expected):
+    """Largest differences; of times, forces and depths over those of the impact.
+
+    Of collisions that of the speed normal to the plate, and of the velocity of the bead's surface
+    along it over friction times speed.
+    """
+    off, (v, r, mu) = np.abs(found - expected), given.T[[0, 1, 5], :, None]
+    time, force, depth = found.T[[1, 3, 4], :, None]
+    change, normal = (found - expected)[:, -7:-4], np.array(uncompiled.LEANING) / math.sqrt(1.01)
+    up = (change @ normal)[:, None]
+    along = np.abs(change - up * normal) + r * off[:, -4:-1]
+    parts = {
+        "shares": off[:, [0, 6, 7, 8, 9]],
+        "times": off[:, 1:3] / time,
+        "peaks": off[:, 3:6] / np.hstack([force, depth, depth]),
+        "flags": off[:, 10],
+        "cor": off[:, 11],
+        "near": off[:, 12],
+        "steps": off[:, 13:-7] / np.tile(np.hstack([force, depth, *3 * [force]]), uncompiled.STEPS),
+        "up": up / v,
+        "sliding": along / (mu * v),
+        "status": off[:, -1],
+    }
+    return {name: np.nanmax(np.abs(one)) for name, one in parts.items()}
+
+
+def assert_close(given, found, expected):
+    """Whether answers differ by rounding alone, on which it may depend which springs hold."""
+    assert np.array_equal(np.isnan(found), np.isnan(expected))
+    off = errors(given, found, expected)
+    assert off.pop("sliding") < 2e-3
+    assert off.pop("steps") < 1e-9  # a level of strength is between two laws, which are chosen
+    assert max(off.values()) < 1e-11, off
