@@ -38,13 +38,14 @@ def test_all_functions_are_those_of_c(name, context, tmp_path):
     import pyopencl as opencl
 
     cl.export.header(tmp_path / "contactlaw.h", MODELS[name])
-    given = header.rows(2000, seed=1)
+    given = header.rows(1000, seed=1)
     expected = header.Library(tmp_path).answers(given)
     program = opencl.Program(context, header.SOURCE).build(["-I", str(tmp_path), "-Werror"])
     queue, flags, found = opencl.CommandQueue(context), opencl.mem_flags, np.empty_like(expected)
+    # one work item a group: the arrays of a large group exceed the stack of a thread
     rows = opencl.Buffer(context, flags.COPY_HOST_PTR, hostbuf=given)
     out = opencl.Buffer(context, flags.WRITE_ONLY, found.nbytes)
-    opencl.Kernel(program, "contactlaw_all")(queue, given.shape[:1], None, rows, out)
+    opencl.Kernel(program, "contactlaw_all")(queue, given.shape[:1], (1,), rows, out)
     opencl.enqueue_copy(queue, found, out)
     header.assert_close(given, found, expected)
     assert np.isfinite(found).mean(axis=0).min() > 0.5 and np.nanstd(found[:, 0]) > 0.05

@@ -33,7 +33,7 @@ MODELS = {
     "corners": cl.ImpactModel(cl.Pair("gamma-alumina", "carbon-steel-1006")),
 }
 # The others have the same kernels, and other numbers.
-QUICK = "fem", "myc", "losses and flow", "rate", "two rates"
+QUICK = "fem", "capped", "losses and flow", "two rates"
 NAMES = [one if one in QUICK else pytest.param(one, marks=pytest.mark.long) for one in MODELS]
 # Errors of COR, and of the sliding speed over friction times speed, between laws at some strengths.
 BETWEEN = {"rate": (1e-4, 1e-3), "two rates": (1e-3, 3e-3), "corners": (1e-4, 1e-3)}
@@ -47,16 +47,20 @@ def steel(tmp_path_factory):
     return file
 
 
+ABSURD = [0.0, -1.0, 1e-300, 1e300, math.inf, math.nan]
+
+
 @pytest.mark.parametrize("pair", NAMES)
 def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     model, rng = MODELS[pair], np.random.default_rng(7)
+    count = 40 if pair in BETWEEN else 200
     cl.export.page(tmp_path / "page.html", model)
     assert (tmp_path / "page.html").stat().st_size < (2e6 if pair == "two rates" else 1e6)
-    speed = np.exp(rng.uniform(math.log(0.02), math.log(50.0), 200))
-    radius = np.exp(rng.uniform(math.log(2e-5), math.log(2e-2), 200))
-    thickness = radius * np.exp(rng.uniform(math.log(0.2), math.log(50.0), 200))
+    speed = np.exp(rng.uniform(math.log(0.02), math.log(50.0), count))
+    radius = np.exp(rng.uniform(math.log(2e-5), math.log(2e-2), count))
+    thickness = radius * np.exp(rng.uniform(math.log(0.2), math.log(50.0), count))
     thickness[::10] = math.inf
-    angle, friction = rng.uniform(0.0, 89.0, 200), rng.choice([0.0, 0.05, 0.3, 1.0], 200)
+    angle, friction = rng.uniform(0.0, 89.0, count), rng.choice([0.0, 0.05, 0.3, 1.0], count)
     tilt = np.radians(angle)
     normal, along = speed * np.cos(tilt), speed * np.sin(tilt)
     settings = np.stack([speed, angle, radius, thickness, friction], axis=1).tolist()
@@ -80,19 +84,10 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     assert (off <= slide * friction * normal + 1e-14 * along).all()
     np.testing.assert_allclose(rows["curve"], rows["restitution"], rtol=0, atol=3e-4)
     np.testing.assert_allclose(rows["friction_energy"], expected.friction_energy, rtol=10 * slide)
-
-
-ABSURD = [0.0, -1.0, 1e-300, 1e300, math.inf, math.nan]
-
-
-@pytest.mark.parametrize("pair", ["fem", "losses", "capped", "hertz", "two rates"])
-def test_a_kernel_in_the_browser_does_as_in_python(pair, tmp_path, page):
-    """Each of these impacts takes as many steps in both, of a pair with a rate too."""
-    cl.export.page(tmp_path / "page.html", MODELS[pair])
-    page.open(tmp_path / "page.html", 1280)
-    usual, bodies = [3.0, 0.0, 1e-3, 2e-3, 0.3], web_page._bodies(MODELS[pair])
-    settings = [[7.0, 40.0, 1e-3, 5e-4, 0.3], [0.01, 0.0, 1e-3, math.inf, 0.0], usual]
-    settings += [[*usual[:n], x, *usual[n + 1 :]] for n in (0, 2, 3, 4) for x in ABSURD]
+    # Absurd input, and as many steps in each impact as in Python, of a pair with a rate too.
+    usual, bodies = [3.0, 0.0, 1e-3, 2e-3, 0.3], web_page._bodies(model)
+    settings = [*settings[:4], *([*usual[:n], x, *usual[n + 1 :]] for n in (0, 2, 3, 4)
+                                 for x in ABSURD)]  # fmt: skip
     texts = page.value(
         f"{json.dumps(settings)}.map((one) => (({{ impact, ...rest }}) => ["
         "...Object.values(impact), ...Object.values(rest)].map(String))($collide(...one)))"
@@ -157,14 +152,6 @@ def test_the_example_is_what_the_command_writes(steel):
     assert made == kept
     assert steel.stat().st_size < 1e6
     assert not re.findall(r"https?:|url\(|src=", kept)
-
-
-def test_what_a_page_cannot_answer_is_refused(tmp_path, capsys):
-    with pytest.raises(TypeError, match="ImpactModel, got 'steel'"):
-        cl.export.page(tmp_path / "page.html", "steel")
-    assert cli.main([*EXPLORE[:2], "steal", *EXPLORE[3:], str(tmp_path / "page.html")]) == 1
-    assert "--sphere: unknown material 'steal'" in capsys.readouterr().err
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_material_of_numbers_is_asked_in_a_shell_by_these(tmp_path, page, capsys):
