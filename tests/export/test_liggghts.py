@@ -247,7 +247,8 @@ def test_a_bead_that_sticks_has_mindlins_spring(scene):
     compliance = sum(2 * (2 - one.poissons_ratio) * (1 + one.poissons_ratio) / one.youngs_modulus
                      for one in (pair.sphere, pair.plate))  # fmt: skip
     depth = np.maximum(RADIUS - found["z"], 0.0)
-    slip = np.cumsum((found["vx"] - RADIUS * found["omegay"]) * step * (depth > 0.0))
+    speed = found["vx"] - RADIUS * found["omegay"]
+    slip = np.cumsum(0.5 * step * (speed + np.roll(speed, 1)) * (depth > 0.0))
     pull = 8.0 / compliance * np.sqrt(RADIUS * depth) * slip * (found["fz"] > 0.0)
     mass = 4 / 3 * math.pi * RADIUS**3 * pair.sphere.density
     pulled = -mass * np.gradient(found["vx"], step)
