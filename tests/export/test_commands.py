@@ -16,7 +16,6 @@ COMMANDS = {
     "liggghts": (["export", "liggghts", *BODIES], cl.export.liggghts),
     "page": (["explore", *BODIES], cl.export.page),
 }
-every = pytest.mark.parametrize("kind", COMMANDS)
 
 
 def contents(path):
@@ -68,7 +67,7 @@ def test_the_command_refuses_in_its_own_words(kind, change, message, tmp_path, m
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
-@every
+@pytest.mark.parametrize("kind", COMMANDS)
 def test_a_failure_leaves_what_was_there(kind, tmp_path, monkeypatch):
     export = COMMANDS[kind][1]
     with pytest.raises(TypeError, match=r"model: expected a contactlaw.ImpactModel, got 'myc'"):

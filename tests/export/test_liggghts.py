@@ -223,21 +223,6 @@ def test_drops_near_edges_have_the_restitution_of_the_solver(scene):
         assert abs(found - MODEL.restitution(v, RADIUS, h)) > 2e-3
 
 
-def test_primitive_face_seam_edge_and_corner_are_one_plate(scene):
-    v = 5.0
-    scene.sheet(parts=2)
-    places = {"face": (3e-3, 1e-3), "seam": (0.0, 2e-3), "diagonal": (5e-3, 5e-3),
-              "knot": (0.0, 0.0), "edge": (10e-3, 2e-3), "corner": (10e-3, 10e-3)}  # fmt: skip
-    start = scene.beads([(*at, RADIUS + GAP) for at in places.values()], (0, 0, -v))
-    on_mesh = scene.run(scene.script(start, meshes(sheet=3), every=200) + "run 200")
-    on_plane = scene.run(scene.script(start, zplane(), every=200) + "run 200")
-    expected = MODEL.restitution(v, RADIUS, THICKNESS[1])
-    for speed, name in zip(on_mesh["vz"][-1], places, strict=True):
-        assert speed / v == pytest.approx(expected, abs=5e-4), name
-        assert speed == pytest.approx(on_plane["vz"][-1, 0], rel=1e-9), name
-    assert np.abs(on_mesh["vx"][-1]).max() == np.abs(on_mesh["vy"][-1]).max() == 0.0
-
-
 def test_a_bead_that_sticks_has_mindlins_spring(scene):
     """By its velocities: 8 G* sqrt(r d) times the slip of the surface, at a half-space."""
     step, pair = 1e-7, MODEL.pair
