@@ -22,16 +22,17 @@ from contactlaw.answers.edges import near_edges
 from contactlaw.answers.histories import Histories
 from contactlaw.answers.inverse import Inverse
 from contactlaw.answers.oblique import Oblique
-from contactlaw.answers.rated import solver, tabulated
+from contactlaw.answers.rated import tabulated
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
+from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
 from contactlaw.answers.tabulated import Border, Outside, TableArgument
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
+from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
-from contactlaw.physical.scaling import law_of
 from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
 
@@ -194,7 +195,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             if impacts.edge_distance is None:
                 v, r, h = impacts.speed, impacts.radius, impacts.thickness
                 return shaped(self._tabulated.restitutions(v, r, h), impacts.shape)
-            by = near_edges(self._tabulated, solver(self._bodies), impacts)
+            by = near_edges(self._tabulated, Solver(self._bodies), impacts)
             return by.rebounds(impacts).restitution
         # a short cut for engines that call this once per collision
         if isinstance(speed, float) and isinstance(radius, float) and isinstance(thickness, float):
@@ -232,7 +233,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         '28.3 N for 3.92 us'
         """
         impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
-        return near_edges(self._tabulated, solver(self._bodies), impacts).rebounds(impacts)
+        return near_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
 
     def solve(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10,
@@ -271,7 +272,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
             raise ValueError(f"rtol: must be a float between 1e-13 and 1e-6, got {rtol!r}")
         impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
-        by = solver(self._bodies, rtol)
+        by = Solver(self._bodies, rtol)
         return near_edges(by, by, impacts).rebounds(impacts)
 
     def lookup_sphere_sphere(

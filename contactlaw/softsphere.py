@@ -16,14 +16,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching, kernel
 from contactlaw.answers.backend import OutsideTableError, too_thin
-from contactlaw.answers.solver import RTOL, solved
+from contactlaw.answers.solver import RTOL, within
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge
+from contactlaw.equation.force import room_for
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
-from contactlaw.physical.rate import factors, rated, strengthened
 from contactlaw.physical.rebound import edges_as_given
-from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
+from contactlaw.physical.scaling import scales, sphere_on_plate
+from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.stepping.edge import Near, near_edge
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import (
@@ -39,12 +40,10 @@ from contactlaw.stepping.spring import (
     State,
     advance,
     at_usual_frequency,
-    nearest_level,
     relaxation,
     resized,
     unit_spring,
 )
-from contactlaw.stepping.strength import levels_of
 
 __all__ = [
     "PARTED",
@@ -52,6 +51,7 @@ __all__ = [
     "Spring",
     "State",
     "advance",
+    "law_of",
     "resized",
     "time_step",
     "unit_spring",
@@ -75,7 +75,6 @@ def _spring_at(springs: Spring, n: int) -> Spring:
             springs.relaxation[n],
             springs.ratio[n],
             springs.plate,
-            springs.levels,
         )
     )
 
@@ -88,6 +87,7 @@ def _state_at(states: State, n: int) -> State:
         states.force[n],
         states.mobility[n],
         states.stiffening[n],
+        states.strength[n],
         states.x1[n],
         states.y1[n],
         states.x2[n],
@@ -104,15 +104,6 @@ def _near_at(near: Near | None, n: int) -> Near | None:
     return Near(near.response[n], near.rate[n])
 
 
-@kernel
-def _for_friction(
-    law: Array, levels: Array | None, spring: Spring, state: State
-) -> tuple[Array, Spring, State]:
-    if levels is None:
-        return law, spring, state
-    return nearest_level(law, levels, spring, state)
-
-
 @kernel(cache=True)
 def _slide_all(
     law: Array, kappa: float, springs: Spring, states: State, rows: Any, deepest: Array,
@@ -126,10 +117,10 @@ def _slide_all(
             slip = velocity[n, 0], velocity[n, 1], velocity[n, 2]
             up = dot(slip, at)
             slip = slip[0] - up * at[0], slip[1] - up * at[1], slip[2] - up * at[2]
-            own, spring, pressed = _for_friction(law, springs.levels, _spring_at(springs, n), state)
+            spring = _spring_at(springs, n)
             out = tangential_force(
-                rows[n], friction, kappa, own, spring, pressed, deepest[n], overlap[n], -up, at,
-                slip, step, 0.0,
+                rows[n], friction, kappa, law, spring, state, deepest[n], overlap[n], -up, at,
+                slip, step, 0.0, room_for(law),
             )  # fmt: skip
         else:
             clear_friction(rows[n])
@@ -156,10 +147,23 @@ def _advance_all(
         states.largest_compression[n] = state.largest_compression
         states.force[n] = state.force
         states.mobility[n] = state.mobility
-        states.stiffening[n] = state.stiffening
+        states.stiffening[n], states.strength[n] = state.stiffening, state.strength
         states.x1[n], states.y1[n], states.x2[n] = state.x1, state.y1, state.x2
         states.y2[n], states.x3[n], states.y3[n] = state.y2, state.x3, state.y3
     return -1
+
+
+def law_of(model: ImpactModel) -> Array:
+    """Force law of a model at any strength, for `advance`.
+
+    Examples
+    --------
+    >>> import contactlaw as cl
+    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    >>> law_of(model) is model.force_law.data  # this pair knows no rate
+    True
+    """
+    return by_strength(model.pair, model.force_law, COARSE)
 
 
 class Contacts:
@@ -215,7 +219,7 @@ class Contacts:
         contact = sphere_on_plate(model.pair, law, r, h)
         elastic = contact.yield_compression == math.inf
         enable_caching()
-        self._law = law.data
+        self._law = law_of(model)
         self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
         self._springs = Spring(
             mass=contact.mass,
@@ -225,7 +229,6 @@ class Contacts:
             relaxation=relaxation(contact.mass, contact.stiffness),
             ratio=contact.ratio,
             plate=contact.plate,
-            levels=levels_of(model.pair, law),
         )
         self._longest = float(self._springs.relaxation.min(initial=math.inf))
         self._states = State(*(np.zeros(r.size) for _ in State._fields))
@@ -398,14 +401,12 @@ def time_step(
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
     pair, law = model.pair, model.force_law
-    if flow := rated(pair, law):  # the stronger the pair, the shorter the contact
-        pair = strengthened(pair, float(factors(flow, v, r)[0]))
-        law = law_of(pair, law.family)
-    units = scales(sphere_on_plate(pair, law, r, h), v)
+    contact = sphere_on_plate(pair, law, r, h)
+    units = scales(contact, v)
     lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
     if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
         raise OutsideTableError(0, too_thin(lam, largest))
-    found = solved(law, units.inelasticity, units.yield_ratio, RTOL, few=True)
+    found = within(contact.law, units, RTOL, None, few=True)
     time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
     steps: float = (_ERROR / error) ** 0.4
     # Six digits only, so that a script has the same steps whether or not the kernels were compiled.

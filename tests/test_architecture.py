@@ -46,7 +46,7 @@ FILES = {
                 "uncertainty", "inverse"],
     "walls": ["memory", "edges", "motion", "plate", "mesh", "grid", "frame", "facet", "surface",
               "rest"],
-    "stepping": ["strength", "edge", "spring", "energy", "friction", "plate_rows", "contact",
+    "stepping": ["edge", "spring", "energy", "friction", "plate_rows", "contact",
                  "bead"],
     "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
                 "doubts", "fit"],
@@ -64,8 +64,8 @@ FILES = {
     "cli/cor": ["bands", "inverse"],
     "cli/fit": ["measured", "printed", "figure"],
     "physical": ["arguments", "kind", "hardness", "flow", "materials", "pair", "rate", "responses",
-                 "scaling",
-                 "measured", "validity", "history", "rebound", "oblique"],
+                 "law", "strengths", "scaling", "measured", "validity", "history", "rebound",
+                 "oblique"],
 }  # fmt: skip
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),
@@ -76,20 +76,20 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 # lines out elsewhere in its folder first; a higher number has its reason beside it.
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
-    # kernels are 1,400 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 34_300,
-    "contactlaw/answers": 3_450,
+    # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
+    "contactlaw": 34_100,
+    "contactlaw/answers": 3_240,
     "contactlaw/cli": 4_500,
     "contactlaw/emit": 700,
     "contactlaw/engines": 4_300,
-    "contactlaw/equation": 2_500,
-    "contactlaw/export": 1_250,
+    "contactlaw/equation": 2_680,  # with laws of any strength, which took 200 lines of stepping
+    "contactlaw/export": 1_080,
     "contactlaw/fitting": 2_300,
-    "contactlaw/laws": 1_950,
-    "contactlaw/physical": 2_900,
+    "contactlaw/laws": 2_040,  # laws of one pair have one layout
+    "contactlaw/physical": 3_120,  # with those laws, which took 400 lines of answers and export
     "contactlaw/report": 1_150,
-    "contactlaw/stepping": 2_250,
-    "contactlaw/table": 3_050,
+    "contactlaw/stepping": 1_960,
+    "contactlaw/table": 3_060,  # strength is a number of an impact in all kernels
     "contactlaw/walls": 2_000,
     "contactlaw templates": 1_050,  # sources of other languages
     "dem_demo": 6_350,

@@ -16,7 +16,8 @@ from hypothesis import strategies as st
 import contactlaw as cl
 from contactlaw import laws, table
 from contactlaw.equation import zener
-from contactlaw.physical.scaling import law_of, scales, sphere_on_sphere
+from contactlaw.physical.law import law_of
+from contactlaw.physical.scaling import scales, sphere_on_sphere
 
 R, H = 0.9e-3, 1e-3
 FIELDS = (

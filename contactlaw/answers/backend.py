@@ -18,7 +18,8 @@ from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
 from contactlaw.physical.scaling import ContactConstants, PairConstants, factors, sphere_on_plate
-from contactlaw.physical.validity import Limits, limits
+from contactlaw.physical.strengths import by_strength
+from contactlaw.physical.validity import Limits, limits, limits_by_strength
 
 Array = NDArray[np.float64]
 
@@ -62,6 +63,16 @@ class SphereOnPlate:
     def factors(self) -> PairConstants:
         """Constants from which the dimensionless numbers of impacts follow."""
         return factors(self.pair, self.law)
+
+    @functools.cached_property
+    def data(self) -> Array:
+        """The law at any strength, as kernels read it."""
+        return by_strength(self.pair, self.law)
+
+    @functools.cached_property
+    def limits_by_strength(self) -> Array:
+        """Limits of the model at some strengths, as kernels read them."""
+        return limits_by_strength(self.pair, self.law)
 
     def contact(self, impacts: Impacts) -> ContactConstants:
         """Contact of each sphere with its plate."""

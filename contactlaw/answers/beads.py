@@ -17,11 +17,11 @@ from contactlaw.answers.solver import RTOL, within
 from contactlaw.answers.tabulated import Border, Tabulated, curve, extent, table_for
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
+from contactlaw.physical.law import law_of
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import ContactConstants, law_of, scales, sphere_on_sphere
-from contactlaw.physical.validity import Limits, limits
+from contactlaw.physical.scaling import ContactConstants, scales, sphere_on_sphere
 from contactlaw.table import Table, lookup
 
 Array = NDArray[np.float64]
@@ -66,11 +66,6 @@ class Beads:
         return self._table_of(self.law)
 
     @functools.cached_property
-    def limits(self) -> Limits:
-        """Limits of the model."""
-        return limits(self.pair, self.law)
-
-    @functools.cached_property
     def _nodes(self) -> rated.Nodes | None:
         """Tables of several strengths, for materials with a rate of strain."""
         if rated.flow_of(self._bodies) is None:
@@ -82,14 +77,14 @@ class Beads:
         v, r, o, shape = _checked(speed, radius, other_radius)
         impacts = Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape)
         if self._nodes:
-            return self._nodes.rebounds(self._contacts(r, o), impacts)[0]
+            return self._nodes.rebounds(self._contact(r, o), impacts)[0]
         contact = self._contact(r, o)
         units = scales(contact, v)
         found, flags = self._border.look_up(self.law, self.table.packed, units)
         unclamped = units.inelasticity, units.yield_ratio
         return rebound(
-            self.pair, self.law.data, self.limits, impacts, units.time, contact.mass, unclamped,
-            found, flags,
+            self.pair, self.law.data, self._bodies.limits_by_strength, impacts, units.time,
+            contact.mass, unclamped, found, flags,
         )  # fmt: skip
 
     def restitutions(
@@ -109,23 +104,16 @@ class Beads:
         """COR of impacts as in `rebounds`, integrated to nine digits; a few need no table."""
         enable_caching()
         v, r, o, shape = _checked(speed, radius, other_radius)
-        if self._nodes:
-            impacts, e = (
-                Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape),
-                np.empty(v.size),
-            )
-            contact, most = self._contacts(r, o), extent(self.law)
-            for one in rated.solved(self._bodies, contact, impacts, extent=most, few=True):
-                e[one.some] = one.outcome.restitution
-            return shaped(e, shape)
-        found = within(self.law, scales(self._contact(r, o), v), RTOL, extent(self.law), few=True)
+        units = scales(self._contact(r, o), v)
+        found = within(self._bodies.data, units, RTOL, extent(self.law), few=True)
         return shaped(found.restitution, shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
         """COR of beads of these radii [m] as a function of speed [m/s]."""
         r, o = scalars(radius=radius, other_radius=other_radius)
         contact = self._contact(r, o)
-        c_chi = -math.log(scales(contact, np.ones(1)).yield_ratio.item())
+        time = (contact.mass / contact.stiffness).item() ** 0.4
+        c_chi = -math.log(contact.yield_compression.item() / time)
         if self._nodes:
             if contact.plate.growth.modulus_power:
                 return lambda v: float(self.rebounds(v, radius, other_radius).restitution)
@@ -137,21 +125,12 @@ class Beads:
         look_up = functools.partial(self._border.look_up, self.law)
         table, growth = self.table.packed, contact.plate.growth
         if growth.modulus_power:
-            time = (contact.mass / contact.stiffness).item() ** 0.4
             table = lookup.with_growth(table, growth, math.log(time))
-            c_chi = math.log(time / contact.yield_compression.item())
         return curve((table, 0.0, c_chi, 1.0, 0.0), lambda: contact, look_up)
 
-    def _contact(
-        self, radius: Array, other_radius: Array, bodies: SphereOnPlate | None = None
-    ) -> ContactConstants:
+    def _contact(self, radius: Array, other_radius: Array) -> ContactConstants:
         radii = (other_radius, radius) if self._swapped else (radius, other_radius)
-        bodies = bodies or self._bodies
-        return sphere_on_sphere(bodies.pair, bodies.law, *radii)
-
-    def _contacts(self, radius: Array, other_radius: Array) -> rated.Contact:
-        """Contacts of stronger materials."""
-        return lambda bodies, some: self._contact(radius[some], other_radius[some], bodies)
+        return sphere_on_sphere(self.pair, self.law, *radii)
 
 
 def beads_of(tabulated: Tabulated, other: Other) -> Beads:

@@ -111,7 +111,7 @@ class Compiled:
         Raises
         ------
         ValueError
-            If there is no such kind of edge, or if the pair has a rate of strain.
+            If there is no such kind of edge.
 
         Examples
         --------

@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import in_memory, kernel
 from contactlaw.answers.backend import Backend, SphereOnPlate
-from contactlaw.answers.rated import flow_of, merged, merged_histories, renumbered
+from contactlaw.answers.rated import merged, merged_histories, renumbered
 from contactlaw.answers.solver import Solver
 from contactlaw.equation.few_steps import restitution_near
+from contactlaw.equation.force import at_strength, room_for
 from contactlaw.equation.numbers import numbers, relaxes
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.rebound import Impacts, Rebound
@@ -62,15 +63,10 @@ def near_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
 
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, float, float], float]:
     """COR near an edge of this kind as a jitted function of speed, radius, thickness, distance."""
-    if flow_of(bodies) is not None:
-        raise ValueError(
-            "edge_kernel: a pair with a rate of strain has a law for each impact: call "
-            "restitution(..., edge, edge_distance)"
-        )
     one = bodies.contact(Impacts(np.ones(1), np.ones(1), np.ones(1), None))
     mass, stiffness, yielding = one.mass.item(), one.stiffness.item(), one.yield_compression.item()
     mobility, path, plate = one.mobility.item(), wave_path(bodies.pair.plate), one.plate
-    law = in_memory(bodies.law.data)
+    law = in_memory(bodies.data)
     response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))
 
     constants = mass, stiffness, yielding, mobility, path
@@ -97,12 +93,14 @@ def _cor_near(
         return math.nan
     mass, stiffness, yielding, mobility, path = constants
     m, ratio = mass * (radius * radius * radius), radius / thickness
-    known = numbers(plate, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
+    known = numbers(plate, law, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
     rate = wave_rate(path, thickness, edge_distance) * known.time if thickness < math.inf else 0.0
     thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
     thin = 1.0 if relaxes(plate) or rate == 0.0 else thin
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
-    return restitution_near(law, response, known.inelasticity, y, min(thin, 1.0), rate)
+    room = room_for(law)
+    own = law if room == 0 else at_strength(law, known.strength, np.empty(room))
+    return restitution_near(own, response, known.inelasticity, y, min(thin, 1.0), rate)
 
 
 def _each(

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from contactlaw.answers.backend import Backend
 from contactlaw.answers.edges import near_edges
-from contactlaw.answers.rated import solver
+from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.history import ForceHistory
@@ -71,8 +71,8 @@ class Histories:
         if method not in ("table", "solve"):
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
         bodies = self._tabulated.bodies
-        by: Backend = self._tabulated if method == "table" else solver(bodies)
+        by: Backend = self._tabulated if method == "table" else Solver(bodies)
         impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
-        found = near_edges(by, solver(bodies), impacts).histories(impacts, samples)
+        found = near_edges(by, Solver(bodies), impacts).histories(impacts, samples)
         check_finite(bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in found))
         return found

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._readable import scale_of
 from contactlaw.answers import rated
 from contactlaw.answers.backend import Backend, OutsideTableError
+from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Border, Tabulated
 from contactlaw.answers.uncertainty import Band, Uncertain
 from contactlaw.physical.arguments import broadcast, check, within
@@ -214,7 +215,7 @@ class Inverse(Uncertain):
         shape: tuple[int, ...] | None, errors: dict[str, float],
     ) -> Solutions | NDArray[np.object_]:  # fmt: skip
         within("restitution", wanted, *_SHARES, "[-]")
-        by = rated.solver(self._bodies)
+        by = Solver(self._bodies)
         border = rated.tabulated(self._bodies, self._tabulated.given, Border("clamp"))
         curve = functools.cache(functools.partial(_Curve, by, border))
         found = np.empty(wanted.size, dtype=object)

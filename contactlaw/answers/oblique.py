@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from contactlaw._jit import in_memory, kernel, switched_off
 from contactlaw.answers.backend import Backend
 from contactlaw.answers.edges import near_edges
-from contactlaw.answers.rated import solver
+from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical import oblique
@@ -97,8 +97,8 @@ class Oblique:
         check(speed=v, radius=r, thickness=h, sliding_speed=s, friction=mu)
         bodies = self._tabulated.bodies
         impacts = Impacts(v, r, h, shape, edge, *edges_as_given(edge, near, hole, h))
-        by: Backend = self._tabulated if method == "table" else solver(bodies)
-        return answer(near_edges(by, solver(bodies), impacts), bodies.pair, impacts, mu, s)
+        by: Backend = self._tabulated if method == "table" else Solver(bodies)
+        return answer(near_edges(by, Solver(bodies), impacts), bodies.pair, impacts, mu, s)
 
     def collide(
         self,

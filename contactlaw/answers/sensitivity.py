@@ -34,17 +34,17 @@ from numpy.typing import NDArray
 
 from contactlaw import laws
 from contactlaw.answers import rated
-from contactlaw.answers.backend import SphereOnPlate
-from contactlaw.answers.solver import solved
+from contactlaw.answers.solver import solved, within
 from contactlaw.answers.tabulated import Border, Tabulated
 from contactlaw.equation import outcome
 from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import shaped
+from contactlaw.physical.law import law_for_pair, pair_numbers
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import scaled
 from contactlaw.physical.rebound import Impacts
-from contactlaw.physical.scaling import law_for_pair, pair_numbers, scales, sphere_on_plate
+from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.table import lookup
 from contactlaw.table.nodes import Table
 
@@ -141,7 +141,7 @@ def by_solver(law: Law, found: Outcome) -> tuple[Array, Array]:
     """Differentiate ln e with respect to ln(lambda) and ln(y), by integration."""
 
     def outcomes(lam: Array, y: Array) -> Outcome:
-        return solved(law, lam, y, _RTOL)
+        return solved(law.data, lam, y, _RTOL)
 
     return _differences(outcomes, found)
 
@@ -175,7 +175,7 @@ def by_modulus_ratio(pair: Pair, law: Law, found: Outcome) -> Array:
     low, high = (float(f"{ratio * math.exp(step):.6g}") for step in (-_STEP, _STEP))
     below, above = (
         solved(
-            laws.law(law.family, **{**pair_numbers(pair, law.family), "modulus_ratio": value}),
+            laws.law(law.family, **{**pair_numbers(pair, law.family), "modulus_ratio": value}).data,
             found.inelasticity,
             found.yield_ratio,
             _RTOL,
@@ -240,15 +240,8 @@ def _changed(pair: Pair, number: str, factor: float, roles: tuple[str, ...]) -> 
 
 def _moved(pair: Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Array:
     """COR of impacts of other bodies, integrated, with the law's numbers for those bodies."""
-    bodies = SphereOnPlate(pair, law)
-    if rated.flow_of(bodies):
-        impacts, e = Impacts(speed, radius, thickness, speed.shape), np.empty(speed.size)
-        for one in rated.solved(bodies, rated.on_plates(impacts), impacts, rtol=_RTOL):
-            e[one.some] = one.outcome.restitution
-        return e
-    law = law_for_pair(pair, law)
-    units = scales(sphere_on_plate(pair, law, radius, thickness), speed)
-    return np.asarray(solved(law, units.inelasticity, units.yield_ratio, _RTOL).restitution)
+    contact = sphere_on_plate(pair, law_for_pair(pair, law), radius, thickness)
+    return np.asarray(within(contact.law, scales(contact, speed), _RTOL, None).restitution)
 
 
 def _yields(found: Outcome) -> NDArray[np.bool_]:

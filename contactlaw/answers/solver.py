@@ -16,11 +16,10 @@ from contactlaw.answers.backend import (
     too_fast,
     too_thin,
 )
-from contactlaw.equation import edge, outcome, zener
+from contactlaw.equation import edge, force, outcome, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History, Outcome
-from contactlaw.laws import Law
 from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.rebound import Impacts, Rebound, rebound
 from contactlaw.physical.scaling import ContactConstants, edges_of, scales, yield_share
@@ -39,6 +38,48 @@ _SLOPES = 0.5, 1.0  # bounds of d ln(compression)/d ln(speed); elastic impacts h
 
 
 @dataclass(frozen=True, eq=False)
+class Integrated:
+    """Impacts that have been integrated."""
+
+    bodies: SphereOnPlate
+    impacts: Impacts
+    contact: ContactConstants
+    units: Numbers
+    outcome: Outcome
+    edges: Edges | None
+
+    def rebound(self) -> Rebound:
+        """Everything about the impacts."""
+        units, flags = self.units, np.zeros(self.impacts.speed.size, dtype=np.int64)
+        return rebound(
+            self.bodies.pair, self.bodies.data, self.bodies.limits_by_strength, self.impacts,
+            units.time, self.contact.mass, (units.inelasticity, units.yield_ratio), self.outcome,
+            flags, self.edges,
+        )  # fmt: skip
+
+
+def integrate(
+    bodies: SphereOnPlate,
+    contact: ContactConstants,
+    impacts: Impacts,
+    rtol: float = RTOL,
+    extent: Settings | None = None,
+    few: bool = False,
+) -> Integrated:
+    """Integrate impacts whose contacts are known."""
+    units = scales(contact, impacts.speed)
+    beyond = units.strength > force.strongest(bodies.data)
+    if beyond.any():
+        n = int(np.argmax(beyond))
+        rate = impacts.speed[n] / impacts.radius[n]
+        reason = "the strength of a pair with a rate of strain is known up to 1e9 per second"
+        raise UnsolvedError(n, f"V0/R = {rate:.3g} /s", reason)
+    edges = edges_near(bodies, contact, units, impacts)
+    found = within(bodies.data, units, rtol, extent, few, edges)
+    return Integrated(bodies, impacts, contact, units, found, edges)
+
+
+@dataclass(frozen=True, eq=False)
 class Solver:
     """Integrates impacts; those outside a table of the given extent are refused as by a lookup."""
 
@@ -48,32 +89,26 @@ class Solver:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
-        return self._solved(impacts)[0]
+        return self._integrated(impacts).rebound()
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        normal, found, edges = self._solved(impacts)
-        return normal, slid(self.bodies, found, psi, edges)
-
-    def _solved(self, impacts: Impacts) -> tuple[Rebound, Outcome, Edges | None]:
-        contact = self.bodies.contact(impacts)
-        units = scales(contact, impacts.speed)
-        edges = edges_near(self.bodies, contact, units, impacts)
-        few = edges is not None and impacts.speed.size <= _FEW
-        found = within(self.bodies.law, units, self.rtol, self.extent, few, edges)
-        flags = np.zeros(impacts.speed.size, dtype=np.int64)
-        unclamped = units.inelasticity, units.yield_ratio
-        return rebound(
-            self.bodies.pair, self.bodies.law.data, self.bodies.limits, impacts, units.time,
-            contact.mass, unclamped, found, flags, edges,
-        ), found, edges  # fmt: skip
+        found = self._integrated(impacts)
+        return found.rebound(), slid(self.bodies, found.outcome, psi, found.edges)
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        normal, found, edges = self._solved(impacts)
-        units = scales(self.bodies.contact(impacts), impacts.speed)
-        contacts, path = histories_and_path(self.bodies.law, found, samples, edges)
-        return with_units(contacts, units, found.inelasticity, impacts.shape, normal.flags, path)
+        found = self._integrated(impacts)
+        outcome, flags = found.outcome, found.rebound().flags
+        contacts, path = histories_and_path(self.bodies.data, outcome, samples, found.edges)
+        return with_units(
+            contacts, found.units, outcome.inelasticity, impacts.shape, flags, path
+        )  # fmt: skip
+
+    def _integrated(self, impacts: Impacts) -> Integrated:
+        contact = self.bodies.contact(impacts)
+        few = impacts.edge_distance is not None and impacts.speed.size <= _FEW
+        return integrate(self.bodies, contact, impacts, self.rtol, self.extent, few)
 
     def yield_speeds(self, radius: Array, thickness: Array) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
@@ -93,13 +128,15 @@ class Solver:
         return speed
 
     def _yield_speed(self, share: float, radius: Array, thickness: Array) -> tuple[float, float]:
-        """Speed at which the largest compression is d_Y = share R, and lambda there.
+        """Speed at which the largest compression is that of first flow, and lambda there.
 
         By the secant method in logarithms, in which the compression is nearly linear in the speed.
         It starts at the yield speed on a half-space, which is the lowest of all plates.
         """
         contact = self.bodies.contact(Impacts(np.ones(1), radius, thickness, None))
-        contact = contact._replace(yield_compression=share * radius)
+        rated = contact.plate.rate.slope > 0.0
+        if not rated:
+            contact = contact._replace(yield_compression=share * radius)
         thinnest = math.inf if self.extent is None else 2.0 * self.extent.largest_inelasticity
         log_speed = 1.25 * math.log(float(scales(contact, np.ones(1)).yield_ratio[0]))
         log_speed -= 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
@@ -109,10 +146,15 @@ class Solver:
             lam, y = float(units.inelasticity[0]), float(units.yield_ratio[0])
             if lam > thinnest:
                 break
-            one = zener.solve(self.bodies.law.data, lam, y, self.rtol)
+            s = float(units.strength[0])
+            one = zener.solve(self.bodies.data, lam, y, self.rtol, s)
             if one.status != zener.OK:
                 raise UnsolvedError(0, f"lambda = {lam:.6g}", zener.MESSAGES[one.status])
-            before, gap = gap, math.log(one.peak_compression / y)
+            laws = self.bodies.data
+            onset = math.log(force.onset_at(laws, s) / force.growth_at(laws, s))
+            if rated and onset >= -math.log(share):  # the strength has outgrown the load
+                return math.inf, 0.0
+            before, gap = gap, math.log(one.peak_compression / y) - onset
             if abs(gap) < _CONVERGED:
                 break
             if last == last:
@@ -124,17 +166,17 @@ class Solver:
 
 
 def within(
-    law: Law, units: Numbers, rtol: float, extent: Settings | None, few: bool = False,
+    law: Array, units: Numbers, rtol: float, extent: Settings | None, few: bool = False,
     edges: Edges | None = None,
 ) -> Outcome:  # fmt: skip
     """Integrate impacts up to the first one that is outside the extent, which is refused."""
-    lam, y = units.inelasticity, units.yield_ratio
+    lam, y, s = units.inelasticity, units.yield_ratio, units.strength
     if extent is None:
-        return solved(law, lam, y, rtol, few=few, edges=edges)
+        return solved(law, lam, y, rtol, few=few, edges=edges, strength=s)
     thin = extent.largest_inelasticity
     beyond = int(np.argmax(np.append(lam > thin, True)))
     inner = edge.part(edges, slice(beyond))
-    found = solved(law, lam[:beyond], y[:beyond], rtol, few=few, edges=inner)
+    found = solved(law, lam[:beyond], y[:beyond], rtol, few=few, edges=inner, strength=s[:beyond])
     chi = found.elastic_compression / found.yield_ratio
     for n in np.flatnonzero(chi > extent.largest_overload)[:1].tolist():
         raise OutsideTableError(n, too_fast(chi[n], extent.largest_overload))
@@ -144,21 +186,22 @@ def within(
 
 
 def solved(
-    law: Law,
+    law: Array,
     lam: Array,
     y: Array,
     rtol: float,
     places: Places | None = None,
     few: bool = False,
     edges: Edges | None = None,
+    strength: Array | float = 0.0,
 ) -> Outcome:
-    """Outcomes at inelasticities and yield ratios, by integration.
+    """Outcomes at inelasticities, yield ratios and strengths, by integration.
 
     If these are only some of the user's impacts, `places` has their indices, for errors.
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
-    out = outcome.at(lam, y)
-    status, n = zener.solve_all(law.data, rtol, out, few, edges)
+    out = outcome.at(lam, y, strength)
+    status, n = zener.solve_all(law, rtol, out, few, edges)
     if status != zener.OK:
         where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
         raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])
@@ -178,17 +221,17 @@ def edges_near(
 def slid(bodies: SphereOnPlate, found: Outcome, psi: Array, edges: Edges | None = None) -> Array:
     """Change of the sliding speeds psi in impacts with these outcomes [mu V0], by integration."""
     kappa = bodies.pair.tangential_ratio
-    changed: Array = psi - slides.after(bodies.law, found, kappa, psi[:, None], edges=edges)[:, 0]
+    changed: Array = psi - slides.after(bodies.data, found, kappa, psi[:, None], edges=edges)[:, 0]
     return changed
 
 
-def histories(law: Law, found: Outcome, samples: int) -> History:
+def histories(law: Array, found: Outcome, samples: int) -> History:
     """Contacts over time on Hertz's scale, by integration."""
     return histories_and_path(law, found, samples, None)[0]
 
 
 def histories_and_path(
-    law: Law, found: Outcome, samples: int, edges: Edges | None
+    law: Array, found: Outcome, samples: int, edges: Edges | None
 ) -> tuple[History, Array | None]:
     """Contacts over time on Hertz's scale, and near edges the displacement of the plate.
 
@@ -197,7 +240,7 @@ def histories_and_path(
     """
     every = 1 if edges is None else -(-_CLOSE // (samples - 1))
     out = outcome.history(found.inelasticity.size, every * (samples - 1) + 1)
-    zener.histories(law.data, found, RTOL, out, edges)
+    zener.histories(law, found, RTOL, out, edges)
     if edges is None:
         return out, None
     step, u, f = out.time[:, 1:2], 1.0 - out.impulse, out.force

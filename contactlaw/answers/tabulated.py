@@ -82,7 +82,7 @@ class Border:
         found = outcome.part(out, beyond)
         if self.outside == "solve":
             places = np.flatnonzero(beyond)
-            found = solved(law, found.inelasticity, found.yield_ratio, RTOL, places)
+            found = solved(law.data, found.inelasticity, found.yield_ratio, RTOL, places)
         else:
             lookup.fields(table, True, found)
         for values, completed in zip(out, found, strict=True):
@@ -168,7 +168,7 @@ class Tabulated:
         found, flags, unclamped, root = self._outcomes(impacts)
         r, made = impacts.radius, self.bodies.factors
         return rebound(
-            self.bodies.pair, self.bodies.law.data, self.bodies.limits, impacts,
+            self.bodies.pair, self.bodies.data, self.bodies.limits_by_strength, impacts,
             made.time * r / root, made.mass * (r * r * r), unclamped, found, flags,
         ), found  # fmt: skip
 
@@ -235,7 +235,7 @@ class Tabulated:
             return out
         part = outcome.history(int(np.count_nonzero(inside)), samples)
         shapes.sample(law.data, packed, outcome.part(found, inside), part)
-        beyond = histories(law, outcome.part(found, ~inside), samples)
+        beyond = histories(law.data, outcome.part(found, ~inside), samples)
         for values, ours, others in zip(out, part, beyond, strict=True):
             values[inside], values[~inside] = ours, others
         return out

@@ -22,16 +22,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.answers import rated
 from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.law_errors import law_errors
 from contactlaw.answers.solver import Solver
 from contactlaw.physical.arguments import number, shaped, within
+from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import scaled
 from contactlaw.physical.rebound import Impacts, Rebound
-from contactlaw.physical.scaling import law_for_pair
 
 Array = NDArray[np.float64]
 Some = NDArray[np.intp]
@@ -45,9 +44,6 @@ _STRAIGHT = 1.5  # standard errors beyond which curves are straight
 _NEAR, _FARTHEST = 3.0, 2.0  # ln(chi) of impacts that may or may not yield, over its spread, and
 _DRAWS, _AT_ONCE = 2048, 256  # random errors, and impacts whose sums are in memory together
 _QUANTILES = NormalDist().cdf(-1.0), NormalDist().cdf(1.0)  # 16 and 84 %
-# Step in ln(V0/R) of the rates of strain at which changes are integrated: by changing radius and
-# thickness together, which changes nothing else. A law for each impact would take 10 ms.
-_RATES = 0.1
 _LARGEST_ERROR = 1.0
 _LEAST_COR = 1e-12  # the lower end of a range that reaches below zero
 _LARGEST = {"poissons_ratio": 0.5, "rate": 0.5, "loss_factor": 1.0}  # a material refuses more
@@ -119,7 +115,6 @@ class Variants:
         self.changes = [one for one in changes if one.error < math.inf]
         self.minima = [one._replace(error=_STRONGER) for one in changes if one.error == math.inf]
         self.solver = functools.cache(self._solver)
-        self.rated = rated.flow_of(bodies) is not None
 
     def _solver(self, moved: tuple[tuple[Change, float], ...]) -> Solver:
         bodies = self.given.copy()
@@ -127,9 +122,7 @@ class Variants:
             for role in change.roles:
                 bodies[role] = _changed(bodies[role], change, z)
         pair = Pair(**bodies)
-        given = self.bodies.law
-        law = dataclasses.replace(law_for_pair(pair, given), from_pair=given.from_pair)
-        return rated.solver(SphereOnPlate(pair, law), _RTOL)
+        return Solver(SphereOnPlate(pair, law_for_pair(pair, self.bodies.law)), _RTOL)
 
     def hit(self, impacts: Impacts, *moved: tuple[Change, float]) -> Rebound:
         """Integrate impacts with numbers that are off by some standard errors."""
@@ -240,17 +233,9 @@ class _Curves:
 
     def __init__(self, variants: Variants, impacts: Impacts, changes: list[Change]) -> None:
         self.variants, self.impacts, self.changes = variants, impacts, changes
-        self.unit = np.zeros((4, 1))
-        if variants.rated:
-            rate = np.log(impacts.speed / impacts.radius)
-            scale = np.exp(rate - _RATES * np.rint(rate / _RATES))
-            sizes = scale * impacts.radius, scale * impacts.thickness
-            self.impacts = Impacts(impacts.speed, *sizes, impacts.shape)
-            # contact times and forces of larger beads
-            self.unit = np.outer((0.0, 1.0, 2.0, 0.0), np.log(scale))
         hit = variants.hit(self.impacts)
         self.base = _logs(hit)
-        values = dict(zip(_FIELDS, np.exp(self.base - self.unit), strict=True))
+        values = dict(zip(_FIELDS, np.exp(self.base), strict=True))
         pair, law = variants.bodies.pair, variants.bodies.law
         known = dataclasses.replace(hit, **values)
         errors = law_errors(law, pair, known, impacts.radius / impacts.thickness)
@@ -347,7 +332,7 @@ def _deviates(count: int) -> Array:
 def _uncertainty(variants: Variants, impacts: Impacts, changes: list[Change]) -> Uncertainty:
     """Bands of the answers of impacts by changes of numbers, and by the law."""
     curves = _Curves(variants, impacts, changes)
-    logs = curves.base - curves.unit
+    logs = curves.base
     most = np.array([0.0, math.inf, math.inf, math.inf])[:, None]  # the COR is 1 at most
 
     def shifted(by: Array) -> Array:

@@ -11,8 +11,8 @@ from typing import Any
 from contactlaw import laws, table
 from contactlaw._jit import enable_caching
 from contactlaw.cli.parts import chosen, options, wording
+from contactlaw.physical.law import law_of
 from contactlaw.physical.rate import rated
-from contactlaw.physical.scaling import law_of
 from contactlaw.table import cache, file
 
 

@@ -82,8 +82,7 @@ class Function:
     def _statement(self, node: Any) -> list[str]:
         match node:
             case ast.Expr(value=value):
-                text = self.value(value).text
-                return [f"{text};"] if text else []
+                return [f"{text};"] if (text := self.value(value).text) else []
             case ast.Return(value=None) | ast.Break() | ast.Continue():
                 return [f"{type(node).__name__.lower()};"]
             case ast.Return(value=value):
@@ -279,9 +278,8 @@ class Function:
         if isinstance(op, ast.Is | ast.IsNot):
             return self._program.constant((left.known is None) == isinstance(op, ast.Is))
         sign, binds, known = self._operator(node, op, left, right)
-        if known is not UNKNOWN:
-            return self._program.constant(bool(known))
-        return Value(INT, f"{left.within(8)} {sign} {right.within(8)}", binds)
+        text = f"{left.within(8)} {sign} {right.within(8)}"
+        return Value(INT, text, binds) if known is UNKNOWN else self._program.constant(bool(known))
 
     def _boolop(self, node: ast.BoolOp) -> Value:
         """Write `and` or `or`; what is decided already is left out, or decides."""
@@ -319,6 +317,9 @@ class Function:
             self.refuse(node, "call kernels, NamedTuples, and functions of math")
         named = {str(one.arg): self.value(one.value) for one in node.keywords}
         given = self._bound(python, *values, **named)
+        made = {f"{key}_": one.type for key, one in given.items() if one.text == "empty"}
+        self.types |= made  # arrays that are made for this call
+        given |= {key[:-1]: self._name(ast.Name(key)) for key in made}
         if hasattr(called, "_fields"):
             return self._program.make(called, given)
         kinds = [Known(value=one.known) if key in self._program.fixed and one.known is not UNKNOWN

@@ -28,6 +28,19 @@ Coefficients are padded with zeros to a multiple of four. The last of the starts
 starts, is infinity. Between two kinks the loading curve is smooth, however many pieces it has: an
 integration has to stop at kinks only.
 
+Laws of one pair that grow stronger with the rate of an impact stand in one array, too: a negative
+number of pieces of ln k, the strength over that of a slow test, and for each
+
+    TOP     ln k at its end         PER, CENTRE  of t = PER (ln k - CENTRE), from -1 to 1
+    BEGINS  index of its block      POWERS       of t, less one
+    WIDTH   numbers of a law, LOG_SCALE the logarithm of its d_Y over that of the slow pair, and
+            LOG_ONSET, likewise of the compression at which flow begins
+
+A block has these numbers, then those that t multiplies, those that its square multiplies, and so
+on; but SCALE and OFFSET are half the length of a piece and its middle, which are smooth where a
+length vanishes. Within a piece of ln k all laws have one layout. `at_strength` writes the law of an
+impact into an array of its own, of `ROOM` numbers.
+
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
 """
 
@@ -49,6 +62,9 @@ FUNCTION_POWER, FUNCTION_DEGREE, FUNCTION_AT, FUNCTION = range(4)
 FUNCTIONS = 6
 # Energy lost before the largest compression, by ln of the work given back: fem.json's, to 2.5 %.
 EARLY, LESS_EARLY = 0.296, 0.0175
+TOP, CENTRE, PER, BEGINS, POWERS, WIDTH, STRENGTHS = range(7)
+LOG_SCALE, LOG_ONSET, HEADS = range(3)  # numbers after those of a law
+ROOM = 4096
 # functions of dm, in the order of a row
 RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
@@ -73,6 +89,87 @@ class UnloadingCurve(NamedTuple):
     exponent: float  # b
     cap_low: float  # from cap_high down to cap_low it unloads along loading; equal: nowhere
     cap_high: float
+
+
+@kernel
+def _piece(laws: Array, strength: float) -> int:
+    """Where the row of the piece of a strength begins."""
+    at, last = 1, 1 + (int(-laws[PIECES]) - 1) * STRENGTHS
+    while at < last and strength > laws[at + TOP]:
+        at += STRENGTHS
+    return at
+
+
+@kernel(inline=True)
+def _place(laws: Array, at: int, strength: float) -> float:
+    """Return t of a strength in the piece whose row begins at `at`; no negative one, and no NaN."""
+    known = min(strength, laws[at + TOP]) if strength > 0.0 else 0.0
+    t: float = laws[at + PER] * (known - laws[at + CENTRE])
+    return t
+
+
+@kernel
+def _at_place(laws: Array, at: int, strength: float, number: int) -> float:
+    """Value of one number at a strength, in the piece whose row begins at `at`."""
+    t = _place(laws, at, strength)
+    width, powers = int(laws[at + WIDTH]), int(laws[at + POWERS])
+    k = int(laws[at + BEGINS]) + number + powers * width
+    value: float = laws[k]
+    for _ in range(powers):
+        k -= width
+        value = value * t + laws[k]
+    return value
+
+
+@kernel(inline=True)
+def room_for(laws: Array) -> int:
+    """Count the numbers that `at_strength` needs; 0 for an array that is one law."""
+    return ROOM if laws[PIECES] < 0.0 else 0
+
+
+@kernel
+def growth_at(laws: Array, strength: float) -> float:
+    """Yield compression of an impact over that of the slow pair."""
+    if room_for(laws) == 0:
+        return 1.0
+    at = _piece(laws, strength)
+    return math.exp(_at_place(laws, at, strength, int(laws[at + WIDTH]) - HEADS + LOG_SCALE))
+
+
+@kernel
+def onset_at(laws: Array, strength: float) -> float:
+    """Compression of an impact at which flow begins, over the slow pair's yield compression."""
+    if room_for(laws) == 0:
+        return 1.0
+    at = _piece(laws, strength)
+    return math.exp(_at_place(laws, at, strength, int(laws[at + WIDTH]) - HEADS + LOG_ONSET))
+
+
+@kernel
+def at_strength(laws: Array, strength: float, room: Array) -> Array:
+    """Law of an impact among several, written into `room`; beyond them it is that of their end."""
+    at = _piece(laws, strength)
+    t = _place(laws, at, strength)
+    width, powers = int(laws[at + WIDTH]), int(laws[at + POWERS])
+    last = int(laws[at + BEGINS]) + powers * width
+    for n in range(width):
+        room[n] = laws[last + n]
+    for k in range(powers):
+        begins = last - (k + 1) * width
+        for n in range(width):
+            room[n] = room[n] * t + laws[begins + n]
+    if powers > 0:
+        _by_scale(room, int(room[CURVE]), int(room[PIECES]), PIECE)
+        _by_scale(room, int(room[FAMILY]), int(room[UNLOADINGS]), UNLOADING_ROW)
+    return room
+
+
+@kernel
+def _by_scale(room: Array, at: int, count: int, length: int) -> None:
+    """Put SCALE and OFFSET in place of half the length and the middle of each piece."""
+    for k in range(at, at + count * length, length):
+        room[k + SCALE] = 1.0 / room[k + SCALE]
+        room[k + OFFSET] *= room[k + SCALE]
 
 
 @kernel(inline=True)
@@ -278,6 +375,31 @@ def unloading_force(law: Array, curve: UnloadingCurve, q: float) -> float:
     if law[CAPPED] > 0.0 and q > 0.0:
         force = min(force, loading(law, math.sqrt(curve.residual + q * q)))
     return force
+
+
+def strongest(laws: Array) -> float:
+    """Return ln k up to which laws reach; infinite for an array that is one law."""
+    last = 1 + (pieces_of(laws) - 1) * STRENGTHS
+    return float(laws[last + TOP]) * (1.0 + 1e-12) if pieces_of(laws) else math.inf
+
+
+def pieces_of(laws: Array) -> int:
+    """Count the pieces of ln k; 0 for an array that is one law."""
+    return max(int(-laws[PIECES]), 0)
+
+
+def widest(laws: Array) -> int:
+    """Count the numbers of the longest law of several; 0 for an array that is one law."""
+    rows = laws[1 : 1 + pieces_of(laws) * STRENGTHS].reshape(-1, STRENGTHS)
+    return int(rows[:, WIDTH].max(initial=0.0))
+
+
+def by_length(law: Array) -> None:
+    """Put half the length and the middle of each piece in place of SCALE and OFFSET."""
+    for block, count, length in ((CURVE, PIECES, PIECE), (FAMILY, UNLOADINGS, UNLOADING_ROW)):
+        rows = int(law[block]) + length * np.arange(int(law[count]))
+        law[rows + OFFSET] /= law[rows + SCALE]
+        law[rows + SCALE] = 1.0 / law[rows + SCALE]
 
 
 def check(law: Array) -> None:

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections, eta_of, is_thin, with_corrections
+from contactlaw.equation.force import growth_at
 
 Array = NDArray[np.float64]
 
@@ -48,6 +49,17 @@ ELASTIC = ModulusGrowth(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Bodies whose moduli are the same at any frequency."""
 
 
+class RateOfStrain(NamedTuple):
+    """How a pair's strength k grows with the rate of an impact: k = 1 + slope ln(rate/rate0)."""
+
+    slope: float
+    per_speed: float  # rate/rate0 at one d_Y per second
+
+
+NO_RATE = RateOfStrain(0.0, 0.0)
+"""Bodies whose strength is the same at any rate."""
+
+
 class PlateConstants(NamedTuple):
     """Constants of a pair for impacts on its plates, at 1 m/s and R = H."""
 
@@ -57,6 +69,7 @@ class PlateConstants(NamedTuple):
     saturated: float  # V^(1/5) from which on x is constant in eta; inf: nowhere
     corrections: PlateCorrections
     growth: ModulusGrowth
+    rate: RateOfStrain
 
 
 class Numbers(NamedTuple):
@@ -68,6 +81,7 @@ class Numbers(NamedTuple):
     compression: Any  # V0 T_H [m]
     force: Any  # m V0/T_H [N]
     stiffer: Any  # factor by which plate and frequency shorten the contact, exp(eta) g^(2/5)
+    strength: Any  # ln k of the pair at the rate of the impact
 
 
 @kernel(inline=True)
@@ -113,22 +127,44 @@ def relaxed(
     growth, slower = known.modulus_power * shorter, math.exp(-0.5 * known.plate_power * shorter)
     plate = PlateConstants(
         plate.inelasticity * slower, plate.transit * slower, plate.x_at_one * math.exp(-growth),
-        plate.saturated, plate.corrections, known,
+        plate.saturated, plate.corrections, known, plate.rate,
     )  # fmt: skip
     return plate, root * math.exp(0.4 * growth), growth
+
+
+@kernel(inline=True)
+def strength_of(rate: RateOfStrain, speed: float, yield_compression: float) -> float:
+    """Logarithm of a pair's strength in an impact, over that of a slow test."""
+    relative = rate.per_speed * speed / yield_compression
+    return math.log(1.0 + rate.slope * math.log(relative)) if relative > 1.0 else 0.0
+
+
+@kernel
+def strengthened(plate: PlateConstants, growth: float) -> PlateConstants:
+    """Plate under a pair whose yield compression has grown: x is constant from a later speed on."""
+    return PlateConstants(
+        plate.inelasticity, plate.transit, plate.x_at_one,
+        plate.saturated * math.sqrt(math.sqrt(growth)), plate.corrections, plate.growth, plate.rate,
+    )  # fmt: skip
 
 
 @kernel(entry=True)
 def numbers(
     plate: PlateConstants,
+    laws: Array,
     mass: float,
     stiffness: float,
     yield_compression: float,
     speed: float,
     ratio: float,
 ) -> Numbers:
-    """Numbers of an impact, from m [kg], K [N/m^1.5], d_Y [m], V [m/s] and R/H."""
+    """Numbers of an impact, from m [kg], K [N/m^1.5], d_Y [m] of a slow one, V [m/s] and R/H."""
+    strength = strength_of(plate.rate, speed, yield_compression)
+    later = growth_at(laws, strength)
     root, time, growth = speed**0.2, (mass / stiffness) ** 0.4, 0.0
+    yield_compression *= later
+    if later != 1.0:
+        plate = strengthened(plate, later)
     if relaxes(plate):
         plate, root, growth = relaxed(plate, root, math.log(time / root))
         yield_compression *= math.exp(plate.growth.yield_power * growth)
@@ -137,12 +173,15 @@ def numbers(
     length = speed * unit
     lam = inelasticity_of(plate, root, ratio, stiffer)
     stiffer *= math.exp(0.4 * growth)
-    return Numbers(lam, yield_compression / length, unit, length, mass * speed / unit, stiffer)
+    return Numbers(
+        lam, yield_compression / length, unit, length, mass * speed / unit, stiffer, strength
+    )
 
 
 @kernel(cache=True)
 def fill(
     plate: PlateConstants,
+    laws: Array,
     mass: Array,
     stiffness: Array,
     yield_compression: Array,
@@ -153,8 +192,8 @@ def fill(
     """`numbers` of many impacts; all arrays have one length."""
     for n in range(speed.size):
         one = numbers(
-            plate, mass[n], stiffness[n], yield_compression[n], speed[n], ratio[n]
+            plate, laws, mass[n], stiffness[n], yield_compression[n], speed[n], ratio[n]
         )  # fmt: skip
         out.inelasticity[n], out.yield_ratio[n] = one.inelasticity, one.yield_ratio
         out.time[n], out.compression[n] = one.time, one.compression
-        out.force[n], out.stiffer[n] = one.force, one.stiffer
+        out.force[n], out.stiffer[n], out.strength[n] = one.force, one.stiffer, one.strength

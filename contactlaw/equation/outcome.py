@@ -25,6 +25,7 @@ class Outcome(NamedTuple):
     elastic_compression: Any  # w_m, the largest compression of an elastic impact
     inelasticity: Any  # lambda
     yield_ratio: Any  # y, the yield compression; inf for an elastic law
+    strength: Any  # ln of the strength at the impact's rate over that of a slow test
 
 
 class Extremes(NamedTuple):
@@ -70,11 +71,12 @@ def empty(count: int) -> Outcome:
     return Outcome(*np.empty((len(Outcome._fields), count)))
 
 
-def at(inelasticity: Array, yield_ratio: Array) -> Outcome:
+def at(inelasticity: Array, yield_ratio: Array, strength: Array | float = 0.0) -> Outcome:
     """Allocate the outcomes of impacts with these dimensionless numbers."""
     out = empty(inelasticity.size)
     out.inelasticity[:] = inelasticity
     out.yield_ratio[:] = yield_ratio
+    out.strength[:] = strength
     return out
 
 

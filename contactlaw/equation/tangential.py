@@ -187,10 +187,12 @@ def slide(law: Array, y: float, kappa: float, path: History, speed: Array, stret
 
 @kernel(cache=True)
 def slide_all(
-    law: Array, y: Array, kappa: float, paths: History, speed: Array, springs: int
+    law: Array, y: Array, s: Array, kappa: float, paths: History, speed: Array, springs: int
 ) -> None:
-    """`slide` for speeds (histories, speeds)."""
+    """`slide` for speeds (histories, speeds); s is the strength of the impacts."""
+    room = np.empty(force.room_for(law))
     stretch = np.empty((springs, speed.shape[1]))
     for n in range(speed.shape[0]):
         path = History(paths.time[n], paths.force[n], paths.compression[n], paths.impulse[n])
-        slide(law, y[n], kappa, path, speed[n], stretch)
+        own = law if room.size == 0 else force.at_strength(law, s[n], room)
+        slide(own, y[n], kappa, path, speed[n], stretch)

@@ -7,7 +7,7 @@ note. The integrator takes seconds to compile, and each kernel that Python calls
 everything that it calls.
 
 Legend, as in `contactlaw.equation.motion`: lam inelasticity parameter lambda, y yield compression,
-w compression, w_m that of an elastic impact; a law is its data.
+w compression, w_m that of an elastic impact, s strength; a law is its data.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from contactlaw.equation.plate import PlateMobility
 
 Array = NDArray[np.float64]
 
+_SECANT, _STEEPEST = 1e-6, 0.9  # last relative step for w_m; largest slope over y
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 OK, TOO_MANY_STEPS, BAD_INPUT, NOT_FOUND = range(4)  # status of a solution
 MESSAGES = {
@@ -76,17 +77,19 @@ _NO_NOTES = Notes(*np.empty((5, 0, 0)))
 
 @kernel(cache=True)
 def _integrate(
-    goal: int, law: Array, lam: Array, y: Array, rtol: float, notes: Notes, out: Array,
+    goal: int, law: Array, lam: Array, y: Array, s: Array, rtol: float, notes: Notes, out: Array,
     edges: Edges | None,
 ) -> None:  # fmt: skip
     """Integrate impacts: lam >= 0, y = d_Y/(V0 T_H) > 0, rtol the error allowed per step.
 
     The solution of each goes into a column of out, in the order of `Solution`.
     """
+    room = np.empty(force.room_for(law))
     for n in range(lam.size):
         out[0, n] = BAD_INPUT
         if 0.0 <= lam[n] < math.inf and 0.0 < y[n] < math.inf:
-            one = follow_impact(goal, law, lam[n], y[n], rtol, notes, n, edges)
+            own = law if room.size == 0 else force.at_strength(law, s[n], room)
+            one = follow_impact(goal, own, lam[n], y[n], rtol, notes, n, edges)
             for k in range(len(one)):
                 out[k, n] = one[k]
                 if out[0, n] == OK and not abs(one[k]) < math.inf:
@@ -192,14 +195,14 @@ def _run(
     notes: Notes = _NO_NOTES,
     few: bool = False,
     edges: Edges | None = None,
+    strength: ArrayLike = 0.0,
 ) -> Solution:
-    """Integrate impacts, broadcasting lam and y; y is arbitrary for a law that never yields."""
-    lams, ys = np.array(lam, np.float64, ndmin=1), np.array(y, np.float64, ndmin=1)
-    if lams.size != ys.size:
-        lams, ys = (each.copy() for each in np.broadcast_arrays(lams, ys))
+    """Integrate impacts, broadcasting; y is arbitrary for a law that never yields."""
+    given = (np.array(one, np.float64, ndmin=1) for one in (lam, y, strength))
+    lams, ys, s = (each.copy() for each in np.broadcast_arrays(*given))
     out = np.zeros((len(Solution._fields), lams.size))
     integrate = _integrate_few if few else _integrate
-    integrate(goal, law, lams, ys, rtol, notes, out, edges)
+    integrate(goal, law, lams, ys, s, rtol, notes, out, edges)
     return Solution(*out)
 
 
@@ -209,14 +212,16 @@ def failure(status: Array) -> tuple[int, int]:
     return (int(status[failed[0]]), int(failed[0])) if failed.size else (OK, 0)
 
 
-def solve(law: Array, lam: float, y: float, rtol: float) -> Solution:
+def solve(law: Array, lam: float, y: float, rtol: float, strength: float = 0.0) -> Solution:
     """Solve one impact: lam >= 0, y = d_Y/(V0 T_H) > 0, both finite; rtol error per step."""
-    return Solution(*(each.item() for each in _run(TO_THE_END, law, lam, y, rtol)))
+    found = _run(TO_THE_END, law, lam, y, rtol, strength=strength)
+    return Solution(*(each.item() for each in found))
 
 
 def history(
-    law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, time: Array, edges: Edges | None = None
-) -> tuple[Array, Array, Array]:
+    law: Array, lam: ArrayLike, y: ArrayLike, rtol: float, time: Array, edges: Edges | None = None,
+    strength: ArrayLike = 0.0,
+) -> tuple[Array, Array, Array]:  # fmt: skip
     """Force, compression and speed of the sphere at rising times [T_H] since first touch.
 
     There is one lam and one y, which `solve` solves, for each row of times. After separation the
@@ -224,7 +229,9 @@ def history(
     """
     at = np.ascontiguousarray(np.atleast_2d(time))
     notes = Notes(at, *np.empty((4, *at.shape)))
-    status, n = failure(_run(AT_TIMES, law, lam, y, rtol, notes, edges=edges).status)
+    status, n = failure(
+        _run(AT_TIMES, law, lam, y, rtol, notes, edges=edges, strength=strength).status
+    )
     if status != OK:
         raise RuntimeError(f"the contact of impact {n} did not solve: {MESSAGES[status]}")
     f, w, u = (each.reshape(time.shape) for each in (notes.force, notes.compression, notes.speed))
@@ -236,8 +243,8 @@ def histories(
 ) -> None:
     """Contacts at even times from touch to separation."""
     out.time[:] = outcome.contact_time[:, None] * np.linspace(0.0, 1.0, out.time.shape[1])
-    lam, y = outcome.inelasticity, _scale(outcome.yield_ratio)
-    out.force[:], out.compression[:], speed = history(law, lam, y, rtol, out.time, edges)
+    lam, y, s = outcome.inelasticity, _scale(outcome.yield_ratio), outcome.strength
+    out.force[:], out.compression[:], speed = history(law, lam, y, rtol, out.time, edges, s)
     out.impulse[:] = 1.0 - speed
     out.force[:, -1] = 0.0
 
@@ -259,22 +266,32 @@ def shape(
     return _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes).status, notes.time, notes.speed
 
 
-def elastic_compression(law: Array, lam: Any, rtol: float, few: bool = False) -> tuple[Any, Any]:
+def elastic_compression(
+    law: Array, lam: Any, rtol: float, few: bool = False, strength: ArrayLike = 0.0
+) -> tuple[Any, Any]:
     """Status and w_m(lam): largest compression [V0 T_H] of an impact that just yields.
 
     If the law is Hertz's up to yield, all elastic impacts have the same (Fig. 4 of the paper). If
-    not, w_m depends a little on the speed: it is the y whose largest compression is y itself.
+    not, w_m depends a little on the speed: it is the y whose largest compression is y itself, found
+    by the secant method.
     """
-    hertz, before = force.is_hertz(law), np.ones(np.size(lam))
+    hertz, y = force.room_for(law) == 0 and force.is_hertz(law), np.ones(np.size(lam))
+    before = peak_before = y
     for _ in range(100):
-        found = _run(TO_THE_TOP, HERTZ if hertz else law, lam, before, rtol, few=few)
-        w_m = found.peak_compression
-        moved = ~(abs(w_m - before) < 1e-11 * before)
+        own = HERTZ if hertz else law
+        found = _run(TO_THE_TOP, own, lam, y, rtol, few=few, strength=strength)
+        peak = found.peak_compression
+        # next to the solution a difference is rounding, and no slope is needed
+        step = np.where(abs(y - before) > _SECANT * y, y - before, math.inf)
+        slope = np.clip((peak - peak_before) / step, -_STEEPEST, _STEEPEST)
+        before, peak_before, y = y, peak, peak + slope * (peak - y) / (1.0 - slope)
+        # steps shrink faster and faster: one more would be below 1e-11
+        moved = ~(abs(y - before) < _SECANT * before)
         if hertz or found.status.any() or not moved.any():
             break
-        before = w_m
     else:
         found.status[moved] = NOT_FOUND
+    w_m = peak if hertz else y
     return (found.status, w_m) if np.ndim(lam) else (found.status.item(), w_m.item())
 
 
@@ -298,14 +315,16 @@ def solve_all(
     A few impacts need no compiled integrator, if their last digits do not matter.
     """
     y = _scale(out.yield_ratio)
-    one = _run(TO_THE_END, law, out.inelasticity, y, rtol, few=few, edges=edges)
+    lam, s = out.inelasticity, out.strength
+    one = _run(TO_THE_END, law, lam, y, rtol, few=few, edges=edges, strength=s)
     if one.status.any():
         return failure(one.status)
     w_m = one.peak_compression.copy()
     # near edges, too, w_m is that of an endless plate: it makes the overload, and nothing else
-    beyond = (w_m > force.leaves_hertz(law) * y) | (edges is not None)
+    leaves = 0.0 if force.room_for(law) else force.leaves_hertz(law)
+    beyond = (w_m > leaves * y) | (edges is not None)
     if beyond.any():
-        status, w_m[beyond] = elastic_compression(law, out.inelasticity[beyond], rtol, few)
+        status, w_m[beyond] = elastic_compression(law, lam[beyond], rtol, few, s[beyond])
         if status.any():
             failed, n = failure(status)
             return failed, int(np.flatnonzero(beyond)[n])
@@ -359,7 +378,8 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
     Most laws are Hertz's below yield; y may be inf there. Impacts beyond that are gathered first,
     because a branch in the loop would be mispredicted for half of them.
     """
-    leaves = force.leaves_hertz(law)
+    own = np.empty(force.room_for(law))
+    leaves = 0.0 if own.size > 0 else force.leaves_hertz(law)
     beyond = np.empty(_CHUNK, dtype=np.int64)
     room = np.empty((4, _CHUNK))
     dm, left, plastic, other = room[0], room[1], room[2], room[3]
@@ -374,12 +394,18 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
             dm[count] = w / outcome.yield_ratio[n]
             count += w > outcome.yield_ratio[n] * leaves
         for k in range(count):
-            left[k], plastic[k], other[k] = losses.at_the_contact(law, dm[k])
+            n = beyond[k]
+            one = law if own.size == 0 else force.at_strength(law, outcome.strength[n], own)
+            left[k], plastic[k], other[k] = losses.at_the_contact(one, dm[k])
+            if own.size > 0:
+                out.peak_force[n] = force.loading(one, math.sqrt(dm[k]))
         for k in range(count):
             n = beyond[k]
             y = outcome.yield_ratio[n]
             unit = y * math.sqrt(y)  # F_Y
-            out.peak_force[n] = force.loading(law, math.sqrt(dm[k])) * unit
+            if own.size == 0:
+                out.peak_force[n] = force.loading(law, math.sqrt(dm[k]))
+            out.peak_force[n] *= unit
             out.residual_compression[n] = left[k] * y
             out.plastic_fraction[n] = 2.0 * plastic[k] * y * unit
             out.other_fraction[n] = 2.0 * other[k] * y * unit

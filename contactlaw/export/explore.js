@@ -52,7 +52,7 @@ function show() {
   const tilt = Math.cos(angle * Math.PI / 180);
   const curve = ([, , low, high], at) => Array.from({ length: 73 }, (_, n) => {
     const x = low * (high / low) ** (n / 72), question = at(x), one = $for_curve(...question);
-    return [x, one.restitution, one.restitution >= 0 ? $flags(one, ...question) : 0];
+    return [x, one.restitution, one.restitution >= 0 ? $exceeded(one, ...question) : 0];
   });
   curves = { speed: curve(SLIDERS.speed, (v) => [v * tilt, radius, thickness]),
     thickness: curve(SLIDERS.thickness, (h) => [speed * tilt, radius, h]) };

@@ -18,6 +18,17 @@ from contactlaw.answers.solver import RTOL
 from contactlaw.equation import zener
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS
+from contactlaw.equation.force import (
+    BEGINS,
+    POWERS,
+    STRENGTHS,
+    WIDTH,
+    at_strength,
+    growth_at,
+    pieces_of,
+    strongest,
+    widest,
+)
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, slide
@@ -25,19 +36,17 @@ from contactlaw.model import ImpactModel
 from contactlaw.physical.oblique import FASTEST, rebound_of, sliding, unit
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import factors, wave_path, wave_rate
-from contactlaw.physical.validity import Limits, flags_of
-from contactlaw.stepping import strength
+from contactlaw.physical.strengths import COARSE, by_strength
+from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength
 from contactlaw.stepping.edge import Near
 from contactlaw.stepping.energy import Point, dot
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
 from contactlaw.stepping.spring import (
     Spring,
     State,
-    advance,
     impact,
-    nearest_level,
     resized,
-    strengthened,
+    stepped,
     unit_spring,
 )
 from contactlaw.table import Table, lookup
@@ -49,17 +58,16 @@ EDGES = len(KINDS)  # kinds of edges, numbered from 1; 0 is none
 NEAR_STEPS = 100  # of a contact near an edge
 NEAR_CONTACTS = 100  # a sphere that has not left after so many contact times stays on the plate
 SAMPLES, SPRINGS = 401, 32  # of an oblique impact: times, springs across the contact
-FAR = 50.0  # overload from which on, up to twice this, an impact comes to be far above yield
-FEW_DIGITS = 1e-7  # error of a step of an impact that is only to be interpolated with
 
 
 class Bodies(NamedTuple):
     """What a pair of materials fixes."""
 
-    law: Any  # data of the force law; the levels where there are some
-    levels: Any  # laws by strength of a pair with a rate, else None
+    law: Any  # data of the force law, at any strength
+    room: int  # numbers of one law of several, else 0
+    strongest: float  # ln of the strength up to which laws reach
     unit: Spring  # of a bead of radius 1 m on a plate of 1 m, with the moduli of the pair
-    limits: Limits
+    limits: Any  # by strength
     tangential_ratio: float
     responses: Any  # of a plate near edges of each kind, for steps
     wave_path: float  # sqrt(D/(rho2 H))/H of a plate [m/s]
@@ -99,13 +107,6 @@ class Impact(NamedTuple):
     inelasticity: float  # lambda of the modified Zener model [-]
 
 
-class Strength(NamedTuple):
-    """An impact at a strength for which there is a law."""
-
-    law: Array
-    units: Numbers
-
-
 class Collision(NamedTuple):
     """A bead after an impact."""
 
@@ -139,25 +140,31 @@ INSTEAD: dict[Any, Any] = {
     lookup.exp: plain_exp,
 }
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
-FIXED = "goal", "samples", "springs"
+FIXED = "goal", "samples", "springs", "room"
 NOTHING = Impact(*[math.nan] * 10)
 BLOWN_UP = State(0.0, 0.0, math.nan)
-STEP = 0.15  # of ln(strength) between two laws of a pair with a rate
 SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 
 
-def bodies_of(
-    model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]], step: float = STEP
-) -> Bodies:
+def rounded(law: Array) -> Array:
+    """Round the numbers of a law to 14 digits; those of several to 9 of the largest power of t."""
+    digits = np.full(law.size, 14)
+    for at in range(1, 1 + pieces_of(law) * STRENGTHS, STRENGTHS):
+        begins, terms, width = (int(law[at + n]) for n in (BEGINS, POWERS, WIDTH))
+        block = slice(begins, begins + (terms + 1) * width)
+        sizes = np.abs(law[block]).reshape(-1, width)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            less = np.floor(np.log10(sizes / sizes.max(axis=0)))
+        digits[block] = np.nan_to_num(np.clip(9 + less, 1, 9), nan=9).ravel()
+    return np.array([float(f"{one:.{n}g}") for one, n in zip(law, digits, strict=True)])
+
+
+def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]]) -> Bodies:
     """Numbers of a model's pair, and of tables by the logarithm of the strength.
 
-    Tables have nine decimals, those of several strengths six, a law has 14 digits, laws by
-    strength nine: they err by more than that.
+    Tables have nine decimals, those of several strengths six: they err by more than that.
     """
-    pair, law = model.pair, model.force_law
-    levels, tables = strength.levels_of(pair, law, step), []
-    if levels is not None:
-        levels = np.array([float(f"{one:.9g}") for one in levels])
+    pair, law, tables = model.pair, model.force_law, []
     for own, one in nodes.values():
         table = lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
         table = table[: int(table[lookup.OTHERS_AT])].copy()  # COR alone
@@ -166,10 +173,11 @@ def bodies_of(
         tables.append(table)
     starts = np.cumsum([0.0, *(one.size for one in tables)])[:-1]
     return Bodies(
-        np.array([float(f"{one:.14g}") for one in law.data]) if levels is None else levels,
-        levels,
-        unit_spring(model, 1.0)._replace(levels=None),
-        model.limits,
+        rounded(by_strength(pair, law, COARSE)),
+        widest(by_strength(pair, law, COARSE)),
+        strongest(by_strength(pair, law, COARSE)),
+        unit_spring(model, 1.0),
+        limits_by_strength(pair, law),
         pair.tangential_ratio,
         np.array([response_of(one, pair.plate.poissons_ratio, size="steps") for one in KINDS]),
         wave_path(pair.plate),
@@ -194,7 +202,7 @@ def on_plate(pair: Bodies, radius: float, thickness: float) -> Spring:
         radius = h = math.nan
     return Spring(
         unit.mass, unit.stiffness, unit.mobility / (h * h), unit.scale, unit.relaxation,
-        unit.ratio / h, unit.plate, pair.levels,
+        unit.ratio / h, unit.plate,
     )  # fmt: skip
 
 
@@ -229,15 +237,8 @@ def contact_spring(pair: Bodies, bead: BeadSpring) -> Spring:
     """Spring of a bead on a plate, as steps take it."""
     return Spring(
         bead.mass, bead.stiffness, bead.mobility, bead.scale, bead.relaxation, bead.ratio,
-        bead.plate, pair.levels,
+        bead.plate,
     )  # fmt: skip
-
-
-@kernel
-def law_of(pair: Bodies) -> Array:
-    """Law of a pair; of one with a rate that of its first level."""
-    law: Array = pair.law if pair.levels is None else pair.law[strength.LEVELS + 1 :]
-    return law
 
 
 @kernel
@@ -256,14 +257,11 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
         and bead.edge_rate >= 0.0
         and largest >= 0.0
         and state.force >= 0.0
+        and state.strength >= 0.0
     ):
         return BLOWN_UP
-    if pair.levels is not None:  # a state that is not one of these steps
-        _, place = strength.split(state.stiffening)
-        if not 0.0 <= place < pair.levels[strength.COUNT]:
-            return BLOWN_UP
     near = Near(pair.responses[max(bead.edge - 1, 0)], bead.edge_rate)
-    new = advance(law_of(pair), contact_spring(pair, bead), state, overlap, dt, near)
+    new = stepped(pair.law, contact_spring(pair, bead), state, overlap, dt, near, pair.room)
     return new if 0.0 <= new.force < math.inf else BLOWN_UP
 
 
@@ -273,57 +271,21 @@ def numbers_of(pair: Bodies, speed: float, radius: float, thickness: float) -> N
     one, r = on_plate(pair, radius, thickness), radius
     one = Spring(
         one.mass * (r * r * r), one.stiffness * math.sqrt(r), one.mobility, one.scale * r,
-        one.relaxation * r, one.ratio * r, one.plate, one.levels,
+        one.relaxation * r, one.ratio * r, one.plate,
     )  # fmt: skip
-    if pair.levels is not None:
-        place = strength.place_at(pair.levels, speed, one.scale)
-        one = strengthened(one, place)
-        growth = strength.yield_growth(pair.levels, place)
-        return numbers(
-            one.plate, one.mass, one.stiffness, growth * one.scale, speed, one.ratio
-        )  # fmt: skip
-    return impact(one, speed)
-
-
-@kernel
-def _at_level(levels: Array, at: int, units: Numbers, growth: float) -> Strength:
-    """Impact with the law of a level; the growth is that of its own yield compression.
-
-    Moderate impacts of the same overload are alike. Those far above yield meet the sizes of the
-    bodies, and are alike that have the same compression.
-    """
-    c, law = strength.law_at(levels, at)
-    far = min(max(math.log(FAR * units.yield_ratio) / math.log(0.5), 0.0), 1.0)
-    return Strength(
-        law,
-        Numbers(
-            units.inelasticity, units.yield_ratio * math.pow(c / growth, far), units.time,
-            units.compression, units.force, units.stiffer,
-        ),
+    return numbers(
+        one.plate, pair.law, one.mass, one.stiffness, one.scale, speed, one.ratio
     )  # fmt: skip
 
 
 @kernel
-def beside(
-    pair: Bodies, units: Numbers, speed: float, radius: float
-) -> tuple[Strength, Strength, float]:
-    """Impact at the two strengths beside its own, and the share of the second."""
-    if pair.levels is None:
-        return Strength(pair.law, units), Strength(pair.law, units), 0.0
-    place = strength.place_at(pair.levels, speed, pair.unit.scale * radius)
-    low, high, share = strength.beside(pair.levels, place)
-    growth = strength.yield_growth(pair.levels, place)
-    one = _at_level(pair.levels, low, units, growth)
-    return one, _at_level(pair.levels, high, units, growth), share
-
-
-@kernel
-def solved(at: Strength, rtol: float, goal: int = zener.TO_THE_END) -> zener.Solution:
-    """Integrate an impact to its end, or to another goal that needs no notes."""
-    none, units = np.empty((0, 0)), at.units
+def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Solution:
+    """Integrate an impact to a goal."""
+    none = np.empty((0, 0))
+    own = pair.law if pair.room == 0 else at_strength(pair.law, units.strength, np.empty(pair.room))
     notes = zener.Notes(none, none, none, none, none)
     return zener.follow_impact(
-        goal, at.law, units.inelasticity, units.yield_ratio, rtol, notes, 0, None
+        goal, own, units.inelasticity, units.yield_ratio, rtol, notes, 0, None
     )  # fmt: skip
 
 
@@ -341,43 +303,16 @@ def in_si(one: zener.Solution, units: Numbers) -> Impact:
 
 
 @kernel
-def moved(a: Impact, share: float, b: Impact) -> Impact:
-    """Impact that is moved by a share of the way from one to another, each energy for itself."""
-    left = a.restitution * a.restitution
-    left += share * (b.restitution * b.restitution - left)
-    return Impact(
-        math.sqrt(min(max(left, 0.0), 1.0)),
-        a.contact_time + share * (b.contact_time - a.contact_time),
-        a.loading_time + share * (b.loading_time - a.loading_time),
-        a.peak_force + share * (b.peak_force - a.peak_force),
-        a.peak_compression + share * (b.peak_compression - a.peak_compression),
-        a.residual_compression + share * (b.residual_compression - a.residual_compression),
-        a.plastic_fraction + share * (b.plastic_fraction - a.plastic_fraction),
-        a.wave_fraction + share * (b.wave_fraction - a.wave_fraction),
-        a.other_fraction + share * (b.other_fraction - a.other_fraction),
-        a.inelasticity,
-    )
-
-
-@kernel
 def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Impact:
-    """One impact, integrated with an error of RTOL in each step; all members are NaN for bad input.
-
-    For a pair with a rate it lies between those of the two laws beside its strength, of which the
-    farther one needs fewer digits.
-    """
+    """One impact, integrated with an error of RTOL a step; all members are NaN for bad input."""
     if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
         return NOTHING
     units = numbers_of(pair, speed, radius, thickness)
     if not (0.0 <= units.inelasticity < math.inf and 0.0 < units.yield_ratio < math.inf):
         return NOTHING
-    if pair.levels is None:
-        return in_si(solved(Strength(pair.law, units), RTOL), units)
-    low, high, share = beside(pair, units, speed, radius)
-    if share > 0.5:
-        low, high, share = high, low, 1.0 - share
-    hit = in_si(solved(low, RTOL), units)
-    return moved(hit, share, in_si(solved(high, FEW_DIGITS), units))
+    if units.strength > pair.strongest:
+        return NOTHING
+    return in_si(solved(pair, units, zener.TO_THE_END, RTOL), units)
 
 
 @kernel
@@ -390,14 +325,12 @@ def restitution(pair: Bodies, speed: float, radius: float, thickness: float) -> 
     """
     if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
         return math.nan
-    if pair.levels is None:
+    if pair.strengths.size == 1:
         c_lam, ratio = pair.unit.plate.inelasticity, radius / thickness
         return lookup.restitution(pair.tables, c_lam, pair.log_overload, speed, radius, ratio)
-    units, levels = numbers_of(pair, speed, radius, thickness), pair.levels
-    place = strength.place_at(levels, speed, pair.unit.scale * radius)
-    log_y, value = math.log(units.yield_ratio), 0.0
-    weakest = log_y - math.log(strength.yield_growth(levels, place))
-    place *= levels[strength.STEP]
+    units = numbers_of(pair, speed, radius, thickness)
+    place, log_y, value = units.strength, math.log(units.yield_ratio), 0.0
+    weakest = log_y - math.log(growth_at(pair.law, place))
     for j in range(pair.strengths.size):
         table, weight = pair.tables[int(pair.starts[j]) :], 1.0
         most = table[lookup.LOG_CHI_MAX]
@@ -429,7 +362,7 @@ def restitution_near(
         return rebound(pair, speed, radius, thickness).restitution
     if not V_MIN <= speed <= V_MAX:
         return math.nan
-    dt = CONTACT_TIME / NEAR_STEPS * impact(contact_spring(pair, bead), speed).time
+    dt = CONTACT_TIME / NEAR_STEPS * impact(pair.law, contact_spring(pair, bead), speed).time
     state, x, u = State(0.0, 0.0, 0.0), -0.5 * dt * speed, speed
     for _ in range(NEAR_STEPS * NEAR_CONTACTS):
         u -= 0.5 * dt * state.force / bead.mass
@@ -446,18 +379,11 @@ def exceeded(pair: Bodies, hit: Impact, speed: float, radius: float, thickness: 
     """Limits of the model that an impact exceeds; -1 for an impact that is NaN."""
     if not (hit.restitution >= 0.0 and fits(radius, thickness)):
         return -1
+    units = numbers_of(pair, speed, radius, thickness)
     return flags_of(
-        pair.limits, radius, thickness, numbers_of(pair, speed, radius, thickness).compression,
+        limits_at(pair.limits, units.strength), radius, thickness, units.compression,
         hit.contact_time, hit.peak_compression, hit.peak_force,
     )  # fmt: skip
-
-
-@kernel
-def _at_strength(pair: Bodies, spring: Spring, state: State) -> tuple[Array, Spring, State]:
-    """Law of a contact, with spring and state for it."""
-    if pair.levels is None:
-        return pair.law, spring, state
-    return nearest_level(law_of(pair), pair.levels, spring, state)
 
 
 @kernel
@@ -472,21 +398,29 @@ def rub(
     if state.force == 0.0:
         clear_friction(row)
         return 0.0, 0.0, 0.0
-    law, spring, pressed = _at_strength(pair, contact_spring(pair, bead), state)
+    spring = contact_spring(pair, bead)
     return tangential_force(
-        row, friction, pair.tangential_ratio, law, spring, pressed, before, overlap, -up, n, slip,
-        dt, 0.0,
+        row, friction, pair.tangential_ratio, pair.law, spring, state, before, overlap, -up, n,
+        slip, dt, 0.0, pair.room,
     )  # fmt: skip
 
 
 @kernel
-def history(given: Strength, end: float, notes: zener.Notes) -> History:
+def history(pair: Bodies, units: Numbers, end: float, notes: zener.Notes) -> History:
     """Contact at even times from touch to an end, on Hertz's scale, in the arrays of the notes."""
-    units, samples = given.units, notes.at.shape[1]
+    samples = notes.at.shape[1]
+    own = pair.law if pair.room == 0 else at_strength(pair.law, units.strength, np.empty(pair.room))
     for n in range(samples):
         notes.at[0, n] = end * n / (samples - 1)
     zener.follow_impact(
-        zener.AT_TIMES, given.law, units.inelasticity, units.yield_ratio, RTOL, notes, 0, None
+        zener.AT_TIMES,
+        own,
+        units.inelasticity,
+        units.yield_ratio,
+        RTOL,
+        notes,
+        0,
+        None,
     )
     for n in range(samples):
         notes.speed[0, n] = 1.0 - notes.speed[0, n]
@@ -494,38 +428,24 @@ def history(given: Strength, end: float, notes: zener.Notes) -> History:
 
 
 @kernel
-def slid(given: Strength, kappa: float, psi: float, samples: int, springs: int) -> float:
-    """Change of the sliding speed psi of the contact point; both over friction and speed."""
-    at, time, speed = np.empty((1, samples)), np.empty((1, samples)), np.empty((1, samples))
-    force, compression = np.empty((1, samples)), np.empty((1, samples))
-    after, stretch = np.empty(1), np.empty((springs, 1))
-    end, notes = solved(given, RTOL).contact_time, zener.Notes(at, time, speed, force, compression)
-    path = history(given, end, notes)
-    path.force[samples - 1] = 0.0
-    after[0] = psi
-    slide(given.law, given.units.yield_ratio, kappa, path, after, stretch)
-    return float(psi - after[0])
-
-
-@kernel
 def rubbed(
     pair: Bodies, speed: float, size: float, radius: float, thickness: float, friction: float,
     samples: int, springs: int,
 ) -> float:  # fmt: skip
-    """Change of the contact point's speed along the plate in an impact [m/s].
-
-    For a pair with a rate it lies between those of the two laws beside its strength, which both
-    yield where the impact does, as springs lose their stretch from there on.
-    """
+    """Change of the contact point's speed along the plate in an impact [m/s]."""
     if not (speed * friction > 0.0 and size > 0.0):
         return 0.0
+    at, time, velocity = np.empty((1, samples)), np.empty((1, samples)), np.empty((1, samples))
+    force, compression = np.empty((1, samples)), np.empty((1, samples))
+    after, stretch = np.empty(1), np.empty((springs, 1))
     units, psi = numbers_of(pair, speed, radius, thickness), min(size / friction / speed, FASTEST)
-    low, high, share = beside(pair, units, speed, radius)
-    change = slid(Strength(low.law, units), pair.tangential_ratio, psi, samples, springs)
-    if share > 0.0:
-        other = slid(Strength(high.law, units), pair.tangential_ratio, psi, samples, springs)
-        change += share * (other - change)
-    return friction * speed * change
+    end = solved(pair, units, zener.TO_THE_END, RTOL).contact_time
+    path = history(pair, units, end, zener.Notes(at, time, velocity, force, compression))
+    path.force[samples - 1] = 0.0
+    after[0] = psi
+    own = pair.law if pair.room == 0 else at_strength(pair.law, units.strength, np.empty(pair.room))
+    slide(own, units.yield_ratio, pair.tangential_ratio, path, after, stretch)
+    return float(friction * speed * (psi - after[0]))
 
 
 @kernel

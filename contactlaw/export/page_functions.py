@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,8 +16,7 @@ from contactlaw.export.functions import (
     NOTHING,
     Bodies,
     Impact,
-    Strength,
-    beside,
+    exceeded,
     fits,
     history,
     in_si,
@@ -26,8 +25,6 @@ from contactlaw.export.functions import (
 )
 from contactlaw.physical.arguments import ROUGHEST
 from contactlaw.physical.oblique import flows
-from contactlaw.physical.validity import Limits, flags_of
-from contactlaw.stepping import strength
 from contactlaw.table.lookup import V_MAX, V_MIN
 
 FOR_CURVES = 1e-5  # error allowed per step of impacts that are points of a curve
@@ -39,7 +36,6 @@ LONGEST = 12.0  # Hertz's times, after which the tail of a long contact is not d
 class Page(NamedTuple):
     """What a pair of materials fixes beside `Bodies`."""
 
-    limits: Any  # numbers of `Limits`, a row for each level of strength
     modulus: float  # E* [Pa]
     strength: float  # of the weaker body [Pa]
     flag: int  # SLIDING_FLOW
@@ -63,46 +59,17 @@ REFUSED = Hit(NOTHING, -1, *[math.nan] * 7)
 
 
 @kernel
-def quick(at: Strength) -> Impact:
-    """One impact; one that leaves hardly any speed is not followed to its end."""
-    units = at.units
-    if units.inelasticity <= DEAD:
-        return in_si(functions.solved(at, FOR_CURVES), units)
-    return in_si(functions.solved(at, FOR_CURVES, zener.TO_THE_TOP), units)
-
-
-@kernel
 def for_curve(pair: Bodies, speed: float, radius: float, thickness: float) -> Impact:
-    """One impact for a point of a curve: its COR is within 3e-4."""
+    """One impact for a point of a curve: its COR is within 3e-4.
+
+    One that leaves hardly any speed is not followed to its end.
+    """
     if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
         return NOTHING
     units = numbers_of(pair, speed, radius, thickness)
-    low, high, share = beside(pair, units, speed, radius)
-    one = quick(low)
-    return one if share == 0.0 else functions.moved(one, share, quick(high))
-
-
-@kernel
-def flags(
-    pair: Bodies, page: Page, hit: Impact, speed: float, radius: float, thickness: float
-) -> int:
-    """Limits of the model that an impact exceeds, at its own strength."""
-    limits, units = pair.limits, numbers_of(pair, speed, radius, thickness)
-    if pair.levels is not None:
-        place = strength.place_at(pair.levels, speed, pair.unit.scale * radius)
-        n = min(int(place), page.limits.shape[0] - 2)
-        a, b, s = page.limits[n], page.limits[n + 1], place - n
-        near = b if s > 0.5 else a
-        # of two that are inf the limit is NaN, which is not exceeded either
-        share, deepest = a[7] + s * (b[7] - a[7]), a[8] + s * (b[8] - a[8])
-        limits = Limits(
-            near[0], near[1], int(near[2]), int(near[3]), near[4], near[5], near[6], share,
-            deepest, a[9] + s * (b[9] - a[9]), near[10], int(near[11]),
-        )  # fmt: skip
-    return flags_of(
-        limits, radius, thickness, units.compression, hit.contact_time, hit.peak_compression,
-        hit.peak_force,
-    )  # fmt: skip
+    if units.inelasticity <= DEAD:
+        return in_si(functions.solved(pair, units, zener.TO_THE_END, FOR_CURVES), units)
+    return in_si(functions.solved(pair, units, zener.TO_THE_TOP, FOR_CURVES), units)
 
 
 @kernel
@@ -111,10 +78,9 @@ def shown(pair: Bodies, hit: Impact, speed: float, radius: float, thickness: flo
     at, time, velocity = np.empty((1, SHOWN)), np.empty((1, SHOWN)), np.empty((1, SHOWN))
     force, compression = np.empty((1, SHOWN)), np.empty((1, SHOWN))
     units = numbers_of(pair, speed, radius, thickness)
-    low, high, share = beside(pair, units, speed, radius)
     end = min(hit.contact_time / units.time, LONGEST)
     notes = zener.Notes(at, time, velocity, force, compression)
-    path = history(high if share > 0.5 else low, end, notes)
+    path = history(pair, units, end, notes)
     for n in range(SHOWN):
         path.time[n] *= units.time
         path.force[n] *= units.force
@@ -135,7 +101,7 @@ def collide(
     if not (hit.restitution >= 0.0 and 0.0 <= friction <= ROUGHEST):
         return REFUSED
     change = rubbed(pair, speed, size, radius, thickness, friction, SAMPLES, SPRINGS)
-    after, found = size - change, flags(pair, page, hit, speed, radius, thickness)
+    after, found = size - change, exceeded(pair, hit, speed, radius, thickness)
     if flows(
         page.strength, page.modulus, hit.peak_force, hit.peak_compression,
         hit.residual_compression, hit.contact_time, friction, size, after,

@@ -16,23 +16,16 @@ import string
 from importlib import resources
 from typing import Any
 
-import numpy as np
-
 from contactlaw import _atomic, laws
 from contactlaw._version import VERSION
-from contactlaw.answers.rated import stronger
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
-from contactlaw.export import page_functions
+from contactlaw.export import functions, page_functions
 from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material, material, materials
 from contactlaw.physical.scaling import wave_path
 from contactlaw.physical.validity import Validity, explain
-from contactlaw.stepping.strength import COUNT, STEP
-
-# Step of ln(factor) between two laws of a pair with a rate, unless far more numbers follow.
-_STEP, _MOST = 0.025, 120_000
 
 
 def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
@@ -44,7 +37,7 @@ def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
     Parameters
     ----------
     path : path-like
-        File to write, below 1 MB, or 2 if two bodies' rates differ; an existing file is replaced.
+        File to write, below 1 MB; an existing file is replaced.
     model : ImpactModel
         Pair and law.
 
@@ -57,10 +50,8 @@ def page(path: str | os.PathLike[str], model: ImpactModel) -> None:
 
     Notes
     -----
-    The answers are those of `ImpactModel.solve` and `ImpactModel.oblique`. For a pair whose
-    strength grows with the rate of strain the page has laws at some strengths: the COR is within
-    1e-4, and the sliding speed within 1e-3 of friction times speed; 1e-3 and 3e-3 if two bodies'
-    rates differ and the strength grows fourfold. Curves are within 3e-4.
+    The answers are those of `ImpactModel.solve` and `ImpactModel.oblique`; for a pair whose
+    strength grows with the rate of strain the COR is within 1e-6. Curves are within 3e-4.
 
     Examples
     --------
@@ -99,15 +90,10 @@ def _text(model: ImpactModel) -> str:
 
 def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
     """Numbers of a pair."""
-    pair, rows, coarse = model.pair, None, 4.0 * _STEP
-    bodies = bodies_of(model, {}, coarse)
-    if bodies.levels is not None:
-        bodies = bodies_of(model, {}, max(_STEP, coarse * bodies.levels.size / _MOST))
-        levels = bodies.levels
-        logs = levels[STEP] * np.arange(levels[COUNT])
-        rows = np.array([stronger(model._bodies, math.exp(one)).limits for one in logs])
+    pair = model.pair
     weaker = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
-    return bodies, Page(rows, pair.effective_modulus, weaker, Validity.SLIDING_FLOW.value)
+    flag = Validity.SLIDING_FLOW.value
+    return bodies_of(model, {}), Page(pair.effective_modulus, weaker, flag)
 
 
 def _kernels(bodies: Bodies, page: Page) -> str:
@@ -115,7 +101,7 @@ def _kernels(bodies: Bodies, page: Page) -> str:
     program, pair = Program(JavaScript("$"), FIXED), Known(value=bodies)
     asked, more = 3 * (DOUBLE,), Known(value=page)
     _, hit = add(program, page_functions.for_curve, pair, *asked)
-    add(program, page_functions.flags, pair, more, hit, *asked)
+    add(program, functions.exceeded, pair, hit, *asked)
     add(program, page_functions.shown, pair, hit, *asked)
     add(program, page_functions.collide, pair, more, *asked, DOUBLE, DOUBLE)
     return program.text()

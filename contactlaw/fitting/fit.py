@@ -19,9 +19,9 @@ from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, parameters, setting, with_loss_factors
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast
+from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.scaling import law_of
 
 Array = NDArray[np.float64]
 

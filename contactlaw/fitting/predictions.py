@@ -7,7 +7,6 @@ too.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from dataclasses import dataclass
 from typing import Any
@@ -17,16 +16,16 @@ from numpy.typing import NDArray
 
 from contactlaw.answers import oblique
 from contactlaw.answers.backend import SphereOnPlate, UnsolvedError
-from contactlaw.answers.rated import solver
+from contactlaw.answers.solver import Solver
 from contactlaw.equation.tangential import POINT
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import check
+from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Impacts, Rebound
-from contactlaw.physical.scaling import law_for_pair
 
 Array = NDArray[np.float64]
 
@@ -150,8 +149,7 @@ class Predictor:
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
     """Integrate rebounds of any bodies that `ImpactModel` takes, without a table."""
     check(speed=speed, radius=at.radius, thickness=at.thickness)
-    own = dataclasses.replace(law_for_pair(at.pair, law), from_pair=law.from_pair)
-    backend = solver(SphereOnPlate(at.pair, own), _RTOL)
+    backend = Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL)
     given = Impacts(speed, at.radius, at.thickness, speed.shape)
     if at.friction is None or at.sliding_speed is None:
         return backend.rebounds(given)

@@ -27,9 +27,20 @@ import re
 from types import ModuleType
 
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
-from contactlaw.laws._law import Law
+from contactlaw.laws._law import Law, laid_out_alike
 
-__all__ = ["DEFAULT", "HERTZ", "Law", "Loading", "Unloading", "exact", "law", "names", "parameters"]
+__all__ = [
+    "DEFAULT",
+    "HERTZ",
+    "Law",
+    "Loading",
+    "Unloading",
+    "exact",
+    "laid_out_alike",
+    "law",
+    "names",
+    "parameters",
+]
 
 DEFAULT = "fem"
 """The law if none is named; it meets the targets of ``validation.accuracy.acceptance``."""

@@ -11,14 +11,14 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NoReturn
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.polynomial import Polynomial, chebyshev
 from numpy.typing import NDArray
 
 from contactlaw.equation import force as _force
-from contactlaw.laws._branches import END, HERTZ, Array, Formula, Loading, Unloading
+from contactlaw.laws._branches import HERTZ, Array, Formula, Loading, Unloading
 
 _FUNCTIONS = _force.FUNCTIONS
 _TERMS = 18  # Chebyshev terms per piece
@@ -54,17 +54,56 @@ class _Function:
     size: Formula | None = None  # None: its own values
 
 
-def _expand(name: str, parts: Sequence[_Function | float], low: float, high: float) -> list[_Piece]:
+class Cuts:
+    """Where each expansion of a law is cut into pieces, in shares of ln(high/low).
+
+    Laws of one pair at several strengths share them, so that their arrays have one layout.
+
+    Parameters
+    ----------
+    vanished : float, optional
+        A term counts as zero below this share of the least value on its piece.
+    widest : float, optional
+        Largest ratio of the ends of a piece, before any is halved.
+    """
+
+    def __init__(self, vanished: float = _VANISHED, widest: float = _WIDEST) -> None:
+        self.vanished, self.widest = vanished, widest
+        self.shares: list[Array] = []
+        self._next = 0
+
+    def again(self) -> None:
+        """Begin with the first expansion, those of another law."""
+        self._next = 0
+
+    def edges(self, low: float, high: float) -> Array:
+        """Return the ends of the pieces of the next expansion."""
+        if self._next == len(self.shares):
+            count = max(1, math.ceil(math.log(high / low) / math.log(self.widest)))
+            self.shares.append(np.linspace(0.0, 1.0, count + 1))
+        edges: Array = low * np.power(high / low, self.shares[self._next])
+        edges[[0, -1]] = low, high
+        return edges
+
+    def keep(self, starts: Sequence[float], low: float, high: float) -> None:
+        """Remember where the pieces of this expansion begin in the end."""
+        if len(starts) >= self.shares[self._next].size:  # some were halved
+            shares = np.log(np.array([*starts, high]) / low) / math.log(high / low)
+            shares[-1] = 1.0
+            self.shares[self._next] = shares
+        self._next += 1
+
+
+def _expand(
+    name: str, parts: Sequence[_Function | float], low: float, high: float, cuts: Cuts
+) -> list[_Piece]:
     """Expand functions on [low, high], all on the same pieces; a constant stays exact."""
-    count = max(1, math.ceil(math.log(high / low) / math.log(_WIDEST)))
-    edges = np.geomspace(low, high, count + 1)
-    edges[[0, -1]] = low, high
-    todo, done = list(itertools.pairwise(edges.tolist())), []
+    todo, done = list(itertools.pairwise(cuts.edges(low, high).tolist())), []
     while todo:
         left, right = np.array(todo).T
         middle, half = 0.5 * (left + right), 0.5 * (right - left)
         at = middle[:, None] + half[:, None] * _NODES
-        found = [_powers(name, part, at) for part in parts]
+        found = [_powers(name, part, at, cuts.vanished) for part in parts]
         smooth = np.all([converged for _, converged in found], axis=0)
         lengths = [_lengths(rows) for rows, _ in found]
         for n in np.flatnonzero(smooth):
@@ -79,7 +118,9 @@ def _expand(name: str, parts: Sequence[_Function | float], low: float, high: flo
                 f"law: {name!r} is not smooth near {todo[0][0]:.6g} d_Y; give each kink a branch "
                 "that begins there"
             )
-    return sorted(done, key=lambda piece: piece.start)
+    done.sort(key=lambda piece: piece.start)
+    cuts.keep([piece.start for piece in done], low, high)
+    return done
 
 
 def _lengths(rows: Array) -> list[int]:
@@ -89,7 +130,9 @@ def _lengths(rows: Array) -> list[int]:
     return [int(size) for size in sizes]
 
 
-def _powers(name: str, part: _Function | float, at: Array) -> tuple[Array, NDArray[np.bool_]]:
+def _powers(
+    name: str, part: _Function | float, at: Array, vanished: float
+) -> tuple[Array, NDArray[np.bool_]]:
     """Coefficients of powers of t for rows of values, and which rows have converged."""
     if isinstance(part, float):
         return np.full((len(at), 1), part), np.ones(len(at), dtype=bool)
@@ -102,7 +145,7 @@ def _powers(name: str, part: _Function | float, at: Array) -> tuple[Array, NDArr
     level = values[:, :1]  # subtracted, so that rounding is relative to the values' variation
     terms = (values - level) @ _TO_CHEBYSHEV
     terms[:, :1] += level
-    small = np.abs(terms) <= _VANISHED * size.min(axis=1, keepdims=True)
+    small = np.abs(terms) <= vanished * size.min(axis=1, keepdims=True)
     kept = np.cumsum(~small[:, ::-1], axis=1)[:, ::-1] > 0  # up to the last that is not small
     return (terms * kept) @ _TO_POWERS, small[:, -2:].all(axis=1)
 
@@ -131,7 +174,7 @@ class LoadingCurve:
     """The loading curve in pieces, with force and work at any compressions."""
 
     def __init__(
-        self, name: str, branches: Sequence[Loading], yields: bool, end: float = END
+        self, name: str, branches: Sequence[Loading], yields: bool, end: float, cuts: Cuts
     ) -> None:
         if not branches or branches[0].start != 0.0 or not _begins_as_hertz(branches[0].force):
             raise ValueError(
@@ -152,14 +195,14 @@ class LoadingCurve:
             else:
                 _check_rise(name, force, branch.start, end, 200)
                 part = _Function("loading force", _over_root(force))
-                self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end))
+                self.pieces += _expand(name, [part], math.sqrt(branch.start), math.sqrt(end), cuts)
             self.first_of_branch += [first] * (len(self.pieces) - first)
         self._tabulate()
         if yields:
             self._extend_by_tangent()
         for kink in self.kinks:
             before, after = self.force(np.array([kink * (1.0 - 1e-12), kink]))
-            if not abs(after - before) <= 1e-9 * before:
+            if not abs(after - before) <= max(1e-9, 10.0 * cuts.vanished) * before:
                 raise ValueError(
                     f"law: the loading branches of {name!r} do not meet at {kink:.9g} d_Y: "
                     f"{before:.9g} and {after:.9g} F_Y"
@@ -269,7 +312,9 @@ def check_yield(
         raise ValueError(f"law: yield_coefficient of {name!r} must be {needed}, got {coefficient}")
 
 
-def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading]) -> None:
+def _check_joints(
+    name: str, curve: LoadingCurve, branches: Sequence[Unloading], error: float
+) -> None:
     """Refuse unloading curves that jump at yield or between branches: outcomes would jump too."""
     before: tuple[float, float] | None = None if curve.stiffer else (0.0, 0.0)
     for branch, end in _ends(branches, curve.end):
@@ -281,7 +326,7 @@ def _check_joints(name: str, curve: LoadingCurve, branches: Sequence[Unloading])
             ("residual compression", left, before[0], branch.start),
             ("loss", lost, before[1], float(curve.work(dm)[0])),
         ):
-            if not abs(value[0] - last) <= 1e-6 * scale:
+            if not abs(value[0] - last) <= max(1e-6, error) * scale:
                 raise ValueError(
                     f"law: the {what} of {name!r} jumps at {branch.start:.9g} d_Y, from {last:.6g} "
                     f"to {value[0]:.6g}"
@@ -327,7 +372,9 @@ def _residual_and_loss(curve: LoadingCurve, branch: Unloading) -> tuple[Formula,
     return residual, lambda dm: given(dm) * (dm - 1.0) ** branch.loss_order
 
 
-def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: float) -> list[_Row]:
+def _unloading_rows(
+    name: str, curve: LoadingCurve, branch: Unloading, end: float, cuts: Cuts
+) -> list[_Row]:
     exponent = branch.exponent
     residual, loss = _residual_and_loss(curve, branch)
     some = np.geomspace(branch.start * (1.0 + 1e-9), end, 200)
@@ -373,7 +420,7 @@ def _unloading_rows(name: str, curve: LoadingCurve, branch: Unloading, end: floa
     return [
         _Row(piece, powers, branch.other is not None)
         for ends in itertools.pairwise([branch.start, *inner, end])
-        for piece in _expand(name, parts, *ends)
+        for piece in _expand(name, parts, *ends, cuts)
     ]
 
 
@@ -397,21 +444,52 @@ def _beyond(curve: LoadingCurve, last: _Row) -> _Row:
     return _Row(_Piece(end, 1.0, 0.0, parts), (0.0,) * len(parts), last.other)
 
 
-def law_data(name: str, curve: LoadingCurve, unloading: Sequence[Unloading]) -> Array:
-    """Expand the unloading curves, and lay out the law as one array."""
+class Expanded(NamedTuple):
+    """A law in pieces."""
+
+    curve: LoadingCurve
+    rows: list[_Row]  # of the unloading curves
+    capped: bool
+
+
+def expanded(
+    name: str, loading: Sequence[Loading], unloading: Sequence[Unloading], end: float, cuts: Cuts
+) -> Expanded:
+    """Expand the formulas of a law."""
+    cuts.again()
+    curve = LoadingCurve(name, loading, bool(unloading), end, cuts)
     rows = [
         row
         for branch in _ends(unloading, curve.end)
-        for row in _unloading_rows(name, curve, *branch)
+        for row in _unloading_rows(name, curve, *branch, cuts)
     ]
-    _check_joints(name, curve, unloading)
+    _check_joints(name, curve, unloading, 10.0 * cuts.vanished)
     if rows:
         rows.append(_beyond(curve, rows[-1]))
-    return _packed(curve, rows, any(branch.cap for branch in unloading))
+    return Expanded(curve, rows, any(branch.cap for branch in unloading))
 
 
-def _packed(curve: LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
-    """Lay out pieces and rows as one array, see `contactlaw.equation.force`."""
+def packed(laws: Sequence[Expanded]) -> list[Array]:
+    """Lay out laws in pieces as one array each, see `contactlaw.equation.force`.
+
+    Laws that were cut alike have one layout.
+    """
+    # A function has one length on all pieces: the processor predicts loops of constant length.
+    rows = [one.rows for one in laws]
+    terms = [
+        max((row.piece.parts[n].size for law in rows for row in law), default=0)
+        for n in range(_FUNCTIONS)
+    ]
+    loading = [
+        max(piece.parts[0].size for piece in same)
+        for same in zip(*(one.curve.pieces for one in laws), strict=True)
+    ]
+    return [_packed(one, loading, terms) for one in laws]
+
+
+def _packed(law: Expanded, loading: Sequence[int], terms: Sequence[int]) -> Array:
+    """Lay out a law, with these lengths of the loading curve's pieces and of other functions."""
+    curve, rows = law.curve, law.rows
     pieces = curve.pieces
     starts = [*(piece.start for piece in pieces), math.inf]
     family_starts = [*(row.piece.start for row in rows), math.inf]
@@ -420,7 +498,7 @@ def _packed(curve: LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
     family_starts_at = curve_at + len(pieces) * _force.PIECE
     family_at = family_starts_at + len(family_starts)
     at = family_at + len(rows) * _force.UNLOADING_ROW
-    header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at, capped]
+    header = [len(pieces), len(rows), starts_at, curve_at, family_starts_at, family_at, law.capped]
     coefficients: list[Array] = []
 
     def put(part: Array, length: int) -> list[float]:
@@ -432,12 +510,10 @@ def _packed(curve: LoadingCurve, rows: Sequence[_Row], capped: bool) -> Array:
         return [length - 1, at - room.size]
 
     curve_rows: list[float] = []
-    for piece, first in zip(pieces, curve.first_of_branch, strict=True):
+    for piece, first, length in zip(pieces, curve.first_of_branch, loading, strict=True):
         following = next((k for k in curve.first_of_branch if k > first), len(pieces))
-        entries = put(piece.parts[0], piece.parts[0].size)
+        entries = put(piece.parts[0], length)
         curve_rows += [piece.scale, piece.offset, *entries, first, following]
-    # A function has one length on all pieces: the processor predicts loops of constant length.
-    terms = [max((row.piece.parts[n].size for row in rows), default=0) for n in range(_FUNCTIONS)]
     family_rows: list[float] = []
     for row in rows:
         family_rows += [row.piece.scale, row.piece.offset]

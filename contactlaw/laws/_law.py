@@ -7,13 +7,14 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from contactlaw.equation import force as _force
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.laws._branches import END, Array, Loading, Unloading
-from contactlaw.laws._expansion import LoadingCurve, check_yield, horner, law_data
+from contactlaw.laws._expansion import Cuts, check_yield, expanded, horner, packed
 
 _CORNER = 1e-4  # relative jump of the slope at a kink; finite differences err by 1e-8
 
@@ -135,7 +136,8 @@ class Law:
         name = _written(family, parameters)
         check_yield(name, yield_coefficient, loading, unloading)
         end = range[1] if range[1] < math.inf else END
-        curve = LoadingCurve(name, loading, bool(unloading), end)
+        made = expanded(name, loading, unloading, end, Cuts())
+        curve = made.curve
         starts = {*curve.kinks, *(float(branch.start) for branch in unloading)}
         if curve.stiffer:  # friction takes energy below yield, too: its branch begins no kink
             starts = {start for start in starts if start >= 1.0}
@@ -148,7 +150,7 @@ class Law:
             yield_coefficient=yield_coefficient,
             loading_kinks=curve.kinks,
             outcome_kinks=tuple(sorted(starts)),
-            data=law_data(name, curve, unloading),
+            data=packed([made])[0],
             yield_strains=yield_strains,
             scale=scale,
             range=range,
@@ -234,6 +236,24 @@ class Law:
     def dissipation(self, dm: float) -> float:
         """Energy [F_Y d_Y] that a contact loses that was loaded to dm."""
         return _force.loss(self.data, dm)
+
+
+def laid_out_alike(
+    laws: Sequence[Mapping[str, Any]], vanished: float, widest: float
+) -> list[Array]:
+    """Arrays of laws, from arguments of `Law.of`, which have one layout.
+
+    Their branches are the same; `vanished` and `widest` are as in `Cuts`.
+    """
+    cuts = Cuts(vanished, widest)
+    while True:
+        made, pieces = [], []
+        for one in laws:
+            end = one["range"][1]
+            made.append(expanded(one["name"], one["loading"], one["unloading"], end, cuts))
+            pieces.append([shares.size for shares in cuts.shares])
+        if pieces[0] == pieces[-1]:  # no law needed more pieces than those before
+            return packed(made)
 
 
 def _written(family: str, parameters: Mapping[str, float]) -> str:

@@ -467,6 +467,11 @@ def law(*given: float) -> Law:
 
 def law_of(given: Given, found: dict[str, Any]) -> Law:
     """Law of a pair from the numbers of a fit."""
+    return Law.of(**formulas(given, found))
+
+
+def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
+    """Formulas of a pair's law, as `Law.of` takes them."""
     named = given[: 10 if given.loss_factor else 9 if given.hardens else 5]
     if given.loss_factor:
         weaker = math.exp(-found["pressure"] * given.relaxation)
@@ -511,15 +516,15 @@ def law_of(given: Given, found: dict[str, Any]) -> Law:
     if curves.ratio:
         loading.append(Loading(1.0, lambda d: curves.force(np.sqrt(d))))
         unloading.append(Unloading(1.0, residual, exponent, loss, other, order=order))
-    return Law.of(
-        name="fem",
-        parameters=dict(zip(PARAMETERS, named, strict=False)),
-        source="finite elements of contactlaw, validation.fem.campaign",
-        yield_coefficient=curves.scale * (curves.ratio / math.pi) ** 2 if curves.ratio else None,
-        loading=loading,
-        unloading=unloading,
-        scale=curves.scale,
-        range=(start, end),
-        waves=tuple(found["plate"]),
-        onset=curves.onset,
-    )
+    return {
+        "name": "fem",
+        "parameters": dict(zip(PARAMETERS, named, strict=False)),
+        "source": "finite elements of contactlaw, validation.fem.campaign",
+        "yield_coefficient": curves.scale * (curves.ratio / math.pi) ** 2 if curves.ratio else None,
+        "loading": loading,
+        "unloading": unloading,
+        "scale": curves.scale,
+        "range": (start, end),
+        "waves": tuple(found["plate"]),
+        "onset": curves.onset,
+    }

@@ -24,12 +24,12 @@ from contactlaw.physical.pair import Pair
 Array = NDArray[np.float64]
 
 SHARE: float = numbers()["rate"]  # representative rate over V0/R
-_FASTEST = 1e7  # V0/R [1/s] up to which tables reach: 100 m/s at 10 micrometres
+FASTEST = 1e7  # V0/R [1/s] up to which tables reach: 100 m/s at 10 micrometres
 
 
 def rated(pair: Pair, law: Law) -> Flow | None:
     """Flow whose factor is that of a pair in a law; None if no impact strengthens it."""
-    return _leading(pair) if "sphere_ratio" in law.from_pair else None
+    return leading(pair) if "sphere_ratio" in law.from_pair else None
 
 
 def factors(flow: Flow, speed: Array, radius: Array) -> Array:
@@ -38,9 +38,9 @@ def factors(flow: Flow, speed: Array, radius: Array) -> Array:
     return found
 
 
-def largest_factor(flow: Flow) -> float:
-    """Largest factor of the tables of a pair."""
-    return flow.factor(SHARE * _FASTEST)
+def largest_factor(flow: Flow, fastest: float = FASTEST) -> float:
+    """Largest factor of a pair for V0/R up to a value [1/s], by default that of tables."""
+    return flow.factor(SHARE * fastest)
 
 
 def strengthened(pair: Pair, factor: float) -> Pair:
@@ -48,7 +48,7 @@ def strengthened(pair: Pair, factor: float) -> Pair:
 
     A factor of 1 stands for rate0, or the lower one of two.
     """
-    flow = _leading(pair)
+    flow = leading(pair)
     rate = rate_at(flow, factor) if flow else 0.0
     return Pair(*(_strengthened(body, rate) for body in (pair.sphere, pair.plate)))
 
@@ -64,7 +64,7 @@ def flows(pair: Pair) -> list[Flow]:
     return [flow for flow in known if largest_factor(flow) > 1.0]
 
 
-def _leading(pair: Pair) -> Flow | None:
+def leading(pair: Pair) -> Flow | None:
     """Flow of a body, with the largest C and the lowest rate0 of both."""
     known = flows(pair)
     slopes, starts = [one.rate for one in known], [one.rate0 for one in known]

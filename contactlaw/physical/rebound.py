@@ -16,7 +16,7 @@ from contactlaw.equation.edge import KINDS, Edges
 from contactlaw.equation.outcome import Extremes, Outcome
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.validity import Limits, Validity, edge_flags, flags_of
+from contactlaw.physical.validity import Validity, edge_flags, flags_of, limits_at
 
 Array = NDArray[np.float64]
 
@@ -149,7 +149,7 @@ def shaped_flags(
 
 @kernel(cache=True)
 def _with_units(
-    limits: Limits,
+    limits: Array,
     speed: Array,
     radius: Array,
     thickness: Array,
@@ -178,8 +178,9 @@ def _with_units(
         extremes.peak_force[n] *= mass[n] * v / t
         extremes.residual_compression[n] *= unit
         flags[n] |= flags_of(
-            limits, radius[n], thickness[n], unit, contact_time, w * unit, extremes.peak_force[n]
-        )
+            limits_at(limits, outcome.strength[n]), radius[n], thickness[n], unit, contact_time,
+            w * unit, extremes.peak_force[n],
+        )  # fmt: skip
         total = contact_time + w * unit + out.wave_fraction[n] + out.overload[n]
         total += extremes.peak_force[n] + extremes.residual_compression[n]
         total += outcome.restitution[n] + extremes.plastic_fraction[n] + extremes.other_fraction[n]
@@ -190,7 +191,7 @@ def _with_units(
 def rebound(
     pair: Pair,
     law: Array,
-    limits: Limits,
+    limits: Array,
     impacts: Impacts,
     time: Array,
     mass: Array,
@@ -213,21 +214,6 @@ def rebound(
                 impacts.radius[n], impacts.thickness[n], deepest[n], impacts.edge_distance[n],
                 edges.again[n],
             )  # fmt: skip
-    return completed(pair, limits, impacts, time, mass, unclamped, outcome, found, flags)
-
-
-def completed(
-    pair: Pair,
-    limits: Limits,
-    impacts: Impacts,
-    time: Array,
-    mass: Array,
-    unclamped: tuple[Array, Array],
-    outcome: Outcome,
-    found: Extremes,
-    flags: NDArray[np.int64],
-) -> Rebound:
-    """`rebound` where the law's share of the answer, `found`, is known; that is changed."""
     inelasticity, yield_ratio = unclamped
     out = Units(*np.empty((len(Units._fields), time.size)))
     wrong = _with_units(

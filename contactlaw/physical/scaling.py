@@ -7,22 +7,22 @@ work with: the inelasticity lambda, and the yield compression y on Hertz's scale
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import laws
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, THIN, plate_corrections
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import (
     ELASTIC,
+    NO_RATE,
     ModulusGrowth,
     Numbers,
     PlateConstants,
+    RateOfStrain,
     fill,
     relaxes,
 )
@@ -30,13 +30,15 @@ from contactlaw.laws import Law
 from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.rate import SHARE, rated
 from contactlaw.physical.responses import response_of
+from contactlaw.physical.strengths import by_strength
 
 Array = NDArray[np.float64]
 
 
 class ContactConstants(NamedTuple):
-    """Constants of impacts that do not depend on the speed; arrays, except `plate`."""
+    """Constants of impacts that do not depend on the speed; those of impacts are arrays."""
 
     mass: Array  # [kg], effective
     stiffness: Array  # K in F = K d^1.5 [N/m^1.5]
@@ -44,6 +46,7 @@ class ContactConstants(NamedTuple):
     yield_compression: Array  # d_Y [m]; inf for Hertz's law
     ratio: Array  # R/H
     plate: PlateConstants
+    law: Array  # of the pair at any strength
 
 
 class PairConstants(NamedTuple):
@@ -53,73 +56,6 @@ class PairConstants(NamedTuple):
     log_overload: float  # ln(chi/w_m) at 1 m/s; -inf for a law that never yields
     time: float  # T_H at 1 m/s, over R [s/m]
     mass: float  # over R^3 [kg/m3]
-
-
-def law_of(pair: Pair, law: str | Law) -> Law:
-    """Resolve the law that a user gave, with the numbers that it takes from the pair.
-
-    Raises
-    ------
-    ValueError
-        If there is no such law, or the sphere has no yield strength where the law needs one.
-    TypeError
-        If `law` is neither a name nor a Law.
-    """
-    if isinstance(law, Law):
-        found = law
-    elif not isinstance(law, str):
-        raise TypeError(f"law: expected the name of a law or a contactlaw.laws.Law, got {law!r}")
-    elif laws.parameters(law):
-        _refuse_auxetic(pair, law)
-        found = laws.law(law, **pair_numbers(pair, law))
-    else:
-        found = laws.law(law)
-    if found.from_pair and isinstance(law, Law) and law_of(pair, found.family) != found:
-        found = dataclasses.replace(found, from_pair=())  # of another pair: numbers held fixed
-    if found.yields and found.scale is None:
-        pair.sphere.require_yield_strength(found.name)
-    return found
-
-
-def _refuse_auxetic(pair: Pair, law: str) -> None:
-    """Refuse negative Poisson's ratios if the law depends on them."""
-    for body in (pair.sphere, pair.plate):
-        if body.poissons_ratio < 0.0 and "poissons_ratio" in laws.parameters(law):
-            raise ValueError(
-                f"law: {law!r} is made for Poisson's ratios from 0 to 0.5, and material "
-                f'{body.name!r} has {body.poissons_ratio:g}: take law="myc", or "hertz" for bodies '
-                "that do not yield"
-            )
-
-
-def law_for_pair(pair: Pair, law: Law) -> Law:
-    """Law for another pair: it gets that pair's numbers, unrounded, if it takes any."""
-    return laws.exact(law.family, **pair_numbers(pair, law.family)) if law.from_pair else law
-
-
-def pair_numbers(pair: Pair, law: str) -> dict[str, float]:
-    """Numbers that laws take from a pair."""
-    numbers = {
-        "poissons_ratio": pair.sphere.poissons_ratio,
-        "plate_poissons_ratio": pair.plate.poissons_ratio,
-        "sphere_ratio": _modulus_ratio(pair, pair.sphere),
-        "plate_ratio": _modulus_ratio(pair, pair.plate),
-        "modulus_share": pair.effective_modulus / pair.plate.plane_modulus,
-    }
-    for role, body in (("sphere", pair.sphere), ("plate", pair.plate)):
-        if body.flow is not None and body.flow.hardening:
-            numbers[f"{role}_hardening"] = body.flow.hardening / body.flow.strength
-            numbers[f"{role}_exponent"] = body.flow.exponent
-    if pair.frequency:
-        numbers["loss_factor"] = pair.loss_factor
-    if "modulus_ratio" in laws.parameters(law):
-        numbers["modulus_ratio"] = pair.effective_modulus / pair.sphere.require_yield_strength(law)
-    return numbers
-
-
-def _modulus_ratio(pair: Pair, body: Material) -> float:
-    """E*/sigma_Y of a body; 0 for one that does not yield."""
-    return 0.0 if body.strength is None else pair.effective_modulus / body.strength
 
 
 def _transit(plate: Material, thickness: Array) -> Array:
@@ -192,6 +128,7 @@ def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> Co
         yield_compression=_yield_compression(pair, radius, law),
         ratio=radius / thickness,
         plate=plate_constants(pair, law),
+        law=by_strength(pair, law),
     )
 
 
@@ -206,7 +143,10 @@ def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -
         mobility=np.zeros_like(reduced),
         yield_compression=_yield_compression(pair, reduced, law),
         ratio=np.zeros_like(reduced),
-        plate=PlateConstants(0.0, 0.0, 0.0, math.inf, THIN, modulus_growth(pair, law)),
+        plate=PlateConstants(
+            0.0, 0.0, 0.0, math.inf, THIN, modulus_growth(pair, law), rate_of_strain(pair, law)
+        ),
+        law=by_strength(pair, law),
     )
 
 
@@ -230,7 +170,16 @@ def plate_constants(pair: Pair, law: Law) -> PlateConstants:
         saturated=most**0.25,
         corrections=corrections,
         growth=modulus_growth(pair, law),
+        rate=rate_of_strain(pair, law),
     )
+
+
+def rate_of_strain(pair: Pair, law: Law) -> RateOfStrain:
+    """How the strength of a pair grows with the rate of an impact."""
+    flow = rated(pair, law)
+    if flow is None or law.scale is None:
+        return NO_RATE
+    return RateOfStrain(flow.rate, SHARE / flow.rate0 * law.scale)
 
 
 def modulus_growth(pair: Pair, law: Law) -> ModulusGrowth:
@@ -271,7 +220,7 @@ def scales(contact: ContactConstants, speed: Array) -> Numbers:
     # copies: kernels are compiled for writeable arrays, and broadcast ones are not
     mass, stiffness, yielding, v, ratio = (np.array(one, dtype=float).ravel() for one in given)
     out = Numbers(*np.empty((len(Numbers._fields), v.size)))
-    fill(contact.plate, mass, stiffness, yielding, v, ratio, out)
+    fill(contact.plate, contact.law, mass, stiffness, yielding, v, ratio, out)
     return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 

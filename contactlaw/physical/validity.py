@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import enum
+import itertools
 import math
 from typing import NamedTuple
 
@@ -15,7 +17,9 @@ from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.rate import rated, strengthened
 from contactlaw.physical.scaling import wave_path, yield_share
+from contactlaw.physical.strengths import USUAL, formulas_at, knots
 
 Array = NDArray[np.float64]
 
@@ -205,7 +209,7 @@ def count_flags(flags: NDArray[np.int64]) -> dict[Validity, int]:
 
 
 class Limits(NamedTuple):
-    """Limits of a pair and its law, for kernels."""
+    """Limits of a pair and its law, for kernels; of several strengths an array has rows of them."""
 
     slender: float  # R/H beyond which THIN_PLATE is raised
     slowness: float  # of the pressure wave in the plate [s/m]; 0 where no plate is too thick
@@ -270,6 +274,60 @@ def limits(pair: Pair, law: Law) -> Limits:
         on_yield=int(on_yield),
         **common,
     )
+
+
+_ROWS = 5  # in each piece of ln k
+_SMOOTH = "share", "deepest", "bending"  # limits that are smooth functions of the strength
+
+
+def alone(limits: Limits) -> Array:
+    """Array of limits that hold at any strength."""
+    return np.array([[0.0, *limits]])
+
+
+def limits_by_strength(pair: Pair, law: Law) -> Array:
+    """Limits of a pair, a row for each of some strengths: ln k, then the fields of `Limits`.
+
+    What is no smooth function of the strength is that of the middle between a row and the next.
+    """
+    if not law.yields or rated(pair, law) is None:
+        return alone(limits(pair, law))
+    ends, most = knots(pair, USUAL.piece, USUAL.fastest)
+    logs = {one for low, high in itertools.pairwise(ends) for one in np.linspace(low, high, _ROWS)}
+    at = sorted({*logs, most})
+    known = [_at_strength(pair, law, one) for one in at]
+    middle = [_at_strength(pair, law, 0.5 * (one + other)) for one, other in itertools.pairwise(at)]
+    smooth = [{name: getattr(one, name) for name in _SMOOTH} for one in known]
+    mixed = [one._replace(**own) for one, own in zip([*middle, known[-1]], smooth, strict=True)]
+    return np.array([[one, *own] for one, own in zip(at, mixed, strict=True)])
+
+
+def _at_strength(pair: Pair, law: Law, log_factor: float) -> Limits:
+    known = formulas_at(pair, log_factor)
+    names = ("scale", "onset", "range", "yield_coefficient")
+    own = dataclasses.replace(law, **{name: known[name] for name in names})
+    return limits(strengthened(pair, math.exp(log_factor)), own)
+
+
+@kernel(inline=True)
+def _between(low: float, high: float, share: float) -> float:
+    """Interpolate between numbers that may be infinite; NaN between infinity and less."""
+    return low if low == high or share == 0.0 else low + share * (high - low)
+
+
+@kernel
+def limits_at(rows: Array, strength: float) -> Limits:
+    """Limits of an impact, from its ln k."""
+    n, last = 0, rows.shape[0] - 1
+    while n < last and strength > rows[n + 1, 0]:
+        n += 1
+    a, b, share = rows[n], rows[min(n + 1, last)], 0.0
+    if n < last:
+        share = min(max((strength - a[0]) / (b[0] - a[0]), 0.0), 1.0)
+    return Limits(
+        a[1], a[2], int(a[3]), int(a[4]), a[5], a[6], a[7], _between(a[8], b[8], share),
+        _between(a[9], b[9], share), _between(a[10], b[10], share), a[11], int(a[12]),
+    )  # fmt: skip
 
 
 def _damage(pair: Pair) -> float:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import CONTACT_TIME
+from contactlaw.equation.force import room_for
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.kind import Kind
 from contactlaw.physical.oblique import sliding, surface_velocity
@@ -24,7 +25,7 @@ from contactlaw.stepping import energy
 from contactlaw.stepping.edge import REACH, Near, place_of
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.friction import clear_friction, tangential_force
-from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of, with_levels
+from contactlaw.stepping.plate_rows import SOLID, limits_of, spring_of
 from contactlaw.stepping.spring import (
     FEWEST_STEPS,
     RELAXATION,
@@ -32,7 +33,6 @@ from contactlaw.stepping.spring import (
     State,
     at_largest,
     impact,
-    nearest_level,
 )
 from contactlaw.table.lookup import THINNEST
 from contactlaw.walls.edges import nearest_edge
@@ -203,9 +203,11 @@ def report_trouble(
 
 
 @kernel
-def _check_step(scene: WallScene, clock: Clock, wall: int, spring: Spring, u: float) -> None:
+def _check_step(
+    law: Array, scene: WallScene, clock: Clock, wall: int, spring: Spring, u: float
+) -> None:
     """Refuse a step that is too long for an impact at this speed."""
-    limit = CONTACT_TIME * impact(spring, u).time / FEWEST_STEPS
+    limit = CONTACT_TIME * impact(law, spring, u).time / FEWEST_STEPS
     if clock.dt > limit:
         report_trouble(scene, Trouble.STEP_TOO_LARGE, wall, u, limit)
 
@@ -220,7 +222,14 @@ def _over_edge(scene: WallScene, bead: Bead, contact: Contact) -> bool:
 
 @kernel
 def _begin(
-    scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: int, spring: Spring, u: float
+    law: Array,
+    scene: WallScene,
+    clock: Clock,
+    bead: Bead,
+    contact: Contact,
+    k: int,
+    spring: Spring,
+    u: float,
 ) -> None:
     """Start an impact: of a new contact, or of a bead that returns before it has left the wall."""
     row, wall, touch, x = bead.contacts[k], contact.wall, contact.touch, contact.touch.x
@@ -237,8 +246,8 @@ def _begin(
     if not abs(bead.mass - spring.mass) <= SOLID * spring.mass:
         report_trouble(scene, Trouble.WRONG_MASS, wall, bead.mass, spring.mass)
     if u > 0.0:
-        _check_step(scene, clock, wall, spring, u)
-        lam = impact(spring, u).inelasticity
+        _check_step(law, scene, clock, wall, spring, u)
+        lam = impact(law, spring, u).inelasticity
         if not THINNEST * bead.r <= plate_row.thickness:
             report_trouble(scene, Trouble.FOIL, wall, bead.r / plate_row.thickness, 1.0 / THINNEST)
         elif lam > plate_row.largest:
@@ -321,15 +330,10 @@ def _end(
 
     A contact that has merged into another adds its energies to that one and is not recorded.
     """
-    row, scale, v, touch = bead.contacts[k], spring.scale, contact.v, contact.touch
-    unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
+    row, v, touch = bead.contacts[k], contact.v, contact.touch
     plate_row = scene.plate_rows[bead.kind, contact.plate_row]
-    if plate_row.levels_size > 0:
-        ended = at_largest(law, with_levels(plate_row, spring), last)
-    else:
-        ended = at_largest(law, spring, last)
-    if ended.stiffening > 0.0:
-        unit *= ended.stiffening
+    ended = at_largest(law, spring, last)
+    scale, unit = ended.scale, ended.unit
     lost, other = ended.lost * unit * scale, ended.other * unit * scale
     if contact.merged_into >= 0:
         to = bead.contacts[contact.merged_into]
@@ -387,7 +391,7 @@ def _end(
     record.other_energy = (1.0 - share) * (lost - reported) + missing
     record.sliding_speed, record.wall_work = row.sliding_speed, row.wall_work
     record.radius, record.mass, record.thickness = bead.r, bead.mass, plate_row.thickness
-    expected = impact(spring, abs(row.approach_speed))
+    expected = impact(law, spring, abs(row.approach_speed))
     record.kind = _kind_of(
         scene, bead, contact, row, lost - reported + row.wave_energy + missing, leaves,
         _LASTING * CONTACT_TIME * expected.time,
@@ -420,7 +424,7 @@ def state_of(row: Any) -> State:
     """State of the normal force in the row of a contact."""
     return State(
         row.plate_displacement, row.largest_compression, row.force, row.mobility, row.stiffening,
-        row.x1, row.y1, row.x2, row.y2, row.x3, row.y3,
+        row.strength, row.x1, row.y1, row.x2, row.y2, row.x3, row.y3,
     )  # fmt: skip
 
 
@@ -464,18 +468,14 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
     law = array_at(plate_row.law, plate_row.law_size, np.float64)
     spring = spring_of(plate_row, bead.r)
     last, edge = state_of(row), _near_edge(scene, bead, contact, plate_row, spring)
-    if plate_row.levels_size > 0:
-        rated = with_levels(plate_row, spring)
-        state, extra = energy.step(law, rated, last, touch.x, u, clock.dt, clock.before, edge.near)
-    else:
-        state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, edge.near)
+    state, extra = energy.step(law, spring, last, touch.x, u, clock.dt, clock.before, edge.near)
     held, power_0 = (0.0, 0.0, 0.0), 0.0
     if last.force > 0.0:
         held, power_0 = (row.push[0], row.push[1], row.push[2]), row.wall_power
         if row.extra_force == 0.0 and _normal_jumped(held, n, v, clock.dt, bead.r - touch.x):
             row.disturbance = max(row.disturbance, UNEVEN)
     if state.force > 0.0 and last.force == 0.0:
-        _begin(scene, clock, bead, contact, k, spring, u)
+        _begin(law, scene, clock, bead, contact, k, spring, u)
         if edge.near.rate > 0.0 and u < 0.0 < last.largest_compression:
             row.arrival = HIT_BACK
         if len(bead.friction) > 0:  # of a bead that returns before it has left the wall
@@ -491,9 +491,9 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         row.duration += clock.dt
         if u > _FASTER * max(row.approach_speed, 0.0):
             row.approach_speed = u
-            _check_step(scene, clock, contact.wall, spring, u)
+            _check_step(law, scene, clock, contact.wall, spring, u)
         elif clock.dt > clock.before and row.approach_speed > 0.0:
-            _check_step(scene, clock, contact.wall, spring, row.approach_speed)
+            _check_step(law, scene, clock, contact.wall, spring, row.approach_speed)
     row.wave_energy += energy.wave_energy(spring, last, state, clock.dt, edge.near)
     push = state.force + extra
     pushes = push * along[0], push * along[1], push * along[2]
@@ -506,7 +506,8 @@ def _advance(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, k: in
         extra = dot(pushes, n)
     row.plate_displacement = state.plate_displacement
     row.largest_compression = state.largest_compression
-    row.force, row.mobility, row.stiffening = state.force, state.mobility, state.stiffening
+    row.force, row.mobility = state.force, state.mobility
+    row.stiffening, row.strength = state.stiffening, state.strength
     row.x1, row.y1, row.x2, row.y2 = state.x1, state.y1, state.x2, state.y2
     row.x3, row.y3 = state.x3, state.y3
     row.facet, row.overlap = side, touch.x
@@ -579,13 +580,10 @@ def apply_contact(scene: WallScene, clock: Clock, bead: Bead, contact: Contact, 
             slip = surface_velocity(contact.v, bead.omega, bead.r, n)
             law = array_at(plate_row.law, plate_row.law_size, np.float64)
             spring, state = spring_of(plate_row, bead.r), state_of(row)
-            if plate_row.levels_size > 0:
-                levels = array_at(plate_row.levels, plate_row.levels_size, np.float64)
-                law, spring, state = nearest_level(law, levels, spring, state)
             drag = tangential_force(
                 bead.friction[k], scene.friction, plate_row.tangential, law, spring, state, before,
                 touch.x, row.approach_speed, n, slip, clock.dt if clock.advancing else 0.0,
-                row.extra_force,
+                row.extra_force, room_for(law),
             )  # fmt: skip
             torque = (
                 -bead.r * (n[1] * drag[2] - n[2] * drag[1]),

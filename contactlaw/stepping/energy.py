@@ -65,7 +65,14 @@ def step(
     f0, u2 = state.force, state.plate_displacement
     shift = (h - before) * (h + before) / (12.0 * spring.mass) if f0 > 0.0 else 0.0
     last = with_memory(
-        State(u2 - shift * f0, state.largest_compression, f0, state.mobility, state.stiffening),
+        State(
+            u2 - shift * f0,
+            state.largest_compression,
+            f0,
+            state.mobility,
+            state.stiffening,
+            state.strength,
+        ),
         memory_of(state),
     )
     new = advance(law, spring, last, x, h, near)
@@ -73,11 +80,12 @@ def step(
     if f1 > 0.0 and shift != 0.0:
         u2 = new.plate_displacement + shift * (f1 - f0)
         new = with_memory(
-            State(u2, new.largest_compression, f1, new.mobility, new.stiffening), memory_of(new)
+            State(u2, new.largest_compression, f1, new.mobility, new.stiffening, new.strength),
+            memory_of(new),
         )
         return new, spring.mass * shift * (f1 - f0) / (h * h)
     first = f1 > 0.0 and state.largest_compression == 0.0
-    if first and x <= _FIRST_OVERLAP * u * h and force.is_hertz(law):
+    if first and x <= _FIRST_OVERLAP * u * h and force.room_for(law) == 0 and force.is_hertz(law):
         return new, _first_step_correction(spring, x, u * h)
     return new, 0.0
 

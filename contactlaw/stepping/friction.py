@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
+from contactlaw.equation.force import at_strength, growth_at
 from contactlaw.equation.tangential import Stiffness, kept, part_of, share_within, stiffness_at
 from contactlaw.stepping.energy import dot
 from contactlaw.stepping.spring import Spring, State, impact
@@ -65,22 +66,23 @@ def clear_friction(row: Any) -> None:
 
 
 @kernel
-def _width(law: Array, spring: Spring, speed: float, k: float) -> float:
+def _width(law: Array, own: Array, spring: Spring, scale: float, speed: float, k: float) -> float:
     """Width of springs for an impact with this speed; for a bead that was put down, of those at k.
 
     Beyond yield the compression follows from the energy, since F d is 2.0 to 2.5 times the work.
+    The impact's own law has yield compressions of `scale`.
     """
     if not speed > _LEAST_SPEED:
         return k / SPRINGS
-    d = _DEEPEST * impact(spring, speed).compression / spring.scale
-    unit = spring.stiffness * spring.scale * math.sqrt(spring.scale)  # F_Y
-    if d > forces.lossless(law):
-        energy = 0.5 * spring.mass * speed * speed / (unit * spring.scale)
+    d = _DEEPEST * impact(law, spring, speed).compression / scale
+    unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
+    if d > forces.lossless(own):
+        energy = 0.5 * spring.mass * speed * speed / (unit * scale)
         for _ in range(4):
-            d *= math.sqrt(energy / (0.45 * forces.loading(law, math.sqrt(d)) * d))
-    f = unit * forces.loading(law, math.sqrt(d))
-    d *= spring.scale
-    return stiffness_at(law, spring.scale, spring.stiffness, d, d, f).normal / SPRINGS
+            d *= math.sqrt(energy / (0.45 * forces.loading(own, math.sqrt(d)) * d))
+    f = unit * forces.loading(own, math.sqrt(d))
+    d *= scale
+    return stiffness_at(own, scale, spring.stiffness, d, d, f).normal / SPRINGS
 
 
 @kernel
@@ -156,12 +158,14 @@ def _pull(
 def tangential_force(
     row: Any, friction: float, kappa: float, law: Array, spring: Spring, state: State,
     before: float, overlap: float, speed: float, n: Point, slip: Point, dt: float, extra: float,
+    room: int,
 ) -> Point:  # fmt: skip
     """Tangential force on a bead [N], from the velocity of its surface relative to the wall.
 
     `before` is the largest compression before this step, `speed` the approach speed and `extra` the
     correction of the normal force in this step; a contact with `extra` alone has just ended. A step
-    dt of 0 gives the last step's force again.
+    dt of 0 gives the last step's force again. `room` is what
+    `contactlaw.equation.force.room_for` says of the law.
     """
     f, last = state.force, (row.force[0], row.force[1], row.force[2])
     if dt == 0.0:
@@ -173,14 +177,16 @@ def tangential_force(
         a, b = _directions(row, n, slip)
         d = overlap - state.plate_displacement
         hertz = spring.stiffness * (state.stiffening if state.stiffening > 0.0 else 1.0)
-        now = stiffness_at(law, spring.scale, hertz, state.largest_compression, d, f)
+        own = law if room == 0 else at_strength(law, state.strength, np.empty(room))
+        scale = spring.scale * growth_at(law, state.strength)
+        now = stiffness_at(own, scale, hertz, state.largest_compression, d, f)
         if not now.normal > 0.0:  # at the end of a contact its force may outlive its compression
-            now = Stiffness(max(row.stiffness, f / spring.scale), now.power)
+            now = Stiffness(max(row.stiffness, f / scale), now.power)
         if row.width == 0.0:
-            row.width = _width(law, spring, speed, now.normal)
+            row.width = _width(law, own, spring, scale, speed, now.normal)
         while now.normal > 1.5 * SPRINGS * row.width:
             _join(row)
-        left = kept(spring.scale, before, state.largest_compression)
+        left = kept(scale, before, state.largest_compression)
         x, y = _pull(row, friction, kappa, now, f, dt * dot(slip, a), dt * dot(slip, b), left)
         more = -(1.0 + extra / f)
         x, y = more * x, more * y

@@ -16,15 +16,14 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections
 from contactlaw.equation.edge import SIZE
-from contactlaw.equation.numbers import ModulusGrowth, PlateConstants
+from contactlaw.equation.numbers import ModulusGrowth, PlateConstants, RateOfStrain
 from contactlaw.model import ImpactModel
 from contactlaw.physical.responses import RESPONSES, responses_of
 from contactlaw.physical.scaling import wave_path
+from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import Limits
 from contactlaw.stepping.spring import Spring, resized, unit_spring
-from contactlaw.stepping.strength import levels_of
 from contactlaw.walls.frame import Wall
-from contactlaw.walls.memory import array_at
 from contactlaw.walls.plate import by_type
 
 Rows = NDArray[np.void]
@@ -35,10 +34,11 @@ PLATE_ROW = np.dtype(
         (name, "f8")
         for name in (
             "tangential",
-            *Spring._fields[:-2],
-            *PlateConstants._fields[:-2],
+            *Spring._fields[:-1],
+            *PlateConstants._fields[:-3],
             *PlateCorrections._fields,
             *ModulusGrowth._fields,
+            *RateOfStrain._fields,
         )
     ]
     # the flags of an impact need the thickness and the fields of Limits
@@ -51,9 +51,8 @@ PLATE_ROW = np.dtype(
     + [("responses", "f8", (RESPONSES, SIZE)), ("wave_path", "f8")]
     # largest inelasticity that the model accepts; first bead type with equal rows on all plates
     + [("largest", "f8"), ("alike", "i8")]
-    # addresses and sizes of the law (0: there is no model for beads of this type), and of the laws
-    # by strength of a pair with a rate
-    + [("law", "i8"), ("law_size", "i8"), ("levels", "i8"), ("levels_size", "i8")],
+    # address of the law at any strength (0: there is no model for beads of this type), and its size
+    + [("law", "i8"), ("law_size", "i8")],
     align=True,
 )
 
@@ -78,11 +77,10 @@ def plate_rows(
     for (kinds, thickness), number in table.items():
         for kind, model in kinds:
             _fill(rows[kind - 1, number], by_id[model], thickness)
-            laws[kind - 1][number] = by_id[model].force_law.key
-            if (levels := levels_of(by_id[model].pair, by_id[model].force_law)) is not None:
-                row = rows[kind - 1, number]
-                row["levels"], row["levels_size"] = levels.ctypes.data, levels.size
-                laws[kind - 1][number], held = levels.tobytes(), [*held, levels]
+            law = by_strength(by_id[model].pair, by_id[model].force_law, COARSE)
+            row = rows[kind - 1, number]
+            row["law"], row["law_size"] = law.ctypes.data, law.size
+            laws[kind - 1][number], held = law.tobytes(), [*held, law]
     rows["alike"] = _first_alike(rows, laws)[:, None]
     return rows, numbers, held
 
@@ -92,7 +90,7 @@ def _first_alike(rows: Any, laws: list[list[Any]]) -> NDArray[np.intp]:
 
     Laws are compared by what they are, because equal models hold their data at different addresses.
     """
-    numbers = [name for name in PLATE_ROW.names or () if name not in ("law", "levels", "responses")]
+    numbers = [name for name in PLATE_ROW.names or () if name not in ("law", "responses")]
     said = [
         (row[numbers].tolist(), row["responses"].tolist(), keys)
         for row, keys in zip(rows, laws, strict=True)
@@ -105,12 +103,10 @@ def _fill(row: Any, model: ImpactModel, thickness: float) -> None:
     spring = unit_spring(model, thickness)
     parts: dict[str, Any] = spring._asdict() | model.limits._asdict()
     parts |= parts.pop("plate")._asdict()
-    parts |= parts.pop("corrections")._asdict() | parts.pop("growth")._asdict()
-    del parts["levels"]
+    for name in ("corrections", "growth", "rate"):
+        parts |= parts.pop(name)._asdict()
     for name, value in parts.items():
         row[name] = value
-    law = model.force_law.data
-    row["law"], row["law_size"] = law.ctypes.data, law.size
     row["thickness"], plate = thickness, model.pair.plate
     row["responses"] = responses_of(plate.poissons_ratio)
     row["wave_path"] = wave_path(plate)
@@ -132,10 +128,11 @@ def spring_of(row: Any, r: float) -> Spring:
             row.log_time, row.modulus_power, row.plate_power, row.yield_power, row.wave,
             row.wave_slope,
         ),
+        RateOfStrain(row.slope, row.per_speed),
     )  # fmt: skip
     unit = Spring(
         row.mass, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio,
-        plate, None,
+        plate,
     )  # fmt: skip
     return resized(unit, r)
 
@@ -144,15 +141,6 @@ def spring_of(row: Any, r: float) -> Spring:
 def solid_mass(row: Any, r: float) -> float:
     """Mass of a solid sphere of the row's material [kg]; NaN where there is no model."""
     return row.mass * r * r * r if row.law != 0 else math.nan
-
-
-@kernel
-def with_levels(row: Any, spring: Spring) -> Spring:
-    """Spring of a pair with a rate."""
-    return Spring(
-        spring.mass, spring.stiffness, spring.mobility, spring.scale, spring.relaxation,
-        spring.ratio, spring.plate, array_at(row.levels, row.levels_size, np.float64),
-    )  # fmt: skip
 
 
 @kernel

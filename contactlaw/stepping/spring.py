@@ -25,7 +25,7 @@ Legend, as in `contactlaw.equation`: scaled by d_Y and F_Y inside the kernels,
 
 Where a law corrects the mobility of a thin plate (`contactlaw.equation.corrections`), it depends on
 the contact time, and so on the approach speed, which is first known in the second step. So does the
-strength of a pair with a rate (`contactlaw.stepping.strength`).
+strength of a pair with a rate.
 
 An infinite plate recedes for ever under a lasting force such as a bead's weight. A real one has
 edges: here u2 relaxes within 1e5 contact times, too slowly to change an impact, and a bead at rest
@@ -44,12 +44,13 @@ from contactlaw._jit import kernel
 from contactlaw.equation import force as forces
 from contactlaw.equation.corrections import CONTACT_TIME, is_thin
 from contactlaw.equation.edge import Memory
-from contactlaw.equation.force import UnloadingCurve
+from contactlaw.equation.force import UnloadingCurve, at_strength, growth_at, room_for
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import (
     ModulusGrowth,
     Numbers,
     PlateConstants,
+    RateOfStrain,
     numbers,
     relaxed,
     relaxes,
@@ -57,7 +58,6 @@ from contactlaw.equation.numbers import (
 from contactlaw.equation.recall import remembered
 from contactlaw.model import ImpactModel
 from contactlaw.physical.scaling import sphere_on_plate
-from contactlaw.stepping import strength
 from contactlaw.stepping.edge import Near, recalled
 
 Array = NDArray[np.float64]
@@ -81,9 +81,8 @@ class State(NamedTuple):
     largest_compression: Any  # dm [m]
     force: Any  # F [N]
     mobility: Any = 0.0  # of the plate in this contact [m/(s N)]; 0 where the spring's holds
-    # stiffness of the contact over the spring's; 0 where the spring's holds; of a pair with a rate
-    # it holds the strength, too
-    stiffening: Any = 0.0
+    stiffening: Any = 0.0  # of the contact over the spring's; 0 where the spring's holds
+    strength: Any = 0.0  # ln of the pair's strength over that of a slow test
     # memory of a plate near an edge [N], see `contactlaw.equation.edge`
     x1: Any = 0.0
     y1: Any = 0.0
@@ -103,20 +102,20 @@ class Spring(NamedTuple):
     relaxation: Any  # time in which the plate's displacement relaxes [s]
     ratio: Any  # R/H
     plate: PlateConstants
-    levels: Any = None  # laws by strength of a pair with a rate, an array
 
 
 class Largest(NamedTuple):
-    """A contact from its largest compression on, in units of the spring's d_Y and F_Y."""
+    """A contact from its largest compression on, in units of its d_Y and F_Y."""
 
-    stiffening: float
+    scale: float  # d_Y [m]
+    unit: float  # F_Y [N]
     lost: float
     other: float  # part of the loss that is not plastic work
     residual: float
     peak: float
 
 
-PARTED = State(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+PARTED = State(*[0.0] * 12)
 
 
 @kernel(inline=True)
@@ -124,7 +123,7 @@ def with_memory(state: State, m: Memory) -> State:
     """State with this memory of the plate."""
     return State(
         state.plate_displacement, state.largest_compression, state.force, state.mobility,
-        state.stiffening, m.x1, m.y1, m.x2, m.y2, m.x3, m.y3,
+        state.stiffening, state.strength, m.x1, m.y1, m.x2, m.y2, m.x3, m.y3,
     )  # fmt: skip
 
 
@@ -148,7 +147,6 @@ def unit_spring(model: ImpactModel, thickness: float) -> Spring:
         relaxation=relaxation(mass, stiffness),
         ratio=float(contact.ratio),
         plate=contact.plate,
-        levels=strength.levels_of(model.pair, model.force_law),
     )
 
 
@@ -171,10 +169,11 @@ def at_usual_frequency(spring: Spring) -> Spring:
         own, 1.0, 0.4 * math.log(spring.mass / spring.stiffness) - usual
     )
     stiffness = spring.stiffness * math.exp(growth)
+    softer = math.exp(own.growth.yield_power * growth)
     slower = plate.inelasticity / own.inelasticity if own.inelasticity > 0.0 else 1.0
     return Spring(
         spring.mass, stiffness, spring.mobility * slower,
-        spring.scale * math.exp(own.growth.yield_power * growth), spring.relaxation, spring.ratio,
+        spring.scale * softer, spring.relaxation, spring.ratio,
         PlateConstants(
             plate.inelasticity * faster, plate.transit * faster, plate.x_at_one * (faster * faster),
             plate.saturated / faster, plate.corrections,
@@ -183,8 +182,8 @@ def at_usual_frequency(spring: Spring) -> Spring:
                 own.growth.plate_power, own.growth.yield_power, own.growth.wave,
                 own.growth.wave_slope,
             ),
+            RateOfStrain(own.rate.slope, own.rate.per_speed * softer),
         ),
-        spring.levels,
     )  # fmt: skip
 
 
@@ -200,43 +199,16 @@ def resized(unit: Spring, radius: float) -> Spring:
             unit.relaxation * radius,
             unit.ratio * radius,
             unit.plate,
-            unit.levels,
         )
     )
 
 
 @kernel(entry=True)
-def impact(spring: Spring, speed: float) -> Numbers:
+def impact(law: Array, spring: Spring, speed: float) -> Numbers:
     """Dimensionless numbers of the impact with which a contact begins."""
     return numbers(
-        spring.plate, spring.mass, spring.stiffness, spring.scale, speed, spring.ratio
+        spring.plate, law, spring.mass, spring.stiffness, spring.scale, speed, spring.ratio
     )  # fmt: skip
-
-
-@kernel
-def strengthened(spring: Spring, place: float) -> Spring:
-    """Spring whose plate knows that a stronger contact yields later; its scale stays."""
-    plate = spring.plate
-    later = strength.yield_growth(spring.levels, place) ** 0.25
-    return Spring(
-        spring.mass, spring.stiffness, spring.mobility, spring.scale, spring.relaxation,
-        spring.ratio,
-        PlateConstants(
-            plate.inelasticity, plate.transit, plate.x_at_one, later * plate.saturated,
-            plate.corrections, plate.growth,
-        ),
-        spring.levels,
-    )  # fmt: skip
-
-
-@kernel
-def _slow_scale(spring: Spring) -> float:
-    """Yield compression with the moduli that the pair was given, as `relaxation` has them."""
-    if not relaxes(spring.plate):
-        return float(spring.scale)
-    time = RELAXATION * CONTACT_TIME * (spring.mass / spring.stiffness) ** 0.4
-    growth = (spring.relaxation / time) ** 2.5
-    return float(spring.scale * growth**-spring.plate.growth.yield_power)
 
 
 @kernel
@@ -250,43 +222,34 @@ def returning(spring: Spring, mobility: float) -> float:
 
 @kernel
 def _first_known(
-    levels: Array | None, spring: Spring, state: State, overlap: float, step: float
+    law: Array, spring: Spring, state: State, overlap: float, step: float
 ) -> tuple[float, float, float]:
-    """Mobility, stiffening and place of a contact in its second step, when the speed is known."""
-    stiffening, place = state.stiffening, 0.0
-    if levels is not None:
-        stiffening, place = strength.split(stiffening)
-    if not state.largest_compression > 0.0 or stiffening > 0.0:
-        return state.mobility, stiffening, place
+    """Mobility, stiffening, strength of a contact in its second step, when the speed is known."""
+    if not state.largest_compression > 0.0 or state.stiffening > 0.0:
+        return state.mobility, state.stiffening, state.strength
     speed = (overlap - state.plate_displacement - state.largest_compression) / step
     if not speed > 0.0:
-        return spring.mobility, 1.0, place
-    if levels is not None:
-        place = strength.place_at(levels, speed, _slow_scale(spring))
-        spring = strengthened(spring, place)
-    found = impact(spring, speed)
+        return spring.mobility, 1.0, 0.0
+    found = impact(law, spring, speed)
     stiffer = found.stiffer
     return (
         found.inelasticity * found.time / spring.mass,
         stiffer * stiffer * math.sqrt(stiffer),
-        place,
+        found.strength,
     )
 
 
 @kernel
-def _force(
-    law: Array, levels: Array | None, place: float, loading: bool, q: float, curve: UnloadingCurve
-) -> float:
+def _force(law: Array, loading: bool, q: float, curve: UnloadingCurve) -> float:
     if loading or curve.stiffness == 0.0:
-        return strength.loading(law, levels, place, q)
+        return forces.loading(law, q)
     return forces.unloading_force(law, curve, q)
 
 
 @kernel
 def _balance(
-    law: Array, levels: Array | None, place: float, loading: bool, curve: UnloadingCurve, b: float,
-    r: float,
-) -> tuple[float, float]:  # fmt: skip
+    law: Array, loading: bool, curve: UnloadingCurve, b: float, r: float
+) -> tuple[float, float]:
     """Root compression and force with q^2 + b f(q) = r; 0, 0 where the bodies do not press.
 
     The left side is convex, so the secant method comes down to the root from the right and cannot
@@ -295,7 +258,7 @@ def _balance(
     if not r > 0.0:
         return 0.0, 0.0
     q = math.sqrt(r)
-    f = _force(law, levels, place, loading, q, curve)
+    f = _force(law, loading, q, curve)
     if b == 0.0:
         return q, f
     gap = b * f
@@ -303,7 +266,7 @@ def _balance(
     for _ in range(MOST_ITERATIONS):
         change = gap / slope
         q = max(q - change, 0.0)
-        f = _force(law, levels, place, loading, q, curve)
+        f = _force(law, loading, q, curve)
         if not abs(change) > CONVERGED * q:
             break
         last, gap = gap, q * q + b * f - r
@@ -320,22 +283,30 @@ def advance(
     """State at the end of a step [s], from the overlap [m] at its end.
 
     The force to apply is the state's. Compression that falls, or grows again below its largest
-    value, follows the unloading curve. An overlap of zero or less clears the state.
+    value, follows the unloading curve. An overlap of zero or less clears the state. The law is that
+    of `contactlaw.softsphere.law_of`.
     """
+    return stepped(law, spring, state, overlap, step, near, room_for(law))
+
+
+@kernel
+def stepped(
+    law: Array, spring: Spring, state: State, overlap: float, step: float, near: Near | None,
+    room: int,
+) -> State:  # fmt: skip
+    """`advance` where it is known what `contactlaw.equation.force.room_for` says of the law."""
     if not overlap > 0.0:
         return PARTED
-    scale, levels = spring.scale, spring.levels
+    own_mobility, stiffening, mobility, strength = 0.0, 0.0, spring.mobility, 0.0
+    if not is_thin(spring.plate.corrections):
+        own_mobility, stiffening, strength = _first_known(law, spring, state, overlap, step)
+    own = law if room == 0 else at_strength(law, strength, np.empty(room))
+    scale = spring.scale * growth_at(law, strength)
     unit = spring.stiffness * scale * math.sqrt(scale)  # F_Y
     leak = 0.5 * step / spring.relaxation
-    before = state.stiffening
-    if levels is not None:
-        before, _ = strength.split(before)
-    before = unit * before if before > 0.0 else unit
-    own, stiffening, mobility, place = 0.0, 0.0, spring.mobility, 0.0
-    if not is_thin(spring.plate.corrections):
-        own, stiffening, place = _first_known(levels, spring, state, overlap, step)
-        if stiffening > 0.0:
-            mobility, unit = own, unit * stiffening
+    before = unit * state.stiffening if state.stiffening > 0.0 else unit
+    if stiffening > 0.0:
+        mobility, unit = own_mobility, unit * stiffening
     moved = 0.5 * step * mobility / (1.0 + leak)  # motion of the plate per force at either end
     known = state.plate_displacement * (1.0 - leak) / (1.0 + leak) + moved * state.force
     rule_error = moved / 6.0  # the trapezoidal rule's error in `moved`
@@ -347,16 +318,16 @@ def advance(
     r = (overlap - known - rule_error * state.force) / scale
     dm = state.largest_compression / scale
     # Whether the contact is at compression dm, on the loading curve.
-    highest = strength.loading(law, levels, place, math.sqrt(dm))
+    highest = forces.loading(own, math.sqrt(dm))
     top = state.force >= ON_LOADING_CURVE * highest * before
     loading, q, f = True, 0.0, 0.0
-    least = strength.lossless(law, levels)
+    least = forces.lossless(own)
     if dm > least and not top:
-        curve = strength.unloading(law, levels, place, dm)
-        q, f = _balance(law, levels, place, False, curve, b, r - curve.residual)
+        curve = forces.unloading(own, dm)
+        q, f = _balance(own, False, curve, b, r - curve.residual)
         loading = q * q + curve.residual > dm
     if loading:
-        q, f = _balance(law, levels, place, True, NO_CURVE, b, r)
+        q, f = _balance(own, True, NO_CURVE, b, r)
         d = q * q
         fall = f * unit * step * step / (spring.mass * scale)  # -d'' dt^2
         if top and fall > 0.0:
@@ -364,55 +335,24 @@ def advance(
             if vertex < 1.0:
                 dm = max(d, dm + 0.5 * fall * max(vertex, 0.0) ** 2)
                 if dm > least:
-                    curve = strength.unloading(law, levels, place, dm)
-                    q, f = _balance(law, levels, place, False, curve, b, r - curve.residual)
+                    curve = forces.unloading(own, dm)
+                    q, f = _balance(own, False, curve, b, r - curve.residual)
         dm = max(d, dm)
     force = f * unit
-    if levels is not None and stiffening > 0.0:
-        stiffening = strength.with_place(stiffening, place)
     moved += by_edge
-    new = State(known + moved * force, dm * scale, force, own, stiffening)
+    new = State(known + moved * force, dm * scale, force, own_mobility, stiffening, strength)
     return with_memory(new, remembered(before_edge, force))
 
 
 @kernel
 def at_largest(law: Array, spring: Spring, state: State) -> Largest:
     """Say what the largest compression of a contact means for its unloading."""
-    stiffening, place, levels = state.stiffening, 0.0, spring.levels
-    if levels is not None:
-        stiffening, place = strength.split(stiffening)
-    dm = state.largest_compression / spring.scale
-    lost, other = strength.losses(law, levels, place, dm)
-    residual = strength.unloading(law, levels, place, dm).residual
-    return Largest(
-        stiffening, lost, other, residual, strength.loading(law, levels, place, math.sqrt(dm))
-    )
-
-
-@kernel
-def nearest_level(
-    law: Array, levels: Array, spring: Spring, state: State
-) -> tuple[Array, Spring, State]:
-    """Law of the level that is nearest to a contact's place, with spring and state for it.
-
-    The state is shifted so that its compression is as far above the residual one as in the contact.
-    """
-    stiffening, place = strength.split(state.stiffening)
-    own, growth = strength.nearest(levels, place)
-    dm = state.largest_compression / spring.scale
-    left = strength.unloading(law, levels, place, dm).residual
-    shift = spring.scale * (left - growth * forces.residual(own, dm / growth))
-    return (
-        own,
-        Spring(
-            spring.mass, spring.stiffness, spring.mobility, growth * spring.scale,
-            spring.relaxation, spring.ratio, spring.plate, spring.levels,
-        ),
-        with_memory(
-            State(
-                state.plate_displacement + shift, state.largest_compression, state.force,
-                state.mobility, stiffening,
-            ),
-            memory_of(state),
-        ),
-    )  # fmt: skip
+    room = room_for(law)
+    own = law if room == 0 else at_strength(law, state.strength, np.empty(room))
+    scale = spring.scale * growth_at(law, state.strength)
+    unit = spring.stiffness * scale * math.sqrt(scale)
+    if state.stiffening > 0.0:
+        unit *= state.stiffening
+    dm = state.largest_compression / scale
+    residual, lost, other = forces.residual_and_losses(own, dm)
+    return Largest(scale, unit, lost, other, residual, forces.loading(own, math.sqrt(dm)))

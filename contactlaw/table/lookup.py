@@ -38,6 +38,7 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation.corrections import PlateCorrections, is_thin
 from contactlaw.equation.numbers import (
+    NO_RATE,
     ModulusGrowth,
     PlateConstants,
     inelasticity_of,
@@ -97,7 +98,7 @@ def plate_of(table: Array, c_lam: float) -> PlateConstants:
         w[k + 6], w[k + 7], w[k + 8], w[k + 9], w[k + 10],
     )  # fmt: skip
     growth = ModulusGrowth(w[r], w[r + 1], w[r + 2], w[r + 3], w[r + 4], w[r + 5])
-    return PlateConstants(c_lam, w[TRANSIT], w[REACH], w[SATURATED], corrections, growth)
+    return PlateConstants(c_lam, w[TRANSIT], w[REACH], w[SATURATED], corrections, growth, NO_RATE)
 
 
 def lam_max(table: Array) -> float:

@@ -82,18 +82,18 @@ def _changes(law: Law, out: Outcome, kappa: float) -> Array:
     sticking = np.maximum(share**2, 1e-8) / kappa  # at rest there is a limit, but no share
     sliding = 1.0 / kappa + _range(kappa, e) * share
     psi = np.hstack((np.broadcast_to(sticking, sliding.shape), sliding))
-    return (psi - after(law, out, kappa, psi, _SAMPLES, _SPRINGS)) / psi
+    return (psi - after(law.data, out, kappa, psi, _SAMPLES, _SPRINGS)) / psi
 
 
 def after(
-    law: Law, found: Outcome, kappa: float, psi: Array, samples: int = 801, springs: int = 64,
+    law: Array, found: Outcome, kappa: float, psi: Array, samples: int = 801, springs: int = 64,
     edges: Edges | None = None,
 ) -> Array:  # fmt: skip
     """Speeds of the contact points after impacts (impacts, speeds) [mu V0], by integration."""
     path = outcome.history(found.inelasticity.size, samples)
-    zener.histories(law.data, found, _RTOL, path, edges)
+    zener.histories(law, found, _RTOL, path, edges)
     speed = np.array(psi)
-    tangential.slide_all(law.data, found.yield_ratio, kappa, path, speed, springs)
+    tangential.slide_all(law, found.yield_ratio, found.strength, kappa, path, speed, springs)
     return speed
 
 

@@ -189,7 +189,7 @@ def place_of(
     log_chi = c_chi + _sum(w, _entries(table, first + SHIFT)) + 0.8 * log_speed
     saturated = _sum(w, _entries(table, first + SATURATED))
     plate = PlateConstants(
-        c_lam, known.transit, known.x_at_one, saturated, known.corrections, known.growth
+        c_lam, known.transit, known.x_at_one, saturated, known.corrections, known.growth, known.rate
     )
     if relaxes(plate):
         log_time = lookup.log_and_root(radius)[0] - 0.2 * log_speed
@@ -404,7 +404,13 @@ def _coordinates(
             log_time = lookup.log_and_root(radius[i])[0] - 0.2 * log_speed[i]
             at = _at(saturated, t[i])
             plate = PlateConstants(
-                c_lam, known.transit, known.x_at_one, at, known.corrections, known.growth
+                c_lam,
+                known.transit,
+                known.x_at_one,
+                at,
+                known.corrections,
+                known.growth,
+                known.rate,
             )
             plate, faster, growth = relaxed(plate, root[i], log_time)
             stiffer = plate_stiffening(plate, faster, ratio[i])
@@ -415,13 +421,25 @@ def _coordinates(
         for i in range(x.size):
             at = _at(saturated, t[i])
             plate = PlateConstants(
-                c_lam, known.transit, known.x_at_one, at, known.corrections, known.growth
+                c_lam,
+                known.transit,
+                known.x_at_one,
+                at,
+                known.corrections,
+                known.growth,
+                known.rate,
             )
             eta[i] = plate_stiffening(plate, root[i], ratio[i])
         for i in range(x.size):
             at = _at(saturated, t[i])
             plate = PlateConstants(
-                c_lam, known.transit, known.x_at_one, at, known.corrections, known.growth
+                c_lam,
+                known.transit,
+                known.x_at_one,
+                at,
+                known.corrections,
+                known.growth,
+                known.rate,
             )
             lam = inelasticity_of(plate, root[i], ratio[i], lookup.exp(eta[i]))
             x[i] = lam / (lam + stretch)

@@ -9,8 +9,8 @@ from contactlaw.answers.backend import OutsideTableError, SphereOnPlate
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Border, Tabulated, extent
 from contactlaw.equation.losses import Losses
+from contactlaw.physical.law import law_of
 from contactlaw.physical.rebound import Impacts
-from contactlaw.physical.scaling import law_of
 
 R = 0.9e-3
 PAIRS = {

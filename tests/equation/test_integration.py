@@ -16,7 +16,7 @@ from staying import STAYING
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.equation import force, integrator, losses, motion, outcome, zener
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 
 HERTZ = force.HERTZ.copy()
 

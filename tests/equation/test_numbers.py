@@ -113,7 +113,7 @@ def test_table_solver_and_stepping_have_the_same(pair, law):
         assert low != high
     for n in range(0, v.size, 5):
         spring = resized(unit_spring(model, h[n]), r[n])
-        one = impact(spring, v[n])
+        one = impact(model.force_law.data, spring, v[n])
         theirs = units.inelasticity[n], units.time[n], units.compression[n]
         assert (one.inelasticity, one.time, one.compression) == pytest.approx(theirs, rel=1e-14)
 

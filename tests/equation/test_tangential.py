@@ -27,7 +27,7 @@ def solved(lam, chi, law=MYC):
 @pytest.mark.parametrize(("lam", "chi"), [(0.0, 0.9), (0.3, 3.0), (1.0, 12.0), (2.0, 40.0)])
 def test_springs_of_scipy(lam, chi, kappa):
     found = solved(lam, chi)
-    ours = after(MYC, found, kappa, PSI[None])[0]
+    ours = after(MYC.data, found, kappa, PSI[None])[0]
     y = found.yield_ratio[0]
     assert np.abs(ours - slide(lam, y, kappa, PSI)).max() < 1e-3
 
@@ -36,7 +36,7 @@ def test_full_sliding_takes_the_whole_impulse():
     for lam, chi in ((0.0, 0.9), (0.5, 5.0), (2.0, 30.0)):
         found = solved(lam, chi)
         for samples, springs in ((11, 2), (801, 64)):
-            speed = after(MYC, found, 0.8, np.array([[20.0, -20.0]]), samples, springs)[0]
+            speed = after(MYC.data, found, 0.8, np.array([[20.0, -20.0]]), samples, springs)[0]
             left = 20.0 - 3.5 * (1.0 + found.restitution[0])
             assert speed == pytest.approx([left, -left], abs=1e-9)
 
@@ -44,7 +44,7 @@ def test_full_sliding_takes_the_whole_impulse():
 @pytest.mark.parametrize(("kappa", "beta"), [(2 / 3, 0.11), (0.83, -0.24), (1.0, -0.39)])
 def test_a_contact_that_sticks(kappa, beta):
     # the limit of small psi, found by another program and given with two digits
-    speed = after(MYC, solved(0.0, 0.9), kappa, np.array([[1e-4]]))[0, 0]
+    speed = after(MYC.data, solved(0.0, 0.9), kappa, np.array([[1e-4]]))[0, 0]
     assert -speed / 1e-4 == pytest.approx(beta, abs=0.01)
 
 
@@ -52,19 +52,21 @@ def test_published_finite_elements_where_the_contact_slides():
     # Chung and Ooi's test 5, digitised, in mu V0; they print no digits, and 0.05 is their scatter
     psi = np.array([1.92, 2.79, 3.97, 4.76, 5.76, 7.12])
     published = [-0.63, -1.25, -1.72, -1.71, -1.20, 0.13]
-    assert np.abs(after(MYC, solved(0.0, 0.9), 0.83, psi[None])[0] - published).max() < 0.05
+    assert np.abs(after(MYC.data, solved(0.0, 0.9), 0.83, psi[None])[0] - published).max() < 0.05
 
 
 def test_order_of_convergence():
     found = solved(0.3, 6.0)
-    exact = after(MYC, found, 0.8, PSI[None], 12801, 64)[0]
+    exact = after(MYC.data, found, 0.8, PSI[None], 12801, 64)[0]
     errors = [
-        np.abs(after(MYC, found, 0.8, PSI[None], n + 1, 64)[0] - exact).max()
+        np.abs(after(MYC.data, found, 0.8, PSI[None], n + 1, 64)[0] - exact).max()
         for n in (100, 200, 400, 800)
     ]
     # second order but for the moments at which springs begin and cease to slide
     assert errors[0] > 20 * errors[3]
-    springs = [np.abs(after(MYC, found, 0.8, PSI[None], 801, n) - exact).max() for n in (8, 16, 32)]
+    springs = [
+        np.abs(after(MYC.data, found, 0.8, PSI[None], 801, n) - exact).max() for n in (8, 16, 32)
+    ]
     assert springs[0] > 6 * springs[2]
 
 
@@ -75,6 +77,6 @@ def test_no_impact_makes_energy():
         lam, chi = generator.uniform(0, 1.5) ** 2, np.exp(generator.uniform(-1, 3.6))
         psi = generator.uniform(-12, 12, 500)
         kappa = generator.uniform(0.66, 1.34)
-        speed = after(MYC, solved(lam, chi), kappa, psi[None], 101, 8)[0]
+        speed = after(MYC.data, solved(lam, chi), kappa, psi[None], 101, 8)[0]
         worst = max(worst, (np.abs(speed) - np.abs(psi)).max())
     assert worst < 1e-12

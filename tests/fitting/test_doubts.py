@@ -12,7 +12,7 @@ import contactlaw as cl
 from contactlaw.fitting import doubts
 from contactlaw.fitting.predictions import Predictor, Values, impacts
 from contactlaw.fitting.unknowns import Setting, parameters
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 
 DOUBT = re.compile(r"trend with|times (above|below) that|fit better|above 1:|no \w+ gives")
 ALUMINA, EXCHANGED = cl.Pair("gamma-alumina", "glass"), cl.Pair(STEEL.plate, STEEL.sphere)

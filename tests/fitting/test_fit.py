@@ -24,7 +24,7 @@ from contactlaw.cli.fit import printed
 from contactlaw.fitting import errors, notes
 from contactlaw.fitting.predictions import Predictor, Values, impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 from validation.inverse import coverage, elements, model
 
 

@@ -14,7 +14,7 @@ import contactlaw as cl
 from contactlaw import Validity, explain, laws
 from contactlaw.engines.pymunk import attach
 from contactlaw.laws import fem
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 from contactlaw.softsphere import Contacts, time_step
 from validation.fem import census
 

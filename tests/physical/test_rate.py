@@ -8,7 +8,7 @@ import pytest
 
 import contactlaw as cl
 from contactlaw.physical import rate
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 
 IRON = cl.Material(
     "iron", 207e9, 0.3, 7850, yield_strength=175e6, hardening=(380e6, 0.32), rate=(0.06, 1.0)

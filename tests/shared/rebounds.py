@@ -5,7 +5,7 @@ import numpy as np
 import contactlaw as cl
 from contactlaw.fitting.predictions import impacts
 from contactlaw.fitting.unknowns import Setting
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 
 STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
 RADIUS, THICKNESS = 1e-3, 1.2e-3

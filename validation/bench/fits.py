@@ -13,7 +13,7 @@ from contactlaw import laws
 from contactlaw.fitting.predictions import impacts
 from contactlaw.fitting.unknowns import Setting
 from contactlaw.laws import fem, jackson_green, kogut_etsion
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 from validation.bench.row import Row, seconds
 
 Array = NDArray[np.float64]

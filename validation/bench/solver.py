@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
+import functools
 import importlib
+import math
 import os
 import time
 from collections.abc import Iterator
@@ -20,6 +23,7 @@ from contactlaw.table import file
 from validation.bench.row import Row, seconds
 
 N = 20_000
+_SOLVED = 2000
 RTOL = 1e-8
 
 
@@ -48,6 +52,7 @@ def rows() -> Iterator[Row]:
         f"direct solve, batch over {cores} cores", together * 1e6, "us", None, "one core",
         one_core / together,
     )  # fmt: skip
+    yield from by_model()
     # jackson_green.law is cached: call what it wraps. stronge is made at import, and takes longest.
     one = seconds(lambda: jackson_green.law.__wrapped__(23.1922, 0.21))
     longest = seconds(lambda: importlib.reload(stronge))
@@ -62,6 +67,22 @@ def rows() -> Iterator[Row]:
     loading = seconds(lambda: file.read(path).packed)
     yield Row("table: read, verify, fit splines", loading * 1e3, "ms", 10)
     yield Row("table: size", path.stat().st_size / 1e6, "MB", 2)
+
+
+def by_model() -> Iterator[Row]:
+    """Time of `ImpactModel.solve` by a law of the paper, by `fem`, and for a pair with a rate."""
+    metal = cl.Material("copper", 124e9, 0.34, 8960, 90e6, kind="metal")
+    rated = dataclasses.replace(metal, rate=(0.025, 1.0))
+    rng, last = np.random.default_rng(2), math.nan
+    given = rng.uniform(0.3, 10.0, _SOLVED), 1e-3, 1e-3 / rng.uniform(0.1, 2.0, _SOLVED)
+    listed = (("myc", metal, None), ("fem", metal, 0.5), ("fem, a rate", rated, 1 / 3))
+    for what, body, most in listed:
+        law = what.partition(",")[0]
+        model = cl.ImpactModel(cl.Pair(body, "glass"), law)
+        took = seconds(functools.partial(model.solve, *given)) / _SOLVED
+        peer = "" if most is None else "the row above"
+        yield Row(f"solve, {what}", took * 1e6, "us", None, peer, last / took, most)
+        last = took
 
 
 def scipy_solve(lam: np.ndarray, y: np.ndarray) -> float:

@@ -26,7 +26,8 @@ from contactlaw.equation.corrections import SATURATION
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.zener import Solution
 from contactlaw.laws import Law, fem
-from contactlaw.physical.scaling import pair_numbers, scales, sphere_on_plate
+from contactlaw.physical.law import pair_numbers
+from contactlaw.physical.scaling import scales, sphere_on_plate
 from validation.fem import cases, store
 from validation.fem.campaign import SAMPLES, YIELDING
 

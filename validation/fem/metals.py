@@ -16,7 +16,7 @@ import contactlaw as cl
 from contactlaw import laws
 from contactlaw.laws import fem
 from contactlaw.physical import rate as rates
-from contactlaw.physical.scaling import pair_numbers
+from contactlaw.physical.law import pair_numbers
 from validation.fem import fit, journal, store
 from validation.fem.cases import Case
 from validation.fem.impact import TYPICAL

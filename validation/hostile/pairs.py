@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw import Validity
 from contactlaw.laws.fem import RATIOS
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,8 @@ from contactlaw.answers.backend import UnsolvedError
 from contactlaw.answers.solver import RTOL, solved
 from contactlaw.equation.numbers import Numbers
 from contactlaw.laws import Law
-from contactlaw.physical.scaling import law_of, scales, sphere_on_plate
+from contactlaw.physical.law import law_of
+from contactlaw.physical.scaling import scales, sphere_on_plate
 from validation.hostile.pairs import draw
 
 FULL = 10_000_000
@@ -52,7 +53,7 @@ def _unsolved(generator: np.random.Generator, pair: cl.Pair, law: Law, count: in
     units = Numbers(*(values[known] for values in units))
     while units.time.size:
         try:
-            found = solved(law, units.inelasticity, units.yield_ratio, RTOL)
+            found = solved(law.data, units.inelasticity, units.yield_ratio, RTOL)
         except UnsolvedError as error:
             yield f"{error}: {pair.sphere!r}, {pair.plate!r}, law {law.name}"
             units = Numbers(*(np.delete(values, error.impact) for values in units))

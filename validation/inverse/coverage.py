@@ -24,7 +24,7 @@ from contactlaw.fitting import errors
 from contactlaw.fitting.measurements import KINDS, NORMAL
 from contactlaw.fitting.predictions import Predictor, Values
 from contactlaw.fitting.unknowns import UNKNOWNS, parameters
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 from validation.fem.census import LISTED
 from validation.inverse.model import rebounds, true
 

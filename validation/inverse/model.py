@@ -13,9 +13,9 @@ from contactlaw.answers.law_errors import doubtful
 from contactlaw.fitting.measurements import NORMAL
 from contactlaw.fitting.predictions import impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting
+from contactlaw.physical.law import law_of
 from contactlaw.physical.materials import NoYieldStrengthError
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.scaling import law_of
 from validation.fem import fit, store
 
 Array = NDArray[np.float64]

@@ -12,8 +12,9 @@ from scipy.optimize import brentq
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.equation import zener
+from contactlaw.physical.law import law_of
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.scaling import law_of, sphere_on_plate
+from contactlaw.physical.scaling import sphere_on_plate
 from validation.paper import closed_form
 
 Array = NDArray[np.float64]

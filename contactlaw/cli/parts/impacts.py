@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from contactlaw._escaped import cell, line
 from contactlaw._jit import switched_off
 from contactlaw.answers.backend import SphereOnPlate
-from contactlaw.answers.rated import solver
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import extent
 from contactlaw.cli.parts import wording
@@ -170,7 +169,7 @@ def _solver(model: ImpactModel, limited: bool) -> Solver:
     """Solver of a model, limited to the extent of its table or unlimited."""
     law = model.force_law
     bodies = SphereOnPlate(model.pair, law)
-    return solver(bodies, extent=extent(law) if limited else None)
+    return Solver(bodies, extent=extent(law) if limited else None)
 
 
 def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:

@@ -11,7 +11,7 @@ from places import ROOT
 
 import contactlaw as cl
 from contactlaw import laws
-from contactlaw.physical.scaling import law_of
+from contactlaw.physical.law import law_of
 from validation.accuracy import compare
 from validation.accuracy.compare import force_at
 from validation.fem import calculix, solver, store

@@ -1,0 +1,172 @@
+"""The laws of a pair that grows stronger with the rate of an impact, as one array for kernels.
+
+Within pieces of ln k, with k the strength over that of a slow test, every number of the law is a
+polynomial in ln k, see `contactlaw.equation.force`. It goes through laws made at a few strengths.
+"""
+
+from __future__ import annotations
+
+import functools
+import itertools
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.equation import force
+from contactlaw.equation.force import STRENGTHS
+from contactlaw.laws import Law, fem, laid_out_alike
+from contactlaw.laws.fem import ALONE, RATIOS
+from contactlaw.physical import rate
+from contactlaw.physical.law import pair_numbers
+from contactlaw.physical.pair import Pair
+
+Array = NDArray[np.float64]
+
+_DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
+_TRIED = 129  # places of ln k between which corners are looked for
+_CLOSE = 1e-6  # in ln k: how closely the strength is found at which no body yields
+_NEAR = 5e-3  # in ln k: nearer to the ends there are no corners
+
+
+class Fineness(NamedTuple):
+    """How finely laws are resolved."""
+
+    terms: int  # of the polynomials in ln k
+    vanished: float  # terms of a law that count as zero, relatively
+    widest: float  # pieces of a law: ratio of their ends
+    piece: float  # of ln k, at most
+    fastest: float  # V0/R [1/s] up to which they reach
+
+
+# The COR is within 1e-7 of that of a law made for its strength.
+USUAL = Fineness(7, 1e-10, 3.0, 0.4, 1e9)
+# For steps, which make the law anew in each, and for exports: within 1e-6.
+COARSE = Fineness(6, 1e-7, 4.0, 0.3, rate.FASTEST)
+
+
+@functools.lru_cache(maxsize=64)
+def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
+    """Law of a pair at any strength; that of a pair without a rate as it is."""
+    if rate.rated(pair, law) is None or not law.yields:
+        return law.data
+    assert law.scale is not None
+    count = fineness.terms
+    places = np.cos(math.pi * (np.arange(count) + 0.5) / count)
+    ends, most = knots(pair, fineness.piece, fineness.fastest)
+    pieces = []
+    for low, high in itertools.pairwise(ends):
+        at = 0.5 * (low + high) + 0.5 * (high - low) * places
+        known = [formulas_at(pair, one) for one in at.tolist()]
+        pieces.append((low, high, _powers(known, places, law.scale, fineness)))
+    if ends[-1] < most:  # nothing yields at higher strengths
+        last = formulas_at(pair, most)
+        pieces.append((ends[-1], most, _powers([last], places[:1], law.scale, fineness)))
+    begin = 1 + len(pieces) * STRENGTHS
+    rows: list[float] = []
+    for low, high, powers in pieces:
+        terms, width = powers.shape
+        rows += [high, 0.5 * (low + high), 2.0 / (high - low), begin, terms - 1, width]
+        begin += powers.size
+    return np.concatenate([[-len(pieces)], rows, *(powers.ravel() for *_, powers in pieces)])
+
+
+def _powers(
+    laws: Sequence[Mapping[str, Any]], places: Array, scale: float, fineness: Fineness
+) -> Array:
+    """Coefficients of powers of t, a row each, for the numbers of laws at places of t."""
+    heads = [[one["scale"], one["onset"] or one["scale"]] for one in laws]
+    data = laid_out_alike(laws, fineness.vanished, fineness.widest)
+    if places.size > 1:
+        for one in data:
+            force.by_length(one)
+    values = np.hstack([data, np.log(np.array(heads) / scale)])
+    first = values[0].copy()
+    with np.errstate(invalid="ignore"):  # the last of the starts is infinite in all
+        moved = np.nan_to_num(values - first)  # 0 for what is the same in all
+    found: Array = np.linalg.solve(np.vander(places, increasing=True), moved)
+    found[0] += first
+    return found
+
+
+def formulas_at(pair: Pair, log_factor: float) -> dict[str, Any]:
+    """Formulas of the law of a pair that is stronger by a factor."""
+    return fem.formulas(_given(pair, log_factor), fem.numbers())
+
+
+def _given(pair: Pair, log_factor: float) -> fem.Given:
+    """Numbers of the law, of which the strengths alone change: hardening is relative to them."""
+    slow, flow = _slow(pair), rate.leading(pair)
+    at = rate.rate_at(flow, math.exp(log_factor)) if flow else 0.0
+    factors = [body.flow.factor(at) if body.flow else 1.0 for body in (pair.sphere, pair.plate)]
+    return slow._replace(
+        sphere_ratio=slow.sphere_ratio / factors[0], plate_ratio=slow.plate_ratio / factors[1]
+    )
+
+
+@functools.lru_cache(maxsize=4)
+def _slow(pair: Pair) -> fem.Given:
+    known = pair_numbers(pair, "fem")
+    return fem.Given(**{name: known[name] for name in fem.PARAMETERS if name in known})
+
+
+@functools.lru_cache(maxsize=4)
+def knots(pair: Pair, widest: float, fastest: float) -> tuple[list[float], float]:
+    """Find the ends of the pieces in ln k, in which the law is a smooth function of k.
+
+    It is not where the bodies' strengths are alike, where the stronger one begins to yield, where a
+    formula of the law's has a corner, and where the second of two strengths begins to grow. Pieces
+    are narrower where one strength grows faster than k, and is no straight line in ln k, and where
+    two that share the flow grow apart. The last number is ln k of the fastest impacts; the pieces
+    end before it where nothing yields any more.
+    """
+    flow = rate.leading(pair)
+    assert flow is not None
+    most = last = math.log(rate.largest_factor(flow, fastest))
+    if not _yields(pair, last):  # where does that begin?
+        low = 0.0
+        while last - low > _CLOSE:
+            middle = 0.5 * (low + last)
+            low, last = (middle, last) if _yields(pair, middle) else (low, middle)
+        last = low
+    logs = np.linspace(0.0, last, _TRIED)
+    inner: list[float] = []
+    for values in np.array([_corners(pair, one) for one in logs]).T:
+        (before,) = np.nonzero(values[:-1] * values[1:] < 0.0)
+        share = values[before] / (values[before] - values[before + 1])
+        inner += (logs[before] + share * (logs[1] - logs[0])).tolist()
+    flows = rate.flows(pair)
+    starts = {round(math.log(flow.factor(one.rate0)), 9) for one in flows}
+    ends = list({0.0, last, *(one for one in starts if one < last - _CLOSE)})
+    for one in sorted(inner):
+        if min(abs(one - end) for end in ends) > _NEAR:
+            ends.append(one)
+    rates = [rate.rate_at(flow, math.exp(one)) for one in logs]
+    grown = np.log([[one.strength * one.factor(at) for one in flows] for at in rates])
+    steps = np.diff(grown, axis=0)
+    width = np.maximum(logs[1], 2.0 * steps.max(axis=1) - logs[1])
+    both = np.ptp(grown[1:], axis=1) < -math.log(ALONE)  # how they share the flow changes
+    run = np.append(0.0, np.cumsum(width + 0.5 * both * np.ptp(steps, axis=1)))
+    found = [0.0]
+    for low, high in itertools.pairwise(sorted(ends)):
+        first, final = np.interp((low, high), logs, run)
+        inside = np.linspace(first, final, math.ceil((final - first) / widest) + 1)[1:-1]
+        found += [*np.interp(inside, run, logs).tolist(), high]
+    return found, most
+
+
+def _yields(pair: Pair, log_factor: float) -> bool:
+    return formulas_at(pair, log_factor)["yield_coefficient"] is not None
+
+
+def _corners(pair: Pair, log_factor: float) -> list[float]:
+    """Numbers that change their signs at corners of the law."""
+    found = []
+    for one in fem.comparable(_given(pair, log_factor)):
+        ratios = [ratio for ratio in one[:2] if ratio]
+        found += [math.log(ratio / at) for ratio in ratios for at in (*RATIOS, *_DEEPEST)]
+        if len(ratios) == 2:
+            found += [math.log(ratios[0] / ratios[1] / z) for z in (ALONE, 1.0, 1.0 / ALONE)]
+    return found
