@@ -76,7 +76,8 @@ class SphereOnPlate:
 
     def contact(self, impacts: Impacts) -> ContactConstants:
         """Contact of each sphere with its plate."""
-        return sphere_on_plate(self.pair, self.law, impacts.radius, impacts.thickness)
+        sizes, plate = (impacts.radius, impacts.thickness), self.factors.plate
+        return sphere_on_plate(self.pair, self.law, *sizes, plate, self.data)
 
 
 class OutsideTableError(ValueError):

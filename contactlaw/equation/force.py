@@ -29,7 +29,8 @@ starts, is infinity. Between two kinks the loading curve is smooth, however many
 integration has to stop at kinks only.
 
 Laws of one pair that grow stronger with the rate of an impact stand in one array, too: a negative
-number of pieces of ln k, the strength over that of a slow test, and for each
+number of pieces of ln k, the strength over that of a slow test, the numbers of the longest law, and
+for each piece
 
     TOP     ln k at its end         PER, CENTRE  of t = PER (ln k - CENTRE), from -1 to 1
     BEGINS  index of its block      POWERS       of t, less one
@@ -39,7 +40,7 @@ number of pieces of ln k, the strength over that of a slow test, and for each
 A block has these numbers, then those that t multiplies, those that its square multiplies, and so
 on; but SCALE and OFFSET are half the length of a piece and its middle, which are smooth where a
 length vanishes. Within a piece of ln k all laws have one layout. `at_strength` writes the law of an
-impact into an array of its own, of `ROOM` numbers.
+impact into an array of its own, of `room_for` numbers.
 
 Legend: compressions in d_Y, forces in F_Y = K d_Y^1.5, works in F_Y d_Y.
 """
@@ -64,7 +65,7 @@ FUNCTIONS = 6
 EARLY, LESS_EARLY = 0.296, 0.0175
 TOP, CENTRE, PER, BEGINS, POWERS, WIDTH, STRENGTHS = range(7)
 LOG_SCALE, LOG_ONSET, HEADS = range(3)  # numbers after those of a law
-ROOM = 4096
+LONGEST, FIRST_ROW = 1, 2
 # functions of dm, in the order of a row
 RESIDUAL, EXPONENT, LOSS, CAP_LOW, CAP_HIGH, OTHER = range(FUNCTIONS)
 _U = tuple(np.uint64(n) for n in range(5))
@@ -94,7 +95,8 @@ class UnloadingCurve(NamedTuple):
 @kernel
 def _piece(laws: Array, strength: float) -> int:
     """Where the row of the piece of a strength begins."""
-    at, last = 1, 1 + (int(-laws[PIECES]) - 1) * STRENGTHS
+    at = FIRST_ROW
+    last = at + (int(-laws[PIECES]) - 1) * STRENGTHS
     while at < last and strength > laws[at + TOP]:
         at += STRENGTHS
     return at
@@ -123,8 +125,8 @@ def _at_place(laws: Array, at: int, strength: float, number: int) -> float:
 
 @kernel(inline=True)
 def room_for(laws: Array) -> int:
-    """Count the numbers that `at_strength` needs; 0 for an array that is one law."""
-    return ROOM if laws[PIECES] < 0.0 else 0
+    """Count the numbers that `at_strength` writes at most; 0 for an array that is one law."""
+    return int(laws[LONGEST]) if laws[PIECES] < 0.0 else 0
 
 
 @kernel
@@ -379,19 +381,13 @@ def unloading_force(law: Array, curve: UnloadingCurve, q: float) -> float:
 
 def strongest(laws: Array) -> float:
     """Return ln k up to which laws reach; infinite for an array that is one law."""
-    last = 1 + (pieces_of(laws) - 1) * STRENGTHS
+    last = FIRST_ROW + (pieces_of(laws) - 1) * STRENGTHS
     return float(laws[last + TOP]) * (1.0 + 1e-12) if pieces_of(laws) else math.inf
 
 
 def pieces_of(laws: Array) -> int:
     """Count the pieces of ln k; 0 for an array that is one law."""
     return max(int(-laws[PIECES]), 0)
-
-
-def widest(laws: Array) -> int:
-    """Count the numbers of the longest law of several; 0 for an array that is one law."""
-    rows = laws[1 : 1 + pieces_of(laws) * STRENGTHS].reshape(-1, STRENGTHS)
-    return int(rows[:, WIDTH].max(initial=0.0))
 
 
 def by_length(law: Array) -> None:

@@ -20,14 +20,15 @@ from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import KINDS
 from contactlaw.equation.force import (
     BEGINS,
+    FIRST_ROW,
     POWERS,
     STRENGTHS,
     WIDTH,
     at_strength,
     growth_at,
     pieces_of,
+    room_for,
     strongest,
-    widest,
 )
 from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
 from contactlaw.equation.outcome import History
@@ -149,7 +150,7 @@ SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 def rounded(law: Array) -> Array:
     """Round the numbers of a law to 14 digits; those of several to 9 of the largest power of t."""
     digits = np.full(law.size, 14)
-    for at in range(1, 1 + pieces_of(law) * STRENGTHS, STRENGTHS):
+    for at in range(FIRST_ROW, FIRST_ROW + pieces_of(law) * STRENGTHS, STRENGTHS):
         begins, terms, width = (int(law[at + n]) for n in (BEGINS, POWERS, WIDTH))
         block = slice(begins, begins + (terms + 1) * width)
         sizes = np.abs(law[block]).reshape(-1, width)
@@ -174,7 +175,7 @@ def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table
     starts = np.cumsum([0.0, *(one.size for one in tables)])[:-1]
     return Bodies(
         rounded(by_strength(pair, law, COARSE)),
-        widest(by_strength(pair, law, COARSE)),
+        room_for(by_strength(pair, law, COARSE)),
         strongest(by_strength(pair, law, COARSE)),
         unit_spring(model, 1.0),
         limits_by_strength(pair, law),

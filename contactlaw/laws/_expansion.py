@@ -202,7 +202,7 @@ class LoadingCurve:
             self._extend_by_tangent()
         for kink in self.kinks:
             before, after = self.force(np.array([kink * (1.0 - 1e-12), kink]))
-            if not abs(after - before) <= max(1e-9, 10.0 * cuts.vanished) * before:
+            if not abs(after - before) <= max(1e-9, 1e3 * cuts.vanished) * before:
                 raise ValueError(
                     f"law: the loading branches of {name!r} do not meet at {kink:.9g} d_Y: "
                     f"{before:.9g} and {after:.9g} F_Y"
@@ -463,7 +463,7 @@ def expanded(
         for branch in _ends(unloading, curve.end)
         for row in _unloading_rows(name, curve, *branch, cuts)
     ]
-    _check_joints(name, curve, unloading, 10.0 * cuts.vanished)
+    _check_joints(name, curve, unloading, 1e3 * cuts.vanished)
     if rows:
         rows.append(_beyond(curve, rows[-1]))
     return Expanded(curve, rows, any(branch.cap for branch in unloading))

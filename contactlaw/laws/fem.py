@@ -393,6 +393,11 @@ def strains(given: Given, found: dict[str, Any]) -> tuple[Strains, Strains]:
     return alone, alone._replace(slope=slope * (1.0 - both * share))
 
 
+def flow_of_losses(given: Given, found: dict[str, Any] | None = None) -> float:
+    """Factor on E*/sigma_Y of bodies with losses, which flow less."""
+    return math.exp(-(found or numbers())["pressure"] * given.relaxation)
+
+
 def comparable(given: Given) -> list[Given]:
     """Bodies whose strengths are compared in the law: it has corners where one becomes weaker."""
     if not given.hardens:
@@ -474,7 +479,7 @@ def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
     """Formulas of a pair's law, as `Law.of` takes them."""
     named = given[: 10 if given.loss_factor else 9 if given.hardens else 5]
     if given.loss_factor:
-        weaker = math.exp(-found["pressure"] * given.relaxation)
+        weaker = flow_of_losses(given, found)
         ratios = {name: weaker * getattr(given, name) for name in _STRENGTHS}
         given = given._replace(**ratios)
     curves = (HardeningCurves if given.hardens else Curves)(given, found)

@@ -24,7 +24,8 @@ from contactlaw.physical.pair import Pair
 Array = NDArray[np.float64]
 
 SHARE: float = numbers()["rate"]  # representative rate over V0/R
-FASTEST = 1e7  # V0/R [1/s] up to which tables reach: 100 m/s at 10 micrometres
+# V0/R [1/s] up to which tables reach, 100 m/s at 10 micrometres, and up to which laws do.
+FASTEST, REACH = 1e7, 1e9
 
 
 def rated(pair: Pair, law: Law) -> Flow | None:
@@ -59,9 +60,11 @@ def rate_at(flow: Flow, factor: float) -> float:
 
 
 def flows(pair: Pair) -> list[Flow]:
-    """Flows of the bodies that impacts strengthen."""
+    """Flows of the bodies that impacts strengthen; none if no impact of a table strengthens any."""
     known = [body.flow for body in (pair.sphere, pair.plate) if body.flow is not None]
-    return [flow for flow in known if largest_factor(flow) > 1.0]
+    if max((largest_factor(flow) for flow in known), default=1.0) == 1.0:
+        return []
+    return [flow for flow in known if largest_factor(flow, REACH) > 1.0]
 
 
 def leading(pair: Pair) -> Flow | None:

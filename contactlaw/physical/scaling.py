@@ -119,16 +119,19 @@ def _stiffness(pair: Pair, radius: Array) -> Array:
     return stiffness
 
 
-def sphere_on_plate(pair: Pair, law: Law, radius: Array, thickness: Array) -> ContactConstants:
-    """Contact of a sphere with a large plate: R* = R, m* = m."""
+def sphere_on_plate(
+    pair: Pair, law: Law, radius: Array, thickness: Array, plate: PlateConstants | None = None,
+    laws: Array | None = None,
+) -> ContactConstants:  # fmt: skip
+    """Contact of a sphere with a large plate: R* = R, m* = m; of pair and law, if known already."""
     return ContactConstants(
         mass=sphere_mass(pair.sphere.density, radius),
         stiffness=_stiffness(pair, radius),
         mobility=plate_mobility(pair.plate, thickness),
         yield_compression=_yield_compression(pair, radius, law),
         ratio=radius / thickness,
-        plate=plate_constants(pair, law),
-        law=by_strength(pair, law),
+        plate=plate_constants(pair, law) if plate is None else plate,
+        law=by_strength(pair, law) if laws is None else laws,
     )
 
 

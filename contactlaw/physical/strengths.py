@@ -28,7 +28,6 @@ Array = NDArray[np.float64]
 _DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
 _TRIED = 129  # places of ln k between which corners are looked for
 _CLOSE = 1e-6  # in ln k: how closely the strength is found at which no body yields
-_NEAR = 5e-3  # in ln k: nearer to the ends there are no corners
 
 
 class Fineness(NamedTuple):
@@ -39,12 +38,13 @@ class Fineness(NamedTuple):
     widest: float  # pieces of a law: ratio of their ends
     piece: float  # of ln k, at most
     fastest: float  # V0/R [1/s] up to which they reach
+    near: float  # in ln k: nearer to each other, corners count as one
 
 
 # The COR is within 1e-7 of that of a law made for its strength.
-USUAL = Fineness(7, 1e-10, 3.0, 0.4, 1e9)
+USUAL = Fineness(7, 1e-10, 3.0, 0.4, rate.REACH, 1e-4)
 # For steps, which make the law anew in each, and for exports: within 1e-6.
-COARSE = Fineness(6, 1e-7, 4.0, 0.3, rate.FASTEST)
+COARSE = Fineness(6, 1e-7, 4.0, 0.3, rate.FASTEST, 5e-3)
 
 
 @functools.lru_cache(maxsize=64)
@@ -55,7 +55,7 @@ def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
     assert law.scale is not None
     count = fineness.terms
     places = np.cos(math.pi * (np.arange(count) + 0.5) / count)
-    ends, most = knots(pair, fineness.piece, fineness.fastest)
+    ends, most = knots(pair, fineness.piece, fineness.fastest, fineness.near)
     pieces = []
     for low, high in itertools.pairwise(ends):
         at = 0.5 * (low + high) + 0.5 * (high - low) * places
@@ -64,13 +64,14 @@ def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
     if ends[-1] < most:  # nothing yields at higher strengths
         last = formulas_at(pair, most)
         pieces.append((ends[-1], most, _powers([last], places[:1], law.scale, fineness)))
-    begin = 1 + len(pieces) * STRENGTHS
+    begin = force.FIRST_ROW + len(pieces) * STRENGTHS
     rows: list[float] = []
     for low, high, powers in pieces:
         terms, width = powers.shape
         rows += [high, 0.5 * (low + high), 2.0 / (high - low), begin, terms - 1, width]
         begin += powers.size
-    return np.concatenate([[-len(pieces)], rows, *(powers.ravel() for *_, powers in pieces)])
+    head = -len(pieces), max(powers.shape[1] for *_, powers in pieces)
+    return np.concatenate([head, rows, *(powers.ravel() for *_, powers in pieces)])
 
 
 def _powers(
@@ -113,7 +114,9 @@ def _slow(pair: Pair) -> fem.Given:
 
 
 @functools.lru_cache(maxsize=4)
-def knots(pair: Pair, widest: float, fastest: float) -> tuple[list[float], float]:
+def knots(
+    pair: Pair, widest: float, fastest: float, near: float = 5e-3
+) -> tuple[list[float], float]:
     """Find the ends of the pieces in ln k, in which the law is a smooth function of k.
 
     It is not where the bodies' strengths are alike, where the stronger one begins to yield, where a
@@ -141,7 +144,7 @@ def knots(pair: Pair, widest: float, fastest: float) -> tuple[list[float], float
     starts = {round(math.log(flow.factor(one.rate0)), 9) for one in flows}
     ends = list({0.0, last, *(one for one in starts if one < last - _CLOSE)})
     for one in sorted(inner):
-        if min(abs(one - end) for end in ends) > _NEAR:
+        if min(abs(one - end) for end in ends) > near:
             ends.append(one)
     rates = [rate.rate_at(flow, math.exp(one)) for one in logs]
     grown = np.log([[one.strength * one.factor(at) for one in flows] for at in rates])
@@ -163,10 +166,12 @@ def _yields(pair: Pair, log_factor: float) -> bool:
 
 def _corners(pair: Pair, log_factor: float) -> list[float]:
     """Numbers that change their signs at corners of the law."""
-    found = []
-    for one in fem.comparable(_given(pair, log_factor)):
+    found, given = [], _given(pair, log_factor)
+    weaker = [1.0, fem.flow_of_losses(given)] if given.loss_factor else [1.0]
+    for one in fem.comparable(given):
         ratios = [ratio for ratio in one[:2] if ratio]
-        found += [math.log(ratio / at) for ratio in ratios for at in (*RATIOS, *_DEEPEST)]
+        limits = [at / factor for at in (*RATIOS, *_DEEPEST) for factor in weaker]
+        found += [math.log(ratio / at) for ratio in ratios for at in limits]
         if len(ratios) == 2:
             found += [math.log(ratios[0] / ratios[1] / z) for z in (ALONE, 1.0, 1.0 / ALONE)]
     return found

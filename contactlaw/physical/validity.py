@@ -17,7 +17,7 @@ from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical.arguments import broadcast, check, shaped
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import rated, strengthened
+from contactlaw.physical.rate import REACH, SHARE, leading, rated, strengthened
 from contactlaw.physical.scaling import wave_path, yield_share
 from contactlaw.physical.strengths import USUAL, formulas_at, knots
 
@@ -292,14 +292,30 @@ def limits_by_strength(pair: Pair, law: Law) -> Array:
     """
     if not law.yields or rated(pair, law) is None:
         return alone(limits(pair, law))
-    ends, most = knots(pair, USUAL.piece, USUAL.fastest)
+    ends, most = knots(pair, USUAL.piece, USUAL.fastest, USUAL.near)
     logs = {one for low, high in itertools.pairwise(ends) for one in np.linspace(low, high, _ROWS)}
-    at = sorted({*logs, most})
-    known = [_at_strength(pair, law, one) for one in at]
-    middle = [_at_strength(pair, law, 0.5 * (one + other)) for one, other in itertools.pairwise(at)]
-    smooth = [{name: getattr(one, name) for name in _SMOOTH} for one in known]
-    mixed = [one._replace(**own) for one, own in zip([*middle, known[-1]], smooth, strict=True)]
-    return np.array([[one, *own] for one, own in zip(at, mixed, strict=True)])
+    at = sorted(one for one in {*logs, *_damaging(pair), most} if one <= most)
+    slow = _at_strength(pair, law, 0.0)
+    rows = [[-1.0, *slow]]  # so that a slow impact has the limits of its own strength
+    for low, high in itertools.pairwise([*at, at[-1]]):
+        try:
+            own, middle = (_at_strength(pair, law, one) for one in (low, 0.5 * (low + high)))
+        except ValueError:  # no material is so strong
+            break
+        rows.append([low, *middle._replace(**{name: getattr(own, name) for name in _SMOOTH})])
+    return np.array(rows)
+
+
+def _damaging(pair: Pair) -> list[float]:
+    """Ln k from which a body is strong enough to damage the other, which is brittle."""
+    flow, found = leading(pair), []
+    for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
+        own, least = other.flow, _bearable(body) / (1.5 * _HARDNESS)
+        if flow and own and own.rate and own.strength < least < math.inf:
+            factor = (least / own.strength - 1.0) / own.rate
+            if factor < math.log(REACH * SHARE / own.rate0):
+                found.append(math.log(flow.factor(own.rate0 * math.exp(factor))))
+    return found
 
 
 def _at_strength(pair: Pair, law: Law, log_factor: float) -> Limits:
@@ -330,6 +346,13 @@ def limits_at(rows: Array, strength: float) -> Limits:
     )  # fmt: skip
 
 
+def _bearable(body: Material) -> float:
+    """Largest Hertzian pressure that a brittle body bears [Pa]; inf for one that is not."""
+    if isinstance(body.hardness, float) and body.strength is None:
+        return _FLOW * body.hardness
+    return math.inf
+
+
 def _damage(pair: Pair) -> float:
     """Least force over R^2 at which Hertz's pressure makes a brittle body flow [Pa].
 
@@ -337,10 +360,8 @@ def _damage(pair: Pair) -> float:
     """
     least = math.inf
     for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
-        if not isinstance(body.hardness, float) or body.strength is not None:
-            continue
-        pressure = _FLOW * body.hardness
-        if (other.strength or math.inf) * _HARDNESS > pressure / 1.5:
+        pressure = _bearable(body)
+        if pressure < math.inf and (other.strength or math.inf) * _HARDNESS > pressure / 1.5:
             least = min(least, math.pi**3 * pressure**3 / (6.0 * pair.effective_modulus**2))
     return least
 

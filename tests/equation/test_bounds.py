@@ -49,7 +49,7 @@ def attempt(data):
     many = data.draw(arrays(float, (20, 3, 4), elements=FLOATS, fill=st.nothing())).view(Strict)
     law = LAWS[data.draw(st.integers(0, len(LAWS) - 1))]
     for strength in (many[0, 0, 0], math.inf, math.nan):
-        force.at_strength(STRENGTHS, strength, np.empty(force.ROOM).view(Strict))
+        force.at_strength(STRENGTHS, strength, np.empty(force.room_for(STRENGTHS)).view(Strict))
     for row in many[12:].reshape(8, 12):
         curve, loads = force.unloading(law, row[0]), bool(row[2] > 0.0)
         leg = legs.up_again(law, row[1]) if loads else legs.first_down(law, curve, row[1])
