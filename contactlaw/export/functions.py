@@ -225,7 +225,7 @@ def at_edge(pair: Bodies, bead: BeadSpring, edge: int, distance: float) -> BeadS
     rate = 0.0
     if not (0 <= edge <= EDGES and distance >= 0.0):
         rate = math.nan
-    elif edge > 0:
+    elif edge > 0 and bead.ratio > 0.0:  # the edge of a half-space is too far away
         rate = wave_rate(pair.wave_path, bead.radius / bead.ratio, distance)
     return BeadSpring(
         bead.mass, bead.stiffness, bead.mobility, bead.scale, bead.relaxation, bead.ratio,

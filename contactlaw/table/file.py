@@ -66,7 +66,7 @@ _LAW = {
 _SERIES = {
     "series_inelasticity": _Part("lambda of what follows [-]", (SERIES,)),
     # w_m is (5/4)^(2/5) at lambda = 0 and falls with lambda; beyond a law's range it may be larger
-    "elastic_compression": _Part("w_m, of an elastic impact [V0 T_H]", (SERIES,), 0.01, 1.3),
+    "elastic_compression": _Part("w_m, of an elastic impact [V0 T_H]", (SERIES,), 1e-4, 1.3),
 }
 _SEGMENT = {
     "start": _Part("where it begins along its axis, over series_inelasticity [-]", (SERIES,)),

@@ -119,7 +119,7 @@ def rows(count, seed):
 
     v, r, ratio = between(1e-3, 60.0), between(1e-4, 1e-2), between(0.05, 30.0)
     ratio[rng.random(count) < 0.05] = np.inf
-    edge = np.where(ratio < np.inf, np.arange(count) % 4, 0)
+    edge = np.arange(count) % 4
     h, dt = r * ratio, 6e-3 * r * v**-0.2 / between(15.0, 60.0)
     return np.column_stack([v, r, h, edge, h * between(0.5, 3.0), between(0.03, 2.0), dt])
 
