@@ -80,8 +80,10 @@ def by_model() -> Iterator[Row]:
         law = what.partition(",")[0]
         model = cl.ImpactModel(cl.Pair(body, "glass"), law)
         took = seconds(functools.partial(model.solve, *given)) / _SOLVED
-        peer = "" if most is None else "the row above"
-        yield Row(f"solve, {what}", took * 1e6, "us", None, peer, last / took, most)
+        row = Row(f"solve, {what}", took * 1e6, "us")
+        if most:
+            row.peer, row.ratio, row.least_ratio = "the row above", last / took, most
+        yield row
         last = took
 
 
