@@ -129,22 +129,25 @@ def room_for(laws: Array) -> int:
     return int(laws[LONGEST]) if laws[PIECES] < 0.0 else 0
 
 
-@kernel
-def growth_at(laws: Array, strength: float) -> float:
-    """Yield compression of an impact over that of the slow pair."""
+@kernel(inline=True)
+def _head_at(laws: Array, strength: float, head: int) -> float:
+    """Value whose logarithm is one of the numbers after those of a law; 1 for an array of one."""
     if room_for(laws) == 0:
         return 1.0
     at = _piece(laws, strength)
-    return math.exp(_at_place(laws, at, strength, int(laws[at + WIDTH]) - HEADS + LOG_SCALE))
+    return math.exp(_at_place(laws, at, strength, int(laws[at + WIDTH]) - HEADS + head))
+
+
+@kernel
+def growth_at(laws: Array, strength: float) -> float:
+    """Yield compression of an impact over that of the slow pair."""
+    return _head_at(laws, strength, LOG_SCALE)
 
 
 @kernel
 def onset_at(laws: Array, strength: float) -> float:
     """Compression of an impact at which flow begins, over the slow pair's yield compression."""
-    if room_for(laws) == 0:
-        return 1.0
-    at = _piece(laws, strength)
-    return math.exp(_at_place(laws, at, strength, int(laws[at + WIDTH]) - HEADS + LOG_ONSET))
+    return _head_at(laws, strength, LOG_ONSET)
 
 
 @kernel

@@ -139,12 +139,12 @@ def strength_of(rate: RateOfStrain, speed: float, yield_compression: float) -> f
     return math.log(1.0 + rate.slope * math.log(relative)) if relative > 1.0 else 0.0
 
 
-@kernel
-def strengthened(plate: PlateConstants, growth: float) -> PlateConstants:
-    """Plate under a pair whose yield compression has grown: x is constant from a later speed on."""
+@kernel(inline=True)
+def with_saturation(plate: PlateConstants, saturated: float) -> PlateConstants:
+    """Plate under a pair whose x is constant from another V^(1/5) on."""
     return PlateConstants(
-        plate.inelasticity, plate.transit, plate.x_at_one,
-        plate.saturated * math.sqrt(math.sqrt(growth)), plate.corrections, plate.growth, plate.rate,
+        plate.inelasticity, plate.transit, plate.x_at_one, saturated, plate.corrections,
+        plate.growth, plate.rate,
     )  # fmt: skip
 
 
@@ -163,8 +163,8 @@ def numbers(
     later = growth_at(laws, strength)
     root, time, growth = speed**0.2, (mass / stiffness) ** 0.4, 0.0
     yield_compression *= later
-    if later != 1.0:
-        plate = strengthened(plate, later)
+    if later != 1.0:  # a stronger pair yields later, and x is constant from a later speed on
+        plate = with_saturation(plate, plate.saturated * math.sqrt(math.sqrt(later)))
     if relaxes(plate):
         plate, root, growth = relaxed(plate, root, math.log(time / root))
         yield_compression *= math.exp(plate.growth.yield_power * growth)

@@ -166,6 +166,7 @@ def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table
     Tables have nine decimals, those of several strengths six: they err by more than that.
     """
     pair, law, tables = model.pair, model.force_law, []
+    laws = by_strength(pair, law, COARSE)
     for own, one in nodes.values():
         table = lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
         table = table[: int(table[lookup.OTHERS_AT])].copy()  # COR alone
@@ -174,9 +175,9 @@ def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table
         tables.append(table)
     starts = np.cumsum([0.0, *(one.size for one in tables)])[:-1]
     return Bodies(
-        rounded(by_strength(pair, law, COARSE)),
-        room_for(by_strength(pair, law, COARSE)),
-        strongest(by_strength(pair, law, COARSE)),
+        rounded(laws),
+        room_for(laws),
+        strongest(laws),
         unit_spring(model, 1.0),
         limits_by_strength(pair, law),
         pair.tangential_ratio,

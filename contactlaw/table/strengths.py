@@ -39,11 +39,11 @@ from contactlaw._jit import kernel
 from contactlaw.equation import outcome
 from contactlaw.equation.corrections import is_thin
 from contactlaw.equation.numbers import (
-    PlateConstants,
     inelasticity_of,
     plate_stiffening,
     relaxed,
     relaxes,
+    with_saturation,
 )
 from contactlaw.table import lookup, splines
 from contactlaw.table.lookup import LOG_CHI_MAX, STRETCH, X_MAX
@@ -188,9 +188,7 @@ def place_of(
     known, stiffer = lookup.plate_of(node, c_lam), 1.0
     log_chi = c_chi + _sum(w, _entries(table, first + SHIFT)) + 0.8 * log_speed
     saturated = _sum(w, _entries(table, first + SATURATED))
-    plate = PlateConstants(
-        c_lam, known.transit, known.x_at_one, saturated, known.corrections, known.growth, known.rate
-    )
+    plate = with_saturation(known, saturated)
     if relaxes(plate):
         log_time = lookup.log_and_root(radius)[0] - 0.2 * log_speed
         plate, root, growth = relaxed(plate, root, log_time)
@@ -402,16 +400,7 @@ def _coordinates(
     if relaxes(known):
         for i in range(x.size):
             log_time = lookup.log_and_root(radius[i])[0] - 0.2 * log_speed[i]
-            at = _at(saturated, t[i])
-            plate = PlateConstants(
-                c_lam,
-                known.transit,
-                known.x_at_one,
-                at,
-                known.corrections,
-                known.growth,
-                known.rate,
-            )
+            plate = with_saturation(known, _at(saturated, t[i]))
             plate, faster, growth = relaxed(plate, root[i], log_time)
             stiffer = plate_stiffening(plate, faster, ratio[i])
             lam = inelasticity_of(plate, faster, ratio[i], lookup.exp(stiffer))
@@ -419,28 +408,10 @@ def _coordinates(
             eta[i] = stiffer + (0.4 + known.growth.yield_power) * growth
     else:
         for i in range(x.size):
-            at = _at(saturated, t[i])
-            plate = PlateConstants(
-                c_lam,
-                known.transit,
-                known.x_at_one,
-                at,
-                known.corrections,
-                known.growth,
-                known.rate,
-            )
+            plate = with_saturation(known, _at(saturated, t[i]))
             eta[i] = plate_stiffening(plate, root[i], ratio[i])
         for i in range(x.size):
-            at = _at(saturated, t[i])
-            plate = PlateConstants(
-                c_lam,
-                known.transit,
-                known.x_at_one,
-                at,
-                known.corrections,
-                known.growth,
-                known.rate,
-            )
+            plate = with_saturation(known, _at(saturated, t[i]))
             lam = inelasticity_of(plate, root[i], ratio[i], lookup.exp(eta[i]))
             x[i] = lam / (lam + stretch)
     shifts = _cubic(_entries(table, first + SHIFT))
