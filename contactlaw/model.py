@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
-from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.beads import Other, beads_of
 from contactlaw.answers.compiled import Compiled
 from contactlaw.answers.constant import Constant, Keep, constant
@@ -29,10 +28,12 @@ from contactlaw.answers.speed_table import SpeedTable, speed_table
 from contactlaw.answers.tabulated import Border, Outside, TableArgument
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
-from contactlaw.physical.arguments import broadcast, check, scalars, shaped
+from contactlaw.physical.arguments import broadcast, scalars, shaped
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import Limits
 from contactlaw.table import Settings, Table
 
@@ -323,9 +324,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> model.yield_speed(radius=0.9e-3, thickness=[0.5e-3, float("inf")]).round(3)
         array([7.594, 6.156])
         """
-        r, h, shape = broadcast(radius=radius, thickness=thickness)
-        check(radius=r, thickness=h)
-        return shaped(self._tabulated.yield_speeds(r, h), shape)
+        impacts = Impacts.on_plates(1.0, radius, thickness)
+        return shaped(self._tabulated.yield_speeds(impacts), impacts.shape)
 
     def sensitivity(self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Sensitivity:
         """How much the COR moves with each input: elasticities d ln e/d ln x.

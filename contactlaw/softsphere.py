@@ -22,8 +22,10 @@ from contactlaw.equation.edge import Edge
 from contactlaw.equation.force import room_for
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
-from contactlaw.physical.rebound import edges_as_given
-from contactlaw.physical.scaling import scales, sphere_on_plate
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import Impacts, edges_as_given
+from contactlaw.physical.materials import sphere_mass
+from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.stepping.edge import Near, near_edge
 from contactlaw.stepping.energy import dot
@@ -40,7 +42,6 @@ from contactlaw.stepping.spring import (
     State,
     advance,
     at_usual_frequency,
-    relaxation,
     resized,
     unit_spring,
 )
@@ -69,6 +70,7 @@ def _spring_at(springs: Spring, n: int) -> Spring:
     return at_usual_frequency(
         Spring(
             springs.mass[n],
+            springs.solid[n],
             springs.stiffness[n],
             springs.mobility[n],
             springs.scale[n],
@@ -215,20 +217,19 @@ class Contacts:
         )
         check(radius=r, thickness=h)
         self._near = near_edge(model.pair.plate, h, edge, *edges_as_given(edge, s, a, h))
-        law = model.force_law
-        contact = sphere_on_plate(model.pair, law, r, h)
-        elastic = contact.yield_compression == math.inf
+        unit, mass = unit_spring(model, 1.0), sphere_mass(model.pair.sphere.density, r)
         enable_caching()
         self._law = law_of(model)
         self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
         self._springs = Spring(
-            mass=contact.mass,
-            stiffness=contact.stiffness,
-            mobility=contact.mobility,
-            scale=np.where(elastic, r, contact.yield_compression),
-            relaxation=relaxation(contact.mass, contact.stiffness),
-            ratio=contact.ratio,
-            plate=contact.plate,
+            mass=mass,
+            solid=mass,
+            stiffness=unit.stiffness * np.sqrt(r),
+            mobility=plate_mobility(model.pair.plate, h),
+            scale=unit.scale * r,
+            relaxation=unit.relaxation * r,
+            ratio=r / h,
+            plate=unit.plate,
         )
         self._longest = float(self._springs.relaxation.min(initial=math.inf))
         self._states = State(*(np.zeros(r.size) for _ in State._fields))
@@ -400,13 +401,12 @@ def time_step(
     if not 2e-5 <= error <= 1e-2:
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
-    pair, law = model.pair, model.force_law
-    contact = sphere_on_plate(pair, law, r, h)
-    units = scales(contact, v)
+    bodies = SphereOnPlate(model.pair, model.force_law)
+    units = bodies.numbers(bodies.impact(Impacts(v, r, h, None)))
     lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
     if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
         raise OutsideTableError(0, too_thin(lam, largest))
-    found = within(contact.law, units, RTOL, None, few=True)
+    found = within(bodies.data, units, RTOL, None, few=True)
     time = min(float(found.contact_time[0]), CONTACT_TIME) * float(units.time[0])
     steps: float = (_ERROR / error) ** 0.4
     # Six digits only, so that a script has the same steps whether or not the kernels were compiled.

@@ -16,8 +16,9 @@ from hypothesis import strategies as st
 import contactlaw as cl
 from contactlaw import laws, table
 from contactlaw.equation import zener
+from contactlaw.equation.numbers import Impact
+from contactlaw.physical.bodies import TwoSpheres
 from contactlaw.physical.law import law_of
-from contactlaw.physical.scaling import scales, sphere_on_sphere
 
 R, H = 0.9e-3, 1e-3
 FIELDS = (
@@ -403,7 +404,7 @@ def test_two_spheres_have_the_law_that_was_named(pair, model):
     twins = cl.Pair(pair.sphere, pair.sphere)
     law = law_of(twins, "jackson_green")
     assert law.name.startswith("jackson_green(13.5")
-    units = scales(sphere_on_sphere(twins, law, np.array(R), np.array(R)), np.array(25.0))
+    units = TwoSpheres(twins, law).numbers(Impact(25.0, 0.5 * R, math.inf, 4.0))
     exact = zener.solve(law.data, 0.0, units.yield_ratio.item(), 1e-11).restitution
     for one in (taking, pickle.loads(pickle.dumps(taking))):
         assert one.lookup_sphere_sphere(25.0, R, R).restitution == pytest.approx(exact, abs=1e-6)

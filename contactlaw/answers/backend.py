@@ -6,20 +6,14 @@ integrates them; either can replace the other. Both are made from a `SphereOnPla
 
 from __future__ import annotations
 
-import functools
-from dataclasses import dataclass
 from typing import NoReturn, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.laws import Law
 from contactlaw.physical.history import ForceHistory
-from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, Rebound
-from contactlaw.physical.scaling import ContactConstants, PairConstants, factors, sphere_on_plate
-from contactlaw.physical.strengths import by_strength
-from contactlaw.physical.validity import Limits, limits, limits_by_strength
+from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.rebound import Rebound
 
 Array = NDArray[np.float64]
 
@@ -42,42 +36,9 @@ class Backend(Protocol):
         """Contacts at even times from first touch to separation."""
         ...
 
-    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+    def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
         ...
-
-
-@dataclass(frozen=True, eq=False)
-class SphereOnPlate:
-    """A pair of materials and its law, with the constants that follow from them."""
-
-    pair: Pair
-    law: Law
-
-    @functools.cached_property
-    def limits(self) -> Limits:
-        """Limits of the model."""
-        return limits(self.pair, self.law)
-
-    @functools.cached_property
-    def factors(self) -> PairConstants:
-        """Constants from which the dimensionless numbers of impacts follow."""
-        return factors(self.pair, self.law)
-
-    @functools.cached_property
-    def data(self) -> Array:
-        """The law at any strength, as kernels read it."""
-        return by_strength(self.pair, self.law)
-
-    @functools.cached_property
-    def limits_by_strength(self) -> Array:
-        """Limits of the model at some strengths, as kernels read them."""
-        return limits_by_strength(self.pair, self.law)
-
-    def contact(self, impacts: Impacts) -> ContactConstants:
-        """Contact of each sphere with its plate."""
-        sizes, plate = (impacts.radius, impacts.thickness), self.factors.plate
-        return sphere_on_plate(self.pair, self.law, *sizes, plate, self.data)
 
 
 class OutsideTableError(ValueError):
@@ -144,12 +105,11 @@ def _above(value: float, limit: float) -> str:
     return " is above ".join(next(pair for pair in pairs if pair[0] != pair[1]))
 
 
-def refuse_to_yield(
-    radius: Array, thickness: Array, beyond: NDArray[np.bool_], limit: float
-) -> NoReturn:
+def refuse_to_yield(impacts: Impacts, beyond: NDArray[np.bool_], limit: float) -> NoReturn:
     """Refuse the first plate on which lambda, at the yield speed, is beyond the table's largest."""
     n = int(np.argmax(beyond))
     raise ValueError(
-        f"thickness: at {thickness[n]:g} m under a bead of radius {radius[n]:g} m the inelasticity "
-        f"at yield is beyond the table's {limit:.4g}; the plate is too thin for the model"
+        f"thickness: at {impacts.thickness[n]:g} m under a bead of radius {impacts.radius[n]:g} m "
+        f"the inelasticity at yield is beyond the table's {limit:.4g}; the plate is too thin for "
+        "the model"
     )

@@ -5,23 +5,23 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
 from contactlaw.answers import rated
-from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.solver import RTOL, within
 from contactlaw.answers.tabulated import Border, Tabulated, curve, extent, table_for
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
+from contactlaw.physical.bodies import TwoSpheres
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import ContactConstants, scales, sphere_on_sphere
+from contactlaw.physical.rebound import Rebound, rebound
+from contactlaw.physical.scaling import log_overload, reduced
 from contactlaw.table import Table, lookup
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ class Beads:
         self._swapped = weak < strong
         self.pair = Pair(pair.plate, pair.sphere) if self._swapped else pair
         self.law = law_of(self.pair, law)
-        self._bodies = SphereOnPlate(self.pair, self.law)
+        self._bodies = TwoSpheres(self.pair, self.law)
         self._border, self._table_of = border, table
 
     @functools.cached_property
@@ -74,18 +74,13 @@ class Beads:
 
     def rebounds(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Rebound:
         """Everything about impacts; radii [m] in the order in which the materials were given."""
-        v, r, o, shape = _checked(speed, radius, other_radius)
-        impacts = Impacts(v, r * o / (r + o), np.full_like(r, math.inf), shape)
+        impacts = self._impacts(speed, radius, other_radius)
         if self._nodes:
-            return self._nodes.rebounds(self._contact(r, o), impacts)[0]
-        contact = self._contact(r, o)
-        units = scales(contact, v)
+            return self._nodes.rebounds(impacts)[0]
+        units = self._bodies.numbers(self._bodies.impact(impacts))
         found, flags = self._border.look_up(self.law, self.table.packed, units)
         unclamped = units.inelasticity, units.yield_ratio
-        return rebound(
-            self.pair, self.law.data, self._bodies.limits_by_strength, impacts, units.time,
-            contact.mass, unclamped, found, flags,
-        )  # fmt: skip
+        return rebound(self._bodies, impacts, units.time, unclamped, found, flags)
 
     def restitutions(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
@@ -93,44 +88,46 @@ class Beads:
         """COR of impacts, as in `rebounds`."""
         if self._nodes:
             return self.rebounds(speed, radius, other_radius).restitution
-        v, r, o, shape = _checked(speed, radius, other_radius)
-        units = scales(self._contact(r, o), v)
+        impacts = self._impacts(speed, radius, other_radius)
+        units = self._bodies.numbers(self._bodies.impact(impacts))
         found, _ = self._border.look_up(self.law, self.table.packed, units)
-        return shaped(found.restitution, shape)
+        return shaped(found.restitution, impacts.shape)
 
     def integrated(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
     ) -> float | Array:
         """COR of impacts as in `rebounds`, integrated to nine digits; a few need no table."""
         enable_caching()
-        v, r, o, shape = _checked(speed, radius, other_radius)
-        units = scales(self._contact(r, o), v)
+        impacts = self._impacts(speed, radius, other_radius)
+        units = self._bodies.numbers(self._bodies.impact(impacts))
         found = within(self._bodies.data, units, RTOL, extent(self.law), few=True)
-        return shaped(found.restitution, shape)
+        return shaped(found.restitution, impacts.shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
         """COR of beads of these radii [m] as a function of speed [m/s]."""
-        r, o = scalars(radius=radius, other_radius=other_radius)
-        contact = self._contact(r, o)
-        time = (contact.mass / contact.stiffness).item() ** 0.4
-        c_chi = -math.log(contact.yield_compression.item() / time)
+        impacts = self._impacts(1.0, *scalars(radius=radius, other_radius=other_radius))
+        known, size = self._bodies.constants, impacts.radius.item()
+        time = known.time * size * self._bodies.impact(impacts).mass.item() ** 0.4
+        c_chi = log_overload(known._replace(time=time), known.yield_compression * size)
         if self._nodes:
-            if contact.plate.growth.modulus_power:
+            if known.plate.growth.modulus_power:
                 return lambda v: float(self.rebounds(v, radius, other_radius).restitution)
-            reduced = (r * o / (r + o)).item()
             return rated.curve(
-                (self._nodes.packed, 0.0, c_chi), (reduced, 0.0),
+                (self._nodes.packed, 0.0, c_chi), (size, 0.0),
                 lambda v: self.rebounds(v, radius, other_radius),
             )  # fmt: skip
         look_up = functools.partial(self._border.look_up, self.law)
-        table, growth = self.table.packed, contact.plate.growth
+        table, growth = self.table.packed, known.plate.growth
         if growth.modulus_power:
             table = lookup.with_growth(table, growth, math.log(time))
-        return curve((table, 0.0, c_chi, 1.0, 0.0), lambda: contact, look_up)
+        return curve((table, 0.0, c_chi, 1.0, 0.0), self._bodies, impacts, look_up)
 
-    def _contact(self, radius: Array, other_radius: Array) -> ContactConstants:
-        radii = (other_radius, radius) if self._swapped else (radius, other_radius)
-        return sphere_on_sphere(self.pair, self.law, *radii)
+    def _impacts(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Impacts:
+        """Impacts of one body of R* and m* on a half-space."""
+        v, r, o, shape = broadcast(speed=speed, radius=radius, other_radius=other_radius)
+        check(speed=v, radius=r, other_radius=o)
+        size, mass = reduced(self.pair, *((o, r) if self._swapped else (r, o)))
+        return Impacts(v, size, np.full_like(size, math.inf), shape, mass=mass)
 
 
 def beads_of(tabulated: Tabulated, other: Other) -> Beads:
@@ -138,13 +135,6 @@ def beads_of(tabulated: Tabulated, other: Other) -> Beads:
     sphere, law = tabulated.bodies.pair.sphere, tabulated.bodies.law
     takes = law.family if law.from_pair else law
     return Beads(sphere, other or sphere, takes, tabulated.border, tabulated.table_of)
-
-
-def _checked(speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Any:
-    """Flat arrays and their shape."""
-    v, r, o, shape = broadcast(speed=speed, radius=radius, other_radius=other_radius)
-    check(speed=v, radius=r, other_radius=o)
-    return v, r, o, shape
 
 
 def restitution_sphere_sphere(

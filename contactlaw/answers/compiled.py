@@ -17,7 +17,7 @@ from contactlaw.answers.beads import Beads, Other
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.arguments import scalars
-from contactlaw.physical.rebound import check_kind
+from contactlaw.physical.impacts import check_kind
 
 
 class Compiled:

@@ -11,14 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import in_memory, kernel
-from contactlaw.answers.backend import Backend, SphereOnPlate
+from contactlaw.answers.backend import Backend
 from contactlaw.answers.rated import merged, merged_histories, renumbered
 from contactlaw.answers.solver import Solver
 from contactlaw.equation.few_steps import restitution_near
 from contactlaw.equation.force import at_strength, room_for
-from contactlaw.equation.numbers import numbers, relaxes
+from contactlaw.equation.numbers import Impact, PairConstants, numbers, relaxes
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory
-from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import wave_path, wave_rate
 from contactlaw.table import lookup
@@ -51,9 +53,9 @@ class NearEdges:
         found = _each(self, impacts, lambda by, part, _: by.histories(part, samples))
         return merged_histories(found, impacts)
 
-    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+    def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields, far from edges."""
-        return self.others.yield_speeds(radius, thickness)
+        return self.others.yield_speeds(impacts)
 
 
 def near_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
@@ -63,19 +65,13 @@ def near_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
 
 def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, float, float], float]:
     """COR near an edge of this kind as a jitted function of speed, radius, thickness, distance."""
-    one = bodies.contact(Impacts(np.ones(1), np.ones(1), np.ones(1), None))
-    mass, stiffness, yielding = one.mass.item(), one.stiffness.item(), one.yield_compression.item()
-    mobility, path, plate = one.mobility.item(), wave_path(bodies.pair.plate), one.plate
+    pair, path = bodies.constants, wave_path(bodies.pair.plate)
     law = in_memory(bodies.data)
     response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))
 
-    constants = mass, stiffness, yielding, mobility, path
-
     @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float, edge_distance: float) -> float:
-        return _cor_near(
-            law(), response(), plate, constants, speed, radius, thickness, edge_distance
-        )
+        return _cor_near(law(), response(), pair, path, speed, radius, thickness, edge_distance)
 
     return cor
 
@@ -83,7 +79,7 @@ def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, flo
 # Its machine code is kept on disk, which is not possible for callers that know a law in memory.
 @kernel(cache=True)
 def _cor_near(
-    law: Array, response: Array, plate: Any, constants: tuple[float, float, float, float, float],
+    law: Array, response: Array, pair: PairConstants, path: float,
     speed: float, radius: float, thickness: float, edge_distance: float,
 ) -> float:  # fmt: skip
     if not (
@@ -91,12 +87,12 @@ def _cor_near(
         and lookup.THINNEST * radius <= thickness and edge_distance >= 0.0
     ):  # fmt: skip
         return math.nan
-    mass, stiffness, yielding, mobility, path = constants
-    m, ratio = mass * (radius * radius * radius), radius / thickness
-    known = numbers(plate, law, m, stiffness * math.sqrt(radius), yielding * radius, speed, ratio)
+    known = numbers(pair, law, Impact(speed, radius, thickness, 1.0))
     rate = wave_rate(path, thickness, edge_distance) * known.time if thickness < math.inf else 0.0
-    thin = mobility / (thickness * thickness) * m / (known.time * known.inelasticity)
-    thin = 1.0 if relaxes(plate) or rate == 0.0 else thin
+    ratio = radius / thickness
+    root = pair.time * radius / known.time  # lambda of a thin plate follows from it
+    thin = pair.plate.inelasticity * root * (ratio * ratio) / known.inelasticity
+    thin = 1.0 if relaxes(pair.plate) or rate == 0.0 else thin
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
     room = room_for(law)
     own = law if room == 0 else at_strength(law, known.strength, np.empty(room))

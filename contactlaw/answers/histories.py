@@ -14,7 +14,7 @@ from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.history import ForceHistory
-from contactlaw.physical.rebound import Impacts, check_finite
+from contactlaw.physical.impacts import Impacts, check_finite
 
 
 class Histories:

@@ -17,7 +17,7 @@ from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Border, Tabulated
 from contactlaw.answers.uncertainty import Band, Uncertain
 from contactlaw.physical.arguments import broadcast, check, within
-from contactlaw.physical.rebound import Impacts
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup
 

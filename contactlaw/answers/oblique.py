@@ -18,9 +18,9 @@ from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
+from contactlaw.physical.impacts import Impacts, check_finite, edges_as_given
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, check_finite, edges_as_given
 from contactlaw.table import lookup
 
 Array = NDArray[np.float64]

@@ -18,13 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import direct, switched_off
-from contactlaw.answers.backend import (
-    OutsideTableError,
-    SphereOnPlate,
-    UnsolvedError,
-    too_fast,
-    too_thin,
-)
+from contactlaw.answers.backend import OutsideTableError, UnsolvedError, too_fast, too_thin
 from contactlaw.answers.solver import RTOL, Solver, integrate, slid
 from contactlaw.answers.tabulated import Border, TableArgument, Tabulated
 from contactlaw.answers.tabulated import extent as tables_extent
@@ -34,11 +28,13 @@ from contactlaw.equation.outcome import STORED, Outcome
 from contactlaw.laws import Law
 from contactlaw.physical import rate
 from contactlaw.physical.arguments import check, scalars, shaped
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.flow import Flow
 from contactlaw.physical.history import ForceHistory, with_units
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_for_pair
-from contactlaw.physical.rebound import Impacts, Rebound, rebound, shaped_flags
-from contactlaw.physical.scaling import ContactConstants
+from contactlaw.physical.rebound import Rebound, rebound, shaped_flags
+from contactlaw.physical.scaling import without_plate
 from contactlaw.physical.strengths import knots
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, lookup, shapes, strengths
@@ -101,12 +97,6 @@ def merged_histories(parts: Sequence[tuple[Some, ForceHistory]], impacts: Impact
     return together
 
 
-def some_of(contact: ContactConstants, some: Some) -> ContactConstants:
-    """Contacts of some of the impacts."""
-    names = ("mass", "stiffness", "mobility", "yield_compression", "ratio")
-    return contact._replace(**{name: getattr(contact, name)[some] for name in names})
-
-
 class Nodes:
     """Tables of rate-free pairs between which the answers of one with a rate lie.
 
@@ -163,21 +153,24 @@ class Nodes:
         log_share = math.log(rate.SHARE / self.flow.rate0)
         return strengths.pack(self.flow.rate, log_share, self.knots, nodes)
 
-    def places(self, at: ContactConstants, impacts: Impacts) -> tuple[strengths.Places, Numbers]:
+    def places(self, impacts: Impacts) -> tuple[strengths.Places, Numbers]:
         """Places of impacts among the tables, and their units."""
-        v = impacts.speed
-        at_one = (at.mass / at.stiffness) ** 0.4
-        out, radius = strengths.empty(v.size), impacts.radius
-        growth, faster = at.plate.growth, np.ones_like(v)
+        known, each = self.bodies.constants, self.bodies.impact(impacts)
+        if not self.on_plates:
+            known = without_plate(known)
+        v, radius = each.speed, each.radius
+        at_one = known.time * radius * each.mass**0.4
+        out, growth, faster = strengths.empty(v.size), known.plate.growth, np.ones_like(v)
         if growth.modulus_power and not self.on_plates:
             # E* larger by g is as a speed, at the same rate of strain, that is g^2 larger
             shorter = growth.log_time - np.log(at_one) + 0.2 * np.log(v)
             faster = np.exp(2.0 * growth.modulus_power * shorter)
-        c_lam, c_chi = at.plate.inelasticity, np.log(at_one / at.yield_compression)
-        strengths.locate(self.packed, c_lam, c_chi, faster * v, faster * radius, at.ratio, out)
+        c_lam, c_chi = known.plate.inelasticity, np.log(at_one / (known.yield_compression * radius))
+        ratio = radius / each.thickness
+        strengths.locate(self.packed, c_lam, c_chi, faster * v, faster * radius, ratio, out)
         time = at_one / out.root
         y = out.elastic_compression / out.overload
-        force = at.mass * v / time
+        force = self.bodies.mass(impacts) * v / time
         return out, Numbers(
             out.inelasticity, y, time, v * time, force, out.root, out.strength
         )  # fmt: skip
@@ -194,11 +187,9 @@ class Nodes:
                 lookup.fields(node.table.packed, True, found)
                 yield some, places.weights[n, some], node, found
 
-    def rebounds(
-        self, contact: ContactConstants, impacts: Impacts
-    ) -> tuple[Rebound, strengths.Places]:
+    def rebounds(self, impacts: Impacts) -> tuple[Rebound, strengths.Places]:
         """Everything about impacts, and their places."""
-        places, units = self.places(contact, impacts)
+        places, units = self.places(impacts)
         found, flags = self._interpolated(places), np.zeros(places.inside.size, dtype=np.int64)
         beyond = np.flatnonzero(~places.inside)
         if beyond.size:
@@ -206,18 +197,15 @@ class Nodes:
                 self._refuse(places, int(beyond[0]))
             elif self.border.outside == "solve":
                 with renumbered(beyond):
-                    some = some_of(contact, beyond)
-                    integrated = integrate(self.bodies, some, impacts.part(beyond))
+                    integrated = integrate(self.bodies, impacts.part(beyond))
                 for values, exact in zip(found, integrated.outcome, strict=True):
                     values[beyond] = exact
             else:
                 with self.border.lock:
                     self.border.clamped += beyond.size
                 flags[beyond] = int(Validity.CLAMPED)
-        return rebound(
-            self.bodies.pair, self.bodies.data, self.bodies.limits_by_strength, impacts,
-            units.time, contact.mass, (places.unclamped, units.yield_ratio), found, flags,
-        ), places  # fmt: skip
+        unclamped = places.unclamped, units.yield_ratio
+        return rebound(self.bodies, impacts, units.time, unclamped, found, flags), places
 
     def _interpolated(self, places: strengths.Places) -> Outcome:
         """Outcomes between those of the nodes."""
@@ -246,9 +234,9 @@ class Nodes:
             )
         raise OutsideTableError(n, too_fast(float(places.overload[n]), float(places.largest[n])))
 
-    def histories(self, contact: ContactConstants, impacts: Impacts, samples: int) -> ForceHistory:
+    def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        places, units = self.places(contact, impacts)
+        places, units = self.places(impacts)
         total = outcome.history(places.piece.size, samples)
         for values in total:
             values[:] = 0.0
@@ -258,7 +246,7 @@ class Nodes:
             shapes.sample(node.bodies.law.data, packed, found, one)
             for values, more in zip(total, one, strict=True):
                 values[some] += weight[:, None] * more
-        flags = self.rebounds(contact, impacts)[0].flags
+        flags = self.rebounds(impacts)[0].flags
         return with_units(total, units, places.inelasticity, impacts.shape, flags)
 
 
@@ -311,7 +299,7 @@ class Rated(Tabulated):
         """Everything about impacts."""
         if not impacts.speed.size:
             return Solver(self.bodies).rebounds(impacts)
-        return self.nodes.rebounds(self.bodies.contact(impacts), impacts)[0]
+        return self.nodes.rebounds(impacts)[0]
 
     @functools.cached_property
     def slides(self) -> Array:
@@ -324,8 +312,7 @@ class Rated(Tabulated):
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
         if not impacts.speed.size:
             return Solver(self.bodies).oblique(impacts, psi)
-        contact = self.bodies.contact(impacts)
-        normal, places = self.nodes.rebounds(contact, impacts)
+        normal, places = self.nodes.rebounds(impacts)
         v, r, h = impacts.speed, impacts.radius, impacts.thickness
         changes = np.empty_like(psi)
         integrated = ~places.inside & (self.border.outside == "solve")
@@ -339,7 +326,7 @@ class Rated(Tabulated):
             strengths.changes(*known, v, r, h, e, psi, changes)
         if integrated.any():
             some = np.flatnonzero(integrated)
-            found = integrate(self.bodies, some_of(contact, some), impacts.part(some))
+            found = integrate(self.bodies, impacts.part(some))
             changes[some] = slid(self.bodies, found.outcome, psi[some])
         return normal, changes
 
@@ -347,12 +334,12 @@ class Rated(Tabulated):
         """Contacts at even times from first touch to separation."""
         if not impacts.speed.size:
             return Solver(self.bodies).histories(impacts, samples)
-        return self.nodes.histories(self.bodies.contact(impacts), impacts, samples)
+        return self.nodes.histories(impacts, samples)
 
-    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+    def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
         extent = self.nodes.given or tables_extent(self.bodies.law)
-        return Solver(self.bodies, RTOL, extent).yield_speeds(radius, thickness)
+        return Solver(self.bodies, RTOL, extent).yield_speeds(impacts)
 
     def curve(self, radius: Array, thickness: Array) -> Callable[[float], float]:
         """COR of one sphere on one plate, as a function of speed [m/s]."""

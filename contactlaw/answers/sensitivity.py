@@ -40,11 +40,11 @@ from contactlaw.equation import outcome
 from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import shaped
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_for_pair, pair_numbers
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import scaled
-from contactlaw.physical.rebound import Impacts
-from contactlaw.physical.scaling import scales, sphere_on_plate
 from contactlaw.table import lookup
 from contactlaw.table.nodes import Table
 
@@ -104,7 +104,7 @@ def sensitivity(tabulated: Tabulated, impacts: Impacts) -> Sensitivity:
     if rated.flow_of(tabulated.bodies):
         hit = rated.Rated(tabulated.bodies, tabulated.given, Border("raise")).rebounds(impacts)
         return by_inputs(pair, law, impacts, np.ravel(hit.overload) > 1.0)
-    units = scales(tabulated.bodies.contact(impacts), impacts.speed)
+    units = tabulated.bodies.numbers(tabulated.bodies.impact(impacts))
     found, _ = Border("raise").look_up(law, tabulated.packed, units)
     if not law.thin_plate:
         return by_inputs(pair, law, impacts, _yields(found))
@@ -240,8 +240,9 @@ def _changed(pair: Pair, number: str, factor: float, roles: tuple[str, ...]) -> 
 
 def _moved(pair: Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Array:
     """COR of impacts of other bodies, integrated, with the law's numbers for those bodies."""
-    contact = sphere_on_plate(pair, law_for_pair(pair, law), radius, thickness)
-    return np.asarray(within(contact.law, scales(contact, speed), _RTOL, None).restitution)
+    bodies = SphereOnPlate(pair, law_for_pair(pair, law))
+    units = bodies.numbers(bodies.impact(Impacts(speed, radius, thickness, None)))
+    return np.asarray(within(bodies.data, units, _RTOL, None).restitution)
 
 
 def _yields(found: Outcome) -> NDArray[np.bool_]:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from contactlaw.answers.backend import (
     OutsideTableError,
-    SphereOnPlate,
     UnsolvedError,
     refuse_to_yield,
     too_fast,
@@ -18,11 +17,13 @@ from contactlaw.answers.backend import (
 )
 from contactlaw.equation import edge, force, outcome, zener
 from contactlaw.equation.edge import Edges
-from contactlaw.equation.numbers import Numbers
+from contactlaw.equation.numbers import Impact, Numbers
 from contactlaw.equation.outcome import History, Outcome
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory, with_units
-from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import ContactConstants, edges_of, scales, yield_share
+from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.rebound import Rebound, rebound
+from contactlaw.physical.scaling import edges_of, numbers_of, yield_share
 from contactlaw.table import slides
 from contactlaw.table.grid import Settings
 
@@ -43,7 +44,6 @@ class Integrated:
 
     bodies: SphereOnPlate
     impacts: Impacts
-    contact: ContactConstants
     units: Numbers
     outcome: Outcome
     edges: Edges | None
@@ -52,31 +52,33 @@ class Integrated:
         """Everything about the impacts."""
         units, flags = self.units, np.zeros(self.impacts.speed.size, dtype=np.int64)
         return rebound(
-            self.bodies.pair, self.bodies.data, self.bodies.limits_by_strength, self.impacts,
-            units.time, self.contact.mass, (units.inelasticity, units.yield_ratio), self.outcome,
-            flags, self.edges,
+            self.bodies, self.impacts, units.time, (units.inelasticity, units.yield_ratio),
+            self.outcome, flags, self.edges,
         )  # fmt: skip
 
 
 def integrate(
     bodies: SphereOnPlate,
-    contact: ContactConstants,
     impacts: Impacts,
     rtol: float = RTOL,
     extent: Settings | None = None,
     few: bool = False,
 ) -> Integrated:
-    """Integrate impacts whose contacts are known."""
-    units = scales(contact, impacts.speed)
+    """Integrate impacts."""
+    impact = bodies.impact(impacts)
+    units = bodies.numbers(impact)
     beyond = units.strength > force.strongest(bodies.data)
     if beyond.any():
         n = int(np.argmax(beyond))
         rate = impacts.speed[n] / impacts.radius[n]
         reason = "the strength of a pair with a rate of strain is known up to 1e9 per second"
         raise UnsolvedError(n, f"V0/R = {rate:.3g} /s", reason)
-    edges = edges_near(bodies, contact, units, impacts)
+    edges = None
+    if impacts.edge_distance is not None and impacts.hole_radius is not None:
+        near = impacts.edge, impacts.edge_distance, impacts.hole_radius
+        edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
     found = within(bodies.data, units, rtol, extent, few, edges)
-    return Integrated(bodies, impacts, contact, units, found, edges)
+    return Integrated(bodies, impacts, units, found, edges)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,51 +108,51 @@ class Solver:
         )  # fmt: skip
 
     def _integrated(self, impacts: Impacts) -> Integrated:
-        contact = self.bodies.contact(impacts)
         few = impacts.edge_distance is not None and impacts.speed.size <= _FEW
-        return integrate(self.bodies, contact, impacts, self.rtol, self.extent, few)
+        return integrate(self.bodies, impacts, self.rtol, self.extent, few)
 
-    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+    def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        share = yield_share(self.bodies.pair, self.bodies.law)
+        share, impact = yield_share(self.bodies.pair, self.bodies.law), self.bodies.impact(impacts)
         if math.isinf(share):
-            return np.full(radius.size, math.inf)
+            return np.full(impacts.speed.size, math.inf)
         found = [
-            self._yield_speed(share, radius[n : n + 1], thickness[n : n + 1])
-            for n in range(radius.size)
+            self._yield_speed(share, Impact(*(one[n : n + 1] for one in impact)))
+            for n in range(impacts.speed.size)
         ]
         speed, lam = np.array(found).reshape(-1, 2).T
         if self.extent is not None:
             limit = self.extent.largest_inelasticity
             beyond = lam > limit
             if beyond.any():
-                refuse_to_yield(radius, thickness, beyond, limit)
+                refuse_to_yield(impacts, beyond, limit)
         return speed
 
-    def _yield_speed(self, share: float, radius: Array, thickness: Array) -> tuple[float, float]:
+    def _yield_speed(self, share: float, impact: Impact) -> tuple[float, float]:
         """Speed at which the largest compression is that of first flow, and lambda there.
 
         By the secant method in logarithms, in which the compression is nearly linear in the speed.
         It starts at the yield speed on a half-space, which is the lowest of all plates.
         """
-        contact = self.bodies.contact(Impacts(np.ones(1), radius, thickness, None))
-        rated = contact.plate.rate.slope > 0.0
+        laws, constants = self.bodies.data, self.bodies.constants
+        rated = constants.plate.rate.slope > 0.0
         if not rated:
-            contact = contact._replace(yield_compression=share * radius)
+            constants = constants._replace(yield_compression=share)
         thinnest = math.inf if self.extent is None else 2.0 * self.extent.largest_inelasticity
-        log_speed = 1.25 * math.log(float(scales(contact, np.ones(1)).yield_ratio[0]))
+        at_one = numbers_of(constants, laws, impact._replace(speed=np.ones(1)))
+        log_speed = 1.25 * math.log(float(at_one.yield_ratio[0]))
         log_speed -= 0.5 * math.log(1.25)  # 1.25 ln w_m of a half-space
         slope, last, gap = 0.75, math.nan, 0.0
         for _ in range(_ROUNDS):
-            units = scales(contact, np.array([math.exp(log_speed)]))
+            speed = np.array([math.exp(log_speed)])
+            units = numbers_of(constants, laws, impact._replace(speed=speed))
             lam, y = float(units.inelasticity[0]), float(units.yield_ratio[0])
             if lam > thinnest:
                 break
             s = float(units.strength[0])
-            one = zener.solve(self.bodies.data, lam, y, self.rtol, s)
+            one = zener.solve(laws, lam, y, self.rtol, s)
             if one.status != zener.OK:
                 raise UnsolvedError(0, f"lambda = {lam:.6g}", zener.MESSAGES[one.status])
-            laws = self.bodies.data
             onset = math.log(force.onset_at(laws, s) / force.growth_at(laws, s))
             if rated and onset >= -math.log(share):  # the strength has outgrown the load
                 return math.inf, 0.0
@@ -206,16 +208,6 @@ def solved(
         where = f"lambda = {out.inelasticity[n]:.6g}, d_Y/(V0 T_H) = {out.yield_ratio[n]:.6g}"
         raise UnsolvedError(int(n if places is None else places[n]), where, zener.MESSAGES[status])
     return out
-
-
-def edges_near(
-    bodies: SphereOnPlate, contact: ContactConstants, units: Numbers, impacts: Impacts
-) -> Edges | None:
-    """Edges near impacts, as the equation has them; None where there are none."""
-    if impacts.edge_distance is None or impacts.hole_radius is None:
-        return None
-    near = impacts.thickness, impacts.edge, impacts.edge_distance, impacts.hole_radius
-    return edges_of(bodies.pair.plate, contact, units, *near)
 
 
 def slid(bodies: SphereOnPlate, found: Outcome, psi: Array, edges: Edges | None = None) -> Array:

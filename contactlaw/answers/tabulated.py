@@ -16,22 +16,18 @@ from numpy.typing import NDArray
 
 from contactlaw import laws
 from contactlaw._jit import direct, enable_caching, switched_off
-from contactlaw.answers.backend import (
-    OutsideTableError,
-    SphereOnPlate,
-    refuse_to_yield,
-    too_fast,
-    too_thin,
-)
+from contactlaw.answers.backend import OutsideTableError, refuse_to_yield, too_fast, too_thin
 from contactlaw.answers.solver import RTOL, histories, slid, solved
 from contactlaw.equation import outcome
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History, Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import check, scalars
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory, with_units
-from contactlaw.physical.rebound import Impacts, Rebound, rebound
-from contactlaw.physical.scaling import ContactConstants, log_overload, scales, yield_share
+from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.rebound import Rebound, rebound
+from contactlaw.physical.scaling import log_overload, yield_share
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, grid, lookup, shapes, slides
 from contactlaw.table.certificate import bounds
@@ -102,8 +98,9 @@ class Tabulated:
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
         self.bodies, self.given, self.border = bodies, given, border
         # the constants of the pair that kernels take
-        self.c_lam = bodies.factors.plate.inelasticity
-        self.c_chi = bodies.factors.log_overload
+        known = bodies.constants
+        self.c_lam = known.plate.inelasticity
+        self.c_chi = log_overload(known, known.yield_compression)
 
     @functools.cached_property
     def table(self) -> Table:
@@ -113,7 +110,7 @@ class Tabulated:
     @functools.cached_property
     def packed(self) -> Array:
         """The table as kernels read it, with the corrections of the pair's plates."""
-        return lookup.with_plate(self.table.packed, self.bodies.factors.plate)
+        return lookup.with_plate(self.table.packed, self.bodies.constants.plate)
 
     @functools.cached_property
     def slides(self) -> Array:
@@ -166,28 +163,26 @@ class Tabulated:
 
     def _rebounds(self, impacts: Impacts) -> tuple[Rebound, Outcome]:
         found, flags, unclamped, root = self._outcomes(impacts)
-        r, made = impacts.radius, self.bodies.factors
-        return rebound(
-            self.bodies.pair, self.bodies.data, self.bodies.limits_by_strength, impacts,
-            made.time * r / root, made.mass * (r * r * r), unclamped, found, flags,
-        ), found  # fmt: skip
+        time = self.bodies.constants.time * impacts.radius / root
+        return rebound(self.bodies, impacts, time, unclamped, found, flags), found
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
         normal, found = self._rebounds(impacts)
-        units = scales(self.bodies.contact(impacts), impacts.speed)
+        units = self.bodies.numbers(self.bodies.impact(impacts))
         contacts = self._shapes(found, samples)
         return with_units(contacts, units, found.inelasticity, impacts.shape, normal.flags)
 
-    def yield_speeds(self, radius: Array, thickness: Array) -> Array:
+    def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
+        radius, thickness = impacts.radius, impacts.thickness
         out = np.full(radius.size, math.inf)
         share = yield_share(self.bodies.pair, self.bodies.law)
         if share < math.inf:
-            c_chi = log_overload(self.bodies.factors, share)
+            c_chi = log_overload(self.bodies.constants, share)
             lookup.yield_speeds(self.packed, self.c_lam, c_chi, radius, radius / thickness, out)
             if np.isnan(out).any():
-                refuse_to_yield(radius, thickness, np.isnan(out), lookup.lam_max(self.packed))
+                refuse_to_yield(impacts, np.isnan(out), lookup.lam_max(self.packed))
         return out
 
     def curve(self, radius: Array, thickness: Array) -> Callable[[float], float]:
@@ -195,8 +190,8 @@ class Tabulated:
         at_one = Impacts(np.ones(1), radius, thickness, None)
         r = radius.item()
         constants = self.packed, self.c_lam, self.c_chi, r, r / thickness.item()
-        contact = functools.partial(self.bodies.contact, at_one)
-        return curve(constants, contact, functools.partial(self.border.look_up, self.bodies.law))
+        look_up = functools.partial(self.border.look_up, self.bodies.law)
+        return curve(constants, self.bodies, at_one, look_up)
 
     def _outcomes(self, impacts: Impacts) -> tuple[Outcome, Flags, tuple[Array, Array], Array]:
         """Outcomes, their flags, inelasticity and yield ratio before clamping, and T_H's root."""
@@ -208,7 +203,7 @@ class Tabulated:
         if beyond:
             outside = np.isnan(found.restitution)
             part = Impacts(v[outside], r[outside], h[outside], None)
-            units = scales(self.bodies.contact(part), part.speed)
+            units = self.bodies.numbers(self.bodies.impact(part))
             found.inelasticity[outside] = units.inelasticity
             found.yield_ratio[outside] = units.yield_ratio
             unclamped = unclamped[0].copy(), unclamped[1].copy()
@@ -252,7 +247,8 @@ def python_entries() -> tuple[Callable[..., float], Callable[..., float]]:
 
 def curve(
     constants: tuple[Array, float, float, float, float],
-    contact: Callable[[], ContactConstants],
+    bodies: SphereOnPlate,
+    impacts: Impacts,
     look_up: Callable[[Array, Numbers], tuple[Outcome, Flags]],
 ) -> Callable[[float], float]:
     """COR as a function of speed [m/s], from a packed table, constants of two bodies, R and R/H."""
@@ -264,7 +260,8 @@ def curve(
         value = at(table, c_lam, c_chi, speed, radius, ratio)
         if value != value:  # NaN; half the time of a call of isnan
             (v,) = scalars(speed=speed)
-            return float(look_up(table, scales(contact(), v))[0].restitution[0])
+            units = bodies.numbers(bodies.impact(impacts)._replace(speed=v))
+            return float(look_up(table, units)[0].restitution[0])
         return value
 
     return restitution

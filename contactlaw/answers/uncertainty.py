@@ -22,15 +22,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.law_errors import law_errors
 from contactlaw.answers.solver import Solver
 from contactlaw.physical.arguments import number, shaped, within
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import scaled
-from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.rebound import Rebound
 
 Array = NDArray[np.float64]
 Some = NDArray[np.intp]

@@ -72,6 +72,24 @@ class PlateConstants(NamedTuple):
     rate: RateOfStrain
 
 
+class PairConstants(NamedTuple):
+    """Constants of a pair for impacts of solid spheres: all sizes follow from them."""
+
+    plate: PlateConstants
+    time: float  # T_H at 1 m/s, over R [s/m]
+    mass: float  # over R^3 [kg/m3]
+    yield_compression: float  # d_Y of a slow impact, over R; inf for a law that never yields
+
+
+class Impact(NamedTuple):
+    """What an impact is given by: numbers, or arrays of one length."""
+
+    speed: Any  # V [m/s]
+    radius: Any  # R [m]; R* of two spheres
+    thickness: Any  # H [m]; inf for a half-space and for two spheres
+    mass: Any = 1.0  # over that of the pair's solid sphere of radius R
+
+
 class Numbers(NamedTuple):
     """Dimensionless numbers of impacts, and the units of Hertz's scale; floats or arrays."""
 
@@ -148,52 +166,53 @@ def with_saturation(plate: PlateConstants, saturated: float) -> PlateConstants:
     )  # fmt: skip
 
 
+@kernel(inline=True)
+def of_mass(pair: PairConstants, mass: float) -> PairConstants:
+    """Constants for spheres whose mass is a multiple of a solid one's.
+
+    T_H grows as mass^(2/5), and what is given at 1 m/s and R = H follows from it.
+    """
+    slower = mass**0.4
+    root = math.sqrt(slower)
+    plate = PlateConstants(
+        pair.plate.inelasticity * mass / slower, pair.plate.transit / slower,
+        pair.plate.x_at_one * root, pair.plate.saturated / math.sqrt(root),
+        pair.plate.corrections, pair.plate.growth, pair.plate.rate,
+    )  # fmt: skip
+    return PairConstants(plate, pair.time * slower, pair.mass * mass, pair.yield_compression)
+
+
 @kernel(entry=True)
-def numbers(
-    plate: PlateConstants,
-    laws: Array,
-    mass: float,
-    stiffness: float,
-    yield_compression: float,
-    speed: float,
-    ratio: float,
-) -> Numbers:
-    """Numbers of an impact, from m [kg], K [N/m^1.5], d_Y [m] of a slow one, V [m/s] and R/H."""
-    strength = strength_of(plate.rate, speed, yield_compression)
+def numbers(pair: PairConstants, laws: Array, impact: Impact) -> Numbers:
+    """Numbers of an impact."""
+    speed, radius, ratio = impact.speed, impact.radius, impact.radius / impact.thickness
+    if impact.mass != 1.0:
+        pair = of_mass(pair, impact.mass)
+    plate, yielding = pair.plate, pair.yield_compression * radius
+    strength = strength_of(plate.rate, speed, yielding)
     later = growth_at(laws, strength)
-    root, time, growth = speed**0.2, (mass / stiffness) ** 0.4, 0.0
-    yield_compression *= later
+    root, time, growth = speed**0.2, pair.time * radius, 0.0
+    yielding *= later
     if later != 1.0:  # a stronger pair yields later, and x is constant from a later speed on
         plate = with_saturation(plate, plate.saturated * math.sqrt(math.sqrt(later)))
     if relaxes(plate):
         plate, root, growth = relaxed(plate, root, math.log(time / root))
-        yield_compression *= math.exp(plate.growth.yield_power * growth)
+        yielding *= math.exp(plate.growth.yield_power * growth)
     stiffer = 1.0 if is_thin(plate.corrections) else math.exp(plate_stiffening(plate, root, ratio))
     unit = time / (root * stiffer)
     length = speed * unit
     lam = inelasticity_of(plate, root, ratio, stiffer)
     stiffer *= math.exp(0.4 * growth)
-    return Numbers(
-        lam, yield_compression / length, unit, length, mass * speed / unit, stiffer, strength
-    )
+    force = pair.mass * (radius * radius * radius) * speed / unit
+    return Numbers(lam, yielding / length, unit, length, force, stiffer, strength)
 
 
 @kernel(cache=True)
-def fill(
-    plate: PlateConstants,
-    laws: Array,
-    mass: Array,
-    stiffness: Array,
-    yield_compression: Array,
-    speed: Array,
-    ratio: Array,
-    out: Numbers,
-) -> None:
+def fill(pair: PairConstants, laws: Array, impact: Impact, out: Numbers) -> None:
     """`numbers` of many impacts; all arrays have one length."""
+    speed, radius, thickness, mass = impact.speed, impact.radius, impact.thickness, impact.mass
     for n in range(speed.size):
-        one = numbers(
-            plate, laws, mass[n], stiffness[n], yield_compression[n], speed[n], ratio[n]
-        )  # fmt: skip
+        one = numbers(pair, laws, Impact(speed[n], radius[n], thickness[n], mass[n]))
         out.inelasticity[n], out.yield_ratio[n] = one.inelasticity, one.yield_ratio
         out.time[n], out.compression[n] = one.time, one.compression
         out.force[n], out.stiffer[n], out.strength[n] = one.force, one.stiffer, one.strength

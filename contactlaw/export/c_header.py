@@ -23,6 +23,7 @@ from contactlaw.answers.rated import Nodes
 from contactlaw.answers.tabulated import Border
 from contactlaw.emit import DOUBLE, INT, C, Known, Program, add
 from contactlaw.equation.edge import KINDS
+from contactlaw.equation.numbers import Impact
 from contactlaw.export import functions
 from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.model import ImpactModel
@@ -51,6 +52,8 @@ _VECTOR = 3 * (DOUBLE,)
 _PUBLIC: dict[Any, str] = {
     _VECTOR: "vector",
     functions.SLIDING: "sliding",
+    functions.Answer: "impact",
+    Impact: "given",
     functions.BeadSpring: "spring",
     Spring: "contact_spring",
     Sliding: "approach",

@@ -30,13 +30,13 @@ from contactlaw.equation.force import (
     room_for,
     strongest,
 )
-from contactlaw.equation.numbers import Numbers, PlateConstants, numbers
+from contactlaw.equation.numbers import Impact, Numbers, PairConstants, PlateConstants, numbers
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, slide
 from contactlaw.model import ImpactModel
 from contactlaw.physical.oblique import FASTEST, rebound_of, sliding, unit
 from contactlaw.physical.responses import response_of
-from contactlaw.physical.scaling import factors, wave_path, wave_rate
+from contactlaw.physical.scaling import constants_of, log_overload, wave_path, wave_rate
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength
 from contactlaw.stepping.edge import Near
@@ -67,6 +67,7 @@ class Bodies(NamedTuple):
     law: Any  # data of the force law, at any strength
     room: int  # numbers of one law of several, else 0
     strongest: float  # ln of the strength up to which laws reach
+    constants: PairConstants
     unit: Spring  # of a bead of radius 1 m on a plate of 1 m, with the moduli of the pair
     limits: Any  # by strength
     tangential_ratio: float
@@ -93,7 +94,7 @@ class BeadSpring(NamedTuple):
     plate: PlateConstants
 
 
-class Impact(NamedTuple):
+class Answer(NamedTuple):
     """One impact."""
 
     restitution: float  # rebound speed over impact speed [-]
@@ -142,7 +143,7 @@ INSTEAD: dict[Any, Any] = {
 }
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
 FIXED = "goal", "samples", "springs", "room"
-NOTHING = Impact(*[math.nan] * 10)
+NOTHING = Answer(*[math.nan] * 10)
 BLOWN_UP = State(0.0, 0.0, math.nan)
 SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 
@@ -166,9 +167,9 @@ def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table
     Tables have nine decimals, those of several strengths six: they err by more than that.
     """
     pair, law, tables = model.pair, model.force_law, []
-    laws = by_strength(pair, law, COARSE)
+    laws, known = by_strength(pair, law, COARSE), constants_of(pair, law)
     for own, one in nodes.values():
-        table = lookup.with_plate(one.packed, factors(own.pair, own.force_law).plate)
+        table = lookup.with_plate(one.packed, constants_of(own.pair, own.force_law).plate)
         table = table[: int(table[lookup.OTHERS_AT])].copy()  # COR alone
         splines = table[int(table[lookup.COR_AT]) :]
         splines[:] = splines.round(9 if len(nodes) == 1 else 6)
@@ -178,12 +179,13 @@ def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table
         rounded(laws),
         room_for(laws),
         strongest(laws),
+        known,
         unit_spring(model, 1.0),
         limits_by_strength(pair, law),
         pair.tangential_ratio,
         np.array([response_of(one, pair.plate.poissons_ratio, size="steps") for one in KINDS]),
         wave_path(pair.plate),
-        factors(pair, law).log_overload,
+        log_overload(known, known.yield_compression),
         np.concatenate(tables) if tables else None,
         np.array([*nodes]),
         starts,
@@ -203,7 +205,7 @@ def on_plate(pair: Bodies, radius: float, thickness: float) -> Spring:
     if not fits(radius, thickness):
         radius = h = math.nan
     return Spring(
-        unit.mass, unit.stiffness, unit.mobility / (h * h), unit.scale, unit.relaxation,
+        unit.mass, unit.solid, unit.stiffness, unit.mobility / (h * h), unit.scale, unit.relaxation,
         unit.ratio / h, unit.plate,
     )  # fmt: skip
 
@@ -237,9 +239,10 @@ def at_edge(pair: Bodies, bead: BeadSpring, edge: int, distance: float) -> BeadS
 @kernel
 def contact_spring(pair: Bodies, bead: BeadSpring) -> Spring:
     """Spring of a bead on a plate, as steps take it."""
+    r = bead.radius
     return Spring(
-        bead.mass, bead.stiffness, bead.mobility, bead.scale, bead.relaxation, bead.ratio,
-        bead.plate,
+        bead.mass, pair.unit.mass * (r * r * r), bead.stiffness, bead.mobility, bead.scale,
+        bead.relaxation, bead.ratio, bead.plate,
     )  # fmt: skip
 
 
@@ -270,14 +273,9 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
 @kernel
 def numbers_of(pair: Bodies, speed: float, radius: float, thickness: float) -> Numbers:
     """Dimensionless numbers of an impact, with the moduli at its own frequency."""
-    one, r = on_plate(pair, radius, thickness), radius
-    one = Spring(
-        one.mass * (r * r * r), one.stiffness * math.sqrt(r), one.mobility, one.scale * r,
-        one.relaxation * r, one.ratio * r, one.plate,
-    )  # fmt: skip
-    return numbers(
-        one.plate, pair.law, one.mass, one.stiffness, one.scale, speed, one.ratio
-    )  # fmt: skip
+    if not fits(radius, thickness):
+        radius = math.nan
+    return numbers(pair.constants, pair.law, Impact(speed, radius, thickness, 1.0))
 
 
 @kernel
@@ -292,11 +290,11 @@ def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Soluti
 
 
 @kernel
-def in_si(one: zener.Solution, units: Numbers) -> Impact:
+def in_si(one: zener.Solution, units: Numbers) -> Answer:
     """Solution in SI units; NaN where the integration has not come to its end."""
     if one.status != 0.0:
         return NOTHING
-    return Impact(
+    return Answer(
         one.restitution, one.contact_time * units.time, one.loading_time * units.time,
         one.peak_force * units.force, one.peak_compression * units.compression,
         one.residual_compression * units.compression, one.plastic_fraction, one.wave_fraction,
@@ -305,7 +303,7 @@ def in_si(one: zener.Solution, units: Numbers) -> Impact:
 
 
 @kernel
-def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Impact:
+def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Answer:
     """One impact, integrated with an error of RTOL a step; all members are NaN for bad input."""
     if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
         return NOTHING
@@ -377,7 +375,7 @@ def restitution_near(
 
 
 @kernel
-def exceeded(pair: Bodies, hit: Impact, speed: float, radius: float, thickness: float) -> int:
+def exceeded(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> int:
     """Limits of the model that an impact exceeds; -1 for an impact that is NaN."""
     if not (hit.restitution >= 0.0 and fits(radius, thickness)):
         return -1

@@ -14,8 +14,8 @@ from contactlaw.equation.tangential import POINT, SPRINGS
 from contactlaw.export import functions
 from contactlaw.export.functions import (
     NOTHING,
+    Answer,
     Bodies,
-    Impact,
     exceeded,
     fits,
     history,
@@ -44,7 +44,7 @@ class Page(NamedTuple):
 class Hit(NamedTuple):
     """An oblique impact."""
 
-    impact: Impact
+    impact: Answer
     flags: int
     speed: float  # normal to the plate before [m/s]
     size: float  # along it before [m/s]
@@ -59,7 +59,7 @@ REFUSED = Hit(NOTHING, -1, *[math.nan] * 7)
 
 
 @kernel
-def for_curve(pair: Bodies, speed: float, radius: float, thickness: float) -> Impact:
+def for_curve(pair: Bodies, speed: float, radius: float, thickness: float) -> Answer:
     """One impact for a point of a curve: its COR is within 3e-4.
 
     One that leaves hardly any speed is not followed to its end.
@@ -73,7 +73,7 @@ def for_curve(pair: Bodies, speed: float, radius: float, thickness: float) -> Im
 
 
 @kernel
-def shown(pair: Bodies, hit: Impact, speed: float, radius: float, thickness: float) -> History:
+def shown(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> History:
     """Contact of an impact over time; for the impulse it has the displacement of the plate [m]."""
     at, time, velocity = np.empty((1, SHOWN)), np.empty((1, SHOWN)), np.empty((1, SHOWN))
     force, compression = np.empty((1, SHOWN)), np.empty((1, SHOWN))
@@ -94,7 +94,7 @@ def collide(
     pair: Bodies, page: Page, bead: float, angle: float, radius: float, thickness: float,
     friction: float,
 ) -> Hit:  # fmt: skip
-    """Impact of a bead without spin, at an angle [deg] to the normal of the plate."""
+    """Answer of a bead without spin, at an angle [deg] to the normal of the plate."""
     tilt = angle * math.pi / 180.0
     speed, size = bead * math.cos(tilt), bead * math.sin(tilt)
     hit = functions.rebound(pair, speed, radius, thickness)

@@ -15,17 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.answers import oblique
-from contactlaw.answers.backend import SphereOnPlate, UnsolvedError
+from contactlaw.answers.backend import UnsolvedError
 from contactlaw.answers.solver import Solver
 from contactlaw.equation.tangential import POINT
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import check
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, Rebound
+from contactlaw.physical.rebound import Rebound
 
 Array = NDArray[np.float64]
 

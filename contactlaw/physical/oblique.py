@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import ROUGHEST, shaped
+from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.materials import sphere_mass
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Impacts, Rebound, check_finite, shaped_flags
+from contactlaw.physical.rebound import Rebound, shaped_flags
 from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup, strengths
 from contactlaw.table.slides import change

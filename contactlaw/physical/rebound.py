@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
 from contactlaw.equation import outcome as outcomes
 from contactlaw.equation import zener
-from contactlaw.equation.edge import KINDS, Edges
+from contactlaw.equation.edge import Edges
 from contactlaw.equation.outcome import Extremes, Outcome
-from contactlaw.physical.arguments import broadcast, check, shaped
-from contactlaw.physical.pair import Pair
+from contactlaw.physical.arguments import shaped
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.validity import Validity, edge_flags, flags_of, limits_at
 
 Array = NDArray[np.float64]
@@ -60,75 +60,6 @@ class Rebound:
     inelasticity: float | Array
     overload: float | Array
     flags: Validity | NDArray[np.int64]
-
-
-@dataclass(frozen=True, eq=False)
-class Impacts:
-    """Impacts that a user gave, as flat arrays, and the shape of the answer (None: scalars)."""
-
-    speed: Array  # [m/s]
-    radius: Array  # [m], R* of two spheres
-    thickness: Array  # [m]
-    shape: tuple[int, ...] | None
-    edge: str = "free"  # kind of the edges
-    edge_distance: Array | None = None  # [m]; None for plates without edges
-    hole_radius: Array | None = None  # [m]; inf for straight edges, None without edges
-
-    @staticmethod
-    def on_plates(
-        speed: ArrayLike,
-        radius: ArrayLike,
-        thickness: ArrayLike,
-        edge: str = "free",
-        edge_distance: ArrayLike = math.inf,
-        hole_radius: ArrayLike = math.inf,
-    ) -> Impacts:
-        """Broadcast and check what the user gave."""
-        v, r, h, s, a, shape = broadcast(
-            speed=speed, radius=radius, thickness=thickness, edge_distance=edge_distance,
-            hole_radius=hole_radius,
-        )  # fmt: skip
-        check(speed=v, radius=r, thickness=h)
-        return Impacts(v, r, h, shape, edge, *edges_as_given(edge, s, a, h))
-
-    def part(self, some: NDArray[np.intp]) -> Impacts:
-        """Choose some of the impacts."""
-        near = None if self.edge_distance is None else self.edge_distance[some]
-        hole = None if self.hole_radius is None else self.hole_radius[some]
-        sizes = self.speed[some], self.radius[some], self.thickness[some]
-        return Impacts(*sizes, (some.size,), self.edge, near, hole)
-
-
-def edges_as_given(
-    edge: str, distance: Array, hole_radius: Array, thickness: Array
-) -> tuple[Array | None, Array | None]:
-    """Check distances from edges, inf for half-spaces, and radii of holes [m].
-
-    Both are None if no plate has edges.
-    """
-    check_kind(edge)
-    check(edge_distance=distance, hole_radius=hole_radius)
-    if edge != "free" and (hole_radius < math.inf).any():
-        raise ValueError(
-            f"hole_radius: the rim of a hole is a free edge, got {edge!r}; leave it out"
-        )
-    if not (distance < math.inf).any():
-        return None, None
-    return np.where(thickness < math.inf, distance, math.inf), hole_radius
-
-
-def check_kind(edge: str) -> None:
-    """Refuse what is no kind of edge."""
-    if not isinstance(edge, str) or edge not in KINDS:
-        raise ValueError(f"edge: must be one of {', '.join(KINDS)}, got {edge!r}")
-
-
-def check_finite(pair: Pair, impacts: Impacts, *answers: Array) -> None:
-    """Refuse answers, one number per impact, that are not finite."""
-    for n in np.flatnonzero(~np.isfinite(sum(answers))):
-        v, r, h = impacts.speed[n], impacts.radius[n], impacts.thickness[n]
-        impact = f"{pair} at {v:g} m/s, radius {r:g} m, thickness {h:g} m"
-        raise RuntimeError(f"{impact}: no finite answer; please report it")
 
 
 class Units(NamedTuple):
@@ -189,24 +120,21 @@ def _with_units(
 
 
 def rebound(
-    pair: Pair,
-    law: Array,
-    limits: Array,
+    bodies: SphereOnPlate,
     impacts: Impacts,
     time: Array,
-    mass: Array,
     unclamped: tuple[Array, Array],
     outcome: Outcome,
     flags: NDArray[np.int64],
     edges: Edges | None = None,
 ) -> Rebound:
-    """Convert outcomes to SI units, with T_H [s] and effective masses [kg], and complete them.
+    """Convert outcomes to SI units, with T_H [s], and complete them.
 
     `unclamped` has inelasticities and yield ratios of the impacts. Those of the outcomes differ
     where impacts were clamped to the table's border, which the flags say already.
     """
     found = outcomes.extremes(time.size)
-    zener.extremes(law, outcome, found)
+    zener.extremes(bodies.data, outcome, found)
     if edges is not None and impacts.edge_distance is not None:
         deepest = outcome.compression_ratio * outcome.elastic_compression * impacts.speed * time
         for n in range(flags.size):
@@ -217,13 +145,13 @@ def rebound(
     inelasticity, yield_ratio = unclamped
     out = Units(*np.empty((len(Units._fields), time.size)))
     wrong = _with_units(
-        limits, impacts.speed, impacts.radius, impacts.thickness, time, mass, yield_ratio,
-        outcome, found, out, flags,
+        bodies.limits_by_strength, impacts.speed, impacts.radius, impacts.thickness, time,
+        bodies.mass(impacts), yield_ratio, outcome, found, out, flags,
     )  # fmt: skip
     shape = impacts.shape
     named = {**out._asdict(), **found._asdict(), "restitution": outcome.restitution}
     if wrong != 0.0:
-        check_finite(pair, impacts, *named.values())
+        check_finite(bodies.pair, impacts, *named.values())
     return Rebound(
         **{name: shaped(values, shape) for name, values in named.items()},
         inelasticity=shaped(inelasticity, shape),

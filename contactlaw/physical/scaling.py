@@ -8,7 +8,7 @@ work with: the inelasticity lambda, and the yield compression y on Hertz's scale
 from __future__ import annotations
 
 import math
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +19,10 @@ from contactlaw.equation.edge import Edges
 from contactlaw.equation.numbers import (
     ELASTIC,
     NO_RATE,
+    Impact,
     ModulusGrowth,
     Numbers,
+    PairConstants,
     PlateConstants,
     RateOfStrain,
     fill,
@@ -32,30 +34,8 @@ from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import SHARE, rated
 from contactlaw.physical.responses import response_of
-from contactlaw.physical.strengths import by_strength
 
 Array = NDArray[np.float64]
-
-
-class ContactConstants(NamedTuple):
-    """Constants of impacts that do not depend on the speed; those of impacts are arrays."""
-
-    mass: Array  # [kg], effective
-    stiffness: Array  # K in F = K d^1.5 [N/m^1.5]
-    mobility: Array  # alpha, speed of a thin plate per force [m/(s N)]
-    yield_compression: Array  # d_Y [m]; inf for Hertz's law
-    ratio: Array  # R/H
-    plate: PlateConstants
-    law: Array  # of the pair at any strength
-
-
-class PairConstants(NamedTuple):
-    """Constants of a pair from which impacts on plates are scaled without computing powers."""
-
-    plate: PlateConstants
-    log_overload: float  # ln(chi/w_m) at 1 m/s; -inf for a law that never yields
-    time: float  # T_H at 1 m/s, over R [s/m]
-    mass: float  # over R^3 [kg/m3]
 
 
 def _transit(plate: Material, thickness: Array) -> Array:
@@ -78,15 +58,13 @@ def plate_mobility(plate: Material, thickness: Array) -> Array:
     return mobility
 
 
-def _yield_compression(pair: Pair, radius: Array, law: Law) -> Array:
-    """Yield compression, Eq. 18 for the sphere's material; inf for Hertz's law, which has none."""
-    share = law.scale
-    if share is None:
-        if law.yield_coefficient is None:
-            return np.full_like(radius, math.inf)
-        share = _yield_share(pair, law.yield_coefficient, law.name)
-    compression: Array = share * radius
-    return compression
+def _yield_compression(pair: Pair, law: Law) -> float:
+    """Compute d_Y/R, Eq. 18 for the sphere's material; inf for Hertz's law, which has none."""
+    if law.scale is not None:
+        return law.scale
+    if law.yield_coefficient is None:
+        return math.inf
+    return _yield_share(pair, law.yield_coefficient, law.name)
 
 
 def _yield_share(pair: Pair, coefficient: float, law: str) -> float:
@@ -102,9 +80,9 @@ def yield_share(pair: Pair, law: Law) -> float:
     return pair.yield_share(law.yield_coefficient or C_YIELD)
 
 
-def log_overload(factors: PairConstants, share: float) -> float:
+def log_overload(constants: PairConstants, share: float) -> float:
     """ln(chi/w_m) at 1 m/s for a body that yields at the compression d_Y = share R."""
-    return math.log(factors.time / share)
+    return math.log(constants.time / share) if share < math.inf else -math.inf
 
 
 def yield_scales(pair: Pair, coefficient: float, radius: float) -> tuple[float, float]:
@@ -119,41 +97,31 @@ def _stiffness(pair: Pair, radius: Array) -> Array:
     return stiffness
 
 
-def sphere_on_plate(
-    pair: Pair, law: Law, radius: Array, thickness: Array, plate: PlateConstants | None = None,
-    laws: Array | None = None,
-) -> ContactConstants:  # fmt: skip
-    """Contact of a sphere with a large plate: R* = R, m* = m; of pair and law, if known already."""
-    return ContactConstants(
-        mass=sphere_mass(pair.sphere.density, radius),
-        stiffness=_stiffness(pair, radius),
-        mobility=plate_mobility(pair.plate, thickness),
-        yield_compression=_yield_compression(pair, radius, law),
-        ratio=radius / thickness,
-        plate=plate_constants(pair, law) if plate is None else plate,
-        law=by_strength(pair, law) if laws is None else laws,
+def constants_of(pair: Pair, law: Law) -> PairConstants:
+    """Constants of a pair for impacts of spheres on plates: R* = R, m* = m."""
+    return PairConstants(
+        plate=_plate_constants(pair, law),
+        time=unit_time(pair),
+        mass=sphere_mass(pair.sphere.density, np.ones(())).item(),
+        yield_compression=_yield_compression(pair, law),
     )
 
 
-def sphere_on_sphere(pair: Pair, law: Law, radius: Array, other_radius: Array) -> ContactConstants:
-    """Bulk limit of two spheres: R* = R1 R2/(R1 + R2), m* = m1 m2/(m1 + m2); the first yields."""
-    reduced = radius * other_radius / (radius + other_radius)
+def without_plate(constants: PairConstants) -> PairConstants:
+    """Constants for impacts in which no wave carries energy off, as those of two spheres."""
+    given = constants.plate
+    bulk = PlateConstants(0.0, 0.0, 0.0, math.inf, THIN, given.growth, given.rate)
+    return constants._replace(plate=bulk)
+
+
+def reduced(pair: Pair, radius: Array, other_radius: Array) -> tuple[Array, Array]:
+    """R* = R1 R2/(R1 + R2) [m] and m* = m1 m2/(m1 + m2) [kg] of two spheres."""
     mass = sphere_mass(pair.sphere.density, radius)
-    other_mass = sphere_mass(pair.plate.density, other_radius)
-    return ContactConstants(
-        mass=mass * other_mass / (mass + other_mass),
-        stiffness=_stiffness(pair, reduced),
-        mobility=np.zeros_like(reduced),
-        yield_compression=_yield_compression(pair, reduced, law),
-        ratio=np.zeros_like(reduced),
-        plate=PlateConstants(
-            0.0, 0.0, 0.0, math.inf, THIN, modulus_growth(pair, law), rate_of_strain(pair, law)
-        ),
-        law=by_strength(pair, law),
-    )
+    other = sphere_mass(pair.plate.density, other_radius)
+    return radius * other_radius / (radius + other_radius), mass * other / (mass + other)
 
 
-def plate_constants(pair: Pair, law: Law) -> PlateConstants:
+def _plate_constants(pair: Pair, law: Law) -> PlateConstants:
     """Constants of a pair's plates, at 1 m/s and R = H; they are the same for all sizes."""
     one = np.ones(())
     mass, time = sphere_mass(pair.sphere.density, one).item(), unit_time(pair)
@@ -165,7 +133,7 @@ def plate_constants(pair: Pair, law: Law) -> PlateConstants:
             pair.plate.poissons_ratio, b * share, b_h * share, b4, b_p * share
         )
     # beyond yield the force grows no faster than the compression
-    most = SATURATION * SATURATION * _yield_compression(pair, one, law).item() / time
+    most = SATURATION * SATURATION * _yield_compression(pair, law) / time
     return PlateConstants(
         inelasticity=plate_mobility(pair.plate, one).item() * mass / time,
         transit=_transit(pair.plate, one).item() / time,
@@ -215,15 +183,13 @@ def unit_time(pair: Pair) -> float:
     return float((math.pi * pair.sphere.density / pair.effective_modulus) ** 0.4)
 
 
-def scales(contact: ContactConstants, speed: Array) -> Numbers:
-    """Dimensionless numbers and units of impacts at the given speeds [m/s]."""
-    given = np.broadcast_arrays(
-        contact.mass, contact.stiffness, contact.yield_compression, speed, contact.ratio
-    )
+def numbers_of(constants: PairConstants, laws: Array, impact: Impact) -> Numbers:
+    """Dimensionless numbers and units of impacts, which are broadcast; `laws` as kernels read."""
+    given = np.broadcast_arrays(*impact)
     # copies: kernels are compiled for writeable arrays, and broadcast ones are not
-    mass, stiffness, yielding, v, ratio = (np.array(one, dtype=float).ravel() for one in given)
-    out = Numbers(*np.empty((len(Numbers._fields), v.size)))
-    fill(contact.plate, contact.law, mass, stiffness, yielding, v, ratio, out)
+    flat = Impact(*(np.array(one, dtype=float).ravel() for one in given))
+    out = Numbers(*np.empty((len(Numbers._fields), flat.speed.size)))
+    fill(constants, laws, flat, out)
     return Numbers(*(values.reshape(given[0].shape) for values in out))
 
 
@@ -260,7 +226,7 @@ def share_of(distance: Array, hole_radius: Array, thickness: Array) -> Array:
 
 
 def edges_of(
-    plate: Material, contact: ContactConstants, units: Numbers, thickness: Array, kind: str,
+    plate: Material, constants: PairConstants, units: Numbers, impact: Impact, kind: str,
     distance: Array, hole_radius: Array,
 ) -> Edges:  # fmt: skip
     """Edges at these distances [m] from impacts, as the equation has them.
@@ -268,27 +234,19 @@ def edges_of(
     The radius of a hole is that of the rim, inf for a straight edge [m]. Right at the rim of a hole
     a contact is as long in tau as any that the response was fitted for.
     """
+    thickness = impact.thickness
     least = np.sqrt(wave_path(plate) * thickness * units.time / _LONGEST)
     distance = np.where(hole_radius < math.inf, np.maximum(distance, least), distance)
     rate = wave_rate(wave_path(plate), thickness, distance) * units.time
+    mass = units.force * units.time / impact.speed
     return Edges(
         response_of(kind, plate.poissons_ratio, share_of(distance, hole_radius, thickness)),
         # of bodies with losses both mobilities have those of the impact
         np.ones(rate.size)
-        if relaxes(contact.plate)
-        else np.minimum(contact.mobility * contact.mass / (units.time * units.inelasticity), 1.0),
+        if relaxes(constants.plate)
+        else np.minimum(
+            plate_mobility(plate, thickness) * mass / (units.time * units.inelasticity), 1.0
+        ),
         rate,
         np.zeros(rate.size),
-    )
-
-
-def factors(pair: Pair, law: Law) -> PairConstants:
-    """Constants of a pair for impacts of spheres on plates."""
-    one = np.ones(())
-    time = unit_time(pair)
-    return PairConstants(
-        plate=plate_constants(pair, law),
-        log_overload=-math.log(_yield_compression(pair, one, law).item() / time),
-        time=time,
-        mass=sphere_mass(pair.sphere.density, one).item(),
     )

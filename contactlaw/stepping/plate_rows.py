@@ -131,7 +131,7 @@ def spring_of(row: Any, r: float) -> Spring:
         RateOfStrain(row.slope, row.per_speed),
     )  # fmt: skip
     unit = Spring(
-        row.mass, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio,
+        row.mass, row.solid, row.stiffness, row.mobility, row.scale, row.relaxation, row.ratio,
         plate,
     )  # fmt: skip
     return resized(unit, r)

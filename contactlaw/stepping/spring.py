@@ -47,8 +47,10 @@ from contactlaw.equation.edge import Memory
 from contactlaw.equation.force import UnloadingCurve, at_strength, growth_at, room_for
 from contactlaw.equation.legs import NO_CURVE
 from contactlaw.equation.numbers import (
+    Impact,
     ModulusGrowth,
     Numbers,
+    PairConstants,
     PlateConstants,
     RateOfStrain,
     numbers,
@@ -57,7 +59,7 @@ from contactlaw.equation.numbers import (
 )
 from contactlaw.equation.recall import remembered
 from contactlaw.model import ImpactModel
-from contactlaw.physical.scaling import sphere_on_plate
+from contactlaw.physical.scaling import constants_of, plate_mobility
 from contactlaw.stepping.edge import Near, recalled
 
 Array = NDArray[np.float64]
@@ -95,7 +97,8 @@ class State(NamedTuple):
 class Spring(NamedTuple):
     """Constants of a contact; floats or arrays."""
 
-    mass: Any  # [kg]
+    mass: Any  # that answers at the contact [kg]
+    solid: Any  # mass of the pair's solid sphere of the same radius [kg]
     stiffness: Any  # K in F = K d^1.5 [N/m^1.5]
     mobility: Any  # alpha of a thin plate [m/(s N)]
     scale: Any  # d_Y [m], or the radius for a law that never yields
@@ -135,18 +138,18 @@ def memory_of(state: State) -> Memory:
 
 def unit_spring(model: ImpactModel, thickness: float) -> Spring:
     """Spring of a bead of radius 1 m; `resized` makes that of any other."""
-    one = np.ones(())
-    contact = sphere_on_plate(model.pair, model.force_law, one, thickness * one)
-    scale = float(contact.yield_compression)
-    mass, stiffness = float(contact.mass), float(contact.stiffness)
+    known = constants_of(model.pair, model.force_law)
+    scale, time = known.yield_compression, known.time
+    stiffness = known.mass / (time * time * math.sqrt(time))
     return Spring(
-        mass=mass,
+        mass=known.mass,
+        solid=known.mass,
         stiffness=stiffness,
-        mobility=float(contact.mobility),
+        mobility=float(plate_mobility(model.pair.plate, np.array(thickness))),
         scale=scale if scale < math.inf else 1.0,
-        relaxation=relaxation(mass, stiffness),
-        ratio=float(contact.ratio),
-        plate=contact.plate,
+        relaxation=relaxation(known.mass, stiffness),
+        ratio=1.0 / thickness,
+        plate=known.plate,
     )
 
 
@@ -172,7 +175,7 @@ def at_usual_frequency(spring: Spring) -> Spring:
     softer = math.exp(own.growth.yield_power * growth)
     slower = plate.inelasticity / own.inelasticity if own.inelasticity > 0.0 else 1.0
     return Spring(
-        spring.mass, stiffness, spring.mobility * slower,
+        spring.mass, spring.solid, stiffness, spring.mobility * slower,
         spring.scale * softer, spring.relaxation, spring.ratio,
         PlateConstants(
             plate.inelasticity * faster, plate.transit * faster, plate.x_at_one * (faster * faster),
@@ -193,6 +196,7 @@ def resized(unit: Spring, radius: float) -> Spring:
     return at_usual_frequency(
         Spring(
             unit.mass * (radius * radius * radius),
+            unit.solid * (radius * radius * radius),
             unit.stiffness * math.sqrt(radius),
             unit.mobility,
             unit.scale * radius,
@@ -206,9 +210,10 @@ def resized(unit: Spring, radius: float) -> Spring:
 @kernel(entry=True)
 def impact(law: Array, spring: Spring, speed: float) -> Numbers:
     """Dimensionless numbers of the impact with which a contact begins."""
-    return numbers(
-        spring.plate, law, spring.mass, spring.stiffness, spring.scale, speed, spring.ratio
-    )  # fmt: skip
+    time = (spring.solid / spring.stiffness) ** 0.4
+    solid = PairConstants(spring.plate, time, spring.solid, spring.scale)
+    thickness = 1.0 / spring.ratio if spring.ratio > 0.0 else math.inf  # of a radius of 1
+    return numbers(solid, law, Impact(speed, 1.0, thickness, spring.mass / spring.solid))
 
 
 @kernel

@@ -13,9 +13,10 @@ from contactlaw import laws
 from contactlaw.answers import sensitivity
 from contactlaw.answers.solver import solved as by_solver
 from contactlaw.equation import outcome
+from contactlaw.equation.numbers import Impact
 from contactlaw.laws import jackson_green
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.law import law_of, pair_numbers
-from contactlaw.physical.scaling import scales, sphere_on_plate
 
 SPEED = np.array([3.0, 12.0, 25.0, 40.0, 55.0])
 THICKNESS = np.array([0.4e-3, 0.7e-3, 1e-3, 3e-3, 0.5e-3])
@@ -32,7 +33,7 @@ def integrated(name, pair, speed, thickness):
     law = law_of(pair, name)
     if law.from_pair:
         law = laws.exact(name, **pair_numbers(pair, name))
-    units = scales(sphere_on_plate(pair, law, np.array(RADIUS), np.array(thickness)), speed)
+    units = SphereOnPlate(pair, law).numbers(Impact(speed, RADIUS, thickness))
     y = units.yield_ratio if law.yields else 1.0
     return math.log(impact(units.inelasticity, y, law)[0])
 
@@ -131,7 +132,7 @@ def test_tables_have_the_derivatives_of_the_solver(name, pair):
     speed, thickness = 40.0 * rng.uniform(0.05, 1.0, 600), RADIUS / rng.uniform(0.1, 6.0, 600)
     impacts = speed, np.full(600, RADIUS), thickness
     hit = model.lookup(*impacts)
-    units = scales(sphere_on_plate(pair, model.force_law, *impacts[1:]), impacts[0])
+    units = SphereOnPlate(pair, model.force_law).numbers(Impact(*impacts))
     found = by_solver(model.force_law.data, units.inelasticity, units.yield_ratio, 1e-12)
     dm = found.compression_ratio * found.elastic_compression / found.yield_ratio
     away = np.ones(dm.size, dtype=bool)

@@ -9,7 +9,9 @@ import pytest
 import contactlaw as cl
 from contactlaw import Validity
 from contactlaw.equation.corrections import CONTACT_TIME, SATURATION, eta_of, with_corrections
-from contactlaw.physical.scaling import plate_mobility, scales, sphere_on_plate
+from contactlaw.equation.numbers import Impact
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.validity import flags_of
 from contactlaw.softsphere import resized, unit_spring
 from contactlaw.stepping.spring import impact
@@ -49,10 +51,10 @@ def impacts(model, seed):
 
 def fastest(model, radius, thickness):
     """Speeds at which impacts are too fast, from the speed on a half-space."""
-    contact = sphere_on_plate(model.pair, model.force_law, radius, thickness)
+    bodies = SphereOnPlate(model.pair, model.force_law)
     speed, limit = np.full(np.shape(radius), 50.0), model.limits.swiftest * radius
     for _ in range(60):
-        speed *= (limit / scales(contact, speed).compression) ** 1.25
+        speed *= (limit / bodies.numbers(Impact(speed, radius, thickness)).compression) ** 1.25
     return speed
 
 
@@ -61,23 +63,23 @@ def fastest(model, radius, thickness):
 def test_they_are_those_of_the_paper_with_the_next_orders(pair, law):
     """Each number follows from SI quantities by its formula; `numbers` scales with speed."""
     model = cl.ImpactModel(pair, law)
-    plate, found = sphere_on_plate(pair, model.force_law, 1.0, 1.0).plate, []
+    bodies, found = SphereOnPlate(pair, model.force_law), []
+    plate, share = bodies.constants.plate, bodies.constants.yield_compression
     for v, r, h in ((1e-3, 1e-5, 1e-4), (2.0, 1e-3, 1e-3), (80.0, 5e-3, 4e-3), (300.0, 1.0, 9.0)):
-        contact = sphere_on_plate(pair, model.force_law, np.array(r), np.array(h))
         time = r * (math.pi * pair.sphere.density / pair.effective_modulus / math.sqrt(v)) ** 0.4
         mass = 4 / 3 * math.pi * pair.sphere.density * r**3
         transit = h * math.sqrt(pair.plate.density / shear_modulus(pair.plate)) / CONTACT_TIME
         lam, more = float(plate_mobility(pair.plate, h)) * mass / time, 1.0
         if law == "fem":
             x = math.sqrt(v * time / r)
-            least = min(x, SATURATION * math.sqrt(float(contact.yield_compression) / r))
+            least = min(x, SATURATION * math.sqrt(share))
             more = math.exp(eta_of(plate.corrections, r / h, least, lam, transit / time))
             time /= more
             thin, echo = lam * more, transit / time
             lam = with_corrections(
                 plate.corrections, thin, echo, thin * echo**2, r / h * (x - least)
             )
-        units = scales(contact, np.array(v))
+        units = bodies.numbers(Impact(v, r, h))
         ours = units.inelasticity, units.time, units.compression, units.force, units.stiffer
         assert ours == pytest.approx((lam, time, v * time, mass * v / time, more), rel=1e-13)
         found.append(more)
@@ -93,10 +95,10 @@ def test_table_solver_and_stepping_have_the_same(pair, law):
     """Lambda agrees within rounding, and the flags too, unless a result next to a limit decides."""
     model = cl.ImpactModel(pair, law, outside="solve")
     v, r, h = impacts(model, 1) if law == "fem" else impacts(cl.ImpactModel(pair, "fem"), 2)
-    units = scales(sphere_on_plate(pair, model.force_law, r, h), v)
+    units = SphereOnPlate(pair, model.force_law).numbers(Impact(v, r, h))
     inside = units.inelasticity < 30.0
     v, r, h = v[inside], r[inside], h[inside]
-    units = scales(sphere_on_plate(pair, model.force_law, r, h), v)
+    units = SphereOnPlate(pair, model.force_law).numbers(Impact(v, r, h))
     looked, solved = model.lookup(v, r, h), model.solve(v, r, h)
     for hit in (looked, solved):
         np.testing.assert_allclose(hit.inelasticity, units.inelasticity, rtol=1e-14)
@@ -124,7 +126,7 @@ def test_a_history_has_the_same(law, method):
     """The numbers of a history follow from its last time and from the plate's displacement."""
     model = cl.ImpactModel(STEEL, law, outside="solve")
     v, r, h = (each[:2000] for each in impacts(cl.ImpactModel(STEEL), 3))
-    units = scales(sphere_on_plate(STEEL, model.force_law, r, h), v)
+    units = SphereOnPlate(STEEL, model.force_law).numbers(Impact(v, r, h))
     inside = units.inelasticity < 30.0
     units, v, r, h = type(units)(*(each[inside] for each in units)), v[inside], r[inside], h[inside]
     answer = model.lookup if method == "table" else model.solve
@@ -144,7 +146,7 @@ def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share)
     thickness = r / 1.3
     size = np.array([r, thickness])
     speed = share * float(fastest(model, *size))
-    units = scales(sphere_on_plate(STEEL, model.force_law, *size), np.array(speed))
+    units = SphereOnPlate(STEEL, model.force_law).numbers(Impact(speed, *size))
     assert units.stiffer**1.25 > 1.002  # the factor by which the speeds differed
     lmp = box.make((0.0, 0.0, r + 1e-6), (0.0, 0.0, -speed), r, dt=1e-8)
     lmp.command(f"set group all density {STEEL.sphere.density!r}")
@@ -161,7 +163,7 @@ def test_an_impact_recorded_by_lammps_is_too_fast_where_the_model_says_so(share)
 def test_impacts_next_to_a_limit_are_tried():
     model = cl.ImpactModel(STEEL)
     v, r, h = impacts(model, 1)
-    units = scales(sphere_on_plate(STEEL, model.force_law, r, h), v)
+    units = SphereOnPlate(STEEL, model.force_law).numbers(Impact(v, r, h))
     over = units.compression / r / model.limits.swiftest - 1.0
     assert np.count_nonzero(np.abs(over) < 1e-9) > 0.05 * COUNT
     assert np.count_nonzero((np.abs(over) < 1e-9) & (over > 0)) > 0.02 * COUNT

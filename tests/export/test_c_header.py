@@ -31,10 +31,11 @@ from contactlaw._version import VERSION
 from contactlaw.answers.solver import RTOL
 from contactlaw.equation import zener
 from contactlaw.equation.edge import KINDS
+from contactlaw.equation.numbers import Impact
 from contactlaw.export import c_header, functions
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
-from contactlaw.physical.scaling import scales, sphere_on_plate
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.softsphere import Contacts
 from contactlaw.table import Settings, nodes
 from contactlaw.table.nodes import POINTS
@@ -170,7 +171,7 @@ def stepped(model, v, r, h, edge, distance, mu, dt):
 
 
 def units_of(model, rows):
-    return scales(sphere_on_plate(model.pair, model.force_law, *rows.T[1:3]), rows[:, 0])
+    return SphereOnPlate(model.pair, model.force_law).numbers(Impact(*rows.T[:3]))
 
 
 def from_package(model, rows):

@@ -15,8 +15,10 @@ from verlet import fallen
 
 import contactlaw as cl
 from contactlaw import laws
+from contactlaw.equation.numbers import Impact
 from contactlaw.laws import HERTZ, Loading, Unloading
-from contactlaw.physical.scaling import scales, sphere_on_plate, yield_scales
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.scaling import yield_scales
 from contactlaw.softsphere import Contacts, time_step
 
 
@@ -49,8 +51,7 @@ def test_table_and_solver_agree(model, impacts):
 def test_the_solver_agrees_with_an_independent_integration(model):
     law = model.force_law
     for speed, thickness in ((5.0, 1e-3), (12.0, 0.7e-3), (30.0, math.inf), (80.0, 2e-3)):
-        contact = sphere_on_plate(PAIR, law, np.array(R), np.array(thickness))
-        units = scales(contact, np.array(speed))
+        units = SphereOnPlate(PAIR, law).numbers(Impact(speed, R, thickness))
         e, time, largest = impact(float(units.inelasticity), float(units.yield_ratio), law)
         hit = model.solve(speed, R, thickness)
         assert hit.restitution == pytest.approx(e, abs=1e-7)

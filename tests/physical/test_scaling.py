@@ -6,15 +6,17 @@ import numpy as np
 import pytest
 
 from contactlaw import laws
-from contactlaw.physical.scaling import plate_mobility, scales, sphere_on_plate, sphere_on_sphere
+from contactlaw.equation.numbers import Impact
+from contactlaw.physical.bodies import SphereOnPlate, TwoSpheres
+from contactlaw.physical.materials import sphere_mass
+from contactlaw.physical.scaling import plate_mobility, reduced
 
 MYC = laws.law("myc")
 R, H, V = 0.9e-3, 1e-3, 5.0
 
 
 def plate_scales(pair, radius=R, thickness=H, speed=V):
-    contact = sphere_on_plate(pair, MYC, np.array(radius), np.array(thickness))
-    return scales(contact, np.array(speed))
+    return SphereOnPlate(pair, MYC).numbers(Impact(speed, radius, thickness))
 
 
 def test_inelasticity_is_eq_2(pair):
@@ -66,7 +68,9 @@ def test_a_huge_sphere_is_a_half_space(pair):
 
     twins = Pair(pair.sphere, pair.sphere)
     small, huge = np.array(R), np.array(1e6)
-    on_sphere = scales(sphere_on_sphere(twins, MYC, small, huge), np.array(V))
-    on_wall = scales(sphere_on_plate(twins, MYC, small, np.array(math.inf)), np.array(V))
+    bodies, solid = TwoSpheres(twins, MYC), sphere_mass(twins.sphere.density, small)
+    size, mass = reduced(twins, small, huge)
+    on_sphere = bodies.numbers(Impact(V, size, math.inf, mass / solid * (small / size) ** 3))
+    on_wall = SphereOnPlate(twins, MYC).numbers(Impact(V, small, math.inf))
     for ours, limit in zip(on_sphere, on_wall, strict=True):
         assert ours == pytest.approx(limit, rel=1e-8)  # R/R2 = 1e-9

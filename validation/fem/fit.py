@@ -23,11 +23,11 @@ from scipy.optimize import minimize_scalar
 import contactlaw as cl
 from contactlaw.equation import zener
 from contactlaw.equation.corrections import SATURATION
-from contactlaw.equation.numbers import Numbers
+from contactlaw.equation.numbers import Impact, Numbers
 from contactlaw.equation.zener import Solution
 from contactlaw.laws import Law, fem
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.law import pair_numbers
-from contactlaw.physical.scaling import scales, sphere_on_plate
 from validation.fem import cases, store
 from validation.fem.campaign import SAMPLES, YIELDING
 
@@ -298,8 +298,7 @@ def numbers_of(pair: cl.Pair) -> fem.Given:
 
 def solved(blow: Blow, law: Law) -> tuple[Solution, Numbers]:
     """Impact by a law, and its units."""
-    contact = sphere_on_plate(blow.pair, law, np.array(blow.radius), np.array(blow.thickness))
-    units = scales(contact, np.array(blow.speed))
+    units = SphereOnPlate(blow.pair, law).numbers(Impact(blow.speed, blow.radius, blow.thickness))
     lam, y = float(units.inelasticity), float(units.yield_ratio)
     return zener.solve(law.data, lam, y, 1e-8), units
 

@@ -15,10 +15,10 @@ import numpy as np
 import contactlaw as cl
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.answers.solver import RTOL, solved
-from contactlaw.equation.numbers import Numbers
+from contactlaw.equation.numbers import Impact, Numbers
 from contactlaw.laws import Law
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.law import law_of
-from contactlaw.physical.scaling import scales, sphere_on_plate
 from validation.hostile.pairs import draw
 
 FULL = 10_000_000
@@ -48,7 +48,7 @@ def _unsolved(generator: np.random.Generator, pair: cl.Pair, law: Law, count: in
     speed = np.exp(generator.uniform(math.log(1e-6), math.log(1e3), count))
     radius = np.full(count, 1e-3)
     thickness = radius / np.exp(generator.uniform(math.log(1e-3), math.log(5.0), count))
-    units = scales(sphere_on_plate(pair, law, radius, thickness), speed)
+    units = SphereOnPlate(pair, law).numbers(Impact(speed, radius, thickness))
     known = units.inelasticity < _THINNEST
     units = Numbers(*(values[known] for values in units))
     while units.time.size:

@@ -28,7 +28,7 @@ from contactlaw.equation.force import HERTZ
 from contactlaw.laws import law
 from contactlaw.physical.arguments import checked, shaped, within
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.scaling import plate_constants
+from contactlaw.physical.scaling import constants_of
 from contactlaw.turning_point import FASTEST, INTEGRATE, LARGEST_AT_YIELD, at_turning_point
 
 Array = NDArray[np.float64]
@@ -71,7 +71,7 @@ def eta(pair: Pair) -> float:
         raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
     pair.sphere.require_yield_strength("myc")
     elastic = dataclasses.replace(pair.plate, yield_strength=None)  # V_Y0 is the sphere's
-    at_one = plate_constants(pair, law("myc")).inelasticity  # lambda at 1 m/s
+    at_one = constants_of(pair, law("myc")).plate.inelasticity  # lambda at 1 m/s
     return at_one * math.pow(Pair(pair.sphere, elastic).yield_speed, 0.2)
 
 

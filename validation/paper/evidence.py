@@ -17,8 +17,12 @@ from scipy.optimize import brentq, newton
 
 import contactlaw as cl
 from contactlaw import laws
+from contactlaw.equation import numbers as dimensionless
+from contactlaw.equation.numbers import Impact
 from contactlaw.laws.myc import P
-from contactlaw.physical.scaling import ContactConstants, plate_mobility, scales, sphere_on_plate
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.materials import sphere_mass
+from contactlaw.physical.scaling import plate_mobility, yield_scales
 from validation.paper import closed_form, formulas
 from validation.paper.closed_form import elastic_compression, yield_speed_ratio
 from validation.paper.setting import (
@@ -37,6 +41,7 @@ from validation.paper.setting import (
 )
 from validation.paper.verdicts import Numbers
 
+MASS = sphere_mass(PAIR.sphere.density, np.array(RADIUS)).item()  # [kg]
 STRENGTH = PAIR.sphere.require_yield_strength("myc")  # [Pa]
 MYC = laws.law("myc")
 Q_THINNEST = 1.25**0.6 * ETA * THINNEST**2  # q of Eq. 9 at R/H = 1.8
@@ -46,10 +51,9 @@ Q = np.linspace(0.0, 20.0, 200_001)  # q of Eqs. 11 to 14
 _H = 1e-6  # step of difference quotients
 
 
-def contact(pair: cl.Pair, law: str, thickness_ratio: float) -> ContactConstants:
-    """Contact of the paper's bead, of any materials, with a plate of R/H (0: half-space)."""
-    thickness = RADIUS / thickness_ratio if thickness_ratio > 0.0 else math.inf
-    return sphere_on_plate(pair, laws.law(law), np.array(RADIUS), np.array(thickness))
+def numbers(pair: cl.Pair, speed: float) -> dimensionless.Numbers:
+    """Numbers of an impact of the paper's bead, of any materials, on a plate with R = H."""
+    return SphereOnPlate(pair, MYC).numbers(Impact(speed, RADIUS, RADIUS))
 
 
 def slope(one: tuple[float, float], two: tuple[float, float]) -> float:
@@ -95,7 +99,7 @@ def exponent_of_moduli() -> float:
         plate = PAIR.plate
         density, modulus = factor * plate.density, factor * plate.youngs_modulus  # keeps V_W
         pair = cl.Pair(PAIR.sphere, replace(plate, density=density, youngs_modulus=modulus))
-        lam = float(scales(contact(pair, "myc", 1.0), np.array(SPEED)).inelasticity)
+        lam = float(numbers(pair, SPEED).inelasticity)
         share = pair.sphere.plane_modulus / (pair.sphere.plane_modulus + pair.plate.plane_modulus)
         return share, lam * density**0.6
 
@@ -104,15 +108,13 @@ def exponent_of_moduli() -> float:
 
 def thornton_yield_speed() -> float:
     """V_Y0 [m/s] with the d_Y of Thornton's law."""
-    thick = contact(PAIR, "thornton", 0.0)
-    energy = 0.8 * float(thick.stiffness * thick.yield_compression**2.5)
-    return math.sqrt(energy / float(thick.mass))
+    compression, force = yield_scales(PAIR, laws.law("thornton").yield_coefficient or 0.0, RADIUS)
+    return math.sqrt(0.8 * force * compression / MASS)
 
 
 def factor_of_davies() -> float:
     """Thornton's V_Y0 in units of (sigma_Y^5 R^3/(E*^4 m))^0.5."""
-    mass = float(contact(PAIR, "thornton", 0.0).mass)
-    unit = math.sqrt(STRENGTH**5 * RADIUS**3 / (PAIR.effective_modulus**4 * mass))
+    unit = math.sqrt(STRENGTH**5 * RADIUS**3 / (PAIR.effective_modulus**4 * MASS))
     return thornton_yield_speed() / unit
 
 
@@ -125,7 +127,7 @@ def factor_of_eq_4() -> float:
 def scale_of_time() -> float:
     """Time scale of the package over that of section 3.2."""
     scale = math.pi * PAIR.sphere.density / (PAIR.effective_modulus * math.sqrt(5.0))
-    ours = float(scales(contact(PAIR, "myc", 1.0), np.array(5.0)).time)
+    ours = float(numbers(PAIR, 5.0).time)
     return ours / (RADIUS * math.pow(scale, 0.4))
 
 

@@ -12,9 +12,10 @@ from scipy.optimize import brentq
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.equation import zener
+from contactlaw.laws.myc import C_YIELD
 from contactlaw.physical.law import law_of
 from contactlaw.physical.rebound import Rebound
-from contactlaw.physical.scaling import sphere_on_plate
+from contactlaw.physical.scaling import yield_scales
 from validation.paper import closed_form
 
 Array = NDArray[np.float64]
@@ -25,9 +26,7 @@ SPEED = PAIR.yield_speed  # V_Y0 [m/s]
 ETA = closed_form.eta(PAIR)
 SHARE = PAIR.sphere.plane_modulus / (PAIR.sphere.plane_modulus + PAIR.plate.plane_modulus)
 _MYC = laws.law("myc")
-_CONTACT = sphere_on_plate(PAIR, _MYC, np.array(RADIUS), np.array(math.inf))
-YIELD_COMPRESSION = float(_CONTACT.yield_compression)  # d_Y of MYC [m]
-FORCE = float(_CONTACT.stiffness) * YIELD_COMPRESSION**1.5  # F_Y [N]
+YIELD_COMPRESSION, FORCE = yield_scales(PAIR, C_YIELD, RADIUS)  # d_Y of MYC [m], F_Y [N]
 THINNEST, FASTEST = 1.8, 7.0  # R/H and V0/V_Y0, to which the paper's finite elements reach
 
 

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 
 from contactlaw._escaped import cell, line
 from contactlaw._jit import switched_off
-from contactlaw.answers.backend import SphereOnPlate
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import extent
 from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.model import ImpactModel
-from contactlaw.physical.rebound import Impacts
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.validity import Validity, count_flags, explain
 from contactlaw.table import file
 
@@ -186,7 +186,7 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
     """
     try:
         if _integrates(model):
-            return _solver(model, True).yield_speeds(radius, thickness)
+            return _solver(model, True).yield_speeds(Impacts.on_plates(1.0, radius, thickness))
         return np.asarray(model.yield_speed(radius, thickness))
     except ValueError:
         if radius.size == 1:

@@ -9,7 +9,7 @@ from contactlaw.engines.needs import knows_edges
 from contactlaw.engines.pymunk.models import ModelsByBead, Near
 from contactlaw.engines.pymunk.registry import BeadShape, Edges, PlateShape, Vector, ends
 from contactlaw.engines.pymunk.seams import SAME_END, place
-from contactlaw.physical.rebound import check_kind
+from contactlaw.physical.impacts import check_kind
 
 # Plates that meet at a smaller angle than 30 degrees are one plate; a sharper fold holds both.
 SMOOTH = math.cos(math.radians(30.0))

@@ -12,7 +12,8 @@ import contactlaw as cl
 from contactlaw import laws, turning_point
 from contactlaw.equation import zener
 from contactlaw.equation.force import HERTZ
-from contactlaw.physical.scaling import scales, sphere_on_plate
+from contactlaw.equation.numbers import Impact
+from contactlaw.physical.bodies import SphereOnPlate
 from validation.paper import closed_form, formulas
 
 SPEEDS = np.concatenate([np.linspace(0.03, 2.0, 24), np.linspace(2.2, 20.0, 72)])
@@ -88,9 +89,8 @@ def test_elastic_forms(lam, printed, ode):
 
 
 def test_eta_is_the_inelasticity_at_yield(pair):
-    v = np.array([2.5 * pair.yield_speed])
-    contact = sphere_on_plate(pair, laws.law("myc"), np.array([0.9e-3]), np.array([0.5e-3]))
-    lam = scales(contact, v).inelasticity.item()
+    impact = Impact(2.5 * pair.yield_speed, 0.9e-3, 0.5e-3)
+    lam = SphereOnPlate(pair, laws.law("myc")).numbers(impact).inelasticity.item()
     assert closed_form.eta(pair) * 1.8**2 * 2.5**0.2 == pytest.approx(lam, rel=1e-12)
     assert closed_form.eta(pair) == pytest.approx(0.0751, abs=5e-5)
 

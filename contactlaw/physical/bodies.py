@@ -1,0 +1,75 @@
+"""Two bodies whose materials and law are known, and the numbers of their impacts."""
+
+from __future__ import annotations
+
+import functools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contactlaw.equation.numbers import Impact, Numbers, PairConstants
+from contactlaw.laws import Law
+from contactlaw.physical.impacts import Impacts
+from contactlaw.physical.pair import Pair
+from contactlaw.physical.scaling import constants_of, numbers_of, without_plate
+from contactlaw.physical.strengths import by_strength
+from contactlaw.physical.validity import Limits, limits, limits_by_strength
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class SphereOnPlate:
+    """A pair of materials and its law, with the constants that follow from them."""
+
+    pair: Pair
+    law: Law
+
+    @functools.cached_property
+    def limits(self) -> Limits:
+        """Limits of the model."""
+        return limits(self.pair, self.law)
+
+    @functools.cached_property
+    def constants(self) -> PairConstants:
+        """Constants from which the dimensionless numbers of impacts follow."""
+        return constants_of(self.pair, self.law)
+
+    @functools.cached_property
+    def data(self) -> Array:
+        """The law at any strength, as kernels read it."""
+        return by_strength(self.pair, self.law)
+
+    @functools.cached_property
+    def limits_by_strength(self) -> Array:
+        """Limits of the model at some strengths, as kernels read them."""
+        return limits_by_strength(self.pair, self.law)
+
+    def impact(self, impacts: Impacts) -> Impact:
+        """Impacts as kernels take them."""
+        share = np.ones_like(impacts.speed)
+        if impacts.mass is not None:
+            share = impacts.mass / self.solid_mass(impacts.radius)
+        return Impact(impacts.speed, impacts.radius, impacts.thickness, share)
+
+    def solid_mass(self, radius: Array) -> Array:
+        """Mass of a solid sphere [kg]."""
+        return self.constants.mass * (radius * radius * radius)
+
+    def mass(self, impacts: Impacts) -> Array:
+        """Mass that answers at the contact of each impact [kg]."""
+        return self.solid_mass(impacts.radius) if impacts.mass is None else impacts.mass
+
+    def numbers(self, impact: Impact) -> Numbers:
+        """Dimensionless numbers and units of impacts."""
+        return numbers_of(self.constants, self.data, impact)
+
+
+class TwoSpheres(SphereOnPlate):
+    """Materials of two spheres, from which no wave carries energy off, and their law."""
+
+    @functools.cached_property
+    def constants(self) -> PairConstants:
+        """Constants from which the dimensionless numbers of impacts follow."""
+        return without_plate(constants_of(self.pair, self.law))

@@ -1,0 +1,88 @@
+"""Impacts as users give them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contactlaw.equation.edge import KINDS
+from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.pair import Pair
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Impacts:
+    """Impacts that a user gave, as flat arrays, and the shape of the answer (None: scalars)."""
+
+    speed: Array  # [m/s]
+    radius: Array  # [m], R* of two spheres
+    thickness: Array  # [m]
+    shape: tuple[int, ...] | None
+    edge: str = "free"  # kind of the edges
+    edge_distance: Array | None = None  # [m]; None for plates without edges
+    hole_radius: Array | None = None  # [m]; inf for straight edges, None without edges
+    mass: Array | None = None  # that answers at the contact [kg]; None for solid spheres
+
+    @staticmethod
+    def on_plates(
+        speed: ArrayLike,
+        radius: ArrayLike,
+        thickness: ArrayLike,
+        edge: str = "free",
+        edge_distance: ArrayLike = math.inf,
+        hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
+    ) -> Impacts:
+        """Broadcast and check what the user gave."""
+        given = {} if mass is None else {"mass": mass}
+        v, r, h, s, a, *masses, shape = broadcast(
+            speed=speed, radius=radius, thickness=thickness, edge_distance=edge_distance,
+            hole_radius=hole_radius, **given,
+        )  # fmt: skip
+        check(speed=v, radius=r, thickness=h)
+        return Impacts(v, r, h, shape, edge, *edges_as_given(edge, s, a, h), *masses)
+
+    def part(self, some: NDArray[np.intp]) -> Impacts:
+        """Choose some of the impacts."""
+        arrays: dict[str, Any] = {
+            name: value[some] for name, value in vars(self).items() if isinstance(value, np.ndarray)
+        }
+        return replace(self, shape=(some.size,), **arrays)
+
+
+def edges_as_given(
+    edge: str, distance: Array, hole_radius: Array, thickness: Array
+) -> tuple[Array | None, Array | None]:
+    """Check distances from edges, inf for half-spaces, and radii of holes [m].
+
+    Both are None if no plate has edges.
+    """
+    check_kind(edge)
+    check(edge_distance=distance, hole_radius=hole_radius)
+    if edge != "free" and (hole_radius < math.inf).any():
+        raise ValueError(
+            f"hole_radius: the rim of a hole is a free edge, got {edge!r}; leave it out"
+        )
+    if not (distance < math.inf).any():
+        return None, None
+    return np.where(thickness < math.inf, distance, math.inf), hole_radius
+
+
+def check_kind(edge: str) -> None:
+    """Refuse what is no kind of edge."""
+    if not isinstance(edge, str) or edge not in KINDS:
+        raise ValueError(f"edge: must be one of {', '.join(KINDS)}, got {edge!r}")
+
+
+def check_finite(pair: Pair, impacts: Impacts, *answers: Array) -> None:
+    """Refuse answers, one number per impact, that are not finite."""
+    for n in np.flatnonzero(~np.isfinite(sum(answers))):
+        v, r, h = impacts.speed[n], impacts.radius[n], impacts.thickness[n]
+        impact = f"{pair} at {v:g} m/s, radius {r:g} m, thickness {h:g} m"
+        raise RuntimeError(f"{impact}: no finite answer; please report it")
