@@ -150,6 +150,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
     def restitution(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
         edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
     ) -> float | NDArray[np.float64]:  # fmt: skip
         """Coefficient of restitution, from the table.
 
@@ -166,6 +167,9 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             near edges are integrated, whatever table there is. See docs/edges.md.
         hole_radius : array_like, optional
             Radius of the hole whose rim the edge is [m]; ``inf`` is a straight edge.
+        mass : array_like, optional
+            Mass that answers at the contact [kg], of beads that are no solid spheres: hollow or
+            coated ones, clumps; 0.2 to 1000 times that of the solid sphere. See docs/materials.md.
 
         Returns
         -------
@@ -191,9 +195,12 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> model.restitution(2.0, 0.9e-3, 0.5e-3, edge_distance=[1e-3, 4e-3]).round(3)
         array([0.592, 0.714])
         """
-        if edge_distance is not math.inf or edge != "free" or hole_radius is not math.inf:
-            impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
-            if impacts.edge_distance is None:
+        endless = edge_distance is math.inf and edge == "free" and hole_radius is math.inf
+        if not endless or mass is not None:
+            impacts = self._bodies.given(
+                speed, radius, thickness, edge, edge_distance, hole_radius, mass
+            )
+            if impacts.edge_distance is None and mass is None:
                 v, r, h = impacts.speed, impacts.radius, impacts.thickness
                 return shaped(self._tabulated.restitutions(v, r, h), impacts.shape)
             by = near_edges(self._tabulated, Solver(self._bodies), impacts)
@@ -209,12 +216,13 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
     def lookup(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
         edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
     ) -> Rebound:  # fmt: skip
         """Everything about the impact, from the table.
 
         Parameters
         ----------
-        speed, radius, thickness, edge, edge_distance, hole_radius
+        speed, radius, thickness, edge, edge_distance, hole_radius, mass
             As in `restitution`, which says what is refused.
 
         Returns
@@ -233,12 +241,15 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> f"{hit.peak_force:.1f} N for {hit.contact_time * 1e6:.2f} us"
         '28.3 N for 3.92 us'
         """
-        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
+        impacts = self._bodies.given(
+            speed, radius, thickness, edge, edge_distance, hole_radius, mass
+        )
         return near_edges(self._tabulated, Solver(self._bodies), impacts).rebounds(impacts)
 
     def solve(
         self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, rtol: float = 1e-10,
         edge: Edge = "free", edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
     ) -> Rebound:  # fmt: skip
         """Everything about the impact, by integrating the equation: the reference.
 
@@ -248,7 +259,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             As in `restitution`, but no table limits the range.
         rtol : float, optional
             Error allowed in each step of the integration, between 1e-13 and 1e-6.
-        edge, edge_distance, hole_radius
+        edge, edge_distance, hole_radius, mass
             As in `restitution`.
 
         Returns
@@ -272,7 +283,9 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         """
         if not isinstance(rtol, float) or not 1e-13 <= rtol <= 1e-6:
             raise ValueError(f"rtol: must be a float between 1e-13 and 1e-6, got {rtol!r}")
-        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
+        impacts = self._bodies.given(
+            speed, radius, thickness, edge, edge_distance, hole_radius, mass
+        )
         by = Solver(self._bodies, rtol)
         return near_edges(by, by, impacts).rebounds(impacts)
 
@@ -300,7 +313,9 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         """
         return self._beads(other).rebounds(speed, radius, other_radius)
 
-    def yield_speed(self, radius: ArrayLike, thickness: ArrayLike) -> float | NDArray[np.float64]:
+    def yield_speed(
+        self, radius: ArrayLike, thickness: ArrayLike, mass: ArrayLike | None = None
+    ) -> float | NDArray[np.float64]:
         """Speed V_Y [m/s] from which bead or plate yields, whichever is first; ``inf`` for neither.
 
         The thinner the plate, the more it gives way and the later the bead yields (Peng et al.
@@ -308,7 +323,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
 
         Parameters
         ----------
-        radius, thickness : array_like
+        radius, thickness, mass : array_like
             As in `restitution`.
 
         Raises
@@ -324,7 +339,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> model.yield_speed(radius=0.9e-3, thickness=[0.5e-3, float("inf")]).round(3)
         array([7.594, 6.156])
         """
-        impacts = Impacts.on_plates(1.0, radius, thickness)
+        impacts = self._bodies.given(1.0, radius, thickness, mass=mass)
         return shaped(self._tabulated.yield_speeds(impacts), impacts.shape)
 
     def sensitivity(self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Sensitivity:

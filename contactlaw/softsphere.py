@@ -21,10 +21,8 @@ from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.equation.edge import Edge
 from contactlaw.equation.force import room_for
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import broadcast, check, number, refuse_units, scalars
+from contactlaw.physical.arguments import number, refuse_units, scalars
 from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.impacts import Impacts, edges_as_given
-from contactlaw.physical.materials import sphere_mass
 from contactlaw.physical.scaling import plate_mobility
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.stepping.edge import Near, near_edge
@@ -177,7 +175,7 @@ class Contacts:
         Materials and law.
     radius, thickness : array_like
         Of the beads and of their plates [m]; broadcast to one entry per contact.
-    edge, edge_distance, hole_radius
+    edge, edge_distance, hole_radius, mass
         As in `ImpactModel.restitution`.
 
     Raises
@@ -211,23 +209,23 @@ class Contacts:
     def __init__(
         self, model: ImpactModel, radius: ArrayLike, thickness: ArrayLike, edge: Edge = "free",
         edge_distance: ArrayLike = math.inf, hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
     ) -> None:  # fmt: skip
-        r, h, s, a, _ = broadcast(
-            radius=radius, thickness=thickness, edge_distance=edge_distance, hole_radius=hole_radius
-        )
-        check(radius=r, thickness=h)
-        self._near = near_edge(model.pair.plate, h, edge, *edges_as_given(edge, s, a, h))
-        unit, mass = unit_spring(model, 1.0), sphere_mass(model.pair.sphere.density, r)
+        bodies = SphereOnPlate(model.pair, model.force_law)
+        given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
+        r, h, near = given.radius, given.thickness, (given.edge_distance, given.hole_radius)
+        self._near = near_edge(model.pair.plate, h, edge, *near)
+        unit, share = unit_spring(model, 1.0), bodies.impact(given).mass
         enable_caching()
         self._law = law_of(model)
         self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
         self._springs = Spring(
-            mass=mass,
-            solid=mass,
+            mass=bodies.mass(given),
+            solid=bodies.solid_mass(r),
             stiffness=unit.stiffness * np.sqrt(r),
             mobility=plate_mobility(model.pair.plate, h),
             scale=unit.scale * r,
-            relaxation=unit.relaxation * r,
+            relaxation=unit.relaxation * r * share**0.4,
             ratio=r / h,
             plate=unit.plate,
         )
@@ -360,8 +358,9 @@ class Contacts:
 
 
 def time_step(
-    model: ImpactModel, speed: float, radius: float, thickness: float, error: float = 5e-4
-) -> float:
+    model: ImpactModel, speed: float, radius: float, thickness: float, error: float = 5e-4,
+    mass: float | None = None,
+) -> float:  # fmt: skip
     """Step with which velocity Verlet meets a wanted error of the COR.
 
     Parameters
@@ -373,6 +372,8 @@ def time_step(
     error : float, optional
         Largest error of the COR [-], between 2e-5 (to which the plate's relaxation may add up) and
         1e-2.
+    mass : float, optional
+        Mass of that bead [kg], as in `ImpactModel.restitution`.
 
     Returns
     -------
@@ -402,7 +403,8 @@ def time_step(
         raise ValueError(f"error: must lie between 2e-5 and 1e-2, got {error!r}")
     v, r, h = scalars(speed=speed, radius=radius, thickness=thickness)
     bodies = SphereOnPlate(model.pair, model.force_law)
-    units = bodies.numbers(bodies.impact(Impacts(v, r, h, None)))
+    given = bodies.given(v, r, h, mass=None if mass is None else number("mass", mass))
+    units = bodies.numbers(bodies.impact(given))
     lam, largest = float(units.inelasticity[0]), model.largest_inelasticity
     if model.outside == "raise" and lam > largest:  # as a lookup does, but without a table
         raise OutsideTableError(0, too_thin(lam, largest))

@@ -14,7 +14,7 @@ from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.history import ForceHistory
-from contactlaw.physical.impacts import Impacts, check_finite
+from contactlaw.physical.impacts import check_finite
 
 
 class Histories:
@@ -32,6 +32,7 @@ class Histories:
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
     ) -> ForceHistory:
         """Force, compression, impulse and displacement of the plate over contacts.
 
@@ -43,7 +44,7 @@ class Histories:
             Number of even times from first touch to separation, at least 2.
         method : {"table", "solve"}, optional
             Interpolate shapes of contacts in the table, or integrate the equation.
-        edge, edge_distance, hole_radius
+        edge, edge_distance, hole_radius, mass
             As in `restitution`.
 
         Returns
@@ -72,7 +73,7 @@ class Histories:
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
         bodies = self._tabulated.bodies
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
-        impacts = Impacts.on_plates(speed, radius, thickness, edge, edge_distance, hole_radius)
+        impacts = bodies.given(speed, radius, thickness, edge, edge_distance, hole_radius, mass)
         found = near_edges(by, Solver(bodies), impacts).histories(impacts, samples)
         check_finite(bodies.pair, impacts, *(np.ravel(one.sum(axis=-1)) for one in found))
         return found

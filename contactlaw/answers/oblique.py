@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -18,9 +19,9 @@ from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
-from contactlaw.physical.impacts import Impacts, check_finite, edges_as_given
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
-from contactlaw.physical.pair import Pair
 from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
@@ -49,6 +50,7 @@ class Oblique:
         edge: Edge = "free",
         edge_distance: ArrayLike = math.inf,
         hole_radius: ArrayLike = math.inf,
+        mass: ArrayLike | None = None,
     ) -> ObliqueRebound:
         """Everything about an oblique impact.
 
@@ -67,6 +69,8 @@ class Oblique:
             Interpolate in a table, which takes seconds to make once, or integrate.
         edge, edge_distance, hole_radius
             As in `ImpactModel.restitution`.
+        mass : array_like, optional
+            As in `ImpactModel.restitution`; the moment of inertia is 2/5 of it times R^2.
 
         Returns
         -------
@@ -90,15 +94,16 @@ class Oblique:
         """
         if method not in ("table", "solve"):
             raise ValueError(f"method: must be 'table' or 'solve', got {method!r}")
-        v, s, r, h, mu, near, hole, shape = broadcast(
+        v, s, r, h, mu, near, hole, *masses, shape = broadcast(
             speed=speed, sliding_speed=sliding_speed, radius=radius, thickness=thickness,
             friction=friction, edge_distance=edge_distance, hole_radius=hole_radius,
+            **({} if mass is None else {"mass": mass}),
         )  # fmt: skip
-        check(speed=v, radius=r, thickness=h, sliding_speed=s, friction=mu)
         bodies = self._tabulated.bodies
-        impacts = Impacts(v, r, h, shape, edge, *edges_as_given(edge, near, hole, h))
+        impacts = replace(bodies.given(v, r, h, edge, near, hole, *masses), shape=shape)
+        check(sliding_speed=s, friction=mu)
         by: Backend = self._tabulated if method == "table" else Solver(bodies)
-        return answer(near_edges(by, Solver(bodies), impacts), bodies.pair, impacts, mu, s)
+        return answer(near_edges(by, Solver(bodies), impacts), bodies, impacts, mu, s)
 
     def collide(
         self,
@@ -109,6 +114,7 @@ class Oblique:
         thickness: ArrayLike,
         friction: ArrayLike,
         wall_velocity: ArrayLike = 0.0,
+        mass: ArrayLike | None = None,
     ) -> tuple[Array, Array]:
         """Velocity and spin of beads after impacts on plates, for event-driven codes.
 
@@ -118,7 +124,7 @@ class Oblique:
             Of the beads before, shape (..., 3), or the number 0 [m/s, rad/s].
         normal : array_like
             Normal of the plate towards the bead, of any length, shape (..., 3).
-        radius, thickness, friction : array_like
+        radius, thickness, friction, mass : array_like
             As in `oblique`.
         wall_velocity : array_like, optional
             Velocity of the plate at the contact point, shape (..., 3), or the number 0 [m/s].
@@ -148,20 +154,22 @@ class Oblique:
             raise ValueError(f"normal: must not be zero, got {normal!r}")
         oblique.unit_all(n)
         count = np.empty(shape[:-1])
-        r, h, mu, _, within = broadcast(
-            radius=radius, thickness=thickness, friction=friction, velocity=count
-        )
+        r, h, mu, _, *masses, within = broadcast(
+            radius=radius, thickness=thickness, friction=friction, velocity=count,
+            **({} if mass is None else {"mass": mass}),
+        )  # fmt: skip
         if (within or ()) != shape[:-1]:
             v, omega, n, w = (
                 np.array(np.broadcast_to(rows.reshape(shape), (*within, 3))).reshape(-1, 3)
                 for rows in (v, omega, n, w)
             )
             shape = (*within, 3)
-        check(radius=r, thickness=h, friction=mu)
+        check(friction=mu)
         tabulated = self._tabulated
+        given = tabulated.bodies.given(1.0, r, h, mass=masses[0] if masses else None)
         speed, size, e, changed = np.empty((4, r.size))
         oblique.approach_all(v, omega, n, w, r, speed, size)
-        if switched_off():  # no table: all are answered as those beyond one
+        if switched_off() or masses:  # answered as those beyond the table
             e[:] = np.nan
         else:
             oblique.tangential_all(
@@ -171,11 +179,11 @@ class Oblique:
         beyond = np.isnan(e) & (speed >= lookup.V_MIN)
         if beyond.any():
             check(speed=speed[beyond], sliding_speed=size[beyond])
-            impacts = Impacts(speed[beyond], r[beyond], h[beyond], None)
+            impacts = replace(given.part(np.flatnonzero(beyond)), speed=speed[beyond])
             found, changed[beyond] = _answer(tabulated, impacts, mu[beyond], size[beyond])
             e[beyond] = found.restitution
         hit = np.where(speed < lookup.V_MIN, 0.0, e + changed)
-        check_finite(tabulated.bodies.pair, Impacts(speed, r, h, None), hit)
+        check_finite(tabulated.bodies.pair, replace(given, speed=speed), hit)
         oblique.rebound_all(v, omega, n, w, r, e, changed)
         return v.reshape(shape), omega.reshape(shape)
 
@@ -214,11 +222,11 @@ class Oblique:
 
 
 def answer(
-    backend: Backend, pair: Pair, impacts: Impacts, friction: Array, size: Array
+    backend: Backend, bodies: SphereOnPlate, impacts: Impacts, friction: Array, size: Array
 ) -> ObliqueRebound:
     """Everything about impacts with these sliding speeds [m/s]."""
     normal, changed = _answer(backend, impacts, friction, size)
-    return oblique.of(pair, normal, impacts, friction, size, changed)
+    return oblique.of(bodies, normal, impacts, friction, size, changed)
 
 
 def _answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) -> Any:

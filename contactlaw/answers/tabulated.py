@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from contactlaw import laws
 from contactlaw._jit import direct, enable_caching, switched_off
 from contactlaw.answers.backend import OutsideTableError, refuse_to_yield, too_fast, too_thin
-from contactlaw.answers.solver import RTOL, histories, slid, solved
+from contactlaw.answers.solver import RTOL, Solver, histories, slid, solved
 from contactlaw.equation import outcome
 from contactlaw.equation.numbers import Numbers
 from contactlaw.equation.outcome import History, Outcome
@@ -162,8 +162,7 @@ class Tabulated:
         return normal, changes
 
     def _rebounds(self, impacts: Impacts) -> tuple[Rebound, Outcome]:
-        found, flags, unclamped, root = self._outcomes(impacts)
-        time = self.bodies.constants.time * impacts.radius / root
+        found, flags, unclamped, time = self._outcomes(impacts)
         return rebound(self.bodies, impacts, time, unclamped, found, flags), found
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
@@ -175,6 +174,8 @@ class Tabulated:
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
+        if impacts.mass is not None:
+            return Solver(self.bodies, RTOL, extent(self.bodies.law)).yield_speeds(impacts)
         radius, thickness = impacts.radius, impacts.thickness
         out = np.full(radius.size, math.inf)
         share = yield_share(self.bodies.pair, self.bodies.law)
@@ -194,8 +195,12 @@ class Tabulated:
         return curve(constants, self.bodies, at_one, look_up)
 
     def _outcomes(self, impacts: Impacts) -> tuple[Outcome, Flags, tuple[Array, Array], Array]:
-        """Outcomes, their flags, inelasticity and yield ratio before clamping, and T_H's root."""
+        """Outcomes, their flags, inelasticity and yield ratio before clamping, and T_H [s]."""
         v, r, h = impacts.speed, impacts.radius, impacts.thickness
+        if impacts.mass is not None:
+            units = self.bodies.numbers(self.bodies.impact(impacts))
+            found, flags = self.border.look_up(self.bodies.law, self.packed, units)
+            return found, flags, (units.inelasticity, units.yield_ratio), units.time
         found, root = outcome.empty(v.size), np.empty(v.size)
         flags = np.zeros(v.size, dtype=np.int64)
         beyond = lookup.outcomes(self.packed, self.c_lam, self.c_chi, v, r, h, found, root)
@@ -209,7 +214,7 @@ class Tabulated:
             unclamped = unclamped[0].copy(), unclamped[1].copy()
             law = self.bodies.law
             flags[outside] = self.border.complete(law, self.packed, found, outside)
-        return found, flags, unclamped, root
+        return found, flags, unclamped, self.bodies.constants.time * r / root
 
     def _inside(self, found: Outcome) -> NDArray[np.bool_]:
         """Which outcomes the table reaches, rather than those that were integrated."""

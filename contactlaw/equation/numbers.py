@@ -45,6 +45,9 @@ class ModulusGrowth(NamedTuple):
     wave_slope: float
 
 
+LIGHTEST, HEAVIEST = 0.2, 1e3
+"""Masses that answer at a contact, over that of a solid sphere; a lighter one is a thin shell."""
+
 ELASTIC = ModulusGrowth(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """Bodies whose moduli are the same at any frequency."""
 

@@ -160,10 +160,11 @@ def kernels(bodies: Bodies) -> str:
         add(program, functions.restitution, pair, *_VECTOR)
     _, bead = add(program, functions.spring_of, pair, DOUBLE, DOUBLE)
     _, impact = add(program, functions.rebound, pair, *_VECTOR)
+    add(program, functions.rebound_with_mass, pair, *_VECTOR, DOUBLE)
     add(program, functions.at_edge, pair, bead, INT, DOUBLE)
     add(program, functions.after_step, pair, bead, state, DOUBLE, DOUBLE)
     add(program, functions.restitution_near, pair, *_VECTOR, INT, DOUBLE)
-    add(program, functions.exceeded, pair, impact, *_VECTOR)
+    add(program, functions.flags_for, pair, impact, *_VECTOR)
     add(
         program, functions.rub, pair, bead, state, sliding, DOUBLE, DOUBLE, point, point, DOUBLE
     )  # fmt: skip

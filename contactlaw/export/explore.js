@@ -1,8 +1,8 @@
 // The page: what is asked, in SI units and degrees, and all that follows from it.
 const SLIDERS = { // unit and its size; ends: from 0 on evenly, others by equal factors
   speed: ["m/s", 1, 0.05, 50], radius: ["mm", 1e-3, 5e-5, 0.01], thickness: ["mm", 1e-3, 5e-5, 0.1],
-  angle: ["°", 1, 0, 85], friction: ["", 1, 0, 1] };
-const asked = { speed: 2, radius: 1e-3, thickness: 2e-3, angle: 0, friction: 0.2 };
+  mass: ["of solid", 1, 0.2, 5], angle: ["°", 1, 0, 85], friction: ["", 1, 0, 1] };
+const asked = { speed: 2, radius: 1e-3, thickness: 2e-3, mass: 1, angle: 0, friction: 0.2 };
 const COLOURS = { rebound: BLUE, wave: "#56b4e9", plastic: "#e69f00", other: "#cc79a7",
   friction: "#009e73" };
 const BEFORE = 0.7, AFTER = 2.6, LOOP = 6; // contact times before and after touch; seconds
@@ -48,15 +48,15 @@ function fill(id, entries) { // elements with texts
     Object.assign(document.createElement(tag), { textContent: text }, more)));
 }
 function show() {
-  const { speed, radius, thickness, angle, friction } = asked;
+  const { speed, radius, thickness, mass, angle, friction } = asked;
   const tilt = Math.cos(angle * Math.PI / 180);
   const curve = ([, , low, high], at) => Array.from({ length: 73 }, (_, n) => {
-    const x = low * (high / low) ** (n / 72), question = at(x), one = $for_curve(...question);
-    return [x, one.restitution, one.restitution >= 0 ? $exceeded(one, ...question) : 0];
+    const x = low * (high / low) ** (n / 72), given = at(x), one = $for_curve(given);
+    return [x, one.restitution, one.restitution >= 0 ? $exceeded(one, given) : 0];
   });
-  curves = { speed: curve(SLIDERS.speed, (v) => [v * tilt, radius, thickness]),
-    thickness: curve(SLIDERS.thickness, (h) => [speed * tilt, radius, h]) };
-  hit = collide(speed, angle, radius, thickness, friction);
+  curves = { speed: curve(SLIDERS.speed, (v) => ({ ...asked, speed: v * tilt })),
+    thickness: curve(SLIDERS.thickness, (h) => ({ ...asked, speed: speed * tilt, thickness: h })) };
+  hit = collide(asked);
   const outside = Object.keys(pair.words).filter((bit) => !hit || hit.flags & bit);
   const words = !hit ? ["No answer: a number is out of range, or the plate is far too thin for this bead."]
     : outside.length ? outside.map((bit) => pair.words[bit]) : ["Inside every limit of the model."];
@@ -83,23 +83,25 @@ function show() {
   fill("shares", Object.entries(shares).map(([name, share]) =>
     ["li", `${name} ${(100 * share).toFixed(1)} %`, { style: `border-color:${COLOURS[name]}` }]));
   const [python, shell] = thickness < Infinity ? [thickness, thickness] : ["math.inf", "inf"];
+  const kilograms = round(mass * pair.solid * radius ** 3, 9);
+  const [heavy, option] = mass === 1 ? ["", ""] : [`, mass=${kilograms}`, `--mass ${kilograms} `];
   byId("python").textContent = "import math\nimport contactlaw as cl\n\n" + pair.python + (angle > 0
     ? `angle = math.radians(${angle})\nhit = model.oblique(\n    speed=${speed} * math.cos(angle), `
       + `sliding_speed=${speed} * math.sin(angle),\n    radius=${radius}, thickness=${python}, `
-      + `friction=${friction}, method="solve",\n)`
-    : `hit = model.solve(speed=${speed}, radius=${radius}, thickness=${python})`)
+      + `friction=${friction}, method="solve"${heavy},\n)`
+    : `hit = model.solve(speed=${speed}, radius=${radius}, thickness=${python}${heavy})`)
     + "\nprint(hit.restitution, hit.flags)";
   byId("command").textContent = `contactlaw ${angle > 0 ? "oblique" : "cor"} ${pair.options} `
-    + `--radius ${radius} --thickness ${shell} --speed ${speed} `
+    + `--radius ${radius} --thickness ${shell} ${option}--speed ${speed} `
     + (angle > 0 ? `--angle ${angle} --friction ${friction}` : "--solve");
   redraws.forEach((redraw) => redraw());
 }
-function collide(speed, angle, radius, thickness, friction) { // null for what is refused
-  const { impact, ...oblique } = $collide(speed, angle, radius, thickness, friction);
-  return impact.restitution >= 0 ? { ...impact, ...oblique, radius, thickness } : null;
+function collide(given) { // null for what is refused
+  const { impact, ...oblique } = $collide(given, given.angle, given.friction);
+  return impact.restitution >= 0 ? { ...given, ...impact, ...oblique } : null;
 }
 function sample(one) { // the contact at even times, as drawHit takes it; the tail of a long one is cut
-  const path = $shown(one, one.speed, one.radius, one.thickness);
+  const path = $shown(one, one);
   Object.assign(one, { duration: path.time.at(-1), model: one.restitution, force: path.force,
     compression: path.compression, displacement: path.impulse,
     spread: pair.wave_path * Math.min(one.thickness, 4 * one.radius) });

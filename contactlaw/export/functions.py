@@ -30,7 +30,15 @@ from contactlaw.equation.force import (
     room_for,
     strongest,
 )
-from contactlaw.equation.numbers import Impact, Numbers, PairConstants, PlateConstants, numbers
+from contactlaw.equation.numbers import (
+    HEAVIEST,
+    LIGHTEST,
+    Impact,
+    Numbers,
+    PairConstants,
+    PlateConstants,
+    numbers,
+)
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, slide
 from contactlaw.model import ImpactModel
@@ -107,6 +115,7 @@ class Answer(NamedTuple):
     wave_fraction: float  # share carried off by the bending wave in the plate [-]
     other_fraction: float  # share that the law leaves in vibration and locked-in stress [-]
     inelasticity: float  # lambda of the modified Zener model [-]
+    mass_ratio: float  # mass over that of a solid sphere [-]
 
 
 class Collision(NamedTuple):
@@ -143,7 +152,7 @@ INSTEAD: dict[Any, Any] = {
 }
 # Parameters for each value of which a kernel is written anew: what they are decides what it has.
 FIXED = "goal", "samples", "springs", "room"
-NOTHING = Answer(*[math.nan] * 10)
+NOTHING = Answer(*[math.nan] * 11)
 BLOWN_UP = State(0.0, 0.0, math.nan)
 SLIDING = np.dtype([*FRICTION.descr, ("largest_compression", "f8")])
 
@@ -271,11 +280,32 @@ def after_step(pair: Bodies, bead: BeadSpring, state: State, overlap: float, dt:
 
 
 @kernel
-def numbers_of(pair: Bodies, speed: float, radius: float, thickness: float) -> Numbers:
+def solid(speed: float, radius: float, thickness: float) -> Impact:
+    """Impact of a solid sphere."""
+    return Impact(speed, radius, thickness, 1.0)
+
+
+@kernel
+def of_mass(pair: Bodies, speed: float, radius: float, thickness: float, mass: float) -> Impact:
+    """Impact of a bead of this mass [kg]."""
+    share = mass / (pair.constants.mass * (radius * radius * radius))
+    return Impact(speed, radius, thickness, share)
+
+
+@kernel
+def is_valid(impact: Impact) -> bool:
+    """Whether an impact is one that the model is for."""
+    return (
+        V_MIN <= impact.speed <= V_MAX
+        and fits(impact.radius, impact.thickness)
+        and LIGHTEST <= impact.mass <= HEAVIEST
+    )
+
+
+@kernel
+def numbers_of(pair: Bodies, impact: Impact) -> Numbers:
     """Dimensionless numbers of an impact, with the moduli at its own frequency."""
-    if not fits(radius, thickness):
-        radius = math.nan
-    return numbers(pair.constants, pair.law, Impact(speed, radius, thickness, 1.0))
+    return numbers(pair.constants, pair.law, impact)
 
 
 @kernel
@@ -290,7 +320,7 @@ def solved(pair: Bodies, units: Numbers, goal: int, rtol: float) -> zener.Soluti
 
 
 @kernel
-def in_si(one: zener.Solution, units: Numbers) -> Answer:
+def in_si(one: zener.Solution, units: Numbers, impact: Impact) -> Answer:
     """Solution in SI units; NaN where the integration has not come to its end."""
     if one.status != 0.0:
         return NOTHING
@@ -298,21 +328,39 @@ def in_si(one: zener.Solution, units: Numbers) -> Answer:
         one.restitution, one.contact_time * units.time, one.loading_time * units.time,
         one.peak_force * units.force, one.peak_compression * units.compression,
         one.residual_compression * units.compression, one.plastic_fraction, one.wave_fraction,
-        one.other_fraction, units.inelasticity,
+        one.other_fraction, units.inelasticity, impact.mass,
     )  # fmt: skip
+
+
+@kernel
+def answer(pair: Bodies, impact: Impact, goal: int, rtol: float) -> Answer:
+    """One impact, integrated; all members are NaN for bad input."""
+    if not is_valid(impact):
+        return NOTHING
+    units = numbers_of(pair, impact)
+    if not (0.0 <= units.inelasticity < math.inf and 0.0 < units.yield_ratio < math.inf):
+        return NOTHING
+    if units.strength > pair.strongest:
+        return NOTHING
+    return in_si(solved(pair, units, goal, rtol), units, impact)
 
 
 @kernel
 def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Answer:
     """One impact, integrated with an error of RTOL a step; all members are NaN for bad input."""
-    if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
-        return NOTHING
-    units = numbers_of(pair, speed, radius, thickness)
-    if not (0.0 <= units.inelasticity < math.inf and 0.0 < units.yield_ratio < math.inf):
-        return NOTHING
-    if units.strength > pair.strongest:
-        return NOTHING
-    return in_si(solved(pair, units, zener.TO_THE_END, RTOL), units)
+    return answer(pair, solid(speed, radius, thickness), zener.TO_THE_END, RTOL)
+
+
+@kernel
+def rebound_with_mass(
+    pair: Bodies, speed: float, radius: float, thickness: float, mass: float
+) -> Answer:
+    """Return the same for a bead of this mass [kg], from LIGHTEST to HEAVIEST of a solid sphere's.
+
+    Flags take it as it is; near an edge, and in steps, set the mass of a spring.
+    """
+    impact = of_mass(pair, speed, radius, thickness, mass)
+    return answer(pair, impact, zener.TO_THE_END, RTOL)
 
 
 @kernel
@@ -328,7 +376,7 @@ def restitution(pair: Bodies, speed: float, radius: float, thickness: float) -> 
     if pair.strengths.size == 1:
         c_lam, ratio = pair.unit.plate.inelasticity, radius / thickness
         return lookup.restitution(pair.tables, c_lam, pair.log_overload, speed, radius, ratio)
-    units = numbers_of(pair, speed, radius, thickness)
+    units = numbers_of(pair, solid(speed, radius, thickness))
     place, log_y, value = units.strength, math.log(units.yield_ratio), 0.0
     weakest = log_y - math.log(growth_at(pair.law, place))
     for j in range(pair.strengths.size):
@@ -375,15 +423,21 @@ def restitution_near(
 
 
 @kernel
-def exceeded(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> int:
+def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> int:
     """Limits of the model that an impact exceeds; -1 for an impact that is NaN."""
-    if not (hit.restitution >= 0.0 and fits(radius, thickness)):
+    if not (hit.restitution >= 0.0 and is_valid(impact)):
         return -1
-    units = numbers_of(pair, speed, radius, thickness)
+    units = numbers_of(pair, impact)
     return flags_of(
-        limits_at(pair.limits, units.strength), radius, thickness, units.compression,
+        limits_at(pair.limits, units.strength), impact.radius, impact.thickness, units.compression,
         hit.contact_time, hit.peak_compression, hit.peak_force,
     )  # fmt: skip
+
+
+@kernel
+def flags_for(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> int:
+    """Limits of the model that an answer to this impact exceeds; -1 for an impact that is NaN."""
+    return exceeded(pair, hit, Impact(speed, radius, thickness, hit.mass_ratio))
 
 
 @kernel
@@ -429,16 +483,16 @@ def history(pair: Bodies, units: Numbers, end: float, notes: zener.Notes) -> His
 
 @kernel
 def rubbed(
-    pair: Bodies, speed: float, size: float, radius: float, thickness: float, friction: float,
-    samples: int, springs: int,
-) -> float:  # fmt: skip
+    pair: Bodies, impact: Impact, size: float, friction: float, samples: int, springs: int
+) -> float:
     """Change of the contact point's speed along the plate in an impact [m/s]."""
+    speed = impact.speed
     if not (speed * friction > 0.0 and size > 0.0):
         return 0.0
     at, time, velocity = np.empty((1, samples)), np.empty((1, samples)), np.empty((1, samples))
     force, compression = np.empty((1, samples)), np.empty((1, samples))
     after, stretch = np.empty(1), np.empty((springs, 1))
-    units, psi = numbers_of(pair, speed, radius, thickness), min(size / friction / speed, FASTEST)
+    units, psi = numbers_of(pair, impact), min(size / friction / speed, FASTEST)
     end = solved(pair, units, zener.TO_THE_END, RTOL).contact_time
     path = history(pair, units, end, zener.Notes(at, time, velocity, force, compression))
     path.force[samples - 1] = 0.0
@@ -457,12 +511,11 @@ def collided(
     came, nan = sliding(v, omega, unit(n), w, radius), math.nan
     if came.speed < V_MIN and fits(radius, thickness) and friction >= 0.0:
         return Collision(0, v, omega)
-    hit = rebound(pair, came.speed, radius, thickness)
+    impact = solid(came.speed, radius, thickness)
+    hit = answer(pair, impact, zener.TO_THE_END, RTOL)
     if not (hit.restitution >= 0.0 and came.size < math.inf and 0.0 <= friction < math.inf):
         return Collision(-1, (nan, nan, nan), (nan, nan, nan))
-    changed = rubbed(
-        pair, came.speed, came.size, radius, thickness, friction, SAMPLES, SPRINGS
-    )  # fmt: skip
+    changed = rubbed(pair, impact, came.size, friction, SAMPLES, SPRINGS)
     most = friction * POINT * (1.0 + hit.restitution) * came.speed
     changed = min(changed, most)
     after, spin = rebound_of(v, omega, unit(n), came, radius, hit.restitution, changed)

@@ -8,24 +8,24 @@ from typing import NamedTuple
 import numpy as np
 
 from contactlaw._jit import kernel
+from contactlaw.answers.solver import RTOL
 from contactlaw.equation import zener
+from contactlaw.equation.numbers import Impact
 from contactlaw.equation.outcome import History
 from contactlaw.equation.tangential import POINT, SPRINGS
-from contactlaw.export import functions
 from contactlaw.export.functions import (
     NOTHING,
     Answer,
     Bodies,
+    answer,
     exceeded,
-    fits,
     history,
-    in_si,
+    is_valid,
     numbers_of,
     rubbed,
 )
 from contactlaw.physical.arguments import ROUGHEST
 from contactlaw.physical.oblique import flows
-from contactlaw.table.lookup import V_MAX, V_MIN
 
 FOR_CURVES = 1e-5  # error allowed per step of impacts that are points of a curve
 DEAD = 8.0  # lambda from which the restitution is below 2e-4
@@ -59,25 +59,24 @@ REFUSED = Hit(NOTHING, -1, *[math.nan] * 7)
 
 
 @kernel
-def for_curve(pair: Bodies, speed: float, radius: float, thickness: float) -> Answer:
+def for_curve(pair: Bodies, impact: Impact) -> Answer:
     """One impact for a point of a curve: its COR is within 3e-4.
 
     One that leaves hardly any speed is not followed to its end.
     """
-    if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
+    if not is_valid(impact):
         return NOTHING
-    units = numbers_of(pair, speed, radius, thickness)
-    if units.inelasticity <= DEAD:
-        return in_si(functions.solved(pair, units, zener.TO_THE_END, FOR_CURVES), units)
-    return in_si(functions.solved(pair, units, zener.TO_THE_TOP, FOR_CURVES), units)
+    if numbers_of(pair, impact).inelasticity <= DEAD:
+        return answer(pair, impact, zener.TO_THE_END, FOR_CURVES)
+    return answer(pair, impact, zener.TO_THE_TOP, FOR_CURVES)
 
 
 @kernel
-def shown(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: float) -> History:
+def shown(pair: Bodies, hit: Answer, impact: Impact) -> History:
     """Contact of an impact over time; for the impulse it has the displacement of the plate [m]."""
     at, time, velocity = np.empty((1, SHOWN)), np.empty((1, SHOWN)), np.empty((1, SHOWN))
     force, compression = np.empty((1, SHOWN)), np.empty((1, SHOWN))
-    units = numbers_of(pair, speed, radius, thickness)
+    units = numbers_of(pair, impact)
     end = min(hit.contact_time / units.time, LONGEST)
     notes = zener.Notes(at, time, velocity, force, compression)
     path = history(pair, units, end, notes)
@@ -90,18 +89,19 @@ def shown(pair: Bodies, hit: Answer, speed: float, radius: float, thickness: flo
 
 
 @kernel
-def collide(
-    pair: Bodies, page: Page, bead: float, angle: float, radius: float, thickness: float,
-    friction: float,
-) -> Hit:  # fmt: skip
-    """Answer of a bead without spin, at an angle [deg] to the normal of the plate."""
+def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: float) -> Hit:
+    """Impact of a bead without spin, at an angle [deg] to the normal of the plate.
+
+    The speed that is given is the bead's.
+    """
     tilt = angle * math.pi / 180.0
-    speed, size = bead * math.cos(tilt), bead * math.sin(tilt)
-    hit = functions.rebound(pair, speed, radius, thickness)
+    speed, size = given.speed * math.cos(tilt), given.speed * math.sin(tilt)
+    impact = Impact(speed, given.radius, given.thickness, given.mass)
+    hit = answer(pair, impact, zener.TO_THE_END, RTOL)
     if not (hit.restitution >= 0.0 and 0.0 <= friction <= ROUGHEST):
         return REFUSED
-    change = rubbed(pair, speed, size, radius, thickness, friction, SAMPLES, SPRINGS)
-    after, found = size - change, exceeded(pair, hit, speed, radius, thickness)
+    change = rubbed(pair, impact, size, friction, SAMPLES, SPRINGS)
+    after, found = size - change, exceeded(pair, hit, impact)
     if flows(
         page.strength, page.modulus, hit.peak_force, hit.peak_compression,
         hit.residual_compression, hit.contact_time, friction, size, after,
@@ -109,6 +109,6 @@ def collide(
         found |= page.flag
     return Hit(
         hit, found, speed, size, after, size - change / POINT,
-        (1.0 - 1.0 / POINT) * change / radius, math.cos(tilt) ** 2,
-        change * (size + after) / (POINT * bead * bead),
+        (1.0 - 1.0 / POINT) * change / impact.radius, math.cos(tilt) ** 2,
+        change * (size + after) / (POINT * given.speed * given.speed),
     )  # fmt: skip

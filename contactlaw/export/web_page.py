@@ -19,12 +19,13 @@ from typing import Any
 from contactlaw import _atomic, laws
 from contactlaw._version import VERSION
 from contactlaw.emit import DOUBLE, JavaScript, Known, Program, add
+from contactlaw.equation.numbers import Impact
 from contactlaw.export import functions, page_functions
 from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.export.page_functions import Page
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material, material, materials
-from contactlaw.physical.scaling import wave_path
+from contactlaw.physical.scaling import constants_of, wave_path
 from contactlaw.physical.validity import Validity, explain
 
 
@@ -76,6 +77,7 @@ def _text(model: ImpactModel) -> str:
     options = "--sphere {} --plate {}".format(*map(shlex.quote, typed))
     shown = {
         "wave_path": wave_path(pair.plate),
+        "solid": constants_of(pair, law).mass,
         "words": {flag.value: explain(flag)[0] for flag in Validity},
         "python": f"model = cl.ImpactModel(cl.Pair({bodies}){chosen})\n",
         "options": options + ("" if default else f" --law {law.family}"),
@@ -99,11 +101,11 @@ def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
 def _kernels(bodies: Bodies, page: Page) -> str:
     """Kernels of `page_functions` for a pair, in JavaScript."""
     program, pair = Program(JavaScript("$"), FIXED), Known(value=bodies)
-    asked, more = 3 * (DOUBLE,), Known(value=page)
-    _, hit = add(program, page_functions.for_curve, pair, *asked)
-    add(program, functions.exceeded, pair, hit, *asked)
-    add(program, page_functions.shown, pair, hit, *asked)
-    add(program, page_functions.collide, pair, more, *asked, DOUBLE, DOUBLE)
+    asked = program.struct(Impact, dict.fromkeys(Impact._fields, DOUBLE))
+    _, hit = add(program, page_functions.for_curve, pair, asked)
+    add(program, functions.exceeded, pair, hit, asked)
+    add(program, page_functions.shown, pair, hit, asked)
+    add(program, page_functions.collide, pair, Known(value=page), asked, DOUBLE, DOUBLE)
     return program.text()
 
 

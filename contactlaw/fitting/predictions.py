@@ -151,11 +151,12 @@ class Predictor:
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
     """Integrate rebounds of any bodies that `ImpactModel` takes, without a table."""
     check(speed=speed, radius=at.radius, thickness=at.thickness)
-    backend = Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL)
+    bodies = SphereOnPlate(at.pair, law_for_pair(at.pair, law))
+    backend = Solver(bodies, _RTOL)
     given = Impacts(speed, at.radius, at.thickness, speed.shape)
     if at.friction is None or at.sliding_speed is None:
         return backend.rebounds(given)
-    return oblique.answer(backend, at.pair, given, at.friction, at.sliding_speed)
+    return oblique.answer(backend, bodies, given, at.friction, at.sliding_speed)
 
 
 def columns_of(hit: Rebound, at: Setting) -> Array:

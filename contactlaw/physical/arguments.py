@@ -19,7 +19,7 @@ _SI = dict.fromkeys(("radius", "other_radius", "thickness"), "m")
 _SI |= dict.fromkeys(("edge_distance", "hole_radius"), "m")
 _SI |= dict.fromkeys(("times", "duration", "contact_time", "step"), "s")
 _SI |= dict.fromkeys(("speed", "slowest", "fastest", "sliding_speed"), "m/s") | {"rate": "1/s"}
-_SI |= {"velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"}
+_SI |= {"mass": "kg", "velocity": "m/s", "wall_velocity": "m/s", "spin": "rad/s"}
 
 _LARGE = 0.1  # [m], our choice: of larger beads and plates few are modelled, and many are mistakes
 ROUGHEST = 1e3  # largest coefficient of friction

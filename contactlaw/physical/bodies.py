@@ -4,11 +4,18 @@ from __future__ import annotations
 
 import functools
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.equation.numbers import Impact, Numbers, PairConstants
+from contactlaw.equation.numbers import (
+    HEAVIEST,
+    LIGHTEST,
+    Impact,
+    Numbers,
+    PairConstants,
+)
 from contactlaw.laws import Law
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.pair import Pair
@@ -46,6 +53,15 @@ class SphereOnPlate:
         """Limits of the model at some strengths, as kernels read them."""
         return limits_by_strength(self.pair, self.law)
 
+    def given(self, *arguments: Any, **named: Any) -> Impacts:
+        """Impacts that a user gave, see `Impacts.on_plates`; masses are checked, too."""
+        impacts = Impacts.on_plates(*arguments, **named)
+        if impacts.mass is not None:
+            solid = self.solid_mass(impacts.radius)
+            for n in np.flatnonzero(~beside(impacts.mass, solid))[:1].tolist():
+                raise ValueError(_refused(impacts.mass[n], solid[n], n, impacts.mass.size))
+        return impacts
+
     def impact(self, impacts: Impacts) -> Impact:
         """Impacts as kernels take them."""
         share = np.ones_like(impacts.speed)
@@ -64,6 +80,24 @@ class SphereOnPlate:
     def numbers(self, impact: Impact) -> Numbers:
         """Dimensionless numbers and units of impacts."""
         return numbers_of(self.constants, self.data, impact)
+
+
+def beside(mass: Array, solid: Array) -> NDArray[np.bool_]:
+    """Whether masses are such as the model is for, beside those of solid spheres."""
+    return np.asarray((mass >= LIGHTEST * solid) & (mass <= HEAVIEST * solid))
+
+
+def _refused(mass: float, solid: float, n: int, count: int) -> str:
+    where = f" (element {n})" if count > 1 else ""
+    remedy = (
+        "a hollow sphere so light is a thin shell, which bends under the contact"
+        if mass < LIGHTEST * solid
+        else "is it in grams? It is the mass that answers at the contact"
+    )
+    return (
+        f"mass: got {mass:g}{where} kg, {mass / solid:.4g} of a solid sphere's {solid:.4g} kg; "
+        f"must be {LIGHTEST:g} to {HEAVIEST:g} of it: {remedy}"
+    )
 
 
 class TwoSpheres(SphereOnPlate):

@@ -18,9 +18,8 @@ from numpy.typing import NDArray
 from contactlaw._jit import kernel
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import ROUGHEST, shaped
+from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
-from contactlaw.physical.materials import sphere_mass
-from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound, shaped_flags
 from contactlaw.physical.validity import Validity
 from contactlaw.table import lookup, strengths
@@ -240,10 +239,11 @@ def flows(
 
 
 def of(
-    pair: Pair, normal: Rebound, impacts: Impacts, friction: Array, size: Array, changed: Array
-) -> ObliqueRebound:
+    bodies: SphereOnPlate, normal: Rebound, impacts: Impacts, friction: Array, size: Array,
+    changed: Array,
+) -> ObliqueRebound:  # fmt: skip
     """Complete an answer: normal part, sliding speed before it and the change of that [m/s]."""
-    mass = sphere_mass(pair.sphere.density, impacts.radius)
+    pair, mass = bodies.pair, bodies.mass(impacts)
     with np.errstate(invalid="ignore", divide="ignore"):
         part = changed / size  # NaN without sliding
     e, after = np.ravel(normal.restitution), size - changed

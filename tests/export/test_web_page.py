@@ -14,6 +14,7 @@ from places import ROOT
 
 import contactlaw as cl
 from contactlaw import cli
+from contactlaw.equation.numbers import Impact
 from contactlaw.export import page_functions, web_page
 
 STEEL = cl.Pair("bearing-steel-52100", "aluminium-6061-t6")
@@ -47,6 +48,7 @@ def steel(tmp_path_factory):
     return file
 
 
+NUMBERS = *Impact._fields, "angle", "friction"
 ABSURD = [0.0, -1.0, 1e-300, 1e300, math.inf, math.nan]
 
 
@@ -63,16 +65,18 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     angle, friction = rng.uniform(0.0, 89.0, count), rng.choice([0.0, 0.05, 0.3, 1.0], count)
     tilt = np.radians(angle)
     normal, along = speed * np.cos(tilt), speed * np.sin(tilt)
-    settings = np.stack([speed, angle, radius, thickness, friction], axis=1).tolist()
+    mass = rng.choice([0.5, 1.0, 1.0, 3.0], count)
+    rows = np.stack([speed, radius, thickness, mass, angle, friction], axis=1).tolist()
+    settings = [dict(zip(NUMBERS, one, strict=True)) for one in rows]
     page.open(tmp_path / "page.html", 1280)
     found = page.value(
-        f"{json.dumps(settings)}.map((one) => collide(...one)).map((hit) => ({{...hit,"
-        " curve: $for_curve(hit.speed, hit.radius, hit.thickness).restitution}))"
+        f"{json.dumps(settings)}.map(collide).map((hit) => ({{...hit,"
+        " curve: $for_curve(hit).restitution}))"
     )
     rows = {name: np.array([one[name] for one in found]) for name in found[0]}
-    expected = model.oblique(normal, along, radius, thickness, friction, method="solve")
+    mass *= model.pair.sphere.density * 4 / 3 * math.pi * radius**3
+    expected = model.oblique(normal, along, radius, thickness, friction, method="solve", mass=mass)
     np.testing.assert_array_equal(rows["flags"], expected.flags)
-    mass = model.pair.sphere.density * 4 / 3 * math.pi * radius**3
     rows["friction_energy"] = rows["friction_share"] * 0.5 * mass * speed**2
     share, slide = BETWEEN.get(pair, (1e-12, 1e-12))
     for name in ("peak_force", "peak_compression", "contact_time"):
@@ -85,15 +89,22 @@ def test_the_browser_answers_as_python_does(pair, tmp_path, page):
     np.testing.assert_allclose(rows["curve"], rows["restitution"], rtol=0, atol=3e-4)
     np.testing.assert_allclose(rows["friction_energy"], expected.friction_energy, rtol=10 * slide)
     # Absurd input, and as many steps in each impact as in Python, of a pair with a rate too.
-    usual, bodies = [3.0, 0.0, 1e-3, 2e-3, 0.3], web_page._bodies(model)
-    settings = [*settings[:4], *([*usual[:n], x, *usual[n + 1 :]] for n in (0, 2, 3, 4)
-                                 for x in ABSURD)]  # fmt: skip
+    usual, bodies = (
+        dict(zip(NUMBERS, (3.0, 1e-3, 2e-3, 0.7, 0.0, 0.3), strict=True)),
+        web_page._bodies(model),
+    )
+    settings = [
+        *settings[:4],
+        *({**usual, name: x} for name in NUMBERS if name != "angle" for x in ABSURD),
+    ]
     texts = page.value(
         f"{json.dumps(settings)}.map((one) => (({{ impact, ...rest }}) => ["
-        "...Object.values(impact), ...Object.values(rest)].map(String))($collide(...one)))"
+        "...Object.values(impact), ...Object.values(rest)].map(String))("
+        "$collide(one, one.angle, one.friction)))"
     )
     for one, found in zip(settings, texts, strict=True):
-        impact, *rest = page_functions.collide(*bodies, *one)
+        *given, angle, friction = one.values()
+        impact, *rest = page_functions.collide(*bodies, Impact(*given), angle, friction)
         np.testing.assert_allclose(np.array(found, float), [*impact, *rest], rtol=1e-12, atol=1e-15)
 
 

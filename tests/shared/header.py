@@ -11,7 +11,7 @@ from contactlaw.export import functions
 
 COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
-FIELDS = functions.Impact._fields
+FIELDS = functions.Answer._fields
 GIVEN, WIDTH = 7, len(FIELDS) + 3 + 5 * uncompiled.STEPS + 7
 # The same as `uncompiled.answers`; in CUDA and OpenCL, too.
 SOURCE = f"""

@@ -20,7 +20,7 @@ NORMAL, LEANING, STILL = (0.0, 0.6, 0.8), (0.1, 0.0, 1.0), (0.0, 0.0, 0.0)
 def answers(pair, v, r, h, edge, distance, mu, dt):
     """All fields of a rebound, flags, COR near an edge, steps with friction, a collision."""
     hit, edge = functions.rebound(pair, v, r, h), int(edge)
-    found = [*hit, functions.exceeded(pair, hit, v, r, h)]
+    found = [*hit, functions.flags_for(pair, hit, v, r, h)]
     found.append(functions.restitution(pair, v, r, h))
     found.append(functions.restitution_near(pair, v, r, h, edge, distance))
     bead = functions.at_edge(pair, functions.spring_of(pair, r, h), edge, distance)
