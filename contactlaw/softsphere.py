@@ -215,7 +215,7 @@ class Contacts:
         given = bodies.given(1.0, radius, thickness, edge, edge_distance, hole_radius, mass)
         r, h, near = given.radius, given.thickness, (given.edge_distance, given.hole_radius)
         self._near = near_edge(model.pair.plate, h, edge, *near)
-        unit, share = unit_spring(model, 1.0), bodies.impact(given).mass
+        unit = unit_spring(model, 1.0)
         enable_caching()
         self._law = law_of(model)
         self._diameters = 2.0 * r  # with this overlap a sphere is in the plate altogether
@@ -225,7 +225,7 @@ class Contacts:
             stiffness=unit.stiffness * np.sqrt(r),
             mobility=plate_mobility(model.pair.plate, h),
             scale=unit.scale * r,
-            relaxation=unit.relaxation * r * share**0.4,
+            relaxation=unit.relaxation * r,
             ratio=r / h,
             plate=unit.plate,
         )

@@ -188,7 +188,8 @@ def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table
         rounded(laws),
         room_for(laws),
         strongest(laws),
-        known,
+        # any yield compression for a law that never yields
+        known._replace(yield_compression=min(known.yield_compression, 1.0)),
         unit_spring(model, 1.0),
         limits_by_strength(pair, law),
         pair.tangential_ratio,
@@ -333,7 +334,7 @@ def in_si(one: zener.Solution, units: Numbers, impact: Impact) -> Answer:
 
 
 @kernel
-def answer(pair: Bodies, impact: Impact, goal: int, rtol: float) -> Answer:
+def followed(pair: Bodies, impact: Impact, goal: int, rtol: float) -> Answer:
     """One impact, integrated; all members are NaN for bad input."""
     if not is_valid(impact):
         return NOTHING
@@ -348,7 +349,7 @@ def answer(pair: Bodies, impact: Impact, goal: int, rtol: float) -> Answer:
 @kernel
 def rebound(pair: Bodies, speed: float, radius: float, thickness: float) -> Answer:
     """One impact, integrated with an error of RTOL a step; all members are NaN for bad input."""
-    return answer(pair, solid(speed, radius, thickness), zener.TO_THE_END, RTOL)
+    return followed(pair, solid(speed, radius, thickness), zener.TO_THE_END, RTOL)
 
 
 @kernel
@@ -360,7 +361,7 @@ def rebound_with_mass(
     Flags take it as it is; near an edge, and in steps, set the mass of a spring.
     """
     impact = of_mass(pair, speed, radius, thickness, mass)
-    return answer(pair, impact, zener.TO_THE_END, RTOL)
+    return followed(pair, impact, zener.TO_THE_END, RTOL)
 
 
 @kernel
@@ -512,7 +513,7 @@ def collided(
     if came.speed < V_MIN and fits(radius, thickness) and friction >= 0.0:
         return Collision(0, v, omega)
     impact = solid(came.speed, radius, thickness)
-    hit = answer(pair, impact, zener.TO_THE_END, RTOL)
+    hit = followed(pair, impact, zener.TO_THE_END, RTOL)
     if not (hit.restitution >= 0.0 and came.size < math.inf and 0.0 <= friction < math.inf):
         return Collision(-1, (nan, nan, nan), (nan, nan, nan))
     changed = rubbed(pair, impact, came.size, friction, SAMPLES, SPRINGS)

@@ -17,8 +17,8 @@ from contactlaw.export.functions import (
     NOTHING,
     Answer,
     Bodies,
-    answer,
     exceeded,
+    followed,
     history,
     is_valid,
     numbers_of,
@@ -67,8 +67,8 @@ def for_curve(pair: Bodies, impact: Impact) -> Answer:
     if not is_valid(impact):
         return NOTHING
     if numbers_of(pair, impact).inelasticity <= DEAD:
-        return answer(pair, impact, zener.TO_THE_END, FOR_CURVES)
-    return answer(pair, impact, zener.TO_THE_TOP, FOR_CURVES)
+        return followed(pair, impact, zener.TO_THE_END, FOR_CURVES)
+    return followed(pair, impact, zener.TO_THE_TOP, FOR_CURVES)
 
 
 @kernel
@@ -97,7 +97,7 @@ def collide(pair: Bodies, page: Page, given: Impact, angle: float, friction: flo
     tilt = angle * math.pi / 180.0
     speed, size = given.speed * math.cos(tilt), given.speed * math.sin(tilt)
     impact = Impact(speed, given.radius, given.thickness, given.mass)
-    hit = answer(pair, impact, zener.TO_THE_END, RTOL)
+    hit = followed(pair, impact, zener.TO_THE_END, RTOL)
     if not (hit.restitution >= 0.0 and 0.0 <= friction <= ROUGHEST):
         return REFUSED
     change = rubbed(pair, impact, size, friction, SAMPLES, SPRINGS)

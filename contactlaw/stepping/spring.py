@@ -148,7 +148,7 @@ def unit_spring(model: ImpactModel, thickness: float) -> Spring:
         mobility=float(plate_mobility(model.pair.plate, np.array(thickness))),
         scale=scale if scale < math.inf else 1.0,
         relaxation=relaxation(known.mass, stiffness),
-        ratio=1.0 / thickness,
+        ratio=np.float64(1.0) / thickness,  # whose reciprocal may be inf without the compiler
         plate=known.plate,
     )
 
@@ -162,14 +162,14 @@ def relaxation(mass: Any, stiffness: Any) -> Any:
 def at_usual_frequency(spring: Spring) -> Spring:
     """Spring with the moduli of an impact at `USUAL_SPEED`, from one with the pair's.
 
-    In the second step of a contact moduli become those of its own speed; the yield compression
+    The impact is that of a solid sphere. In the second step of a contact moduli become those of its own speed; the yield compression
     stays.
     """
     if not relaxes(spring.plate):
         return spring
     own, usual = spring.plate, 0.2 * math.log(USUAL_SPEED)
     plate, faster, growth = relaxed(
-        own, 1.0, 0.4 * math.log(spring.mass / spring.stiffness) - usual
+        own, 1.0, 0.4 * math.log(spring.solid / spring.stiffness) - usual
     )
     stiffness = spring.stiffness * math.exp(growth)
     softer = math.exp(own.growth.yield_power * growth)
@@ -181,7 +181,7 @@ def at_usual_frequency(spring: Spring) -> Spring:
             plate.inelasticity * faster, plate.transit * faster, plate.x_at_one * (faster * faster),
             plate.saturated / faster, plate.corrections,
             ModulusGrowth(
-                0.4 * math.log(spring.mass / stiffness) - usual, own.growth.modulus_power,
+                0.4 * math.log(spring.solid / stiffness) - usual, own.growth.modulus_power,
                 own.growth.plate_power, own.growth.yield_power, own.growth.wave,
                 own.growth.wave_slope,
             ),
@@ -212,8 +212,8 @@ def impact(law: Array, spring: Spring, speed: float) -> Numbers:
     """Dimensionless numbers of the impact with which a contact begins."""
     time = (spring.solid / spring.stiffness) ** 0.4
     solid = PairConstants(spring.plate, time, spring.solid, spring.scale)
-    thickness = 1.0 / spring.ratio if spring.ratio > 0.0 else math.inf  # of a radius of 1
-    return numbers(solid, law, Impact(speed, 1.0, thickness, spring.mass / spring.solid))
+    share = spring.mass / spring.solid
+    return numbers(solid, law, Impact(speed, 1.0, 1.0 / spring.ratio, share))  # of a radius of 1
 
 
 @kernel

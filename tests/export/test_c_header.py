@@ -31,11 +31,9 @@ from contactlaw._version import VERSION
 from contactlaw.answers.solver import RTOL
 from contactlaw.equation import zener
 from contactlaw.equation.edge import KINDS
-from contactlaw.equation.numbers import Impact
 from contactlaw.export import c_header, functions
 from contactlaw.laws import Law
 from contactlaw.laws._branches import Loading
-from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.softsphere import Contacts
 from contactlaw.table import Settings, nodes
 from contactlaw.table.nodes import POINTS
@@ -159,7 +157,9 @@ def test_contracted_c_is_the_same_but_for_rounding(library):
 
 def stepped(model, v, r, h, edge, distance, mu, dt):
     """The steps of `header.SOURCE`, by `softsphere`."""
-    contacts = Contacts(model, r, h, KINDS[int(edge) - 1], distance if edge else math.inf)
+    mass = uncompiled.MASS * r**3 if mu > uncompiled.HEAVY else None
+    near = KINDS[int(edge) - 1], distance if edge else math.inf
+    contacts = Contacts(model, r, h, *near, mass=mass)
     x, u, found = np.zeros(1), np.array([v]), []
     for _ in range(uncompiled.STEPS):
         u -= 0.5 * dt * contacts.force / contacts.mass
@@ -171,13 +171,22 @@ def stepped(model, v, r, h, edge, distance, mu, dt):
 
 
 def units_of(model, rows):
-    return SphereOnPlate(model.pair, model.force_law).numbers(Impact(*rows.T[:3]))
+    bodies = model._bodies
+    return bodies.numbers(bodies.impact(bodies.given(*rows.T[:3], mass=mass_of(model, rows))))
+
+
+def mass_of(model, rows):
+    """Masses of beads, of which some are no solid spheres."""
+    r = rows[:, 1]
+    heavy = rows[:, 5] > uncompiled.HEAVY
+    return np.where(heavy, uncompiled.MASS * r**3, model._bodies.solid_mass(r))
 
 
 def from_package(model, rows):
     """What the package gives for impacts; NaN where it is not asked."""
     (v, r, h, edge, distance, mu, _), units = rows.T, units_of(model, rows)
-    hit, out = model.solve(v, r, h), np.full((v.size, header.WIDTH), math.nan)
+    mass = mass_of(model, rows)
+    hit, out = model.solve(v, r, h, mass=mass), np.full((v.size, header.WIDTH), math.nan)
     for k, field in enumerate(FIELDS):
         out[:, k] = getattr(hit, field, math.nan)
     out[:, 10], out[:, 11] = hit.flags, [model.kernel(*one) for one in rows[:, :3]]
@@ -189,7 +198,7 @@ def from_package(model, rows):
     for n, s in enumerate(distance[:9]):
         kind = KINDS[int(edge[n]) - 1]
         out[n, 12] = model.solve(*rows[n, :3], edge=kind, edge_distance=s).restitution
-    out[9:, 12] = np.where(edge[9:] == 0, hit.restitution[9:], math.nan)
+    out[9:, 12] = np.where(edge[9:] == 0, model.solve(v, r, h).restitution[9:], math.nan)
     out[:60, 13:-7] = [stepped(model, *one) for one in rows[:60]]
     n = np.array(uncompiled.LEANING) / math.sqrt(1.01)
     velocity, spin = np.column_stack([0.4 * v, 0.1 * v, -v]), np.tile([3.0, 5.0, 7.0], (v.size, 1))

@@ -11,7 +11,7 @@ from contactlaw.export import functions
 
 COMPILERS = {"gcc": ["-std=c99"], "g++": ["-std=c++11", "-x", "c++"]}
 WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
-FIELDS = functions.Answer._fields
+FIELDS = functions.Answer._fields[:-1]  # but for the mass
 GIVEN, WIDTH = 7, len(FIELDS) + 3 + 5 * uncompiled.STEPS + 7
 # The same as `uncompiled.answers`; in CUDA and OpenCL, too.
 SOURCE = f"""
@@ -30,7 +30,9 @@ CONTACTLAW_FN void contactlaw_answer(AT const double *in, AT double *out)
     const double leaning[3] = {{ 0.1, 0.0, 1.0 }};
     const double surface[3] = {{ 0.3 * v, -0.7 * v, 0.1 * v }};
     double velocity[3] = {{ 0.4 * v, 0.1 * v, -v }}, spin[3] = {{ 3.0, 5.0, 7.0 }};
-    const contactlaw_impact hit = contactlaw_rebound(v, r, h);
+    const double mass = {uncompiled.MASS} * r * r * r;
+    const contactlaw_impact heavy = contactlaw_rebound_with_mass(v, r, h, mass);
+    const contactlaw_impact hit = mu > {uncompiled.HEAVY} ? heavy : contactlaw_rebound(v, r, h);
     contactlaw_spring bead = contactlaw_spring_of(r, h);
     contactlaw_state state = CONTACTLAW_APART;
     contactlaw_sliding row = CONTACTLAW_STILL;
@@ -42,6 +44,8 @@ CONTACTLAW_FN void contactlaw_answer(AT const double *in, AT double *out)
     *out++ = contactlaw_restitution(v, r, h);
     *out++ = contactlaw_restitution_near(v, r, h, edge, in[4]);
     contactlaw_set_edge(&bead, edge, in[4]);
+    if (mu > {uncompiled.HEAVY})
+        bead.mass = mass;
     for (step = 0; step < {uncompiled.STEPS}; ++step) {{
         u -= 0.5 * dt * state.force / bead.mass;
         x += dt * u;

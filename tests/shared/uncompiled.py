@@ -14,16 +14,21 @@ from contactlaw.export import functions
 from contactlaw.stepping.spring import State
 
 STEPS = 45
+MASS, HEAVY = 5e4, 0.3  # kg/m3 of beads that are no solid spheres, those with more friction
 NORMAL, LEANING, STILL = (0.0, 0.6, 0.8), (0.1, 0.0, 1.0), (0.0, 0.0, 0.0)
 
 
 def answers(pair, v, r, h, edge, distance, mu, dt):
     """All fields of a rebound, flags, COR near an edge, steps with friction, a collision."""
-    hit, edge = functions.rebound(pair, v, r, h), int(edge)
-    found = [*hit, functions.flags_for(pair, hit, v, r, h)]
+    mass, edge = MASS * r * r * r, int(edge)
+    hit = functions.rebound(pair, v, r, h)
+    if mu > HEAVY:
+        hit = functions.rebound_with_mass(pair, v, r, h, mass)
+    found = [*hit[:-1], functions.flags_for(pair, hit, v, r, h)]
     found.append(functions.restitution(pair, v, r, h))
     found.append(functions.restitution_near(pair, v, r, h, edge, distance))
     bead = functions.at_edge(pair, functions.spring_of(pair, r, h), edge, distance)
+    bead = bead._replace(mass=mass if mu > HEAVY else bead.mass)
     state, x, u = State(0.0, 0.0, 0.0), 0.0, v
     row = np.zeros(1, functions.SLIDING).view(np.recarray)[0]
     for _ in range(STEPS):
