@@ -21,6 +21,7 @@ def add(commands: Any) -> None:
     about = "force over time of one impact, as CSV or a plot"
     command = options.command(commands, "history", about, _run)
     options.add_impact(command, quantities.value)
+    options.add_mass(command)
     command.add_argument("--samples", type=int, default=256, metavar="N",
                          help="number of times (default: %(default)s)")  # fmt: skip
     command.add_argument("--plot", metavar="FILE", help="draw into FILE (PNG, SVG, PDF)")
@@ -34,6 +35,8 @@ def _run(arguments: argparse.Namespace) -> None:
             _plot_history(arguments)
         return
     given = {name: getattr(arguments, name) for name in ("speed", "radius", "thickness")}
+    if arguments.mass is not None:
+        given["mass"] = arguments.mass
     model = chosen.model(arguments)
     contact = np.column_stack(_contact(arguments, model))
     print(f"# {impacts.in_words(impacts.asked(model, **given))}")
@@ -46,7 +49,7 @@ def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
     with wording.naming_impact(*impact):
-        found = model.force_history(*impact, arguments.samples, method)
+        found = model.force_history(*impact, arguments.samples, method, mass=arguments.mass)
     flags = int(found.flags)
     for name, words in zip(impacts.flag_names(flags), explain(flags), strict=True):
         wording.print_warning(f"{name}: {words}")

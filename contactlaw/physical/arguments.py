@@ -33,6 +33,7 @@ _LIMITS = {
     "thickness": (lookup.R_MIN, math.inf, "metres; inf is the half-space"),
     "edge_distance": (0.0, math.inf, "metres; inf is a plate without edges"),
     "hole_radius": (lookup.R_MIN, math.inf, "metres; inf is a straight edge"),
+    "mass": (1e-30, 1e15, "kilograms"),
     "contact_time": (1e-12, 1e6, "seconds"),
     "sliding_speed": (-lookup.V_MAX, lookup.V_MAX, "m/s, of the contact point along the plate"),
     "friction": (0.0, ROUGHEST, "Coulomb's coefficient"),

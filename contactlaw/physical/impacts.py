@@ -45,7 +45,7 @@ class Impacts:
             speed=speed, radius=radius, thickness=thickness, edge_distance=edge_distance,
             hole_radius=hole_radius, **given,
         )  # fmt: skip
-        check(speed=v, radius=r, thickness=h)
+        check(speed=v, radius=r, thickness=h, **dict(zip(given, masses, strict=True)))
         return Impacts(v, r, h, shape, edge, *edges_as_given(edge, s, a, h), *masses)
 
     def part(self, some: NDArray[np.intp]) -> Impacts:

@@ -162,8 +162,8 @@ def relaxation(mass: Any, stiffness: Any) -> Any:
 def at_usual_frequency(spring: Spring) -> Spring:
     """Spring with the moduli of an impact at `USUAL_SPEED`, from one with the pair's.
 
-    The impact is that of a solid sphere. In the second step of a contact moduli become those of its own speed; the yield compression
-    stays.
+    The impact is that of a solid sphere. In the second step of a contact moduli become those of
+    its own speed; the yield compression stays.
     """
     if not relaxes(spring.plate):
         return spring

@@ -25,6 +25,7 @@ def add(commands: Any) -> None:
     about = "coefficient of restitution and more, of one impact or many"
     command = options.command(commands, "cor", about, _run)
     options.add_impact(command, quantities.values)
+    options.add_mass(command)
     options.add_errors(command, _SIZES)
     command.add_argument("--no-band", action="store_true",
         help="leave out the range of real impacts, which takes longest")  # fmt: skip
@@ -58,12 +59,13 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     values = arguments.speed, arguments.radius, arguments.thickness
     model, errors = chosen.model(arguments), _errors(arguments)
-    found = impacts.tabulate(model, *values, solve=arguments.solve)
+    mass = arguments.mass
+    found = impacts.tabulate(model, *values, solve=arguments.solve, mass=mass)
     known = None
     if errors is not None:
         sizes = [found.columns[name] for name in _SIZES]
         with wording.naming_impact(*sizes):
-            known = model.uncertainty(*sizes, **errors)
+            known = model.uncertainty(*sizes, **errors, mass=mass)
     found, columns = bands.with_bands(found, known)
     if arguments.csv:
         impacts.write_csv(found, sys.stdout, columns)
@@ -98,7 +100,7 @@ def _print_one(found: impacts.ImpactTable, known: Uncertainty | None, pair: Pair
 
 
 def _plot_cor(arguments: argparse.Namespace) -> None:
-    model, errors = chosen.model(arguments), _errors(arguments)
+    model, errors, mass = chosen.model(arguments), _errors(arguments), arguments.mass
     given = {name: getattr(arguments, name) for name in ("speed", "thickness", "radius")}
     if not any(map(layout.can_be_axis, given.values())):
         given["speed"] = (0.1 * arguments.speed[0], arguments.speed[0])
@@ -106,8 +108,10 @@ def _plot_cor(arguments: argparse.Namespace) -> None:
     def ask(grid: dict[str, Array]) -> layout.Answers:
         impact = grid["speed"], grid["radius"], grid["thickness"]
         with wording.naming_impact(*impact):
-            hit = (model.solve if arguments.solve else model.lookup)(*impact)
-            known = None if errors is None else model.uncertainty(*impact, **errors).restitution
+            hit = (model.solve if arguments.solve else model.lookup)(*impact, mass=mass)
+            known = None
+            if errors is not None:
+                known = model.uncertainty(*impact, **errors, mass=mass).restitution
         cor, flags, overload = map(np.asarray, (hit.restitution, hit.flags, hit.overload))
         if known is None or np.isinf(known.low).all():
             return layout.Answers(cor, flags, overload, cor, cor)

@@ -44,6 +44,7 @@ def add(commands: Any) -> None:
     command = options.command(commands, "oblique", about, _run)
     options.add_pair(command)
     options.add_sizes(command, quantities.values)
+    options.add_mass(command)
     options.add_speed(command, quantities.values, "speed of the bead")
     options.add_name_of_law(command)
     command.set_defaults(outside="raise")  # every impact is integrated
@@ -97,18 +98,18 @@ def _table(arguments: argparse.Namespace, given: dict[str, Any]) -> ImpactTable:
     parts = np.meshgrid(*(given[name] for name in names), indexing="ij")
     every = dict(zip(names, (part.ravel() for part in parts), strict=True))
     model = chosen.model(arguments)
-    found = _hits(model, every)
+    found = _hits(model, every, arguments.mass)
     columns = {column.name: found[column.name] for column in _COLUMNS}
     return ImpactTable(columns, found["flags"], impacts.asked(model))
 
 
-def _hits(model: ImpactModel, given: dict[str, Array]) -> dict[str, Any]:
+def _hits(model: ImpactModel, given: dict[str, Array], mass: float | None) -> dict[str, Any]:
     """Columns of impacts by what is given of each. Few impacts need no table of the model."""
     angle, total, thickness, radius, friction = np.broadcast_arrays(*(given[n] for n in _GIVEN))
     inclined = np.radians(angle)
     speed, sliding = total * np.cos(inclined), total * np.sin(inclined)
     with wording.naming_impact(speed, radius, thickness):
-        hit = model.oblique(speed, sliding, radius, thickness, friction, method="solve")
+        hit = model.oblique(speed, sliding, radius, thickness, friction, method="solve", mass=mass)
     changed = sliding - np.asarray(hit.sliding_speed)
     return {
         **vars(hit), **given,
@@ -151,7 +152,8 @@ def _plot(arguments: argparse.Namespace, given: dict[str, Any]) -> None:
     pair = model.pair
 
     def ask(grid: dict[str, Array]) -> layout.Answers:
-        hit = _hits(model, grid | {"angle": np.maximum(grid["angle"], _STEEPEST)})
+        steep = {"angle": np.maximum(grid["angle"], _STEEPEST)}
+        hit = _hits(model, grid | steep, arguments.mass)
         value = hit["tangential_restitution"]
         return layout.Answers(value, hit["flags"], hit["overload"], value, value)
 

@@ -22,7 +22,6 @@ from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.model import ImpactModel
 from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.validity import Validity, count_flags, explain
 from contactlaw.table import file
 
@@ -87,7 +86,8 @@ def asked(model: ImpactModel, **sizes: float) -> dict[str, str]:
     """Repeat what the user asked: names of the materials and of the law, and sizes in SI units."""
     law, (sphere, plate) = model.force_law, model.pair.given
     name = law.family if law.from_pair else law.name
-    numbers = {f"{size}_{units()[size]}": f"{value!r}" for size, value in sizes.items()}
+    named = units() | {"mass": "kg"}
+    numbers = {f"{size}_{named[size]}": f"{value!r}" for size, value in sizes.items()}
     return {"sphere": sphere.name, "plate": plate.name, "law": name, **numbers}
 
 
@@ -111,6 +111,7 @@ def tabulate(
     radii: Sequence[float],
     thicknesses: Sequence[float],
     solve: bool = False,
+    mass: float | None = None,
 ) -> ImpactTable:
     """Look up every combination, or integrate it.
 
@@ -123,6 +124,8 @@ def tabulate(
         fastest.
     solve : bool, optional
         Whether to integrate the equation instead of using the table.
+    mass : float, optional
+        Mass that answers at the contact [kg], for beads that are no solid spheres.
 
     Raises
     ------
@@ -147,14 +150,17 @@ def tabulate(
     with wording.naming_impact(v, r, h):
         if not solve and _integrates(model):
             limited = model.outside == "raise"
-            rebound = _solver(model, limited).rebounds(Impacts.on_plates(v, r, h))
+            by = _solver(model, limited)
+            rebound = by.rebounds(by.bodies.given(v, r, h, mass=mass))
         else:
-            rebound = model.solve(v, r, h) if solve else model.lookup(v, r, h)
+            rebound = (model.solve if solve else model.lookup)(v, r, h, mass=mass)
     first = slice(None, None, len(speeds))  # first row of each bead on each plate
-    yields = np.repeat(yield_speeds(model, r[first], h[first]), len(speeds))
+    yields = np.repeat(yield_speeds(model, r[first], h[first], mass), len(speeds))
     found = asdict(rebound) | {"speed": v, "radius": r, "thickness": h, "yield_speed": yields}
     return ImpactTable(
-        {column.name: found[column.name] for column in COLUMNS}, found["flags"], asked(model)
+        {column.name: found[column.name] for column in COLUMNS},
+        found["flags"],
+        asked(model, **({} if mass is None else {"mass": mass})),
     )
 
 
@@ -172,7 +178,9 @@ def _solver(model: ImpactModel, limited: bool) -> Solver:
     return Solver(bodies, extent=extent(law) if limited else None)
 
 
-def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
+def yield_speeds(
+    model: ImpactModel, radius: Array, thickness: Array, mass: float | None = None
+) -> Array:
     """Yield speeds [m/s]; inf if an impact at that speed is outside the table.
 
     Other impacts on the same plate may be inside the table.
@@ -186,13 +194,14 @@ def yield_speeds(model: ImpactModel, radius: Array, thickness: Array) -> Array:
     """
     try:
         if _integrates(model):
-            return _solver(model, True).yield_speeds(Impacts.on_plates(1.0, radius, thickness))
-        return np.asarray(model.yield_speed(radius, thickness))
+            by = _solver(model, True)
+            return by.yield_speeds(by.bodies.given(1.0, radius, thickness, mass=mass))
+        return np.asarray(model.yield_speed(radius, thickness, mass))
     except ValueError:
         if radius.size == 1:
             return np.array([math.inf])
         parts = zip(np.split(radius, radius.size), np.split(thickness, radius.size), strict=True)
-        return np.concatenate([yield_speeds(model, r, h) for r, h in parts])
+        return np.concatenate([yield_speeds(model, r, h, mass) for r, h in parts])
 
 
 def text(table: ImpactTable, columns: Sequence[Column] = COLUMNS) -> Iterator[str]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from contactlaw import laws
 from contactlaw.cli.parts import quantities, wording
-from contactlaw.cli.parts.quantities import ANGLE, LENGTH, SHARE, SPEED, Quantity
+from contactlaw.cli.parts.quantities import ANGLE, LENGTH, MASS, SHARE, SPEED, Quantity
 from contactlaw.cli.parts.wording import OWN
 from contactlaw.physical.arguments import unlikely
 from contactlaw.physical.materials import Material, read_materials
@@ -51,6 +51,13 @@ def add_impact(command: argparse.ArgumentParser, read: Reader) -> None:
     command.add_argument(
         "--solve", action="store_true", help="integrate the equation instead of looking up"
     )
+
+
+def add_mass(command: argparse.ArgumentParser) -> None:
+    """Add the option of the mass of beads that are no solid spheres."""
+    command.add_argument("--mass", metavar="M", type=reader_of(quantities.value, MASS),
+        help="mass that answers at the contact [kg], or with a unit, of a hollow or coated bead or "
+        "of a clump (default: that of a solid sphere)")  # fmt: skip
 
 
 def add_speed(

@@ -47,6 +47,10 @@ TIME = Quantity(
 FORCE = Quantity(
     "force", {"N": Decimal(1), "kN": Decimal(1000), "mN": Decimal("1e-3"), "uN": Decimal("1e-6")}
 )
+MASS = Quantity(
+    "mass",
+    {"kg": Decimal(1), "g": Decimal("1e-3"), "mg": Decimal("1e-6"), "ug": Decimal("1e-9")},
+)
 SHARE = Quantity("share", {"-": Decimal(1), "1": Decimal(1), "%": Decimal("0.01")})
 ANGLE = Quantity(
     "angle", {"deg": Decimal(1), "rad": Decimal(180) / Decimal(math.pi), "°": Decimal(1)}

@@ -1,0 +1,138 @@
+"""Beads that are no solid spheres: the mass that answers at the contact."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import contactlaw as cl
+from contactlaw import laws
+from contactlaw.softsphere import Contacts, time_step
+
+ALUMINA = cl.material("gamma-alumina")
+HEAVY = dataclasses.replace(ALUMINA, name="heavy", density=1.7 * ALUMINA.density)
+RADIUS, THICKNESS = 0.9e-3, np.array([0.7e-3, 1e-3, 2e-3, math.inf])
+SPEED = np.array([1.0, 5.0, 12.0, 30.0])
+MASS = 4 / 3 * math.pi * HEAVY.density * RADIUS**3
+AT = SPEED, RADIUS, THICKNESS
+# Law fem knows the waves in a sphere, and so its density.
+OTHERS = [name for name in laws.names() if name != "fem"]
+
+
+def of_mass(law):
+    """The same bead: of a material with a mass of its own, and of a heavier material."""
+    return cl.ImpactModel(cl.Pair(ALUMINA, "glass"), law), cl.ImpactModel(
+        cl.Pair(HEAVY, "glass"), law
+    )
+
+
+def assert_alike(one, other, rel):
+    for name, values in vars(one).items():
+        np.testing.assert_allclose(values, getattr(other, name), rtol=rel, atol=1e-14, err_msg=name)
+
+
+@pytest.mark.parametrize("law", OTHERS)
+def test_it_is_as_a_sphere_of_another_density(law):
+    """Whatever is asked; tables of laws with numbers of the pair differ by their errors."""
+    own, heavy = of_mass(law)
+    assert_alike(own.solve(*AT, mass=MASS), heavy.solve(*AT), 1e-9)
+    assert_alike(own.lookup(*AT, mass=MASS), heavy.lookup(*AT), 1e-6)
+    assert own.restitution(*AT, mass=MASS) == pytest.approx(heavy.restitution(*AT), rel=1e-6)
+    near = {"edge": "clamped", "edge_distance": 1e-3}
+    assert_alike(own.solve(2.0, RADIUS, 1e-3, **near, mass=MASS),
+                 heavy.solve(2.0, RADIUS, 1e-3, **near), 1e-9)  # fmt: skip
+    yields = own.yield_speed(RADIUS, THICKNESS, MASS)
+    assert yields == pytest.approx(heavy.yield_speed(RADIUS, THICKNESS), rel=1e-6)
+    angled = 3.0, [0.3, 2.0], RADIUS, 2e-3, 0.2, "solve"
+    assert_alike(own.oblique(*angled, mass=MASS), heavy.oblique(*angled), 1e-9)
+    one, two = own.force_history(*AT, 9, "solve", mass=MASS), heavy.force_history(*AT, 9, "solve")
+    for values, others in zip(one, two, strict=True):
+        np.testing.assert_allclose(values, others, rtol=1e-8, atol=1e-8 * np.abs(others).max())
+
+
+def test_steps_are_as_those_of_a_sphere_of_another_density():
+    own, heavy = of_mass("myc")
+    step = time_step(own, 5.0, RADIUS, 1e-3, mass=MASS)
+    assert step == pytest.approx(time_step(heavy, 5.0, RADIUS, 1e-3), rel=1e-5)
+    forces = []
+    for contacts in (Contacts(own, RADIUS, 1e-3, mass=MASS), Contacts(heavy, RADIUS, 1e-3)):
+        assert contacts.mass == pytest.approx([MASS])
+        forces.append([contacts.advance(np.array([x]), step)[0] for x in np.linspace(0, 1e-5, 9)])
+    assert forces[0] == pytest.approx(forces[1], rel=1e-6)
+
+
+def test_velocities_after_a_collision():
+    own, heavy = of_mass("myc")
+    given = [3.0, 0, -2.0], [0, 50.0, 0], [0, 0, 1], RADIUS, 3e-3, 0.2
+    for one, other in zip(own.collide(*given, mass=MASS), heavy.collide(*given), strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-9)
+
+
+@pytest.mark.parametrize("share", [0.4, 1.0, 6.0])
+def test_the_equation_in_si_units(share):
+    """A mass on Hertz's spring in series with the plate's mobility, by another integrator."""
+    pair, speed, thickness = cl.Pair(ALUMINA, "glass"), 3.0, 0.8e-3
+    mass, plate = share * 4 / 3 * math.pi * ALUMINA.density * RADIUS**3, pair.plate
+    spring = 4 / 3 * pair.effective_modulus * math.sqrt(RADIUS)
+    mobility = math.sqrt(3 * plate.density / plate.plane_modulus) / (
+        4 * plate.density * thickness**2
+    )
+
+    def rates(_, state):
+        force = spring * max(state[0], 0.0) ** 1.5
+        return [state[1] - mobility * force, -force / mass]
+
+    def apart(_, state):
+        return state[0] + 1e-14
+
+    apart.terminal, apart.direction = True, -1
+    path = solve_ivp(rates, (0.0, 1e-3), [0.0, speed], rtol=1e-11, atol=1e-15, events=apart,
+                     max_step=1e-6)  # fmt: skip
+    hit = cl.ImpactModel(pair, "hertz").solve(speed, RADIUS, thickness, mass=mass)
+    assert hit.restitution == pytest.approx(-path.y[1, -1] / speed, rel=1e-5)
+    assert hit.contact_time == pytest.approx(path.t[-1], rel=1e-5)
+
+
+@pytest.mark.parametrize("law", ["fem", "myc"])
+def test_the_mass_of_the_solid_sphere_changes_nothing(law):
+    model = cl.ImpactModel(cl.Pair("bearing-steel-52100", "aluminium-2024-t351"), law)
+    mass = 4 / 3 * math.pi * model.pair.sphere.density * RADIUS**3
+    for ask in (model.solve, model.lookup):
+        assert_alike(ask(*AT, mass=mass), ask(*AT), 1e-9)
+
+
+def test_each_impact_has_its_own():
+    model = cl.ImpactModel(cl.Pair("carbon-steel-1020", "glass"))
+    solid = 4 / 3 * math.pi * model.pair.sphere.density * RADIUS**3
+    shares = np.array([[0.5], [1.0], [4.0]])
+    found = model.restitution(3.0, RADIUS, [1e-3, 2e-3], mass=shares * solid)
+    for n, share in enumerate(shares[:, 0]):
+        alone = [model.restitution(3.0, RADIUS, h, mass=share * solid) for h in (1e-3, 2e-3)]
+        assert found[n] == pytest.approx(alone, rel=1e-12)
+    assert (np.diff(found[:, 0]) < 0).all()  # a heavier bead loses more to the plate
+
+
+@pytest.mark.parametrize(
+    ("mass", "words"),
+    [
+        (0.05 * MASS, "a thin shell, which bends under the contact"),
+        (1e4 * MASS, "is it in grams"),
+        (0.0, "mass: got 0.0; must lie between"),
+        (-MASS, "mass: got -.* kilograms"),
+        (math.nan, "mass: got nan; must lie between"),
+        (math.inf, "mass: got inf; must lie between"),
+        ([MASS, 0.0], r"\(element 1\)"),
+        ("1 g", "mass: expected a number"),
+    ],
+)
+def test_masses_that_are_none(mass, words):
+    model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
+    for ask in (model.restitution, model.lookup, model.solve, model.force_history):
+        with pytest.raises(ValueError, match=words):
+            ask(3.0, RADIUS, 1e-3, mass=mass)
+    with pytest.raises(ValueError, match=words):
+        model.oblique(3.0, 1.0, RADIUS, 1e-3, 0.2, mass=mass)
+    with pytest.raises(ValueError, match=words):
+        Contacts(model, RADIUS, 1e-3, mass=mass)
