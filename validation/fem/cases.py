@@ -18,6 +18,7 @@ from tqdm import tqdm
 import contactlaw as cl
 from validation.fem import store
 from validation.fem.impact import impact
+from validation.fem.mesh import SOLID, Core
 from validation.fem.solver import SETTINGS
 from validation.paper.setting import PAIR, RADIUS
 
@@ -53,6 +54,7 @@ class Case:
     far: float = 1.0
     hourglass_stiffness: float = math.nan
     meshes: int = 2  # 1 or 2, see `solve`
+    core: Core = SOLID
 
     @property
     def pair(self) -> cl.Pair:
@@ -126,7 +128,7 @@ def _on_mesh(case: Case) -> dict[str, Any]:
     hit = impact(
         case.pair, case.speed, case.radius, case.thickness,
         friction=case.friction, yields=case.yields, plate_yields=case.plate_yields, far=case.far,
-        **given,
+        core=case.core, **given,
     )  # fmt: skip
     named = {
         "friction_loss": hit.friction,

@@ -45,6 +45,7 @@ class Body(NamedTuple):
     branches: Array  # (m, k, 4), stresses of the branches [Pa]
     shares: Array  # (k,), their moduli over those of all springs together
     times: Array  # (k,), their relaxation times [s]
+    relative: Array  # (m, 2), density and moduli of each element over those of the material
 
 
 @kernel
@@ -106,7 +107,9 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         )  # fmt: skip
         swap = spin * s_rz
         turn = 0.5 * spin * (s_zz - s_rr)
-        pressure, double = body.bulk * dt * (u_r + w_z + u_t), 2.0 * body.shear * dt
+        stiff = body.relative[e, 1]
+        shear = stiff * body.shear
+        pressure, double = stiff * body.bulk * dt * (u_r + w_z + u_t), 2.0 * shear * dt
         strain_r, strain_z = pressure + double * u_r, pressure + double * w_z
         strain_t, slip = pressure + double * u_t, 0.5 * double * (u_z + w_r)
         s_rr += swap + strain_r
@@ -118,7 +121,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
                 body, e, fading, spin, (strain_r, strain_z, strain_t, slip)
             )
             s_rr, s_zz, s_tt, s_rz = s_rr - f_rr, s_zz - f_zz, s_tt - f_tt, s_rz - f_rz
-            viscous += lost * area * r
+            viscous += lost / stiff * area * r
 
         # radial return
         mean = (s_rr + s_zz + s_tt) / 3.0
@@ -127,7 +130,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
         strength = slow_stress(body.flow, body.plastic_strain[e])
         if mises > strength * strength:
             mises = math.sqrt(mises)
-            strain, strength = returned(body.flow, mises, body.plastic_strain[e], body.shear, dt)
+            strain, strength = returned(body.flow, mises, body.plastic_strain[e], shear, dt)
             keep = strength / mises
             for k in range(body.shares.size):
                 back = body.shares[k] * (1.0 - keep)
@@ -179,7 +182,7 @@ def add_forces(body: Body, x: Array, v: Array, dt: float, force: Array) -> None:
     body.work[2] += viscous
 
 
-def lumped_mass(elements: Indices, x: Array, density: float) -> Array:
+def lumped_mass(elements: Indices, x: Array, density: float | Array) -> Array:
     """Mass of each node, per radian: a quarter of each of its elements.
 
     The volume of an element is its area times the mean radius of its nodes, since the forces of
@@ -204,8 +207,9 @@ def stable_step(body: Body, x: Array, density: float) -> float:
     r, z = np.moveaxis(x[body.elements], -1, 0)
     area = volumes(body.elements, x) / r.mean(axis=1)
     diagonals = sum((y[:, k] - y[:, k + 2]) ** 2 for y in (r, z) for k in (0, 1))
-    wave = math.sqrt((body.bulk + 2.0 * body.shear) / density)
-    return float(np.min(area / np.sqrt(0.5 * diagonals))) / wave
+    dense, stiff = body.relative.T
+    wave = np.sqrt((body.bulk + 2.0 * body.shear) * stiff / (density * dense))
+    return float(np.min(area / np.sqrt(0.5 * diagonals) / wave))
 
 
 def strain_energy(body: Body, x: Array) -> float:
@@ -214,7 +218,8 @@ def strain_energy(body: Body, x: Array) -> float:
     Its volumetric part is that of the law in use, p = -K ln J, at any compression J: a tenth of the
     volume is squeezed out under a contact at 7 V_Y0.
     """
-    bulk = body.bulk + 2.0 / 3.0 * body.shear
+    stiff = body.relative[:, 1]
+    bulk, shear = stiff * (body.bulk + 2.0 / 3.0 * body.shear), stiff * body.shear
     springs = np.moveaxis(body.branches, 1, 0), body.stress - body.branches.sum(axis=1)
     shares = np.append(body.shares, 1.0 - body.shares.sum())
     density = np.zeros(len(body.stress))
@@ -223,5 +228,5 @@ def strain_energy(body: Body, x: Array) -> float:
             pressure = -s[:, :3].mean(axis=1)
             squares = (s[:, :3] ** 2).sum(axis=1) + 2.0 * s[:, 3] ** 2 - 3.0 * pressure**2
             p = pressure / (share * bulk)
-            density += squares / (4.0 * share * body.shear) + share * bulk * (np.expm1(p) - p)
+            density += squares / (4.0 * share * shear) + share * bulk * (np.expm1(p) - p)
     return float(density @ volumes(body.elements, x))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import contactlaw as cl
 from contactlaw.physical.arguments import checked
 from validation.fem import elements, mesh, solver
-from validation.fem.mesh import Mesh
+from validation.fem.mesh import SOLID, Core, Mesh
 from validation.fem.solver import System
 
 Array = NDArray[np.float64]
@@ -109,6 +109,7 @@ def impact(
     far: float = 1.0,
     hourglass_stiffness: float | None = None,
     times: Sequence[float] = (),
+    core: Core = SOLID,
 ) -> Impact:
     """Let a sphere fall on a plate whose edge sends no wave back.
 
@@ -129,11 +130,14 @@ def impact(
         Distance of the plate's free edge from the axis [m]; at least the radius; by default
         so far that no wave returns within the contact time that the model expects.
     far : float, optional
-        Factor on the plate's elements away from the contact, 0.1 to 2, see `mesh.plate`.
+        Factor on the elements of plates and hollow spheres away from the contact, 0.1 to 2,
+        see `mesh.plate`.
     hourglass_stiffness : float, optional
         Stiffness of the sphere's hourglass modes, 0 to 1, see `solver.assemble`.
     times : sequence of float, optional
         Times at which to keep all positions [s].
+    core : Core, optional
+        What the sphere has inside; by default it is solid.
 
     Returns
     -------
@@ -155,7 +159,7 @@ def impact(
     >>> abs(hit.restitution - 0.51) < 0.02, hit.balance < 0.01
     (True, True)
     """
-    guess = expect(pair, speed, radius, thickness, yields, plate_yields)
+    guess = expect(with_mass(pair, core), speed, radius, thickness, yields, plate_yields)
     width = free_width(pair.plate, guess.time) if width is None else width
     size = min(_FINEST, guess.contact / radius / _ACROSS) if size is None else size
     stiffness = hourglass_stiffness or 0.0
@@ -164,7 +168,7 @@ def impact(
         width=(width, radius, math.inf, "metres, from the radius on"), far=(far, 0.1, 2.0, ""),
         hourglass_stiffness=(stiffness, 0.0, 1.0, "of the stiffness of bending"),
     )  # fmt: skip
-    meshes = meshed(guess, radius, thickness, size, width, far)
+    meshes = meshed(guess, radius, thickness, size, width, far, core)
     materials = pair.sphere, pair.plate
     soft = _SOFT * mesh.CORE * guess.contact
     system = solver.assemble(
@@ -236,15 +240,28 @@ def expect(
     return Expected(float(found.contact_time), math.sqrt(radius * float(found.peak_compression)))
 
 
+def with_mass(pair: cl.Pair, core: Core) -> cl.Pair:
+    """Pair whose solid sphere is as heavy as one with the core."""
+    sphere = dataclasses.replace(pair.sphere, density=core.mass * pair.sphere.density)
+    return cl.Pair(sphere, pair.plate)
+
+
 def meshed(
-    guess: Expected, radius: float, thickness: float, size: float, width: float, far: float = 1.0
+    guess: Expected,
+    radius: float,
+    thickness: float,
+    size: float,
+    width: float,
+    far: float = 1.0,
+    core: Core = SOLID,
 ) -> tuple[Mesh, Mesh]:
     """Sphere and plate for an expected impact; lengths [m], `size` over the radius."""
-    fine, core = size * radius, mesh.CORE * guess.contact
-    return (
-        mesh.sphere(radius, fine, core),
-        mesh.plate(radius, fine, core, thickness, width, far),
-    )
+    fine = size * radius, mesh.CORE * guess.contact
+    if core.density:
+        above = mesh.layered(radius, *fine, core)
+    else:
+        above = mesh.hollow(radius, *fine, (1.0 - core.radius) * radius, far)
+    return above, mesh.plate(radius, *fine, thickness, width, far)
 
 
 def free_width(plate: cl.Material, contact_time: float) -> float:

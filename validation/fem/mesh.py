@@ -6,6 +6,7 @@ the plate below.
 
 from __future__ import annotations
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,7 @@ Indices = NDArray[np.int64]
 CORE = 1.3  # finest part, over the contact's expected radius sqrt(R d)
 _FAR_CORE = 1.2  # width of the part around the far pole [R]
 _GROWTH = 1.1  # size of one element of the plate over its neighbour
+_OF_SHELL = 0.5  # factor on the elements of a hollow sphere: waves bend it
 _COARSEST = 0.15  # largest element of the plate [R] ...
 _LAYERS = 24  # ... or this part of its thickness: waves are at least 20 times longer
 
@@ -28,6 +30,23 @@ class Mesh(NamedTuple):
     nodes: Array  # (n, 2), r and z [m]
     elements: Indices  # (m, 4), counter-clockwise in the (r, z) plane
     surface: Indices  # (s,), nodes that may touch the other body, from the axis outwards
+    relative: Array | None = None  # (m, 2), density and moduli over the material's; None: all 1
+
+
+class Core(NamedTuple):
+    """Ball of another material about the centre of a sphere, bonded to the shell around it."""
+
+    radius: float  # [R]
+    density: float = 0.0  # over the shell's; 0: it is empty
+    modulus: float = 0.0  # over the shell's
+
+    @property
+    def mass(self) -> float:
+        """Mass of the sphere, over that of a solid one of the shell's material."""
+        return 1.0 - (1.0 - self.density) * self.radius**3
+
+
+SOLID = Core(0.0, 1.0, 1.0)
 
 
 def sphere(radius: float, size: float, core: float, hemisphere: bool = False) -> Mesh:
@@ -116,6 +135,34 @@ def plate(
     z = -_graded(thickness, size, 0.0, coarsest, _GROWTH**far)[::-1]
     index = np.arange(r.size * z.size).reshape(z.size, r.size)
     return Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
+
+
+def hollow(
+    radius: float, size: float, core: float, thickness: float, far: float = 1.0
+) -> Mesh:
+    """Half of a hollow sphere: the mesh of a plate as long as its meridian, bent.
+
+    The map is conformal: it makes elements smaller towards the centre.
+
+    Examples
+    --------
+    >>> mesh = hollow(1.0, 0.05, 0.3, 0.4)
+    >>> distance = np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1] - 1.0)
+    >>> [round(float(v), 9) for v in (distance.min(), distance.max())]
+    [0.6, 1.0]
+    """
+    depth = -radius * math.log(1.0 - thickness / radius)
+    flat = plate(radius, size, core, depth, math.pi * radius, _OF_SHELL * far)
+    turned = radius * np.exp((flat.nodes @ (1j, 1.0)) / radius)  # from the centre
+    return Mesh(_points(1j * (radius - turned)), flat.elements[:, ::-1], flat.surface)
+
+
+def layered(radius: float, size: float, core: float, inside: Core) -> Mesh:
+    """Half of a sphere with a core: elements with their centre in the core belong to it."""
+    whole = sphere(radius, size, core)
+    centres = whole.nodes[whole.elements].mean(axis=1)
+    within = np.hypot(centres[:, 0], centres[:, 1] - radius) < inside.radius * radius
+    return whole._replace(relative=np.where(within[:, None], inside[1:], 1.0))
 
 
 def _disc(u: NDArray[Any], radius: float) -> NDArray[np.complex128]:

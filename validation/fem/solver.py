@@ -88,6 +88,7 @@ def body(
     The losses of a material are followed about the frequency of a contact of the length given.
     """
     m = len(mesh.elements)
+    relative = np.ones((m, 2)) if mesh.relative is None else mesh.relative
     ratio, lossy = material.poissons_ratio, prony.series(material, contact_time)
     shear = 0.5 * lossy.whole * material.youngs_modulus / (1.0 + ratio)
     return Body(
@@ -98,11 +99,12 @@ def body(
         work=np.zeros(3),
         bulk=2.0 * shear * ratio / (1.0 - 2.0 * ratio),
         shear=shear,
-        bending=np.full(m, bending) * material.plane_modulus,
+        bending=np.full(m, bending) * material.plane_modulus * relative[:, 1],
         flow=flow_stress(material.flow if yields else None),
         branches=np.zeros((m, lossy.times.size, 4)),
         shares=lossy.moduli / lossy.whole,
         times=lossy.times,
+        relative=relative,
     )
 
 
@@ -166,7 +168,7 @@ def assemble(
     )  # fmt: skip
     mass = np.zeros(len(x))
     for one, material in zip(bodies, materials, strict=True):
-        mass += elements.lumped_mass(one.elements, x, material.density)
+        mass += elements.lumped_mass(one.elements, x, material.density * one.relative[:, 0])
     inverse_mass = np.repeat(1.0 / mass[:, None], 2, axis=1)
     inverse_mass[x[:, 0] == 0.0, 0] = 0.0  # the axis
     slaves = above.surface.size
