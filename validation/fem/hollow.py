@@ -7,10 +7,8 @@ core vibrates otherwise than the solid spheres that the law `fem` was fitted to.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import numpy as np
-from numpy.typing import NDArray
+from dataclasses import asdict, replace
+from typing import NamedTuple
 
 import contactlaw as cl
 from validation.fem import fit, journal, store
@@ -18,18 +16,13 @@ from validation.fem.cases import Case
 from validation.fem.impact import with_mass
 from validation.fem.mesh import SOLID, Core
 
-Array = NDArray[np.float64]
-
 NAME = "hollow"
 RADIUS = 1e-3  # [m]
 SHELLS = 0.7, 0.5, 0.4, 0.3, 0.25, 0.2, 0.15, 0.1  # thickness [R]
 # A light and a dense core as stiff as the shell; a foam; ones as stiff as carbides, or as lead
-CORES = tuple(
-    Core(*numbers)
-    for numbers in (
-        (0.7, 0.3, 1.0), (0.7, 3.0, 1.0), (0.8, 0.2, 0.02), (0.7, 0.4, 3.0), (0.7, 2.0, 3.0),
-        (0.7, 1.4, 0.1), (0.8, 5.0, 1.0),
-    )
+CORES = (
+    Core(0.7, 0.3, 1.0), Core(0.7, 3.0, 1.0), Core(0.8, 0.2, 0.02), Core(0.7, 0.4, 3.0),
+    Core(0.7, 2.0, 3.0), Core(0.7, 1.4, 0.1), Core(0.8, 5.0, 1.0),
 )  # fmt: skip
 _USUAL = SOLID, Core(0.5), Core(0.6), Core(0.7), Core(0.75), CORES[1]
 _ALL = "bearing-steel-52100", "glass"  # plates of the series with more spheres than these
@@ -59,7 +52,31 @@ def listed() -> list[Case]:
     return [*cases, replace(finer, size=0.0034, far=0.5)]
 
 
-def compute(_: str, processes: int) -> None:
+def compute(processes: int) -> None:
     """Compute the impacts."""
     about = "hollow and layered spheres; core: its radius [R], density and modulus over the shell's"
     journal.impacts(NAME, about, listed(), processes)
+
+
+class Compared(NamedTuple):
+    """One impact: finite elements beside the law `fem`; errors are relative to finite elements."""
+
+    case: Case
+    fem: float  # COR
+    law: float  # COR
+    other: float  # share of the energy that the law leaves in vibration and friction
+    restitution: float
+    contact_time: float
+    peak_force: float
+
+
+def compared() -> list[Compared]:
+    """Compare the stored impacts with the model, which knows the sphere's mass alone."""
+    data, rows = store.read(NAME).data, []
+    for n, case in enumerate(listed()):
+        pair = with_mass(fit.pair_of(asdict(case)), case.core)
+        hit = cl.ImpactModel(pair).solve(case.speed, case.radius, case.thickness)
+        errors = (float(getattr(hit, k)) / data[k][n] - 1.0 for k in Compared._fields[-3:])
+        found = data["restitution"][n], float(hit.restitution), float(hit.other_fraction)
+        rows.append(Compared(case, *found, *errors))
+    return rows

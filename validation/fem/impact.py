@@ -260,7 +260,7 @@ def meshed(
     if core.density:
         above = mesh.layered(radius, *fine, core)
     else:
-        above = mesh.hollow(radius, *fine, (1.0 - core.radius) * radius, far)
+        above = mesh.hollow(radius, *fine, core, far)
     return above, mesh.plate(radius, *fine, thickness, width, far)
 
 

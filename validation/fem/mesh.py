@@ -137,21 +137,19 @@ def plate(
     return Mesh(_points(r + 1j * z[:, None]), _cells(index), index[-1])
 
 
-def hollow(
-    radius: float, size: float, core: float, thickness: float, far: float = 1.0
-) -> Mesh:
+def hollow(radius: float, size: float, core: float, inside: Core, far: float = 1.0) -> Mesh:
     """Half of a hollow sphere: the mesh of a plate as long as its meridian, bent.
 
     The map is conformal: it makes elements smaller towards the centre.
 
     Examples
     --------
-    >>> mesh = hollow(1.0, 0.05, 0.3, 0.4)
+    >>> mesh = hollow(1.0, 0.05, 0.3, Core(0.6))
     >>> distance = np.hypot(mesh.nodes[:, 0], mesh.nodes[:, 1] - 1.0)
     >>> [round(float(v), 9) for v in (distance.min(), distance.max())]
     [0.6, 1.0]
     """
-    depth = -radius * math.log(1.0 - thickness / radius)
+    depth = -radius * math.log(inside.radius)
     flat = plate(radius, size, core, depth, math.pi * radius, _OF_SHELL * far)
     turned = radius * np.exp((flat.nodes @ (1j, 1.0)) / radius)  # from the centre
     return Mesh(_points(1j * (radius - turned)), flat.elements[:, ::-1], flat.surface)
