@@ -169,7 +169,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             Radius of the hole whose rim the edge is [m]; ``inf`` is a straight edge.
         mass : array_like, optional
             Mass that answers at the contact [kg], of beads that are no solid spheres: hollow or
-            coated ones, clumps; 0.2 to 1000 times that of the solid sphere. See docs/materials.md.
+            coated ones, clumps; 0.65 to 1000 times that of the solid sphere. See docs/laws.md.
 
         Returns
         -------

@@ -45,7 +45,7 @@ class ModulusGrowth(NamedTuple):
     wave_slope: float
 
 
-LIGHTEST, HEAVIEST = 0.2, 1e3
+LIGHTEST, HEAVIEST = 0.65, 1e3
 """Masses that answer at a contact, over that of a solid sphere; a lighter one is a thin shell."""
 
 ELASTIC = ModulusGrowth(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

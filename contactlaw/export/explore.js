@@ -1,7 +1,7 @@
 // The page: what is asked, in SI units and degrees, and all that follows from it.
 const SLIDERS = { // unit and its size; ends: from 0 on evenly, others by equal factors
   speed: ["m/s", 1, 0.05, 50], radius: ["mm", 1e-3, 5e-5, 0.01], thickness: ["mm", 1e-3, 5e-5, 0.1],
-  mass: ["×", 1, 0.2, 5], angle: ["°", 1, 0, 85], friction: ["", 1, 0, 1] };
+  mass: ["×", 1, 0.65, 5], angle: ["°", 1, 0, 85], friction: ["", 1, 0, 1] };
 const asked = { speed: 2, radius: 1e-3, thickness: 2e-3, mass: 1, angle: 0, friction: 0.2 };
 const COLOURS = { rebound: BLUE, wave: "#56b4e9", plastic: "#e69f00", other: "#cc79a7",
   friction: "#009e73" };

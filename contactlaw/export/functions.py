@@ -46,7 +46,7 @@ from contactlaw.physical.oblique import FASTEST, rebound_of, sliding, unit
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import constants_of, log_overload, wave_path, wave_rate
 from contactlaw.physical.strengths import COARSE, by_strength
-from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength
+from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength, mass_flags
 from contactlaw.stepping.edge import Near
 from contactlaw.stepping.energy import Point, dot
 from contactlaw.stepping.friction import FRICTION, clear_friction, tangential_force
@@ -429,7 +429,7 @@ def exceeded(pair: Bodies, hit: Answer, impact: Impact) -> int:
     if not (hit.restitution >= 0.0 and is_valid(impact)):
         return -1
     units = numbers_of(pair, impact)
-    return flags_of(
+    return mass_flags(impact.mass) | flags_of(
         limits_at(pair.limits, units.strength), impact.radius, impact.thickness, units.compression,
         hit.contact_time, hit.peak_compression, hit.peak_force,
     )  # fmt: skip

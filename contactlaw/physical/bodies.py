@@ -21,7 +21,7 @@ from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import constants_of, numbers_of, without_plate
 from contactlaw.physical.strengths import by_strength
-from contactlaw.physical.validity import Limits, limits, limits_by_strength
+from contactlaw.physical.validity import Limits, limits, limits_by_strength, mass_flags
 
 Array = NDArray[np.float64]
 
@@ -81,6 +81,10 @@ class SphereOnPlate:
         """Dimensionless numbers and units of impacts."""
         return numbers_of(self.constants, self.data, impact)
 
+    def mass_flags(self, impacts: Impacts) -> NDArray[np.int64]:
+        """Limits that masses exceed."""
+        return np.array([mass_flags(one) for one in self.impact(impacts).mass], dtype=np.int64)
+
 
 def beside(mass: Array, solid: Array) -> NDArray[np.bool_]:
     """Whether masses are such as the model is for, beside those of solid spheres."""
@@ -107,3 +111,7 @@ class TwoSpheres(SphereOnPlate):
     def constants(self) -> PairConstants:
         """Constants from which the dimensionless numbers of impacts follow."""
         return without_plate(constants_of(self.pair, self.law))
+
+    def mass_flags(self, impacts: Impacts) -> NDArray[np.int64]:
+        """None: the mass is that of both."""
+        return np.zeros(impacts.speed.size, dtype=np.int64)

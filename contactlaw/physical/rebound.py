@@ -148,6 +148,8 @@ def rebound(
         bodies.limits_by_strength, impacts.speed, impacts.radius, impacts.thickness, time,
         bodies.mass(impacts), yield_ratio, outcome, found, out, flags,
     )  # fmt: skip
+    if impacts.mass is not None:
+        flags |= bodies.mass_flags(impacts)
     shape = impacts.shape
     named = {**out._asdict(), **found._asdict(), "restitution": outcome.restitution}
     if wrong != 0.0:
