@@ -40,8 +40,7 @@ def listed() -> list[Case]:
     cases = [
         Case(
             speed, RADIUS / slenderness, RADIUS, sphere, plate,
-            yields=yields, plate_yields=plate_yields, meshes=2 if yields or plate_yields else 1,
-            core=core,
+            yields=yields, plate_yields=plate_yields, core=core,
         )
         for sphere, plate, speed, yields, plate_yields, slendernesses in SERIES
         for slenderness in slendernesses
