@@ -67,6 +67,7 @@ def test_the_mass_is_all_that_counts_where_the_inside_is_as_stiff(rows):
 def test_the_mesh_is_fine_enough(rows):
     same = next(one for one in rows if one.case.yields and one.case.core == rows[-1].case.core)
     assert rows[-1].fem == pytest.approx(same.fem, rel=1e-3)
+    assert store.read("hollow").data["mesh_error"].max() < 0.014
 
 
 @pytest.mark.parametrize(
