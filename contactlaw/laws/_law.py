@@ -245,7 +245,7 @@ def laid_out_alike(
 
     Their branches are the same; `vanished` and `widest` are as in `Cuts`.
     """
-    cuts = Cuts(vanished, widest)
+    cuts = Cuts(vanished, widest, checked=False)
     while True:
         made, pieces = [], []
         for one in laws:

@@ -86,8 +86,8 @@ _ELASTIC_BEYOND = 0.98
 ALONE = 0.36  # z, ratio of the strengths, below which the stronger body does not yield
 _POWERS = (5, 4)  # number of powers of t and of w
 # Gauss' rules for whole panels of the loading work, and for the last part of one up to a q
-_PANEL, _LAST = (np.polynomial.legendre.leggauss(count) for count in (24, 12))
-_PANELS = 12
+_PANEL, _LAST = (np.polynomial.legendre.leggauss(count) for count in (20, 10))
+_WIDTH = 0.15  # of panels, in sqrt(ln q): they are narrow next to yield
 
 
 @functools.cache
@@ -321,24 +321,22 @@ class Curves:
         return np.asarray(q**3 * (1.0 + self.stiffening * q) / self._over("loading", q))
 
     def work(self, q: Array) -> Array:
-        """Integrate the force: exactly up to yield, beyond by Gauss' rule over x = sqrt(ln q)."""
+        """Integrate the force: exactly up to yield, beyond by Gauss' rule over ln q."""
         start = np.minimum(q, 1.0) if self.ratio else q
-        elastic = 0.4 * start**5 + self.stiffening / 3.0 * start**6
+        elastic = np.asarray(0.4 * start**5 + self.stiffening / 3.0 * start**6)
         if not self.ratio:
-            return np.asarray(elastic)
+            return elastic
 
-        def between(low: Array, half: Array, rule: tuple[Array, Array]) -> Array:
-            x = low[..., None] + half[..., None] * (1.0 + rule[0])
-            at = np.exp(x * x)
-            return np.asarray(half * ((4.0 * x * at**2 * self.force(at)) @ rule[1]))
+        def beyond(low: Array, high: Array, rule: tuple[Array, Array]) -> Array:
+            half = 0.5 * np.log(high / low)
+            at = low[..., None] * np.exp(half[..., None] * (1.0 + rule[0]))
+            return np.asarray(half * ((2.0 * at**2 * self.force(at)) @ rule[1]))
 
-        x = np.sqrt(np.log(np.maximum(q, 1.0)))
-        width = max(float(x.max()), 1e-3) / _PANELS
-        ends = width * np.arange(_PANELS)
-        done = np.append(0.0, np.cumsum(between(ends, np.full_like(ends, 0.5 * width), _PANEL)))
-        panel = np.floor(x / width).astype(int)
-        low = width * panel
-        return np.asarray(elastic + done[panel] + between(low, 0.5 * (x - low), _LAST))
+        above = np.maximum(q, 1.0)
+        panel = (np.sqrt(np.log(above)) / _WIDTH).astype(int)
+        ends = np.exp((_WIDTH * np.arange(panel.max() + 1)) ** 2)
+        done = np.append(0.0, np.cumsum(beyond(ends[:-1], ends[1:], _PANEL)))
+        return elastic + done[panel] + beyond(ends[panel], above, _LAST)
 
     def residual(self, q: Array) -> Array:
         """Residual compression after loading to q^2, over (q^2 - 1)^2; from yield on.
