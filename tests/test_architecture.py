@@ -42,7 +42,7 @@ FILES = {
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "slides", "strengths", "file", "cache"],
     "answers": ["backend", "solver", "tabulated", "rated", "edges", "beads", "compiled", "constant",
-                "histories", "loads", "oblique", "sensitivity", "speed_table", "law_errors",
+                "histories", "loads", "oblique", "varied", "sensitivity", "speed_table", "law_errors",
                 "uncertainty", "inverse"],
     "walls": ["memory", "edges", "motion", "plate", "mesh", "grid", "frame", "facet", "surface",
               "rest"],

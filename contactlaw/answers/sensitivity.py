@@ -24,7 +24,6 @@ but for bodies with a rate of strain, hardening or losses, whose other constants
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -34,17 +33,17 @@ from numpy.typing import NDArray
 
 from contactlaw import laws
 from contactlaw.answers import rated
-from contactlaw.answers.solver import solved, within
+from contactlaw.answers.solver import solved
 from contactlaw.answers.tabulated import Border, Tabulated
+from contactlaw.answers.varied import Number, solver, with_numbers
 from contactlaw.equation import outcome
 from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import shaped
-from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.law import law_for_pair, pair_numbers
+from contactlaw.physical.law import pair_numbers
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import scaled
+from contactlaw.physical.strengths import USUAL
 from contactlaw.table import lookup
 from contactlaw.table.nodes import Table
 
@@ -190,25 +189,30 @@ def by_inputs(pair: Pair, law: Law, impacts: Impacts, yields: NDArray[np.bool_])
 
     If the law takes numbers from the pair, they change with the inputs.
     """
-    speed, radius, thickness = impacts.speed, impacts.radius, impacts.thickness
     bodies = pair.sphere, pair.plate
 
-    def by(move: Callable[[float], tuple[Pair, Array, Array, Array]]) -> Array:
-        ends = (move(math.exp(step)) for step in (-_STEP, _STEP))
-        low, high = (_moved(one, law, *sizes) for one, *sizes in ends)
+    def by(*inputs: str | Number) -> Array:
+        def cor(factor: float) -> Array:
+            sizes = {name: getattr(impacts, name) for name in ("speed", "radius", "thickness")}
+            numbers = {}
+            for one in inputs:
+                if isinstance(one, str):
+                    sizes[one] = factor * sizes[one]
+                else:
+                    numbers[one] = factor * getattr(getattr(pair, one[0]), one[1], 1.0)
+            other = with_numbers(bodies, numbers)
+            made = solver(other, law, sizes["speed"] / sizes["radius"], _RTOL, USUAL)
+            hit = made.rebounds(Impacts(**sizes, shape=impacts.speed.shape))
+            return np.asarray(hit.restitution)
+
+        low, high = (cor(math.exp(step)) for step in (-_STEP, _STEP))
         with np.errstate(invalid="ignore", divide="ignore"):  # ln(0/0)
             quotient = np.log(high / low) / (2.0 * _STEP)
         return np.where(np.isfinite(quotient), quotient, 0.0)
 
-    def by_number(number: str, *roles: str) -> Array:
-        return by(lambda x: (_changed(pair, number, x, roles), speed, radius, thickness))
-
-    by_speed = by(lambda x: (pair, x * speed, radius, thickness))
-    by_thickness = by(lambda x: (pair, speed, radius, x * thickness))
-    by_density = by_number("density", "sphere")
-    by_modulus = by_number("youngs_modulus", "sphere")
-    stronger = by(lambda x: (Pair(*(scaled(one, x) for one in bodies)), speed, radius, thickness))
-    by_strength = np.where(yields, stronger, 0.0)
+    by_speed, by_thickness = by("speed"), by("thickness")
+    by_density, by_modulus = by(("sphere", "density")), by(("sphere", "youngs_modulus"))
+    by_strength = np.where(yields, by(("sphere", "flow_stress"), ("plate", "flow_stress")), 0.0)
     named = {
         "speed": by_speed,
         "radius": -by_thickness,
@@ -222,27 +226,10 @@ def by_inputs(pair: Pair, law: Law, impacts: Impacts, yields: NDArray[np.bool_])
     if any(body.rate or body.loss_factor or isinstance(body.hardening, float) for body in bodies):
         # other inputs with a unit are held: rate0, the frequency at which moduli are known, or the
         # hardness from which two strengths follow
-        named["radius"] = by(lambda x: (pair, speed, x * radius, thickness))
-        named["plate_density"] = by_number("density", "plate")
-        named["plate_modulus"] = by_number("youngs_modulus", "plate")
+        named["radius"] = by("radius")
+        named["plate_density"] = by(("plate", "density"))
+        named["plate_modulus"] = by(("plate", "youngs_modulus"))
     return Sensitivity(**{name: shaped(values, impacts.shape) for name, values in named.items()})
-
-
-def _changed(pair: Pair, number: str, factor: float, roles: tuple[str, ...]) -> Pair:
-    """Multiply a number of the bodies that have it."""
-    bodies = {"sphere": pair.sphere, "plate": pair.plate}
-    for role in roles:
-        value = getattr(bodies[role], number)
-        if value is not None:
-            bodies[role] = dataclasses.replace(bodies[role], **{number: factor * value})
-    return Pair(**bodies)
-
-
-def _moved(pair: Pair, law: Law, speed: Array, radius: Array, thickness: Array) -> Array:
-    """COR of impacts of other bodies, integrated, with the law's numbers for those bodies."""
-    bodies = SphereOnPlate(pair, law_for_pair(pair, law))
-    units = bodies.numbers(bodies.impact(Impacts(speed, radius, thickness, None)))
-    return np.asarray(within(bodies.data, units, _RTOL, None).restitution)
 
 
 def _yields(found: Outcome) -> NDArray[np.bool_]:

@@ -246,14 +246,17 @@ def laid_out_alike(
     Their branches are the same; `vanished` and `widest` are as in `Cuts`.
     """
     cuts = Cuts(vanished, widest, checked=False)
-    while True:
-        made, pieces = [], []
-        for one in laws:
-            end = one["range"][1]
-            made.append(expanded(one["name"], one["loading"], one["unloading"], end, cuts))
-            pieces.append([shares.size for shares in cuts.shares])
-        if pieces[0] == pieces[-1]:  # no law needed more pieces than those before
-            return packed(made)
+    made: list[Any] = [None] * len(laws)
+    counts: list[Any] = [None] * len(laws)  # of pieces
+    n = 0
+    while counts.count(counts[n]) < len(laws) or made[n] is None:
+        one = laws[n]
+        end = one["range"][1]
+        made[n] = expanded(one["name"], one["loading"], one["unloading"], end, cuts)
+        counts[n] = [shares.size for shares in cuts.shares]
+        stale = [m for m in range(len(laws)) if counts[m] != counts[n]]
+        n = stale[0] if stale else n
+    return packed(made)
 
 
 def _written(family: str, parameters: Mapping[str, float]) -> str:

@@ -117,8 +117,9 @@ def _within(value: float, most: float) -> float:
 
 def _sized(powers: list[list[float]]) -> Array:
     """Pad coefficients of powers of t and w with zeros to `_POWERS`."""
-    found = np.array(powers)
-    return np.pad(found, [(0, most - n) for most, n in zip(_POWERS, found.shape, strict=True)])
+    found = np.zeros(_POWERS)
+    found[: len(powers), : len(powers[0])] = powers
+    return found
 
 
 def yield_scale(ratio: float, poissons_ratio: float) -> float:
@@ -336,7 +337,7 @@ class Curves:
         panel = (np.sqrt(np.log(above)) / _WIDTH).astype(int)
         ends = np.exp((_WIDTH * np.arange(panel.max() + 1)) ** 2)
         done = np.append(0.0, np.cumsum(beyond(ends[:-1], ends[1:], _PANEL)))
-        return elastic + done[panel] + beyond(ends[panel], above, _LAST)
+        return np.asarray(elastic + done[panel] + beyond(ends[panel], above, _LAST))
 
     def residual(self, q: Array) -> Array:
         """Residual compression after loading to q^2, over (q^2 - 1)^2; from yield on.
@@ -393,7 +394,7 @@ class Strains(NamedTuple):
 
     def ratios(self, given: Given, w: Any) -> tuple[Any, Any]:
         """E*/sigma of sphere and plate at a depth, or at an array of them."""
-        return given.ratios(self.slope * np.maximum(w - self.start, 0.0))
+        return given.ratios(self.slope * max(w - self.start, 0.0))
 
     def typical(self, given: Given) -> Given:
         """Bodies without hardening, with the strengths that these have at a typical depth."""
@@ -435,16 +436,15 @@ class HardeningCurves(Curves):
         blend, (_, taken) = float(found["blend"]), strains(given, found)
         typical = taken.typical(given)
         super().__init__(typical, found)
-        flow = typical.flow(blend).values()
+        flow = list(typical.flow(blend).values())
         self.onset = Given(*given[:5]).yield_scale(blend)
         root = math.sqrt(self.scale)
 
         def stronger(w: Any) -> Any:
             """Strength over that at the typical depth; both bodies' by their share of the flow."""
-            known = [
-                one for one in zip(flow, typical, taken.ratios(given, w), strict=False) if one[0]
-            ]
-            return np.prod([(then / now) ** share for share, then, now in known], axis=0)
+            now = taken.ratios(given, w)
+            shares = zip(flow, typical, now, strict=False)
+            return math.prod((then / now) ** share for share, then, now in shares if share)
 
         # A body of a low Poisson's ratio yields before its strain begins. The steep rise of its
         # strength there would stop the flow again, so that its strain begins before yield, too.
