@@ -131,7 +131,7 @@ class Variants:
             if not change.roles:
                 sizes[change.name] = sizes[change.name] * math.exp(z * change.error)
         rates = 0.5 * np.log10(sizes["speed"] / sizes["radius"])
-        ends = 2.0 * math.floor(rates.min()), 2.0 * math.ceil(rates.max())
+        ends = 2.0 * math.floor(rates.min(initial=4.0)), 2.0 * math.ceil(rates.max(initial=0.0))
         found = self.solver(tuple(one for one in moved if one[0].roles), *ends)
         return found.rebounds(Impacts(**sizes, shape=(impacts.speed.size,)))
 

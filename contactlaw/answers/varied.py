@@ -73,7 +73,7 @@ def solver(pair: Pair, law: Law, rates: Array, rtol: float, fineness: Fineness =
 
     Answers are right but for the flags of pairs with a rate of strain.
     """
-    low, high = float(rates.min()) / _MARGIN, float(rates.max()) * _MARGIN
+    low, high = rates.min(initial=REACH).item() / _MARGIN, rates.max(initial=0.0).item() * _MARGIN
     own = without_curves if rated(pair, law) else law_for_pair
     fineness = fineness._replace(slowest=low, fastest=high)
     return Solver(_Varied(pair, own(pair, law), fineness), rtol)
