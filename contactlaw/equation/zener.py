@@ -321,7 +321,7 @@ def _sum(coefficients: Array, t: float) -> float:
     one = two = 0.0
     for n in range(coefficients.size - 1, 0, -1):
         one, two = coefficients[n] + 2.0 * t * one - two, one
-    return coefficients[0] + t * one - two
+    return float(coefficients[0] + t * one - two)
 
 
 @kernel(cache=True)
