@@ -30,7 +30,7 @@ LAYERS = [
     {"dashpot", "walls"},
     {"stepping"},  # the contacts of a time step; no engine
     {"softsphere"},
-    {"export", "turning_point", "report"},
+    {"export", "report"},
     {"engines"},
     {"cli"},
 ]

@@ -374,7 +374,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
                     None if model_error is None else model_error / fitted,
                 ),
                 *(alternative_note(names, other) for other in others),
-                *doubts(predictor, at, slopes, error, found.total, model),
+                *doubts(predictor, at, error, found.total, model),
             ]
         ),
         pair=bodies.pair,

@@ -99,11 +99,6 @@ class Predictor:
         """Bodies and sizes with these values."""
         return setting(self.pair, self.data, self.parameters, values)
 
-    def slenderness(self, values: Array) -> float:
-        """Largest R/H."""
-        at = self.setting(values)
-        return float(np.max(at.radius / at.thickness))
-
     def flagged(self, values: Array) -> Rebound:
         """Everything about the rebounds."""
         return impacts(self.setting(values), self.law, np.array(self.data.speed))

@@ -16,8 +16,6 @@ from contactlaw.equation.force import UnloadingCurve
 from contactlaw.laws._branches import END, Array, Loading, Unloading
 from contactlaw.laws._expansion import Cuts, check_yield, expanded, horner, packed
 
-_CORNER = 1e-4  # relative jump of the slope at a kink; finite differences err by 1e-8
-
 
 @dataclass(frozen=True, eq=False)
 class Law:
@@ -208,14 +206,6 @@ class Law:
             values += [_sample(self.data, math.sqrt(d), family=False)[0]]
             values += _sample(self.data, d, family=True)
         return values
-
-    def has_corner(self, kink: float) -> bool:
-        """Whether the slope of the loading curve jumps at one of its kinks."""
-        q, h = math.sqrt(kink), 1e-4
-        force = [_sample(self.data, q + n * h, family=False)[0] for n in (-2, -1, 0, 1, 2)]
-        before = 3.0 * force[2] - 4.0 * force[1] + force[0]
-        after = -3.0 * force[2] + 4.0 * force[3] - force[4]
-        return abs(after - before) > _CORNER * before
 
     def loading(self, q: float) -> float:
         """Force [F_Y] at the compression q^2 [d_Y] while it grows."""
