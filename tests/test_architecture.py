@@ -134,7 +134,7 @@ def level(name):
 @pytest.mark.parametrize("path", KERNELS, ids=lambda path: path.stem)
 def test_kernels_know_neither_units_nor_files(path):
     allowed = {"__future__", "math", "collections.abc", "typing", "numpy", "numpy.typing"}
-    allowed |= {"dataclasses", "itertools"}
+    allowed |= {"dataclasses", "functools", "itertools"}
     for name in imported(path):
         parent = name.rpartition(".")[0]
         known = name in allowed or parent in allowed or name == "contactlaw"

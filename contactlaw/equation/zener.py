@@ -17,7 +17,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebvander
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import at_first_as_python, kernel
@@ -311,7 +310,10 @@ def _just_yielding() -> Array:
         law = np.append(HERTZ, [s, 0.0, 0.0, 0.0])
         law[force.row_of(law, 0) + force.DEGREE] = 4.0
         logs.append(np.log(elastic_compression(law, _HALF * x / (1.0 - x), 1e-13)[1]))
-    inverse = [np.linalg.inv(chebvander(t, n)) for t, n in zip(nodes, _DEGREES, strict=True)]
+    inverse = [
+        np.linalg.inv(np.polynomial.chebyshev.chebvander(t, n))
+        for t, n in zip(nodes, _DEGREES, strict=True)
+    ]
     return np.asarray(inverse[1] @ np.array(logs) @ inverse[0].T)
 
 
