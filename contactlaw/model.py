@@ -30,7 +30,6 @@ from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, scalars, shaped
 from contactlaw.physical.bodies import SphereOnPlate
-from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rebound import Rebound
@@ -342,13 +341,18 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         impacts = self._bodies.given(1.0, radius, thickness, mass=mass)
         return shaped(self._tabulated.yield_speeds(impacts), impacts.shape)
 
-    def sensitivity(self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Sensitivity:
+    def sensitivity(
+        self, speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike,
+        mass: ArrayLike | None = None,
+    ) -> Sensitivity:  # fmt: skip
         """How much the COR moves with each input: elasticities d ln e/d ln x.
 
         Parameters
         ----------
         speed, radius, thickness : array_like
             As in `restitution`, inside the table whatever `outside` says.
+        mass : array_like, optional
+            As in `restitution`; it grows with radius and density as that of a solid sphere does.
 
         Returns
         -------
@@ -363,7 +367,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> round(moved.thickness, 3), round(moved.yield_strength, 3)
         (0.239, 0.176)
         """
-        return sensitivity(self._tabulated, Impacts.on_plates(speed, radius, thickness))
+        impacts = self._bodies.given(speed, radius, thickness, mass=mass)
+        return sensitivity(self._tabulated, impacts)
 
     def constant(
         self,

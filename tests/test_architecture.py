@@ -30,7 +30,7 @@ LAYERS = [
     {"dashpot", "walls"},
     {"stepping"},  # the contacts of a time step; no engine
     {"softsphere"},
-    {"export", "turning_point", "report"},
+    {"export", "report"},
     {"engines"},
     {"cli"},
 ]
@@ -42,8 +42,8 @@ FILES = {
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "slides", "strengths", "file", "cache"],
     "answers": ["backend", "solver", "tabulated", "rated", "edges", "beads", "compiled", "constant",
-                "histories", "loads", "oblique", "sensitivity", "speed_table", "law_errors",
-                "uncertainty", "inverse"],
+                "histories", "loads", "oblique", "varied", "sensitivity", "speed_table",
+                "law_errors", "uncertainty", "inverse"],
     "walls": ["memory", "edges", "motion", "plate", "mesh", "grid", "frame", "facet", "surface",
               "rest"],
     "stepping": ["edge", "spring", "energy", "friction", "plate_rows", "contact",
@@ -64,8 +64,8 @@ FILES = {
     "cli/cor": ["bands", "inverse"],
     "cli/fit": ["measured", "printed", "figure"],
     "physical": ["arguments", "kind", "hardness", "flow", "materials", "pair", "rate", "responses",
-                 "law", "strengths", "scaling", "measured", "validity", "history", "rebound",
-                 "oblique"],
+                 "law", "strengths", "scaling", "measured", "validity", "history", "impacts",
+                 "bodies", "rebound", "oblique"],
 }  # fmt: skip
 KERNELS = [
     *(ROOT / "equation").glob("[a-z]*.py"),
@@ -77,24 +77,24 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 34_150,
-    "contactlaw/answers": 3_240,
+    "contactlaw": 34_070,
+    "contactlaw/answers": 3_100,
     "contactlaw/cli": 4_500,
     "contactlaw/emit": 700,
     "contactlaw/engines": 4_300,
-    "contactlaw/equation": 2_680,  # with laws of any strength, which took 200 lines of stepping
+    "contactlaw/equation": 2_750,  # with the series of w_m, which halves the time of law fem
     "contactlaw/export": 1_080,
-    "contactlaw/fitting": 2_300,
-    "contactlaw/laws": 2_050,  # laws of one pair have one layout
-    "contactlaw/physical": 3_150,  # with those laws, which took 400 lines of answers and export
+    "contactlaw/fitting": 2_260,
+    "contactlaw/laws": 2_065,  # laws are made in two thirds of the time
+    "contactlaw/physical": 3_240,  # with those laws, which took 400 lines of answers and export
     "contactlaw/report": 1_150,
     "contactlaw/stepping": 1_960,
     "contactlaw/table": 3_060,  # strength is a number of an impact in all kernels
     "contactlaw/walls": 2_000,
     "contactlaw templates": 1_050,  # sources of other languages
     "dem_demo": 6_350,
-    "validation": 14_713,  # with spheres that are not solid
-    "tests": 25_904,  # with rates at which something in the law changes
+    "validation": 14_860,  # with spheres that are not solid, and the turning-point form
+    "tests": 26_000,  # with rates at which something in the law changes
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
@@ -134,7 +134,7 @@ def level(name):
 @pytest.mark.parametrize("path", KERNELS, ids=lambda path: path.stem)
 def test_kernels_know_neither_units_nor_files(path):
     allowed = {"__future__", "math", "collections.abc", "typing", "numpy", "numpy.typing"}
-    allowed |= {"dataclasses", "itertools"}
+    allowed |= {"dataclasses", "functools", "itertools"}
     for name in imported(path):
         parent = name.rpartition(".")[0]
         known = name in allowed or parent in allowed or name == "contactlaw"

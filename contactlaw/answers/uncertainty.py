@@ -24,13 +24,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from contactlaw.answers.law_errors import law_errors
 from contactlaw.answers.solver import Solver
+from contactlaw.answers.varied import solver, with_number
 from contactlaw.physical.arguments import number, shaped, within
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rate import scaled
 from contactlaw.physical.rebound import Rebound
 
 Array = NDArray[np.float64]
@@ -97,7 +96,7 @@ class Change(NamedTuple):
         return words.replace("_", " ") + body
 
 
-_PROBE = Change("strength", 1.0, ("sphere", "plate"))  # whole flow stress of both bodies
+_PROBE = Change("flow_stress", 1.0, ("sphere", "plate"))  # whole flow stress of both bodies
 _PROBES = 1.2, 0.6, 0.4, 0.2, 0.1, 0.0, -0.1, -0.2, -0.4, -0.6, -0.9, -1.2  # its changes
 
 
@@ -117,13 +116,13 @@ class Variants:
         self.minima = [one._replace(error=_STRONGER) for one in changes if one.error == math.inf]
         self.solver = functools.cache(self._solver)
 
-    def _solver(self, moved: tuple[tuple[Change, float], ...]) -> Solver:
+    def _solver(self, moved: tuple[tuple[Change, float], ...], *decades: float) -> Solver:
+        """Solver for two decades of V0/R or more, so that other impacts often find it."""
         bodies = self.given.copy()
         for change, z in moved:
             for role in change.roles:
                 bodies[role] = _changed(bodies[role], change, z)
-        pair = Pair(**bodies)
-        return Solver(SphereOnPlate(pair, law_for_pair(pair, self.bodies.law)), _RTOL)
+        return solver(Pair(**bodies), self.bodies.law, 10.0 ** np.array(decades), _RTOL)
 
     def hit(self, impacts: Impacts, *moved: tuple[Change, float]) -> Rebound:
         """Integrate impacts with numbers that are off by some standard errors."""
@@ -131,25 +130,22 @@ class Variants:
         for change, z in moved:
             if not change.roles:
                 sizes[change.name] = sizes[change.name] * math.exp(z * change.error)
-        solver = self.solver(tuple(one for one in moved if one[0].roles))
-        return solver.rebounds(Impacts(**sizes, shape=(impacts.speed.size,)))
+        rates = 0.5 * np.log10(sizes["speed"] / sizes["radius"])
+        ends = 2.0 * math.floor(rates.min(initial=4.0)), 2.0 * math.ceil(rates.max(initial=0.0))
+        found = self.solver(tuple(one for one in moved if one[0].roles), *ends)
+        shape = (impacts.speed.size,)
+        return found.rebounds(dataclasses.replace(impacts, **sizes, shape=shape))
 
 
 def _changed(body: Material, change: Change, z: float) -> Material:
     """Body one number of which is off by some standard errors."""
-    if change is _PROBE:
-        return scaled(body, math.exp(z))
-    factor, value = math.exp(z * change.error), getattr(body, change.name)
-    new: dict[str, object] = {"uncertainty": {}}
-    if change.name == "hardening" and body.flow is not None:  # B, also where it is from a hardness
-        new["yield_strength"] = body.flow.strength
-        new["hardening"] = factor * body.flow.hardening, body.flow.exponent
-    else:
-        first, *rest = value if isinstance(value, tuple) else (value,)
-        first = min(factor * first, _LARGEST.get(change.name, math.inf))
-        new[change.name] = (first, *rest) if rest else first
+    factor, value = math.exp(z * change.error), getattr(body, change.name, 1.0)
+    if change.name == "hardening" and body.flow is not None:  # also where it is from a hardness
+        value = body.flow.hardening
+    first = value[0] if isinstance(value, tuple) else value
     try:
-        return dataclasses.replace(body, **new)  # type: ignore[arg-type]
+        most = _LARGEST.get(change.name, math.inf)
+        return with_number(body, change.name, min(factor * first, most))
     except ValueError as error:
         raise ValueError(
             f"uncertainty of {body.name!r}: {change.name} {change.error:g} is too large, for "
@@ -175,6 +171,7 @@ class Uncertain:
         speed_error: float = 0.0,
         radius_error: float = 0.0,
         thickness_error: float = 0.0,
+        mass: ArrayLike | None = None,
     ) -> Uncertainty:
         """How far a real impact may be from the answer, and why.
 
@@ -185,6 +182,8 @@ class Uncertain:
         speed_error, radius_error, thickness_error : float, optional
             Relative standard errors of speed and sizes [-], 0 to 1. Those of materials are their
             `Material.uncertainty`; without any, only the law is uncertain.
+        mass : array_like, optional
+            As in `solve`; it has no error.
 
         Returns
         -------
@@ -225,7 +224,7 @@ class Uncertain:
             remark = "(a relative standard error: 0.05 for 5 %)"
             within(f"{name}_error", np.array([error]), 0.0, _LARGEST_ERROR, remark)
             sizes += [Change(name, error)] if error else []
-        impacts = Impacts.on_plates(speed, radius, thickness)
+        impacts = self._bodies.given(speed, radius, thickness, mass=mass)
         return _uncertainty(self._variants, impacts, [*self._variants.changes, *sizes])
 
 
@@ -254,10 +253,11 @@ class _Curves:
             probed = [self.moved((_PROBE, z), some=self.near) for z in _PROBES]
             self.probed = np.array(probed) + self.base[:, self.near]
 
-    def moved(self, *moved: tuple[Change, float], some: Some | slice = slice(None)) -> Array:
+    def moved(self, *moved: tuple[Change, float], some: Some | None = None) -> Array:
         """Change of the logarithms of some impacts' answers with numbers."""
-        speed, radius, thickness = (getattr(self.impacts, name)[some] for name in _SIZES)
-        hit = self.variants.hit(Impacts(speed, radius, thickness, None), *moved)
+        if some is None:
+            return _logs(self.variants.hit(self.impacts, *moved)) - self.base
+        hit = self.variants.hit(self.impacts.part(some), *moved)
         return _logs(hit) - self.base[:, some]
 
     def by_flow(self, m: int, change: Array) -> Array:

@@ -12,6 +12,7 @@ w compression, w_m that of an elastic impact, s strength; a law is its data.
 
 from __future__ import annotations
 
+import functools
 import math
 from typing import Any, NamedTuple
 
@@ -32,6 +33,9 @@ from contactlaw.equation.plate import PlateMobility
 Array = NDArray[np.float64]
 
 _SECANT, _STEEPEST = 1e-6, 0.9  # last relative step for w_m; largest slope over y
+# Degrees of a series of w_m in lam/(2 + lam) and in s/(s + 1.2), s the stiffening of a law, and
+# how far it reaches: within 1e-11.
+_DEGREES, _THINNEST, _STIFFEST, _HALF, _POLE = (26, 11), 6.0, 0.8, 2.0, 1.2
 _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level cache
 OK, TOO_MANY_STEPS, BAD_INPUT, NOT_FOUND = range(4)  # status of a solution
 MESSAGES = {
@@ -295,6 +299,49 @@ def elastic_compression(
     return (found.status, w_m) if np.ndim(lam) else (found.status.item(), w_m.item())
 
 
+@functools.lru_cache(maxsize=1)
+def _just_yielding() -> Array:
+    """Chebyshev series of ln w_m, a row for each degree in s/(s + 1.2)."""
+    nodes = [np.cos(math.pi * (np.arange(n + 1) + 0.5) / (n + 1)) for n in _DEGREES]
+    ends = _THINNEST / (_HALF + _THINNEST), _STIFFEST / (_POLE + _STIFFEST)
+    x, u = (0.5 * end * (1.0 + t) for end, t in zip(ends, nodes, strict=True))
+    logs = []
+    for s in (_POLE * u / (1.0 - u)).tolist():
+        law = np.append(HERTZ, [s, 0.0, 0.0, 0.0])
+        law[force.row_of(law, 0) + force.DEGREE] = 4.0
+        logs.append(np.log(elastic_compression(law, _HALF * x / (1.0 - x), 1e-13)[1]))
+    inverse = [
+        np.linalg.inv(np.polynomial.chebyshev.chebvander(t, n))
+        for t, n in zip(nodes, _DEGREES, strict=True)
+    ]
+    return np.asarray(inverse[1] @ np.array(logs) @ inverse[0].T)
+
+
+@kernel
+def _sum(coefficients: Array, t: float) -> float:
+    """Sum a Chebyshev series by Clenshaw's recurrence."""
+    one = two = 0.0
+    for n in range(coefficients.size - 1, 0, -1):
+        one, two = coefficients[n] + 2.0 * t * one - two, one
+    return float(coefficients[0] + t * one - two)
+
+
+@kernel(cache=True)
+def _by_series(laws: Array, lam: Array, s: Array, series: Array, out: Array) -> None:
+    """Write w_m of laws that are q^3 (1 + s q) up to yield; NaN of others and beyond the series."""
+    room, rows = np.empty(force.room_for(laws)), np.empty(series.shape[0])
+    for n in range(lam.size):
+        law = laws if room.size == 0 else force.at_strength(laws, s[n], room)
+        stiffening, out[n] = force.stiffening(law), math.nan
+        begins = (stiffening > 0.0 or force.is_hertz(law)) and force.start_of(law, 1) >= 1.0
+        if begins and stiffening <= _STIFFEST and lam[n] <= _THINNEST:
+            x = 2.0 * (1.0 + _HALF / _THINNEST) * lam[n] / (_HALF + lam[n]) - 1.0
+            u = 2.0 * (1.0 + _POLE / _STIFFEST) * stiffening / (_POLE + stiffening) - 1.0
+            for k in range(rows.size):
+                rows[k] = _sum(series[k], x)
+            out[n] = math.exp(_sum(rows, u))
+
+
 def _scale(y: Array) -> Array:
     """Yield ratios to solve with: 1 in place of inf, which an elastic law has."""
     return np.where(y < math.inf, y, 1.0)
@@ -323,6 +370,11 @@ def solve_all(
     # near edges, too, w_m is that of an endless plate: it makes the overload, and nothing else
     leaves = 0.0 if force.room_for(law) else force.leaves_hertz(law)
     beyond = (w_m > leaves * y) | (edges is not None)
+    if beyond.any() and not few:
+        known = np.empty(np.count_nonzero(beyond))
+        _by_series(law, lam[beyond], s[beyond], _just_yielding(), known)
+        w_m[beyond] = known
+        beyond &= np.isnan(w_m)
     if beyond.any():
         status, w_m[beyond] = elastic_compression(law, lam[beyond], rtol, few, s[beyond])
         if status.any():

@@ -48,7 +48,6 @@ class _Reading(NamedTuple):
 def doubts(
     predictor: Predictor,
     at: Array,
-    slopes: Array,
     error: Array,
     covariance: Array,
     model: errors.ModelCovariance | None,
@@ -61,15 +60,18 @@ def doubts(
     off = (values.value - predictor.predicted(at)) / error
     chances, trends = [1.0], []
     for n, name in enumerate(KINDS):
-        found = _chances(predictor, values.kind == n, off, slopes, error, model)
-        chances.append(found[0])
-        if found[0] < _SIGNIFICANCE:
-            of_kind = np.flatnonzero(values.kind == n)
-            order = of_kind[np.argsort(np.asarray(predictor.data.speed)[values.row[of_kind]])]
+        of_kind = np.flatnonzero(values.kind == n)
+        order = of_kind[np.argsort(np.asarray(predictor.data.speed)[values.row[of_kind]])]
+        thirds = np.array_split(order, 3)
+        chances.append(_chance(thirds, off, bool(np.isnan(values.error[of_kind]).any())))
+        if chances[-1] < _SIGNIFICANCE:
             share = off * error / values.value
-            slow, middle, fast = (percent(share[k].mean()) for k in np.array_split(order, 3))
+            means = [float(share[third].mean()) for third in thirds]
+            slow, middle, fast = map(percent, means)
+            known = 0.0 if model is None else model.size[of_kind] / values.value[of_kind]
+            allowed = max(map(abs, means)) < 2.0 * math.sqrt(np.mean(np.square(known)))
             why = f"errors of law {predictor.law.family!r} allow that, those of the data do not"
-            why = why if found[1] > _SIGNIFICANCE else "units, materials or the law may be wrong"
+            why = why if allowed else "units, materials or the law may be wrong"
             trends.append(
                 f"residuals of {name} trend with speed: {slow}, {middle} and {fast} in the slow, "
                 f"the middle and the fast third, by chance in fewer than 1 of 1000 fits: {why}"
@@ -121,50 +123,25 @@ def _above_one(predictor: Predictor) -> Iterator[str]:
             yield f"{which} is above 1: no impact gains energy, a mistake?"
 
 
-def _chances(
-    predictor: Predictor,
-    of_kind: NDArray[np.bool_],
-    off: Array,
-    slopes: Array,
-    error: Array,
-    model: errors.ModelCovariance | None,
-) -> tuple[float, float]:
-    """Chances that errors of the data, or these and the model's, make a trend as large.
+def _chance(thirds: list[NDArray[np.intp]], off: Array, found: bool) -> float:
+    """Chance that errors of the data alone move the means of the thirds as far apart.
 
-    A parabola in ln(speed) is fitted to residuals of one kind together with the parameters, and its
-    two coefficients are compared with their covariance by Fisher's test.
+    Errors that were found have the scatter within the thirds. Parameters take up a part of any
+    trend, so that the chance is rather too large.
     """
     from scipy.special import fdtrc
 
-    x = np.log(np.asarray(predictor.data.speed))[predictor.values.row]
-    if np.unique(x[of_kind]).size < 4:
-        return 1.0, 1.0
-    most = _OUTLIER * max(1.0, float(np.median(np.abs(off[of_kind]))))
-    off = np.clip(off, -most, most)
-    x = (x - x[of_kind].mean()) / x[of_kind].std()
-    shapes = np.array([x, x**2 - 1.0]).T * of_kind[:, None]
-    count = slopes.shape[1]
-    both = np.hstack([slopes / error[:, None], shapes])
-    information = both.T @ both
-    information[:count, :count] += errors.prior_information(predictor)
-    inverse = np.linalg.inv(information + 1e-8 * np.eye(count + 2))[count:]
-    covariance = inverse[:, count:]
-    trend = covariance @ (shapes.T @ off)
-    square, freedom = float(trend @ np.linalg.solve(covariance, trend)), 1e9
-    if np.isnan(predictor.values.error[of_kind]).any():  # the error is that of the scatter
-        whole = float(off[of_kind] @ off[of_kind])
-        freedom = whole - 2.0
-        if freedom < 1.0:
-            return 1.0, 1.0
-        covariance = covariance * max(whole - square, 1e-9) / freedom
-    total = covariance
-    if model is not None:
-        total = covariance + model.propagated(inverse @ (both / error[:, None]).T)
-    by_data, by_both = (
-        float(fdtrc(2.0, freedom, 0.5 * trend @ np.linalg.solve(one, trend)))
-        for one in (covariance, total)
-    )
-    return by_data, by_both
+    if min(third.size for third in thirds) < 2:
+        return 1.0
+    most = _OUTLIER * max(1.0, float(np.median(np.abs(off[np.concatenate(thirds)]))))
+    parts = [np.clip(off[third], -most, most) for third in thirds]
+    middle = np.concatenate(parts).mean()
+    square = sum(float(part.size * (part.mean() - middle) ** 2) for part in parts)
+    if not found:
+        return math.exp(-0.5 * square)
+    freedom = sum(part.size for part in parts) - 3
+    within = sum(float(part.var() * part.size) for part in parts)
+    return float(fdtrc(2.0, freedom, 0.5 * square * freedom / max(within, 1e-9)))
 
 
 def _is_far(predictor: Predictor, at: Array, n: int, covariance: Array | None = None) -> bool:

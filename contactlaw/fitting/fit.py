@@ -15,7 +15,7 @@ from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.doubts import doubts, explained
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, notes
-from contactlaw.fitting.predictions import Predictor, Values
+from contactlaw.fitting.predictions import COARSE, Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, parameters, setting, with_loss_factors
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast
@@ -144,7 +144,7 @@ class Fit:
         spread = np.sqrt(np.einsum("ij,jk,ik->i", slopes, state.covariance.total, slopes))
         parts = np.split(spread, len(kinds))
         in_order = [name for name in KINDS if name in kinds]
-        return along.impacts(state.at), dict(zip(in_order, parts, strict=True))
+        return along.flagged(state.at), dict(zip(in_order, parts, strict=True))
 
 
 def fit(
@@ -214,7 +214,7 @@ def fit(
     given, pair = pair, with_loss_factors(pair, data, unknown)
     varied = parameters(pair, data, unknown, priors or {}, given)
     predictor = Predictor(pair, _law(pair, law, varied), data, varied, Values.of(data))
-    descent = search.Descent(predictor)
+    descent = search.Descent(predictor, to_the_lowest=True)
     ended = _least_squares(predictor, descent)
     try:
         return _result(predictor, descent, ended)
@@ -251,19 +251,17 @@ def _least_squares(predictor: Predictor, descent: search.Descent) -> _LeastSquar
             f"unknown: {values.value.size} measured values cannot determine {free} unknowns: leave "
             "one out, give priors, or measure more"
         )
-    unknown = np.isnan(values.error)
-    error = search.guessed(values)
-    basins = [descent(one.at, error) for one in search.basins(predictor)]
-    if not unknown.any():
-        return _LeastSquares(search.distinct(basins), error, math.inf)
-    if values.value.size == free:
-        return _LeastSquares(search.distinct(basins), error, 0.0)
-    freedom = math.nan
-    for _ in range(_ROUNDS):
-        at = search.distinct(basins)[0].at
-        error, freedom = _found_errors(predictor, descent, at, error)
-        basins = [descent(one.at, error) for one in search.distinct(basins)]
-    return _LeastSquares(search.distinct(basins), error, freedom)
+    error, freedom, rounds = search.guessed(values), math.inf, 0
+    if np.isnan(values.error).any():
+        freedom, rounds = 0.0, _ROUNDS if values.value.size > free else 0
+    basins = search.basins(predictor)
+    nearby = search.Descent(replace(predictor, fineness=COARSE))
+    for n in range(rounds + 1):
+        follow = descent if n == rounds else nearby
+        if n > 0:
+            error, freedom = _found_errors(predictor, follow, basins[0].at, error)
+        basins = search.distinct([follow(one.at, error) for one in basins])
+    return _LeastSquares(basins, error, freedom)
 
 
 def _found_errors(
@@ -319,7 +317,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
     values = predictor.values
     names = tuple(one.name for one in predictor.parameters if one.is_unknown)
     fitted = descent.predicted(np.log(at))
-    hit = predictor.impacts(at)
+    hit = predictor.flagged(at)
     model = errors.model_covariance(predictor, at, hit)
     slopes = predictor.derivatives(at, fitted)  # the descent may have kept those of a point nearby
     found = errors.covariances(predictor, slopes, error, model)
@@ -376,7 +374,7 @@ def _result(predictor: Predictor, descent: search.Descent, ended: _LeastSquares)
                     None if model_error is None else model_error / fitted,
                 ),
                 *(alternative_note(names, other) for other in others),
-                *doubts(predictor, at, slopes, error, found.total, model),
+                *doubts(predictor, at, error, found.total, model),
             ]
         ),
         pair=bodies.pair,

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from contactlaw.answers import oblique
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.answers.solver import Solver
+from contactlaw.answers.varied import FINE, solver
 from contactlaw.equation.tangential import POINT
 from contactlaw.fitting.measurements import KINDS, Measurements
 from contactlaw.fitting.unknowns import Parameter, Setting, setting
@@ -27,11 +28,17 @@ from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_for_pair
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.pair import Pair
+from contactlaw.physical.rate import REACH
 from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.strengths import Fineness
 
 Array = NDArray[np.float64]
 
 _RTOL = 1e-9  # error allowed per step: 1e-8 of a contact time
+# Laws of pairs with a rate of strain in the search of basins, where the COR is within 1e-3 of the
+# model's, and in the scan before, within 5e-2.
+COARSE = Fineness(3, 1e-6, 6.0, 0.15, REACH, 5e-3)
+ROUGH = Fineness(2, 1e-5, 6.0, 0.12, REACH, 5e-3)
 _STEP = 1e-4  # step of a logarithm; differences err by half of it times the second derivative
 
 
@@ -86,19 +93,23 @@ class Predictor:
     data: Measurements
     parameters: list[Parameter]
     values: Values
+    fineness: Fineness = FINE
 
     def setting(self, values: Array) -> Setting:
         """Bodies and sizes with these values."""
         return setting(self.pair, self.data, self.parameters, values)
 
-    def slenderness(self, values: Array) -> float:
-        """Largest R/H."""
-        at = self.setting(values)
-        return float(np.max(at.radius / at.thickness))
-
-    def impacts(self, values: Array) -> Rebound:
+    def flagged(self, values: Array) -> Rebound:
         """Everything about the rebounds."""
         return impacts(self.setting(values), self.law, np.array(self.data.speed))
+
+    def impacts(self, values: Array) -> Rebound:
+        """Everything about the rebounds but the flags, which are those of slow ones."""
+        return self._trial(self.setting(values), np.array(self.data.speed))
+
+    def _trial(self, at: Setting, speed: Array) -> Rebound:
+        found = solver(at.pair, self.law, speed / at.radius, _RTOL, self.fineness)
+        return _integrated(found, at, speed)
 
     def predicted(self, values: Array) -> Array:
         """Predict the measured values."""
@@ -117,7 +128,7 @@ class Predictor:
             sizes: Any = zip(*(one[1:] for one in settings), strict=True)
             joined: Any = (None if one[0] is None else np.concatenate(one) for one in sizes)
             together = Setting(settings[0].pair, *joined)
-            found = impacts(together, self.law, np.tile(speed, len(settings)))
+            found = self._trial(together, np.tile(speed, len(settings)))
         except (UnsolvedError, ValueError):
             if len(trials) == 1:
                 return np.zeros((1, self.values.value.size))
@@ -150,13 +161,15 @@ class Predictor:
 
 def impacts(at: Setting, law: Law, speed: Array) -> Rebound:
     """Integrate rebounds of any bodies that `ImpactModel` takes, without a table."""
+    return _integrated(Solver(SphereOnPlate(at.pair, law_for_pair(at.pair, law)), _RTOL), at, speed)
+
+
+def _integrated(backend: Solver, at: Setting, speed: Array) -> Rebound:
     check(speed=speed, radius=at.radius, thickness=at.thickness)
-    bodies = SphereOnPlate(at.pair, law_for_pair(at.pair, law))
-    backend = Solver(bodies, _RTOL)
     given = Impacts(speed, at.radius, at.thickness, speed.shape)
     if at.friction is None or at.sliding_speed is None:
         return backend.rebounds(given)
-    return oblique.answer(backend, bodies, given, at.friction, at.sliding_speed)
+    return oblique.answer(backend, backend.bodies, given, at.friction, at.sliding_speed)
 
 
 def columns_of(hit: Rebound, at: Setting) -> Array:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from contactlaw.answers.backend import UnsolvedError
 from contactlaw.fitting.measurements import INPUTS, KINDS, Measurements
-from contactlaw.fitting.predictions import Predictor, Values
+from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values
 from contactlaw.fitting.unknowns import Parameter, bounds
 
 Array = NDArray[np.float64]
@@ -26,8 +26,10 @@ Array = NDArray[np.float64]
 _ROWS = 8  # rebounds of each kind that the scan predicts, from the slowest to the fastest
 _SUBSET = 200  # most rebounds of each kind in least squares before those with all rebounds
 _GUESSED = 0.02  # relative error assumed where none is given, until it is estimated
-_CONVERGED = 1e-7  # relative change of the sum of squares: 3e-4 of a standard error, and less
-_KEEP_SLOPES = 0.02  # distance in logarithms at which derivatives that need another law are kept
+# Relative change of the sum of squares at which a descent ends, and distance in logarithms within
+# which it keeps derivatives that need another law; both near a basin and to its lowest point.
+# Derivatives from a distance of 0.01 lead to a point a hundredth of a standard error off.
+_NEARBY, _LOWEST = (1e-7, 0.02), (1e-10, 2e-4)
 # Points of an axis on which each needs its own law, by the number of such axes: a law takes 10 ms.
 _STRENGTHS, _MODULI = (0, 14, 9, 6), (0, 7, 5, 4)
 _DENSITIES, _SLENDERNESS = 5, 22  # points of an axis of densities, and of R/H
@@ -80,8 +82,9 @@ def basins(predictor: Predictor) -> list[Basin]:
 
     If there are many rebounds, only some of them are used.
     """
+    predictor = replace(predictor, fineness=COARSE)
     few = _few(predictor, _ROWS)
-    found = _descents(few, scan(few), _STEPS)
+    found = _descents(few, scan(replace(few, fineness=ROUGH)), _STEPS)
     if len(predictor.data) > _SUBSET:  # come close before each step predicts all of them
         found = _descents(_few(predictor, _SUBSET), [one.at for one in found])
     return found
@@ -298,8 +301,9 @@ def _onset(predictor: Predictor, n: int) -> float:
 class Descent:
     """Least squares by scipy; keeps predictions and slopes for the next call with other errors."""
 
-    def __init__(self, predictor: Predictor) -> None:
+    def __init__(self, predictor: Predictor, to_the_lowest: bool = False) -> None:
         self.predictor = predictor
+        self._converged, self._near = _LOWEST if to_the_lowest else _NEARBY
         parameters = predictor.parameters
         self._low, self._high = np.log(np.array(limits(predictor)))
         self._held = [n for n, one in enumerate(parameters) if one.prior is not None]
@@ -317,7 +321,7 @@ class Descent:
     def slopes(self, x: Array) -> Array:
         """Differentiate the fitted values."""
         here = self.predicted(x)
-        if self._last_slopes and float(np.abs(x - self._last_slopes[0]).max()) < _KEEP_SLOPES:
+        if self._last_slopes and float(np.abs(x - self._last_slopes[0]).max()) < self._near:
             return self.predictor.derivatives(np.exp(x), here, self._last_slopes[1])
         self._last_slopes = x.copy(), self.predictor.derivatives(np.exp(x), here)
         return self._last_slopes[1]
@@ -347,7 +351,7 @@ class Descent:
             slopes,
             bounds=(self._low, self._high),
             x_scale="jac",
-            ftol=_CONVERGED,
+            ftol=self._converged,
             xtol=1e-9,
             gtol=1e-10,
             max_nfev=steps,

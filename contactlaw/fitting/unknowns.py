@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.answers.varied import Number, with_numbers
 from contactlaw.equation.corrections import CONTACT_TIME
 from contactlaw.fitting.measurements import NORMAL, OBLIQUE, Measurements
 from contactlaw.laws import Law
@@ -220,24 +221,22 @@ def _by_hardness(body: Any) -> bool:
 
 def setting(pair: Pair, data: Measurements, parameters: list[Parameter], values: Array) -> Setting:
     """Put the values of parameters into bodies and sizes."""
-    bodies: dict[str, Any] = {"sphere": pair.sphere, "plate": pair.plate}
+    numbers: dict[Number, float] = {}
     sizes = {name: getattr(data, name) for name in _SIZES}
     for parameter, value in zip(parameters, values.tolist(), strict=True):
-        body, field = parameter.unknown.body, parameter.unknown.field
-        if body:
-            errors = {of: e for of, e in bodies[body].uncertainty.items() if of != field}
-            changed: dict[str, Any] = {field: value, "uncertainty": errors}
-            if field == "loss_factor":
-                changed[field] = value, bodies[body].loss_factor[1]
-            if field == "yield_strength" and _by_hardness(bodies[body]):
+        role, field = parameter.unknown.body, parameter.unknown.field
+        if role:
+            body = getattr(pair, role)
+            if field == "yield_strength" and _by_hardness(body):
                 # a search may try a strength above that of the hardness: without hardening then
-                changed["hardness"] = max(bodies[body].hardness, CONSTRAINT * value)
-            bodies[body] = dataclasses.replace(bodies[body], **changed)
+                numbers[role, "hardness"] = max(body.hardness, CONSTRAINT * value)
+            numbers[role, field] = value
         elif sizes[field] is None:
             sizes[field] = np.full(len(data), value)
         else:
             sizes[field] = np.asarray(sizes[field]) * (value / parameter.centre)
     # copies: for read-only arrays kernels would be compiled once more
     wanted = _SIZES if data.is_oblique else _SIZES[:2]
-    found = Setting(Pair(**bodies), *(np.array(sizes[name]) for name in wanted))
+    bodies = with_numbers((pair.sphere, pair.plate), numbers)
+    found = Setting(bodies, *(np.array(sizes[name]) for name in wanted))
     return found._replace(sliding_speed=np.array(data.sliding_speed)) if data.is_oblique else found

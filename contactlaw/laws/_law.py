@@ -16,8 +16,6 @@ from contactlaw.equation.force import UnloadingCurve
 from contactlaw.laws._branches import END, Array, Loading, Unloading
 from contactlaw.laws._expansion import Cuts, check_yield, expanded, horner, packed
 
-_CORNER = 1e-4  # relative jump of the slope at a kink; finite differences err by 1e-8
-
 
 @dataclass(frozen=True, eq=False)
 class Law:
@@ -209,14 +207,6 @@ class Law:
             values += _sample(self.data, d, family=True)
         return values
 
-    def has_corner(self, kink: float) -> bool:
-        """Whether the slope of the loading curve jumps at one of its kinks."""
-        q, h = math.sqrt(kink), 1e-4
-        force = [_sample(self.data, q + n * h, family=False)[0] for n in (-2, -1, 0, 1, 2)]
-        before = 3.0 * force[2] - 4.0 * force[1] + force[0]
-        after = -3.0 * force[2] + 4.0 * force[3] - force[4]
-        return abs(after - before) > _CORNER * before
-
     def loading(self, q: float) -> float:
         """Force [F_Y] at the compression q^2 [d_Y] while it grows."""
         return _force.loading(self.data, q)
@@ -245,15 +235,18 @@ def laid_out_alike(
 
     Their branches are the same; `vanished` and `widest` are as in `Cuts`.
     """
-    cuts = Cuts(vanished, widest)
-    while True:
-        made, pieces = [], []
-        for one in laws:
-            end = one["range"][1]
-            made.append(expanded(one["name"], one["loading"], one["unloading"], end, cuts))
-            pieces.append([shares.size for shares in cuts.shares])
-        if pieces[0] == pieces[-1]:  # no law needed more pieces than those before
-            return packed(made)
+    cuts = Cuts(vanished, widest, checked=False)
+    made: list[Any] = [None] * len(laws)
+    counts: list[Any] = [None] * len(laws)  # of pieces
+    n = 0
+    while counts.count(counts[n]) < len(laws) or made[n] is None:
+        one = laws[n]
+        end = one["range"][1]
+        made[n] = expanded(one["name"], one["loading"], one["unloading"], end, cuts)
+        counts[n] = [shares.size for shares in cuts.shares]
+        stale = [m for m in range(len(laws)) if counts[m] != counts[n]]
+        n = stale[0] if stale else n
+    return packed(made)
 
 
 def _written(family: str, parameters: Mapping[str, float]) -> str:

@@ -85,7 +85,9 @@ _REACH_OF_SHARE, _REACH_OF_POISSON = 0.45, 0.1
 _ELASTIC_BEYOND = 0.98
 ALONE = 0.36  # z, ratio of the strengths, below which the stronger body does not yield
 _POWERS = (5, 4)  # number of powers of t and of w
-_GAUSS = np.polynomial.legendre.leggauss(40)
+# Gauss' rules for whole panels of the loading work, and for the last part of one up to a q
+_PANEL, _LAST = (np.polynomial.legendre.leggauss(count) for count in (20, 10))
+_WIDTH = 0.15  # of panels, in sqrt(ln q): they are narrow next to yield
 
 
 @functools.cache
@@ -115,8 +117,9 @@ def _within(value: float, most: float) -> float:
 
 def _sized(powers: list[list[float]]) -> Array:
     """Pad coefficients of powers of t and w with zeros to `_POWERS`."""
-    found = np.array(powers)
-    return np.pad(found, [(0, most - n) for most, n in zip(_POWERS, found.shape, strict=True)])
+    found = np.zeros(_POWERS)
+    found[: len(powers), : len(powers[0])] = powers
+    return found
 
 
 def yield_scale(ratio: float, poissons_ratio: float) -> float:
@@ -237,8 +240,7 @@ class _Works(NamedTuple):
     loading: Array  # loading work
     recovery: Array  # share of it that unloading gives back
     plastic: Array  # share of it that is plastic work
-    residual: Array  # over (q^2 - 1)^2, but for bodies with losses; 0 if no body yields
-    span: Array  # compression that unloading gives back, dm - dr
+    span: Array
 
 
 class Curves:
@@ -320,20 +322,38 @@ class Curves:
         return np.asarray(q**3 * (1.0 + self.stiffening * q) / self._over("loading", q))
 
     def work(self, q: Array) -> Array:
-        """Integrate the force: exactly up to yield, by Gauss' rule in ln q beyond."""
+        """Integrate the force: exactly up to yield, beyond by Gauss' rule over ln q."""
         start = np.minimum(q, 1.0) if self.ratio else q
-        elastic = 0.4 * start**5 + self.stiffening / 3.0 * start**6
-        half = 0.5 * np.log(q / start)
-        u = half[..., None] * (1.0 + _GAUSS[0])
-        at = start[..., None] * np.exp(u)
-        return np.asarray(elastic + half * ((2.0 * at**2 * self.force(at)) @ _GAUSS[1]))
+        elastic = np.asarray(0.4 * start**5 + self.stiffening / 3.0 * start**6)
+        if not self.ratio:
+            return elastic
+
+        def beyond(low: Array, high: Array, rule: tuple[Array, Array]) -> Array:
+            half = 0.5 * np.log(high / low)
+            at = low[..., None] * np.exp(half[..., None] * (1.0 + rule[0]))
+            return np.asarray(half * ((2.0 * at**2 * self.force(at)) @ rule[1]))
+
+        above = np.maximum(q, 1.0)
+        panel = (np.sqrt(np.log(above)) / _WIDTH).astype(int)
+        ends = np.exp((_WIDTH * np.arange(panel.max() + 1)) ** 2)
+        done = np.append(0.0, np.cumsum(beyond(ends[:-1], ends[1:], _PANEL)))
+        return np.asarray(elastic + done[panel] + beyond(ends[panel], above, _LAST))
 
     def residual(self, q: Array) -> Array:
-        """Residual compression after loading to q^2, over (q^2 - 1)^2; from yield on."""
+        """Residual compression after loading to q^2, over (q^2 - 1)^2; from yield on.
+
+        That of bodies with losses is not divided, and begins before.
+        """
+        if self.recovered < 1.0:
+            return np.asarray(q**2 - self.span(q))
         own = self._own(q)
         over = (self._sum("residual", q)) / (own + SHIFT)
         near = q**2 * over / ((1.0 + (own - 1.0) ** 2 * over) * (q + 1.0) ** 2)
         return near * self._nearer(q) ** 2
+
+    def span(self, q: Array) -> Array:
+        """Compression that unloading gives back, dm - dr."""
+        return np.asarray(self.recovered * q**2 / self._over("residual", q))
 
     def recovery(self, q: Array) -> Array:
         """Share of the loading work that unloading gives back."""
@@ -357,16 +377,13 @@ class Curves:
 
     def works(self, q: Array) -> _Works:
         """All quantities at once, each computed only once."""
-        recovery, span = self.recovery(q), q**2 / self._over("residual", q)
-        residual = self.residual(q) if self.ratio else np.zeros_like(q)
+        recovery = self.recovery(q)
         plastic = self.plastic(q, recovery)
         if self.recovered < 1.0:
             less = 1.0 / (1.0 + self.lost_before * recovery)
             plastic = plastic * less
             recovery = recovery * less * self.returned * (1.0 + self.lost_before)
-            span = self.recovered * span
-            residual = q**2 - span
-        return _Works(self.force(q), self.work(q), recovery, plastic, residual, span)
+        return _Works(self.force(q), self.work(q), recovery, plastic, self.span(q))
 
 
 class Strains(NamedTuple):
@@ -377,7 +394,7 @@ class Strains(NamedTuple):
 
     def ratios(self, given: Given, w: Any) -> tuple[Any, Any]:
         """E*/sigma of sphere and plate at a depth, or at an array of them."""
-        return given.ratios(self.slope * np.maximum(w - self.start, 0.0))
+        return given.ratios(self.slope * max(w - self.start, 0.0))
 
     def typical(self, given: Given) -> Given:
         """Bodies without hardening, with the strengths that these have at a typical depth."""
@@ -419,16 +436,15 @@ class HardeningCurves(Curves):
         blend, (_, taken) = float(found["blend"]), strains(given, found)
         typical = taken.typical(given)
         super().__init__(typical, found)
-        flow = typical.flow(blend).values()
+        flow = list(typical.flow(blend).values())
         self.onset = Given(*given[:5]).yield_scale(blend)
         root = math.sqrt(self.scale)
 
         def stronger(w: Any) -> Any:
             """Strength over that at the typical depth; both bodies' by their share of the flow."""
-            known = [
-                one for one in zip(flow, typical, taken.ratios(given, w), strict=False) if one[0]
-            ]
-            return np.prod([(then / now) ** share for share, then, now in known], axis=0)
+            now = taken.ratios(given, w)
+            shares = zip(flow, typical, now, strict=False)
+            return math.prod((then / now) ** share for share, then, now in shares if share)
 
         # A body of a low Poisson's ratio yields before its strain begins. The steep rise of its
         # strength there would stop the flow again, so that its strain begins before yield, too.
@@ -487,7 +503,7 @@ def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
         # the bodies are so strong that they would yield only where the law ends
         curves = Curves(given._replace(sphere_ratio=0.0, plate_ratio=0.0), found)
 
-    known: list[tuple[Array, _Works]] = []  # at the last dm: four formulas share it
+    known: list[tuple[Array, _Works]] = []  # at the last dm: three formulas share it
 
     def works(dm: Array) -> _Works:
         if not (known and known[0][0] is dm):
@@ -512,7 +528,7 @@ def formulas(given: Given, found: dict[str, Any]) -> dict[str, Any]:
     loading = [Loading(0.0, first)]
 
     def residual(dm: Array) -> Array:
-        return works(dm).residual
+        return curves.residual(np.sqrt(dm))
 
     lossy = curves.recovered < 1.0
     left, order = (residual, 0.0) if lossy else (np.zeros_like, 2.0)

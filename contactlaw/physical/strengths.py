@@ -6,6 +6,7 @@ polynomial in ln k, see `contactlaw.equation.force`. It goes through laws made a
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import itertools
 import math
@@ -26,7 +27,8 @@ from contactlaw.physical.pair import Pair
 Array = NDArray[np.float64]
 
 _DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
-_TRIED = 129  # places of ln k between which corners are looked for
+_TRIED = 0.01  # in ln k: distance of the places between which corners are looked for
+_NARROWEST = 1e-3  # in ln k: narrower ranges of strengths are widened
 _CLOSE = 1e-6  # in ln k: how closely the strength is found at which no body yields
 
 
@@ -39,6 +41,7 @@ class Fineness(NamedTuple):
     piece: float  # of ln k, at most
     fastest: float  # V0/R [1/s] up to which they reach
     near: float  # in ln k: nearer to each other, corners count as one
+    slowest: float = 0.0  # V0/R [1/s] from which on they are asked for
 
 
 # The COR is within 1e-7 of that of a law made for its strength.
@@ -55,7 +58,7 @@ def by_strength(pair: Pair, law: Law, fineness: Fineness = USUAL) -> Array:
     assert law.scale is not None
     count = fineness.terms
     places = np.cos(math.pi * (np.arange(count) + 0.5) / count)
-    ends, most = knots(pair, fineness.piece, fineness.fastest, fineness.near)
+    ends, most = knots(pair, *fineness[3:])
     pieces = []
     for low, high in itertools.pairwise(ends):
         at = 0.5 * (low + high) + 0.5 * (high - low) * places
@@ -92,6 +95,13 @@ def _powers(
     return found
 
 
+def without_curves(pair: Pair, law: Law, log_factor: float = 0.0) -> Law:
+    """Law of a pair that is stronger by a factor, but for its array, which is that of `law`."""
+    known = formulas_at(pair, log_factor)
+    names = ("scale", "onset", "range", "yield_coefficient")
+    return dataclasses.replace(law, **{name: known[name] for name in names})
+
+
 def formulas_at(pair: Pair, log_factor: float) -> dict[str, Any]:
     """Formulas of the law of a pair that is stronger by a factor."""
     return fem.formulas(_given(pair, log_factor), fem.numbers())
@@ -115,7 +125,7 @@ def _slow(pair: Pair) -> fem.Given:
 
 @functools.lru_cache(maxsize=4)
 def knots(
-    pair: Pair, widest: float, fastest: float, near: float = 5e-3
+    pair: Pair, widest: float, fastest: float, near: float = 5e-3, slowest: float = 0.0
 ) -> tuple[list[float], float]:
     """Find the ends of the pieces in ln k, in which the law is a smooth function of k.
 
@@ -123,18 +133,19 @@ def knots(
     formula of the law's has a corner, and where the second of two strengths begins to grow. Pieces
     are narrower where one strength grows faster than k, and is no straight line in ln k, and where
     two that share the flow grow apart. The last number is ln k of the fastest impacts; the pieces
-    end before it where nothing yields any more.
+    end before it where nothing yields any more, and there are none if that is so in the slowest.
     """
     flow = rate.leading(pair)
     assert flow is not None
-    most = last = math.log(rate.largest_factor(flow, fastest))
+    least, most = (math.log(rate.largest_factor(flow, one)) for one in (slowest, fastest))
+    most = last = max(most, least + _NARROWEST)
     if not _yields(pair, last):  # where does that begin?
-        low = 0.0
+        low = least
         while last - low > _CLOSE:
             middle = 0.5 * (low + last)
             low, last = (middle, last) if _yields(pair, middle) else (low, middle)
         last = low
-    logs = np.linspace(0.0, last, _TRIED)
+    logs = np.linspace(least, last, 2 + int((last - least) / _TRIED))
     inner: list[float] = []
     for values in np.array([_corners(pair, one) for one in logs]).T:
         (before,) = np.nonzero(values[:-1] * values[1:] < 0.0)
@@ -142,18 +153,19 @@ def knots(
         inner += (logs[before] + share * (logs[1] - logs[0])).tolist()
     flows = rate.flows(pair)
     starts = {round(math.log(flow.factor(one.rate0)), 9) for one in flows}
-    ends = list({0.0, last, *(one for one in starts if one < last - _CLOSE)})
+    ends = [least, last, *(one for one in starts if least + _CLOSE < one < last - _CLOSE)]
     for one in sorted(inner):
         if min(abs(one - end) for end in ends) > near:
             ends.append(one)
     rates = [rate.rate_at(flow, math.exp(one)) for one in logs]
     grown = np.log([[one.strength * one.factor(at) for one in flows] for at in rates])
     steps = np.diff(grown, axis=0)
-    width = np.maximum(logs[1], 2.0 * steps.max(axis=1) - logs[1])
+    step = logs[1] - logs[0]
+    width = np.maximum(step, 2.0 * steps.max(axis=1) - step)
     both = np.ptp(grown[1:], axis=1) < -math.log(ALONE)  # how they share the flow changes
     run = np.append(0.0, np.cumsum(width + 0.5 * both * np.ptp(steps, axis=1)))
-    found = [0.0]
-    for low, high in itertools.pairwise(sorted(ends)):
+    found = [least]
+    for low, high in itertools.pairwise(sorted({*ends})):
         first, final = np.interp((low, high), logs, run)
         inside = np.linspace(first, final, math.ceil((final - first) / widest) + 1)[1:-1]
         found += [*np.interp(inside, run, logs).tolist(), high]
@@ -169,9 +181,8 @@ def _corners(pair: Pair, log_factor: float) -> list[float]:
     found, given = [], _given(pair, log_factor)
     weaker = [1.0, fem.flow_of_losses(given)] if given.loss_factor else [1.0]
     for one in fem.comparable(given):
-        ratios = [ratio for ratio in one[:2] if ratio]
         limits = [at / factor for at in (*RATIOS, *_DEEPEST) for factor in weaker]
-        found += [math.log(ratio / at) for ratio in ratios for at in limits]
-        if len(ratios) == 2:
-            found += [math.log(ratios[0] / ratios[1] / z) for z in (ALONE, 1.0, 1.0 / ALONE)]
+        found += [math.log(one.ratio / at) for at in limits]
+        if min(one[:2]) > 0.0:
+            found += [math.log(one[0] / one[1] / z) for z in (ALONE, 1.0, 1.0 / ALONE)]
     return found

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import enum
 import itertools
 import math
@@ -19,7 +18,7 @@ from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.rate import REACH, SHARE, leading, rated, strengthened
 from contactlaw.physical.scaling import wave_path, yield_share
-from contactlaw.physical.strengths import USUAL, formulas_at, knots
+from contactlaw.physical.strengths import USUAL, knots, without_curves
 
 Array = NDArray[np.float64]
 
@@ -332,9 +331,7 @@ def _damaging(pair: Pair) -> list[float]:
 
 
 def _at_strength(pair: Pair, law: Law, log_factor: float) -> Limits:
-    known = formulas_at(pair, log_factor)
-    names = ("scale", "onset", "range", "yield_coefficient")
-    own = dataclasses.replace(law, **{name: known[name] for name in names})
+    own = without_curves(pair, law, log_factor)
     return limits(strengthened(pair, math.exp(log_factor)), own)
 
 

@@ -166,6 +166,18 @@ def test_peak_on_a_kink(kink, factor):
     assert one.peak_compression == pytest.approx(w_m, rel=1e-10)
 
 
+@pytest.mark.parametrize("ratio", [11.0, 100.0, 2000.0])
+def test_a_just_yielding_impact_by_series_is_that_by_integration(ratio):
+    lam = np.array([0.0, 0.02, 0.3, 1.1, 4.0, 5.9, 7.0])  # the last one is beyond the series
+    one = laws.law("fem", sphere_ratio=ratio, plate_ratio=0.0, modulus_share=0.1,
+                   poissons_ratio=0.3, plate_poissons_ratio=0.3).data  # fmt: skip
+    for law in (one, HERTZ, laws.law("myc").data):
+        found = outcome.at(lam, 0.2)
+        assert zener.solve_all(law, 1e-13, found)[0] == zener.OK
+        exact = zener.elastic_compression(law, lam, 1e-13)[1]
+        assert found.elastic_compression == pytest.approx(exact, rel=1e-11)
+
+
 def test_large_inelasticity_decays_as_the_fifth_power():
     # f = u/lam to leading order until w ~ lam^-4, where the sphere lets go: e ~ lam^-5
     lams = np.array([20.0, 40.0])

@@ -19,10 +19,12 @@ from scipy.optimize import least_squares
 
 import contactlaw as cl
 from contactlaw.answers import law_errors
+from contactlaw.answers.varied import FINE
 from contactlaw.cli import main
 from contactlaw.cli.fit import printed
 from contactlaw.fitting import errors, notes
-from contactlaw.fitting.predictions import Predictor, Values, impacts
+from contactlaw.fitting.measurements import Measurements
+from contactlaw.fitting.predictions import COARSE, ROUGH, Predictor, Values, impacts
 from contactlaw.fitting.unknowns import UNKNOWNS, Setting, parameters
 from contactlaw.physical.law import law_of
 from validation.inverse import coverage, elements, model
@@ -55,6 +57,25 @@ def test_the_strength_of_a_bead_that_yields():
     found = cl.fit(pair, rebounds(pair), "yield_strength")
     assert found.values["yield_strength"] == pytest.approx(pair.sphere.yield_strength, rel=2e-5)
     assert found.pair.sphere.yield_strength == found.values["yield_strength"]
+
+
+RATED = cl.Pair("alloy-steel-4340", "copper-ofhc-annealed")
+AS_STRONG = [
+    dataclasses.replace(RATED.sphere, yield_strength=150e6, rate=(0.05, 1.0)),
+    dataclasses.replace(RATED.plate, yield_strength=200e6),
+]
+
+
+@pytest.mark.parametrize("pair", [RATED, cl.Pair(*AS_STRONG)], ids=["one", "both"])
+def test_trials_at_the_rates_of_the_impacts_are_the_model(pair):
+    data = Measurements.of(rebounds(pair, kinds=KINDS[:2], speed=np.geomspace(0.3, 30.0, 12)))
+    asked = parameters(pair, data, ["yield_strength", "plate_yield_strength"], {})
+    of = Predictor(pair, law_of(pair, "fem"), data, asked, Values.of(data))
+    for fineness, error in ((FINE, 2e-6), (COARSE, 1e-3), (ROUGH, 5e-2)):
+        found = dataclasses.replace(of, fineness=fineness).predicted(
+            np.array([true(pair, one.name) for one in asked])
+        )
+        assert found == pytest.approx(of.values.value, rel=error)
 
 
 @pytest.mark.parametrize("law", ["myc", "jackson_green"])

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 import contactlaw as cl
-from contactlaw import turning_point
 from contactlaw.softsphere import Contacts, time_step
-from validation.paper import closed_form
+from validation.paper import closed_form, turning_point
 
 R, H = 0.9e-3, 1e-3
 

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import contactlaw as cl
-from contactlaw import turning_point
 from validation.fem import store
 from validation.fem.cases import elastic_plate
-from validation.paper import closed_form, formulas, setting
+from validation.paper import closed_form, formulas, setting, turning_point
 
 Array = NDArray[np.float64]
 

@@ -39,6 +39,9 @@ def rows() -> Iterator[Row]:
               note="which has its table already, and finds no standard errors")  # fmt: skip
     for question in _STEEL[1:]:
         yield Row(f"fit, fem, {', '.join(question)}", timed(steel, "fem", question), "s", 0.3)
+    metals = cl.Pair("copper-ofhc-annealed", "aluminium-6061-t6")
+    both = ("yield_strength", "plate_yield_strength")
+    yield Row("fit, fem, two strengths at rates", timed(metals, "fem", both), "s", 3.0)
     for law in laws.names():
         for question in _QUESTIONS[: 1 if law == "hertz" else None]:
             if law != "fem":

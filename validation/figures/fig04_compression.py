@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlaw import turning_point
 from contactlaw.style import BLUE, GREEN, VERMILION
 from validation import figures
 from validation.figures import chart
 from validation.figures.chart import INELASTICITY, Axis, Panel
+from validation.paper import turning_point
 from validation.paper.closed_form import elastic_compression
 from validation.paper.formulas import eq_6
 from validation.paper.setting import largest

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactlaw import turning_point
 from contactlaw.style import BLUE, GREEN, INK, MUTED, VERMILION
 from validation import figures
 from validation.accuracy import compare
 from validation.figures import chart
 from validation.figures.chart import RESTITUTION, SPEED
+from validation.paper import turning_point
 from validation.paper.closed_form import peng
 from validation.paper.formulas import eq_22
 from validation.paper.setting import ETA, FASTEST, impacts, largest

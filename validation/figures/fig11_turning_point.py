@@ -12,13 +12,13 @@ import math
 
 import numpy as np
 
-from contactlaw import laws, turning_point
+from contactlaw import laws
 from contactlaw.laws.myc import P
 from contactlaw.style import INK
 from validation import figures
 from validation.figures import chart
 from validation.figures.chart import SLENDERNESS, SPEED, Axis, Panel
-from validation.paper import closed_form
+from validation.paper import closed_form, turning_point
 from validation.paper.setting import ETA, largest, restitution
 
 PART = figures.PAPER

@@ -8,12 +8,12 @@ from functools import partial
 import numpy as np
 
 from contactlaw.laws.myc import P
-from contactlaw.turning_point import WAVE_SLOPE
 from validation.fem import store
 from validation.paper import closed_form, elements, evidence, formulas
 from validation.paper.closed_form import yield_speed_ratio
 from validation.paper.evidence import RATIO, Q, V, plastic_share, power, surface
 from validation.paper.setting import ETA, FASTEST, SPEED, THINNEST, borderline, impacts, largest
+from validation.paper.turning_point import WAVE_SLOPE
 from validation.paper.verdicts import (
     AT_MOST,
     LIMITED,

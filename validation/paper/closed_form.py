@@ -29,7 +29,7 @@ from contactlaw.laws import law
 from contactlaw.physical.arguments import checked, shaped, within
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import constants_of
-from contactlaw.turning_point import FASTEST, INTEGRATE, LARGEST_AT_YIELD, at_turning_point
+from validation.paper.turning_point import FASTEST, INTEGRATE, LARGEST_AT_YIELD, at_turning_point
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from contactlaw.physical.arguments import checked, shaped
-from contactlaw.turning_point import INTEGRATE, WAVE_SLOPE
 from validation.paper.closed_form import (
     TOO_THIN,
     Array,
@@ -20,13 +19,14 @@ from validation.paper.closed_form import (
     mueller,
     peng,
 )
+from validation.paper.turning_point import INTEGRATE, WAVE_SLOPE
 
 
 def raman(inelasticity: ArrayLike) -> float | Array:
     """COR of an elastic impact, Raman's form (1 - k lambda)/(1 + k lambda).
 
     Raman (Phys. Rev. 15 (1920) 277) takes the wave's energy to be k lambda times what the sphere
-    brings and what it takes away. Here k = `contactlaw.turning_point.WAVE_SLOPE`/2 = 0.8651, which
+    brings and what it takes away. Here k = `turning_point.WAVE_SLOPE`/2 = 0.8651, which
     makes the slope at lambda = 0 exact. 0.3 % below `closed_form.zener` at lambda = 0.1,
     2.0 % at 0.25.
 

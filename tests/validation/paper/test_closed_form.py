@@ -9,12 +9,12 @@ from oracle import yield_ratio
 from scipy.integrate import quad
 
 import contactlaw as cl
-from contactlaw import laws, turning_point
+from contactlaw import laws
 from contactlaw.equation import zener
 from contactlaw.equation.force import HERTZ
 from contactlaw.equation.numbers import Impact
 from contactlaw.physical.bodies import SphereOnPlate
-from validation.paper import closed_form, formulas
+from validation.paper import closed_form, formulas, turning_point
 
 SPEEDS = np.concatenate([np.linspace(0.03, 2.0, 24), np.linspace(2.2, 20.0, 72)])
 INELASTICITIES = np.linspace(0.0, 0.5, 31)

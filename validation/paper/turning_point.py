@@ -53,7 +53,7 @@ def loading(inelasticity: ArrayLike) -> float | Array:
 
     Examples
     --------
-    >>> from contactlaw import turning_point
+    >>> from validation.paper import turning_point
     >>> round(turning_point.loading(0.5), 4)
     0.7552
     """
@@ -119,7 +119,7 @@ def restitution(speed_ratio: ArrayLike, inelasticity_at_yield: ArrayLike) -> flo
 
     Examples
     --------
-    >>> from contactlaw import turning_point
+    >>> from validation.paper import turning_point
     >>> turning_point.restitution(3.0, [0.0, 0.0608, 0.2434]).round(4)
     array([0.9007, 0.7933, 0.5481])
     """
