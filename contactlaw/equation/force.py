@@ -443,6 +443,18 @@ def check(law: Array) -> None:
             raise ValueError("the pieces of its law belong to no kink")
 
 
+def check_strengths(laws: Array) -> None:
+    """Refuse an array that is not several laws, as `check` does for one."""
+    for at in range(FIRST_ROW, FIRST_ROW + max(pieces_of(laws), 1) * STRENGTHS, STRENGTHS):
+        row = laws[at : at + STRENGTHS]
+        begins, terms, width = (_whole(row, n, laws.size) for n in (BEGINS, POWERS, WIDTH))
+        longest = _whole(laws, LONGEST, laws.size)
+        if not (HEADER + HEADS <= width <= longest and begins + (terms + 1) * width <= laws.size):
+            raise ValueError("its laws of several strengths end within one of them")
+        for strength in (row[CENTRE], row[TOP]):
+            check(at_strength(laws, strength, np.empty(longest))[: width - HEADS])
+
+
 def _whole(row: Array, column: int, most: int) -> int:
     """Read a number that has to be whole, from 0 to a limit."""
     number = float(row[column]) if column < row.size else math.nan

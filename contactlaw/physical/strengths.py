@@ -6,6 +6,7 @@ polynomial in ln k, see `contactlaw.equation.force`. It goes through laws made a
 
 from __future__ import annotations
 
+import dataclasses
 import functools
 import itertools
 import math
@@ -17,7 +18,7 @@ from numpy.typing import NDArray
 
 from contactlaw.equation import force
 from contactlaw.equation.force import STRENGTHS
-from contactlaw.laws import Law, fem, laid_out_alike
+from contactlaw.laws import Law, Strengths, fem, laid_out_alike
 from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import pair_numbers
@@ -28,6 +29,9 @@ Array = NDArray[np.float64]
 _DEEPEST = (23.0, 40.0)  # E*/sigma_Y at which the reach of law fem changes its formula
 _TRIED = 129  # places of ln k between which corners are looked for
 _CLOSE = 1e-6  # in ln k: how closely the strength is found at which no body yields
+
+
+WIDEST = 0.7  # segment of a table's axis in ln k, our choice: see `contactlaw.table.grid.LAYER`
 
 
 class Fineness(NamedTuple):
@@ -45,6 +49,14 @@ class Fineness(NamedTuple):
 USUAL = Fineness(7, 1e-10, 3.0, 0.4, rate.REACH, 1e-4)
 # For steps, which make the law anew in each, and for exports: within 1e-6.
 COARSE = Fineness(6, 1e-7, 4.0, 0.3, rate.FASTEST, 5e-3)
+
+
+def with_strengths(pair: Pair, law: Law) -> Law:
+    """Law with those of a pair that is as strong as at the rates of a table's impacts."""
+    if rate.rated(pair, law) is None or not law.yields:
+        return law
+    ends = knots(pair, WIDEST, rate.FASTEST)[0]
+    return dataclasses.replace(law, strengths=Strengths(by_strength(pair, law), tuple(ends)))
 
 
 @functools.lru_cache(maxsize=64)
