@@ -33,7 +33,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
-from contactlaw.answers import rated
 from contactlaw.answers.solver import solved, within
 from contactlaw.answers.tabulated import Border, Tabulated
 from contactlaw.equation import outcome
@@ -101,11 +100,8 @@ class Sensitivity:
 def sensitivity(tabulated: Tabulated, impacts: Impacts) -> Sensitivity:
     """Differentiate the COR of impacts inside the table, by the method that suits the law."""
     pair, law = tabulated.bodies.pair, tabulated.bodies.law
-    if rated.flow_of(tabulated.bodies):
-        hit = rated.Rated(tabulated.bodies, tabulated.given, Border("raise")).rebounds(impacts)
-        return by_inputs(pair, law, impacts, np.ravel(hit.overload) > 1.0)
     units = tabulated.bodies.numbers(tabulated.bodies.impact(impacts))
-    found, _ = Border("raise").look_up(law, tabulated.packed, units)
+    found, _ = Border("raise").look_up(law.data, tabulated.packed, units)
     if not law.thin_plate:
         return by_inputs(pair, law, impacts, _yields(found))
     if follows(tabulated.table):

@@ -388,6 +388,12 @@ def strongest(laws: Array) -> float:
     return float(laws[last + TOP]) * (1.0 + 1e-12) if pieces_of(laws) else math.inf
 
 
+def tops(laws: Array) -> Array:
+    """Return 0 and ln k at the ends of the pieces."""
+    rows = FIRST_ROW + STRENGTHS * np.arange(pieces_of(laws))
+    return np.append(0.0, laws[rows + TOP])
+
+
 def pieces_of(laws: Array) -> int:
     """Count the pieces of ln k; 0 for an array that is one law."""
     return max(int(-laws[PIECES]), 0)

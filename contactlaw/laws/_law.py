@@ -24,6 +24,7 @@ class Strengths(NamedTuple):
 
     data: Array  # at any strength, in the layout of `contactlaw.equation.force`
     knots: tuple[float, ...]  # ln of the strength, from 0: between them outcomes are smooth
+    cells: tuple[int, ...]  # between each two of them, for the layers of a table
 
 
 @dataclass(frozen=True, eq=False)
@@ -203,7 +204,7 @@ class Law:
         """Hash of the data, by which tables are found."""
         content = self.data.tobytes()
         if self.strengths is not None:
-            content += self.strengths.data.tobytes() + repr(self.strengths.knots).encode()
+            content += self.strengths.data.tobytes() + repr(self.strengths[1:]).encode()
         return hashlib.sha256(content).hexdigest()[:16]
 
     def __eq__(self, other: object) -> bool:

@@ -23,6 +23,7 @@ from contactlaw.laws.fem import ALONE, RATIOS
 from contactlaw.physical import rate
 from contactlaw.physical.law import pair_numbers
 from contactlaw.physical.pair import Pair
+from contactlaw.table.splines import spline_coefficients
 
 Array = NDArray[np.float64]
 
@@ -31,7 +32,10 @@ _TRIED = 129  # places of ln k between which corners are looked for
 _CLOSE = 1e-6  # in ln k: how closely the strength is found at which no body yields
 
 
-WIDEST = 0.7  # segment of a table's axis in ln k, our choice: see `contactlaw.table.grid.LAYER`
+# Widest cells of a table's axis in ln k, how far splines over them may be from ln d_Y, and the most
+# cells between two knots; our choices, for which the COR errs by less than 5e-6.
+_CELL, _OFF, _MOST = 0.1, 3e-5, 8
+_NEAR = 1e-3  # in ln k: as near to an end of a piece of the law, a knot is that end
 
 
 class Fineness(NamedTuple):
@@ -55,8 +59,29 @@ def with_strengths(pair: Pair, law: Law) -> Law:
     """Law with those of a pair that is as strong as at the rates of a table's impacts."""
     if rate.rated(pair, law) is None or not law.yields:
         return law
-    ends = knots(pair, WIDEST, rate.FASTEST)[0]
-    return dataclasses.replace(law, strengths=Strengths(by_strength(pair, law), tuple(ends)))
+    laws, widths = by_strength(pair, law), (USUAL.piece, _CELL)
+    ends, fine = (np.array(knots(pair, one, rate.FASTEST, USUAL.near)[0]) for one in widths)
+    tops = force.tops(laws)  # corners that were found from other samples are not quite the same
+    near = tops[np.abs(ends[:, None] - tops).argmin(axis=1)]
+    ends, cells = np.where(np.abs(near - ends) < _NEAR, near, ends), []
+    for low, high in itertools.pairwise(ends.tolist()):
+        least = 1 + int(np.count_nonzero((fine > low + _CLOSE) & (fine < high - _CLOSE)))
+        cells.append(_cells(laws, low, high, max(least, 3)))
+    strengths = Strengths(laws, tuple(ends.tolist()), tuple(cells))
+    return dataclasses.replace(law, strengths=strengths)
+
+
+def _cells(laws: Array, low: float, high: float, least: int) -> int:
+    """Find out how many cells a spline needs that is to follow ln d_Y between two strengths."""
+    off, cells = math.inf, least
+    while off > _OFF and cells <= _MOST:
+        at = np.linspace(low + _CLOSE, high, 2 * cells + 1).tolist()
+        values = np.log([force.growth_at(laws, one) for one in at])
+        c = spline_coefficients(values[::2])
+        middle = (c[:-3] + 23.0 * (c[1:-2] + c[2:-1]) + c[3:]) / 48.0
+        off = float(np.abs(middle - values[1::2]).max())
+        cells += 1
+    return cells - 1
 
 
 @functools.lru_cache(maxsize=64)

@@ -10,7 +10,6 @@ elastic compression, and the kinks of later axes, which may be curves over the f
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
@@ -72,6 +71,11 @@ class Axis:
         """Places of values from 0 to 1 in x, for an axis that begins at 0."""
         return self.mapped(values) / self.mapped(self.largest)
 
+    def values(self, place: Array) -> Array:
+        """Values at places from 0 to 1 in x, the inverse of `place`."""
+        x = self.mapped(self.largest) * place
+        return x if math.isinf(self.stretch) else np.asarray(self.stretch * x / (1.0 - x))
+
     def nodes(self, along: Array) -> Array:
         """Values at all nodes: a row for each place along the first axis."""
         parts = []
@@ -122,7 +126,12 @@ class TableGrid:
     def points(self) -> tuple[Array, Array, Array]:
         """Inelasticity, overload and ln of the strength at every node, each as a row."""
         lam, log_chi, *more = (values.ravel() for values in self.nodes())
-        strength = more[0] if more else np.zeros_like(lam)
+        strength = np.zeros_like(lam)
+        if more:  # the law may jump a little at a knot: the next segment begins just above it
+            begins = np.cumsum(self.axes[2].sizes)[:-1]
+            each = more[0].reshape(-1, self.shape[2]).copy()
+            each[:, begins] = np.nextafter(each[:, begins], math.inf)
+            strength = each.ravel()
         return lam, np.exp(self.own(lam, log_chi, strength)), strength
 
     def own(self, lam: Array, log_chi: Array, strength: Array) -> Array:
@@ -141,8 +150,7 @@ class TableGrid:
 
 def series_values(first: Axis) -> Array:
     """Values of the first axis at the nodes of the series along it."""
-    whole = first.segments[0]._replace(shares=chebyshev_nodes())
-    return np.asarray(dataclasses.replace(first, segments=(whole,)).nodes(np.zeros(1))[0])
+    return np.clip(first.values(chebyshev_nodes()), 0.0, first.largest)
 
 
 def power_series(values: Array, degree: int) -> Array:
@@ -152,7 +160,10 @@ def power_series(values: Array, degree: int) -> Array:
     # the nodes make the basis orthogonal, so no system is to be solved
     coefficients = (basis * values[:, None]).sum(axis=0) * (2.0 / count)
     coefficients[0] /= 2.0
-    return np.asarray(np.polynomial.chebyshev.cheb2poly(coefficients))
+    found = np.zeros(degree + 1)
+    powers = np.polynomial.chebyshev.cheb2poly(coefficients)  # drops zeros at the end
+    found[: powers.size] = powers
+    return found
 
 
 def chebyshev_nodes(count: int = SERIES) -> Array:

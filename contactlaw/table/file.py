@@ -80,6 +80,7 @@ _SEGMENT = {
 _STRENGTHS = {
     "data": _Part("force laws at all strengths, see contactlaw.equation.force [d_Y, F_Y]"),
     "knots": _Part("ln of the strength, between which outcomes are smooth [-]"),
+    "cells": _Part("between each two of them [-]", kind=np.int64, least=3, largest=1000),
 }
 
 
@@ -251,7 +252,8 @@ def _from_file(file: h5py.File) -> Table:
     grids.check(axes, law, settings)
     grid = TableGrid(axes, _take(file, "", _SERIES)["elastic_compression"])
     if law.strengths is not None:
-        grid = dataclasses.replace(grid, **_take(file, "strengths", _by_strength(grid)))
+        rows = _take(file, "strengths", _by_strength(grid))["by_strength"]
+        grid = dataclasses.replace(grid, by_strength=rows)
     errors = file.attrs.get("certificate")
     certificate = None if errors is None else Certificate(**json.loads(errors))
     fields = _take(file, "fields", _fields(grid))
@@ -296,7 +298,10 @@ def _law(file: h5py.File) -> Law:
     if "strengths" in file:
         several = _take(file, "strengths", _STRENGTHS)
         force.check_strengths(several["data"])
-        strengths = Strengths(several["data"], tuple(several["knots"].tolist()))
+        numbers = (tuple(several[name].tolist()) for name in ("knots", "cells"))
+        strengths = Strengths(several["data"], *numbers)
+            )
+        )
     coefficient, scale, smallest, largest = (
         float(file.attrs[name])
         for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")

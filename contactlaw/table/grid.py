@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.equation import force, zener
-from contactlaw.laws import Law
+from contactlaw.laws import Law, Strengths
 from contactlaw.laws._branches import END
 from contactlaw.table import axes as _axes
 from contactlaw.table.axes import (
@@ -35,13 +35,12 @@ from contactlaw.table.axes import (
     power_series,
     series_values,
 )
-from contactlaw.table.lookup import ELASTIC, LATER, ROWS, STRETCHED, TERMS
+from contactlaw.table.lookup import ELASTIC, ROWS, STRETCHED, TERMS
 
 Array = NDArray[np.float64]
 
 AXES = "inelasticity", "log_overload", "log_strength"
 FEWEST = 5  # nodes of a segment along the first two axes, our choice
-LAYER = 0.1  # largest distance of two nodes in ln k, our choice: the COR errs by less than 5e-6
 _FEWEST_GRADED = 24  # nodes of a graded segment, our choice: two kinks may be only 8 % apart
 _COARSER = 4.0  # factor on steps in ln chi below yield, where only the sphere's stiffening counts
 _BEYOND = 1.5  # largest chi of a pair's table, over the chi up to which its law was made
@@ -105,27 +104,31 @@ def inelasticity_axis(settings: Settings) -> Axis:
     return Axis(AXES[0], (Segment(*ends, shares, graded=False),), settings.stretch)
 
 
-def strength_axis(knots: Sequence[float], step: float = LAYER) -> Axis:
+def strength_axis(strengths: Strengths, coarser: int = 1) -> Axis:
     """Ln of the strength from 0 to the largest, in segments between the knots."""
     segments = []
-    for low, high in itertools.pairwise(knots):
-        count = max(_axes.FEWEST, math.ceil((high - low) / step) + 1)
+    for (low, high), cells in zip(
+        itertools.pairwise(strengths.knots), strengths.cells, strict=True
+    ):
         ends = np.full(SERIES, low), np.full(SERIES, high)
+        count = max(-(-cells // coarser) + 1, _axes.FEWEST)
         segments.append(Segment(*ends, np.linspace(0.0, 1.0, count), graded=False))
     return Axis(AXES[2], tuple(segments))
 
 
 def with_steps(
-    grid: TableGrid, settings: Settings, steps: float | Array, layer: float = LAYER
+    law: Law, grid: TableGrid, settings: Settings, steps: float | Array, coarser: int = 1
 ) -> TableGrid:
-    """Place other nodes between the same kinks; one step for all segments, or one for each."""
+    """Place other nodes between the same kinks; one step for all segments, or one for each.
+
+    Cells along the strength are wider by a factor.
+    """
     overload = grid.axes[1]
     each = np.broadcast_to(steps, len(overload.segments))
     segments = tuple(_with_nodes(*one) for one in zip(overload.segments, each, strict=True))
     axes = [inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)]
-    for axis in grid.axes[2:]:
-        ends = [0.0, *(float(one.end[0]) for one in axis.segments)]
-        axes.append(strength_axis(ends, layer))
+    if law.strengths is not None:
+        axes.append(strength_axis(law.strengths, coarser))
     return dataclasses.replace(grid, axes=tuple(axes))
 
 
@@ -153,8 +156,9 @@ def check(axes: Sequence[Axis], law: Law, settings: Settings) -> None:
     for axis in axes:
         axis.check()
     first, second, *third = axes
-    if third and [one.end[0] for one in third[0].segments] != list(_knots(law))[1:]:
-        raise ValueError(f"its strengths are not those of the law, {_knots(law)}")
+    known = law.strengths
+    if [one.sizes for one in third] != ([strength_axis(known).sizes] if known else []):
+        raise ValueError("its strengths are not those of the law")
     expected = inelasticity_axis(settings)
     same = first.sizes == expected.sizes
     same = same and (first.stretch, second.stretch) == (expected.stretch, math.inf)
@@ -204,42 +208,31 @@ def grid(law: Law, settings: Settings) -> TableGrid:
     axes = inelasticity, Axis(AXES[1], segments)
     if law.strengths is None:
         return TableGrid(axes, elastic)
-    ranges = len(lines) > 2 + (not law.is_hertz)  # whether the table has the end of the law's range
-    rows = np.array([_rows(law, one, settings, ranges) for one in itertools.pairwise(_knots(law))])
-    return TableGrid((*axes, strength_axis(_knots(law))), elastic, rows)
+    has_end = len(lines) > 2 + (not law.is_hertz)  # of the law's range
+    ends = itertools.pairwise(law.strengths.knots)
+    rows = np.array([_rows(law, one, settings, has_end) for one in ends])
+    return TableGrid((*axes, strength_axis(law.strengths)), elastic, rows)
 
 
-def _knots(law: Law) -> Sequence[float]:
-    return () if law.strengths is None else law.strengths.knots
-
-
-def _rows(law: Law, ends: tuple[float, float], settings: Settings, ranges: bool) -> Array:
+def _rows(law: Law, ends: tuple[float, float], settings: Settings, has_end: bool) -> Array:
     """Rows of polynomials for a segment in ln k, as `contactlaw.table.lookup` has them."""
-    data, count = law.at_any_strength, ROWS - ELASTIC
+    data, powers, none = law.at_any_strength, ROWS - ELASTIC, np.zeros(TERMS * (ROWS - ELASTIC))
     strength = ends[0] + (ends[1] - ends[0]) * chebyshev_nodes(TERMS)
-    x = float(inelasticity_axis(settings).mapped(settings.largest_inelasticity)) * chebyshev_nodes(
-        count
-    )
-    s, lam = (
-        one.ravel()
-        for one in np.meshgrid(strength, settings.stretch * x / (1.0 - x), indexing="ij")
-    )
-    values = np.zeros((ROWS, TERMS))
-    values[LATER] = [math.log(force.growth_at(data, one)) for one in strength.tolist()]
-    own, slow = (elastic_compressions(law, lam, settings.rtol, at) for at in (s, 0.0 * s))
-    factor = np.ones(s.size)
-    if ranges:
-        turns, last = (
-            np.log(_overloads(law, np.array([_end(data, one) for one in at]), lam, w_m, at))
-            for at, w_m in ((s, own), (0.0 * s, slow))
+    lam = inelasticity_axis(settings).values(chebyshev_nodes(powers))
+    lam, s = np.tile(lam, TERMS), np.repeat(strength, powers)
+    own, slow = (elastic_compressions(law, lam, settings.rtol, one) for one in (s, none))
+    factor = np.ones_like(lam)
+    if has_end:
+        slow_end, end = (
+            np.log(_overloads(law, np.array([_end(data, k) for k in at.tolist()]), lam, w_m, at))
+            for at, w_m in ((none, slow), (s, own))
         )
-        factor = last / turns
-    for n, (one, more) in enumerate(
-        zip(factor.reshape(-1, count), np.log(own / slow).reshape(-1, count), strict=True)
-    ):
-        values[STRETCHED:ELASTIC, n] = power_series(one, ELASTIC - STRETCHED - 1)
-        values[ELASTIC:, n] = power_series(more, count - 1)
-    return np.array([power_series(row, TERMS - 1) for row in values])
+        factor = slow_end / end
+    rows = [[math.log(force.growth_at(data, one)) for one in strength.tolist()]]
+    for values, degree in ((factor, ELASTIC - STRETCHED), (np.log(own / slow), powers)):
+        each = [power_series(one, degree - 1) for one in values.reshape(TERMS, powers)]
+        rows += np.transpose(each).tolist()
+    return np.array([power_series(np.array(row), TERMS - 1) for row in rows])
 
 
 def _end(data: Array, strength: float) -> float:

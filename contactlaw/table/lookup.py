@@ -58,8 +58,10 @@ from contactlaw.equation.corrections import PlateCorrections, is_thin
 from contactlaw.equation.numbers import (
     NO_RATE,
     ModulusGrowth,
+    PairConstants,
     PlateConstants,
     inelasticity_of,
+    of_mass,
     plate_stiffening,
     relaxed,
     relaxes,
@@ -97,16 +99,14 @@ _CHUNK = 512  # impacts at a time: the scratch arrays stay in the first-level ca
 NO_MASSES = np.empty(0)
 
 
-def with_plate(table: Array, plate: PlateConstants, c_chi: float, log_time: float) -> Array:
-    """Copy a table and put in a pair's constants and the corrections of its plates.
-
-    T_H at 1 m/s of a sphere of radius 1 m is given by its logarithm.
-    """
-    table = table.copy()
+def with_plate(table: Array, pair: PairConstants) -> Array:
+    """Copy a table and put in the constants of a pair."""
+    table, plate, log_time = table.copy(), pair.plate, math.log(pair.time)
+    share = pair.yield_compression
+    c_chi = math.log(pair.time / share) if share < math.inf else -math.inf
     table[[C_LAM, C_CHI]] = plate.inelasticity, c_chi
-    if plate.rate.slope > 0.0:  # d_Y of a sphere of 1 m is that T_H over exp(c_chi)
-        table[RATE] = plate.rate.slope
-        table[LOG_RATE] = math.log(plate.rate.per_speed) - log_time + c_chi
+    if plate.rate.slope > 0.0:
+        table[[RATE, LOG_RATE]] = plate.rate.slope, math.log(plate.rate.per_speed / share)
     table[TRANSIT:WAVES] = plate.transit, plate.x_at_one, plate.saturated
     table[WAVES:GROWTH] = plate.corrections
     table[GROWTH:HEADER] = plate.growth._replace(log_time=plate.growth.log_time - log_time)
@@ -256,14 +256,16 @@ def _powers(c: Array, k: int, t: float) -> float:
     """Polynomial in t whose coefficients begin at k."""
     square = t * t
     low, high = c[k] + c[k + 1] * t, c[k + 2] + c[k + 3] * t
-    return low + (high + (c[k + 4] + c[k + 5] * t) * square) * square
+    value: float = low + (high + (c[k + 4] + c[k + 5] * t) * square) * square
+    return value
 
 
 @kernel(inline=True)
 def _t_of(table: Array, at: int, strength: float) -> float:
     """Place of a strength from -1 to 1 between the ends of the segment that begins at `at`."""
     low, high = table[at + LOW], table[at + HIGH]
-    return (2.0 * min(strength, high) - (low + high)) / (high - low)
+    t: float = (2.0 * min(strength, high) - (low + high)) / (high - low)
+    return t
 
 
 @kernel(inline=True)
@@ -326,7 +328,8 @@ def strongest(table: Array) -> float:
     if table[LAYERS] == 0.0:
         return math.inf
     last = int(table[STRENGTHS_AT]) + (int(table[STRENGTHS]) - 1) * STRENGTH
-    return table[last + HIGH] * (1.0 + 1e-12)
+    most: float = table[last + HIGH] * (1.0 + 1e-12)
+    return most
 
 
 @kernel(inline=True)
@@ -482,7 +485,8 @@ def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> flo
     c1 = a0 * table[p + i] + a1 * table[q + i] + a2 * table[r + i] + a3 * table[o + i]
     c2 = a0 * table[p + j] + a1 * table[q + j] + a2 * table[r + j] + a3 * table[o + j]
     c3 = a0 * table[p + k] + a1 * table[q + k] + a2 * table[r + k] + a3 * table[o + k]
-    return (b0 * c0 + b1 * c1 + b2 * c2 + b3 * c3) * (1.0 / 36.0)
+    value: float = (b0 * c0 + b1 * c1 + b2 * c2 + b3 * c3) * (1.0 / 36.0)
+    return value
 
 
 @kernel(inline=True)
@@ -581,7 +585,7 @@ class _Contact(NamedTuple):
 
     x: float
     stiffer: float  # to be taken from ln chi
-    root: float  # V^(1/5) exp(eta) g^(2/5), less ln(mass)/2.5 in logarithms
+    root: float  # V^(1/5) exp(eta) g^(2/5) over mass^(2/5)
 
 
 @kernel(inline=True)
@@ -603,24 +607,24 @@ def _contact(
     Loops over many impacts say of all of them whether the plate is thin and whether they are usual,
     without losses and of a solid sphere: then they become vector instructions.
     """
-    stiffer = later
+    stiffer, slower = later, 1.0
     if not usual:
-        log_mass, fifth = log_and_root(mass)
-        root /= fifth * fifth
-        stiffer -= 0.4 * log_mass
-        plate = heavier(plate, mass)
+        pair = of_mass(PairConstants(plate, 1.0, 1.0, 1.0), mass)
+        plate, slower = pair.plate, pair.time
+        stiffer -= math.log(slower)
         if relaxes(plate):
-            log_time = log_and_root(radius)[0] - 0.2 * log_speed + 0.4 * log_mass
+            log_time = log_and_root(radius)[0] - 0.2 * log_speed + math.log(slower)
             plate, root, growth = relaxed(plate, root, log_time)
             stiffer += (0.4 + plate.growth.yield_power) * growth
     if thin:  # one division: lam/(lam + c) with lam = c_lam V^(1/5) (R/H)^2
         above = plate.inelasticity * root * radius * radius
-        return _Contact(above / (above + stretch * (thickness * thickness)), stiffer, root)
+        x = above / (above + stretch * (thickness * thickness))
+        return _Contact(x, stiffer, root / slower)
     ratio = radius / thickness
     eta = plate_stiffening(plate, root, ratio)
     factor = exp(eta)
     lam = inelasticity_of(plate, root, ratio, factor)
-    return _Contact(lam / (lam + stretch), stiffer + eta, root * factor)
+    return _Contact(lam / (lam + stretch), stiffer + eta, root * factor / slower)
 
 
 class Place(NamedTuple):

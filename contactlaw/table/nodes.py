@@ -86,7 +86,7 @@ class Table:
 def shape_grid(table: Table) -> TableGrid:
     """Nodes of the shapes: coarser, with the same segments."""
     settings = dataclasses.replace(table.settings, inelasticity_nodes=shapes.ROWS)
-    return grids.with_steps(table.grid, settings, shapes.STEP, shapes.LAYER)
+    return grids.with_steps(table.law, table.grid, settings, shapes.STEP, shapes.COARSER)
 
 
 def build(
@@ -185,7 +185,7 @@ def _resampled(table: Table, rows: int, steps: float | Array) -> Table:
     settings = dataclasses.replace(
         table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps))
     )
-    grid = grids.with_steps(table.grid, settings, steps)
+    grid = grids.with_steps(table.law, table.grid, settings, steps)
     lam, log_chi, *strength = (values.ravel() for values in grid.nodes())
     found = _looked_up(table, lam, log_chi, strength[0] if strength else np.zeros_like(lam))
     fields = {name: getattr(found, name).reshape(grid.shape) for name in STORED}

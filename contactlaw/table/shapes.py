@@ -42,7 +42,7 @@ SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
 SIZE = 2 * STATES - 1  # states between touch and separation, which are known themselves
 ROWS = 41  # nodes along lam, uniform in x = lam/(lam + c)
 STEP = 0.08  # largest distance of two nodes in ln chi
-LAYER = 0.3  # largest distance of two nodes in ln k
+COARSER = 3  # factor on distances in ln k
 _RTOL = 1e-10  # rtol for contacts that are integrated
 
 

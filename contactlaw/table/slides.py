@@ -38,7 +38,7 @@ _CHANGE_AT, _KAPPA_AT = lookup.COR_AT, lookup.OTHERS_AT  # entries of the header
 _NODES = 49  # of each range of psi
 _ROWS = 49  # along lambda
 _STEP, _ELASTIC_STEP = 0.12, 0.25  # largest distances in ln chi, beyond yield and below
-_LAYER = 0.3  # largest distance in ln k
+_COARSER = 3  # factor on distances in ln k
 _WIDTH = 2 * (_NODES + 2)  # coefficients along psi
 _SAMPLES, _SPRINGS = 401, 32  # of the histories at the nodes
 _RTOL = 1e-10
@@ -56,7 +56,7 @@ def build(table: Table, kappa: float) -> Array:
     segments = table.grid.axes[1].segments
     steps = np.where([s.end.max() <= 0.0 for s in segments], _ELASTIC_STEP, _STEP)
     settings = dataclasses.replace(table.settings, inelasticity_nodes=_ROWS)
-    grid = grids.with_steps(table.grid, settings, steps, _LAYER)
+    grid = grids.with_steps(law, table.grid, settings, steps, _COARSER)
     lam, chi, strength = grid.points()
     change = np.empty((lam.size, 2 * _NODES))
 
