@@ -365,14 +365,15 @@ def overload_at(
     before = np.log(np.broadcast_to(dm, np.shape(lam)))
     gap_before = gap(before)
     at = before - gap_before
+    close = 1e-11 if force.room_for(law) == 0 else 1e-9  # the laws of strengths are rounded more
     for _ in range(100):
         gap_at = gap(at)
-        if not (abs(gap_at) > 1e-11).any():
+        if not (abs(gap_at) > close).any():
             break
         rise = np.where(gap_at == gap_before, 1.0, gap_at - gap_before)
-        step = np.where(abs(gap_at) > 1e-11, gap_at * (at - before) / rise, 0.0)
+        step = np.where(abs(gap_at) > close, gap_at * (at - before) / rise, 0.0)
         before, gap_before, at = at, gap_at, at - step
-    found = np.where(abs(gap_at) <= 1e-11, np.exp(at), math.nan)
+    found = np.where(abs(gap_at) <= close, np.exp(at), math.nan)
     return found if found.shape else found.item()
 
 

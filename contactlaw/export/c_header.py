@@ -35,6 +35,7 @@ from contactlaw.table.nodes import thinned
 
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
 ERROR = 4e-6  # largest of COR against the model's table, to be within 1e-5 of the equation
+RATED_ERROR = 1e-4  # the same of a pair with a rate, whose table has a third axis
 _WIDTH = 96
 _TABLE = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 # The text is C, but for what GPUs need before each function and each constant.
@@ -116,7 +117,7 @@ def header(
             "prefix: must be lower-case words of letters and digits, joined by single underscores "
             f"and beginning with a letter, as in 'steel_on_glass', got {prefix!r}"
         )
-    thin = thinned(model.table, ERROR) if table == "cor" else None
+    thin = thin_table(model) if table == "cor" else None
     content = _text(model, thin, prefix).encode()
     if len(content) > LARGEST:
         raise ValueError(
@@ -124,6 +125,11 @@ def header(
             "a model with coarser Settings, or one with a rate for one of two bodies alone"
         )
     _atomic.write(path, content)
+
+
+def thin_table(model: ImpactModel) -> Table:
+    """Coarser table for a header."""
+    return thinned(model.table, RATED_ERROR if model.table.law.strengths else ERROR)
 
 
 def kernels(bodies: Bodies) -> str:

@@ -298,10 +298,8 @@ def _law(file: h5py.File) -> Law:
     if "strengths" in file:
         several = _take(file, "strengths", _STRENGTHS)
         force.check_strengths(several["data"])
-        numbers = (tuple(several[name].tolist()) for name in ("knots", "cells"))
-        strengths = Strengths(several["data"], *numbers)
-            )
-        )
+        knots, cells = (tuple(several[name].tolist()) for name in ("knots", "cells"))
+        strengths = Strengths(several["data"], knots, cells)
     coefficient, scale, smallest, largest = (
         float(file.attrs[name])
         for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")

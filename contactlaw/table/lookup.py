@@ -589,15 +589,6 @@ class _Contact(NamedTuple):
 
 
 @kernel(inline=True)
-def heavier(plate: PlateConstants, mass: float) -> PlateConstants:
-    """Plate under a sphere that has another mass than a solid one, over that, with T_H its own."""
-    return PlateConstants(
-        plate.inelasticity * mass, plate.transit, plate.x_at_one * mass,
-        plate.saturated / math.sqrt(mass), plate.corrections, plate.growth, plate.rate,
-    )  # fmt: skip
-
-
-@kernel(inline=True)
 def _contact(
     plate: PlateConstants, stretch: float, log_speed: float, root: float, radius: float,
     thickness: float, mass: float, later: float, thin: bool, usual: bool,

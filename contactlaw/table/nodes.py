@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,7 @@ Array = NDArray[np.float64]
 POINTS = 1000  # points of the certificate of a table that is built on demand
 _COMPARED = 20_000  # points at which a coarser table is compared
 _ROW_FACTORS = 4, 2, 1  # factors by which a coarser table may have fewer rows
+_LAYER_FACTORS = 1, 2, 4  # likewise of cells in ln k
 # Factors by which a coarser table's steps in ln chi may be wider, one for each segment: the COR of
 # elastic impacts bends far less than that beyond yield, for which a single step has to be fine.
 _STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
@@ -136,12 +138,14 @@ def thinned(table: Table, error: float) -> Table:
     points = random_points(table.grid, _COMPARED, np.random.default_rng(0))
     exact = _looked_up(table, *points).restitution
     found = table
-    for fewer in _ROW_FACTORS:
+    for fewer, coarser in itertools.product(
+        _ROW_FACTORS, _LAYER_FACTORS[: 3 if len(table.grid.axes) > 2 else 1]
+    ):
         count = max(rows // fewer + 1, fewest)
-        steps = _widest_steps(table, count, error, points, exact)
+        steps = _widest_steps(table, count, error, points, exact, coarser)
         if steps is not None:
-            one = _resampled(table, count, steps)
-            if one.fields["restitution"].size < found.fields["restitution"].size:
+            one = _resampled(table, count, steps, coarser)
+            if one.packed.size < found.packed.size:
                 found = one
     if found.certificate is None:
         found = dataclasses.replace(found, certificate=certify(found, POINTS))
@@ -149,8 +153,9 @@ def thinned(table: Table, error: float) -> Table:
 
 
 def _widest_steps(
-    table: Table, rows: int, error: float, points: tuple[Array, Array, Array], exact: Array
-) -> Array | None:
+    table: Table, rows: int, error: float, points: tuple[Array, Array, Array], exact: Array,
+    coarser: int,
+) -> Array | None:  # fmt: skip
     """Largest step in each segment with which its COR errs no more than `error`; None if none does.
 
     Splines do not run across kinks, so the error in a segment is that of its own steps.
@@ -162,7 +167,7 @@ def _widest_steps(
     passing = np.ones(steps.size, dtype=bool)
     for wider in (1.0, *_STEP_FACTORS):
         one = min(step * wider, widest)
-        off = np.abs(_looked_up(_resampled(table, rows, one), *points).restitution - exact)
+        off = np.abs(_looked_up(_resampled(table, rows, one, coarser), *points).restitution - exact)
         passing &= [off[segment == n].max(initial=0.0) <= error for n in range(steps.size)]
         if wider == 1.0 and not passing.all():
             return None
@@ -180,12 +185,12 @@ def _looked_up(table: Table, lam: Array, log_chi: Array, strength: Array) -> Out
     return found
 
 
-def _resampled(table: Table, rows: int, steps: float | Array) -> Table:
+def _resampled(table: Table, rows: int, steps: float | Array, coarser: int) -> Table:
     """Table on other nodes; one step along ln chi for all segments, or one for each."""
     settings = dataclasses.replace(
         table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps))
     )
-    grid = grids.with_steps(table.law, table.grid, settings, steps)
+    grid = grids.with_steps(table.law, table.grid, settings, steps, coarser)
     lam, log_chi, *strength = (values.ravel() for values in grid.nodes())
     found = _looked_up(table, lam, log_chi, strength[0] if strength else np.zeros_like(lam))
     fields = {name: getattr(found, name).reshape(grid.shape) for name in STORED}

@@ -122,7 +122,7 @@ def given(name):
 def from_python(name, folder):
     """What uncompiled Python gives for the impacts of `given`."""
     model = model_of(name)
-    bodies = functions.bodies_of(model, c_header._nodes(model))
+    bodies = functions.bodies_of(model, c_header.thin_table(model))
     (folder / "in").write_bytes(pickle.dumps((tuple(bodies), given(name))))
     script = ROOT / "tests/shared/uncompiled.py"
     subprocess.run(
