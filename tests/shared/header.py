@@ -22,7 +22,7 @@ SOURCE = f"""
 #define AT
 #endif
 
-CONTACTLAW_FN void contactlaw_asked(AT const double *in, AT double *out)
+CONTACTLAW_FN void contactlaw_answer(AT const double *in, AT double *out)
 {{
     const double v = in[0], r = in[1], h = in[2], mu = in[5], dt = in[6];
     const int edge = (int)in[3];
@@ -66,19 +66,19 @@ CONTACTLAW_FN void contactlaw_asked(AT const double *in, AT double *out)
 #ifdef __OPENCL_VERSION__
 __kernel void contactlaw_all(__global const double *in, __global double *out)
 {{
-    contactlaw_asked(in + {GIVEN} * get_global_id(0), out + {WIDTH} * get_global_id(0));
+    contactlaw_answer(in + {GIVEN} * get_global_id(0), out + {WIDTH} * get_global_id(0));
 }}
 #else
 void contactlaw_answers(int n, const double *in, double *out)
 {{
     for (; n > 0; --n, in += {GIVEN}, out += {WIDTH})
-        contactlaw_asked(in, out);
+        contactlaw_answer(in, out);
 }}
 #endif
 #ifdef __CUDACC__
 __global__ void contactlaw_all(const double *in, double *out)
 {{
-    contactlaw_asked(in, out);
+    contactlaw_answer(in, out);
 }}
 #endif
 """
