@@ -48,7 +48,7 @@ pair of materials and a law, `contactlaw.physical.scaling` has them.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +72,7 @@ from contactlaw.equation.outcome import Outcome
 Array = NDArray[np.float64]
 Integers = NDArray[np.int32]
 Four = tuple[float, float, float, float]
+Six = tuple[float, float, float, float, float, float]
 
 # Input outside these limits is a mistake. Sizes [m]: there is no continuum below 1 nm, and no bead
 # above 1 km. Speeds [m/s]: no contact is quasi-static above the speed of every wave in a solid, and
@@ -252,42 +253,55 @@ def log_elastic(table: Array, x: float) -> float:
 
 
 @kernel(inline=True)
-def _powers(c: Array, k: int, t: float) -> float:
-    """Polynomial in t whose coefficients begin at k."""
+def _row_at(table: Array, at: int, row: int) -> Six:
+    """Coefficients of a row of the segment in ln k that begins at `at`."""
+    k, c = at + ROWS_AT + row * TERMS, table
+    return c[k], c[k + 1], c[k + 2], c[k + 3], c[k + 4], c[k + 5]
+
+
+@kernel(inline=True)
+def _powers(c: Six, t: float) -> float:
+    """Polynomial in t."""
     square = t * t
-    low, high = c[k] + c[k + 1] * t, c[k + 2] + c[k + 3] * t
-    value: float = low + (high + (c[k + 4] + c[k + 5] * t) * square) * square
-    return value
+    return (c[0] + c[1] * t) + ((c[2] + c[3] * t) + (c[4] + c[5] * t) * square) * square
 
 
 @kernel(inline=True)
-def _t_of(table: Array, at: int, strength: float) -> float:
-    """Place of a strength from -1 to 1 between the ends of the segment that begins at `at`."""
+def _place_in(table: Array, at: int) -> tuple[float, float, float]:
+    """Where a segment in ln k ends, its middle, and 2 over its length."""
     low, high = table[at + LOW], table[at + HIGH]
-    t: float = (2.0 * min(strength, high) - (low + high)) / (high - low)
-    return t
+    return high, 0.5 * (low + high), 2.0 / (high - low)
 
 
 @kernel(inline=True)
-def _stretched(table: Array, at: int, z: float, t: float) -> float:
-    """Factor by which ln chi is stretched, in the segment that begins at `at`."""
-    k, square = at + ROWS_AT + STRETCHED * TERMS, z * z
-    a, b = _powers(table, k, t), _powers(table, k + TERMS, t)
-    c, d = _powers(table, k + 2 * TERMS, t), _powers(table, k + 3 * TERMS, t)
-    return (a + b * z) + (c + d * z) * square
+def _four_rows(table: Array, at: int, row: int) -> tuple[Six, Six, Six, Six]:
+    """Four rows, to be read before a loop: in it the table might be what is written."""
+    return (
+        _row_at(table, at, row), _row_at(table, at, row + 1), _row_at(table, at, row + 2),
+        _row_at(table, at, row + 3),
+    )  # fmt: skip
 
 
 @kernel(inline=True)
-def _elastic(table: Array, at: int, z: float, t: float) -> float:
-    """Ln w_m less that of a slow impact, in the segment that begins at `at`."""
-    k, square = at + ROWS_AT + ELASTIC * TERMS, z * z
-    a, b = _powers(table, k, t), _powers(table, k + TERMS, t)
-    c, d = _powers(table, k + 2 * TERMS, t), _powers(table, k + 3 * TERMS, t)
-    e, f = _powers(table, k + 4 * TERMS, t), _powers(table, k + 5 * TERMS, t)
-    g, h = _powers(table, k + 6 * TERMS, t), _powers(table, k + 7 * TERMS, t)
-    i, j = _powers(table, k + 8 * TERMS, t), _powers(table, k + 9 * TERMS, t)
-    high = (e + f * z) + ((g + h * z) + (i + j * z) * square) * square
-    return (a + b * z) + ((c + d * z) + high * square) * square
+def _sum_of(c: tuple[Six, Six, Six, Six], z: float, t: float) -> float:
+    """Cubic in z whose coefficients are polynomials in t."""
+    low, high = _powers(c[0], t) + _powers(c[1], t) * z, _powers(c[2], t) + _powers(c[3], t) * z
+    return low + high * (z * z)
+
+
+@kernel(inline=True)
+def _elastic_rows(table: Array, at: int) -> Any:
+    """Rows of ln w_m less that of a slow impact."""
+    c = _four_rows(table, at, ELASTIC), _four_rows(table, at, ELASTIC + 4)
+    return c[0], c[1], _row_at(table, at, ELASTIC + 8), _row_at(table, at, ELASTIC + 9)
+
+
+@kernel(inline=True)
+def _elastic(c: Any, z: float, t: float) -> float:
+    """Ln w_m less that of a slow impact, from its rows."""
+    fourth = (z * z) * (z * z)
+    last = _powers(c[2], t) + _powers(c[3], t) * z
+    return _sum_of(c[0], z, t) + (_sum_of(c[1], z, t) + last * fourth) * fourth
 
 
 class Strength(NamedTuple):
@@ -309,10 +323,11 @@ def at_strength(table: Array, strength: float) -> Strength:
     last = at + (int(table[STRENGTHS]) - 1) * STRENGTH
     while at < last and strength > table[at + HIGH]:
         at += STRENGTH
-    t, cells = _t_of(table, at, strength), table[at + LAYER_CELLS]
+    high, middle, per = _place_in(table, at)
+    t, cells = per * (min(strength, high) - middle), table[at + LAYER_CELLS]
     along = (0.5 + 0.5 * t) * cells
     cell = min(int(along), int(cells) - 1)
-    later = _powers(table, at + ROWS_AT + LATER * TERMS, t)
+    later = _powers(_row_at(table, at, LATER), t)
     return Strength(at, t, later, int(table[at + LAYER]) + cell, along - cell)
 
 
@@ -333,10 +348,9 @@ def strongest(table: Array) -> float:
 
 
 @kernel(inline=True)
-def log_strength(table: Array, log_speed: float, log_radius: float) -> float:
-    """Ln of the strength at the rate of an impact."""
-    log_rate = table[LOG_RATE] + log_speed - log_radius
-    return log_and_root(1.0 + table[RATE] * max(log_rate, 0.0))[0]
+def log_strength(slope: float, log_rate: float) -> float:
+    """Ln of the strength from that of the rate over the one from which on it grows."""
+    return log_and_root(1.0 + slope * max(log_rate, 0.0))[0]
 
 
 @kernel
@@ -345,7 +359,8 @@ def log_elastic_at(table: Array, x: float, strength: Strength) -> float:
     log_w = log_elastic(table, x)
     if strength.at == 0:
         return log_w
-    return log_w + _elastic(table, strength.at, 2.0 / table[X_MAX] * x - 1.0, strength.t)
+    rows = _elastic_rows(table, strength.at)
+    return log_w + _elastic(rows, 2.0 / table[X_MAX] * x - 1.0, strength.t)
 
 
 @kernel(inline=True)
@@ -353,7 +368,8 @@ def stretched(table: Array, x: float, strength: Strength) -> float:
     """Factor by which ln chi beyond yield is stretched."""
     if strength.at == 0:
         return 1.0
-    return _stretched(table, strength.at, 2.0 / table[X_MAX] * x - 1.0, strength.t)
+    rows = _four_rows(table, strength.at, STRETCHED)
+    return _sum_of(rows, 2.0 / table[X_MAX] * x - 1.0, strength.t)
 
 
 @kernel(inline=True)
@@ -470,8 +486,8 @@ def locate_all(
 
 
 @kernel(inline=True)
-def _cor(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
-    """COR from its 16 coefficients, which begin at p; four along ln chi share each instruction.
+def _flat(table: Array, p: np.uint64, step: np.uint64, s: float, t: float) -> float:
+    """One field from its 16 coefficients, which begin at p; four along ln chi are in one vector.
 
     Indices are unsigned: no test for a negative one.
     """
@@ -525,52 +541,6 @@ def _field(
 def _share(value: float) -> float:
     """COR from its spline, which may pass 1 by its error: engines refuse that."""
     return min(max(value, 0.0), 1.0)
-
-
-_U = tuple(np.uint64(n) for n in range(12))  # indices need no test for negative ones
-
-
-class _Others(NamedTuple):
-    """Fields of a table other than COR."""
-
-    contact_time: float
-    wave_rate: float
-    growth: float  # p in d_m/d_Y = chi^p, see `contactlaw.table.splines`
-
-
-@kernel
-def _other_fields(table: Array, p: np.uint64, s: float, t: float) -> _Others:
-    """Contact time [T_H], wave rate and growth; their coefficients begin at p."""
-    a, (b0, b1, b2, b3) = weights(s), weights(t)
-    time = wave = ratio = 0.0
-    step = np.uint64(3 * int(table[COLUMNS]))
-    for k in range(4):
-        time += a[k] * (
-            (b0 * table[p] + b1 * table[p + _U[3]])
-            + (b2 * table[p + _U[6]] + b3 * table[p + _U[9]])
-        )
-        wave += a[k] * (
-            (b0 * table[p + _U[1]] + b1 * table[p + _U[4]])
-            + (b2 * table[p + _U[7]] + b3 * table[p + _U[10]])
-        )
-        ratio += a[k] * (
-            (b0 * table[p + _U[2]] + b1 * table[p + _U[5]])
-            + (b2 * table[p + _U[8]] + b3 * table[p + _U[11]])
-        )
-        p += step
-    return _Others(time / 36.0, wave / 36.0, ratio / 36.0)
-
-
-@kernel(inline=True)
-def _others_between(table: Array, p: int, layers: int, s: float, t: float, place: float) -> _Others:
-    """`_other_fields` of a table with layers."""
-    first, layer, column = np.uint64(p), np.uint64(layers), np.uint64(3 * layers)
-    row = np.uint64(3 * layers * int(table[COLUMNS]))
-    return _Others(
-        _field(table, first, row, column, s, t, place),
-        _field(table, first + layer, row, column, s, t, place),
-        _field(table, first + layer + layer, row, column, s, t, place),
-    )
 
 
 @kernel(inline=True)
@@ -639,7 +609,8 @@ def place_of(table: Array, speed: float, radius: float, thickness: float, mass: 
     log_speed, root = log_and_root(speed)
     plate, strength = plate_of(table), 0.0
     if table[LAYERS] > 0.0:
-        strength = log_strength(table, log_speed, log_and_root(radius)[0])
+        log_rate = table[LOG_RATE] + log_speed - log_and_root(radius)[0]
+        strength = log_strength(table[RATE], log_rate)
     at = at_strength(table, strength)
     if table[LAYERS] > 0.0:
         plate = with_saturation(plate, plate.saturated * exp(0.25 * at.later))
@@ -658,16 +629,22 @@ def place_of(table: Array, speed: float, radius: float, thickness: float, mass: 
 
 
 @kernel
-def cor_at(table: Array, at: Place) -> float:
-    """COR at a place in the table."""
+def field_at(table: Array, at: Place, field: int) -> float:
+    """Value of a field at a place in the table."""
     row, column, s, t = locate(table, at.x, at.log_chi)
     step, layers, p = int(table[COLUMNS]), int(table[LAYERS]), int(table[COR_AT])
-    first = row * step + column
+    p += field * (int(table[OTHERS_AT]) - p)
     if layers == 0:
-        return _share(_cor(table, np.uint64(p + first), np.uint64(step), s, t))
+        return _flat(table, np.uint64(p + row * step + column), np.uint64(step), s, t)
+    p += layers * (row * step + column) + at.layer
     rows, columns = np.uint64(layers * step), np.uint64(layers)
-    p += layers * first + at.layer
-    return _share(_field(table, np.uint64(p), rows, columns, s, t, at.between))
+    return _field(table, np.uint64(p), rows, columns, s, t, at.between)
+
+
+@kernel
+def cor_at(table: Array, at: Place) -> float:
+    """COR at a place in the table."""
+    return _share(field_at(table, at, 0))
 
 
 @kernel(cache=True)
@@ -695,9 +672,9 @@ def _grow(table: Array, strength: Array, later: Array) -> None:
     """Ln of the growth of the yield compression of many impacts."""
     for n in range(int(table[STRENGTHS])):
         at = int(table[STRENGTHS_AT]) + n * STRENGTH
-        low = table[at + LOW]
+        low, rows, (high, middle, per) = table[at], _row_at(table, at, LATER), _place_in(table, at)
         for i in range(later.size):
-            value = _powers(table, at + ROWS_AT + LATER * TERMS, _t_of(table, at, strength[i]))
+            value = _powers(rows, per * (min(strength[i], high) - middle))
             later[i] = value if (strength[i] > low) | (n == 0) else later[i]
 
 
@@ -707,9 +684,10 @@ def _add_elastic(table: Array, strength: Array, x: Array, more: Array, log_w: Ar
     scale = 2.0 / table[X_MAX]
     for n in range(int(table[STRENGTHS])):
         at = int(table[STRENGTHS_AT]) + n * STRENGTH
-        low = table[at + LOW]
+        low, rows, (high, middle, per) = table[at], _elastic_rows(table, at), _place_in(table, at)
         for i in range(x.size):
-            value = _elastic(table, at, scale * x[i] - 1.0, _t_of(table, at, strength[i]))
+            t = per * (min(strength[i], high) - middle)
+            value = _elastic(rows, scale * x[i] - 1.0, t)
             more[i] = value if (strength[i] > low) | (n == 0) else more[i]
     for i in range(x.size):
         log_w[i] += more[i]
@@ -721,9 +699,11 @@ def _stretch(table: Array, strength: Array, x: Array, factor: Array, log_chi: Ar
     scale = 2.0 / table[X_MAX]
     for n in range(int(table[STRENGTHS])):
         at = int(table[STRENGTHS_AT]) + n * STRENGTH
-        low = table[at + LOW]
+        low, (high, middle, per) = table[at], _place_in(table, at)
+        rows = _four_rows(table, at, STRETCHED)
         for i in range(x.size):
-            value = _stretched(table, at, scale * x[i] - 1.0, _t_of(table, at, strength[i]))
+            t = per * (min(strength[i], high) - middle)
+            value = _sum_of(rows, scale * x[i] - 1.0, t)
             factor[i] = value if (strength[i] > low) | (n == 0) else factor[i]
     for i in range(x.size):
         log_chi[i] = like(log_chi[i], factor[i])
@@ -762,8 +742,11 @@ def _coordinates(
     for i in range(x.size):
         log_chi[i], root[i] = log_and_root(speed[i])
     if rated:
+        rate, log_rate = table[RATE], table[LOG_RATE]
         for i in range(x.size):
-            strength[i] = log_strength(table, log_chi[i], log_and_root(radius[i])[0])
+            later[i] = log_chi[i] - log_and_root(radius[i])[0]
+        for i in range(x.size):
+            strength[i] = log_strength(rate, log_rate + later[i])
         _grow(table, strength, later)
     plate = plate_of(table)
     thin, usual = is_thin(plate.corrections), not relaxes(plate) and mass.size == 0
@@ -874,7 +857,7 @@ def restitutions(
                 values[i] = _share(_field(table, at, row, column, x[i], along[i], a[i]))
         else:
             for i in range(n):
-                values[i] = _share(_cor(table, np.uint64(p + first[i]), step, x[i], along[i]))
+                values[i] = _share(_flat(table, np.uint64(p + first[i]), step, x[i], along[i]))
         if not inside:
             for i in range(n):
                 values[i] += outside[i]
@@ -892,9 +875,10 @@ def outcomes(
     V^(1/5) exp(eta) g^(2/5), over the mass to the power 2/5, goes into root.
     """
     scratch, cells = np.zeros((9, _CHUNK)), np.empty((2, _CHUNK), dtype=np.int32)
-    p, q, columns = int(table[COR_AT]), int(table[OTHERS_AT]), int(table[COLUMNS])
-    layers, stretch, lowest = int(table[LAYERS]), table[STRETCH], table[BLOCKS + START]
-    step, row, column = np.uint64(columns), np.uint64(columns * layers), np.uint64(layers)
+    p, columns, layers = int(table[COR_AT]), int(table[COLUMNS]), int(table[LAYERS])
+    row, column = np.uint64(columns * max(layers, 1)), np.uint64(layers)
+    step = np.uint64(int(table[OTHERS_AT]) - p)  # from field to field
+    stretch, lowest = table[STRETCH], table[BLOCKS + START]
     bad = 0
     for start in range(0, speed.size, _CHUNK):
         n = min(_CHUNK, speed.size - start)
@@ -908,7 +892,8 @@ def outcomes(
         for i in range(n):  # x = lam/(lam + stretch), chi = w_m/y
             out.inelasticity[start + i] = stretch * x[i] / (1.0 - x[i])
         for i in range(n):
-            out.yield_ratio[start + i] = exp(log_w[i] - log_chi[i])
+            known = log_chi[i] > -math.inf  # else no body yields
+            out.yield_ratio[start + i] = exp(log_w[i] - log_chi[i]) if known else math.inf
         for i in range(n):
             out.strength[start + i] = strength[i]
         for i in range(n):
@@ -921,21 +906,20 @@ def outcomes(
         if layers > 0:
             _locate_layers(table, strength, first, cells[1, :n], a)
             for i in range(n):
-                at, s, t, cell = int(first[i]), x[i], along[i], int(first[i] - cells[1, i])
-                value = _field(table, np.uint64(p + at), row, column, s, t, a[i])
-                out.restitution[start + i] = _share(value)
-                others = _others_between(table, q + 3 * cell + int(cells[1, i]), layers, s, t, a[i])
-                out.contact_time[start + i] = others.contact_time
-                out.wave_rate[start + i] = others.wave_rate
-                own[i] = (others.growth - 1.0) * max(own[i], lowest)
+                at, s, t, k = np.uint64(p + first[i]), x[i], along[i], a[i]
+                out.restitution[start + i] = _share(_field(table, at, row, column, s, t, k))
+                out.contact_time[start + i] = _field(table, at + step, row, column, s, t, k)
+                out.wave_rate[start + i] = _field(table, at + step + step, row, column, s, t, k)
+                growth = _field(table, at + step + step + step, row, column, s, t, k)
+                own[i] = (growth - 1.0) * max(own[i], lowest)
         else:
             for i in range(n):
-                at, s, t = int(first[i]), x[i], along[i]
-                out.restitution[start + i] = _share(_cor(table, np.uint64(p + at), step, s, t))
-                others = _other_fields(table, np.uint64(q + 3 * at), s, t)
-                out.contact_time[start + i] = others.contact_time
-                out.wave_rate[start + i] = others.wave_rate
-                own[i] = (others.growth - 1.0) * max(own[i], lowest)
+                at, s, t = np.uint64(p + first[i]), x[i], along[i]
+                out.restitution[start + i] = _share(_flat(table, at, row, s, t))
+                out.contact_time[start + i] = _flat(table, at + step, row, s, t)
+                out.wave_rate[start + i] = _flat(table, at + step + step, row, s, t)
+                growth = _flat(table, at + step + step + step, row, s, t)
+                own[i] = (growth - 1.0) * max(own[i], lowest)
         for i in range(n):
             out.elastic_compression[start + i] = exp(log_w[i])
         for i in range(n):
@@ -963,8 +947,7 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
     puts that point's coordinates in place of the impact's.
     """
     outside, x_max, log_chi_max, most = 0, table[X_MAX], table[LOG_CHI_MAX], strongest(table)
-    p, q, columns = int(table[COR_AT]), int(table[OTHERS_AT]), int(table[COLUMNS])
-    layers, lowest = int(table[LAYERS]), table[BLOCKS + START]
+    lowest = table[BLOCKS + START]
     for n in range(out.inelasticity.size):
         x = out.inelasticity[n] / (out.inelasticity[n] + table[STRETCH])
         inside_x = x if 0.0 <= x <= x_max else x_max  # also where lambda is infinite
@@ -983,20 +966,12 @@ def fields(table: Array, clamp: bool, out: Outcome) -> int:
             own = like(inside_chi, 1.0 / factor)
             out.inelasticity[n] = inside_x * table[STRETCH] / (1.0 - inside_x)
             out.yield_ratio[n], out.strength[n] = math.exp(log_w - own), strength
-        row, column, s, t = locate(table, inside_x, inside_chi)
-        cell = row * columns + column
-        if layers > 0:
-            f, g = np.uint64(p + cell * layers + at.layer), np.uint64(layers)
-            value = _field(table, f, np.uint64(columns * layers), g, s, t, at.place)
-            others = _others_between(
-                table, q + 3 * cell * layers + at.layer, layers, s, t, at.place
-            )
-        else:
-            value = _cor(table, np.uint64(p + cell), np.uint64(columns), s, t)
-            others = _other_fields(table, np.uint64(q + 3 * cell), s, t)
-        out.restitution[n] = _share(value)
-        out.contact_time[n], out.wave_rate[n] = others.contact_time, others.wave_rate
-        out.compression_ratio[n] = math.exp((others.growth - 1.0) * max(own, lowest))
+        place = Place(inside_x, inside_chi, strength, at.layer, at.place)
+        out.restitution[n] = _share(field_at(table, place, 0))
+        out.contact_time[n] = field_at(table, place, 1)
+        out.wave_rate[n] = field_at(table, place, 2)
+        growth = field_at(table, place, 3)
+        out.compression_ratio[n] = math.exp((growth - 1.0) * max(own, lowest))
         out.elastic_compression[n] = math.exp(log_w)
     return outside
 

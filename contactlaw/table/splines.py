@@ -125,4 +125,4 @@ def pack(grid: TableGrid, fields: dict[str, Array]) -> Array:
     cor, *others = (surface(values, grid) for values in packed.values())
     head = header(grid)
     head[lookup.COR_AT], head[lookup.OTHERS_AT] = head.size, head.size + cor.size
-    return np.concatenate((head, cor.ravel(), np.stack(others, axis=2).ravel()))
+    return np.concatenate((head, *(values.ravel() for values in (cor, *others))))
