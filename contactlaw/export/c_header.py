@@ -77,7 +77,7 @@ def header(
     table : {"cor", "none"}, optional
         Whether the header has a table, and with it ``contactlaw_restitution``. The table is coarser
         than the model's: its COR is within 1e-5 of the integrated equation, or as near as the
-        model's own table. A pair with a rate of strain has four, with which it is within 2e-3.
+        model's own table; that of a pair with a rate of strain is within 1e-4 of it.
     prefix : str, optional
         What the names in the header begin with, in lower case: headers of several pairs live in one
         source file if each has its own, as in ``steel_on_glass_step``.
@@ -88,8 +88,7 @@ def header(
         If the model is no ImpactModel.
     ValueError
         If the kind of table is unknown, or a large table would make the header exceed 500 kB; if
-        the prefix is not lower-case words of letters and digits, joined by single underscores; if
-        another body may come to yield, because two that yield have not the same rate.
+        the prefix is not lower-case words of letters and digits, joined by single underscores.
     OSError
         If the file cannot be written; nothing is left behind then.
 
