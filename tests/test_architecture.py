@@ -77,24 +77,24 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 34_150,
-    "contactlaw/answers": 3_240,
+    "contactlaw": 33_900,
+    "contactlaw/answers": 2_830,
     "contactlaw/cli": 4_500,
     "contactlaw/emit": 700,
     "contactlaw/engines": 4_300,
-    "contactlaw/equation": 2_680,  # with laws of any strength, which took 200 lines of stepping
-    "contactlaw/export": 1_080,
+    "contactlaw/equation": 2_725,  # with laws of any strength, which took 200 lines of stepping
+    "contactlaw/export": 1_085,
     "contactlaw/fitting": 2_300,
-    "contactlaw/laws": 2_050,  # laws of one pair have one layout
-    "contactlaw/physical": 3_150,  # with those laws, which took 400 lines of answers and export
+    "contactlaw/laws": 2_065,  # laws of one pair have one layout, and know their strengths
+    "contactlaw/physical": 3_280,  # with those laws, which took 400 lines of answers and export
     "contactlaw/report": 1_150,
     "contactlaw/stepping": 1_960,
-    "contactlaw/table": 3_060,  # strength is a number of an impact in all kernels
+    "contactlaw/table": 3_010,  # one interpolant of two or three axes, for all
     "contactlaw/walls": 2_000,
-    "contactlaw templates": 1_050,  # sources of other languages
+    "contactlaw templates": 1_055,  # sources of other languages
     "dem_demo": 6_350,
     "validation": 14_714,  # with spheres that are not solid
-    "tests": 25_903,  # with rates at which something in the law changes
+    "tests": 26_100,  # with rates at which something in the law changes
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"

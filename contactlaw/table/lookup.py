@@ -133,11 +133,6 @@ def lam_max(table: Array) -> float:
     return float(table[STRETCH] * table[X_MAX] / (1.0 - table[X_MAX]))
 
 
-def chi_max(table: Array) -> float:
-    """Largest overload of a table."""
-    return math.exp(table[LOG_CHI_MAX])
-
-
 def _root_series() -> tuple[float, ...]:
     """Taylor coefficients of f(z) = ((1 + z)/(1 - z))^(1/5), from (1 - z^2) f' = (2/5) f."""
     c = [1.0, 0.4]
