@@ -21,11 +21,10 @@ from contactlaw.answers.edges import near_edges
 from contactlaw.answers.histories import Histories
 from contactlaw.answers.inverse import Inverse
 from contactlaw.answers.oblique import Oblique
-from contactlaw.answers.rated import tabulated
 from contactlaw.answers.sensitivity import Sensitivity, sensitivity
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.speed_table import SpeedTable, speed_table
-from contactlaw.answers.tabulated import Border, Outside, TableArgument
+from contactlaw.answers.tabulated import Border, Outside, TableArgument, Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, scalars, shaped
@@ -87,7 +86,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             raise TypeError(f"pair: expected a contactlaw.Pair, got {pair!r}")
         self._border = Border(outside)
         self._bodies = SphereOnPlate(pair, law_of(pair, law))
-        self._tabulated = tabulated(self._bodies, table, self._border)
+        self._tabulated = Tabulated(self._bodies, table, self._border)
         self._beads = functools.cache(functools.partial(beads_of, self._tabulated))
         enable_caching()
         if not isinstance(table, Settings | None):

@@ -6,6 +6,8 @@ integrates them; either can replace the other. Both are made from a `SphereOnPla
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import NoReturn, Protocol
 
 import numpy as np
@@ -113,3 +115,13 @@ def refuse_to_yield(impacts: Impacts, beyond: NDArray[np.bool_], limit: float) -
         f"the inelasticity at yield is beyond the table's {limit:.4g}; the plate is too thin for "
         "the model"
     )
+
+
+@contextmanager
+def renumbered(some: NDArray[np.intp]) -> Iterator[None]:
+    """Make errors about one of some impacts name it by its number among all."""
+    try:
+        yield
+    except (OutsideTableError, UnsolvedError) as error:
+        impact, *rest = error.args
+        raise type(error)(int(some[impact]), *rest) from None

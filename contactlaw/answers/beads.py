@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import enable_caching
-from contactlaw.answers import rated
 from contactlaw.answers.solver import RTOL, within
-from contactlaw.answers.tabulated import Border, Tabulated, curve, extent, table_for
+from contactlaw.answers.tabulated import Border, Tabulated, extent, table_for
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast, check, scalars, shaped
 from contactlaw.physical.bodies import TwoSpheres
@@ -20,12 +19,27 @@ from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.law import law_of
 from contactlaw.physical.materials import Material
 from contactlaw.physical.pair import Pair
-from contactlaw.physical.rebound import Rebound, rebound
-from contactlaw.physical.scaling import log_overload, reduced
-from contactlaw.table import Table, lookup
+from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.scaling import reduced
+from contactlaw.table import Table
 
 Array = NDArray[np.float64]
 Other = Material | str | None  # material of the other bead; None: that of the first
+
+
+class _Bulk(Tabulated):
+    """Looks impacts of two spheres up, in a table that a function gives for their law."""
+
+    def __init__(
+        self, bodies: TwoSpheres, border: Border, table_for: Callable[[Law], Table]
+    ) -> None:
+        super().__init__(bodies, None, border)
+        self._table_for = table_for
+
+    @functools.cached_property
+    def table(self) -> Table:
+        """The table that serves the law."""
+        return self._table_for(self.law)
 
 
 class Beads:
@@ -57,41 +71,22 @@ class Beads:
         self._swapped = weak < strong
         self.pair = Pair(pair.plate, pair.sphere) if self._swapped else pair
         self.law = law_of(self.pair, law)
-        self._bodies = TwoSpheres(self.pair, self.law)
-        self._border, self._table_of = border, table
+        self._bulk = _Bulk(TwoSpheres(self.pair, self.law), border, table)
 
-    @functools.cached_property
+    @property
     def table(self) -> Table:
         """The table that serves the law."""
-        return self._table_of(self.law)
-
-    @functools.cached_property
-    def _nodes(self) -> rated.Nodes | None:
-        """Tables of several strengths, for materials with a rate of strain."""
-        if rated.flow_of(self._bodies) is None:
-            return None
-        return rated.Nodes(self._bodies, None, self._border, on_plates=False)
+        return self._bulk.table
 
     def rebounds(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Rebound:
         """Everything about impacts; radii [m] in the order in which the materials were given."""
-        impacts = self._impacts(speed, radius, other_radius)
-        if self._nodes:
-            return self._nodes.rebounds(impacts)[0]
-        units = self._bodies.numbers(self._bodies.impact(impacts))
-        found, flags = self._border.look_up(self.law, self.table.packed, units)
-        unclamped = units.inelasticity, units.yield_ratio
-        return rebound(self._bodies, impacts, units.time, unclamped, found, flags)
+        return self._bulk.rebounds(self._impacts(speed, radius, other_radius))
 
     def restitutions(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
     ) -> float | Array:
         """COR of impacts, as in `rebounds`."""
-        if self._nodes:
-            return self.rebounds(speed, radius, other_radius).restitution
-        impacts = self._impacts(speed, radius, other_radius)
-        units = self._bodies.numbers(self._bodies.impact(impacts))
-        found, _ = self._border.look_up(self.law, self.table.packed, units)
-        return shaped(found.restitution, impacts.shape)
+        return self.rebounds(speed, radius, other_radius).restitution
 
     def integrated(
         self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike
@@ -99,28 +94,14 @@ class Beads:
         """COR of impacts as in `rebounds`, integrated to nine digits; a few need no table."""
         enable_caching()
         impacts = self._impacts(speed, radius, other_radius)
-        units = self._bodies.numbers(self._bodies.impact(impacts))
-        found = within(self._bodies.data, units, RTOL, extent(self.law), few=True)
+        units = self._bulk.bodies.numbers(self._bulk.bodies.impact(impacts))
+        found = within(self._bulk.bodies.data, units, RTOL, extent(self.law), few=True)
         return shaped(found.restitution, impacts.shape)
 
     def curve(self, radius: float, other_radius: float) -> Callable[[float], float]:
         """COR of beads of these radii [m] as a function of speed [m/s]."""
-        impacts = self._impacts(1.0, *scalars(radius=radius, other_radius=other_radius))
-        known, size = self._bodies.constants, impacts.radius.item()
-        time = known.time * size * self._bodies.impact(impacts).mass.item() ** 0.4
-        c_chi = log_overload(known._replace(time=time), known.yield_compression * size)
-        if self._nodes:
-            if known.plate.growth.modulus_power:
-                return lambda v: float(self.rebounds(v, radius, other_radius).restitution)
-            return rated.curve(
-                (self._nodes.packed, 0.0, c_chi), (size, 0.0),
-                lambda v: self.rebounds(v, radius, other_radius),
-            )  # fmt: skip
-        look_up = functools.partial(self._border.look_up, self.law)
-        table, growth = self.table.packed, known.plate.growth
-        if growth.modulus_power:
-            table = lookup.with_growth(table, growth, math.log(time))
-        return curve((table, 0.0, c_chi, 1.0, 0.0), self._bodies, impacts, look_up)
+        sizes = scalars(radius=radius, other_radius=other_radius)
+        return self._bulk.curve(self._impacts(1.0, *sizes))
 
     def _impacts(self, speed: ArrayLike, radius: ArrayLike, other_radius: ArrayLike) -> Impacts:
         """Impacts of one body of R* and m* on a half-space."""

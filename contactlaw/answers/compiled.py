@@ -17,7 +17,8 @@ from contactlaw.answers.beads import Beads, Other
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
 from contactlaw.physical.arguments import scalars
-from contactlaw.physical.impacts import check_kind
+from contactlaw.physical.impacts import Impacts, check_kind
+from contactlaw.table import lookup
 
 
 class Compiled:
@@ -46,7 +47,8 @@ class Compiled:
         >>> round(model.curve(radius=0.9e-3, thickness=1e-3)(5.0), 4)
         0.8966
         """
-        return self._tabulated.curve(*scalars(radius=radius, thickness=thickness))
+        r, h = scalars(radius=radius, thickness=thickness)
+        return self._tabulated.curve(Impacts(np.ones(1), r, h, None))
 
     def sphere_sphere_curve(
         self, radius: float, other_radius: float, other: Other = None
@@ -94,8 +96,7 @@ class Compiled:
         >>> [round(u, 3) for u in rebound_speeds((1.0, 5.0), 0.9e-3, 1e-3)]
         [0.925, 4.483]
         """
-        known = self._tabulated
-        return _jitted(known.on_plate, known.packed, known.c_lam, known.c_chi)
+        return _jitted(self._tabulated.packed)
 
     def edge_kernel(self, edge: Edge = "free") -> Callable[[float, float, float, float], float]:
         """COR near an edge as a numba-jitted ``f(speed, radius, thickness, edge_distance)``.
@@ -154,14 +155,12 @@ class Compiled:
         return int(self._c_function.address)
 
 
-def _jitted(
-    on_plate: Callable[..., float], table: NDArray[np.float64], c_lam: float, c_chi: float
-) -> Callable[[float, float, float], float]:
+def _jitted(table: NDArray[np.float64]) -> Callable[[float, float, float], float]:
     """COR as a jitted function of speed, radius and thickness, which belongs to one table."""
-    packed = in_memory(table)
+    on_plate, packed = lookup.solid_on_plate, in_memory(table)
 
     @kernel(entry=True)
     def cor(speed: float, radius: float, thickness: float) -> float:
-        return on_plate(packed(), c_lam, c_chi, speed, radius, thickness)
+        return on_plate(packed(), speed, radius, thickness)
 
     return cor

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import in_memory, kernel
-from contactlaw.answers.backend import Backend
-from contactlaw.answers.rated import merged, merged_histories, renumbered
+from contactlaw.answers.backend import Backend, renumbered
 from contactlaw.answers.solver import Solver
 from contactlaw.equation.few_steps import restitution_near
 from contactlaw.equation.force import at_strength, room_for
 from contactlaw.equation.numbers import Impact, PairConstants, numbers, relaxes
+from contactlaw.physical.arguments import shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.impacts import Impacts
-from contactlaw.physical.rebound import Rebound
+from contactlaw.physical.rebound import Rebound, shaped_flags
 from contactlaw.physical.responses import response_of
 from contactlaw.physical.scaling import wave_path, wave_rate
 from contactlaw.table import lookup
@@ -38,7 +38,7 @@ class NearEdges:
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
-        return merged(_each(self, impacts, lambda by, part, _: by.rebounds(part)), impacts)
+        return _merged(_each(self, impacts, lambda by, part, _: by.rebounds(part)), impacts)
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
@@ -46,12 +46,12 @@ class NearEdges:
         changes = np.empty_like(psi)
         for some, (_, changed) in found:
             changes[some] = changed
-        return merged(((some, normal) for some, (normal, _) in found), impacts), changes
+        return _merged(((some, normal) for some, (normal, _) in found), impacts), changes
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
         found = _each(self, impacts, lambda by, part, _: by.histories(part, samples))
-        return merged_histories(found, impacts)
+        return _merged_histories(found, impacts)
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields, far from edges."""
@@ -112,3 +112,27 @@ def _each(
             with renumbered(some):
                 found.append((some, answer(by, these.part(some), some)))
     return found
+
+
+def _merged(parts: Iterable[tuple[Some, Rebound]], impacts: Impacts) -> Rebound:
+    """Put answers of some of the impacts together."""
+    columns: dict[str, Any] = {}
+    for some, found in parts:
+        for name, values in vars(found).items():
+            whole = columns.setdefault(name, np.empty(impacts.speed.size, values.dtype))
+            whole[some] = values
+    flags = shaped_flags(columns.pop("flags"), impacts.shape)
+    named = {name: shaped(values, impacts.shape) for name, values in columns.items()}
+    return Rebound(**named, flags=flags)
+
+
+def _merged_histories(parts: Sequence[tuple[Some, ForceHistory]], impacts: Impacts) -> ForceHistory:
+    """Put histories of some of the impacts together."""
+    samples, flags = parts[0][1].time.shape[-1], np.empty(impacts.speed.size, dtype=np.int64)
+    columns = np.empty((len(ForceHistory._fields), impacts.speed.size, samples))
+    for some, found in parts:
+        columns[:, some], flags[some] = found, found.flags
+    whole = *(impacts.shape or ()), samples
+    together = ForceHistory(*(values.reshape(whole) for values in columns))
+    together.flags = shaped_flags(flags, impacts.shape)
+    return together

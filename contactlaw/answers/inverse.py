@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._readable import scale_of
-from contactlaw.answers import rated
 from contactlaw.answers.backend import Backend, OutsideTableError
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Border, Tabulated
@@ -101,7 +100,7 @@ class _Curve:
         if self.sizes[0] is None:
             name, where, nearest = "thickness", f"at {_SLOWEST:g} m/s", x[:1]
         try:
-            strict = rated.tabulated(border.bodies, border.given, Border("raise"))
+            strict = Tabulated(border.bodies, border.given, Border("raise"))
             strict.rebounds(self.impacts(nearest))
         except OutsideTableError as error:
             said = f"{name}: even {where} the impact is outside the table, {error.reason}"
@@ -216,7 +215,7 @@ class Inverse(Uncertain):
     ) -> Solutions | NDArray[np.object_]:  # fmt: skip
         within("restitution", wanted, *_SHARES, "[-]")
         by = Solver(self._bodies)
-        border = rated.tabulated(self._bodies, self._tabulated.given, Border("clamp"))
+        border = Tabulated(self._bodies, self._tabulated.given, Border("clamp"))
         curve = functools.cache(functools.partial(_Curve, by, border))
         found = np.empty(wanted.size, dtype=object)
         for n, (e, size) in enumerate(zip(wanted.tolist(), sizes, strict=True)):

@@ -173,7 +173,7 @@ class Oblique:
             e[:] = np.nan
         else:
             oblique.tangential_all(
-                tabulated.packed, tabulated.slides, tabulated.c_lam, tabulated.c_chi, r, h, mu,
+                tabulated.packed, tabulated.slides, r, h, mu,
                 speed, size, e, changed,
             )  # fmt: skip
         beyond = np.isnan(e) & (speed >= lookup.V_MIN)
@@ -218,7 +218,7 @@ class Oblique:
                 "table of oblique impacts takes hours: call collide, which integrates then"
             )
         known = self._tabulated
-        return _jitted(known.packed, known.slides, known.c_lam, known.c_chi)
+        return _jitted(known.packed, known.slides)
 
 
 def answer(
@@ -239,7 +239,7 @@ def _answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) ->
     return normal, limit * changed
 
 
-def _jitted(table: Array, slides: Array, c_lam: float, c_chi: float) -> Collide:
+def _jitted(table: Array, slides: Array) -> Collide:
     """One collision as a jitted function that belongs to one table."""
     of_one, packed, tangential = oblique.collide, in_memory(table), in_memory(slides)
 
@@ -249,7 +249,7 @@ def _jitted(table: Array, slides: Array, c_lam: float, c_chi: float) -> Collide:
         friction: float, wall_velocity: Vector,
     ) -> tuple[Vector, Vector]:  # fmt: skip
         return of_one(
-            packed(), tangential(), c_lam, c_chi, velocity, spin, normal, radius, thickness,
+            packed(), tangential(), velocity, spin, normal, radius, thickness,
             friction, wall_velocity,
         )  # fmt: skip
 

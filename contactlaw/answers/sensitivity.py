@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.answers import rated
 from contactlaw.answers.tabulated import Border, Tabulated
 from contactlaw.answers.varied import Number, solver, with_numbers
 from contactlaw.physical.arguments import shaped
@@ -74,13 +73,9 @@ def sensitivity(tabulated: Tabulated, impacts: Impacts) -> Sensitivity:
     """
     bodies = tabulated.bodies
     pair, law = bodies.pair, bodies.law
-    if rated.flow_of(bodies):
-        hit = rated.Rated(bodies, tabulated.given, Border("raise")).rebounds(impacts)
-        yields = np.ravel(hit.overload) > 1.0
-    else:
-        units = bodies.numbers(bodies.impact(impacts))
-        found, _ = Border("raise").look_up(law, tabulated.packed, units)
-        yields = np.asarray(found.elastic_compression > found.yield_ratio)
+    units = bodies.numbers(bodies.impact(impacts))
+    found, _ = Border("raise").look_up(bodies.data, tabulated.packed, units)
+    yields = np.asarray(found.elastic_compression > found.yield_ratio)
     materials = pair.sphere, pair.plate
 
     def by(*inputs: str | Number) -> Array:

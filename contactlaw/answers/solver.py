@@ -67,18 +67,23 @@ def integrate(
     """Integrate impacts."""
     impact = bodies.impact(impacts)
     units = bodies.numbers(impact)
-    beyond = units.strength > force.strongest(bodies.data)
-    if beyond.any():
-        n = int(np.argmax(beyond))
-        rate = impacts.speed[n] / impacts.radius[n]
-        reason = "the strength of a pair with a rate of strain is known up to 1e9 per second"
-        raise UnsolvedError(n, f"V0/R = {rate:.3g} /s", reason)
+    refuse_rates(bodies, impacts, units)
     edges = None
     if impacts.edge_distance is not None and impacts.hole_radius is not None:
         near = impacts.edge, impacts.edge_distance, impacts.hole_radius
         edges = edges_of(bodies.pair.plate, bodies.constants, units, impact, *near)
     found = within(bodies.data, units, rtol, extent, few, edges)
     return Integrated(bodies, impacts, units, found, edges)
+
+
+def refuse_rates(bodies: SphereOnPlate, impacts: Impacts, units: Numbers) -> None:
+    """Refuse impacts at rates for which no strength is known."""
+    beyond = units.strength > force.strongest(bodies.data)
+    if beyond.any():
+        n = int(np.argmax(beyond))
+        rate = impacts.speed[n] / impacts.radius[n]
+        reason = "the strength of a pair with a rate of strain is known up to 1e9 per second"
+        raise UnsolvedError(n, f"V0/R = {rate:.3g} /s", reason)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,18 +9,25 @@ import os
 import threading
 import warnings
 from collections.abc import Callable
-from typing import ClassVar, Literal
+from dataclasses import replace
+from typing import Literal, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import laws
 from contactlaw._jit import direct, enable_caching, switched_off
-from contactlaw.answers.backend import OutsideTableError, refuse_to_yield, too_fast, too_thin
-from contactlaw.answers.solver import RTOL, Solver, histories, slid, solved
+from contactlaw.answers.backend import (
+    OutsideTableError,
+    refuse_to_yield,
+    renumbered,
+    too_fast,
+    too_thin,
+)
+from contactlaw.answers.solver import RTOL, Solver, histories, refuse_rates, slid, solved
 from contactlaw.equation import outcome
 from contactlaw.equation.numbers import Numbers
-from contactlaw.equation.outcome import History, Outcome
+from contactlaw.equation.outcome import Outcome
 from contactlaw.laws import Law
 from contactlaw.physical.arguments import check, scalars
 from contactlaw.physical.bodies import SphereOnPlate
@@ -28,10 +35,12 @@ from contactlaw.physical.history import ForceHistory, with_units
 from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.rebound import Rebound, rebound
 from contactlaw.physical.scaling import log_overload, yield_share
+from contactlaw.physical.strengths import with_strengths
 from contactlaw.physical.validity import Validity
 from contactlaw.table import cache, file, grid, lookup, shapes, slides
 from contactlaw.table.certificate import bounds
 from contactlaw.table.grid import Settings
+from contactlaw.table.lookup import NO_MASSES
 from contactlaw.table.nodes import Table
 
 Array = NDArray[np.float64]
@@ -53,64 +62,72 @@ class Border:
         self.clamped = 0
         self.lock = threading.Lock()
 
-    def look_up(self, law: Law, table: Array, units: Numbers) -> tuple[Outcome, Flags]:
+    def look_up(self, law: Array, table: Array, units: Numbers) -> tuple[Outcome, Flags]:
         """Look outcomes up, and flag with Validity.CLAMPED those that were taken at the border.
 
-        Inelasticity and yield ratio of these are the border's.
+        The dimensionless numbers of these are the border's.
         """
-        out = outcome.at(units.inelasticity, units.yield_ratio)
+        out = outcome.at(units.inelasticity, units.yield_ratio, units.strength)
         flags = np.zeros(out.inelasticity.size, dtype=np.int64)
-        if lookup.fields(table, False, out):
-            beyond = np.isnan(out.restitution)
-            flags[beyond] = self.complete(law, table, out, beyond)
-        return out, flags
-
-    def complete(self, law: Law, table: Array, out: Outcome, beyond: NDArray[np.bool_]) -> int:
-        """Fill in the outcomes that are beyond the table; return their flag."""
-        if self.outside == "raise":
-            n = int(np.argmax(beyond))
-            lam, y = float(out.inelasticity[n]), float(out.yield_ratio[n])
-            limit = lookup.lam_max(table)
-            if lam > limit:
-                raise OutsideTableError(n, too_thin(lam, limit))
-            chi = math.exp(lookup.log_elastic_compression(table, lam)) / y
-            raise OutsideTableError(n, too_fast(chi, lookup.chi_max(table)))
+        if not lookup.fields(table, False, out):
+            return out, flags
+        beyond = np.flatnonzero(np.isnan(out.restitution))
         found = outcome.part(out, beyond)
-        if self.outside == "solve":
-            places = np.flatnonzero(beyond)
-            found = solved(law.data, found.inelasticity, found.yield_ratio, RTOL, places)
+        if self.outside == "raise":
+            with renumbered(beyond):
+                _refuse(table, found)
+        elif self.outside == "solve":
+            numbers = found.inelasticity, found.yield_ratio
+            found = solved(law, *numbers, RTOL, beyond, strength=found.strength)
         else:
             lookup.fields(table, True, found)
+            flags[beyond] = int(Validity.CLAMPED)
+            with self.lock:
+                self.clamped += beyond.size
         for values, completed in zip(out, found, strict=True):
             values[beyond] = completed
-        if self.outside == "solve":
-            return 0
-        with self.lock:
-            self.clamped += found.restitution.size
-        return int(Validity.CLAMPED)
+        return out, flags
+
+
+def _refuse(table: Array, beyond: Outcome) -> NoReturn:
+    """Say why the first of some impacts is outside a table."""
+    lam, y, s = (
+        float(one[0]) for one in (beyond.inelasticity, beyond.yield_ratio, beyond.strength)
+    )
+    limit, most = lookup.lam_max(table), lookup.strongest(table)
+    if lam > limit:
+        raise OutsideTableError(0, too_thin(lam, limit))
+    if s > most:
+        times = f"{math.exp(s):.4g} times stronger, above {math.exp(most):.4g}"
+        raise OutsideTableError(0, f"its rate makes the bodies {times}")
+    chi = math.exp(lookup.log_elastic_compression(table, lam, s)) / y
+    border = outcome.part(beyond, slice(1))
+    lookup.fields(table, True, border)
+    raise OutsideTableError(
+        0, too_fast(chi, (border.elastic_compression / border.yield_ratio).item())
+    )
 
 
 class Tabulated:
     """Looks impacts up; the table, the law's own if none is given, is made when first needed."""
 
-    on_plate: ClassVar[Callable[..., float]] = staticmethod(lookup.restitution_on_plate)
-
     def __init__(self, bodies: SphereOnPlate, given: TableArgument, border: Border) -> None:
         self.bodies, self.given, self.border = bodies, given, border
-        # the constants of the pair that kernels take
-        known = bodies.constants
-        self.c_lam = known.plate.inelasticity
-        self.c_chi = log_overload(known, known.yield_compression)
+
+    @functools.cached_property
+    def law(self) -> Law:
+        """The law of the table, with all strengths that it has."""
+        return with_strengths(self.bodies.pair, self.bodies.law)
 
     @functools.cached_property
     def table(self) -> Table:
         """The table that serves the law."""
-        return table_for(self.bodies.law, self.given)
+        return table_for(self.law, self.given)
 
     @functools.cached_property
     def packed(self) -> Array:
-        """The table as kernels read it, with the corrections of the pair's plates."""
-        return lookup.with_plate(self.table.packed, self.bodies.constants.plate)
+        """The table as kernels read it, with the constants of the pair."""
+        return lookup.with_plate(self.table.packed, self.bodies.constants)
 
     @functools.cached_property
     def slides(self) -> Array:
@@ -120,7 +137,7 @@ class Tabulated:
     @functools.cached_property
     def restitution(self) -> Callable[[float, float, float], float]:
         """COR of one impact, whose arguments have to be floats; NaN outside the table."""
-        return functools.partial(python_entries()[0], self.packed, self.c_lam, self.c_chi)
+        return functools.partial(python_entries()[0], self.packed)
 
     @property
     def largest_inelasticity(self) -> float:
@@ -131,145 +148,135 @@ class Tabulated:
 
     def table_of(self, law: Law) -> Table:
         """Find the table for another law, as for two spheres; this one if it fits that law."""
-        own = self.given is not None and (law == self.bodies.law or self.table.law.follows(law))
+        own = self.given is not None and (law == self.law or self.table.law.follows(law))
         return self.table if own else table_for(law, None)
 
     def restitutions(self, speed: Array, radius: Array, thickness: Array) -> Array:
         """COR of impacts; they are checked only if the kernel has no answer for one of them."""
         out = np.empty(speed.size)
-        if lookup.restitutions(self.packed, self.c_lam, self.c_chi, speed, radius, thickness, out):
+        if lookup.restitutions(self.packed, speed, radius, thickness, NO_MASSES, out):
             check(speed=speed, radius=radius, thickness=thickness)
-            out = self._outcomes(Impacts(speed, radius, thickness, None))[0].restitution
+            out = self._looked_up(Impacts(speed, radius, thickness, None)).outcome.restitution
         return out
 
     def rebounds(self, impacts: Impacts) -> Rebound:
         """Everything about impacts."""
-        return self._rebounds(impacts)[0]
+        return self._rebound(impacts, self._looked_up(impacts))
 
     def oblique(self, impacts: Impacts, psi: Array) -> tuple[Rebound, Array]:
         """Everything about the normal part, and the change of the sliding speed [mu V0]."""
-        normal, found = self._rebounds(impacts)
+        known = self._looked_up(impacts)
+        found, changes = known.outcome, np.empty_like(psi)
         # without the compiler a table takes hours to make, and an integration a fifth of a second
-        changes, inside = np.empty_like(psi), self._inside(found) & (not switched_off())
-        if inside.all():
-            slides.changes(self.slides, found, psi, changes)
-            return normal, changes
-        if inside.any():
-            part = np.empty(np.count_nonzero(inside))
-            slides.changes(self.slides, outcome.part(found, inside), psi[inside], part)
-            changes[inside] = part
-        changes[~inside] = slid(self.bodies, outcome.part(found, ~inside), psi[~inside])
-        return normal, changes
-
-    def _rebounds(self, impacts: Impacts) -> tuple[Rebound, Outcome]:
-        found, flags, unclamped, time = self._outcomes(impacts)
-        return rebound(self.bodies, impacts, time, unclamped, found, flags), found
+        inside = ~known.integrated & (not switched_off())
+        for some in map(np.flatnonzero, (inside, ~inside)):
+            if not some.size:
+                continue
+            part = outcome.part(found, some)
+            if inside[some[0]]:
+                changes[some] = self._changes(part, psi[some])
+            else:
+                changes[some] = slid(self.bodies, part, psi[some])
+        return self._rebound(impacts, known), changes
 
     def histories(self, impacts: Impacts, samples: int) -> ForceHistory:
         """Contacts at even times from first touch to separation."""
-        normal, found = self._rebounds(impacts)
+        known = self._looked_up(impacts)
+        found, contacts = known.outcome, outcome.history(impacts.speed.size, samples)
+        for some in map(np.flatnonzero, (~known.integrated, known.integrated)):
+            if not some.size:
+                continue
+            part = outcome.part(found, some)
+            if known.integrated[some[0]]:
+                own = histories(self.bodies.data, part, samples)
+            else:
+                own, table = outcome.history(some.size, samples), cache.cached_shapes(self.table)
+                shapes.sample(self.bodies.data, table.packed_shapes, part, own)
+            for values, more in zip(contacts, own, strict=True):
+                values[some] = more
         units = self.bodies.numbers(self.bodies.impact(impacts))
-        contacts = self._shapes(found, samples)
-        return with_units(contacts, units, found.inelasticity, impacts.shape, normal.flags)
+        flags = self._rebound(impacts, known).flags
+        return with_units(contacts, units, found.inelasticity, impacts.shape, flags)
 
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
-        if impacts.mass is not None:
-            return Solver(self.bodies, RTOL, extent(self.bodies.law)).yield_speeds(impacts)
-        radius, thickness = impacts.radius, impacts.thickness
-        out = np.full(radius.size, math.inf)
+        if impacts.mass is not None or self.bodies.constants.plate.rate.slope > 0.0:
+            given = self.given if isinstance(self.given, Settings) else extent(self.bodies.law)
+            return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
+        out = np.full(impacts.radius.size, math.inf)
         share = yield_share(self.bodies.pair, self.bodies.law)
         if share < math.inf:
             c_chi = log_overload(self.bodies.constants, share)
-            lookup.yield_speeds(self.packed, self.c_lam, c_chi, radius, radius / thickness, out)
+            lookup.yield_speeds(self.packed, c_chi, impacts.radius, impacts.thickness, out)
             if np.isnan(out).any():
                 refuse_to_yield(impacts, np.isnan(out), lookup.lam_max(self.packed))
         return out
 
-    def curve(self, radius: Array, thickness: Array) -> Callable[[float], float]:
-        """COR of one sphere on one plate, as a function of speed [m/s]."""
-        at_one = Impacts(np.ones(1), radius, thickness, None)
-        r = radius.item()
-        constants = self.packed, self.c_lam, self.c_chi, r, r / thickness.item()
-        look_up = functools.partial(self.border.look_up, self.bodies.law)
-        return curve(constants, self.bodies, at_one, look_up)
+    def curve(self, impacts: Impacts) -> Callable[[float], float]:
+        """COR as a function of speed [m/s] of the sphere and the plate of one impact."""
+        at, table, mass = python_entries()[1], self.packed, self.bodies.impact(impacts).mass
+        known = impacts.radius.item(), impacts.thickness.item(), mass.item()
 
-    def _outcomes(self, impacts: Impacts) -> tuple[Outcome, Flags, tuple[Array, Array], Array]:
-        """Outcomes, their flags, inelasticity and yield ratio before clamping, and T_H [s]."""
+        def restitution(speed: float) -> float:
+            if not isinstance(speed, float):  # the entry would take "5" and True for numbers
+                speed = scalars(speed=speed)[0].item()
+            value = at(table, speed, *known)
+            if value != value:  # NaN; half the time of a call of isnan
+                one = replace(impacts, speed=scalars(speed=speed)[0])
+                return float(self._looked_up(one).outcome.restitution[0])
+            return value
+
+        return restitution
+
+    def _changes(self, found: Outcome, psi: Array) -> Array:
+        changes = np.empty_like(psi)
+        slides.changes(self.slides, found, psi, changes)
+        return changes
+
+    def _looked_up(self, impacts: Impacts) -> _LookedUp:
         v, r, h = impacts.speed, impacts.radius, impacts.thickness
-        if impacts.mass is not None:
-            units = self.bodies.numbers(self.bodies.impact(impacts))
-            found, flags = self.border.look_up(self.bodies.law, self.packed, units)
-            return found, flags, (units.inelasticity, units.yield_ratio), units.time
+        mass = NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
         found, root = outcome.empty(v.size), np.empty(v.size)
-        flags = np.zeros(v.size, dtype=np.int64)
-        beyond = lookup.outcomes(self.packed, self.c_lam, self.c_chi, v, r, h, found, root)
-        unclamped = found.inelasticity, found.yield_ratio
-        if beyond:
-            outside = np.isnan(found.restitution)
-            part = Impacts(v[outside], r[outside], h[outside], None)
+        flags, integrated = np.zeros(v.size, dtype=np.int64), np.zeros(v.size, dtype=np.bool_)
+        lam, y = found.inelasticity, found.yield_ratio
+        if lookup.outcomes(self.packed, v, r, h, mass, found, root):
+            lam, y = lam.copy(), y.copy()
+            beyond = np.flatnonzero(np.isnan(found.restitution))
+            part = impacts.part(beyond)
             units = self.bodies.numbers(self.bodies.impact(part))
-            found.inelasticity[outside] = units.inelasticity
-            found.yield_ratio[outside] = units.yield_ratio
-            unclamped = unclamped[0].copy(), unclamped[1].copy()
-            law = self.bodies.law
-            flags[outside] = self.border.complete(law, self.packed, found, outside)
-        return found, flags, unclamped, self.bodies.constants.time * r / root
+            lam[beyond], y[beyond] = units.inelasticity, units.yield_ratio
+            with renumbered(beyond):
+                if self.border.outside == "solve":
+                    refuse_rates(self.bodies, part, units)
+                looked, flags[beyond] = self.border.look_up(self.bodies.data, self.packed, units)
+            for values, completed in zip(found, looked, strict=True):
+                values[beyond] = completed
+            integrated[beyond] = self.border.outside == "solve"
+        time = self.bodies.constants.time * r / root
+        return _LookedUp(found, flags, (lam, y), time, integrated)
 
-    def _inside(self, found: Outcome) -> NDArray[np.bool_]:
-        """Which outcomes the table reaches, rather than those that were integrated."""
-        lam, chi = found.inelasticity, found.elastic_compression / found.yield_ratio
-        # a clamped impact lies on the border, give or take a rounding error
-        within = (lam <= lookup.lam_max(self.packed) * (1 + 1e-9)) & (
-            chi <= lookup.chi_max(self.packed) * (1 + 1e-9)
-        )
-        return np.asarray(within)
+    def _rebound(self, impacts: Impacts, known: _LookedUp) -> Rebound:
+        found = known.outcome, known.flags
+        return rebound(self.bodies, impacts, known.time, known.unclamped, *found)
 
-    def _shapes(self, found: Outcome, samples: int) -> History:
-        """Contacts over time on Hertz's scale, integrated where they are outside the table."""
-        inside = self._inside(found)
-        law, packed = self.bodies.law, cache.cached_shapes(self.table).packed_shapes
-        out = outcome.history(inside.size, samples)
-        if inside.all():
-            shapes.sample(law.data, packed, found, out)
-            return out
-        part = outcome.history(int(np.count_nonzero(inside)), samples)
-        shapes.sample(law.data, packed, outcome.part(found, inside), part)
-        beyond = histories(law.data, outcome.part(found, ~inside), samples)
-        for values, ours, others in zip(out, part, beyond, strict=True):
-            values[inside], values[~inside] = ours, others
-        return out
+
+class _LookedUp(NamedTuple):
+    """Outcomes of impacts, and what belongs to them."""
+
+    outcome: Outcome
+    flags: Flags
+    unclamped: tuple[Array, Array]  # inelasticity and yield ratio before clamping
+    time: Array  # T_H [s]
+    integrated: NDArray[np.bool_]  # those beyond the table
 
 
 @functools.cache
 def python_entries() -> tuple[Callable[..., float], Callable[..., float]]:
-    """Python's entries of `restitution_on_plate` and `restitution`; each argument a float."""
+    """Python's entries of `solid_on_plate` and `restitution_on_plate`; each argument a float."""
     return (
-        direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8, f8)"),
-        direct(lookup.restitution, "float64(float64[::1], f8, f8, f8, f8, f8)"),
+        direct(lookup.solid_on_plate, "float64(float64[::1], f8, f8, f8)"),
+        direct(lookup.restitution_on_plate, "float64(float64[::1], f8, f8, f8, f8)"),
     )
-
-
-def curve(
-    constants: tuple[Array, float, float, float, float],
-    bodies: SphereOnPlate,
-    impacts: Impacts,
-    look_up: Callable[[Array, Numbers], tuple[Outcome, Flags]],
-) -> Callable[[float], float]:
-    """COR as a function of speed [m/s], from a packed table, constants of two bodies, R and R/H."""
-    (table, c_lam, c_chi, radius, ratio), at = constants, python_entries()[1]
-
-    def restitution(speed: float) -> float:
-        if not isinstance(speed, float):  # the entry would take "5" and True for numbers
-            speed = scalars(speed=speed)[0].item()
-        value = at(table, c_lam, c_chi, speed, radius, ratio)
-        if value != value:  # NaN; half the time of a call of isnan
-            (v,) = scalars(speed=speed)
-            units = bodies.numbers(bodies.impact(impacts)._replace(speed=v))
-            return float(look_up(table, units)[0].restitution[0])
-        return value
-
-    return restitution
 
 
 def extent(law: Law) -> Settings:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import secrets
 from dataclasses import asdict
 from pathlib import Path
@@ -12,7 +13,7 @@ from contactlaw import laws, table
 from contactlaw._jit import enable_caching
 from contactlaw.cli.parts import chosen, options, wording
 from contactlaw.physical.law import law_of
-from contactlaw.physical.rate import rated
+from contactlaw.physical.strengths import with_strengths
 from contactlaw.table import cache, file
 
 
@@ -44,7 +45,9 @@ def _info(arguments: argparse.Namespace) -> None:
     found = _stored(arguments)
     print(f"law {found.law.family}: {found.law.source}")
     lam, chi = found.settings.largest_inelasticity, found.settings.largest_overload
-    print(f"inelasticity 0 to {lam:g}, overload to {chi:g}, {found.fields['restitution'].shape}")
+    strengths = found.law.strengths
+    more = f"strength to {math.exp(strengths.knots[-1]):.4g}, " if strengths else ""
+    print(f"inelasticity 0 to {lam:g}, overload to {chi:g}, {more}{found.grid.shape}")
     for name, value in asdict(found.settings).items():
         print(f"  {name:22s} {value:g}")
     _print_certificate(found.certificate, table.bounds(found.law))
@@ -90,13 +93,7 @@ def _law(arguments: argparse.Namespace) -> laws.Law:
             f"--law: {arguments.law!r} takes numbers from a pair: give --sphere and --plate too"
         )
     pair = chosen.pair(arguments)
-    law = law_of(pair, arguments.law)
-    if rated(pair, law):
-        raise wording.Refused(
-            "--sphere, --plate: a pair with a rate of strain has several tables, of several "
-            "strengths, which cl.ImpactModel builds when they are first needed"
-        )
-    return law
+    return with_strengths(pair, law_of(pair, arguments.law))
 
 
 def _print_certificate(certificate: table.Certificate | None, limits: dict[str, float]) -> None:

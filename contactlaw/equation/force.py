@@ -388,6 +388,12 @@ def strongest(laws: Array) -> float:
     return float(laws[last + TOP]) * (1.0 + 1e-12) if pieces_of(laws) else math.inf
 
 
+def tops(laws: Array) -> Array:
+    """Return 0 and ln k at the ends of the pieces."""
+    rows = FIRST_ROW + STRENGTHS * np.arange(pieces_of(laws))
+    return np.append(0.0, laws[rows + TOP])
+
+
 def pieces_of(laws: Array) -> int:
     """Count the pieces of ln k; 0 for an array that is one law."""
     return max(int(-laws[PIECES]), 0)
@@ -441,6 +447,18 @@ def check(law: Array) -> None:
     for n, row in enumerate(curve):
         if not _whole(row, FIRST, size) <= n < _whole(row, NEXT, size) <= pieces:
             raise ValueError("the pieces of its law belong to no kink")
+
+
+def check_strengths(laws: Array) -> None:
+    """Refuse an array that is not several laws, as `check` does for one."""
+    for at in range(FIRST_ROW, FIRST_ROW + max(pieces_of(laws), 1) * STRENGTHS, STRENGTHS):
+        row = laws[at : at + STRENGTHS]
+        begins, terms, width = (_whole(row, n, laws.size) for n in (BEGINS, POWERS, WIDTH))
+        longest = _whole(laws, LONGEST, laws.size)
+        if not (HEADER + HEADS <= width <= longest and begins + (terms + 1) * width <= laws.size):
+            raise ValueError("its laws of several strengths end within one of them")
+        for strength in (row[CENTRE], row[TOP]):
+            check(at_strength(laws, strength, np.empty(longest))[: width - HEADS])
 
 
 def _whole(row: Array, column: int, most: int) -> int:

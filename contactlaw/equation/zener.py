@@ -254,20 +254,21 @@ def histories(
 
 
 def shape(
-    law: Array, lam: Array, y: Array, rtol: float, shares: Array
+    law: Array, lam: Array, y: Array, rtol: float, shares: Array, strength: ArrayLike = 0.0
 ) -> tuple[Array, Array, Array]:
     """Find when, and how fast, q passes given shares of its largest value.
 
     Returns the status of each impact, times [T_H] and speeds [V0]: 2 n of each for n rising shares
     up to 1, first while loading, then back down to 0, separation.
     """
-    top = _run(TO_THE_TOP, law, lam, y, rtol)
+    top = _run(TO_THE_TOP, law, lam, y, rtol, strength=strength)
     w, left = top.peak_compression[:, None], top.residual_compression[:, None]
     inner, ends = shares[:-1] ** 2, np.full_like(w, math.inf)
     falling = left + (w - left) * inner[::-1]
     at = np.concatenate([w * inner, ends, falling, np.zeros_like(w)], axis=1)
     notes = Notes(at, *np.zeros((4, *at.shape)))
-    return _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes).status, notes.time, notes.speed
+    found = _run(_AT_COMPRESSIONS, law, lam, y, rtol, notes, strength=strength)
+    return found.status, notes.time, notes.speed
 
 
 def elastic_compression(
@@ -385,19 +386,23 @@ def solve_all(
 
 
 def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> tuple[int, int]:
-    """Solve like `solve_all`, at overloads chi = w_m/y; impacts of one lambda share their w_m."""
-    lam, which = np.unique(out.inelasticity, return_inverse=True)
-    status, each = elastic_compression(law, lam, rtol)
+    """Solve like `solve_all`, at overloads chi = w_m/y; impacts that differ by chi share w_m."""
+    lam, s = out.inelasticity, out.strength
+    given, which = np.unique(lam + 1j * s, return_inverse=True)
+    status, each = elastic_compression(law, given.real.copy(), rtol, strength=given.imag)
     if status.any():
         return failure(status[which])
     w_m = each[which]
     out.yield_ratio[:] = w_m / overload
-    one = _run(TO_THE_END, law, out.inelasticity, out.yield_ratio, rtol)
+    one = _run(TO_THE_END, law, lam, out.yield_ratio, rtol, strength=s)
     _put(one, w_m, out)
     return failure(one.status)
 
 
-def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float, few: bool = False) -> Any:
+def overload_at(
+    law: Array, lam: Any, w_m: Any, dm: Any, rtol: float, few: bool = False,
+    strength: ArrayLike = 0.0,
+) -> Any:  # fmt: skip
     """Overload at which the largest compression is dm; NaN if the equation does not solve.
 
     By the secant method in logarithms, since ln dm is nearly ln chi.
@@ -405,21 +410,22 @@ def overload_at(law: Array, lam: Any, w_m: Any, dm: float, rtol: float, few: boo
 
     def gap(log_chi: Array) -> Array:
         y = w_m / np.exp(log_chi)
-        found = _run(TO_THE_TOP, law, lam, y, rtol, few=few)
+        found = _run(TO_THE_TOP, law, lam, y, rtol, few=few, strength=strength)
         reached = np.log(found.peak_compression.reshape(y.shape) / (y * dm))
         return np.where(found.status.reshape(y.shape) == OK, reached, math.nan)
 
-    before = np.full(np.shape(lam), math.log(dm))
+    before = np.log(np.broadcast_to(dm, np.shape(lam)))
     gap_before = gap(before)
     at = before - gap_before
+    close = 1e-11 if force.room_for(law) == 0 else 1e-9  # the laws of strengths are rounded more
     for _ in range(100):
         gap_at = gap(at)
-        if not (abs(gap_at) > 1e-11).any():
+        if not (abs(gap_at) > close).any():
             break
         rise = np.where(gap_at == gap_before, 1.0, gap_at - gap_before)
-        step = np.where(abs(gap_at) > 1e-11, gap_at * (at - before) / rise, 0.0)
+        step = np.where(abs(gap_at) > close, gap_at * (at - before) / rise, 0.0)
         before, gap_before, at = at, gap_at, at - step
-    found = np.where(abs(gap_at) <= 1e-11, np.exp(at), math.nan)
+    found = np.where(abs(gap_at) <= close, np.exp(at), math.nan)
     return found if found.shape else found.item()
 
 

@@ -12,15 +12,13 @@ import os
 import re
 import string
 import textwrap
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from importlib import resources
 from typing import Any, Literal
 
 from contactlaw import _atomic
 from contactlaw._escaped import c_comment
 from contactlaw._version import VERSION
-from contactlaw.answers.rated import Nodes
-from contactlaw.answers.tabulated import Border
 from contactlaw.emit import DOUBLE, INT, C, Known, Program, add
 from contactlaw.equation.edge import KINDS
 from contactlaw.equation.numbers import Impact
@@ -29,7 +27,6 @@ from contactlaw.export.functions import FIXED, Bodies, bodies_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.materials import Material
 from contactlaw.physical.oblique import Sliding
-from contactlaw.physical.rate import largest_factor, rated, strengthened
 from contactlaw.physical.validity import Validity, explain
 from contactlaw.stepping.spring import Spring, State
 from contactlaw.table import Table
@@ -37,9 +34,8 @@ from contactlaw.table.lookup import V_MAX
 from contactlaw.table.nodes import thinned
 
 LARGEST = 500_000  # bytes: a header is read by each source file that includes it
-NODES = 4  # tables of a pair with a rate, through which COR is a cubic in ln(strength)
-_ERROR_OF_NODE = 1e-4  # of one of these; together they err by less than 1e-3
 ERROR = 4e-6  # largest of COR against the model's table, to be within 1e-5 of the equation
+RATED_ERROR = 1e-4  # the same of a pair with a rate, whose table has a third axis
 _WIDTH = 96
 _TABLE = re.compile(r"^@table\n(.*?)^@end\n", re.DOTALL | re.MULTILINE)
 # The text is C, but for what GPUs need before each function and each constant.
@@ -81,7 +77,7 @@ def header(
     table : {"cor", "none"}, optional
         Whether the header has a table, and with it ``contactlaw_restitution``. The table is coarser
         than the model's: its COR is within 1e-5 of the integrated equation, or as near as the
-        model's own table. A pair with a rate of strain has four, with which it is within 2e-3.
+        model's own table; that of a pair with a rate of strain is within 1e-4 of it.
     prefix : str, optional
         What the names in the header begin with, in lower case: headers of several pairs live in one
         source file if each has its own, as in ``steel_on_glass_step``.
@@ -92,8 +88,7 @@ def header(
         If the model is no ImpactModel.
     ValueError
         If the kind of table is unknown, or a large table would make the header exceed 500 kB; if
-        the prefix is not lower-case words of letters and digits, joined by single underscores; if
-        another body may come to yield, because two that yield have not the same rate.
+        the prefix is not lower-case words of letters and digits, joined by single underscores.
     OSError
         If the file cannot be written; nothing is left behind then.
 
@@ -121,7 +116,8 @@ def header(
             "prefix: must be lower-case words of letters and digits, joined by single underscores "
             f"and beginning with a letter, as in 'steel_on_glass', got {prefix!r}"
         )
-    content = _text(model, _nodes(model) if table == "cor" else {}, prefix).encode()
+    thin = thin_table(model) if table == "cor" else None
+    content = _text(model, thin, prefix).encode()
     if len(content) > LARGEST:
         raise ValueError(
             f"table: the header would have {len(content)} bytes, above {LARGEST}: take 'none', or "
@@ -130,24 +126,9 @@ def header(
     _atomic.write(path, content)
 
 
-def _nodes(model: ImpactModel) -> dict[float, tuple[ImpactModel, Table]]:
-    """Tables of a pair, by the logarithm of its strength; a pair without a rate has one."""
-    flow = rated(model.pair, model.force_law)
-    if flow is None:
-        return {0.0: (model, thinned(model.table, ERROR))}
-    bodies = model.pair.sphere, model.pair.plate
-    differ = all(one.flow for one in bodies) and bodies[0].rate != bodies[1].rate
-    if differ and len(Nodes(model._bodies, None, Border("raise")).knots) > 2:
-        raise ValueError(
-            "table: as the strengths grow, another body may yield or one outgrow the other, which "
-            "needs more tables than a header has room for: take 'none', and contactlaw_rebound"
-        )
-    found = {}
-    for n in range(NODES):
-        at = n / (NODES - 1) * math.log(largest_factor(flow))
-        one = ImpactModel(strengthened(model.pair, math.exp(at)), model.force_law.family)
-        found[at] = one, thinned(one.table, _ERROR_OF_NODE)
-    return found
+def thin_table(model: ImpactModel) -> Table:
+    """Coarser table for a header."""
+    return thinned(model.table, RATED_ERROR if model.table.law.strengths else ERROR)
 
 
 def kernels(bodies: Bodies) -> str:
@@ -156,7 +137,7 @@ def kernels(bodies: Bodies) -> str:
     point = program.struct(tuple, dict(zip(("f0", "f1", "f2"), _VECTOR, strict=True)))
     sliding = program.row(functions.SLIDING)
     state = program.struct(State, dict.fromkeys(State._fields, DOUBLE))
-    if bodies.tables is not None:
+    if bodies.table is not None:
         add(program, functions.restitution, pair, *_VECTOR)
     _, bead = add(program, functions.spring_of, pair, DOUBLE, DOUBLE)
     _, impact = add(program, functions.rebound, pair, *_VECTOR)
@@ -172,11 +153,11 @@ def kernels(bodies: Bodies) -> str:
     return program.text()
 
 
-def _text(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]], prefix: str) -> str:
+def _text(model: ImpactModel, table: Table | None, prefix: str) -> str:
     """Fill the template."""
     template = resources.files("contactlaw.export").joinpath("contactlaw.h.in").read_text("utf-8")
-    filled = string.Template(_TABLE.sub(r"\1" if nodes else "", template))
-    about, written = "\n".join(_about(model, nodes)), kernels(bodies_of(model, nodes))
+    filled = string.Template(_TABLE.sub(r"\1" if table else "", template))
+    about, written = "\n".join(_about(model, table)), kernels(bodies_of(model, table))
     text = filled.substitute(
         version=VERSION,
         about="$about",  # filled in last, as names of materials do not take the prefix
@@ -191,7 +172,7 @@ def _text(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]], 
     return named.replace("$about", about)
 
 
-def _about(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]]) -> Iterable[str]:
+def _about(model: ImpactModel, table: Table | None) -> Iterable[str]:
     """Lines of the first comment: law, pair, flags that the pair alone decides, certificate."""
     law, pair, limits = model.force_law, model.pair, model.limits
     if limits.always & Validity.RATE_DEPENDENT:
@@ -203,19 +184,19 @@ def _about(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]])
     for when, flags in (("every impact", limits.always), ("a body that yields", on_yield)):
         said = (f"{one.name}: {explain(one)[0]}" for one in Validity(flags))
         yield from _comment(f"flags of {when}: {'; '.join(said) or 'none'}")
-    if not nodes:
+    if table is None:
         yield from _comment("no table")
-    for at, (_, table) in nodes.items():
-        certificate, settings = table.certificate, table.settings
-        assert certificate is not None
-        yield from _comment(
-            f"table of COR{f' at {math.exp(at):.4g} of the strength' if len(nodes) > 1 else ''}, "
-            f"lambda to {settings.largest_inelasticity:g} and chi to "
-            f"{settings.largest_overload:g}; certificate: at {certificate.points} random points, "
-            f"seed {certificate.seed}, within {certificate.largest['restitution']:.1e} of the "
-            "integrated equation, 99 % of them within "
-            f"{certificate.percentile_99['restitution']:.1e}"
-        )
+        return
+    certificate, settings = table.certificate, table.settings
+    assert certificate is not None
+    strength = math.exp(float(table.grid.axes[-1].largest)) if len(table.grid.axes) > 2 else 1.0
+    stronger = f" and strengths to {strength:.4g}" if strength > 1.0 else ""
+    yield from _comment(
+        f"table of COR, lambda to {settings.largest_inelasticity:g} and chi to "
+        f"{settings.largest_overload:g}{stronger}; certificate: at {certificate.points} random "
+        f"points, seed {certificate.seed}, within {certificate.largest['restitution']:.1e} of the "
+        f"integrated equation, 99 % of them within {certificate.percentile_99['restitution']:.1e}"
+    )
 
 
 def _body(material: Material) -> str:

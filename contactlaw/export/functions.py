@@ -7,7 +7,6 @@ The header is made of them by `contactlaw.emit`, with the numbers of one pair of
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,7 +24,6 @@ from contactlaw.equation.force import (
     STRENGTHS,
     WIDTH,
     at_strength,
-    growth_at,
     pieces_of,
     room_for,
     strongest,
@@ -44,7 +42,7 @@ from contactlaw.equation.tangential import POINT, slide
 from contactlaw.model import ImpactModel
 from contactlaw.physical.oblique import FASTEST, rebound_of, sliding, unit
 from contactlaw.physical.responses import response_of
-from contactlaw.physical.scaling import constants_of, log_overload, wave_path, wave_rate
+from contactlaw.physical.scaling import constants_of, wave_path, wave_rate
 from contactlaw.physical.strengths import COARSE, by_strength
 from contactlaw.physical.validity import flags_of, limits_at, limits_by_strength, mass_flags
 from contactlaw.stepping.edge import Near
@@ -81,10 +79,7 @@ class Bodies(NamedTuple):
     tangential_ratio: float
     responses: Any  # of a plate near edges of each kind, for steps
     wave_path: float  # sqrt(D/(rho2 H))/H of a plate [m/s]
-    log_overload: float  # ln(chi/w_m) at 1 m/s
-    tables: Any  # of COR, one after the other, at logarithms of the strength, and where they begin
-    strengths: Any
-    starts: Any
+    table: Any  # of COR, see `contactlaw.table.lookup`
 
 
 class BeadSpring(NamedTuple):
@@ -170,20 +165,18 @@ def rounded(law: Array) -> Array:
     return np.array([float(f"{one:.{n}g}") for one, n in zip(law, digits, strict=True)])
 
 
-def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table]]) -> Bodies:
-    """Numbers of a model's pair, and of tables by the logarithm of the strength.
+def bodies_of(model: ImpactModel, table: Table | None) -> Bodies:
+    """Numbers of a model's pair, and of a table if there is one.
 
-    Tables have nine decimals, those of several strengths six: they err by more than that.
+    A table has nine decimals, one with a third axis six: it errs by more than that.
     """
-    pair, law, tables = model.pair, model.force_law, []
+    pair, law, packed = model.pair, model.force_law, None
     laws, known = by_strength(pair, law, COARSE), constants_of(pair, law)
-    for own, one in nodes.values():
-        table = lookup.with_plate(one.packed, constants_of(own.pair, own.force_law).plate)
-        table = table[: int(table[lookup.OTHERS_AT])].copy()  # COR alone
-        splines = table[int(table[lookup.COR_AT]) :]
-        splines[:] = splines.round(9 if len(nodes) == 1 else 6)
-        tables.append(table)
-    starts = np.cumsum([0.0, *(one.size for one in tables)])[:-1]
+    if table is not None:
+        packed = lookup.with_plate(table.packed, known)
+        packed = packed[: int(packed[lookup.OTHERS_AT])].copy()  # COR alone
+        splines = packed[int(packed[lookup.COR_AT]) :]
+        splines[:] = splines.round(9 if packed[lookup.LAYERS] == 0.0 else 6)
     return Bodies(
         rounded(laws),
         room_for(laws),
@@ -195,10 +188,7 @@ def bodies_of(model: ImpactModel, nodes: Mapping[float, tuple[ImpactModel, Table
         pair.tangential_ratio,
         np.array([response_of(one, pair.plate.poissons_ratio, size="steps") for one in KINDS]),
         wave_path(pair.plate),
-        log_overload(known, known.yield_compression),
-        np.concatenate(tables) if tables else None,
-        np.array([*nodes]),
-        starts,
+        packed,
     )
 
 
@@ -369,32 +359,9 @@ def restitution(pair: Bodies, speed: float, radius: float, thickness: float) -> 
     """Rebound speed over impact speed, from the table; NaN outside the table and for bad input.
 
     That is numbers that are not positive, a speed above V_MAX m/s, a radius above R_MAX m, lengths
-    below R_MIN m, a plate thinner than THINNEST radii. For a pair with a rate it is a cubic in
-    ln(strength) through four tables.
+    below R_MIN m, a plate thinner than THINNEST radii.
     """
-    if not (V_MIN <= speed <= V_MAX and fits(radius, thickness)):
-        return math.nan
-    if pair.strengths.size == 1:
-        c_lam, ratio = pair.unit.plate.inelasticity, radius / thickness
-        return lookup.restitution(pair.tables, c_lam, pair.log_overload, speed, radius, ratio)
-    units = numbers_of(pair, solid(speed, radius, thickness))
-    place, log_y, value = units.strength, math.log(units.yield_ratio), 0.0
-    weakest = log_y - math.log(growth_at(pair.law, place))
-    for j in range(pair.strengths.size):
-        table, weight = pair.tables[int(pair.starts[j]) :], 1.0
-        most = table[lookup.LOG_CHI_MAX]
-        x = units.inelasticity / (units.inelasticity + table[lookup.STRETCH])
-        if not 0.0 <= x <= table[lookup.X_MAX]:
-            return math.nan
-        log_w = lookup.log_elastic(table, x)
-        if j == 0 and not log_w - weakest <= most:  # stronger bodies yield later
-            return math.nan
-        for k in range(pair.strengths.size):
-            if k != j:
-                at = pair.strengths[k]
-                weight *= (place - at) / (pair.strengths[j] - at)
-        value += weight * lookup.cor_at(table, x, min(log_w - log_y, most))
-    return min(max(value, 0.0), 1.0)
+    return lookup.restitution_on_plate(pair.table, speed, radius, thickness, 1.0)
 
 
 @kernel

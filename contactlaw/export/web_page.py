@@ -95,7 +95,7 @@ def _bodies(model: ImpactModel) -> tuple[Bodies, Page]:
     pair = model.pair
     weaker = min(body.strength or math.inf for body in (pair.sphere, pair.plate))
     flag = Validity.SLIDING_FLOW.value
-    return bodies_of(model, {}), Page(pair.effective_modulus, weaker, flag)
+    return bodies_of(model, None), Page(pair.effective_modulus, weaker, flag)
 
 
 def _kernels(bodies: Bodies, page: Page) -> str:

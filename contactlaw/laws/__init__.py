@@ -27,13 +27,14 @@ import re
 from types import ModuleType
 
 from contactlaw.laws._branches import HERTZ, Loading, Unloading
-from contactlaw.laws._law import Law, laid_out_alike
+from contactlaw.laws._law import Law, Strengths, laid_out_alike
 
 __all__ = [
     "DEFAULT",
     "HERTZ",
     "Law",
     "Loading",
+    "Strengths",
     "Unloading",
     "exact",
     "laid_out_alike",

@@ -7,7 +7,7 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,14 @@ from contactlaw.equation import force as _force
 from contactlaw.equation.force import UnloadingCurve
 from contactlaw.laws._branches import END, Array, Loading, Unloading
 from contactlaw.laws._expansion import Cuts, check_yield, expanded, horner, packed
+
+
+class Strengths(NamedTuple):
+    """Laws of a pair that grows stronger with the rate of an impact."""
+
+    data: Array  # at any strength, in the layout of `contactlaw.equation.force`
+    knots: tuple[float, ...]  # ln of the strength, from 0: between them outcomes are smooth
+    cells: tuple[int, ...]  # between each two of them, for the layers of a table
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +64,8 @@ class Law:
     waves : tuple of float, optional
         b, b_h, b4 and b_p, the plate's corrections beyond a thin-plate dashpot, see
         `contactlaw.equation.corrections`. None: the plate is that dashpot.
+    strengths : Strengths, optional
+        The laws of impacts that make the pair stronger; None if none does.
     """
 
     family: str
@@ -71,6 +81,7 @@ class Law:
     range: tuple[float, float] = (1.0, math.inf)
     waves: tuple[float, float, float, float] | None = None
     onset: float | None = None
+    strengths: Strengths | None = None
 
     @staticmethod
     def of(
@@ -181,10 +192,18 @@ class Law:
         """Whether some unloading runs along the loading curve, see `Unloading`."""
         return bool(self.data[_force.CAPPED])
 
+    @property
+    def at_any_strength(self) -> Array:
+        """The data of this law, or of all its strengths."""
+        return self.data if self.strengths is None else self.strengths.data
+
     @functools.cached_property
     def key(self) -> str:
         """Hash of the data, by which tables are found."""
-        return hashlib.sha256(self.data.tobytes()).hexdigest()[:16]
+        content = self.data.tobytes()
+        if self.strengths is not None:
+            content += self.strengths.data.tobytes() + repr(self.strengths[1:]).encode()
+        return hashlib.sha256(content).hexdigest()[:16]
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Law):
@@ -196,6 +215,8 @@ class Law:
 
     def follows(self, other: Law) -> bool:
         """Whether another law equals this one up to rounding; compiles no kernel."""
+        if self.strengths is not None or other.strengths is not None:
+            return self.key == other.key
         mine, theirs = self._samples(), other._samples()
         return len(mine) == len(theirs) and bool(np.allclose(mine, theirs, rtol=1e-11, atol=1e-14))
 

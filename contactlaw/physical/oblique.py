@@ -22,7 +22,7 @@ from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.impacts import Impacts, check_finite
 from contactlaw.physical.rebound import Rebound, shaped_flags
 from contactlaw.physical.validity import Validity
-from contactlaw.table import lookup, strengths
+from contactlaw.table import lookup
 from contactlaw.table.slides import change
 
 Array = NDArray[np.float64]
@@ -127,7 +127,7 @@ def rebound_of(
 
 @kernel
 def tangential(
-    table: Array, slides: Array, c_lam: float, c_chi: float, radius: float, thickness: float,
+    table: Array, slides: Array, radius: float, thickness: float,
     friction: float, speed: float, size: float,
 ) -> tuple[float, float]:  # fmt: skip
     """COR and change of the sliding speed [m/s]; NaN for bad input or outside the table."""
@@ -137,22 +137,16 @@ def tangential(
     if not size <= lookup.V_MAX:
         return math.nan, math.nan
     psi = min(size / limit, FASTEST) if limit > 0.0 else 0.0
-    if strengths.is_rated(table):
-        place = strengths.place_of(table, c_lam, c_chi, speed, radius, radius / thickness)
-        if not place.inside:
-            return math.nan, math.nan
-        e = strengths.cor_at(table, place)
-        return e, limit * strengths.change_at(table, slides, place, e, psi)
-    x, log_chi = lookup.place_of(table, c_lam, c_chi, speed, radius, radius / thickness)
-    if x != x:
+    at = lookup.place_of(table, speed, radius, thickness, 1.0)
+    if at.x != at.x:
         return math.nan, math.nan
-    e = lookup.cor_at(table, x, log_chi)
-    return e, limit * change(slides, x, log_chi, e, psi)
+    e = lookup.cor_at(table, at)
+    return e, limit * change(slides, at.x, at.log_chi, at.strength, e, psi)
 
 
 @kernel
 def collide(
-    table: Array, slides: Array, c_lam: float, c_chi: float, v: Vector, omega: Vector, n: Vector,
+    table: Array, slides: Array, v: Vector, omega: Vector, n: Vector,
     radius: float, thickness: float, friction: float, w: Vector,
 ) -> tuple[Vector, Vector]:  # fmt: skip
     """Velocity and spin after an impact, as they were if the bead recedes; NaN as `tangential`."""
@@ -160,9 +154,7 @@ def collide(
     came = sliding(v, omega, n, w, radius)
     if came.speed < lookup.V_MIN:
         return v, omega
-    e, changed = tangential(
-        table, slides, c_lam, c_chi, radius, thickness, friction, came.speed, came.size
-    )
+    e, changed = tangential(table, slides, radius, thickness, friction, came.speed, came.size)
     return rebound_of(v, omega, n, came, radius, e, changed)
 
 
@@ -195,13 +187,13 @@ def approach_all(
 
 @kernel(cache=True)
 def tangential_all(
-    table: Array, slides: Array, c_lam: float, c_chi: float, radius: Array, thickness: Array,
+    table: Array, slides: Array, radius: Array, thickness: Array,
     friction: Array, speed: Array, size: Array, e: Array, changed: Array,
 ) -> None:  # fmt: skip
     """`tangential` of many impacts."""
     for i in range(radius.size):
         e[i], changed[i] = tangential(
-            table, slides, c_lam, c_chi, radius[i], thickness[i], friction[i], speed[i], size[i]
+            table, slides, radius[i], thickness[i], friction[i], speed[i], size[i]
         )
 
 

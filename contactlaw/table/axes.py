@@ -10,7 +10,6 @@ elastic compression, and the kinks of later axes, which may be curves over the f
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 import math
 from dataclasses import dataclass
@@ -19,10 +18,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.table.lookup import ELASTIC, STRETCHED, TERMS
+
 Array = NDArray[np.float64]
 
 SERIES = 48  # nodes of the series along the first axis
-FEWEST = 5  # nodes of a segment; splines with not-a-knot ends need as many
+FEWEST = 4  # nodes of a segment; splines with not-a-knot ends need as many
 
 
 class Segment(NamedTuple):
@@ -70,6 +71,11 @@ class Axis:
         """Places of values from 0 to 1 in x, for an axis that begins at 0."""
         return self.mapped(values) / self.mapped(self.largest)
 
+    def values(self, place: Array) -> Array:
+        """Values at places from 0 to 1 in x, the inverse of `place`."""
+        x = self.mapped(self.largest) * place
+        return x if math.isinf(self.stretch) else np.asarray(self.stretch * x / (1.0 - x))
+
     def nodes(self, along: Array) -> Array:
         """Values at all nodes: a row for each place along the first axis."""
         parts = []
@@ -91,8 +97,10 @@ class Axis:
 class TableGrid:
     """Nodes of a table."""
 
-    axes: tuple[Axis, ...]  # the inelasticity lambda, then ln chi
+    axes: tuple[Axis, ...]  # the inelasticity lambda, ln chi, and ln k if strengths differ
     elastic_compression: Array  # w_m at `series_values` of the first axis [V0 T_H]
+    # Rows of polynomials for each segment of the third axis, see `contactlaw.table.lookup`.
+    by_strength: Array | None = None
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -115,25 +123,52 @@ class TableGrid:
         ]
         return np.broadcast_arrays(*spread)
 
+    def points(self) -> tuple[Array, Array, Array]:
+        """Inelasticity, overload and ln of the strength at every node, each as a row."""
+        lam, log_chi, *more = (values.ravel() for values in self.nodes())
+        strength = np.zeros_like(lam)
+        if more:  # the law may jump a little at a knot: the next segment begins just above it
+            begins = np.cumsum(self.axes[2].sizes)[:-1]
+            each = more[0].reshape(-1, self.shape[2]).copy()
+            each[:, begins] = np.nextafter(each[:, begins], math.inf)
+            strength = each.ravel()
+        return lam, np.exp(self.own(lam, log_chi, strength)), strength
+
+    def own(self, lam: Array, log_chi: Array, strength: Array) -> Array:
+        """Ln chi of impacts, from that along the axis, which is stretched beyond yield."""
+        if self.by_strength is None:
+            return log_chi
+        which = self.axes[2].segment_of(strength, np.zeros(1))
+        ends = np.array([(one.start[0], one.end[0]) for one in self.axes[2].segments])[which]
+        t = (2.0 * strength - ends.sum(axis=-1)) / (ends[..., 1] - ends[..., 0])
+        rows = self.by_strength[which, STRETCHED:ELASTIC]
+        at_t = (rows * t[:, None, None] ** np.arange(TERMS)).sum(axis=-1)
+        z = 2.0 * self.axes[0].place(lam) - 1.0
+        factor = (at_t * z[:, None] ** np.arange(ELASTIC - STRETCHED)).sum(axis=-1)
+        return np.where(log_chi > 0.0, log_chi / factor, log_chi)
+
 
 def series_values(first: Axis) -> Array:
     """Values of the first axis at the nodes of the series along it."""
-    whole = first.segments[0]._replace(shares=_chebyshev_nodes())
-    return np.asarray(dataclasses.replace(first, segments=(whole,)).nodes(np.zeros(1))[0])
+    return np.clip(first.values(chebyshev_nodes()), 0.0, first.largest)
 
 
 def power_series(values: Array, degree: int) -> Array:
-    """Fit a polynomial in t = 2 x/x_max - 1 to values at the nodes of the series."""
-    basis = np.polynomial.chebyshev.chebvander(2.0 * _chebyshev_nodes() - 1.0, degree)
+    """Fit a polynomial in t from -1 to 1 to values at Chebyshev nodes, as those of the series."""
+    count = len(values)
+    basis = np.polynomial.chebyshev.chebvander(2.0 * chebyshev_nodes(count) - 1.0, degree)
     # the nodes make the basis orthogonal, so no system is to be solved
-    coefficients = (basis * values[:, None]).sum(axis=0) * (2.0 / SERIES)
+    coefficients = (basis * values[:, None]).sum(axis=0) * (2.0 / count)
     coefficients[0] /= 2.0
-    return np.asarray(np.polynomial.chebyshev.cheb2poly(coefficients))
+    found = np.zeros(degree + 1)
+    powers = np.polynomial.chebyshev.cheb2poly(coefficients)  # drops zeros at the end
+    found[: powers.size] = powers
+    return found
 
 
-def _chebyshev_nodes() -> Array:
-    """Places of the series' nodes along the first axis, from 0 to 1."""
-    nodes: Array = 0.5 - 0.5 * np.cos(np.pi * (np.arange(SERIES) + 0.5) / SERIES)
+def chebyshev_nodes(count: int = SERIES) -> Array:
+    """Places of Chebyshev nodes from 0 to 1; by default of the series along the first axis."""
+    nodes: Array = 0.5 - 0.5 * np.cos(np.pi * (np.arange(count) + 0.5) / count)
     return nodes
 
 

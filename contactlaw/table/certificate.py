@@ -108,10 +108,10 @@ def compare_outcomes(
         raise ValueError(f"points: at least 100 and at most 10 000 000 are taken, got {points!r}")
     if seed < 0:
         raise ValueError(f"seed: must not be negative, got {seed!r}")
-    lam, chi = random_points(grid, points, np.random.default_rng(seed))
-    parts = -(-lam.size // _PART)
-    exact = sweep.solve_overloads(law, lam, chi, _finer(settings), parts, progress)
-    looked = outcome.at(exact.inelasticity, exact.yield_ratio)
+    lam, log_chi, strength = random_points(grid, points, np.random.default_rng(seed))
+    chi, parts = np.exp(grid.own(lam, log_chi, strength)), -(-lam.size // _PART)
+    exact = sweep.solve_overloads(law, lam, chi, strength, _finer(settings), parts, progress)
+    looked = outcome.at(exact.inelasticity, exact.yield_ratio, strength)
     lookup.fields(packed, True, looked)
     errors = {}
     both = (_named(law, values) for values in (looked, exact))
@@ -125,11 +125,13 @@ def compare_outcomes(
 def compare_histories(law: Law, settings: Settings, packed: Shapes, looked: Outcome) -> Array:
     """Errors of the force histories of outcomes that were looked up."""
     ours, exact = (outcome.history(looked.restitution.size, _SAMPLES) for _ in range(2))
-    shapes.sample(law.data, packed, looked, ours)
-    lam, y, rtol = looked.inelasticity, looked.yield_ratio, _finer(settings)
+    data = law.at_any_strength
+    shapes.sample(data, packed, looked, ours)
+    lam, y, s, rtol = looked.inelasticity, looked.yield_ratio, looked.strength, _finer(settings)
 
     def solve(part: slice) -> None:
-        exact.force[part], _, _ = zener.history(law.data, lam[part], y[part], rtol, ours.time[part])
+        known = lam[part], y[part], rtol, ours.time[part]
+        exact.force[part], _, _ = zener.history(data, *known, strength=s[part])
 
     sweep.in_parts(solve, lam.size, -(-lam.size // _PART), sweep.no_progress)
     return np.asarray(np.abs(ours.force - exact.force).max(axis=1) / exact.force.max(axis=1))
@@ -141,9 +143,12 @@ def _finer(settings: Settings) -> float:
 
 def random_points(
     grid: TableGrid, count: int, generator: np.random.Generator
-) -> tuple[Array, Array]:
-    """Draw lambda and chi of points; a curved kink counts at its least and its largest chi."""
-    inelasticity, overload = grid.axes
+) -> tuple[Array, Array, Array]:
+    """Draw points of the grid's axes; a curved kink counts at its least and its largest chi.
+
+    Without a third axis ln k is 0.
+    """
+    inelasticity, overload, *strength = grid.axes
     lows = [float(segment.start.min()) for segment in overload.segments]
     highs = [float(segment.start.max()) for segment in overload.segments]
     hertz = lows[0] == 0.0  # such a table begins at yield and serves slower impacts, too
@@ -155,14 +160,15 @@ def random_points(
     # uniform in the root: COR changes most where lambda is small
     root = generator.uniform(0.0, math.sqrt(inelasticity.largest), log_chi.size)
     root[generator.random(log_chi.size) < _HALF_SPACE] = 0.0
-    return root**2, np.exp(log_chi)
+    most = strength[0].largest if strength else 0.0
+    return root**2, log_chi, generator.uniform(0.0, most, log_chi.size)
 
 
 def _named(law: Law, values: Outcome) -> dict[str, Array]:
     """Fields of `BOUNDS` from an outcome, computed as in `contactlaw.physical.rebound`."""
     compression = values.compression_ratio * values.elastic_compression
     extremes = outcome.extremes(compression.size)
-    zener.extremes(law.data, values, extremes)
+    zener.extremes(law.at_any_strength, values, extremes)
     return {
         "restitution": values.restitution,
         "contact_time": values.contact_time,

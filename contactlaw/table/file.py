@@ -31,9 +31,9 @@ from contactlaw._content import content_of
 from contactlaw._version import VERSION
 from contactlaw.equation import force
 from contactlaw.equation.outcome import STORED
-from contactlaw.laws import Law
+from contactlaw.laws import Law, Strengths
 from contactlaw.table import grid as grids
-from contactlaw.table import shapes
+from contactlaw.table import lookup, shapes
 from contactlaw.table.axes import SERIES, Axis, Segment, TableGrid, series_values
 from contactlaw.table.certificate import Certificate
 from contactlaw.table.grid import Settings
@@ -77,6 +77,13 @@ _SEGMENT = {
 }
 
 
+_STRENGTHS = {
+    "data": _Part("force laws at all strengths, see contactlaw.equation.force [d_Y, F_Y]"),
+    "knots": _Part("ln of the strength, between which outcomes are smooth [-]"),
+    "cells": _Part("between each two of them [-]", kind=np.int64, least=3, largest=1000),
+}
+
+
 def _fields(grid: TableGrid) -> dict[str, _Part]:
     return {
         name: _Part(one.description, grid.shape, one.least, one.largest)
@@ -84,9 +91,14 @@ def _fields(grid: TableGrid) -> dict[str, _Part]:
     }
 
 
+def _by_strength(grid: TableGrid) -> dict[str, _Part]:
+    shape = len(grid.axes[2].segments), lookup.ROWS, lookup.TERMS
+    return {"by_strength": _Part("polynomials, see contactlaw.table.lookup [-]", shape, -1e3, 1e3)}
+
+
 def _shapes(grid: TableGrid) -> dict[str, _Part]:
     return {
-        **{name: _Part("of the states [-]", grid.shape) for name in grids.AXES},
+        **{axis.name: _Part("of the states [-]", grid.shape) for axis in grid.axes},
         "shares": _Part("of the largest root compression, up and down [-]", (shapes.STATES,)),
         "states": _Part(
             "when it passes them: times [T_H], speeds [V0]",
@@ -157,13 +169,16 @@ def _fill(file: h5py.File, table: Table) -> None:
     _put(file, "law", _LAW, {**vars(law), "waves": law.waves or ()})
     series = series_values(grid.axes[0])
     _put(file, "", _SERIES, {**vars(grid), "series_inelasticity": series})
+    if law.strengths is not None:
+        _put(file, "strengths", _STRENGTHS, law.strengths._asdict())
+        _put(file, "strengths", _by_strength(grid), vars(grid))
     for axis in grid.axes:
         for k, segment in enumerate(axis.segments):
             _put(file, f"axes/{axis.name}/{k}", _SEGMENT, segment._asdict())
     _put(file, "fields", _fields(grid), table.fields)
     if table.states is not None:
         coarser = shape_grid(table)
-        nodes = dict(zip(grids.AXES, coarser.nodes(), strict=True))
+        nodes = dict(zip((axis.name for axis in grid.axes), coarser.nodes(), strict=True))
         states = {"shares": shapes.SHARES, "states": table.states}
         _put(file, "shapes", _shapes(coarser), nodes | states)
     file.create_group("law/parameters", track_order=True).attrs.update(law.parameters)
@@ -233,9 +248,12 @@ def _parse(content: bytes) -> Table:
 def _from_file(file: h5py.File) -> Table:
     settings = Settings(**{k: type(v)(file.attrs[k]) for k, v in asdict(Settings()).items()})
     law = _law(file)
-    axes = tuple(_axis(file, name) for name in grids.AXES)
+    axes = tuple(_axis(file, name) for name in grids.AXES if name in file["axes"])
     grids.check(axes, law, settings)
     grid = TableGrid(axes, _take(file, "", _SERIES)["elastic_compression"])
+    if law.strengths is not None:
+        rows = _take(file, "strengths", _by_strength(grid))["by_strength"]
+        grid = dataclasses.replace(grid, by_strength=rows)
     errors = file.attrs.get("certificate")
     certificate = None if errors is None else Certificate(**json.loads(errors))
     fields = _take(file, "fields", _fields(grid))
@@ -246,7 +264,7 @@ def _from_file(file: h5py.File) -> Table:
     # numpy's functions differ in the last digit between its versions and between processors
     if not np.allclose(found["shares"], shapes.SHARES, rtol=1e-12, atol=1e-12):
         raise ValueError("its shapes/shares are not those of this version")
-    if not (np.diff(found["states"][:, :, 0]) > 0.0).all():
+    if not (np.diff(found["states"][..., 0, :]) > 0.0).all():
         raise ValueError("its shapes/states hold times that do not grow")
     return dataclasses.replace(table, states=found["states"])
 
@@ -276,6 +294,12 @@ def _law(file: h5py.File) -> Law:
     """Read the law of a table; its data are checked, since kernels follow addresses in them."""
     found = _take(file, "law", _LAW)
     force.check(found["data"])
+    strengths = None
+    if "strengths" in file:
+        several = _take(file, "strengths", _STRENGTHS)
+        force.check_strengths(several["data"])
+        knots, cells = (tuple(several[name].tolist()) for name in ("knots", "cells"))
+        strengths = Strengths(several["data"], knots, cells)
     coefficient, scale, smallest, largest = (
         float(file.attrs[name])
         for name in ("yield_coefficient", "law_scale", "law_smallest", "law_largest")
@@ -291,6 +315,7 @@ def _law(file: h5py.File) -> Law:
         scale=None if math.isnan(scale) else scale,
         range=(smallest, largest),
         waves=tuple(found["waves"].tolist()) or None,
+        strengths=strengths,
     )
 
 

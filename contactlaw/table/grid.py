@@ -22,14 +22,25 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.equation import zener
-from contactlaw.laws import Law
+from contactlaw.equation import force, zener
+from contactlaw.laws import Law, Strengths
 from contactlaw.laws._branches import END
-from contactlaw.table.axes import FEWEST, SERIES, Axis, Segment, TableGrid, series_values
+from contactlaw.table import axes as _axes
+from contactlaw.table.axes import (
+    SERIES,
+    Axis,
+    Segment,
+    TableGrid,
+    chebyshev_nodes,
+    power_series,
+    series_values,
+)
+from contactlaw.table.lookup import ELASTIC, ROWS, STRETCHED, TERMS
 
 Array = NDArray[np.float64]
 
-AXES = "inelasticity", "log_overload"
+AXES = "inelasticity", "log_overload", "log_strength"
+FEWEST = 5  # nodes of a segment along the first two axes, our choice
 _FEWEST_GRADED = 24  # nodes of a graded segment, our choice: two kinks may be only 8 % apart
 _COARSER = 4.0  # factor on steps in ln chi below yield, where only the sphere's stiffening counts
 _BEYOND = 1.5  # largest chi of a pair's table, over the chi up to which its law was made
@@ -93,13 +104,32 @@ def inelasticity_axis(settings: Settings) -> Axis:
     return Axis(AXES[0], (Segment(*ends, shares, graded=False),), settings.stretch)
 
 
-def with_steps(grid: TableGrid, settings: Settings, steps: float | Array) -> TableGrid:
-    """Place other nodes between the same kinks; one step for all segments, or one for each."""
+def strength_axis(strengths: Strengths, coarser: int = 1) -> Axis:
+    """Ln of the strength from 0 to the largest, in segments between the knots."""
+    segments = []
+    for (low, high), cells in zip(
+        itertools.pairwise(strengths.knots), strengths.cells, strict=True
+    ):
+        ends = np.full(SERIES, low), np.full(SERIES, high)
+        count = max(-(-cells // coarser) + 1, _axes.FEWEST)
+        segments.append(Segment(*ends, np.linspace(0.0, 1.0, count), graded=False))
+    return Axis(AXES[2], tuple(segments))
+
+
+def with_steps(
+    law: Law, grid: TableGrid, settings: Settings, steps: float | Array, coarser: int = 1
+) -> TableGrid:
+    """Place other nodes between the same kinks; one step for all segments, or one for each.
+
+    Cells along the strength are wider by a factor.
+    """
     overload = grid.axes[1]
     each = np.broadcast_to(steps, len(overload.segments))
     segments = tuple(_with_nodes(*one) for one in zip(overload.segments, each, strict=True))
-    axes = inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)
-    return dataclasses.replace(grid, axes=axes)
+    axes = [inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)]
+    if law.strengths is not None:
+        axes.append(strength_axis(law.strengths, coarser))
+    return dataclasses.replace(grid, axes=tuple(axes))
 
 
 def largest_inelasticity(law: Law) -> float:
@@ -125,7 +155,10 @@ def check(axes: Sequence[Axis], law: Law, settings: Settings) -> None:
     """Raise a ValueError if axes are not those of a law and of settings."""
     for axis in axes:
         axis.check()
-    first, second = axes
+    first, second, *third = axes
+    known = law.strengths
+    if [one.sizes for one in third] != ([strength_axis(known).sizes] if known else []):
+        raise ValueError("its strengths are not those of the law")
     expected = inelasticity_axis(settings)
     same = first.sizes == expected.sizes
     same = same and (first.stretch, second.stretch) == (expected.stretch, math.inf)
@@ -172,7 +205,40 @@ def grid(law: Law, settings: Settings) -> TableGrid:
         _with_nodes(Segment(start, end, np.empty(0), root), settings.log_overload_step)
         for (start, end), root in zip(itertools.pairwise(lines), graded, strict=True)
     )
-    return TableGrid((inelasticity, Axis(AXES[1], segments)), elastic)
+    axes = inelasticity, Axis(AXES[1], segments)
+    if law.strengths is None:
+        return TableGrid(axes, elastic)
+    has_end = len(lines) > 2 + (not law.is_hertz)  # of the law's range
+    ends = itertools.pairwise(law.strengths.knots)
+    rows = np.array([_rows(law, one, settings, has_end) for one in ends])
+    return TableGrid((*axes, strength_axis(law.strengths)), elastic, rows)
+
+
+def _rows(law: Law, ends: tuple[float, float], settings: Settings, has_end: bool) -> Array:
+    """Rows of polynomials for a segment in ln k, as `contactlaw.table.lookup` has them."""
+    data, powers, none = law.at_any_strength, ROWS - ELASTIC, np.zeros(TERMS * (ROWS - ELASTIC))
+    strength = ends[0] + (ends[1] - ends[0]) * chebyshev_nodes(TERMS)
+    lam = inelasticity_axis(settings).values(chebyshev_nodes(powers))
+    lam, s = np.tile(lam, TERMS), np.repeat(strength, powers)
+    own, slow = (elastic_compressions(law, lam, settings.rtol, one) for one in (s, none))
+    factor = np.ones_like(lam)
+    if has_end:
+        slow_end, end = (
+            np.log(_overloads(law, np.array([_end(data, k) for k in at.tolist()]), lam, w_m, at))
+            for at, w_m in ((none, slow), (s, own))
+        )
+        factor = slow_end / end
+    rows = [[math.log(force.growth_at(data, one)) for one in strength.tolist()]]
+    for values, degree in ((factor, ELASTIC - STRETCHED), (np.log(own / slow), powers)):
+        each = [power_series(one, degree - 1) for one in values.reshape(TERMS, powers)]
+        rows += np.transpose(each).tolist()
+    return np.array([power_series(np.array(row), TERMS - 1) for row in rows])
+
+
+def _end(data: Array, strength: float) -> float:
+    """Compression up to which the law of a strength holds: its last piece is a tangent."""
+    own = force.at_strength(data, strength, np.empty(force.room_for(data)))
+    return float(force.start_of(own, int(own[force.PIECES]) - 1) ** 2)
 
 
 def _kink_lines(
@@ -195,17 +261,21 @@ def _kink_lines(
     return [*lines, np.full(lam.size, end)], graded
 
 
-def _overloads(law: Law, kink: float, lam: Array, elastic: Array) -> Array:
+def _overloads(
+    law: Law, kink: Array | float, lam: Array, elastic: Array, strength: Array | float = 0.0
+) -> Array:
     """Overloads at which the largest compression is that of a kink."""
-    found: Array = zener.overload_at(law.data, lam, elastic, kink, 1e-12)
+    data = law.at_any_strength
+    found: Array = zener.overload_at(data, lam, elastic, kink, 1e-12, strength=strength)
     if not np.isfinite(found).all():
-        raise RuntimeError(f"law {law.name!r}: no impact was found that turns at {kink:g} d_Y")
+        raise RuntimeError(f"law {law.name!r}: no impact was found that turns at {kink} d_Y")
     return found
 
 
-def elastic_compressions(law: Law, lam: Array, rtol: float) -> Array:
+def elastic_compressions(law: Law, lam: Array, rtol: float, strength: Array | float = 0.0) -> Array:
     """Largest compressions w_m of impacts that just yield."""
-    status, w_m = zener.elastic_compression(law.data, lam, rtol)
+    data = law.at_any_strength
+    status, w_m = zener.elastic_compression(data, lam, rtol, strength=strength)
     if status.any():
         status, n = zener.failure(status)
         raise RuntimeError(f"w_m({lam[n]:.6g}) did not solve: {zener.MESSAGES[status]}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,7 @@ Array = NDArray[np.float64]
 POINTS = 1000  # points of the certificate of a table that is built on demand
 _COMPARED = 20_000  # points at which a coarser table is compared
 _ROW_FACTORS = 4, 2, 1  # factors by which a coarser table may have fewer rows
+_LAYER_FACTORS = 1, 2, 4  # likewise of cells in ln k
 # Factors by which a coarser table's steps in ln chi may be wider, one for each segment: the COR of
 # elastic impacts bends far less than that beyond yield, for which a single step has to be fine.
 _STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
@@ -48,9 +50,9 @@ class Table:
     grid : TableGrid
         Nodes of the fields.
     fields : dict of str to ndarray
-        Fields of `contactlaw.equation.outcome.STORED`, each (rows, columns).
+        Fields of `contactlaw.equation.outcome.STORED`, each of the grid's shape.
     states : ndarray of float32, optional
-        Shapes of force histories on `shape_grid`, (rows, columns, 2, SIZE); None until they are
+        Shapes of force histories on `shape_grid`, with (2, SIZE) at each node; None until they are
         needed.
     certificate : Certificate, optional
         How far lookups are from the solver.
@@ -86,7 +88,7 @@ class Table:
 def shape_grid(table: Table) -> TableGrid:
     """Nodes of the shapes: coarser, with the same segments."""
     settings = dataclasses.replace(table.settings, inelasticity_nodes=shapes.ROWS)
-    return grids.with_steps(table.grid, settings, shapes.STEP)
+    return grids.with_steps(table.law, table.grid, settings, shapes.STEP, shapes.COARSER)
 
 
 def build(
@@ -123,9 +125,8 @@ def build(
     """
     settings = settings or (Settings() if law.is_hertz else grids.on_demand(law))
     grid = grids.grid(law, settings)
-    lam, log_chi = (values.ravel() for values in grid.nodes())
     parts = settings.inelasticity_nodes
-    values = sweep.solve_overloads(law, lam, np.exp(log_chi), settings.rtol, parts, progress)
+    values = sweep.solve_overloads(law, *grid.points(), settings.rtol, parts, progress)
     fields = {name: getattr(values, name).reshape(grid.shape) for name in STORED}
     table = Table(law, settings, grid, fields)
     return dataclasses.replace(table, certificate=certify(table, points))
@@ -134,15 +135,17 @@ def build(
 def thinned(table: Table, error: float) -> Table:
     """Thin out a table's nodes while its COR stays within `error`; else return it as it is."""
     rows, fewest = table.settings.inelasticity_nodes - 1, int(RANGES["inelasticity_nodes"][0])
-    lam, chi = random_points(table.grid, _COMPARED, np.random.default_rng(0))
-    exact = _looked_up(table, lam, chi).restitution
+    points = random_points(table.grid, _COMPARED, np.random.default_rng(0))
+    exact = _looked_up(table, *points).restitution
     found = table
-    for fewer in _ROW_FACTORS:
+    for fewer, coarser in itertools.product(
+        _ROW_FACTORS, _LAYER_FACTORS[: 3 if len(table.grid.axes) > 2 else 1]
+    ):
         count = max(rows // fewer + 1, fewest)
-        steps = _widest_steps(table, count, error, (lam, chi, exact))
+        steps = _widest_steps(table, count, error, points, exact, coarser)
         if steps is not None:
-            one = _resampled(table, count, steps)
-            if one.fields["restitution"].size < found.fields["restitution"].size:
+            one = _resampled(table, count, steps, coarser)
+            if one.packed.size < found.packed.size:
                 found = one
     if found.certificate is None:
         found = dataclasses.replace(found, certificate=certify(found, POINTS))
@@ -150,21 +153,21 @@ def thinned(table: Table, error: float) -> Table:
 
 
 def _widest_steps(
-    table: Table, rows: int, error: float, compared: tuple[Array, Array, Array]
-) -> Array | None:
+    table: Table, rows: int, error: float, points: tuple[Array, Array, Array], exact: Array,
+    coarser: int,
+) -> Array | None:  # fmt: skip
     """Largest step in each segment with which its COR errs no more than `error`; None if none does.
 
     Splines do not run across kinks, so the error in a segment is that of its own steps.
     """
-    lam, chi, exact = compared
-    inelasticity, overload = table.grid.axes
-    segment = overload.segment_of(np.log(chi), inelasticity.place(lam))
+    inelasticity, overload = table.grid.axes[:2]
+    segment = overload.segment_of(points[1], inelasticity.place(points[0]))
     step, widest = table.settings.log_overload_step, RANGES["log_overload_step"][1]
     steps = np.full(len(overload.segments), step)
     passing = np.ones(steps.size, dtype=bool)
     for wider in (1.0, *_STEP_FACTORS):
         one = min(step * wider, widest)
-        off = np.abs(_looked_up(_resampled(table, rows, one), lam, chi).restitution - exact)
+        off = np.abs(_looked_up(_resampled(table, rows, one, coarser), *points).restitution - exact)
         passing &= [off[segment == n].max(initial=0.0) <= error for n in range(steps.size)]
         if wider == 1.0 and not passing.all():
             return None
@@ -174,21 +177,22 @@ def _widest_steps(
     return steps
 
 
-def _looked_up(table: Table, lam: Array, chi: Array) -> Outcome:
-    w_m = np.array([lookup.log_elastic_compression(table.packed, one) for one in lam])
-    found = outcome.at(lam, np.exp(w_m) / chi)
+def _looked_up(table: Table, lam: Array, log_chi: Array, strength: Array) -> Outcome:
+    """Look points of the grid's axes up."""
+    found = outcome.at(lam, np.empty_like(lam), strength)
+    lookup.yield_ratios(table.packed, table.grid.own(lam, log_chi, strength), found)
     lookup.fields(table.packed, True, found)  # rounding may put nodes at the edge outside
     return found
 
 
-def _resampled(table: Table, rows: int, steps: float | Array) -> Table:
+def _resampled(table: Table, rows: int, steps: float | Array, coarser: int) -> Table:
     """Table on other nodes; one step along ln chi for all segments, or one for each."""
     settings = dataclasses.replace(
         table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps))
     )
-    grid = grids.with_steps(table.grid, settings, steps)
-    lam, log_chi = (values.ravel() for values in grid.nodes())
-    found = _looked_up(table, lam, np.exp(log_chi))
+    grid = grids.with_steps(table.law, table.grid, settings, steps, coarser)
+    lam, log_chi, *strength = (values.ravel() for values in grid.nodes())
+    found = _looked_up(table, lam, log_chi, strength[0] if strength else np.zeros_like(lam))
     fields = {name: getattr(found, name).reshape(grid.shape) for name in STORED}
     return Table(table.law, settings, grid, fields)
 
@@ -220,25 +224,24 @@ def with_shapes(table: Table, *, points: int = POINTS, progress: Progress = no_p
 def _states(table: Table, progress: Progress) -> NDArray[np.float32]:
     """Shapes at the nodes; their error is far above that of single precision."""
     law, rtol, grid = table.law, table.settings.rtol, shape_grid(table)
-    rows, chi = grid.rows, np.exp(grid.nodes()[1])
-    w_m = grids.elastic_compressions(law, rows, rtol)
-    out = np.empty((*chi.shape, 2, shapes.SIZE), dtype=np.float32)
+    lam, chi, strength = grid.points()
+    out = np.empty((lam.size, 2, shapes.SIZE), dtype=np.float32)
+    at = outcome.at(lam, np.empty_like(lam), strength)
+    lookup.yield_ratios(table.packed, np.log(chi), at)
 
     def solve(part: slice) -> None:
-        lam = np.repeat(rows[part], chi.shape[1])
-        y = (w_m[part, None] / chi[part]).ravel()
-        status, time, speed = zener.shape(law.data, lam, y, rtol, shapes.SHARES)
+        known = lam[part], at.yield_ratio[part], rtol, shapes.SHARES, strength[part]
+        status, time, speed = zener.shape(law.at_any_strength, *known)
         if status.any():
             failed, n = zener.failure(status)
             raise RuntimeError(
-                f"table for law {law.name!r}: the shape at lambda = {lam[n]:.6g}, chi = "
-                f"{chi[part].flat[n]:.6g} did not solve: {zener.MESSAGES[failed]}"
+                f"table for law {law.name!r}: the shape at lambda = {lam[part][n]:.6g}, chi = "
+                f"{chi[part][n]:.6g} did not solve: {zener.MESSAGES[failed]}"
             )
-        found = np.stack((time, speed), axis=1)[:, :, :-1]
-        out[part] = found.reshape(out[part].shape)
+        out[part] = np.stack((time, speed), axis=1)[:, :, :-1]
 
-    sweep.in_parts(solve, len(chi), len(chi), progress)
-    return out
+    sweep.in_parts(solve, lam.size, len(grid.rows), progress)
+    return out.reshape(*grid.shape, 2, shapes.SIZE)
 
 
 def certify(

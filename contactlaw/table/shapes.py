@@ -42,33 +42,40 @@ SHARES = np.sin(0.5 * math.pi * np.arange(1, STATES + 1) / STATES)
 SIZE = 2 * STATES - 1  # states between touch and separation, which are known themselves
 ROWS = 41  # nodes along lam, uniform in x = lam/(lam + c)
 STEP = 0.08  # largest distance of two nodes in ln chi
+COARSER = 3  # factor on distances in ln k
 _RTOL = 1e-10  # rtol for contacts that are integrated
 
 
 def pack(grid: TableGrid, states: Singles) -> Shapes:
-    """Fit splines through shapes (rows, columns, 2, SIZE)."""
-    flat = states.reshape(*states.shape[:2], 2 * SIZE).astype(np.float64)
-    return Shapes(splines.header(grid), splines.surface(flat, grid).astype(np.float32))
+    """Fit splines through shapes, (2, SIZE) at each node."""
+    flat = states.reshape(*grid.shape, 2 * SIZE).astype(np.float64)
+    fitted = splines.surface(flat, grid).astype(np.float32)
+    whole = fitted.reshape(*fitted.shape[:2], -1, 2 * SIZE)
+    return Shapes(splines.header(grid), whole)
 
 
 class Shapes(NamedTuple):
     """Splines through the shapes at the nodes of a grid, as kernels take them."""
 
     header: Array  # see `contactlaw.table.lookup`
-    coefficients: Singles  # (rows, columns, 2 SIZE): times [T_H], then speeds [V0]
+    coefficients: Singles  # (rows, columns, layers, 2 SIZE): times [T_H], then speeds [V0]
 
 
 @kernel
-def _states(shapes: Shapes, lam: float, log_chi: float, out: Array) -> None:
+def _states(shapes: Shapes, lam: float, log_chi: float, strength: float, out: Array) -> None:
     """Put times and speeds of one contact, between touch and separation, into out (2 SIZE,)."""
-    x = lam / (lam + shapes.header[lookup.STRETCH])
-    row, column, s, t = lookup.locate(shapes.header, x, log_chi)
-    a, b = lookup.weights(s), lookup.weights(t)
+    x, at = lam / (lam + shapes.header[lookup.STRETCH]), lookup.at_strength(shapes.header, strength)
+    row, column, s, t = lookup.locate(
+        shapes.header, x, lookup.like(log_chi, lookup.stretched(shapes.header, x, at))
+    )
+    a, b, c = lookup.weights(s), lookup.weights(t), lookup.layer_weights(at)
     for n in range(out.size):
         out[n] = 0.0
-    for k in range(out.size // SIZE * 8):  # 16; a constant would be unrolled
-        weight = a[k // 4] * b[k % 4] / 36.0
-        values = shapes.coefficients[row + k // 4, column + k % 4]
+    layers = min(shapes.coefficients.shape[2], 4)
+    for k in range(16 * layers):
+        i, j, m = k // (4 * layers), k // layers % 4, k % layers
+        weight = a[i] * b[j] * c[m] / 216.0
+        values = shapes.coefficients[row + i, column + j, at.layer + m]
         for n in range(out.size):
             out[n] += weight * values[n]
 
@@ -100,7 +107,7 @@ def _sample(
     law: Array, shapes: Shapes, found: Outcome, along_cap: NDArray[np.bool_], out: History
 ) -> None:
     """Sample contacts; mark those in `along_cap` that unload along the cap, and skip them."""
-    samples, leaves = out.time.shape[1], force.leaves_hertz(law)
+    samples, room = out.time.shape[1], np.empty(force.room_for(law))
     inner = np.empty(2 * SIZE)
     t, u, d = np.empty(SIZE + 2), np.empty(SIZE + 2), np.empty(SIZE + 2)
     for n in range(out.time.shape[0]):
@@ -110,17 +117,19 @@ def _sample(
             found.inelasticity[n],
             found.yield_ratio[n],
         )
-        _states(shapes, lam, math.log(w_m / y) if y < math.inf else 0.0, inner)
+        own = law if room.size == 0 else force.at_strength(law, found.strength[n], room)
+        log_chi, strength = math.log(w_m / y) if y < math.inf else 0.0, found.strength[n]
+        _states(shapes, lam, log_chi, strength, inner)
         t[0], t[SIZE + 1], u[0], u[SIZE + 1] = 0.0, end, 1.0, -e
         for k in range(SIZE):  # to assign to a slice takes the compiler a second
             t[k + 1], u[k + 1] = inner[k], inner[SIZE + k]
         top = found.compression_ratio[n] * w_m
         curve = NO_CURVE
         residual = 0.0
-        if top <= y * leaves:
+        if top <= y * force.leaves_hertz(own):
             y = math.inf
         else:
-            curve = force.unloading(law, top / y)
+            curve = force.unloading(own, top / y)
             residual = curve.residual * y
         if curve.cap_low < curve.cap_high:
             along_cap[n] = True
@@ -133,7 +142,7 @@ def _sample(
         f0 = 0.0
         for k in range(SIZE + 1):
             loading = k < STATES
-            f1 = _force(law, curve, k + 1 <= STATES, d[k + 1], y)
+            f1 = _force(own, curve, k + 1 <= STATES, d[k + 1], y)
             span = t[k + 1] - t[k]
             # cubics in the share z of the span: d = d0 + z (p1 + z (p2 + z p3)), u likewise
             p1, last, rise = span * (u[k] - lam * f0), span * (u[k + 1] - lam * f1), d[k + 1] - d[k]
@@ -146,7 +155,7 @@ def _sample(
                 compression = max(d[k] + z * (p1 + z * (p2 + z * p3)), 0.0 if loading else residual)
                 speed = u[k] + z * (r1 + z * (r2 + z * r3))
                 out.time[n, i] = i * step
-                out.force[n, i] = _force(law, curve, loading, compression, y)
+                out.force[n, i] = _force(own, curve, loading, compression, y)
                 out.compression[n, i] = compression
                 out.impulse[n, i] = 1.0 - speed
                 i += 1

@@ -28,7 +28,6 @@ from contactlaw.equation import outcome, tangential, zener
 from contactlaw.equation.edge import Edges
 from contactlaw.equation.outcome import Outcome
 from contactlaw.equation.tangential import POINT
-from contactlaw.laws import Law
 from contactlaw.table import grid as grids
 from contactlaw.table import lookup, splines, sweep
 from contactlaw.table.nodes import Table
@@ -39,6 +38,7 @@ _CHANGE_AT, _KAPPA_AT = lookup.COR_AT, lookup.OTHERS_AT  # entries of the header
 _NODES = 49  # of each range of psi
 _ROWS = 49  # along lambda
 _STEP, _ELASTIC_STEP = 0.12, 0.25  # largest distances in ln chi, beyond yield and below
+_COARSER = 3  # factor on distances in ln k
 _WIDTH = 2 * (_NODES + 2)  # coefficients along psi
 _SAMPLES, _SPRINGS = 401, 32  # of the histories at the nodes
 _RTOL = 1e-10
@@ -56,33 +56,31 @@ def build(table: Table, kappa: float) -> Array:
     segments = table.grid.axes[1].segments
     steps = np.where([s.end.max() <= 0.0 for s in segments], _ELASTIC_STEP, _STEP)
     settings = dataclasses.replace(table.settings, inelasticity_nodes=_ROWS)
-    grid = grids.with_steps(table.grid, settings, steps)
-    lam, log_chi = grid.nodes()
-    change = np.empty((*grid.shape, 2 * _NODES))
+    grid = grids.with_steps(law, table.grid, settings, steps, _COARSER)
+    lam, chi, strength = grid.points()
+    change = np.empty((lam.size, 2 * _NODES))
 
     def solve(part: slice) -> None:
-        out = outcome.at(lam[part].ravel(), np.empty(lam[part].size))
-        zener.solve_overloads(law.data, _RTOL, np.exp(log_chi[part]).ravel(), out)
-        change[part] = _changes(law, out, kappa).reshape(change[part].shape)
+        out = outcome.at(lam[part], np.empty_like(lam[part]), strength[part])
+        zener.solve_overloads(law.at_any_strength, _RTOL, chi[part], out)
+        change[part] = _changes(law.at_any_strength, out, kappa)
 
-    sweep.in_parts(solve, len(lam), len(lam), sweep.no_progress)
-    along = [
-        splines.spline_coefficients(half.swapaxes(0, 2)).swapaxes(0, 2)
-        for half in np.split(change, 2, axis=2)
-    ]
-    coefficients = splines.surface(np.concatenate(along, axis=2), grid)
+    sweep.in_parts(solve, lam.size, len(grid.rows), sweep.no_progress)
+    along = [splines.spline_coefficients(half).T for half in np.split(change.T, 2)]
+    values = np.concatenate(along, axis=1).reshape(*grid.shape, _WIDTH)
+    coefficients = splines.surface(values, grid)
     head = splines.header(grid)
     head[_CHANGE_AT], head[_KAPPA_AT] = head.size, head.size + coefficients.size
     return np.concatenate((head, coefficients.ravel(), [kappa]))
 
 
-def _changes(law: Law, out: Outcome, kappa: float) -> Array:
+def _changes(law: Array, out: Outcome, kappa: float) -> Array:
     """Change over psi at the nodes of both ranges, (impacts, 2 _NODES)."""
     share, e = np.linspace(0.0, 1.0, _NODES), out.restitution[:, None]
     sticking = np.maximum(share**2, 1e-8) / kappa  # at rest there is a limit, but no share
     sliding = 1.0 / kappa + _range(kappa, e) * share
     psi = np.hstack((np.broadcast_to(sticking, sliding.shape), sliding))
-    return (psi - after(law.data, out, kappa, psi, _SAMPLES, _SPRINGS)) / psi
+    return (psi - after(law, out, kappa, psi, _SAMPLES, _SPRINGS)) / psi
 
 
 def after(
@@ -98,8 +96,11 @@ def after(
 
 
 @kernel(inline=True)
-def change(slides: Array, x: float, log_chi: float, e: float, psi: float) -> float:
-    """Change of the contact point's speed in an impact inside the table [mu V0]; x maps lambda."""
+def change(slides: Array, x: float, log_chi: float, strength: float, e: float, psi: float) -> float:
+    """Change of the contact point's speed in an impact inside the table [mu V0].
+
+    x maps lambda; ln chi is that of the slow impact which is like it.
+    """
     kappa = slides[int(slides[_KAPPA_AT])]
     size, full = abs(psi), POINT * (1.0 + e)
     place = size * kappa
@@ -111,20 +112,22 @@ def change(slides: Array, x: float, log_chi: float, e: float, psi: float) -> flo
     along = (place - 1.0 if second else math.sqrt(place)) * (_NODES - 1)
     cell = min(int(along), _NODES - 2)
     row, column, s, t = lookup.locate(slides, x, log_chi)
+    at, layers = lookup.at_strength(slides, strength), max(int(slides[lookup.LAYERS]), 1)
     a, b, c = lookup.weights(s), lookup.weights(t), lookup.weights(along - cell)
-    columns = int(slides[lookup.COLUMNS])
-    first = int(slides[_CHANGE_AT]) + (row * columns + column) * _WIDTH
+    columns, d = int(slides[lookup.COLUMNS]), lookup.layer_weights(at)
+    first = int(slides[_CHANGE_AT]) + ((row * columns + column) * layers + at.layer) * _WIDTH
     first += cell + (_NODES + 2 if second else 0)
     v0 = v1 = v2 = v3 = 0.0
     for i in range(4):
         for j in range(4):
-            p = np.uint64(first + (i * columns + j) * _WIDTH)
-            w = a[i] * b[j]
-            v0 += w * slides[p]
-            v1 += w * slides[p + np.uint64(1)]
-            v2 += w * slides[p + np.uint64(2)]
-            v3 += w * slides[p + np.uint64(3)]
-    value = (c[0] * v0 + c[1] * v1 + c[2] * v2 + c[3] * v3) * (1.0 / 216.0)
+            for m in range(min(layers, 4)):
+                p = np.uint64(first + ((i * columns + j) * layers + m) * _WIDTH)
+                w = a[i] * b[j] * d[m]
+                v0 += w * slides[p]
+                v1 += w * slides[p + np.uint64(1)]
+                v2 += w * slides[p + np.uint64(2)]
+                v3 += w * slides[p + np.uint64(3)]
+    value = (c[0] * v0 + c[1] * v1 + c[2] * v2 + c[3] * v3) * (1.0 / 1296.0)
     return math.copysign(min(size * value, full), psi)
 
 
@@ -135,5 +138,7 @@ def changes(slides: Array, found: Outcome, psi: Array, out: Array) -> None:
         y = found.yield_ratio[n]
         log_chi = math.log(found.elastic_compression[n] / y) if y < math.inf else -math.inf
         lam = found.inelasticity[n]
-        x = lam / (lam + slides[lookup.STRETCH])
-        out[n] = change(slides, x, log_chi, found.restitution[n], psi[n])
+        x, strength = lam / (lam + slides[lookup.STRETCH]), found.strength[n]
+        at = lookup.at_strength(slides, strength)
+        log_chi = lookup.like(log_chi, lookup.stretched(slides, x, at))
+        out[n] = change(slides, x, log_chi, strength, found.restitution[n], psi[n])

@@ -20,8 +20,8 @@ def spline_coefficients(values: Array) -> Array:
     threads would fight for the cores with those of an MPI run.
     """
     n = len(values)
-    if n < 5:
-        raise ValueError(f"values: a spline with not-a-knot ends needs at least 5 nodes, got {n}")
+    if n < 4:
+        raise ValueError(f"values: a spline with not-a-knot ends needs at least 4 nodes, got {n}")
     c = np.empty((n + 2, *values.shape[1:]))
     c[2], c[n - 1] = ((8.0 * values[k] - values[k - 1] - values[k + 1]) / 6.0 for k in (1, n - 2))
     gain = np.zeros(n + 2)
@@ -40,18 +40,19 @@ def spline_coefficients(values: Array) -> Array:
 def surface(values: Array, grid: TableGrid) -> Array:
     """Coefficients of cubic splines along each axis of the grid, one spline for each segment.
 
-    Each axis ends with one more coefficient: kernels read it with the weight 0, without a test.
+    Each of the first two axes ends with one more coefficient: kernels read it with the weight 0,
+    without a test.
     """
     for k, axis in enumerate(grid.axes):
         parts = np.split(values.swapaxes(0, k), np.cumsum(axis.sizes)[:-1])
         values = np.concatenate([spline_coefficients(part) for part in parts]).swapaxes(0, k)
-    beyond = [(0, int(k < len(grid.axes))) for k in range(values.ndim)]
+    beyond = [(0, int(k < 2)) for k in range(values.ndim)]
     return np.pad(values, beyond, mode="edge")
 
 
 def header(grid: TableGrid) -> Array:
     """Make the beginning of a packed array, by which `lookup.locate` finds coefficients."""
-    inelasticity, overload = grid.axes
+    inelasticity, overload, *strength = grid.axes
     x_max = float(inelasticity.mapped(inelasticity.largest))
     sizes = np.array(overload.sizes)
     head = np.zeros(HEADER)
@@ -74,7 +75,18 @@ def header(grid: TableGrid) -> Array:
             head[lookup.CURVED] = 1.0
             block[lookup.LINE] = lines_at + (len(series) - 1) * (DEGREE + 1)
             series.append(power_series(segment.start, DEGREE))
-    return np.concatenate((head, series[0], blocks.ravel(), *series[1:]))
+    parts = [head, series[0], blocks.ravel(), *series[1:]]
+    if strength and grid.by_strength is not None:
+        sizes = np.array(strength[0].sizes)
+        head[lookup.LAYERS], head[lookup.STRENGTHS] = (sizes + 2).sum(), sizes.size
+        head[lookup.STRENGTHS_AT] = sum(map(len, parts))
+        begins = np.cumsum(sizes + 2) - (sizes + 2)
+        for segment, first, rows in zip(
+            strength[0].segments, begins, grid.by_strength, strict=True
+        ):
+            ends = segment.start[0], segment.end[0]
+            parts.append(np.array([*ends, segment.shares.size - 1.0, first, *rows.ravel()]))
+    return np.concatenate(parts)
 
 
 def _growth(ratio: Array, grid: TableGrid) -> Array:
@@ -83,27 +95,28 @@ def _growth(ratio: Array, grid: TableGrid) -> Array:
     Just above yield, where residual compression and plastic share begin with d_m - d_Y, an error of
     p is a relative error of that difference; an error of the ratio could be any multiple of it.
     """
-    log_chi = grid.nodes()[1]
+    nodes, log_chi = grid.nodes()[1], np.log(grid.points()[1]).reshape(grid.shape)
     with np.errstate(invalid="ignore", divide="ignore"):
         growth = 1.0 + np.log(ratio) / log_chi
-    at_yield = log_chi[0] == 0.0
-    if log_chi[0, 0] == 0.0:
+    nodes = nodes.reshape(*nodes.shape[:2], -1)[0, :, 0]
+    at_yield = nodes == 0.0
+    if nodes[0] == 0.0:
         growth[:, at_yield] = 1.0  # Hertz's limit
         return growth
     for column in np.flatnonzero(at_yield):
         side = 1 if column > 0 and not at_yield[column - 1] else -1
         near = column - side * np.arange(1, 6)
-        growth[:, column] = _lagrange(log_chi[0, near], growth[:, near])
+        growth[:, column] = _lagrange(nodes[near], growth[:, near])
     return growth
 
 
 def _lagrange(x: Array, values: Array) -> Array:
-    """Continue values (n, m) at x (m,) to x = 0, by the polynomial through all of them."""
+    """Continue values (n, m, ...) at x (m,) to x = 0, by the polynomial through all of them."""
     gaps = x[:, None] - x[None, :]
     ahead = np.broadcast_to(-x, gaps.shape).copy()
     np.fill_diagonal(gaps, 1.0)
     np.fill_diagonal(ahead, 1.0)
-    return np.asarray(values @ (ahead / gaps).prod(axis=1))
+    return np.asarray(np.tensordot(values, (ahead / gaps).prod(axis=1), (1, 0)))
 
 
 def pack(grid: TableGrid, fields: dict[str, Array]) -> Array:
@@ -112,4 +125,4 @@ def pack(grid: TableGrid, fields: dict[str, Array]) -> Array:
     cor, *others = (surface(values, grid) for values in packed.values())
     head = header(grid)
     head[lookup.COR_AT], head[lookup.OTHERS_AT] = head.size, head.size + cor.size
-    return np.concatenate((head, cor.ravel(), np.stack(others, axis=-1).ravel()))
+    return np.concatenate((head, *(values.ravel() for values in (cor, *others))))

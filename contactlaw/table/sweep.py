@@ -48,6 +48,7 @@ def solve_overloads(
     law: Law,
     lam: Array,
     chi: Array,
+    strength: Array,
     rtol: float,
     parts: int,
     progress: Progress = no_progress,
@@ -59,11 +60,12 @@ def solve_overloads(
     RuntimeError
         If one does not solve; the message names it.
     """
-    out = outcome.empty(lam.size)
-    out.inelasticity[:] = lam
+    out = outcome.at(lam, np.empty(lam.size), strength)
 
     def solve(part: slice) -> None:
-        status, n = zener.solve_overloads(law.data, rtol, chi[part], outcome.part(out, part))
+        status, n = zener.solve_overloads(
+            law.at_any_strength, rtol, chi[part], outcome.part(out, part)
+        )
         if status != zener.OK:
             raise RuntimeError(
                 f"table for law {law.name!r}: the node lambda = {lam[part][n]:.6g}, chi = "

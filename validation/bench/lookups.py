@@ -58,7 +58,7 @@ def rows() -> Iterator[Row]:
     )  # fmt: skip
     metal = cl.Material("copper", 124e9, 0.34, 8960, 90e6, kind="metal", rate=(0.025, 1.0))
     polymer = cl.Material("PMMA", 5e9, 0.35, 1190, 64e6, loss_factor=(0.06, 1e4), kind="polymer")
-    yield beside("a rate of strain", metal, "rate", "four tables, read at one place")
+    yield beside("a rate of strain", metal, "rate", "a third axis: the strength")
     yield beside("a loss factor", polymer, "loss_factor", "a logarithm and three powers more")
     full = seconds(lambda: model.lookup(v, r, h)) / N
     yield Row(
