@@ -63,9 +63,33 @@ def test_steps_are_as_those_of_a_sphere_of_another_density():
 
 def test_velocities_after_a_collision():
     own, heavy = of_mass("myc")
-    given = [3.0, 0, -2.0], [0, 50.0, 0], [0, 0, 1], RADIUS, 3e-3, 0.2
-    for one, other in zip(own.collide(*given, mass=MASS), heavy.collide(*given), strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-9)
+    at = RADIUS, 3e-3, 0.2
+    given = (3.0, 0.0, -2.0), (0.0, 50.0, 0.0), (0.0, 0.0, 1.0), *at
+    still, expected = (0.0, 0.0, 0.0), heavy.collide(*given)
+    for found in (own.collide(*given, mass=MASS), own.collide_kernel(*given, still, MASS)):
+        for one, other in zip(found, expected, strict=True):
+            np.testing.assert_allclose(one, other, rtol=1e-5, atol=1e-9)
+    assert math.isnan(own.collide_kernel(*given, still, 0.3 * MASS)[0][0])
+
+
+def test_compiled_functions():
+    own, heavy = of_mass("myc")
+    at = 3.0, RADIUS, 1e-3
+    assert own.kernel(*at, MASS) == pytest.approx(heavy.kernel(*at), abs=1e-12)
+    assert own.kernel(*at) != own.kernel(*at, MASS)
+    assert own.curve(*at[1:], MASS)(3.0) == pytest.approx(heavy.kernel(*at), abs=1e-12)
+    near, other = (one.edge_kernel("free") for one in (own, heavy))
+    assert near(*at, 1e-3, MASS) == pytest.approx(other(*at, 1e-3), abs=1e-9)
+    for mass in (-MASS, 0.3 * MASS, 1e4 * MASS, math.nan):
+        assert math.isnan(own.kernel(*at, mass)) and math.isnan(near(*at, 1e-3, mass))
+
+
+def test_ranges_and_elasticities():
+    """A mass that was weighed has no error; as a multiple of a solid one it moves the COR alike."""
+    own, heavy = of_mass("myc")
+    one, other = own.uncertainty(*AT, mass=MASS), heavy.uncertainty(*AT)
+    assert one.restitution.low == pytest.approx(other.restitution.low, rel=1e-4)
+    assert_alike(own.sensitivity(*AT, mass=MASS), heavy.sensitivity(*AT), 1e-5)
 
 
 @pytest.mark.parametrize("share", [0.7, 1.0, 6.0])

@@ -16,23 +16,28 @@ from contactlaw.answers import edges
 from contactlaw.answers.beads import Beads, Other
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
+from contactlaw.equation.numbers import share_of_solid
 from contactlaw.physical.arguments import scalars
-from contactlaw.physical.impacts import Impacts, check_kind
+from contactlaw.physical.bodies import SphereOnPlate
+from contactlaw.physical.impacts import check_kind
 from contactlaw.table import lookup
 
 
 class Compiled:
     """Functions that engines call once per collision, made for one model."""
 
+    _bodies: SphereOnPlate
     _tabulated: Tabulated
     _beads: Callable[[Other], Beads]  # impacts of the pair's sphere on another
 
-    def curve(self, radius: float, thickness: float) -> Callable[[float], float]:
+    def curve(
+        self, radius: float, thickness: float, mass: float | None = None
+    ) -> Callable[[float], float]:
         """COR of one bead class on one plate, as a fast function of speed.
 
         Parameters
         ----------
-        radius, thickness : float
+        radius, thickness, mass : float
             As in `restitution`.
 
         Returns
@@ -47,8 +52,8 @@ class Compiled:
         >>> round(model.curve(radius=0.9e-3, thickness=1e-3)(5.0), 4)
         0.8966
         """
-        r, h = scalars(radius=radius, thickness=thickness)
-        return self._tabulated.curve(Impacts(np.ones(1), r, h, None))
+        scalars(radius=radius, thickness=thickness, **({} if mass is None else {"mass": mass}))
+        return self._tabulated.curve(self._bodies.given(1.0, radius, thickness, mass=mass))
 
     def sphere_sphere_curve(
         self, radius: float, other_radius: float, other: Other = None
@@ -77,8 +82,10 @@ class Compiled:
         return self._beads(other).curve(radius, other_radius)
 
     @functools.cached_property
-    def kernel(self) -> Callable[[float, float, float], float]:
+    def kernel(self) -> Callable[..., float]:
         """COR as a numba-jitted ``f(speed, radius, thickness)`` for loops of your own [m/s, m, m].
+
+        A fourth number may be the mass [kg], as in `restitution`.
 
         It reads this model's table as `restitution` does for three floats, but cannot raise (a
         raise would make a parallel loop serial): bad input and an impact outside the table give
@@ -96,11 +103,12 @@ class Compiled:
         >>> [round(u, 3) for u in rebound_speeds((1.0, 5.0), 0.9e-3, 1e-3)]
         [0.925, 4.483]
         """
-        return _jitted(self._tabulated.packed)
+        return _jitted(self._tabulated.packed, self._bodies)
 
-    def edge_kernel(self, edge: Edge = "free") -> Callable[[float, float, float, float], float]:
+    def edge_kernel(self, edge: Edge = "free") -> Callable[..., float]:
         """COR near an edge as a numba-jitted ``f(speed, radius, thickness, edge_distance)``.
 
+        A fifth number may be the mass [kg], as in `restitution`.
         As `kernel`, but it integrates the equation, within 1e-3 of `solve`: 10 to 15 us per
         impact, longer where a sphere stays on a plate that recedes.
 
@@ -128,13 +136,14 @@ class Compiled:
         return self._edge_kernels[edge]
 
     @functools.cached_property
-    def _edge_kernels(self) -> dict[str, Callable[[float, float, float, float], float]]:
+    def _edge_kernels(self) -> dict[str, Callable[..., float]]:
         return {}
 
     @functools.cached_property
     def _c_function(self) -> Any:
         signature = numba.float64(numba.float64, numba.float64, numba.float64)
-        return _jit.c_function(signature, getattr(self.kernel, "py_func", self.kernel))
+        on_plate, packed = lookup.solid_on_plate, in_memory(self._tabulated.packed)
+        return _jit.c_function(signature, lambda v, r, h: on_plate(packed(), v, r, h))
 
     @property
     def address(self) -> int:
@@ -155,12 +164,13 @@ class Compiled:
         return int(self._c_function.address)
 
 
-def _jitted(table: NDArray[np.float64]) -> Callable[[float, float, float], float]:
-    """COR as a jitted function of speed, radius and thickness, which belongs to one table."""
-    on_plate, packed = lookup.solid_on_plate, in_memory(table)
+def _jitted(table: NDArray[np.float64], bodies: SphereOnPlate) -> Callable[..., float]:
+    """COR as a jitted function of speed, radius, thickness and mass, which belongs to one table."""
+    on_plate, packed, density = lookup.restitution_on_plate, in_memory(table), bodies.constants.mass
 
     @kernel(entry=True)
-    def cor(speed: float, radius: float, thickness: float) -> float:
-        return on_plate(packed(), speed, radius, thickness)
+    def cor(speed: float, radius: float, thickness: float, mass: float = 0.0) -> float:
+        share = share_of_solid(density, radius, mass)
+        return on_plate(packed(), speed, radius, thickness, share)
 
     return cor

@@ -15,7 +15,7 @@ from contactlaw.answers.backend import Backend, renumbered
 from contactlaw.answers.solver import Solver
 from contactlaw.equation.few_steps import restitution_near
 from contactlaw.equation.force import at_strength, room_for
-from contactlaw.equation.numbers import Impact, PairConstants, numbers, relaxes
+from contactlaw.equation.numbers import Impact, PairConstants, numbers, relaxes, share_of_solid
 from contactlaw.physical.arguments import shaped
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.history import ForceHistory
@@ -63,15 +63,18 @@ def near_edges(others: Backend, near: Solver, impacts: Impacts) -> Backend:
     return others if impacts.edge_distance is None else NearEdges(others, near)
 
 
-def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, float, float], float]:
-    """COR near an edge of this kind as a jitted function of speed, radius, thickness, distance."""
+def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
+    """COR near an edge as a jitted function of speed, radius, thickness, distance and mass."""
     pair, path = bodies.constants, wave_path(bodies.pair.plate)
     law = in_memory(bodies.data)
     response = in_memory(response_of(kind, bodies.pair.plate.poissons_ratio))
 
     @kernel(entry=True)
-    def cor(speed: float, radius: float, thickness: float, edge_distance: float) -> float:
-        return _cor_near(law(), response(), pair, path, speed, radius, thickness, edge_distance)
+    def cor(
+        speed: float, radius: float, thickness: float, edge_distance: float, mass: float = 0.0
+    ) -> float:
+        impact = Impact(speed, radius, thickness, share_of_solid(pair.mass, radius, mass))
+        return _cor_near(law(), response(), pair, path, impact, edge_distance)
 
     return cor
 
@@ -79,19 +82,20 @@ def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[[float, float, flo
 # Its machine code is kept on disk, which is not possible for callers that know a law in memory.
 @kernel(cache=True)
 def _cor_near(
-    law: Array, response: Array, pair: PairConstants, path: float,
-    speed: float, radius: float, thickness: float, edge_distance: float,
+    law: Array, response: Array, pair: PairConstants, path: float, impact: Impact,
+    edge_distance: float,
 ) -> float:  # fmt: skip
+    speed, radius, thickness, mass = impact
     if not (
         lookup.V_MIN <= speed <= lookup.V_MAX and lookup.R_MIN <= radius <= lookup.R_MAX
-        and lookup.THINNEST * radius <= thickness and edge_distance >= 0.0
+        and lookup.THINNEST * radius <= thickness and edge_distance >= 0.0 and mass > 0.0
     ):  # fmt: skip
         return math.nan
-    known = numbers(pair, law, Impact(speed, radius, thickness, 1.0))
+    known = numbers(pair, law, impact)
     rate = wave_rate(path, thickness, edge_distance) * known.time if thickness < math.inf else 0.0
     ratio = radius / thickness
     root = pair.time * radius / known.time  # lambda of a thin plate follows from it
-    thin = pair.plate.inelasticity * root * (ratio * ratio) / known.inelasticity
+    thin = pair.plate.inelasticity * root * (ratio * ratio) * mass / known.inelasticity
     thin = 1.0 if relaxes(pair.plate) or rate == 0.0 else thin
     y = known.yield_ratio if known.yield_ratio < math.inf else 1.0
     room = room_for(law)

@@ -17,6 +17,7 @@ from contactlaw.answers.edges import near_edges
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Tabulated
 from contactlaw.equation.edge import Edge
+from contactlaw.equation.numbers import share_of_solid
 from contactlaw.physical import oblique
 from contactlaw.physical.arguments import broadcast, check, vectors
 from contactlaw.physical.bodies import SphereOnPlate
@@ -25,7 +26,7 @@ from contactlaw.physical.oblique import FASTEST, ObliqueRebound, Vector
 from contactlaw.table import lookup
 
 Array = NDArray[np.float64]
-Collide = Callable[[Vector, Vector, Vector, float, float, float, Vector], tuple[Vector, Vector]]
+Collide = Callable[..., tuple[Vector, Vector]]
 
 
 class Oblique:
@@ -169,13 +170,12 @@ class Oblique:
         given = tabulated.bodies.given(1.0, r, h, mass=masses[0] if masses else None)
         speed, size, e, changed = np.empty((4, r.size))
         oblique.approach_all(v, omega, n, w, r, speed, size)
-        if switched_off() or masses:  # answered as those beyond the table
+        if switched_off():  # no table: all are answered as those beyond one
             e[:] = np.nan
         else:
-            oblique.tangential_all(
-                tabulated.packed, tabulated.slides, r, h, mu,
-                speed, size, e, changed,
-            )  # fmt: skip
+            each = tabulated.bodies.impact(given)._replace(speed=speed)
+            table, tangential = tabulated.packed, tabulated.slides
+            oblique.tangential_all(table, tangential, each, mu, size, e, changed)
         beyond = np.isnan(e) & (speed >= lookup.V_MIN)
         if beyond.any():
             check(speed=speed[beyond], sliding_speed=size[beyond])
@@ -193,7 +193,7 @@ class Oblique:
 
         ``f(velocity, spin, normal, radius, thickness, friction, wall_velocity)`` takes vectors as
         tuples and gives two of them, velocity and spin. It cannot raise: bad input and an impact
-        outside the table give NaN, whatever `outside` says.
+        outside the table give NaN, whatever `outside` says. An eighth argument may be a mass [kg].
 
         Raises
         ------
@@ -218,7 +218,7 @@ class Oblique:
                 "table of oblique impacts takes hours: call collide, which integrates then"
             )
         known = self._tabulated
-        return _jitted(known.packed, known.slides)
+        return _jitted(known.packed, known.slides, known.bodies.constants.mass)
 
 
 def answer(
@@ -239,18 +239,19 @@ def _answer(backend: Backend, impacts: Impacts, friction: Array, size: Array) ->
     return normal, limit * changed
 
 
-def _jitted(table: Array, slides: Array) -> Collide:
+def _jitted(table: Array, slides: Array, density: float) -> Collide:
     """One collision as a jitted function that belongs to one table."""
     of_one, packed, tangential = oblique.collide, in_memory(table), in_memory(slides)
 
     @kernel(entry=True)
     def collide(
         velocity: Vector, spin: Vector, normal: Vector, radius: float, thickness: float,
-        friction: float, wall_velocity: Vector,
+        friction: float, wall_velocity: Vector, mass: float = 0.0,
     ) -> tuple[Vector, Vector]:  # fmt: skip
+        share = share_of_solid(density, radius, mass)
         return of_one(
-            packed(), tangential(), velocity, spin, normal, radius, thickness,
-            friction, wall_velocity,
+            packed(), tangential(), velocity, spin, normal, radius, thickness, share, friction,
+            wall_velocity,
         )  # fmt: skip
 
     return collide

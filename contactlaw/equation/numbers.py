@@ -185,6 +185,18 @@ def of_mass(pair: PairConstants, mass: float) -> PairConstants:
     return PairConstants(plate, pair.time * slower, pair.mass * mass, pair.yield_compression)
 
 
+@kernel(inline=True)
+def share_of_solid(density: float, radius: float, mass: float) -> float:
+    """Mass [kg], 0 for a solid sphere's, over that; the solid one's is density R^3.
+
+    NaN beyond the limits.
+    """
+    if mass == 0.0:
+        return 1.0
+    share = mass / (density * (radius * radius * radius))
+    return share if LIGHTEST <= share <= HEAVIEST else math.nan
+
+
 @kernel(entry=True)
 def numbers(pair: PairConstants, laws: Array, impact: Impact) -> Numbers:
     """Numbers of an impact."""

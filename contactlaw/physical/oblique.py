@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw._jit import kernel
+from contactlaw.equation.numbers import Impact
 from contactlaw.equation.tangential import POINT
 from contactlaw.physical.arguments import ROUGHEST, shaped
 from contactlaw.physical.bodies import SphereOnPlate
@@ -127,17 +128,17 @@ def rebound_of(
 
 @kernel
 def tangential(
-    table: Array, slides: Array, radius: float, thickness: float,
-    friction: float, speed: float, size: float,
-) -> tuple[float, float]:  # fmt: skip
+    table: Array, slides: Array, impact: Impact, friction: float, size: float
+) -> tuple[float, float]:
     """COR and change of the sliding speed [m/s]; NaN for bad input or outside the table."""
+    speed, radius, thickness, share = impact
     limit = friction * speed
     if not (lookup.is_valid(speed, radius, thickness) and 0.0 <= friction <= ROUGHEST):
         return math.nan, math.nan
     if not size <= lookup.V_MAX:
         return math.nan, math.nan
     psi = min(size / limit, FASTEST) if limit > 0.0 else 0.0
-    at = lookup.place_of(table, speed, radius, thickness, 1.0)
+    at = lookup.place_of(table, speed, radius, thickness, share)
     if at.x != at.x:
         return math.nan, math.nan
     e = lookup.cor_at(table, at)
@@ -147,14 +148,15 @@ def tangential(
 @kernel
 def collide(
     table: Array, slides: Array, v: Vector, omega: Vector, n: Vector,
-    radius: float, thickness: float, friction: float, w: Vector,
+    radius: float, thickness: float, share: float, friction: float, w: Vector,
 ) -> tuple[Vector, Vector]:  # fmt: skip
     """Velocity and spin after an impact, as they were if the bead recedes; NaN as `tangential`."""
     n = unit(n)
     came = sliding(v, omega, n, w, radius)
     if came.speed < lookup.V_MIN:
         return v, omega
-    e, changed = tangential(table, slides, radius, thickness, friction, came.speed, came.size)
+    impact = Impact(came.speed, radius, thickness, share)
+    e, changed = tangential(table, slides, impact, friction, came.size)
     return rebound_of(v, omega, n, came, radius, e, changed)
 
 
@@ -187,14 +189,14 @@ def approach_all(
 
 @kernel(cache=True)
 def tangential_all(
-    table: Array, slides: Array, radius: Array, thickness: Array,
-    friction: Array, speed: Array, size: Array, e: Array, changed: Array,
+    table: Array, slides: Array, impact: Impact, friction: Array, size: Array, e: Array,
+    changed: Array,
 ) -> None:  # fmt: skip
     """`tangential` of many impacts."""
-    for i in range(radius.size):
-        e[i], changed[i] = tangential(
-            table, slides, radius[i], thickness[i], friction[i], speed[i], size[i]
-        )
+    speed, radius, thickness, mass = impact
+    for i in range(e.size):
+        one = Impact(speed[i], radius[i], thickness[i], mass[i])
+        e[i], changed[i] = tangential(table, slides, one, friction[i], size[i])
 
 
 @kernel(cache=True)
