@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from contactlaw import Validity
 from contactlaw.equation.losses import DESCRIPTIONS
+from contactlaw.equation.outcome import FIELDS
 from contactlaw.physical.kind import Kind as Kind  # for readers of a record
 from contactlaw.physical.kind import only_impacts as only_impacts
 
@@ -58,8 +59,10 @@ COLUMNS = (
         "sliding_speed_after", "f8", "m/s", "the same afterwards; below 0 if it has turned round"
     ),
     *(Column(f"spin_{axis}", "f8", "rad/s", "spin of the bead afterwards") for axis in "xyz"),
-    Column("contact_time", "f8", "s", "duration of the contact"),
-    Column("peak_force", "f8", "N", "largest contact force"),
+    *(
+        Column(name, "f8", FIELDS[name].unit, FIELDS[name].words)
+        for name in ("contact_time", "peak_force")
+    ),
     *(
         Column(f"{channel}_energy", "f8", "J", f"energy {what}")
         for channel, what in DESCRIPTIONS._asdict().items()

@@ -46,6 +46,31 @@ class History(NamedTuple):
     impulse: Any  # integral of the force since first touch [m V0]
 
 
+class Field(NamedTuple):
+    """A field of an answer, as all that names fields describes it."""
+
+    words: str
+    unit: str  # in SI; 1: none
+    error: float  # of a finished table: of COR absolute, of the others relative
+    of_pair: float  # the same of a table made for one pair, which is coarser
+
+
+# A contact time errs by 1e-4 where COR is not nearly 0, as it is with lambda above 4.
+FIELDS = {
+    "restitution": Field("rebound speed over impact speed", "1", 1e-6, 1e-5),
+    "contact_time": Field("from touch to separation", "s", 1e-5, 5e-3),
+    "peak_force": Field("largest contact force", "N", 1e-5, 5e-4),
+    "peak_compression": Field("largest approach of the bodies since touch", "m", 1e-5, 5e-4),
+    "residual_compression": Field("left after the impact", "m", 1e-5, 5e-4),
+    "plastic_fraction": Field("share lost to plastic flow at the contact", "1", 1e-5, 5e-4),
+    "wave_fraction": Field("share carried off by waves in the plate", "1", 1e-5, 5e-4),
+    "other_fraction": Field("share left in vibration and locked-in stress", "1", 1e-5, 5e-4),
+    "inelasticity": Field("lambda of the modified Zener model", "1", 0.0, 0.0),
+    "overload": Field("largest elastic compression over the yield compression", "1", 0.0, 0.0),
+}
+"""Fields of `contactlaw.Rebound`, but for its flags. Two are given, and no table errs in them."""
+
+
 class Stored(NamedTuple):
     """A field of `Outcome` that tables keep: its description in the file, and its limits."""
 

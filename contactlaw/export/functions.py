@@ -100,17 +100,17 @@ class BeadSpring(NamedTuple):
 class Answer(NamedTuple):
     """One impact."""
 
-    restitution: float  # rebound speed over impact speed [-]
+    restitution: float  # rebound speed over impact speed [1]
     contact_time: float  # from touch to separation [s]
     loading_time: float  # from touch to the largest compression [s]
-    peak_force: float  # [N]
-    peak_compression: float  # largest approach of sphere and plate after first touch [m]
+    peak_force: float  # largest contact force [N]
+    peak_compression: float  # largest approach of the bodies since touch [m]
     residual_compression: float  # left after the impact [m]
-    plastic_fraction: float  # share of the kinetic energy lost to plastic flow at the contact [-]
-    wave_fraction: float  # share carried off by the bending wave in the plate [-]
-    other_fraction: float  # share that the law leaves in vibration and locked-in stress [-]
-    inelasticity: float  # lambda of the modified Zener model [-]
-    mass_ratio: float  # mass over that of a solid sphere [-]
+    plastic_fraction: float  # share lost to plastic flow at the contact [1]
+    wave_fraction: float  # share carried off by waves in the plate [1]
+    other_fraction: float  # share left in vibration and locked-in stress [1]
+    inelasticity: float  # lambda of the modified Zener model [1]
+    mass_ratio: float  # mass over that of a solid sphere [1]
 
 
 class Collision(NamedTuple):

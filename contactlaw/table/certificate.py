@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw.equation import outcome, zener
-from contactlaw.equation.outcome import Outcome
+from contactlaw.equation.outcome import FIELDS, Outcome
 from contactlaw.laws import Law
 from contactlaw.table import lookup, shapes, sweep
 from contactlaw.table.axes import TableGrid
@@ -19,25 +19,10 @@ from contactlaw.table.sweep import Progress
 
 Array = NDArray[np.float64]
 
-BOUNDS = {
-    "restitution": 1e-6,
-    "contact_time": 1e-5,
-    "peak_force": 1e-5,
-    "peak_compression": 1e-5,
-    "residual_compression": 1e-5,
-    "plastic_fraction": 1e-5,
-    "wave_fraction": 1e-5,
-    "other_fraction": 1e-5,
-    "force_history": 1e-4,
-}
+BOUNDS = {name: one.error for name, one in FIELDS.items() if one.error} | {"force_history": 1e-4}
 """Promised errors: absolute for COR, relative to the peak for force histories, else relative."""
 
-PAIR_BOUNDS = {
-    **dict.fromkeys(BOUNDS, 5e-4),
-    "restitution": 1e-5,
-    "contact_time": 5e-3,  # where COR is nearly 0, lambda above 4; 1e-4 elsewhere
-    "force_history": 3e-3,
-}
+PAIR_BOUNDS = {n: FIELDS[n].of_pair for n in BOUNDS if n in FIELDS} | {"force_history": 3e-3}
 """Promised errors of tables built for one pair: they are coarser, and take a fifth of a second."""
 
 

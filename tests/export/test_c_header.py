@@ -29,7 +29,7 @@ from contactlaw import Validity, laws
 from contactlaw import table as tables
 from contactlaw._version import VERSION
 from contactlaw.answers.solver import RTOL
-from contactlaw.equation import zener
+from contactlaw.equation import outcome, zener
 from contactlaw.equation.edge import KINDS
 from contactlaw.export import c_header, functions
 from contactlaw.laws import Law
@@ -259,6 +259,14 @@ def test_the_series_is_not_for_the_loading_curve(tmp_path):
     (found,) = header.Library(tmp_path, "-Dcontactlaw_restitution(v,r,h)=0.0").answers(rows)
     hit = model.solve(*at)
     assert found[[1, 7]] == pytest.approx([hit.contact_time, 1.0], rel=1e-9)
+
+
+def test_members_are_described_as_everywhere():
+    text = text_of("myc")
+    for name in functions.Answer._fields:
+        if name in outcome.FIELDS:
+            known = outcome.FIELDS[name]
+            assert f"double {name}; /* {known.words} [{known.unit}] */" in text
 
 
 SYNTAX = "-fsyntax-only"

@@ -9,7 +9,7 @@ import csv
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
-from typing import NamedTuple, TextIO
+from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import extent
 from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
+from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.validity import Validity, count_flags, explain
@@ -41,18 +42,17 @@ class Column(NamedTuple):
     to: str = ""  # another column, up to which this one is the lower end of a range on a terminal
 
 
+_SHOWN: dict[str, Any] = {  # title, unit and number of these in one SI unit on a terminal
+    "restitution": ("COR",),
+    "contact_time": ("time", "us", 1e6),
+    "peak_force": ("force", "N"),
+    **{f"{channel}_fraction": (channel,) for channel in Losses._fields},
+}
 COLUMNS = (
     Column("speed", "m/s", "speed", "m/s"),
     Column("radius", "m", "radius", "mm", 1e3),
     Column("thickness", "m", "thickness", "mm", 1e3),
-    Column("restitution", "", "COR"),
-    Column("contact_time", "s", "time", "us", 1e6),
-    Column("peak_force", "N", "force", "N"),
-    Column("peak_compression", "m"),
-    Column("residual_compression", "m"),
-    *(Column(f"{channel}_fraction", "", channel) for channel in Losses._fields),
-    Column("inelasticity", ""),
-    Column("overload", ""),
+    *(Column(n, one.unit.strip("1"), *_SHOWN.get(n, ())) for n, one in FIELDS.items()),
     Column("yield_speed", "m/s", "yield at", "m/s"),
 )
 
