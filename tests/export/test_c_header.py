@@ -478,7 +478,7 @@ BLOWN_UP = [
 @pytest.mark.parametrize(("overlap", "dt"), BLOWN_UP)
 def test_a_blown_up_simulation_is_told(overlap, dt):
     """By the kernel that contactlaw_step calls, which keeps the state then; see the sanitizers."""
-    bodies = functions.bodies_of(model_of("myc"), {})
+    bodies = functions.bodies_of(model_of("myc"), None)
     bead = functions.spring_of(bodies, 1e-3, 1e-3)
     state = functions.after_step(bodies, bead, functions.State(0.0, 0.0, 0.0), 1e-6, 1e-7)
     assert functions.after_step(bodies, bead, state, 2e-6, 1e-7).force > state.force > 0.0
