@@ -166,8 +166,8 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         hole_radius : array_like, optional
             Radius of the hole whose rim the edge is [m]; ``inf`` is a straight edge.
         mass : array_like, optional
-            Mass that answers at the contact [kg], of beads that are no solid spheres: hollow or
-            coated ones, clumps; 0.65 to 1000 times that of the solid sphere. See docs/laws.md.
+            Mass that answers at the contact [kg] of a bead that is no solid sphere: a hollow or
+            coated one, a clump; 0.65 to 1000 times that of the solid one. See docs/laws.md.
 
         Returns
         -------
@@ -198,9 +198,6 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             impacts = self._bodies.given(
                 speed, radius, thickness, edge, edge_distance, hole_radius, mass
             )
-            if impacts.edge_distance is None and mass is None:
-                v, r, h = impacts.speed, impacts.radius, impacts.thickness
-                return shaped(self._tabulated.restitutions(v, r, h), impacts.shape)
             by = near_edges(self._tabulated, Solver(self._bodies), impacts)
             return by.rebounds(impacts).restitution
         # a short cut for engines that call this once per collision
@@ -327,8 +324,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         Raises
         ------
         ValueError
-            An argument that is no positive number, or a plate so thin that the inelasticity at
-            V_Y is outside the table.
+            As in `restitution`, or a plate so thin that lambda at V_Y is outside the table.
 
         Examples
         --------
@@ -366,8 +362,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
         >>> round(moved.thickness, 3), round(moved.yield_strength, 3)
         (0.239, 0.176)
         """
-        impacts = self._bodies.given(speed, radius, thickness, mass=mass)
-        return sensitivity(self._tabulated, impacts)
+        return sensitivity(self._tabulated, self._bodies.given(speed, radius, thickness, mass=mass))
 
     def constant(
         self,

@@ -77,24 +77,24 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 34_070,
-    "contactlaw/answers": 3_100,
+    "contactlaw": 33_850,
+    "contactlaw/answers": 2_770,
     "contactlaw/cli": 4_500,
     "contactlaw/emit": 700,
     "contactlaw/engines": 4_300,
-    "contactlaw/equation": 2_750,  # with the series of w_m, which halves the time of law fem
-    "contactlaw/export": 1_080,
+    "contactlaw/equation": 2_815,  # with the series of w_m, and masses that are no solid sphere's
+    "contactlaw/export": 1_085,
     "contactlaw/fitting": 2_260,
-    "contactlaw/laws": 2_065,  # laws are made in two thirds of the time
-    "contactlaw/physical": 3_240,  # with those laws, which took 400 lines of answers and export
+    "contactlaw/laws": 2_085,  # laws know their strengths, and are made in two thirds of the time
+    "contactlaw/physical": 3_320,  # with these laws, impacts and bodies, which took 700 of answers and export
     "contactlaw/report": 1_150,
     "contactlaw/stepping": 1_960,
-    "contactlaw/table": 3_060,  # strength is a number of an impact in all kernels
+    "contactlaw/table": 3_000,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_000,
-    "contactlaw templates": 1_050,  # sources of other languages
+    "contactlaw templates": 1_051,  # sources of other languages
     "dem_demo": 6_350,
-    "validation": 14_860,  # with spheres that are not solid, and the turning-point form
-    "tests": 26_000,  # with rates at which something in the law changes
+    "validation": 14_850,  # with spheres that are not solid, and the turning-point form
+    "tests": 26_100,  # with rates at which something in the law changes
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
@@ -289,7 +289,7 @@ def test_import_is_light():
         "assert not heavy & set(sys.modules), heavy & set(sys.modules)\n"
         "from contactlaw.table import lookup\n"
         "from contactlaw.equation import zener\n"
-        "for f in (lookup.restitution, zener.extremes):\n"
+        "for f in (lookup.restitution_on_plate, zener.extremes):\n"
         "    assert not f.signatures, f\n"
     )
     done = subprocess.run(

@@ -306,7 +306,7 @@ def limits_by_strength(pair: Pair, law: Law) -> Array:
         return alone(limits(pair, law))
     ends, most = knots(pair, USUAL.piece, USUAL.fastest, USUAL.near)
     logs = {one for low, high in itertools.pairwise(ends) for one in np.linspace(low, high, _ROWS)}
-    at = sorted(one for one in {*logs, *_damaging(pair), most} if one <= most)
+    at = sorted(one for one in {*logs, *_reached(pair), most} if one <= most)
     slow = _at_strength(pair, law, 0.0)
     rows = [[-1.0, *slow]]  # so that a slow impact has the limits of its own strength
     for low, high in itertools.pairwise([*at, at[-1]]):
@@ -318,15 +318,19 @@ def limits_by_strength(pair: Pair, law: Law) -> Array:
     return np.array(rows)
 
 
-def _damaging(pair: Pair) -> list[float]:
-    """Ln k from which a body is strong enough to damage the other, which is brittle."""
+def _reached(pair: Pair) -> list[float]:
+    """Ln k at which flags change: a body leaves the range of law fem, or damages a brittle one."""
     flow, found = leading(pair), []
     for body, other in ((pair.sphere, pair.plate), (pair.plate, pair.sphere)):
-        own, least = other.flow, _bearable(body) / (1.5 * _HARDNESS)
-        if flow and own and own.rate and own.strength < least < math.inf:
-            factor = (least / own.strength - 1.0) / own.rate
-            if factor < math.log(REACH * SHARE / own.rate0):
-                found.append(math.log(flow.factor(own.rate0 * math.exp(factor))))
+        own = body.flow
+        if not (flow and own and own.rate):
+            continue
+        damaging = _bearable(other) / (1.5 * _HARDNESS)
+        for strength in (damaging, *(pair.effective_modulus / ratio for ratio in RATIOS)):
+            if own.strength < strength < math.inf:
+                factor = (strength / own.strength - 1.0) / own.rate
+                if factor < math.log(REACH * SHARE / own.rate0):
+                    found.append(math.log(flow.factor(own.rate0 * math.exp(factor))))
     return found
 
 

@@ -321,7 +321,7 @@ def at_strength(table: Array, strength: float) -> Strength:
     high, middle, per = _place_in(table, at)
     t, cells = per * (min(strength, high) - middle), table[at + LAYER_CELLS]
     along = (0.5 + 0.5 * t) * cells
-    cell = min(int(along), int(cells) - 1)
+    cell = min(int(max(0.0, along)), int(cells) - 1)
     later = _powers(_row_at(table, at, LATER), t)
     return Strength(at, t, later, int(table[at + LAYER]) + cell, along - cell)
 
@@ -714,7 +714,7 @@ def _locate_layers(
         low, high, cells = table[at + LOW], table[at + HIGH], table[at + LAYER_CELLS]
         per, begins = cells / (high - low), np.int32(table[at + LAYER])
         for i in range(first.size):
-            along = per * (min(strength[i], high) - low)
+            along = max(0.0, per * (min(strength[i], high) - low))
             cell = np.int32(min(along, cells - 1.0))
             here = (strength[i] > low) | (n == 0)
             place[i] = along - cell if here else place[i]

@@ -254,7 +254,7 @@ def test_the_series_is_not_for_the_loading_curve(tmp_path):
     law = Law.of(name="stiffening", source="s", yield_coefficient=None, scale=1e-5,
                  loading=[Loading(0.0, stiffening)])  # fmt: skip
     model, rows = cl.ImpactModel(cl.Pair("zirconia", "glass"), law), header.rows(1, seed=1)
-    rows[0, :3] = at = 100.0, 1e-3, 0.2e-3
+    rows[0, :3], rows[0, 5] = (at := (100.0, 1e-3, 0.2e-3)), 0.1  # a solid sphere
     cl.export.header(tmp_path / "contactlaw.h", model, table="none")
     (found,) = header.Library(tmp_path, "-Dcontactlaw_restitution(v,r,h)=0.0").answers(rows)
     hit = model.solve(*at)
