@@ -86,7 +86,7 @@ BUDGETS = {
     "contactlaw/export": 1_085,
     "contactlaw/fitting": 2_260,
     "contactlaw/laws": 2_085,  # laws know their strengths, and are made in two thirds of the time
-    "contactlaw/physical": 3_320,  # with these laws, impacts and bodies, which took 700 of answers and export
+    "contactlaw/physical": 3_320,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/report": 1_150,
     "contactlaw/stepping": 1_960,
     "contactlaw/table": 3_000,  # one interpolant, of two or three axes
