@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 import contactlaw as cl
 from contactlaw import laws
 from contactlaw.softsphere import Contacts, time_step
+from contactlaw.table import Settings
 
 ALUMINA = cl.material("gamma-alumina")
 HEAVY = dataclasses.replace(ALUMINA, name="heavy", density=1.7 * ALUMINA.density)
@@ -80,7 +81,7 @@ def test_compiled_functions():
     assert own.curve(*at[1:], MASS)(3.0) == pytest.approx(heavy.kernel(*at), abs=1e-12)
     near, other = (one.edge_kernel("free") for one in (own, heavy))
     assert near(*at, 1e-3, MASS) == pytest.approx(other(*at, 1e-3), abs=1e-9)
-    for mass in (-MASS, 0.3 * MASS, 1e4 * MASS, math.nan):
+    for mass in (0.0, -MASS, 0.3 * MASS, 1e4 * MASS, math.nan):
         assert math.isnan(own.kernel(*at, mass)) and math.isnan(near(*at, 1e-3, mass))
 
 
@@ -115,6 +116,21 @@ def test_the_equation_in_si_units(share):
     hit = cl.ImpactModel(pair, "hertz").solve(speed, RADIUS, thickness, mass=mass)
     assert hit.restitution == pytest.approx(-path.y[1, -1] / speed, rel=1e-5)
     assert hit.contact_time == pytest.approx(path.t[-1], rel=1e-5)
+
+
+@pytest.mark.parametrize("mass", [None, MASS / 1.7])
+def test_yield_speeds_know_the_end_of_a_table_that_was_given(mass):
+    pair = cl.Pair(ALUMINA, "glass")
+    small = Settings(largest_inelasticity=0.5, inelasticity_nodes=41, log_overload_step=0.03)
+    for table in (small, cl.ImpactModel(pair, table=small).table):
+        with pytest.raises(ValueError, match="beyond the table's 0.5"):
+            cl.ImpactModel(pair, table=table).yield_speed(RADIUS, 0.27e-3, mass)
+
+
+def test_an_impact_beyond_the_table_is_named_by_its_place():
+    falling = np.array([(0, 0, 1.0), (0, 0, 1.0), (0, 0, -2.0)])
+    with pytest.raises(ValueError, match="impact 2 is outside"):
+        of_mass("myc")[0].collide(falling, 0, (0, 0, 1.0), 1e-3, [3e-3, 3e-3, 0.02e-3], 0.2)
 
 
 @pytest.mark.parametrize("law", ["fem", "myc"])

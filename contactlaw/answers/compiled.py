@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -169,7 +170,7 @@ def _jitted(table: NDArray[np.float64], bodies: SphereOnPlate) -> Callable[..., 
     on_plate, packed, density = lookup.restitution_on_plate, in_memory(table), bodies.constants.mass
 
     @kernel(entry=True)
-    def cor(speed: float, radius: float, thickness: float, mass: float = 0.0) -> float:
+    def cor(speed: float, radius: float, thickness: float, mass: float = math.inf) -> float:
         share = share_of_solid(density, radius, mass)
         return on_plate(packed(), speed, radius, thickness, share)
 

@@ -71,7 +71,7 @@ def kernel_near(bodies: SphereOnPlate, kind: str) -> Callable[..., float]:
 
     @kernel(entry=True)
     def cor(
-        speed: float, radius: float, thickness: float, edge_distance: float, mass: float = 0.0
+        speed: float, radius: float, thickness: float, edge_distance: float, mass: float = math.inf
     ) -> float:
         impact = Impact(speed, radius, thickness, share_of_solid(pair.mass, radius, mass))
         return _cor_near(law(), response(), pair, path, impact, edge_distance)

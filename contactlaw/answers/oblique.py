@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from contactlaw._jit import in_memory, kernel, switched_off
-from contactlaw.answers.backend import Backend
+from contactlaw.answers.backend import Backend, renumbered
 from contactlaw.answers.edges import near_edges
 from contactlaw.answers.solver import Solver
 from contactlaw.answers.tabulated import Tabulated
@@ -178,9 +178,11 @@ class Oblique:
             oblique.tangential_all(table, tangential, each, mu, size, e, changed)
         beyond = np.isnan(e) & (speed >= lookup.V_MIN)
         if beyond.any():
+            some = np.flatnonzero(beyond)
             check(speed=speed[beyond], sliding_speed=size[beyond])
-            impacts = replace(given.part(np.flatnonzero(beyond)), speed=speed[beyond])
-            found, changed[beyond] = _answer(tabulated, impacts, mu[beyond], size[beyond])
+            impacts = replace(given.part(some), speed=speed[beyond])
+            with renumbered(some):
+                found, changed[beyond] = _answer(tabulated, impacts, mu[beyond], size[beyond])
             e[beyond] = found.restitution
         hit = np.where(speed < lookup.V_MIN, 0.0, e + changed)
         check_finite(tabulated.bodies.pair, replace(given, speed=speed), hit)
@@ -246,7 +248,7 @@ def _jitted(table: Array, slides: Array, density: float) -> Collide:
     @kernel(entry=True)
     def collide(
         velocity: Vector, spin: Vector, normal: Vector, radius: float, thickness: float,
-        friction: float, wall_velocity: Vector, mass: float = 0.0,
+        friction: float, wall_velocity: Vector, mass: float = math.inf,
     ) -> tuple[Vector, Vector]:  # fmt: skip
         share = share_of_solid(density, radius, mass)
         return of_one(

@@ -151,12 +151,14 @@ class Tabulated:
         own = self.given is not None and (law == self.law or self.table.law.follows(law))
         return self.table if own else table_for(law, None)
 
-    def restitutions(self, speed: Array, radius: Array, thickness: Array) -> Array:
-        """COR of impacts; they are checked only if the kernel has no answer for one of them."""
-        out = np.empty(speed.size)
-        if lookup.restitutions(self.packed, speed, radius, thickness, NO_MASSES, out):
-            check(speed=speed, radius=radius, thickness=thickness)
-            out = self._looked_up(Impacts(speed, radius, thickness, None)).outcome.restitution
+    def restitutions(self, impacts: Impacts) -> Array:
+        """COR of impacts; sizes are checked only if the kernel has no answer for one of them."""
+        v, r, h = impacts.speed, impacts.radius, impacts.thickness
+        out = np.empty(v.size)
+        mass = NO_MASSES if impacts.mass is None else self.bodies.impact(impacts).mass
+        if lookup.restitutions(self.packed, v, r, h, mass, out):
+            check(speed=v, radius=r, thickness=h)
+            out = self._looked_up(impacts).outcome.restitution
         return out
 
     def rebounds(self, impacts: Impacts) -> Rebound:
@@ -201,7 +203,7 @@ class Tabulated:
     def yield_speeds(self, impacts: Impacts) -> Array:
         """Speeds [m/s] from which sphere or plate yields; inf where neither does."""
         if impacts.mass is not None or self.bodies.constants.plate.rate.slope > 0.0:
-            given = self.given if isinstance(self.given, Settings) else extent(self.bodies.law)
+            given = extent(self.bodies.law) if self.given is None else self.table.settings
             return Solver(self.bodies, RTOL, given).yield_speeds(impacts)
         out = np.full(impacts.radius.size, math.inf)
         share = yield_share(self.bodies.pair, self.bodies.law)

@@ -187,11 +187,11 @@ def of_mass(pair: PairConstants, mass: float) -> PairConstants:
 
 @kernel(inline=True)
 def share_of_solid(density: float, radius: float, mass: float) -> float:
-    """Mass [kg], 0 for a solid sphere's, over that; the solid one's is density R^3.
+    """Mass [kg], inf for a solid sphere's, over that; the solid one's is density R^3.
 
     NaN beyond the limits.
     """
-    if mass == 0.0:
+    if mass == math.inf:
         return 1.0
     share = mass / (density * (radius * radius * radius))
     return share if LIGHTEST <= share <= HEAVIEST else math.nan

@@ -21,7 +21,7 @@ from contactlaw.physical.impacts import Impacts
 from contactlaw.physical.pair import Pair
 from contactlaw.physical.scaling import constants_of, numbers_of, without_plate
 from contactlaw.physical.strengths import by_strength
-from contactlaw.physical.validity import Limits, limits, limits_by_strength, mass_flags
+from contactlaw.physical.validity import Limits, all_mass_flags, limits, limits_by_strength
 
 Array = NDArray[np.float64]
 
@@ -83,7 +83,9 @@ class SphereOnPlate:
 
     def mass_flags(self, impacts: Impacts) -> NDArray[np.int64]:
         """Limits that masses exceed."""
-        return np.array([mass_flags(one) for one in self.impact(impacts).mass], dtype=np.int64)
+        flags = np.empty(impacts.speed.size, dtype=np.int64)
+        all_mass_flags(self.impact(impacts).mass, flags)
+        return flags
 
 
 def beside(mass: Array, solid: Array) -> NDArray[np.bool_]:
@@ -99,7 +101,7 @@ def _refused(mass: float, solid: float, n: int, count: int) -> str:
         else "is it in grams? It is the mass that answers at the contact"
     )
     return (
-        f"mass: got {mass:g}{where} kg, {mass / solid:.4g} of a solid sphere's {solid:.4g} kg; "
+        f"mass: got {mass:g} kg{where}, {mass / solid:.4g} of a solid sphere's {solid:.4g} kg; "
         f"must be {LIGHTEST:g} to {HEAVIEST:g} of it: {remedy}"
     )
 

@@ -417,10 +417,17 @@ def flags_of(
     return flags
 
 
-@kernel(entry=True)
+@kernel
 def mass_flags(mass: float) -> int:
     """Flag what is due to a mass, over that of a solid sphere."""
     return 0 if _HOLLOW <= mass <= _HEAVY else _NOT_SOLID
+
+
+@kernel(cache=True)
+def all_mass_flags(mass: Array, out: NDArray[np.int64]) -> None:
+    """`mass_flags` of many impacts."""
+    for n in range(mass.size):
+        out[n] = mass_flags(mass[n])
 
 
 @kernel

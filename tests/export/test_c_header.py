@@ -566,7 +566,7 @@ def test_the_documented_c_compiles(tmp_path):
     write_header(tmp_path, "myc")
     arguments = "double speed, double radius, double thickness, double overlap, double dt, "
     arguments += "double friction, double *velocity, double *spin, const double *normal, "
-    arguments += "const double *wall_velocity, double distance"
+    arguments += "const double *wall_velocity, double distance, double mass"
     body = f"{calls} return e + near + force + impact.peak_force + flags;"
     source = f"{include}\ndouble f({arguments});\ndouble f({arguments}) {{ {body} }}\n"
     build(tmp_path, source, "-c", *WARNINGS)

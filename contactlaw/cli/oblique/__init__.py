@@ -100,7 +100,11 @@ def _table(arguments: argparse.Namespace, given: dict[str, Any]) -> ImpactTable:
     model = chosen.model(arguments)
     found = _hits(model, every, arguments.mass)
     columns = {column.name: found[column.name] for column in _COLUMNS}
-    return ImpactTable(columns, found["flags"], impacts.asked(model))
+    return ImpactTable(columns, found["flags"], impacts.asked(model, **_mass(arguments)))
+
+
+def _mass(arguments: argparse.Namespace) -> dict[str, float]:
+    return {} if arguments.mass is None else {"mass": arguments.mass}
 
 
 def _hits(model: ImpactModel, given: dict[str, Array], mass: float | None) -> dict[str, Any]:
