@@ -37,7 +37,7 @@ LAYERS = [
 # Within a folder without units, the same: the order of its files.
 FILES = {
     "equation": ["force", "outcome", "tangential", "corrections", "edge", "recall", "numbers",
-                 "plate", "legs", "losses", "motion", "creep", "integrator", "zener",
+                 "plate", "legs", "losses", "motion", "integrator", "zener",
                  "few_steps"],
     "table": ["lookup", "axes", "grid", "splines", "shapes", "sweep", "certificate", "nodes",
               "slides", "file", "cache"],
@@ -48,8 +48,7 @@ FILES = {
               "rest"],
     "stepping": ["edge", "spring", "energy", "friction", "plate_rows", "contact",
                  "bead"],
-    "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes",
-                "doubts", "fit"],
+    "fitting": ["measurements", "unknowns", "predictions", "errors", "identify", "search", "notes", "fit"],
     "emit": ["types", "languages", "program", "function"],
     "export": ["functions", "page_functions", "c_header", "liggghts_wall", "web_page"],
     "report": ["limits", "gallery", "page", "surface", "run", "summary", "charts", "figures",

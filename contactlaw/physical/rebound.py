@@ -30,7 +30,7 @@ class Rebound:
     restitution
         Rebound speed over impact speed [-].
     contact_time
-        Time from first touch to separation [s]; for a sphere that stays (restitution 1e-9), until
+        Time from first touch to separation [s]; for a sphere that stays (restitution 1e-7), until
         the energy that is left in the contact could throw it off no faster. Near an edge a sphere
         that stays is followed for 50 times the unit of time T_H, and has a restitution of 0.
     peak_force
