@@ -15,7 +15,13 @@ from contactlaw.fitting import errors, identify, search
 from contactlaw.fitting.measurements import KINDS, NORMAL, Measurements
 from contactlaw.fitting.notes import alternative_note, explained, notes
 from contactlaw.fitting.predictions import COARSE, Predictor, Values
-from contactlaw.fitting.unknowns import Parameter, parameters, setting, with_loss_factors
+from contactlaw.fitting.unknowns import (
+    OTHER_STRENGTH,
+    Parameter,
+    parameters,
+    setting,
+    with_loss_factors,
+)
 from contactlaw.laws import DEFAULT, Law
 from contactlaw.physical.arguments import broadcast
 from contactlaw.physical.law import law_of
@@ -476,7 +482,7 @@ def _least_value(predictor: Predictor, strong: Array, n: int, error: Array) -> s
         return _squares(predictor, predictor.at_trials(values[None])[0], error)
 
     is_strength = predictor.parameters[n].is_strength
-    other = "plate_" * (predictor.parameters[n].unknown.body == "sphere") + "yield_strength"
+    other = OTHER_STRENGTH.get(predictor.parameters[n].name)
     trial, high = strong.copy(), squares(strong) + _EXCLUDED
     low = search.limits(predictor)[0][n]
     for factor in np.geomspace(1.0, low / strong[n], _TRIALS):

@@ -13,7 +13,7 @@ from contactlaw.fitting import search
 from contactlaw.fitting.identify import UnidentifiedError
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.fitting.predictions import Predictor, columns_of
-from contactlaw.fitting.unknowns import UNKNOWNS
+from contactlaw.fitting.unknowns import OTHER_STRENGTH, UNKNOWNS
 from contactlaw.physical.oblique import ObliqueRebound
 from contactlaw.physical.rebound import Rebound
 from contactlaw.physical.validity import count_flags, explain
@@ -198,6 +198,8 @@ def _outside(predictor: Predictor, at: Array) -> Iterator[str]:
     unknown = " and ".join(one.name for one in predictor.parameters if one.is_unknown)
     ends = f"from {least:.3g} to {most:.3g} {unit}".rstrip()
     ends += ", that of a half-space" if unknown == "thickness" and high[n] == grid[-2, n] else ""
+    if unknown in OTHER_STRENGTH:
+        ends += f"; or ask for {OTHER_STRENGTH[unknown]} if that body yields"
     yield (
         f"no {unknown} gives the {name} {f'{value:.4g} {unit}'.rstrip()} of rebound {row}, at "
         f"{rounded(speed, 3)} m/s: attainable is {ends}"
