@@ -28,7 +28,7 @@ class Rebound:
     Attributes
     ----------
     restitution
-        Rebound speed over impact speed [-].
+        Rebound speed over impact speed [-]; smaller ones than 1e-7 are rounded up to that.
     contact_time
         Time from first touch to separation [s]; for a sphere that stays (restitution 1e-7), until
         the energy that is left in the contact could throw it off no faster. Near an edge a sphere

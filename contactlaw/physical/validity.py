@@ -294,7 +294,7 @@ def limits(pair: Pair, law: Law) -> Limits:
     )
 
 
-_ROWS = 65  # strengths, evenly spaced in ln k, between which limits are interpolated
+_ROWS = 33  # strengths, evenly spaced in ln k, between which limits are interpolated
 
 
 def alone(limits: Limits) -> Array:
