@@ -131,7 +131,10 @@ def test_the_slowest_impacts_lose_what_slow_ones_do():
     """Their compression is below the smallest one of which the law knows the loss."""
     model = polymer.WEAK_MODEL
     speed, radius = np.array([1e-5, 1e-7, 1e-12]), np.array([1.5, 1e-2, 100.0])
-    for hit in (model.solve(speed, radius, 3.0 * radius), model.lookup(speed, radius, 3.0 * radius)):
+    for hit in (
+        model.solve(speed, radius, 3.0 * radius),
+        model.lookup(speed, radius, 3.0 * radius),
+    ):
         assert hit.restitution == pytest.approx(0.438, abs=1e-3)
 
 
