@@ -87,7 +87,7 @@ BUDGETS = {
     "contactlaw/fitting": 2_260,
     "contactlaw/laws": 2_085,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 3_320,  # with laws, impacts, bodies: 700 less in answers and export
-    "contactlaw/report": 1_150,
+    "contactlaw/reporting": 1_150,
     "contactlaw/stepping": 1_960,
     "contactlaw/table": 3_000,  # one interpolant, of two or three axes
     "contactlaw/walls": 2_000,

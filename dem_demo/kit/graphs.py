@@ -14,9 +14,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
-from contactlaw.report import run as report
-from contactlaw.report.figures import impacts
-from contactlaw.report.limits import label
+from contactlaw.reporting import run as report
+from contactlaw.reporting.figures import impacts
+from contactlaw.reporting.limits import label
 from dem_demo.kit.measure import account, curve
 from dem_demo.kit.runs import Run, Runs
 from dem_demo.kit.tale import progress

@@ -416,7 +416,7 @@ TOKENS = [b"", b"\0", b"nan", b"-1", b"1e999", b"[" * 3000, b"\xff", b"'", b",",
 @pytest.mark.parametrize("name", GOOD)
 def test_damaged_files_are_answered_or_refused_by_name(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("contactlaw.report.figures.names", lambda: [])  # these take seconds
+    monkeypatch.setattr("contactlaw.reporting.figures.names", lambda: [])  # these take seconds
     rows, choose, refused = recorded(Path("whole.npy"), [0] * 3), random.Random(1), 0
     for _ in range(60):
         if name == "a.npy":

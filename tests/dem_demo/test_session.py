@@ -18,7 +18,7 @@ import pytest
 from demos import names
 
 from contactlaw.engines.record import IMPACT
-from contactlaw.report.gallery import Picture
+from contactlaw.reporting.gallery import Picture
 from dem_demo import cli
 from dem_demo.kit import disk, session
 from dem_demo.kit.recorder import Dataset, Making, Recorder

@@ -11,9 +11,9 @@ import textwrap
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from contactlaw.report.charts import PARTS, bar, wall_axis
-from contactlaw.report.run import Run, by_cause, shares
-from contactlaw.report.summary import joules, unit_of
+from contactlaw.reporting.charts import PARTS, bar, wall_axis
+from contactlaw.reporting.run import Run, by_cause, shares
+from contactlaw.reporting.summary import joules, unit_of
 
 
 def draw(run: Run) -> Figure:
