@@ -10,6 +10,7 @@ from contactlaw.cli.parts import options, quantities, wording
 from contactlaw.cli.parts.quantities import LENGTH
 from contactlaw.record.file import read_record
 from contactlaw.reporting.files import report
+from contactlaw.reporting.run import Run
 from contactlaw.walls.mesh import Mesh
 
 
@@ -36,6 +37,8 @@ def add(commands: Any) -> None:
 
 def _run(arguments: argparse.Namespace) -> None:
     record = read_record(*arguments.record)
+    with wording.reading(arguments.record[0]):
+        Run(record)  # refuses what no report can be made of
     meshes = [_mesh(path, arguments.scale) for path in arguments.mesh]
     with wording.folder_of("out", arguments.out):
         print(report(record, arguments.out, meshes))

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw import Validity
 from contactlaw.equation.losses import DESCRIPTIONS
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.physical.kind import Kind as Kind  # for readers of a record
 from contactlaw.physical.kind import only_impacts as only_impacts
+from contactlaw.physical.validity import Validity
 
 if TYPE_CHECKING:
     from contactlaw import Rebound

@@ -16,6 +16,7 @@ import io
 import json
 import os
 import platform
+import tokenize
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import cached_property
@@ -195,7 +196,8 @@ class Record:
             table["kind"] = [Kind(kind).name.lower() for kind in table["kind"]]
         if "flags" in table:
             table["flags"] = [
-                ", ".join(str(flag.name).lower() for flag in Validity(one)) for one in table["flags"]
+                ", ".join(str(flag.name).lower() for flag in Validity(one))
+                for one in table["flags"]
             ]
         for n, name in enumerate(("sphere", "target")):
             names = [one.materials[n].name for one in self.bodies]
@@ -280,11 +282,11 @@ def read_record(*paths: str | os.PathLike[str]) -> Record:
     whole, *others = (_read(Path(path)) for path in paths)
     for path, one in zip(paths[1:], others, strict=True):
         whole = _joined(whole, one, path)
-    rows = whole.rows
-    # a run that went on after a save has the rows of before in both files
-    once = np.unique(rows.view(f"V{rows.itemsize}"), return_index=True)[1] if others else rows
-    order = np.sort(once) if others else np.arange(rows.size)
-    return whole.part(order[np.argsort(rows["time"][order], kind="stable")])
+    if others:  # a run that went on after a save has the rows of before in both files
+        as_bytes = np.ascontiguousarray(whole.rows).view(f"V{whole.rows.itemsize}")
+        whole = whole.part(np.unique(as_bytes, return_index=True)[1])
+    keys = [whole.rows[name] for name in ("bead", "time") if name in (whole.rows.dtype.names or ())]
+    return whole.part(np.lexsort(keys))
 
 
 def opened(content: bytes) -> Any:
@@ -300,10 +302,10 @@ def read_from(file: h5py.File) -> Record:
     ValueError
         If the file has another format, or lacks a part, or has one that cannot be read.
     """
-    form, schema = (file.attrs.get(name) for name in ("format", "schema"))
-    if (form, schema) != (FORMAT, SCHEMA):
+    form, schema = (str(file.attrs.get(name)) for name in ("format", "schema"))
+    if (form, schema) != (FORMAT, str(SCHEMA)):
         raise ValueError(
-            f"no {FORMAT} of schema {SCHEMA}, but format {form!r}, schema {schema}: run it again"
+            f"no {FORMAT} of schema {SCHEMA}, but format {form}, schema {schema}: run it again"
         )
     group = hdf5.group(file, "impacts")
     size = hdf5.numbers(group, "time").size
@@ -326,23 +328,49 @@ def write(group: h5py.Group, name: str, values: object, units: str, description:
 
 
 def _read(path: Path) -> Record:
-    content = content_of(path)
-    if path.suffix.lower() == ".npy":
-        rows = np.load(io.BytesIO(content), allow_pickle=False)
-        if rows.dtype.names is None or rows.ndim != 1 or "time" not in rows.dtype.names:
-            raise ValueError(f"{path}: no rows of a record, but {rows.dtype} of shape {rows.shape}")
-        return Record(typed(rows))
     try:
+        content = content_of(path)
+        if path.suffix.lower() == ".npy":
+            rows = typed(saved(content))
+            if "time" not in (rows.dtype.names or ()):
+                raise ValueError("its rows have no column time")
+            return Record(rows)
         with hdf5.opened(content) as file:
             return read_from(file)
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
 
 
+def saved(content: bytes) -> NDArray[np.void]:
+    """Read rows with named columns from the content of a file of ``np.save``.
+
+    Raises
+    ------
+    ValueError
+        If it is another file, a damaged one, or one of other arrays.
+    """
+    if not content.startswith(b"\x93NUMPY"):
+        raise ValueError("no file of np.save")
+    try:
+        rows = np.load(io.BytesIO(content), allow_pickle=False)
+    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError,
+            tokenize.TokenError) as error:  # fmt: skip
+        raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
+    if rows.dtype.names is None or rows.ndim != 1:
+        raise ValueError(
+            f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
+            "columns, as the record of an engine has"
+        )
+    found: NDArray[np.void] = rows
+    return found
+
+
 def _joined(one: Record, two: Record, path: str | os.PathLike[str]) -> Record:
     """Put the rows of two records of one run together."""
     if one.rows.dtype != two.rows.dtype:
         raise ValueError(f"{path}: has other columns than the file before it")
+    if bool(one.bodies) != bool(two.bodies):
+        raise ValueError(f"{path}: one of the files knows the materials, the other does not")
     surface = one.surface
     if (surface is None) != (two.surface is None):
         raise ValueError(f"{path}: one of the files knows the walls, the other does not")

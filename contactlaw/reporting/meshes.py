@@ -18,7 +18,7 @@ _APART = 1e-3  # [extent of the mesh]; contacts farther from their triangles are
 
 
 def with_meshes(record: Record, meshes: Sequence[Mesh]) -> Record:
-    """Give a record the meshes of those of its walls that are meshes, in the order of their numbers.
+    """Give a record the meshes of its walls that are meshes, in the order of their numbers.
 
     Raises
     ------

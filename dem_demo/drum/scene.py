@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from contactlaw.engines import layout
 from dem_demo.drum import defaults
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.kit.bed import Bed, Corners, check
@@ -88,7 +87,6 @@ class Drum(Bed):
 
     def write_walls(self, file: h5py.File) -> None:
         """Write the thicknesses of the shell and of the two ends."""
-        layout.write_plates(file, [self.thickness] * 3)
 
     @staticmethod
     def read_walls(file: h5py.File) -> Mapping[str, Any]:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import ImpactModel, Pair, Rebound
-from contactlaw.engines import layout
 from contactlaw.engines.record import IMPACT, fill
+from contactlaw.record.file import write
 from dem_demo.kit.beads import Floats
 from dem_demo.kit.reader import Recorded, checked, common
 from dem_demo.kit.recorder import Dataset, Making, Recorder
@@ -49,7 +49,7 @@ def rain_recorder(
     attributes = {
         name: getattr(scene, name) for name in ("seed", "duration", "frame_rate", "friction")
     }
-    attributes["schema"] = SCHEMA
+    attributes["scene_schema"] = SCHEMA
     if bead_on_bead is not None:
         attributes["bead_on_bead"] = bead_on_bead
     return Recorder(
@@ -65,23 +65,22 @@ def rain_recorder(
 
 
 def _write_scene(file: h5py.File, scene: Scene) -> None:
-    layout.write_materials(file, scene.sphere_material, scene.plate_material)
-    plates = layout.write_plates(file, (plate.thickness for plate in scene.plates))
+    plates, beads = file.create_group("plates"), file.create_group("beads")
     for name, description in (
+        ("thickness", "thickness, inf: half-space"),
         ("x0", "left end"),
         ("x1", "right end"),
         ("y", "height of the upper face"),
     ):
         values = [getattr(plate, name) for plate in scene.plates]
-        layout.write(plates, name, values, "m", description)
-    mass = scene.beads.mass(scene.sphere_material.density)
-    beads = layout.write_beads(file, scene.beads.radius, mass)
+        write(plates, name, values, "m", description)
     for name, units, description in (
+        ("radius", "m", "radius"),
         ("emission_time", "s", "time at which the bead leaves its nozzle"),
         ("position", "m", "centre (x, y) at emission"),
         ("velocity", "m/s", "velocity (x, y) at emission"),
     ):
-        layout.write(beads, name, getattr(scene.beads, name), units, description)
+        write(beads, name, getattr(scene.beads, name), units, description)
 
 
 def _trajectories(dimensions: int, friction: bool) -> list[Dataset]:
@@ -205,11 +204,9 @@ def read(path: Path) -> Run:
     """
     with h5py.File(path, "r") as file:
         attributes = checked(file, path, NAME, SCHEMA)
-        return Run(
-            scene=_scene(file),
-            bead_on_bead=attributes.get("bead_on_bead"),
-            **common(file),
-        )
+        shared = common(file)
+        scene = _scene(file, shared.pop("pair"))
+        return Run(scene=scene, bead_on_bead=attributes.get("bead_on_bead"), **shared)
 
 
 def read_folder(folder: Path) -> Run:
@@ -217,9 +214,9 @@ def read_folder(folder: Path) -> Run:
     return read(folder / f"{NAME}.h5")
 
 
-def _scene(file: h5py.File) -> Scene:
+def _scene(file: h5py.File, pair: Pair) -> Scene:
     plates = [file[f"plates/{name}"][()].tolist() for name in ("thickness", "x0", "x1", "y")]
-    sphere, plate = layout.materials(file)
+    sphere, plate = pair.given
     fields = ("radius", "emission_time", "position", "velocity")
     return Scene(
         beads=Beads(**{name: file[f"beads/{name}"][()] for name in fields}),

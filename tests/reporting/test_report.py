@@ -131,7 +131,7 @@ def test_the_page_is_whole_in_one_small_file_and_fits_the_screen(folder, page, w
 
 
 def test_what_is_no_impact_is_left_out_and_said(folder, tmp_path, capsys):
-    rows = np.load(folder / "record.npy")
+    rows = cl.read_record(folder / "record.h5").rows
     rows = rows[rows["plate"] >= 0]
     rows["kind"][:2] = 3, 4
     np.save(tmp_path / "run.npy", rows)
@@ -156,7 +156,7 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
     with pytest.raises(ValueError, match="has no column mass, thickness: a report needs"):
         names = [name for name in impacts.collisions().dtype.names
                  if name not in ("mass", "thickness")]  # fmt: skip
-        Run(impacts.collisions()[names], "")
+        Run(cl.Record(impacts.collisions()[names]))
     rows = impacts.collisions()
     row = int(np.flatnonzero((rows["kind"] == 0) & (rows["plate"] >= 0))[0])
     for name, value in (("approach_speed", math.nan), ("mass", 0.0), ("thickness", math.nan),
@@ -164,7 +164,7 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
         wrong = rows.copy()
         wrong[name][row] = value
         with pytest.raises(ValueError, match=f"{name} of row {row} is {value}: leave the row out"):
-            Run(wrong, "")
+            Run(cl.Record(wrong))
     with monkeypatch.context() as patch:
         patch.setitem(sys.modules, "matplotlib", None)
         with pytest.raises(ImportError, match="pip install 'contactlaw"):
@@ -195,7 +195,7 @@ def test_parts_of_triangles_cover_them_and_have_their_own_points():
 def test_many_walls_are_counted_and_their_names_have_room(run, walls):
     rows = np.tile(run[1].collisions()[:1], walls)
     rows["plate"], rows["thickness"] = np.arange(walls), 1e-3
-    many = Run(rows, "beads")
+    many = Run(cl.Record(rows))
     assert f"on {walls} walls" in summary.counts(many)
     figure = energy.draw(many)
     figure.draw_without_rendering()

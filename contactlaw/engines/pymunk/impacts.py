@@ -328,9 +328,9 @@ class PymunkImpacts:
             impact, or 3 if the bead was struck while it touched); if every model is a
             `ReboundModel`, also sliding_speed_after, spin_x and spin_y (0), spin_z, contact_time,
             peak_force, plastic_energy, wave_energy, other_energy, friction_energy, wall_work (0,
-            unknown to the engine), radius, mass, material, thickness, triangle (-1) and flags. Energies are
-            those of solid spheres, bead on bead of the relative motion. What friction took of a
-            bead that has left the space within the step, and how it slides on, is NaN where the
+            unknown to the engine), radius, mass, material, thickness, triangle (-1) and flags.
+            Energies are those of solid spheres, bead on bead of the relative motion. What friction
+            took of a bead that has left the space within the step, and how it slides on, is NaN where the
             engine's friction acted.
         """
         return self._contacts.record.read(self._register)
