@@ -141,9 +141,6 @@ class Run(Recorded):
         rows = np.zeros(recorded.size, IMPACT)
         for name in names:
             rows[name] = recorded[name]
-        beads, mass = self.scene.beads, self.scene.beads.mass(self.scene.sphere_material.density)
-        rows["radius"], rows["mass"] = beads.radius[rows["bead"]], mass[rows["bead"]]
-        rows["thickness"] = self.thickness
         fill(rows, self.by_model, self.energy(rows))
         return rows
 
@@ -183,6 +180,22 @@ class Run(Recorded):
         mass = self.scene.beads.mass(self.scene.sphere_material.density)[rows["bead"]]
         energy: Floats = 0.5 * mass * rows["approach_speed"] ** 2
         return energy
+
+
+def sized(scene: Scene, rows: NDArray[np.void]) -> NDArray[np.void]:
+    """Give impacts sizes of beads and plates, which an engine with a constant COR leaves out."""
+    names = rows.dtype.names or ()
+    if "radius" in names:
+        return rows
+    more = ("radius", "mass", "thickness")
+    found = np.empty(rows.size, [(name, IMPACT[name]) for name in (*names, *more)])
+    for name in names:
+        found[name] = rows[name]
+    beads, plates = scene.beads, np.array([plate.thickness for plate in scene.plates])
+    found["radius"] = beads.radius[rows["bead"]]
+    found["mass"] = beads.mass(scene.sphere_material.density)[rows["bead"]]
+    found["thickness"] = np.where(rows["plate"] < 0, 0.0, plates[rows["plate"]])
+    return found
 
 
 def read(path: Path) -> Run:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.record.file import write
 from dem_demo.kit.beads import GRAVITY, Floats
 from dem_demo.kit.bed import Bed, Corners, check
 from dem_demo.sieve import defaults
@@ -110,6 +109,8 @@ class Sieve(Bed):
 
     def write_walls(self, file: h5py.File) -> None:
         """Write the triangles and the dimensions of the deck."""
+        from contactlaw.record.file import write
+
         deck = file.create_group("deck")
         corners = "corners (x, y, z) of each triangle at rest"
         write(deck, "triangles", self.deck.triangles(), "m", corners)

@@ -1,10 +1,8 @@
 """The record of impacts, without any engine."""
 
-import dataclasses
 import math
 import re
 
-import h5py
 import numpy as np
 import pytest
 from pymunk_room import Full, R, Stub

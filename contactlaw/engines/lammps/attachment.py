@@ -552,26 +552,9 @@ class LammpsPlates:
         self._on_first_rank(lambda record: record.save(path))
 
     def report(self, out: str | os.PathLike[str]) -> Path:
-        """Write a page about the impacts of all ranks, with figures and an energy map of the walls.
+        """Write a page about the impacts of all ranks into a folder, see `contactlaw.report`.
 
-        Every rank has to call it; rank 0 writes.
-
-        Parameters
-        ----------
-        out : path-like
-            Folder to write into; it is made if its parent exists.
-
-        Returns
-        -------
-        Path
-            The page, index.html, which needs no other file. Beside it are its figures,
-            summary.txt, record.h5, and the map as energy.vtk and energy.ply.
-
-        Raises
-        ------
-        ImportError, ValueError, OSError
-            Without matplotlib; without an impact; if a file cannot be written, of which no part is
-            left behind then.
+        Every rank has to call it; rank 0 writes. The walls are in the energy map.
         """
         self._on_first_rank(lambda record: report(record, out))
         return Path(out) / "index.html"

@@ -330,8 +330,8 @@ class PymunkImpacts:
             peak_force, plastic_energy, wave_energy, other_energy, friction_energy, wall_work (0,
             unknown to the engine), radius, mass, material, thickness, triangle (-1) and flags.
             Energies are those of solid spheres, bead on bead of the relative motion. What friction
-            took of a bead that has left the space within the step, and how it slides on, is NaN where the
-            engine's friction acted.
+            took of a bead that has left the space within the step, and how it slides on, is NaN
+            where the engine's friction acted.
         """
         return self._contacts.record.read(self._register)
 
@@ -346,25 +346,7 @@ class PymunkImpacts:
         self.record().save(path)
 
     def report(self, out: str | os.PathLike[str]) -> Path:
-        """Write a page about the impacts so far, with figures, into a folder.
-
-        Parameters
-        ----------
-        out : path-like
-            Folder to write into; it is made if its parent exists.
-
-        Returns
-        -------
-        Path
-            The page, index.html, which needs no other file. Beside it are its figures,
-            summary.txt and record.h5, the record.
-
-        Raises
-        ------
-        ImportError, ValueError, OSError
-            Without matplotlib; without an impact on a plate, or with a model that is no
-            `ReboundModel`; if a file cannot be written, of which no part is left behind then.
-        """
+        """Write a page about the impacts so far into a folder, see `contactlaw.report`."""
         return report(self.record(), out)
 
     def detach(self) -> None:
