@@ -456,7 +456,9 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
             count += w > outcome.yield_ratio[n] * leaves
         for k in range(count):
             n = beyond[k]
-            one = law if own.size == 0 else force.at_strength(law, outcome.strength[n], own)
+            one = (
+                law if own.size == 0 else force.at_compression(law, outcome.strength[n], dm[k], own)
+            )
             left[k], plastic[k], other[k] = losses.at_the_contact(one, dm[k])
             if own.size > 0:
                 out.peak_force[n] = force.loading(one, math.sqrt(dm[k]))
