@@ -93,19 +93,6 @@ def test_record_asks_each_model_for_its_own_rows():
     assert (main.speeds, other.speeds) == ([[2.0], [4.0]], [[3.0]])
 
 
-def test_an_impact_is_looked_up_once():
-    model, record, seen = Full(), Record(), []
-    for n in range(1, 4):
-        add(record, n, 0, 0, -1, 0, 0, 0, 10.0 + n, 0.6)
-        add(record, n, 0, -1, 0, 0, 0, 0, 20.0 + n, 0.6)
-        for _ in range(2):
-            seen.append(record.read(register_of(model, [R], [(model, 1e-3)])))
-    assert sum(model.speeds, []) == [11.0, 21.0, 12.0, 22.0, 13.0, 23.0]
-    assert seen[-1]["approach_speed"].tolist() == sum(model.speeds, [])
-    assert [len(rows) for rows in seen] == [2, 2, 4, 4, 6, 6]
-    assert (seen[-1][:2] == seen[0]).all()
-
-
 def test_rows_that_were_given_away_are_not_the_record():
     model, record = Full(), Record()
     add(record, 1.0, 0, 0, -1, 0, 0, 0, 2.0, 0.6)
