@@ -9,8 +9,9 @@ from typing import Any, Literal
 import numpy as np
 
 from contactlaw import style
+from contactlaw._readable import drawn
 from contactlaw.cli.parts import chosen, impacts, options, quantities, wording
-from contactlaw.cli.parts.plots import length_of, plate_of
+from contactlaw.cli.parts.plots import plate_of
 from contactlaw.model import ImpactModel
 from contactlaw.physical.history import ForceHistory
 from contactlaw.physical.validity import explain, limits_in_words
@@ -59,7 +60,7 @@ def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
 def _plot_history(arguments: argparse.Namespace) -> None:
     contact = _contact(arguments, chosen.model(arguments))
     title = (
-        f"{arguments.sphere} on {arguments.plate}: radius {length_of(arguments.radius)}, "
+        f"{arguments.sphere} on {arguments.plate}: radius {drawn(arguments.radius)}, "
         f"{plate_of(arguments.thickness)}, {arguments.speed:g} m/s"
     )
     _draw(contact, title, arguments.plot)

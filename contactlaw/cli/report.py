@@ -56,7 +56,7 @@ def _run(arguments: argparse.Namespace) -> None:
     if arguments.mesh:
         surface = _surface(run, arguments.mesh, arguments.scale)
         run = dataclasses.replace(run, surface=surface)
-    with wording.folder_of("out", arguments.out):
+    with wording.writing("out", arguments.out, folder=True):
         print(files.write(arguments.out, run))
     if not arguments.mesh and (run.record["triangle"] >= 0).any():
         wording.print_message("without --mesh there is no map of the energy on the walls")

@@ -104,11 +104,6 @@ def hits(file: h5py.File) -> Hits:
     """Read impacts on plates with the sizes of bead and plate.
 
     Left out are those of bead on bead, and rows that are no impacts.
-
-    Raises
-    ------
-    ValueError
-        If the file has another format, or lacks a part, or has one that cannot be read.
     """
     form = str(file.attrs.get("format", ""))
     if not form.startswith(FORMAT):

@@ -27,27 +27,8 @@ _LEDE = (
 def write(out: str | os.PathLike[str], run: Run) -> Path:
     """Write index.html, its figures, summary.txt, record.npy and, of a mesh, the energy map.
 
-    Parameters
-    ----------
-    out : path-like
-        Folder to write into; it is made if its parent exists. Files of an earlier report in it are
-        replaced, other files are left alone.
-    run : Run
-        The run.
-
-    Returns
-    -------
-    Path
-        The page.
-
-    Raises
-    ------
-    ValueError
-        Without any contact on a wall.
-    ImportError
-        Without matplotlib; the message says how to install it.
-    OSError
-        If a file cannot be written; nothing is left behind then.
+    The folder is made if its parent exists. Files of an earlier report in it are replaced, other
+    files are left alone; if a file cannot be written, nothing is left behind.
     """
     if not run.rows.size:
         raise ValueError("record: has no impact on a wall yet: simulate longer")

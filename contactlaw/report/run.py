@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._readable import drawn
 from contactlaw.answers.constant import Constant, constant
 from contactlaw.physical.kind import only_impacts
-from contactlaw.report.limits import label
 from contactlaw.report.surface import EnergyMap, Surface, energy_map
 from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
 from contactlaw.walls.motion import FARTHEST
@@ -167,7 +167,7 @@ class Run:
 
     def _name(self, plate: int, thickness: float) -> str:
         material = self.materials[plate] if plate < len(self.materials) else ""
-        return f"{plate}: {label(thickness)}" + f" {material}" * bool(material)
+        return f"{plate}: {drawn(thickness)}" + f" {material}" * bool(material)
 
     @cached_property
     def map(self) -> EnergyMap | None:

@@ -86,14 +86,6 @@ def refined(
 
     Returns the corners, the triangle of each point, and the number of the triangle of which each
     is a part.
-
-    Examples
-    --------
-    >>> square = np.array([[[0, 0, 0], [2, 0, 0], [2, 1, 0]], [[0, 0, 0], [2, 1, 0], [0, 1, 0]]])
-    >>> point = np.array([[1.9, 0.1, 0.0]])
-    >>> corners, where, whole = refined(1.0 * square, np.array([0]), point, 1.2)
-    >>> whole.tolist(), corners[where[0]].tolist()
-    ([0, 1, 0, 1, 0, 1], [[2.0, 1.0, 0.0], [1.0, 0.5, 0.0], [2.0, 0.0, 0.0]])
     """
     whole = np.arange(len(corners))
     while True:

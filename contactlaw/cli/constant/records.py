@@ -75,23 +75,10 @@ _COLUMNS = {
 def read(path: str | os.PathLike[str]) -> Recorded:
     r"""Read impacts on plates; bead on bead, and what is no impact in a record, are left out.
 
-    Parameters
-    ----------
-    path : path-like
-        The record of a scene of ``dem-demo`` (``.h5``); an impact record of an engine, as
-        ``np.save`` writes it (``.npy``); or else text: columns between commas, semicolons or tabs,
-        with names and units in the first line, as in ``speed_m/s,radius_mm`` or ``Speed
-        [m/s];Radius [mm]``. Speeds may be called speed, approach speed, normal speed or impact
-        speed, or velocity; a column without a unit is in that of the SI. Columns called radius or
-        diameter, thickness, weight and plate are optional.
-
-    Raises
-    ------
-    ValueError
-        If the file has no column of speeds, is of another kind, or has a unit or a number that
-        cannot be read.
-    OSError
-        If the file cannot be opened.
+    The file is the record of a scene of ``dem-demo`` (``.h5``), an engine's record as ``np.save``
+    writes it (``.npy``), or else text with names and units in the first line, as in
+    ``speed_m/s,radius_mm``. Columns called radius or diameter, thickness, weight and plate are
+    optional.
 
     Examples
     --------
@@ -122,13 +109,7 @@ def _check(found: Recorded) -> None:
 def combined(
     speeds: Sequence[float], radii: Sequence[float] | None, thicknesses: Sequence[float] | None
 ) -> PlannedImpacts:
-    """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once.
-
-    Examples
-    --------
-    >>> combined([1.0, 2.0], [1e-3], [1e-3, 3e-3]).thickness
-    array([0.001, 0.001, 0.003, 0.003])
-    """
+    """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once."""
     sizes = {"radius": radii, "thickness": thicknesses}
     grid = np.meshgrid(*(_given(*size) for size in sizes.items()), speeds, indexing="ij")
     r, h, v = (part.ravel() for part in grid)
@@ -138,25 +119,9 @@ def combined(
 def completed(
     found: Recorded, radii: Sequence[float] | None, thicknesses: Sequence[float] | None
 ) -> PlannedImpacts:
-    """Add what a record does not say: the radius of its beads, and the thickness of its plates.
+    """Add what a record does not say: the radius of its beads, and the thickness of its plates [m].
 
-    Parameters
-    ----------
-    found : Recorded
-        As `read` gives it.
-    radii, thicknesses : sequence of float or None
-        One value [m]; thicknesses one for each plate, too, if the record has their numbers.
-
-    Raises
-    ------
-    ValueError
-        If a value is missing, or given although the record has it.
-
-    Examples
-    --------
-    >>> run = Recorded(np.array([1.0, 2.0]), plate=np.array([1, 0]))
-    >>> completed(run, [1e-3], [0.5e-3, 2e-3]).thickness
-    array([0.002 , 0.0005])
+    One value is for all; thicknesses may be one for each plate if the record has their numbers.
     """
     one = np.zeros(found.speed.size, dtype=np.int64)
     plate = one if found.plate is None or len(thicknesses or ()) == 1 else found.plate

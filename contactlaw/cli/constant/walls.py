@@ -34,36 +34,7 @@ class Wall(NamedTuple):
 
 
 def walls(model: ImpactModel, recorded: PlannedImpacts, keep: Keep) -> list[Wall]:
-    """Find one COR for all impacts on plates of one thickness.
-
-    Parameters
-    ----------
-    model : ImpactModel
-        Model of beads and plates.
-    recorded : PlannedImpacts
-        Impacts on all plates.
-    keep : {"energy", "momentum"}
-        As in `ImpactModel.constant`.
-
-    Returns
-    -------
-    list of Wall
-        Walls, sorted by thickness.
-
-    Raises
-    ------
-    ValueError
-        If there are more than a hundred thicknesses; as `ImpactModel.constant`.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> from contactlaw.cli.constant.records import combined
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> found = walls(model, combined([1.0, 10.0], [0.9e-3], [0.5e-3, 3e-3]), "energy")
-    >>> [(wall.thickness, round(wall.best.restitution, 3)) for wall in found]
-    [(0.0005, 0.649), (0.003, 0.977)]
-    """
+    """Find one COR for all impacts on plates of one thickness; walls are sorted by it."""
     plates = np.unique(recorded.thickness)
     if plates.size > _MOST:
         raise ValueError(

@@ -62,13 +62,7 @@ def _names(text: str) -> tuple[str, ...]:
 
 
 def _prior(text: str) -> tuple[str, float]:
-    """Read the name of a quantity and its standard error, in a unit of that quantity.
-
-    Examples
-    --------
-    >>> _prior("density=20kg/m3")
-    ('density', 20.0)
-    """
+    """Read the name of a quantity and its standard error, in a unit of that quantity."""
     name, _, size = text.partition("=")
     name = name.strip().replace("-", "_")
     if name not in UNKNOWNS or not size:

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._readable import drawn
 from contactlaw.cli.fit.printed import values_in_words
 from contactlaw.cli.parts import wording
-from contactlaw.cli.parts.plots import SUFFIXES, colour_of, length_of, plate_of
+from contactlaw.cli.parts.plots import SUFFIXES, colour_of, plate_of
 from contactlaw.fitting import Fit
 from contactlaw.fitting.measurements import KINDS
 from contactlaw.physical.validity import Validity, limits_in_words
@@ -64,24 +65,7 @@ class FitCurve(NamedTuple):
 
 
 def save_fit(found: Fit, title: str, path: str | os.PathLike[str]) -> None:
-    """Draw a fit into a file: a column for each quantity that was measured.
-
-    Parameters
-    ----------
-    found : Fit
-        Result of `contactlaw.fit`.
-    title : str
-        Title of the figure.
-    path : path-like
-        File to write: PNG, SVG or PDF, by its suffix.
-
-    Raises
-    ------
-    ImportError
-        If matplotlib is missing; the message says how to install it.
-    ValueError
-        If the suffix names no format.
-    """
+    """Draw a fit into a file: a column for each quantity that was measured."""
     wording.check_suffix("path", path, SUFFIXES)
     groups = list(groups_of(found))
     drawn = len(groups) <= _MOST_CURVES and not found.data.is_oblique  # speed is no abscissa then
@@ -176,7 +160,7 @@ def _draw_values(
     errors: Any = getattr(found.data, f"{kind}_error")
     fitted = measured / (1.0 + off)
     inside = (found.flags[rows] & Validity.ACCURACY) == 0
-    name = f"radius {length_of(group.radius)}, {plate_of(group.thickness)}"
+    name = f"radius {drawn(group.radius)}, {plate_of(group.thickness)}"
     for part, face in ((inside, colour), (~inside, "white")):
         if not part.any():
             continue

@@ -54,29 +54,9 @@ class Read(NamedTuple):
 def read(path: str | os.PathLike[str]) -> Read:
     r"""Read a table of rebounds, a row for each.
 
-    Parameters
-    ----------
-    path : path-like
-        Text file with columns between commas, semicolons or tabs, and names and units in the first
-        line, as in ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``; a column
-        without a unit is in SI units. Required are speeds, and at least one of COR (restitution),
-        contact time, peak force, tangential restitution, rotational restitution and spin.
-        Optional are their standard errors, ``..._error``, angles of incidence from the normal,
-        with which the speeds are those of the beads, or sliding speeds, friction, radius and
-        thickness, or diameters. An empty cell, or ``n/a``, was not measured; rows in which nothing
-        was measured are left out.
-        Numbers may have decimal commas, with semicolons or tabs between the columns.
-
-    Returns
-    -------
-    Read
-
-    Raises
-    ------
-    ValueError
-        If the file is no table, lacks a column, or has a cell that is no number.
-    OSError
-        If the file cannot be opened.
+    Columns are between commas, semicolons or tabs, with names and units in the first line, as in
+    ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``. Rows in which nothing was
+    measured are left out.
 
     Examples
     --------

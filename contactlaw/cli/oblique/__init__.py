@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import _atomic
+from contactlaw._readable import drawn
 from contactlaw._version import VERSION
 from contactlaw.cli.oblique import tracers
 from contactlaw.cli.parts import chosen, figure, impacts, layout, options, quantities, wording
 from contactlaw.cli.parts.impacts import Column, ImpactTable
-from contactlaw.cli.parts.plots import length_of, plate_of
+from contactlaw.cli.parts.plots import plate_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import within
@@ -81,7 +82,7 @@ def _run(arguments: argparse.Namespace) -> None:
         return
     for name in ("fluent", "acusolve"):
         if (path := getattr(arguments, name)) is not None:
-            with wording.file_of(name, path):
+            with wording.writing(name, path):
                 _atomic.write(path, _traced(arguments, name, given).encode())
             print(path)
             return
@@ -139,7 +140,7 @@ def _traced(arguments: argparse.Namespace, program: str, given: dict[str, Any]) 
     rows = _table(arguments, given).columns
     (speed,), (friction,) = arguments.speed, arguments.friction
     about = (
-        f"{arguments.sphere} on {arguments.plate}, radius {length_of(*arguments.radius)}, "
+        f"{arguments.sphere} on {arguments.plate}, radius {drawn(*arguments.radius)}, "
         f"{plate_of(*arguments.thickness)}, {speed:g} m/s, friction {friction:g}, "
         f"law {arguments.law}, no spin before"
     )

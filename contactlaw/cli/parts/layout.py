@@ -67,44 +67,21 @@ Ask = Callable[[dict[str, Array]], Answers]
 
 
 def is_logarithmic(name: str, least: float, largest: float) -> bool:
-    """Whether a range is so wide that it is spaced and drawn logarithmically.
-
-    Examples
-    --------
-    >>> is_logarithmic("speed", 1.0, 10.0), is_logarithmic("speed", 0.1, 10.0)
-    (False, True)
-    """
+    """Whether a range is so wide that it is spaced and drawn logarithmically."""
     return AXES[name].logarithmic and largest >= 20.0 * least
 
 
 def can_be_axis(values: Sequence[float]) -> bool:
-    """Whether a list has two finite values, between which there is something to draw.
-
-    Examples
-    --------
-    >>> can_be_axis((1e-3, 2e-3)), can_be_axis((1e-3, math.inf))
-    (True, False)
-    """
+    """Whether a list has two finite values, between which there is something to draw."""
     return len({value for value in values if value < math.inf}) > 1
 
 
 def layout(given: Mapping[str, Sequence[float]], along: int, across: int) -> Layout:
-    """Choose what is drawn over what.
+    """Choose what is drawn over what, along an axis, as curves and in panels.
 
     A list of more than 8 values is an axis, and two of them are those of a map. Otherwise the axis
-    is the first list in the order of `given`. The next one makes curves, and a third one panels.
-
-    Parameters
-    ----------
-    given : mapping of str to sequence of float
-        Values of each quantity of `AXES` that the plot knows, in SI units and degrees.
-    along, across : int
-        Number of values along the axis of a curve, and along each axis of a map.
-
-    Raises
-    ------
-    ValueError
-        If no list has two finite values, or there is too much for one figure.
+    is the first list in the order of `given`. The next one makes curves, and a third one panels. An
+    axis of a curve has `along` values, one of a map `across`.
 
     Examples
     --------

@@ -78,31 +78,15 @@ class _Item(NamedTuple):
 def values(text: str, quantity: Quantity) -> tuple[float, ...]:
     """Read a list of numbers and ranges, each with its unit or all in SI units.
 
-    Parameters
-    ----------
-    text : str
-        Items with commas between them: a number, or a range start:stop:count of evenly spaced
-        values that include both ends; ``log`` after the count spaces them logarithmically.
-    quantity : Quantity
-        `LENGTH`, `SPEED` or another of this module.
-
-    Returns
-    -------
-    tuple of float
-        Values in SI units, in the order given, without rounding by the unit: 0.9mm is 0.9e-3 to
-        the last bit. Any sign, ``inf`` and ``nan`` are read: limits are for the caller to check.
-
-    Raises
-    ------
-    ValueError
-        If the text cannot be read, a unit is of another quantity, or only some numbers have units.
+    Items stand between commas: a number, or a range start:stop:count of evenly spaced values that
+    include both ends; ``log`` after the count spaces them logarithmically. The values are not
+    rounded by their unit: 0.9mm is 0.9e-3 to the last bit. Any sign, ``inf`` and ``nan`` are read:
+    limits are for the caller to check.
 
     Examples
     --------
-    >>> values("0.5mm, 1mm, inf", LENGTH)
-    (0.0005, 0.001, inf)
-    >>> values("0.1:10:3log", SPEED)
-    (0.1, 1.0, 10.0)
+    >>> values("0.5mm, 1mm, inf", LENGTH), values("0.1:10:3log", SPEED)
+    ((0.0005, 0.001, inf), (0.1, 1.0, 10.0))
     """
     items = [[_item(part, quantity) for part in _ends(item)] for item in text.split(",")]
     _check_units(text, [number for item in items for number in item], quantity)
@@ -114,13 +98,7 @@ def values(text: str, quantity: Quantity) -> tuple[float, ...]:
 
 
 def value(text: str, quantity: Quantity) -> float:
-    """Read one number with its unit, or in the SI unit.
-
-    Examples
-    --------
-    >>> value("36 km/h", SPEED)
-    10.0
-    """
+    """Read one number with its unit, or in the SI unit."""
     found = values(text, quantity)
     if len(found) > 1:
         raise ValueError(f"got {text!r}, expected one {quantity.name}")
@@ -136,24 +114,6 @@ def decimal_comma(text: str) -> str:
     ('0.9mm', '')
     """
     return text.replace(",", ".") if re.fullmatch(r"\s*\d+,\d+\s*\D*", text) else ""
-
-
-def formatted(size: float, quantity: Quantity) -> str:
-    """Write a value with six digits, a length in a suitable unit.
-
-    Examples
-    --------
-    >>> formatted(0.9e-3, LENGTH), formatted(5.0, SPEED)
-    ('0.9 mm', '5 m/s')
-    """
-    if not math.isfinite(size):
-        return f"{size:g}"
-    unit = quantity.si
-    if quantity is LENGTH:
-        # from 0.1 mm to 1 m in mm, because plates are usually given in mm
-        unit = next((u for u, least in (("m", 1.0), ("mm", 1e-4), ("um", 1e-7)) if size >= least),
-                    "nm")  # fmt: skip
-    return f"{size / float(quantity.units[unit]):g} {unit}"
 
 
 def _ends(item: str) -> list[str]:

@@ -20,24 +20,6 @@ class Handlers:
     key of the adapter becomes a hook that the adapter's calls first. One for a wildcard, or for the
     two types in the other order, is called by pymunk after the adapter's, when the restitution is
     set and the impact recorded: the adapter wraps it, to notice what it changes.
-
-    Parameters
-    ----------
-    space : pymunk.Space
-        Space of the handlers.
-    own : dict
-        For each key, a function that makes the adapter's callback from the list of user's hooks.
-    late : tuple of keys
-        Keys whose callbacks pymunk calls after the adapter's.
-    keep : callable
-        Called with an error of a late callback.
-    is_ours : callable
-        Whether the adapter answers a contact.
-    undo, rub : callable
-        Called with a contact that a late callback has switched off, or whose friction or
-        ``surface_velocity`` it has changed.
-    stranger : callable
-        Called as a ``post_solve`` with a contact of a bead and a shape that is not registered.
     """
 
     def __init__(

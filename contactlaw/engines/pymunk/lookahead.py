@@ -167,22 +167,11 @@ def tunnelling(
 
 
 def approach(positions: Array, velocities: Array, line: Line, dt: float) -> tuple[Array, Array]:
-    """Distance and speed of beads that cross a plate's centre line within a step.
+    """Distance and speed of beads that cross a plate's centre line within a step of length dt [s].
 
-    Parameters
-    ----------
-    positions, velocities : array (n, 2)
-        Centres of the beads at the start of the step [m], and their velocities [m/s].
-    line : Line
-        The plate at the start of the step.
-    dt : float
-        Length of the step [s].
-
-    Returns
-    -------
-    distance, speed : array (n,)
-        Distance from the line at the start of the step [m] and mean normal speed in it [m/s];
-        speed 0 for those that do not cross the line between its two ends.
+    Positions [m] and the line are those at the start of the step, and so is the distance [m]. The
+    speed is the mean normal one in the step [m/s]; 0 for beads that do not cross the line between
+    its two ends.
 
     Examples
     --------

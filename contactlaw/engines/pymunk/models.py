@@ -63,30 +63,7 @@ class ModelsByBead(dict[int, RestitutionModel]):
 
 
 class Models:
-    """The models of one space, one per pair of materials; the first has the default materials.
-
-    Parameters
-    ----------
-    given : RestitutionModel or sequence of RestitutionModel
-        The models that `attach` was given.
-
-    Attributes
-    ----------
-    all : list of RestitutionModel
-        The models in the order in which they were given.
-    spheres : list
-        Materials of beads; None for a model without a pair.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> pairs = [cl.Pair(bead, "glass") for bead in ("gamma-alumina", "carbon-steel")]
-    >>> models = Models([cl.ImpactModel(pair, law="myc") for pair in pairs])
-    >>> [sphere.name for sphere in models.spheres]
-    ['gamma-alumina', 'carbon-steel-1020']
-    >>> models.bead("carbon-steel")
-    1
-    """
+    """The models of one space, one per pair of materials; the first has the default materials."""
 
     def __init__(self, given: RestitutionModel | Sequence[RestitutionModel]) -> None:
         self.all = _listed(given)
