@@ -14,6 +14,7 @@ _PREFIXES = {
     "Pa": ((1e10, "GPa", 1e9), (1e5, "MPa", 1e6), (1e2, "kPa", 1e3), (0.0, "Pa", 1.0)),
     "m": ((1.0, "m", 1.0), (1e-4, "mm", 1e-3), (1e-7, "um", 1e-6), (0.0, "nm", 1e-9)),
     "s": ((1.0, "s", 1.0), (1e-3, "ms", 1e-3), (1e-7, "us", 1e-6), (0.0, "ns", 1e-9)),
+    "kg": ((1.0, "kg", 1.0), (1e-3, "g", 1e-3), (1e-6, "mg", 1e-6), (0.0, "ug", 1e-9)),
     "J": ((1.0, "J", 1.0), (1e-3, "mJ", 1e-3), (1e-6, "uJ", 1e-6), (0.0, "nJ", 1e-9)),
 }
 _FINEST = 1e-6  # smallest relative error that is written: no material is known so well

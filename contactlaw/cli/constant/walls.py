@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterator
-from typing import NamedTuple, TextIO
+from typing import Any, NamedTuple, TextIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,7 +89,7 @@ def text(found: list[Wall], keep: Keep) -> Iterator[str]:
     yield from explained(flags_of(found), sum(one.impacts for one in best))
 
 
-def write_csv(found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, str]) -> None:
+def write_csv(found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, Any]) -> None:
     """Write a row per wall with every digit; flags are NAME:impacts, with bars between them."""
     writer = csv.writer(out, lineterminator="\n")
     errors = ("energy_error", "rebound_error", "mean", "mean_energy_error")

@@ -113,7 +113,7 @@ def _hits(model: ImpactModel, given: dict[str, Array], mass: float | None) -> di
     angle, total, thickness, radius, friction = np.broadcast_arrays(*(given[n] for n in _GIVEN))
     inclined = np.radians(angle)
     speed, sliding = total * np.cos(inclined), total * np.sin(inclined)
-    with wording.naming_impact(speed, radius, thickness):
+    with wording.naming_impact(speed, radius, thickness, mass):
         hit = model.oblique(speed, sliding, radius, thickness, friction, method="solve", mass=mass)
     changed = sliding - np.asarray(hit.sliding_speed)
     return {

@@ -67,28 +67,28 @@ class ImpactTable:
 
     columns: dict[str, Array]
     flags: NDArray[np.int64]
-    asked: dict[str, str]
+    asked: dict[str, Any]
 
     def __len__(self) -> int:
         """Count the impacts."""
         return len(self.flags)
 
 
-def asked(model: ImpactModel, **sizes: float) -> dict[str, str]:
+def asked(model: ImpactModel, **sizes: float) -> dict[str, Any]:
     """Repeat what the user asked: names of the materials and of the law, and sizes in SI units."""
     law, (sphere, plate) = model.force_law, model.pair.given
     name = law.family if law.from_pair else law.name
     named = units() | {"mass": "kg"}
-    numbers = {f"{size}_{named[size]}": f"{value!r}" for size, value in sizes.items()}
+    numbers = {f"{size}_{named[size]}": value for size, value in sizes.items()}
     return {"sphere": sphere.name, "plate": plate.name, "law": name, **numbers}
 
 
-def in_words(asked: dict[str, str]) -> str:
+def in_words(asked: dict[str, Any]) -> str:
     """Write what was asked as a title.
 
     Examples
     --------
-    >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": "0.001"})
+    >>> in_words({"sphere": "glass", "plate": "pom", "law": "fem", "radius_m": 0.001})
     'glass on pom, law fem, radius 0.001 m'
     """
     sphere, plate, law, *_ = asked.values()
@@ -124,7 +124,7 @@ def tabulate(
             f"{_MOST} is the most: give fewer values"
         )
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
-    with wording.naming_impact(v, r, h):
+    with wording.naming_impact(v, r, h, mass):
         if not solve and _integrates(model):
             limited = model.outside == "raise"
             by = _solver(model, limited)

@@ -117,8 +117,10 @@ def writing(option: str, path: str | os.PathLike[str], folder: bool = False) -> 
 
 
 @contextmanager
-def naming_impact(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> Iterator[None]:
-    """Name the impact that an error within is about by its speed, radius and thickness."""
+def naming_impact(
+    speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, mass: float | None = None
+) -> Iterator[None]:
+    """Name the impact that an error within is about by its speed, sizes, and mass if given."""
     try:
         yield
     except (OutsideTableError, UnsolvedError) as error:
@@ -126,6 +128,8 @@ def naming_impact(speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike) -> 
             values.flat[error.impact] for values in np.broadcast_arrays(speed, radius, thickness)
         )
         impact = f"{in_unit(v, 'm/s')}, radius {in_unit(r, 'm')}, thickness {in_unit(h, 'm')}"
+        if mass is not None:
+            impact += f", mass {in_unit(mass, 'kg')}"
         if isinstance(error, UnsolvedError):
             what = f"the equation did not solve at {error.where}: {error.reason}"
         else:
