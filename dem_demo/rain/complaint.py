@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from contactlaw import ImpactModel
-from contactlaw.report.limits import label
+from contactlaw.reporting.limits import label
 from dem_demo.kit import disk
 from dem_demo.rain.scene import Scene
 

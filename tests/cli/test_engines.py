@@ -136,12 +136,12 @@ def test_a_constant_from_the_record_of_a_run(tmp_path, monkeypatch, capsys):
     assert main(["constant", "--record", str(tmp_path / "rain/rain.h5"), "--csv"]) == 0
     rows = read_csv(capsys.readouterr().out)
     with h5py.File(tmp_path / "rain/rain.h5") as file:
-        hits = {name: file[f"collisions/{name}"][()] for name in file["collisions"]}
-        mass, plates = file["beads/mass"][()], file["plates/thickness"][()]
+        hits = {name: file[f"impacts/{name}"][()] for name in file["impacts"]}
+        plates = file["plates/thickness"][()]
     for row in rows:
         plate = np.flatnonzero(plates == float(row["thickness_m"]))
         on_it = np.isin(hits["plate"], plate)
-        energy = mass[hits["bead"]] * hits["approach_speed"] ** 2 * on_it
+        energy = hits["mass"] * hits["approach_speed"] ** 2 * on_it
         lost = np.sum(energy * (1 - hits["restitution"] ** 2))
         constant = np.sum(energy) * (1 - float(row["restitution"]) ** 2)
         assert int(row["impacts"]) == np.count_nonzero(on_it) > 5

@@ -15,11 +15,12 @@ from contactlaw._content import content_of
 from contactlaw.cli.parts import columns, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import SPEED
-from contactlaw.engines import hdf5, layout
-from contactlaw.engines.record import only_impacts
 from contactlaw.physical.arguments import check
+from contactlaw.physical.kind import only_impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
+from contactlaw.record import hdf5
+from contactlaw.record.file import HDF5, Record, read_record, saved
 
 Array = NDArray[np.float64]
 
@@ -64,6 +65,7 @@ class PlannedImpacts(NamedTuple):
 
 
 _SAME = 1e-3  # relative difference of densities; six digits of radius and mass make 2e-5
+_OF_ROWS = "radius", "thickness", "mass"
 _COLUMNS = {
     "speed": TextColumn(columns.SPEEDS, SPEED),
     **columns.SIZES,
@@ -72,11 +74,11 @@ _COLUMNS = {
 }
 
 
-def read(path: str | os.PathLike[str]) -> Recorded:
-    r"""Read impacts on plates; bead on bead, and what is no impact in a record, are left out.
+def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
+    r"""Read impacts on plates of each pair; bead on bead, and what is no impact, are left out.
 
-    The file is the record of a scene of ``dem-demo`` (``.h5``), an engine's record as ``np.save``
-    writes it (``.npy``), or else text with names and units in the first line, as in
+    The files are records of one run (``.h5``); or else one file: rows of an engine, as ``np.save``
+    writes them (``.npy``), or text with names and units in the first line, as in
     ``speed_m/s,radius_mm``. Columns called radius or diameter, thickness, weight and plate are
     optional.
 
@@ -87,14 +89,19 @@ def read(path: str | os.PathLike[str]) -> Recorded:
     ...     _ = file.write("Speed [cm/s];Radius [mm]\n50;0.9\n120;1.1\n")
     ...     file.flush()
     ...     found = read(file.name)
-    >>> found.speed, found.radius
+    >>> found[0].speed, found[0].radius
     (array([0.5, 1.2]), array([0.0009, 0.0011]))
     """
-    readers = {".h5": _hdf5, ".hdf5": _hdf5, ".npy": _npy}
-    with wording.reading(path):
-        reader = readers.get(Path(path).suffix.lower(), _text)
-        found = reader(content_of(Path(path), pipe=reader is _text))
-        _check(found)
+    first = Path(paths[0])
+    if len(paths) > 1 or first.suffix.lower() in HDF5:
+        found = _by_pair(read_record(*paths))
+    else:
+        reader = _npy if first.suffix.lower() == ".npy" else _text
+        with wording.reading(first):
+            found = [reader(content_of(first, pipe=reader is _text))]
+    with wording.reading(first):
+        for one in found:
+            _check(one)
     return found
 
 
@@ -174,13 +181,23 @@ def _sized(
     return recorded
 
 
-def _hdf5(content: bytes) -> Recorded:
-    with hdf5.opened(content) as file:
-        return Recorded(**layout.hits(file)._asdict())
+def _by_pair(record: Record) -> list[Recorded]:
+    """Impacts on plates of each pair of materials; of one that is unknown last."""
+    on_plates = record.part(record.rows["plate"] >= 0)
+    impacts, found = on_plates.part(on_plates.impact), []
+    for n in sorted(set(impacts.which.tolist()), key=lambda n: (n < 0, n)) or [-1]:
+        rows = impacts.rows[impacts.which == n]
+        known = {name: rows[name] for name in _OF_ROWS if name in (rows.dtype.names or ())}
+        pair, law = impacts.bodies[n] if n >= 0 else (None, None)
+        found.append(Recorded(
+            rows["approach_speed"], plate=rows["plate"], pair=pair, law=law or None,
+            left_out=on_plates.left_out, **known,
+        ))  # fmt: skip
+    return found
 
 
 def _npy(content: bytes) -> Recorded:
-    rows = columns.saved(content)
+    rows = saved(content)
     names = rows.dtype.names or ()
 
     def numbers(wanted: list[int]) -> Array:

@@ -89,12 +89,15 @@ def text(found: list[Wall], keep: Keep) -> Iterator[str]:
     yield from explained(flags_of(found), sum(one.impacts for one in best))
 
 
-def write_csv(found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, Any]) -> None:
+def write_csv(
+    found: list[Wall], keep: Keep, out: TextIO, asked: dict[str, Any], head: bool = True
+) -> None:
     """Write a row per wall with every digit; flags are NAME:impacts, with bars between them."""
     writer = csv.writer(out, lineterminator="\n")
     errors = ("energy_error", "rebound_error", "mean", "mean_energy_error")
     numbers = ("restitution", "spread", *errors)
-    writer.writerow(["thickness_m", "impacts", "keep", *numbers, *asked, "flags"])
+    if head:
+        writer.writerow(["thickness_m", "impacts", "keep", *numbers, *asked, "flags"])
     for wall in found:
         flags = "|".join(f"{flag.name}:{count}" for flag, count in wall.best.flags.items())
         values = (getattr(wall.best, name) for name in numbers)

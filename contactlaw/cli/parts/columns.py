@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import csv
 import difflib
-import io
 import math
 import re
-import tokenize
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -46,24 +44,6 @@ class Located(NamedTuple):
 
     place: int
     per_unit: float  # values are divided by this, which rounds only once
-
-
-def saved(content: bytes) -> NDArray[np.void]:
-    """Read rows with named columns from the content of a file of ``np.save``."""
-    if not content.startswith(b"\x93NUMPY"):
-        raise ValueError("no file of np.save")
-    try:
-        rows = np.load(io.BytesIO(content), allow_pickle=False)
-    except (ValueError, TypeError, OverflowError, EOFError, MemoryError, SyntaxError,
-            tokenize.TokenError) as error:  # fmt: skip
-        raise ValueError(f"a damaged file of np.save, or one of objects: {error}") from None
-    if rows.dtype.names is None or rows.ndim != 1:
-        raise ValueError(
-            f"an array of shape {rows.shape} and type {rows.dtype}, expected rows with named "
-            "columns, as the record of an engine has"
-        )
-    found: NDArray[np.void] = rows
-    return found
 
 
 def split_table(content: bytes) -> tuple[list[str], list[str], str]:

@@ -23,6 +23,7 @@ from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialE
 _ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
 
 _OTHER_NAMES = {
+    "meshes": "mesh",
     "path": "plot",
     "priors": "prior",
     "restitution": "cor",

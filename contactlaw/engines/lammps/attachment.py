@@ -27,9 +27,11 @@ from contactlaw.engines.lammps.memory import (
     SLIDING,
     WIDTH,
 )
-from contactlaw.engines.record import IMPACT
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import warn_of_metres
+from contactlaw.record.columns import IMPACT
+from contactlaw.record.file import Record
+from contactlaw.reporting.files import report
 from contactlaw.stepping import Trouble, WallContacts
 from contactlaw.stepping.friction import check_friction
 from contactlaw.stepping.plate_rows import SOLID
@@ -254,11 +256,6 @@ class LammpsPlates:
             warn_of_metres("radius", radius, stacklevel=3)
         self._contacts = WallContacts(
             walls, models, radius, records, friction=friction, types=types
-        )
-        self._subject = ", ".join(sorted({one.pair.sphere.name for one in models.values()}))
-        own = (by_type(wall.model, types) or models for wall in walls)
-        self._materials = tuple(
-            "/".join(sorted({one.pair.plate.name for one in found.values()})) for found in own
         )
         self._fixes: list[str] = []
         self._warned: set[str] = set()
@@ -537,46 +534,42 @@ class LammpsPlates:
         whole: NDArray[np.void] = np.concatenate(parts)
         return whole[np.lexsort((whole["bead"], whole["time"]))]
 
-    def report(self, out: str | os.PathLike[str]) -> Path:
-        """Write a page about the impacts of all ranks, with figures and an energy map of the walls.
+    def record(self) -> Record | None:
+        """Record of all ranks, with the materials, law and walls: on rank 0, None on the others.
+
+        Every rank has to call it.
+        """
+        rows = self.gather()
+        if rows is None:
+            return None
+        return self._contacts.record(rows, engine="LAMMPS", version_engine=self._lmp.version())
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the record of all ranks to a file, see `contactlaw.Record.save`.
 
         Every rank has to call it; rank 0 writes.
-
-        Parameters
-        ----------
-        out : path-like
-            Folder to write into; it is made if its parent exists.
-
-        Returns
-        -------
-        Path
-            The page, index.html, which needs no other file. Beside it are its figures,
-            summary.txt, record.npy, and the map as energy.vtk and energy.ply.
-
-        Raises
-        ------
-        ImportError, ValueError, OSError
-            Without matplotlib; without an impact; if a file cannot be written, of which no part is
-            left behind then.
         """
-        from contactlaw.report import files
-        from contactlaw.report.run import Run
-        from contactlaw.report.surface import Surface
-        from contactlaw.walls.rest import at_rest
+        self._on_first_rank(lambda record: record.save(path))
 
-        rows, page, error = self.gather(), Path(out) / "index.html", None
-        if rows is not None:
+    def report(self, out: str | os.PathLike[str]) -> Path:
+        """Write a page about the impacts of all ranks into a folder, see `contactlaw.report`.
+
+        Every rank has to call it; rank 0 writes. The walls are in the energy map.
+        """
+        self._on_first_rank(lambda record: report(record, out))
+        return Path(out) / "index.html"
+
+    def _on_first_rank(self, write: Callable[[Record], object]) -> None:
+        """Let rank 0 write; all ranks raise what goes wrong there."""
+        record, error = self.record(), None
+        if record is not None:
             try:
-                subject = f"{self._subject} on {', '.join(sorted({*self._materials}))}, in LAMMPS"
-                scene = self._contacts.scene
-                surface = Surface(*at_rest(scene.facets, scene.frames, rows))
-                files.write(out, Run(rows, subject, self._materials, surface))
+                write(record)
             except Exception as found:  # the other ranks wait to hear of it
                 error = found
         error = self._comm.bcast(error)
         if error is not None:
             raise error
-        return page
 
     def detach(self) -> None:
         """Remove the plates from the simulation; the record stays readable.

@@ -107,7 +107,7 @@ def test_a_report_on_two_ranks_has_the_impacts_of_both(two_ranks):
     with np.load(two_ranks[1]) as out:
         rows = out["rows"]
     folder = two_ranks[1].with_name("report")
-    assert np.array_equal(np.load(folder / "record.npy"), rows)
+    assert np.array_equal(cl.read_record(folder / "record.h5").rows, rows)
     assert f"{rows.size} impacts on 2 walls" in (folder / "summary.txt").read_text()
 
 

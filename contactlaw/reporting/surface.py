@@ -8,33 +8,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.record.file import Surface
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _FEW = 3.0  # impacts in a square whose side is the reach of the average
 _FINEST, _COARSEST = 1.0 / 60.0, 1.0 / 12.0  # limits of this reach [largest extent of the walls]
 _GRID, _CELLS = 0.125, 2e6  # cell of the grid for the average [reach], and most cells
-
-
-class Surface(NamedTuple):
-    """Walls as triangles in their places at the start, and where impacts hit them.
-
-    Attributes
-    ----------
-    corners
-        Corners of the triangles, shape (m, 3, 3) [m].
-    wall
-        Number of the wall of each triangle, shape (m,).
-    triangle
-        Number of the triangle for each row of a record, shape (n,); -1: on none of them.
-    point
-        The contact point on it, shape (n, 3) [m]; None if unknown, as on walls that move.
-    """
-
-    corners: Floats
-    wall: Integers
-    triangle: Integers
-    point: Floats | None
 
 
 class EnergyMap(NamedTuple):

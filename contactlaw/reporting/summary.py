@@ -7,9 +7,9 @@ import html
 import numpy as np
 
 from contactlaw._readable import drawn, relative
-from contactlaw.report import page
-from contactlaw.report.limits import exceeded, limits_lines
-from contactlaw.report.run import CAUSES, Run, WallRow, by_cause
+from contactlaw.reporting import page
+from contactlaw.reporting.limits import exceeded, limits_lines
+from contactlaw.reporting.run import CAUSES, Run, WallRow, by_cause
 
 Table = list[tuple[str, ...]]
 

@@ -12,8 +12,8 @@ from matplotlib.figure import Figure
 
 from contactlaw import style
 from contactlaw._readable import drawn, scale_of
-from contactlaw.report.charts import PARTS, bar, wall_axis
-from contactlaw.report.run import Run, by_cause, shares
+from contactlaw.reporting.charts import PARTS, bar, wall_axis
+from contactlaw.reporting.run import Run, by_cause, shares
 
 
 def draw(run: Run) -> Figure:

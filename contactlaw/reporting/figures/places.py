@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 
 from contactlaw import style
 from contactlaw._readable import drawn
-from contactlaw.report.charts import DENSITY, density_bar, density_scale, sheet
-from contactlaw.report.run import Run, taken
-from contactlaw.report.surface import EnergyMap
+from contactlaw.reporting.charts import DENSITY, density_bar, density_scale, sheet
+from contactlaw.reporting.run import Run, taken
+from contactlaw.reporting.surface import EnergyMap
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def _view(axes: Axes, found: EnergyMap, towards: Floats) -> None:
 
 def _points(run: Run, within: str) -> Figure:
     """Draw contact points as seen along the axis in which they spread the least."""
-    energy, places = taken(run.rows), 1e3 * run.points[run.record["plate"] >= 0]
+    energy, places = taken(run.rows), 1e3 * run.on_walls.points
     spread = np.ptp(places, axis=0)
     x, y = (n for n in range(3) if n != 2 - int(np.argmin(spread[::-1])))
     # points on one flat wall, or a single one, need some room beside them
