@@ -26,42 +26,17 @@ Array = NDArray[np.float64]
 
 
 class Recorded(NamedTuple):
-    """Impacts on plates in SI units, each column an array of one length; None where unknown.
+    """Impacts on plates in SI units, each column an array of one length; None where unknown."""
 
-    Attributes
-    ----------
-    speed, radius, thickness
-        Normal approach speed [m/s], radius of the bead and thickness of the plate [m].
-    weights
-        Relative frequency of each impact.
-    plate, mass
-        Number of the plate that is hit, and mass of the bead [kg] in an engine's record.
-    pair, law
-        Materials and name of the law of the run.
-    left_out
-        Which rows of a record are left out, because they are no impacts.
-    """
-
-    speed: Array
-    radius: Array | None = None
-    thickness: Array | None = None
-    weights: Array | None = None
-    plate: NDArray[np.int64] | None = None
-    mass: Array | None = None
+    speed: Array  # of approach [m/s]
+    radius: Any = None  # of the bead [m]
+    thickness: Any = None  # of the plate [m]
+    weights: Any = None  # relative frequencies
+    plate: NDArray[np.int64] | None = None  # number of the plate that is hit
+    mass: Array | None = None  # of the bead [kg], in an engine's record
     pair: Pair | None = None
     law: str | None = None
-    left_out: str = ""
-
-
-class PlannedImpacts(NamedTuple):
-    """Impacts on plates in SI units, and which materials and law a run had; None where unknown."""
-
-    speed: Array
-    radius: Array
-    thickness: Array
-    weights: Array
-    pair: Pair | None = None
-    law: str | None = None
+    left_out: str = ""  # which rows of a record are no impacts
 
 
 _SAME = 1e-3  # relative difference of densities; six digits of radius and mass make 2e-5
@@ -115,30 +90,27 @@ def _check(found: Recorded) -> None:
 
 def combined(
     speeds: Sequence[float], radii: Sequence[float] | None, thicknesses: Sequence[float] | None
-) -> PlannedImpacts:
+) -> Recorded:
     """Take every combination of some speeds, radii and thicknesses [m/s, m, m] once."""
     sizes = {"radius": radii, "thickness": thicknesses}
     grid = np.meshgrid(*(_given(*size) for size in sizes.items()), speeds, indexing="ij")
     r, h, v = (part.ravel() for part in grid)
-    return PlannedImpacts(v, r, h, np.ones(v.size))
+    return Recorded(v, r, h, np.ones(v.size))
 
 
 def completed(
     found: Recorded, radii: Sequence[float] | None, thicknesses: Sequence[float] | None
-) -> PlannedImpacts:
+) -> Recorded:
     """Add what a record does not say: the radius of its beads, and the thickness of its plates [m].
 
     One value is for all; thicknesses may be one for each plate if the record has their numbers.
     """
     one = np.zeros(found.speed.size, dtype=np.int64)
     plate = one if found.plate is None or len(thicknesses or ()) == 1 else found.plate
-    return PlannedImpacts(
-        found.speed,
-        _sized("radius", found.radius, radii, one),
-        _sized("thickness", found.thickness, thicknesses, plate),
-        np.ones(one.size) if found.weights is None else found.weights,
-        found.pair,
-        found.law,
+    return found._replace(
+        radius=_sized("radius", found.radius, radii, one),
+        thickness=_sized("thickness", found.thickness, thicknesses, plate),
+        weights=np.ones(one.size) if found.weights is None else found.weights,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections import Counter
 from collections.abc import Iterator
 from typing import Any, NamedTuple, TextIO
 
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from contactlaw._escaped import cell
 from contactlaw._readable import relative
 from contactlaw.answers.constant import Constant, Keep
-from contactlaw.cli.constant.records import PlannedImpacts
+from contactlaw.cli.constant.records import Recorded
 from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.impacts import aligned, explained
 from contactlaw.model import ImpactModel
@@ -33,7 +34,7 @@ class Wall(NamedTuple):
     best: Constant
 
 
-def walls(model: ImpactModel, recorded: PlannedImpacts, keep: Keep) -> list[Wall]:
+def walls(model: ImpactModel, recorded: Recorded, keep: Keep) -> list[Wall]:
     """Find one COR for all impacts on plates of one thickness; walls are sorted by it."""
     plates = np.unique(recorded.thickness)
     if plates.size > _MOST:
@@ -52,10 +53,9 @@ def walls(model: ImpactModel, recorded: PlannedImpacts, keep: Keep) -> list[Wall
 
 def flags_of(found: list[Wall]) -> dict[Validity, int]:
     """Count the impacts on all walls that exceed each limit."""
-    counts = ((flag, count) for wall in found for flag, count in wall.best.flags.items())
-    total: dict[Validity, int] = {}
-    for flag, count in counts:
-        total[flag] = total.get(flag, 0) + count
+    total: Counter[Validity] = Counter()
+    for wall in found:
+        total.update(wall.best.flags)
     return total
 
 

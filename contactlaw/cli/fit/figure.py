@@ -29,20 +29,14 @@ _MOST_CURVES = 6  # more could not be distinguished: then only the fitted values
 _WIDER = 1.25  # ratio of a curve's ends to the extreme speeds of the data
 
 
-class _Kind(NamedTuple):
-    """How a quantity is drawn."""
-
-    label: str
-    scale: float  # figure units per SI unit
-
-
+# How each quantity is drawn: label, and figure units per SI unit.
 _KINDS = {
-    "restitution": _Kind("coefficient of restitution [-]", 1.0),
-    "contact_time": _Kind("contact time [µs]", 1e6),
-    "peak_force": _Kind("peak force [N]", 1.0),
-    "tangential_restitution": _Kind("tangential restitution [-]", 1.0),
-    "rotational_restitution": _Kind("1 + rotational restitution [-]", 1.0),
-    "spin": _Kind("spin after [rad/s]", 1.0),
+    "restitution": ("coefficient of restitution [-]", 1.0),
+    "contact_time": ("contact time [µs]", 1e6),
+    "peak_force": ("peak force [N]", 1.0),
+    "tangential_restitution": ("tangential restitution [-]", 1.0),
+    "rotational_restitution": ("1 + rotational restitution [-]", 1.0),
+    "spin": ("spin after [rad/s]", 1.0),
 }
 
 
@@ -125,7 +119,7 @@ def curve_of(found: Fit, group: Group) -> FitCurve:
 
 
 def _draw_curve(above: Axes, below: Axes, curve: FitCurve, kind: str, colour: Any) -> None:
-    scale = _KINDS[kind].scale
+    _, scale = _KINDS[kind]
     values, errors = curve.values[kind], curve.errors[kind]
     low, high = (values + sign * errors for sign in (-1.0, 1.0))
     above.fill_between(
@@ -155,7 +149,7 @@ def _draw_values(
     if not rows.size:
         return
     v = (_angles if found.data.is_oblique else _speeds)(found)[rows]
-    scale = _KINDS[kind].scale
+    _, scale = _KINDS[kind]
     measured: Array = np.asarray(getattr(found.data, kind))[rows] + KINDS[kind].shift
     errors: Any = getattr(found.data, f"{kind}_error")
     fitted = measured / (1.0 + off)
@@ -185,7 +179,7 @@ def _finish(above: Axes, below: Axes, found: Fit, kind: str) -> None:
     largest = 1.15 * max(abs(number) for number in below.get_ylim())
     below.set_ylim(-largest, largest)
     below.set(xlabel="impact speed [m/s]", ylabel="off the fit [%]")
-    above.set_ylabel(_KINDS[kind].label)
+    above.set_ylabel(_KINDS[kind][0])
     if found.data.is_oblique:
         below.set(xlabel="angle of incidence from the normal [°]", xlim=(0.0, 90.0))
         return

@@ -37,11 +37,22 @@ class TunnellingError(RuntimeError):
         bit by bit, because of overlaps or too few iterations.
     """
 
-    bead: int
-    plate: int
-    time: float
-    speed: float
-    safe_step: float | None
+    def __init__(
+        self, bead: int, plate: int, time: float, speed: float, safe_step: float | None
+    ) -> None:
+        super().__init__(bead, plate, time, speed, safe_step)  # the arguments as given, for pickle
+        self.bead, self.plate, self.time = bead, plate, time
+        self.speed, self.safe_step = speed, safe_step
+
+    def __str__(self) -> str:
+        what, remedy = "was pressed through", "use smaller steps, or more space.iterations"
+        if self.safe_step is not None:
+            what = "would pass unnoticed through"
+            remedy = f"use steps below {self.safe_step:.3g} s"
+        return (
+            f"bead {self.bead} {what} plate {self.plate} in the step to t = {self.time:.9g} s, "
+            f"at a normal speed of {self.speed:.6g} m/s: {remedy}"
+        )
 
 
 class Line(NamedTuple):
@@ -134,7 +145,7 @@ class LookAhead:
                         found.append((safe_step, beads[n].index, plate.index, speed[n]))
         if found:
             safe_step, bead, plate_index, velocity = min(found)
-            raise tunnelling(bead, plate_index, time + dt, float(velocity), float(safe_step))
+            raise TunnellingError(bead, plate_index, time + dt, float(velocity), float(safe_step))
 
 
 def _lines(shape: Face, body: pymunk.Body) -> Iterator[Line]:
@@ -147,23 +158,6 @@ def _lines(shape: Face, body: pymunk.Body) -> Iterator[Line]:
     corners = [body.local_to_world(end) for end in ends(shape)]
     for start, end in pairwise(corners if len(corners) == 2 else [*corners, corners[0]]):
         yield Line(start, end, pivot, velocity, spin)
-
-
-def tunnelling(
-    bead: int, plate: int, time: float, speed: float, safe_step: float | None
-) -> TunnellingError:
-    """Make the error with its message and attributes."""
-    if safe_step is None:
-        text = "was pressed through", "use smaller steps, or more space.iterations"
-    else:
-        text = "would pass unnoticed through", f"use steps below {safe_step:.3g} s"
-    error = TunnellingError(
-        f"bead {bead} {text[0]} plate {plate} in the step to t = {time:.9g} s, "
-        f"at a normal speed of {speed:.6g} m/s: {text[1]}"
-    )
-    error.bead, error.plate, error.time = bead, plate, time
-    error.speed, error.safe_step = speed, safe_step
-    return error
 
 
 def approach(positions: Array, velocities: Array, line: Line, dt: float) -> tuple[Array, Array]:
