@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import Validity, explain
-from contactlaw._readable import drawn as label  # noqa: F401  # for the demo
+from contactlaw._readable import drawn
+
+label = drawn  # the name of a plate, also for the demo
 
 
 class Limit(NamedTuple):

@@ -21,17 +21,12 @@ _GRID, _CELLS = 0.125, 2e6  # cell of the grid for the average [reach], and most
 class EnergyMap(NamedTuple):
     """Energy that parts of the walls take: corners (k, 3, 3) [m], and columns of k numbers.
 
-    Attributes
-    ----------
-    impacts, energy
-        Number of contacts on each triangle, and the energy [J] that these took.
-    density
-        Energy over area [J/m2], an average over the neighbourhood on the same wall.
+    The density is energy over area [J/m2], an average over the neighbourhood on the same wall.
     """
 
     corners: Floats
-    impacts: Integers
-    energy: Floats
+    impacts: Integers  # number of contacts on each triangle
+    energy: Floats  # that these took [J]
     density: Floats
 
 

@@ -15,7 +15,7 @@ from contactlaw._content import content_of
 from contactlaw.cli.parts import columns, wording
 from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import SPEED
-from contactlaw.physical.arguments import check
+from contactlaw.physical.arguments import ArgumentError, check
 from contactlaw.physical.kind import only_impacts
 from contactlaw.physical.materials import Material, sphere_mass
 from contactlaw.physical.pair import Pair
@@ -132,7 +132,7 @@ def check_sphere(found: Recorded, sphere: Material) -> None:
 
 def _given(name: str, values: Sequence[float] | None) -> Sequence[float]:
     if values is None:
-        raise ValueError(f"{name}: has to be given, no record says it")
+        raise ArgumentError(name, "has to be given, no record says it")
     return values
 
 
@@ -143,13 +143,14 @@ def _sized(
     if recorded is None:
         sizes = np.array(_given(name, values))
         if sizes.size != which.max() + 1:
-            raise ValueError(
-                f"{name}: got {sizes.size} values for {which.max() + 1} in the record: give one "
-                "for all, or thicknesses for the numbers in a column plate"
+            raise ArgumentError(
+                name,
+                f"got {sizes.size} values for {which.max() + 1} in the record: give one "
+                "for all, or thicknesses for the numbers in a column plate",
             )
         return sizes[which]
     if values is not None:
-        raise ValueError(f"{name}: the record has its own: leave this one out")
+        raise ArgumentError(name, "the record has its own: leave this one out")
     return recorded
 
 
@@ -210,7 +211,7 @@ def _columns(heads: Sequence[str], numbers: Callable[[list[int]], Array]) -> Rec
         plate = picked["plate"]
         whole = (plate == np.floor(plate)) & (abs(plate) < hdf5.LARGEST)
         if not whole.all():  # NaN, too
-            raise ValueError(f"plate: got {plate[~whole][0]:g}, expected whole numbers")
+            raise ArgumentError("plate", f"got {plate[~whole][0]:g}, expected whole numbers")
         on_plates = plate >= 0
         picked = {field: values[on_plates] for field, values in picked.items()}
         picked["plate"] = picked["plate"].astype(np.int64)

@@ -17,6 +17,7 @@ from contactlaw.cli.constant.records import Recorded
 from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.impacts import aligned, explained
 from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.validity import Validity
 
 Array = NDArray[np.float64]
@@ -38,9 +39,9 @@ def walls(model: ImpactModel, recorded: Recorded, keep: Keep) -> list[Wall]:
     """Find one COR for all impacts on plates of one thickness; walls are sorted by it."""
     plates = np.unique(recorded.thickness)
     if plates.size > _MOST:
-        raise ValueError(
-            f"thickness: {plates.size} different ones, {_MOST} is the most: round them to those of "
-            "the walls"
+        raise ArgumentError(
+            "thickness",
+            f"{plates.size} different ones, {_MOST} is the most: round them to those of the walls",
         )
     found = []
     for plate in plates:

@@ -16,6 +16,7 @@ from contactlaw.cli.parts.columns import TextColumn
 from contactlaw.cli.parts.quantities import FORCE, SHARE, SPEED, TIME
 from contactlaw.fitting import Measurements
 from contactlaw.fitting.measurements import INPUTS
+from contactlaw.physical.arguments import ArgumentError
 
 _KINDS = {
     "restitution": (("restitution", "cor", "coefficient_of_restitution", "e", "e_n"), SHARE),
@@ -128,7 +129,7 @@ def completed(found: Read, path: str | os.PathLike[str], **sizes: float | None) 
     given = {name: size for name, size in sizes.items() if size is not None}
     twice = given.keys() & found.columns.keys()
     if twice:
-        raise ValueError(f"{min(twice)}: the table has its own: leave this one out")
+        raise ArgumentError(min(twice), "the table has its own: leave this one out")
     for name, values in found.columns.items():
         if name in (*INPUTS, "angle") and np.isnan(values).any():
             row = int(np.argmax(np.isnan(values)))

@@ -18,7 +18,7 @@ from contactlaw.cli.parts.impacts import Column, ImpactTable
 from contactlaw.cli.parts.plots import plate_of
 from contactlaw.equation.tangential import POINT
 from contactlaw.model import ImpactModel
-from contactlaw.physical.arguments import within
+from contactlaw.physical.arguments import ArgumentError, within
 
 Array = NDArray[np.float64]
 
@@ -130,10 +130,11 @@ def _traced(arguments: argparse.Namespace, program: str, given: dict[str, Any]) 
     angles = np.unique(given["angle"])
     others = {name: len(values) for name, values in given.items() if name != "angle"}
     if max(others.values()) > 1 or angles.size < 2:
-        raise ValueError(
-            f"{program}: got {angles.size} angles and of {', '.join(others)} "
+        raise ArgumentError(
+            program,
+            f"got {angles.size} angles and of {', '.join(others)} "
             f"{', '.join(map(str, others.values()))} values; give one of each and at least two "
-            "angles, best from 0 to 89"
+            "angles, best from 0 to 89",
         )
     # without sliding there is no tangential restitution, but it has a limit
     given = given | {"angle": np.maximum(angles, _STEEPEST)[::-1]}

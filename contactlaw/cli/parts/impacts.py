@@ -22,6 +22,7 @@ from contactlaw.cli.parts import wording
 from contactlaw.equation.losses import Losses
 from contactlaw.equation.outcome import FIELDS
 from contactlaw.model import ImpactModel
+from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.bodies import SphereOnPlate
 from contactlaw.physical.validity import Validity, count_flags, explain
 from contactlaw.table import file
@@ -119,9 +120,10 @@ def tabulate(
     """
     count = len(speeds) * len(radii) * len(thicknesses)
     if count > _MOST:
-        raise ValueError(
-            f"speed, radius, thickness: every combination of them is {count} impacts, and "
-            f"{_MOST} is the most: give fewer values"
+        raise ArgumentError(
+            "speed, radius, thickness",
+            f"every combination of them is {count} impacts, and "
+            f"{_MOST} is the most: give fewer values",
         )
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
     with wording.naming_impact(v, r, h, mass):

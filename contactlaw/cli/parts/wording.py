@@ -7,7 +7,6 @@ command line arguments are options of the same name, and the remedy is another o
 from __future__ import annotations
 
 import os
-import re
 import sys
 from collections.abc import Container, Iterator, Sequence
 from contextlib import contextmanager
@@ -18,9 +17,8 @@ from numpy.typing import ArrayLike
 
 from contactlaw._readable import in_unit
 from contactlaw.answers.backend import OutsideTableError, UnsolvedError
+from contactlaw.physical.arguments import ArgumentError
 from contactlaw.physical.materials import NoYieldStrengthError, UnknownMaterialError
-
-_ARGUMENTS = re.compile(r"[a-z_]+(, [a-z_]+)*(?=: )")
 
 _OTHER_NAMES = {
     "meshes": "mesh",
@@ -44,7 +42,7 @@ def sentence(error: Exception, options: Container[str]) -> str:
 
     Examples
     --------
-    >>> sentence(ValueError("constant_cor: must lie between 0 and 1"), {"constant_cor"})
+    >>> sentence(ArgumentError("constant_cor", "must lie between 0 and 1"), {"constant_cor"})
     '--constant-cor: must lie between 0 and 1'
     """
     match error:
@@ -62,21 +60,22 @@ def sentence(error: Exception, options: Container[str]) -> str:
             return f"{path}: {reason}"
         case OSError(strerror=str(reason)):
             return reason
-    message = str(error)
-    arguments = _ARGUMENTS.match(message)
-    if arguments:
-        names = [_OTHER_NAMES.get(name, name) for name in arguments[0].split(", ")]
-        if all(name in options for name in names):
-            return f"--{', --'.join(names)}".replace("_", "-") + message[arguments.end() :]
-    return message
+    # laws, tables, answers and fits say the argument in the message alone
+    given, _, what = str(error).partition(": ")
+    if isinstance(error, ArgumentError):
+        given, what = error.name, error.what
+    names = [_OTHER_NAMES.get(name, name) for name in given.split(", ")]
+    if what and all(name in options for name in names):
+        return f"--{', --'.join(names)}: ".replace("_", "-") + what
+    return str(error)
 
 
 def check_suffix(name: str, path: str | os.PathLike[str], suffixes: Sequence[str]) -> None:
     """Refuse a file whose suffix names none of some formats."""
     if PurePath(path).suffix.lower() not in suffixes:
         *others, last = suffixes
-        raise ValueError(
-            f"{name}: got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
+        raise ArgumentError(
+            name, f"got {os.fspath(path)!r}, must end in {', '.join(others)} or {last}"
         )
 
 
