@@ -49,7 +49,7 @@ def _contact(arguments: argparse.Namespace, model: ImpactModel) -> ForceHistory:
     """Force over time; flags are warnings on stderr, because the output is CSV alone."""
     impact = (arguments.speed, arguments.radius, arguments.thickness)
     method: Literal["solve", "table"] = "solve" if arguments.solve else "table"
-    with wording.naming_impact(*impact, arguments.mass):
+    with wording.naming_impact(*impact, mass=arguments.mass):
         found = model.force_history(*impact, arguments.samples, method, mass=arguments.mass)
     flags = int(found.flags)
     for name, words in zip(impacts.flag_names(flags), explain(flags), strict=True):

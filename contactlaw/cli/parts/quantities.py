@@ -33,25 +33,20 @@ class Quantity(NamedTuple):
         return next(iter(self.units))
 
 
-_METRES = {"m": "1", "cm": "0.01", "mm": "1e-3", "um": "1e-6", "nm": "1e-9"}
-LENGTH = Quantity("length", {unit: Decimal(size) for unit, size in _METRES.items()})
-SPEED = Quantity(
-    "speed",
-    {"m/s": Decimal(1), "cm/s": Decimal("0.01"), "mm/s": Decimal("1e-3"),
-     "km/h": Decimal(1000) / Decimal(3600)},
-)  # fmt: skip
-TIME = Quantity(
-    "time",
-    {"s": Decimal(1), "ms": Decimal("1e-3"), "us": Decimal("1e-6"), "ns": Decimal("1e-9")},
-)
-FORCE = Quantity(
-    "force", {"N": Decimal(1), "kN": Decimal(1000), "mN": Decimal("1e-3"), "uN": Decimal("1e-6")}
-)
-MASS = Quantity(
-    "mass",
-    {"kg": Decimal(1), "g": Decimal("1e-3"), "mg": Decimal("1e-6"), "ug": Decimal("1e-9")},
-)
-SHARE = Quantity("share", {"-": Decimal(1), "1": Decimal(1), "%": Decimal("0.01")})
+def _quantity(name: str, units: str) -> Quantity:
+    """Quantity from its units and their sizes in SI units."""
+    sizes = (unit.split() for unit in units.split(", "))
+    return Quantity(name, {unit: Decimal(size) for unit, size in sizes})
+
+
+LENGTH = _quantity("length", "m 1, cm 0.01, mm 1e-3, um 1e-6, nm 1e-9")
+SPEED = _quantity("speed", "m/s 1, cm/s 0.01, mm/s 1e-3, km/h 0.2777777777777777777777777778")
+TIME = _quantity("time", "s 1, ms 1e-3, us 1e-6, ns 1e-9")
+FORCE = _quantity("force", "N 1, kN 1000, mN 1e-3, uN 1e-6")
+MASS = _quantity("mass", "kg 1, g 1e-3, mg 1e-6, ug 1e-9")
+STRESS = _quantity("stress", "Pa 1, kPa 1000, MPa 1e6, GPa 1e9")
+DENSITY = _quantity("density", "kg/m3 1, g/m3 1e-3, g/cm3 1000")
+SHARE = _quantity("share", "- 1, 1 1, % 0.01")
 ANGLE = Quantity(
     "angle", {"deg": Decimal(1), "rad": Decimal(180) / Decimal(math.pi), "°": Decimal(1)}
 )
@@ -59,13 +54,6 @@ FRICTION = SHARE._replace(name="coefficient of friction")
 SPIN = Quantity(
     "spin",
     {"rad/s": Decimal(1), "rpm": Decimal(math.pi) / 30, "deg/s": Decimal(math.pi) / 180},
-)
-STRESS = Quantity(
-    "stress",
-    {"Pa": Decimal(1), "kPa": Decimal(1000), "MPa": Decimal("1e6"), "GPa": Decimal("1e9")},
-)
-DENSITY = Quantity(
-    "density", {"kg/m3": Decimal(1), "g/m3": Decimal("1e-3"), "g/cm3": Decimal(1000)}
 )
 _MICRO = str.maketrans("µμ", "uu")  # the micro sign and the Greek letter
 
