@@ -35,9 +35,7 @@ def _run(arguments: argparse.Namespace) -> None:
         with chosen.plot_file(arguments):
             _plot_history(arguments)
         return
-    given = {name: getattr(arguments, name) for name in ("speed", "radius", "thickness")}
-    if arguments.mass is not None:
-        given["mass"] = arguments.mass
+    given = {name: getattr(arguments, name) for name in ("speed", "radius", "thickness", "mass")}
     model = chosen.model(arguments)
     contact = np.column_stack(_contact(arguments, model))
     print(f"# {impacts.in_words(impacts.asked(model, **given))}")

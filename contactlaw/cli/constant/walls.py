@@ -18,7 +18,6 @@ from contactlaw.cli.parts import wording
 from contactlaw.cli.parts.impacts import aligned, explained
 from contactlaw.model import ImpactModel
 from contactlaw.physical.arguments import ArgumentError
-from contactlaw.physical.validity import Validity
 
 Array = NDArray[np.float64]
 
@@ -52,14 +51,6 @@ def walls(model: ImpactModel, recorded: Recorded, keep: Keep) -> list[Wall]:
     return found
 
 
-def flags_of(found: list[Wall]) -> dict[Validity, int]:
-    """Count the impacts on all walls that exceed each limit."""
-    total: Counter[Validity] = Counter()
-    for wall in found:
-        total.update(wall.best.flags)
-    return total
-
-
 def meaning(keep: Keep) -> str:
     """Explain the columns beside a constant."""
     return (
@@ -87,7 +78,8 @@ def text(found: list[Wall], keep: Keep) -> Iterator[str]:
     )
     yield ""
     yield meaning(keep)
-    yield from explained(flags_of(found), sum(one.impacts for one in best))
+    flags = sum((Counter(one.flags) for one in best), Counter())
+    yield from explained(flags, sum(one.impacts for one in best))
 
 
 def write_csv(

@@ -101,11 +101,7 @@ def _table(arguments: argparse.Namespace, given: dict[str, Any]) -> ImpactTable:
     model = chosen.model(arguments)
     found = _hits(model, every, arguments.mass)
     columns = {column.name: found[column.name] for column in _COLUMNS}
-    return ImpactTable(columns, found["flags"], impacts.asked(model, **_mass(arguments)))
-
-
-def _mass(arguments: argparse.Namespace) -> dict[str, float]:
-    return {} if arguments.mass is None else {"mass": arguments.mass}
+    return ImpactTable(columns, found["flags"], impacts.asked(model, mass=arguments.mass))
 
 
 def _hits(model: ImpactModel, given: dict[str, Array], mass: float | None) -> dict[str, Any]:
@@ -113,7 +109,7 @@ def _hits(model: ImpactModel, given: dict[str, Array], mass: float | None) -> di
     angle, total, thickness, radius, friction = np.broadcast_arrays(*(given[n] for n in _GIVEN))
     inclined = np.radians(angle)
     speed, sliding = total * np.cos(inclined), total * np.sin(inclined)
-    with wording.naming_impact(speed, radius, thickness, mass):
+    with wording.naming_impact(speed, radius, thickness, mass=mass):
         hit = model.oblique(speed, sliding, radius, thickness, friction, method="solve", mass=mass)
     changed = sliding - np.asarray(hit.sliding_speed)
     return {

@@ -75,12 +75,12 @@ class ImpactTable:
         return len(self.flags)
 
 
-def asked(model: ImpactModel, **sizes: float) -> dict[str, Any]:
+def asked(model: ImpactModel, **sizes: float | None) -> dict[str, Any]:
     """Repeat what the user asked: names of the materials and of the law, and sizes in SI units."""
     law, (sphere, plate) = model.force_law, model.pair.given
     name = law.family if law.from_pair else law.name
     named = units() | {"mass": "kg"}
-    numbers = {f"{size}_{named[size]}": value for size, value in sizes.items()}
+    numbers = {f"{n}_{named[n]}": size for n, size in sizes.items() if size is not None}
     return {"sphere": sphere.name, "plate": plate.name, "law": name, **numbers}
 
 
@@ -126,7 +126,7 @@ def tabulate(
             f"{_MOST} is the most: give fewer values",
         )
     r, h, v = (part.ravel() for part in np.meshgrid(radii, thicknesses, speeds, indexing="ij"))
-    with wording.naming_impact(v, r, h, mass):
+    with wording.naming_impact(v, r, h, mass=mass):
         if not solve and _integrates(model):
             limited = model.outside == "raise"
             by = _solver(model, limited)
@@ -139,7 +139,7 @@ def tabulate(
     return ImpactTable(
         {column.name: found[column.name] for column in COLUMNS},
         found["flags"],
-        asked(model, **({} if mass is None else {"mass": mass})),
+        asked(model, mass=mass),
     )
 
 

@@ -118,7 +118,7 @@ def writing(option: str, path: str | os.PathLike[str], folder: bool = False) -> 
 
 @contextmanager
 def naming_impact(
-    speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, mass: float | None = None
+    speed: ArrayLike, radius: ArrayLike, thickness: ArrayLike, *, mass: float | None = None
 ) -> Iterator[None]:
     """Name the impact that an error within is about by its speed, sizes, and mass if given."""
     try:
