@@ -50,22 +50,12 @@ _COLUMNS = {
 
 
 def read(*paths: str | os.PathLike[str]) -> list[Recorded]:
-    r"""Read impacts on plates of each pair; bead on bead, and what is no impact, are left out.
+    """Read impacts on plates of each pair; bead on bead, and what is no impact, are left out.
 
     The files are records of one run (``.h5``); or else one file: rows of an engine, as ``np.save``
     writes them (``.npy``), or text with names and units in the first line, as in
     ``speed_m/s,radius_mm``. Columns called radius or diameter, thickness, weight and plate are
     optional.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
-    ...     _ = file.write("Speed [cm/s];Radius [mm]\n50;0.9\n120;1.1\n")
-    ...     file.flush()
-    ...     found = read(file.name)
-    >>> found[0].speed, found[0].radius
-    (array([0.5, 1.2]), array([0.0009, 0.0011]))
     """
     first = Path(paths[0])
     if len(paths) > 1 or first.suffix.lower() in HDF5:

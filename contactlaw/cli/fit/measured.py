@@ -53,21 +53,11 @@ class Read(NamedTuple):
 
 
 def read(path: str | os.PathLike[str]) -> Read:
-    r"""Read a table of rebounds, a row for each.
+    """Read a table of rebounds, a row for each.
 
     Columns are between commas, semicolons or tabs, with names and units in the first line, as in
     ``speed_m/s,COR,COR_error`` or ``Speed [m/s];Contact time [us]``. Rows in which nothing was
     measured are left out.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> with tempfile.NamedTemporaryFile("w", suffix=".csv") as file:
-    ...     _ = file.write("Speed [cm/s];COR [%];No\n50;91;1\n120;;2\n")
-    ...     file.flush()
-    ...     found = read(file.name)
-    >>> found.columns["restitution"], found.unused, found.empty
-    (array([0.91]), ('No',), [3])
     """
     with wording.reading(path):
         return _read(content_of(Path(path), LARGEST_TEXT, pipe=True))

@@ -109,14 +109,6 @@ def tabulate(
     """Look up every combination of speeds, radii and thicknesses [m/s, m, m], or `solve` it.
 
     Along the rows, speeds change fastest.
-
-    Examples
-    --------
-    >>> import contactlaw as cl
-    >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"), law="myc")
-    >>> table = tabulate(model, [1.0, 5.0], [0.9e-3], [0.5e-3, math.inf])
-    >>> table.columns["restitution"].round(4)
-    array([0.7592, 0.6854, 1.    , 1.    ])
     """
     count = len(speeds) * len(radii) * len(thicknesses)
     if count > _MOST:

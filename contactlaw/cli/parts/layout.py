@@ -83,12 +83,6 @@ def layout(given: Mapping[str, Sequence[float]], along: int, across: int) -> Lay
     A list of more than 8 values is an axis, and two of them are those of a map. Otherwise the axis
     is the first list in the order of `given`. The next one makes curves, and a third one panels. An
     axis of a curve has `along` values, one of a map `across`.
-
-    Examples
-    --------
-    >>> found = layout({"speed": [1.0, 2.0], "thickness": [1e-3, math.inf]}, 5, 5)
-    >>> found.axis, found.curve, found.values["speed"]
-    ('speed', 'thickness', array([1.  , 1.25, 1.5 , 1.75, 2.  ]))
     """
     values = {name: sorted(set(listed)) for name, listed in given.items()}
     lists = [name for name in values if len(values[name]) > 1]

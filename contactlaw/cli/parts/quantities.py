@@ -94,13 +94,7 @@ def value(text: str, quantity: Quantity) -> float:
 
 
 def decimal_comma(text: str) -> str:
-    """Write a text with a decimal point if it may be one number with a comma; otherwise "".
-
-    Examples
-    --------
-    >>> decimal_comma("0,9mm"), decimal_comma("1,5,10")
-    ('0.9mm', '')
-    """
+    """Write a text with a decimal point if it may be one number with a comma; otherwise ""."""
     return text.replace(",", ".") if re.fullmatch(r"\s*\d+,\d+\s*\D*", text) else ""
 
 

@@ -96,13 +96,6 @@ def writing(option: str, path: str | os.PathLike[str], folder: bool = False) -> 
     """Name the option and the file, or the folder, that could not be written.
 
     A missing folder is refused before the body of the ``with`` statement runs.
-
-    Examples
-    --------
-    >>> with writing("plot", "nowhere/cor.png"):
-    ...     print("not reached")
-    Traceback (most recent call last):
-    contactlaw.cli.parts.wording.Refused: --plot: there is no folder nowhere
     """
     path = os.path.normpath(path) if folder else os.fspath(path)
     if os.path.lexists(path) and os.path.isdir(path) != folder:

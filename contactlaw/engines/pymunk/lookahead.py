@@ -166,13 +166,6 @@ def approach(positions: Array, velocities: Array, line: Line, dt: float) -> tupl
     Positions [m] and the line are those at the start of the step, and so is the distance [m]. The
     speed is the mean normal one in the step [m/s]; 0 for beads that do not cross the line between
     its two ends.
-
-    Examples
-    --------
-    >>> plate = Line((-1.0, 0.0), (1.0, 0.0), pivot=(0.0, 0.0), velocity=(0.0, 0.0), spin=0.0)
-    >>> distance, speed = approach(np.array([[0.0, 0.1]]), np.array([[0.0, -3.0]]), plate, dt=0.1)
-    >>> distance.tolist(), speed.round(6).tolist()
-    ([0.1], [3.0])
     """
     (ax, ay), (bx, by), (px, py), (vx, vy), spin = line
     length = math.hypot(bx - ax, by - ay)
