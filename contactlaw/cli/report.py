@@ -25,8 +25,8 @@ def add(commands: Any) -> None:
     )  # fmt: skip
     add(
         "--mesh", action="append", default=[], metavar="FILE",
-        help="mesh of the wall (STL, PLY, OBJ), for a map of the energy; several for several "
-        "walls, in the order of their numbers (default: the walls that the record has)",
+        help="mesh of the wall (STL, PLY, OBJ), for a map of the energy; once for each wall, in "
+        "the order of their numbers (default: the walls that the record has)",
     )  # fmt: skip
     add(
         "--scale", type=options.reader_of(quantities.value, LENGTH), metavar="LENGTH",

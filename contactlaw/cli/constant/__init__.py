@@ -40,7 +40,7 @@ def add(commands: Any) -> None:
         "--keep",
         default="energy",
         choices=["energy", "momentum"],
-        help="what the wall takes in total as with each impact's own COR (default: %(default)s)",
+        help="keep the total energy or momentum that the wall takes (default: %(default)s)",
     )
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print a row per wall in SI units, every digit")

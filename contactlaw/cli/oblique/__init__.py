@@ -59,9 +59,9 @@ def add(commands: Any) -> None:
     add = command.add_mutually_exclusive_group().add_argument
     add("--csv", action="store_true", help="print rows of all fields in SI units, every digit")
     add("--plot", metavar="FILE",
-        help="draw the tangential restitution into FILE (PNG, SVG, PDF), over the first list of "
-        "angles, speeds, thicknesses, radii or coefficients of friction, a curve for each value of "
-        "a second one; two of more than 8 values make a map")  # fmt: skip
+        help="draw the tangential restitution into FILE (PNG, SVG, PDF): over the first list of "
+        "angles, speeds, thicknesses, radii or coefficients of friction, with a curve for each "
+        "value of a second list; as a map, if both have more than 8 values")  # fmt: skip
     for name, program in (("fluent", "Ansys Fluent"), ("acusolve", "AcuTrace (AcuSolve)")):
         add(f"--{name}", metavar="FILE",
             help="write the restitution of the wall over these angles into FILE, in a form that "

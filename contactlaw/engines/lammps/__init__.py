@@ -25,8 +25,9 @@ Thin plates
     integrates it instead.
 Walls that meet
     Facets that meet within 1e-4 of a bead's radius are one surface, on which the bead has one
-    contact. It is with the facet whose nearest point is on the face, else on an edge, else at a
-    corner (on the seam itself with the first facet), and moves on from facet to facet. The same
+    contact. A facet whose nearest point is on its face has the contact; if there is none, one whose
+    nearest point is on an edge, then at a corner (on a seam: the first). The contact moves on from
+    facet to facet. The same
     holds for faces that meet at less than 20 degrees, as in a tessellated cylinder: the contact is
     with the deepest one. Of more than eight contacts of a bead the deepest are kept;
     `LammpsPlates.left_out` counts the others.
