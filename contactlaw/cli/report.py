@@ -40,7 +40,7 @@ def _run(arguments: argparse.Namespace) -> None:
     with wording.reading(arguments.record[0]):
         Run(record)  # refuses what no report can be made of
     meshes = [_mesh(path, arguments.scale) for path in arguments.mesh]
-    with wording.folder_of("out", arguments.out):
+    with wording.writing("out", arguments.out, folder=True):
         print(report(record, arguments.out, meshes))
     if record.lacks:
         wording.print_message(f"the record lacks {record.lacks}")

@@ -10,10 +10,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._readable import drawn
 from contactlaw.answers.constant import Constant, constant
 from contactlaw.physical.kind import only_impacts
 from contactlaw.record.file import Record
-from contactlaw.reporting.limits import label
 from contactlaw.reporting.surface import EnergyMap, energy_map
 from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
 from contactlaw.walls.motion import FARTHEST
@@ -38,22 +38,12 @@ OTHERS = "other walls"
 
 
 class WallRow(NamedTuple):
-    """What happened on one wall.
+    """What happened on one wall."""
 
-    Attributes
-    ----------
-    name
-        Number of the wall, its thickness, and its material where that is known.
-    rows, impacts
-        Contacts on it, and those of them that are impacts.
-    best
-        One COR for all of the impacts; None without any.
-    """
-
-    name: str
-    rows: Rows
-    impacts: Rows
-    best: Constant | None
+    name: str  # number of the wall, its thickness, and its material where that is known
+    rows: Rows  # contacts on it
+    impacts: Rows  # those of them that are impacts
+    best: Constant | None  # one COR for all of the impacts; None without any
 
 
 class Shares(NamedTuple):
@@ -86,18 +76,7 @@ def by_cause(rows: Rows) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """The impacts of a run.
-
-    Parameters
-    ----------
-    record : Record
-        Impacts, with all columns of `contactlaw.engines.record.IMPACT`.
-
-    Raises
-    ------
-    ValueError
-        If the record lacks a column, or an impact on a wall has a number that cannot be.
-    """
+    """The impacts of a run, whose record has all columns of `contactlaw.engines.record.IMPACT`."""
 
     record: Record
 
@@ -169,7 +148,7 @@ class Run:
         return [_wall(name, rows[which == n]) for n, name in enumerate(names)]
 
     def _name(self, plate: int, thickness: float, bodies: int) -> str:
-        name = f"{plate}: {label(thickness)}"
+        name = f"{plate}: {drawn(thickness)}"
         if bodies < 0:
             return name
         sphere, wall = self.record.bodies[bodies].materials

@@ -42,6 +42,14 @@ def test_cor_json_holds_every_field(model, capsys):
     assert printed["flags"] == []
 
 
+def test_a_mass_is_a_number_and_named_where_it_makes_a_plate_too_thin(capsys):
+    assert main([*IMPACT, "--mass", "4mg", "--json", "--no-band"]) == 0
+    assert json.loads(capsys.readouterr().out)["mass_kg"] == 4e-6
+    thin = [*COR, "--radius", "0.9mm", "--thickness", "0.1mm", "--speed", "1", "--no-band"]
+    assert main([*thin, "--mass", "6mg"]) == 1
+    assert ", mass 6 mg: outside the table, its inelasticity" in capsys.readouterr().err
+
+
 def test_cor_names_the_limits_exceeded(capsys):
     assert main([*COR, "--radius", "1e-3", "--thickness", "0.5e-3", "--speed", "70"]) == 0
     out = capsys.readouterr().out

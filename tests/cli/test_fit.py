@@ -48,6 +48,7 @@ def test_json_holds_all_of_the_fit(usual, found, capsys):
     assert printed["residuals"]["restitution"] == pytest.approx(
         found.residuals["restitution"].tolist(), abs=1e-9
     )
+    assert printed["radius_m"] == 1e-3
     assert len(printed["flags"]) == 12 and printed["units"] == {"thickness": "m"}
 
 

@@ -6,7 +6,7 @@ import pytest
 from pymunk_room import DT, Full, drop
 
 import contactlaw as cl
-from contactlaw.engines.needs import knows_beads, knows_rebounds
+from contactlaw.engines.needs import knows, knows_rebounds
 from contactlaw.engines.record import IMPACT
 from dem_demo.rain.baseline import ConstantRestitution
 
@@ -24,7 +24,7 @@ from dem_demo.rain.baseline import ConstantRestitution
 def test_who_knows_what(make, beads, rebounds):
     model = make()
     assert callable(model.curve(0.9e-3, 1e-3))
-    assert (knows_beads(model), knows_rebounds(model)) == (beads, rebounds)
+    assert (knows(model, "sphere_sphere_curve"), knows_rebounds(model)) == (beads, rebounds)
 
 
 def test_a_model_that_passes_questions_on():

@@ -74,7 +74,7 @@ def _run(arguments: argparse.Namespace) -> None:
             )
 
 
-def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.PlannedImpacts]:
+def _recorded(arguments: argparse.Namespace, single: bool) -> list[records.Recorded]:
     """Impacts of each pair, or every combination of the given speeds, radii and thicknesses."""
     chosen.check_quantities(arguments)
     sizes = (arguments.radius, arguments.thickness)

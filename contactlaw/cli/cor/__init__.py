@@ -64,7 +64,7 @@ def _run(arguments: argparse.Namespace) -> None:
     known = None
     if errors is not None:
         sizes = [found.columns[name] for name in _SIZES]
-        with wording.naming_impact(*sizes):
+        with wording.naming_impact(*sizes, mass=mass):
             known = model.uncertainty(*sizes, **errors, mass=mass)
     found, columns = bands.with_bands(found, known)
     if arguments.csv:
@@ -107,7 +107,7 @@ def _plot_cor(arguments: argparse.Namespace) -> None:
 
     def ask(grid: dict[str, Array]) -> layout.Answers:
         impact = grid["speed"], grid["radius"], grid["thickness"]
-        with wording.naming_impact(*impact):
+        with wording.naming_impact(*impact, mass=mass):
             hit = (model.solve if arguments.solve else model.lookup)(*impact, mass=mass)
             known = None
             if errors is not None:

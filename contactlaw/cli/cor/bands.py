@@ -47,13 +47,7 @@ def unknown(band: Band) -> str:
 
 
 def in_brackets(band: Band) -> str:
-    """Band of one impact, with its causes, as text after its value.
-
-    Examples
-    --------
-    >>> in_brackets(Band(0.41, 0.55, {"model": 0.0031}))
-    '(0.41 to 0.55; model 0.0031)'
-    """
+    """Band of one impact, with its causes, as text after its value."""
     low, high = (np.ravel(end).item() for end in (band.low, band.high))
     return "(no range)" if np.isinf(low) else f"({low:.3g} to {high:.3g}; {_causes(band)})"
 

@@ -48,17 +48,20 @@ _UNITS = {"si": (1.0, 1.0, 1.0), "cgs": (1e-2, 1.0, 1e-3), "micro": (1e-6, 1e-6,
 _ROUNDED = 1e-6  # [time steps] by which LAMMPS's clock may differ from a whole number of steps
 _HALT_EVERY = 100  # steps between searches for errors, each one a reduction over all ranks
 _WRAPPED = ("command", "commands_list", "commands_string", "file")
-_PARTS = (  # parts of an attachment in LAMMPS: kind, name, command that removes it; in this order
-    ("fix", HISTORY, f"unfix {HISTORY}"),
-    ("group", HISTORY, f"group {HISTORY} delete"),
-    ("fix", f"{HISTORY}_force", f"unfix {HISTORY}_force"),
-    ("variable", f"{HISTORY}_errors", f"variable {HISTORY}_errors delete"),
-    ("compute", f"{HISTORY}_error", f"uncompute {HISTORY}_error"),
-    ("variable", f"{HISTORY}_error", f"variable {HISTORY}_error delete"),
-    ("fix", f"{HISTORY}_halt", f"unfix {HISTORY}_halt"),
-)
-
-
+# Parts of an attachment in LAMMPS, in the order in which they are made: kind, name, settings. The
+# variable is not a compute property/atom, which would read freed memory once the fix is removed.
+_PARTS = (
+    ("fix", HISTORY, f"all property/atom d2_{HISTORY} {{columns}} d_{_LAST} ghost no"),
+    ("group", HISTORY, "empty"),
+    ("fix", f"{HISTORY}_force", f"{HISTORY} external pf/callback 1 1"),
+    ("variable", f"{HISTORY}_errors", f"atom d2_{HISTORY}[1]"),
+    ("compute", f"{HISTORY}_error", f"all reduce max v_{HISTORY}_errors"),
+    ("variable", f"{HISTORY}_error", f"equal c_{HISTORY}_error"),
+    ("fix", f"{HISTORY}_halt",
+     f"all halt {_HALT_EVERY} v_{HISTORY}_error > 0 error continue message no"),
+)  # fmt: skip
+_REMOVED = {"fix": "unfix {}", "compute": "uncompute {}", "group": "group {} delete",
+            "variable": "variable {} delete"}  # fmt: skip
 _CLEARED = ("fix", "compute")  # kinds that a `clear` removes; a restart file may restore the group
 
 
@@ -221,9 +224,9 @@ def _check_simulation(lmp: lammps) -> None:
 
 def _remove(lmp: lammps) -> None:
     """Remove from LAMMPS all parts of an attachment that are left."""
-    for kind, name, command in reversed(_PARTS):
+    for kind, name, _ in reversed(_PARTS):
         if lmp.has_id(kind, name):
-            lmp.command(command)
+            lmp.command(_REMOVED[kind].format(name))
 
 
 def _address(lmp: lammps, name: str) -> int:
@@ -296,18 +299,8 @@ class LammpsPlates:
         """Make the adapter's parts in LAMMPS; a restart file may have left contacts there."""
         scene, places = self._contacts.scene, self._contacts.places
         columns = FIRST + places * (WIDTH + SLIDING * (scene.friction > 0.0))
-        for command in (
-            f"fix {HISTORY} all property/atom d2_{HISTORY} {columns} d_{_LAST} ghost no",
-            f"group {HISTORY} empty",
-            f"fix {HISTORY}_force {HISTORY} external pf/callback 1 1",
-            # not by compute property/atom, which would read freed memory once the fix is removed
-            f"variable {HISTORY}_errors atom d2_{HISTORY}[1]",
-            f"compute {HISTORY}_error all reduce max v_{HISTORY}_errors",
-            f"variable {HISTORY}_error equal c_{HISTORY}_error",
-            f"fix {HISTORY}_halt all halt {_HALT_EVERY} v_{HISTORY}_error > 0 "
-            "error continue message no",
-        ):
-            self._lmp.command(command)
+        for kind, name, settings in _PARTS:
+            self._lmp.command(f"{kind} {name} {settings.format(columns=columns)}")
         self._clear_marks()
         self._check_memory(columns)
         self._shared = self._share(columns)

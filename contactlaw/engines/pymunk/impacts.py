@@ -37,10 +37,9 @@ from contactlaw.engines.pymunk.registry import (
     ends,
     friction_of,
     radius_of,
-    scalar,
 )
 from contactlaw.engines.pymunk.seams import Seams
-from contactlaw.physical.arguments import warn_of_metres
+from contactlaw.physical.arguments import scalars, warn_of_metres
 from contactlaw.record.file import Record
 from contactlaw.reporting.files import report
 
@@ -86,20 +85,7 @@ class PymunkImpacts:
         self._replaced = vars(space).get("step")
         self._engine_step = space.step
         vars(space)["step"] = self._step
-        bead, plate = self.bead_type, self.plate_type
-        self._handlers = Handlers(
-            space,
-            own={
-                (bead, plate): self._contacts.on_plates,
-                (bead, bead): self._contacts.on_beads,
-            },
-            late=((None, None), (bead, None), (plate, None), (plate, bead)),
-            keep=self._contacts.keep,
-            is_ours=self._contacts.is_ours,
-            undo=self._contacts.undo,
-            rub=self._contacts.rub,
-            stranger=self._contacts.meet_stranger,
-        )
+        self._handlers = Handlers(space, self._contacts, self.bead_type, self.plate_type)
 
     @property
     def time(self) -> float:
@@ -242,7 +228,7 @@ class PymunkImpacts:
         import pymunk
 
         body = self._admit(shape, [pymunk.Segment, pymunk.Poly], self.plate_type)
-        thickness = scalar(thickness=thickness)
+        thickness = float(scalars(thickness=thickness)[0][0])
         warn_of_metres("thickness", thickness, stacklevel=2)
         if len(set(ends(shape))) < 2:
             raise ValueError(f"shape: has no length, all of it is at {tuple(ends(shape)[0])}")

@@ -125,11 +125,7 @@ class Record:
     def read(self, register: Register) -> NDArray[np.void]:
         """Structured array of all impacts; each is looked up when it is first read, and not again.
 
-        Parameters
-        ----------
-        register : Register
-            Beads, plates and their models; none may be missing since the last call. Unless every
-            model is a `ReboundModel`, there are only the columns of OBSERVED.
+        Unless every model is a `ReboundModel`, there are only the columns of OBSERVED.
         """
         whole = all(knows_rebounds(model) for model in register.every_model())
         seen = np.array(self._seen[len(self._rows) * WIDTH :]).reshape(-1, WIDTH)

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
+from contactlaw._readable import drawn
 from contactlaw.reporting.charts import DENSITY, density_bar, density_scale, sheet
 from contactlaw.reporting.run import Run, taken
-from contactlaw.reporting.summary import joules
 from contactlaw.reporting.surface import EnergyMap
 
 Floats = NDArray[np.float64]
@@ -93,7 +93,7 @@ def _points(run: Run, within: str) -> Figure:
     size = 200.0 * (energy[few] / most).clip(0.01, 4.0)
     axes.scatter(places[few, x], places[few, y], s=size, rasterized=True, **look)
     for part in (1.0, 0.1, 0.01):
-        axes.scatter([], [], s=200.0 * part, label=joules(part * most), **look)
+        axes.scatter([], [], s=200.0 * part, label=drawn(part * most, "J", 3), **look)
     middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
     for n, size, limit in ((x, wide, axes.set_xlim), (y, high, axes.set_ylim)):
         limit(middle[n] - 0.55 * size, middle[n] + 0.55 * size)
