@@ -330,9 +330,10 @@ def test_a_damaged_rain_is_refused_in_words(damage, place, message, rain, tmp_pa
     path.write_bytes(rain)
     with h5py.File(path, "r+") as file:
         damage(file, place)
-    for command in (["constant", "--csv", "--record"], ["report"])[
-        : 1 if "got" in message or "hertzian" in message else 2
-    ]:
+    commands = [["constant", "--csv", "--record"], ["report", "--out", str(tmp_path / "out")]]
+    if "got" in message or "hertzian" in message:  # a report takes any number and any law's name
+        commands.pop()
+    for command in commands:
         assert cli_of_contactlaw.main([*command, str(path)]) == 1
         captured = capsys.readouterr()
         assert captured.out == "" and message in captured.err
