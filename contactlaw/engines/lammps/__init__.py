@@ -12,8 +12,7 @@ Simulation
     models, records and errors are in SI units, whatever LAMMPS's are. Contacts between beads are
     LAMMPS's own: ``pair_style granular`` and the line that `pair_coeff` writes.
 Walls
-    docs/lammps.md says which there are, how their edges count, and what a dump and the record have.
-    Beads touch a wall from either side; each wall knows its own edges only.
+    See docs/lammps.md. Beads touch a wall from either side; each wall knows its own edges only.
 Time step
     A contact lasts some microseconds and takes at least 20 steps:
     `contactlaw.softsphere.time_step` gives the longest step. An impact too fast for the step ends
