@@ -1,4 +1,4 @@
-"""``contactlaw export``: source files for codes that do not run Python."""
+"""``contactlaw export``: source files for codes that do not run Python: header, liggghts."""
 
 from __future__ import annotations
 

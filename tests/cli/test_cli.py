@@ -5,6 +5,7 @@ import csv
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -244,6 +245,18 @@ def test_the_version(capsys):
         main(["--version"])
     assert stop.value.code == 0
     assert capsys.readouterr().out == f"contactlaw {cl.__version__}\n"
+
+
+def test_help_comes_at_once():
+    """It lists every subcommand, and loads nothing that takes long."""
+    code = (
+        "import sys; from contactlaw import cli; text = cli.parser([]).format_help()\n"
+        "print(text); assert not {'numpy', 'numba', 'h5py'} & {*sys.modules}"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    listed = re.findall(r"^    ([a-z-]+)\b", shown.stdout, re.MULTILINE)
+    whole = re.findall(r"^    ([a-z-]+)\b", cli.parser().format_help(), re.MULTILINE)
+    assert sorted(listed) == sorted(whole) and len(whole) == 14
 
 
 @pytest.mark.parametrize(("name", "parser"), list(parsers(cli.parser())))

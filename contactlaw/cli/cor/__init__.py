@@ -1,4 +1,9 @@
-"""``contactlaw cor``: coefficient of restitution and more, of one impact or many."""
+"""Coefficients of restitution, and what gives one.
+
+``contactlaw cor``: coefficient of restitution and more, of one impact or many.
+``contactlaw thickness``: all thicknesses of the plate that give a coefficient of restitution.
+``contactlaw speed``: all impact speeds that give a coefficient of restitution.
+"""
 
 from __future__ import annotations
 
