@@ -138,7 +138,7 @@ def largest_inelasticity(law: Law) -> float:
 
 
 def on_demand(law: Law) -> Settings:
-    """Choose settings of a table that is built when it is first needed, in tenths of a second."""
+    """Choose settings of a table that is built when it is first needed."""
     if math.isinf(law.range[1]):
         return Settings(log_overload_step=_STEP, rtol=1e-11)
     w_m = zener.elastic_compression(law.data, 0.0, 1e-11, few=True)[1]
@@ -147,7 +147,7 @@ def on_demand(law: Law) -> Settings:
         largest_inelasticity=largest_inelasticity(law),
         largest_overload=float(f"{_BEYOND * deepest:.3g}"),
         log_overload_step=_STEP if law.range[1] <= END else _LONG_STEP,
-        inelasticity_nodes=41, rtol=1e-11,
+        inelasticity_nodes=41, rtol=1e-11 if law.strengths is None else 1e-10,
     )  # fmt: skip
 
 

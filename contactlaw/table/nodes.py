@@ -35,6 +35,9 @@ _LAYER_FACTORS = 1, 2, 4  # likewise of cells in ln k
 # Factors by which a coarser table's steps in ln chi may be wider, one for each segment: the COR of
 # elastic impacts bends far less than that beyond yield, for which a single step has to be fine.
 _STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
+# How much coarser layers between the least and the largest strength are, our choices: the COR moves
+# by 1e-7 to 2e-6 against a table all of whose nodes are solved.
+_FEWER_ROWS, _WIDER = 2.2, 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,11 +128,42 @@ def build(
     """
     settings = settings or (Settings() if law.is_hertz else grids.on_demand(law))
     grid = grids.grid(law, settings)
-    parts = settings.inelasticity_nodes
-    values = sweep.solve_overloads(law, *grid.points(), settings.rtol, parts, progress)
-    fields = {name: getattr(values, name).reshape(grid.shape) for name in STORED}
-    table = Table(law, settings, grid, fields)
+    solve = _solved if law.strengths is None else _solved_layers
+    table = Table(law, settings, grid, solve(law, grid, settings, progress))
     return dataclasses.replace(table, certificate=certify(table, points))
+
+
+def _solved(
+    law: Law, grid: TableGrid, settings: Settings, progress: Progress, every: int = 1
+) -> dict[str, Array]:
+    """Solve the nodes of a grid; all of them, or one of several along the last axis."""
+    chosen = [values.reshape(grid.shape)[..., ::every] for values in grid.points()]
+    given = (values.ravel() for values in chosen)
+    found = sweep.solve_overloads(law, *given, settings.rtol, len(grid.rows), progress)
+    return {name: getattr(found, name).reshape(chosen[0].shape) for name in STORED}
+
+
+def _solved_layers(
+    law: Law, grid: TableGrid, settings: Settings, progress: Progress
+) -> dict[str, Array]:
+    """Solve all nodes of the least and the largest strength, and coarser layers between.
+
+    Between the two, fields are nearly straight lines along the strength. How far they are from them
+    varies so little with the other coordinates that splines over a coarser grid give it.
+    """
+    rows = max(round(settings.inelasticity_nodes / _FEWER_ROWS), grids.FEWEST)
+    step = min(_WIDER * settings.log_overload_step, RANGES["log_overload_step"][1])
+    few = dataclasses.replace(settings, inelasticity_nodes=rows, log_overload_step=step)
+    coarse = grids.with_steps(law, grid, few, step)
+    table = Table(law, few, coarse, _solved(law, coarse, few, progress))
+    fields = _resampled(table, settings.inelasticity_nodes, settings.log_overload_step, 1).fields
+    ends = _solved(law, grid, settings, progress, every=grid.shape[2] - 1)
+    share = grid.nodes()[2] / grid.axes[2].largest
+    for name, values in fields.items():
+        first, last = np.split(ends[name] - values[..., [0, -1]], 2, axis=2)
+        values += (1.0 - share) * first + share * last
+    fields["restitution"].clip(0.0, 1.0, out=fields["restitution"])
+    return fields
 
 
 def thinned(table: Table, error: float) -> Table:
