@@ -209,30 +209,28 @@ def grid(law: Law, settings: Settings) -> TableGrid:
     if law.strengths is None:
         return TableGrid(axes, elastic)
     has_end = len(lines) > 2 + (not law.is_hertz)  # of the law's range
-    ends = itertools.pairwise(law.strengths.knots)
-    rows = np.array([_rows(law, one, settings, has_end) for one in ends])
-    return TableGrid((*axes, strength_axis(law.strengths)), elastic, rows)
+    return TableGrid((*axes, strength_axis(law.strengths)), elastic, _rows(law, settings, has_end))
 
 
-def _rows(law: Law, ends: tuple[float, float], settings: Settings, has_end: bool) -> Array:
-    """Rows of polynomials for a segment in ln k, as `contactlaw.table.lookup` has them."""
-    data, powers, none = law.at_any_strength, ROWS - ELASTIC, np.zeros(TERMS * (ROWS - ELASTIC))
-    strength = ends[0] + (ends[1] - ends[0]) * chebyshev_nodes(TERMS)
-    lam = inelasticity_axis(settings).values(chebyshev_nodes(powers))
-    lam, s = np.tile(lam, TERMS), np.repeat(strength, powers)
-    own, slow = (elastic_compressions(law, lam, settings.rtol, one) for one in (s, none))
-    factor = np.ones_like(lam)
+def _rows(law: Law, settings: Settings, has_end: bool) -> Array:
+    """Rows of polynomials for the segments in ln k, as `contactlaw.table.lookup` has them."""
+    assert law.strengths is not None
+    data, knots = law.at_any_strength, np.array(law.strengths.knots)
+    places = knots[:-1, None] + np.diff(knots)[:, None] * chebyshev_nodes(TERMS)
+    along = inelasticity_axis(settings).values(chebyshev_nodes(ROWS - ELASTIC))
+    every = np.append(places, 0.0)  # the last one is the slow pair, which the others are beside
+    lam, s = np.tile(along, every.size), np.repeat(every, along.size)
+    elastic = elastic_compressions(law, lam, settings.rtol, s)
+    end = np.ones((every.size, along.size))
     if has_end:
-        slow_end, end = (
-            np.log(_overloads(law, np.array([_end(data, k) for k in at.tolist()]), lam, w_m, at))
-            for at, w_m in ((none, slow), (s, own))
-        )
-        factor = slow_end / end
-    rows = [[math.log(force.growth_at(data, one)) for one in strength.tolist()]]
-    for values, degree in ((factor, ELASTIC - STRETCHED), (np.log(own / slow), powers)):
-        each = [power_series(one, degree - 1) for one in values.reshape(TERMS, powers)]
-        rows += np.transpose(each).tolist()
-    return np.array([power_series(np.array(row), TERMS - 1) for row in rows])
+        kink = np.repeat([_end(data, one) for one in every.tolist()], along.size)
+        end = np.log(_overloads(law, kink, lam, elastic, s)).reshape(end.shape)
+    log_w_m = np.log(elastic).reshape(end.shape)
+    growth = [[math.log(force.growth_at(data, one))] for one in every.tolist()]
+    factor = [power_series(one, ELASTIC - STRETCHED - 1) for one in end[-1] / end]
+    stiffer = [power_series(one, ROWS - ELASTIC - 1) for one in log_w_m - log_w_m[-1]]
+    rows = np.split(np.hstack([growth, factor, stiffer])[:-1], len(places))
+    return np.array([[power_series(row, TERMS - 1) for row in one.T] for one in rows])
 
 
 def _end(data: Array, strength: float) -> float:
