@@ -318,11 +318,19 @@ def table_for(law: Law, table: TableArgument) -> Table:
         )
     if not table.law.follows(served):
         raise ValueError(
-            f"table: it belongs to law {table.law.name!r}, the model needs one of {served.name!r}: "
-            f"leave it out, or contactlaw table build --law {served.family}, with --sphere and "
-            "--plate if the law takes numbers from them"
+            f"table: it belongs to law {_told_apart(table.law)}, the model needs one of "
+            f"{_told_apart(served)}: leave it out, or contactlaw table build --law "
+            f"{served.family}, with --sphere and --plate if the law takes numbers from them"
         )
     return table
+
+
+def _told_apart(law: Law) -> str:
+    """Name of a law; pairs that differ only in their rates have laws of one name."""
+    if law.strengths is None:
+        return repr(law.name)
+    growth = math.exp(law.strengths.knots[-1])
+    return f"{law.name!r} (its strength grows up to {growth:.6g} times; data {law.key})"
 
 
 def _stack_level() -> int:

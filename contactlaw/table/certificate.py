@@ -23,7 +23,7 @@ BOUNDS = {name: one.error for name, one in FIELDS.items() if one.error} | {"forc
 """Promised errors: absolute for COR, relative to the peak for force histories, else relative."""
 
 PAIR_BOUNDS = {n: FIELDS[n].of_pair for n in BOUNDS if n in FIELDS} | {"force_history": 3e-3}
-"""Promised errors of tables built for one pair: they are coarser, and take a fifth of a second."""
+"""Promised errors of tables built for one pair: they are coarser, so that they are made soon."""
 
 
 def bounds(law: Law) -> dict[str, float]:

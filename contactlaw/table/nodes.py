@@ -5,7 +5,9 @@ from __future__ import annotations
 import dataclasses
 import functools
 import itertools
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,9 +37,10 @@ _LAYER_FACTORS = 1, 2, 4  # likewise of cells in ln k
 # Factors by which a coarser table's steps in ln chi may be wider, one for each segment: the COR of
 # elastic impacts bends far less than that beyond yield, for which a single step has to be fine.
 _STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
-# How much coarser layers between the least and the largest strength are, our choices: the COR moves
-# by 1e-7 to 2e-6 against a table all of whose nodes are solved.
-_FEWER_ROWS, _WIDER = 2.2, 3.0
+# How many times fewer rows and wider steps most layers of strength have, and how far apart in ln k
+# are those that have all nodes, our choices. The COR moves by 1e-7 to 3e-6 against a table of which
+# all nodes are solved.
+_FEWER_ROWS, _WIDER, _APART = 2.2, 3.0, 0.75
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,10 +137,10 @@ def build(
 
 
 def _solved(
-    law: Law, grid: TableGrid, settings: Settings, progress: Progress, every: int = 1
+    law: Law, grid: TableGrid, settings: Settings, progress: Progress, layers: Any = slice(None)
 ) -> dict[str, Array]:
-    """Solve the nodes of a grid; all of them, or one of several along the last axis."""
-    chosen = [values.reshape(grid.shape)[..., ::every] for values in grid.points()]
+    """Solve the nodes of a grid; of one with strengths, those of all layers or of some."""
+    chosen = [values.reshape(grid.shape)[..., layers] for values in grid.points()]
     given = (values.ravel() for values in chosen)
     found = sweep.solve_overloads(law, *given, settings.rtol, len(grid.rows), progress)
     return {name: getattr(found, name).reshape(chosen[0].shape) for name in STORED}
@@ -146,9 +149,9 @@ def _solved(
 def _solved_layers(
     law: Law, grid: TableGrid, settings: Settings, progress: Progress
 ) -> dict[str, Array]:
-    """Solve all nodes of the least and the largest strength, and coarser layers between.
+    """Solve a few layers at all nodes, among them those that end the axis, and others coarsely.
 
-    Between the two, fields are nearly straight lines along the strength. How far they are from them
+    Between the few, fields are nearly straight lines along the strength. How far they are from them
     varies so little with the other coordinates that splines over a coarser grid give it.
     """
     rows = max(round(settings.inelasticity_nodes / _FEWER_ROWS), grids.FEWEST)
@@ -157,11 +160,13 @@ def _solved_layers(
     coarse = grids.with_steps(law, grid, few, step)
     table = Table(law, few, coarse, _solved(law, coarse, few, progress))
     fields = _resampled(table, settings.inelasticity_nodes, settings.log_overload_step, 1).fields
-    ends = _solved(law, grid, settings, progress, every=grid.shape[2] - 1)
-    share = grid.nodes()[2] / grid.axes[2].largest
+    strength = grid.axes[2].nodes(np.zeros(1))[0]
+    count = 1 + math.ceil(strength[-1] / _APART)
+    layers = np.linspace(0, strength.size - 1, count).round().astype(int)
+    shares = [np.interp(strength, strength[layers], one) for one in np.eye(count)]
+    exact = _solved(law, grid, settings, progress, layers)
     for name, values in fields.items():
-        first, last = np.split(ends[name] - values[..., [0, -1]], 2, axis=2)
-        values += (1.0 - share) * first + share * last
+        values += (exact[name] - values[..., layers]) @ shares
     fields["restitution"].clip(0.0, 1.0, out=fields["restitution"])
     return fields
 
