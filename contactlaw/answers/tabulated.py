@@ -317,20 +317,13 @@ def table_for(law: Law, table: TableArgument) -> Table:
             stacklevel=_stack_level(),
         )
     if not table.law.follows(served):
-        raise ValueError(
-            f"table: it belongs to law {_told_apart(table.law)}, the model needs one of "
-            f"{_told_apart(served)}: leave it out, or contactlaw table build --law "
-            f"{served.family}, with --sphere and --plate if the law takes numbers from them"
+        raise ValueError(  # pairs that differ only in their rates have laws of one name
+            f"table: it belongs to law {table.law.name!r} (strength to {table.law.growth:.6g}), "
+            f"the model needs one of {served.name!r} (strength to {served.growth:.6g}): leave it "
+            f"out, or contactlaw table build --law {served.family}, with --sphere and --plate if "
+            "the law takes numbers from them"
         )
     return table
-
-
-def _told_apart(law: Law) -> str:
-    """Name of a law; pairs that differ only in their rates have laws of one name."""
-    if law.strengths is None:
-        return repr(law.name)
-    growth = math.exp(law.strengths.knots[-1])
-    return f"{law.name!r} (its strength grows up to {growth:.6g} times; data {law.key})"
 
 
 def _stack_level() -> int:

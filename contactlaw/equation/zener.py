@@ -394,11 +394,10 @@ def solve_overloads(law: Array, rtol: float, overload: Array, out: Outcome) -> t
     if status.any():
         return failure(status[which])
     w_m = each[which]
-    out.yield_ratio[:] = w_m / overload
+    out.yield_ratio[:] = y = w_m / overload
     order = np.argsort(s, kind="stable")  # the law of a strength is made once
-    known = (each[order] for each in (lam, out.yield_ratio))
     found = np.empty((len(Solution._fields), s.size))
-    found[:, order] = _run(TO_THE_END, law, *known, rtol, strength=s[order])
+    found[:, order] = _run(TO_THE_END, law, lam[order], y[order], rtol, strength=s[order])
     one = Solution(*found)
     _put(one, w_m, out)
     return failure(one.status)

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.table.lookup import ELASTIC, STRETCHED, TERMS
+from contactlaw.table.lookup import ELASTIC, STRETCHED
 
 Array = NDArray[np.float64]
 
@@ -144,11 +144,8 @@ class TableGrid:
         z = 2.0 * self.axes[0].place(lam) - 1.0
         factor = np.zeros_like(lam)
         for row in range(ELASTIC - 1, STRETCHED - 1, -1):
-            terms = self.by_strength[:, row].T
-            at_t = np.zeros_like(lam)
-            for term in terms[::-1]:
-                at_t = at_t * t + term[which]
-            factor = factor * z + at_t
+            terms = self.by_strength[which, row].T
+            factor = factor * z + np.polynomial.polynomial.polyval(t, terms, tensor=False)
         return np.where(log_chi > 0.0, log_chi / factor, log_chi)
 
 

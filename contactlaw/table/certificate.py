@@ -80,14 +80,9 @@ class Certificate:
 
 
 def compare_outcomes(
-    law: Law,
-    settings: Settings,
-    grid: TableGrid,
-    packed: Array,
-    points: int,
-    seed: int,
+    law: Law, settings: Settings, grid: TableGrid, packed: Array, points: int, seed: int,
     progress: Progress,
-) -> tuple[Outcome, dict[str, Array]]:
+) -> tuple[Outcome, dict[str, Array]]:  # fmt: skip
     """Outcomes that are looked up at random points, and their errors by field."""
     if not 100 <= points <= 10_000_000:
         raise ValueError(f"points: at least 100 and at most 10 000 000 are taken, got {points!r}")

@@ -16,7 +16,6 @@ from __future__ import annotations
 import dataclasses
 import itertools
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,10 +125,9 @@ def with_steps(
     overload = grid.axes[1]
     each = np.broadcast_to(steps, len(overload.segments))
     segments = tuple(_with_nodes(*one) for one in zip(overload.segments, each, strict=True))
-    axes = [inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)]
-    if law.strengths is not None:
-        axes.append(strength_axis(law.strengths, coarser))
-    return dataclasses.replace(grid, axes=tuple(axes))
+    axes = inelasticity_axis(settings), dataclasses.replace(overload, segments=segments)
+    more = () if law.strengths is None else (strength_axis(law.strengths, coarser),)
+    return dataclasses.replace(grid, axes=(*axes, *more))
 
 
 def largest_inelasticity(law: Law) -> float:
@@ -151,27 +149,26 @@ def on_demand(law: Law) -> Settings:
     )  # fmt: skip
 
 
-def check(axes: Sequence[Axis], law: Law, settings: Settings) -> None:
-    """Raise a ValueError if axes are not those of a law and of settings."""
-    for axis in axes:
-        axis.check()
-    first, second, *third = axes
-    known = law.strengths
-    if [one.sizes for one in third] != ([strength_axis(known).sizes] if known else []):
-        raise ValueError("its strengths are not those of the law")
-    expected = inelasticity_axis(settings)
-    same = first.sizes == expected.sizes
-    same = same and (first.stretch, second.stretch) == (expected.stretch, math.inf)
-    for one, other in zip(first.segments[0][:3], expected.segments[0][:3], strict=True):
-        same = same and np.allclose(one, other, rtol=1e-12, atol=1e-12)
-    if not same or not (second.segments[-1].end == math.log(settings.largest_overload)).all():
+def axes_with(overload: Axis, law: Law, settings: Settings) -> tuple[Axis, ...]:
+    """Axes of a table, of which only that of ln chi does not follow from the law and the settings.
+
+    Raises
+    ------
+    ValueError
+        If that one does not fit them.
+    """
+    overload.check()
+    end = overload.segments[-1].end
+    if overload.stretch != math.inf or not (end == math.log(settings.largest_overload)).all():
         raise ValueError("its axes are not those of its settings")
     kinks = [kink for kink in law.outcome_kinks if kink <= _straight(law)]
     if not law.is_hertz:
         kinks.insert(0, law.range[0])
-    starts = [one.start[0] for one in second.segments[: len(kinks)] if not np.ptp(one.start)]
-    if not np.array_equal(starts, np.log(kinks[: len(second.segments)])):
+    starts = [one.start[0] for one in overload.segments[: len(kinks)] if not np.ptp(one.start)]
+    if not np.array_equal(starts, np.log(kinks[: len(overload.segments)])):
         raise ValueError(f"its kinks are not those of the law, {law.outcome_kinks}")
+    axes = inelasticity_axis(settings), overload
+    return axes if law.strengths is None else (*axes, strength_axis(law.strengths))
 
 
 def _straight(law: Law) -> float:

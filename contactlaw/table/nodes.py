@@ -37,10 +37,11 @@ _LAYER_FACTORS = 1, 2, 4  # likewise of cells in ln k
 # Factors by which a coarser table's steps in ln chi may be wider, one for each segment: the COR of
 # elastic impacts bends far less than that beyond yield, for which a single step has to be fine.
 _STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
-# How many times fewer rows and wider steps most layers of strength have, and how far apart in ln k
-# are those that have all nodes, our choices. The COR moves by 1e-7 to 3e-6 against a table of which
-# all nodes are solved.
-_FEWER_ROWS, _WIDER, _APART = 2.2, 3.0, 0.75
+# How many times fewer rows and wider steps most layers of strength have, with their limits, and how
+# far apart in ln k are those that have all nodes, our choices. The COR moves by 1e-7 to 3e-6.
+_FEWER, _FEWEST_ROWS = 2.2, 19
+_WIDER, _WIDEST = 3.0, 0.1
+_APART = 0.75
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +85,7 @@ class Table:
     @functools.cached_property
     def packed_shapes(self) -> shapes.Shapes:
         """Splines through the shapes of force histories; for a table that has them."""
-        if self.states is None:
-            raise ValueError(
-                "table: has no shapes of force histories; with_shapes(table) adds them"
-            )
+        assert self.states is not None, "with_shapes(table) adds them"
         return shapes.pack(shape_grid(self), self.states)
 
 
@@ -141,8 +139,8 @@ def _solved(
 ) -> dict[str, Array]:
     """Solve the nodes of a grid; of one with strengths, those of all layers or of some."""
     chosen = [values.reshape(grid.shape)[..., layers] for values in grid.points()]
-    given = (values.ravel() for values in chosen)
-    found = sweep.solve_overloads(law, *given, settings.rtol, len(grid.rows), progress)
+    lam, chi, strength = (values.ravel() for values in chosen)
+    found = sweep.solve_overloads(law, lam, chi, strength, settings.rtol, len(grid.rows), progress)
     return {name: getattr(found, name).reshape(chosen[0].shape) for name in STORED}
 
 
@@ -154,12 +152,13 @@ def _solved_layers(
     Between the few, fields are nearly straight lines along the strength. How far they are from them
     varies so little with the other coordinates that splines over a coarser grid give it.
     """
-    rows = max(round(settings.inelasticity_nodes / _FEWER_ROWS), grids.FEWEST)
-    step = min(_WIDER * settings.log_overload_step, RANGES["log_overload_step"][1])
-    few = dataclasses.replace(settings, inelasticity_nodes=rows, log_overload_step=step)
-    coarse = grids.with_steps(law, grid, few, step)
+    rows, step = settings.inelasticity_nodes, settings.log_overload_step
+    fewer = max(round(rows / _FEWER), min(rows, _FEWEST_ROWS))
+    wider = max(min(_WIDER * step, _WIDEST), step)
+    few = dataclasses.replace(settings, inelasticity_nodes=fewer, log_overload_step=wider)
+    coarse = grids.with_steps(law, grid, few, wider)
     table = Table(law, few, coarse, _solved(law, coarse, few, progress))
-    fields = _resampled(table, settings.inelasticity_nodes, settings.log_overload_step, 1).fields
+    fields = _resampled(table, rows, step, 1).fields
     strength = grid.axes[2].nodes(np.zeros(1))[0]
     count = 1 + math.ceil(strength[-1] / _APART)
     layers = np.linspace(0, strength.size - 1, count).round().astype(int)
@@ -272,11 +271,7 @@ def _states(table: Table, progress: Progress) -> NDArray[np.float32]:
         known = lam[part], at.yield_ratio[part], rtol, shapes.SHARES, strength[part]
         status, time, speed = zener.shape(law.at_any_strength, *known)
         if status.any():
-            failed, n = zener.failure(status)
-            raise RuntimeError(
-                f"table for law {law.name!r}: the shape at lambda = {lam[part][n]:.6g}, chi = "
-                f"{chi[part][n]:.6g} did not solve: {zener.MESSAGES[failed]}"
-            )
+            raise sweep.failure("shape", law, lam[part], chi[part], *zener.failure(status))
         out[part] = np.stack((time, speed), axis=1)[:, :, :-1]
 
     sweep.in_parts(solve, lam.size, len(grid.rows), progress)
