@@ -317,11 +317,11 @@ def table_for(law: Law, table: TableArgument) -> Table:
             stacklevel=_stack_level(),
         )
     if not table.law.follows(served):
-        raise ValueError(  # pairs that differ only in their rates have laws of one name
-            f"table: it belongs to law {table.law.name!r} (strength to {table.law.growth:.6g}), "
-            f"the model needs one of {served.name!r} (strength to {served.growth:.6g}): leave it "
-            f"out, or contactlaw table build --law {served.family}, with --sphere and --plate if "
-            "the law takes numbers from them"
+        raise ValueError(
+            f"table: it belongs to law {table.law.name!r} (data {table.law.key}), the model needs "
+            f"one of {served.name!r} (data {served.key}; laws of one name differ in their rates): "
+            f"leave it out, or contactlaw table build --law {served.family}, with --sphere and "
+            "--plate if the law takes numbers from them"
         )
     return table
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import secrets
 from dataclasses import asdict
 from pathlib import Path
@@ -44,7 +45,8 @@ def _info(arguments: argparse.Namespace) -> None:
     found = _stored(arguments)
     print(f"law {found.law.family}: {found.law.source}")
     lam, chi = found.settings.largest_inelasticity, found.settings.largest_overload
-    more = f"strength to {found.law.growth:.4g}, " if found.law.strengths else ""
+    strengths = found.law.strengths
+    more = f"strength to {math.exp(strengths.knots[-1]):.4g}, " if strengths else ""
     print(f"inelasticity 0 to {lam:g}, overload to {chi:g}, {more}{found.grid.shape}")
     for name, value in asdict(found.settings).items():
         print(f"  {name:22s} {value:g}")

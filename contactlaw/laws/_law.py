@@ -205,11 +205,6 @@ class Law:
             content += self.strengths.data.tobytes() + repr(self.strengths[1:]).encode()
         return hashlib.sha256(content).hexdigest()[:16]
 
-    @property
-    def growth(self) -> float:
-        """Largest strength at the rates of a table's impacts, over that of a slow test."""
-        return math.exp(self.strengths.knots[-1]) if self.strengths else 1.0
-
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Law):
             return NotImplemented
