@@ -229,8 +229,8 @@ def _resampled(table: Table, rows: int, steps: float | Array, coarser: int) -> T
         table.settings, inelasticity_nodes=rows, log_overload_step=float(np.max(steps))
     )
     grid = grids.with_steps(table.law, table.grid, settings, steps, coarser)
-    lam, log_chi, *strength = (values.ravel() for values in grid.nodes())
-    found = _looked_up(table, lam, log_chi, strength[0] if strength else np.zeros_like(lam))
+    lam, log_chi, *_ = (values.ravel() for values in grid.nodes())
+    found = _looked_up(table, lam, log_chi, grid.points()[2])  # just above a knot, where laws jump
     fields = {name: getattr(found, name).reshape(grid.shape) for name in STORED}
     return Table(table.law, settings, grid, fields)
 
