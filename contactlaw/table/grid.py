@@ -150,13 +150,7 @@ def on_demand(law: Law) -> Settings:
 
 
 def axes_with(overload: Axis, law: Law, settings: Settings) -> tuple[Axis, ...]:
-    """Axes of a table, of which only that of ln chi does not follow from the law and the settings.
-
-    Raises
-    ------
-    ValueError
-        If that one does not fit them.
-    """
+    """Axes of a table, from that of ln chi, which has to fit the law and the settings."""
     overload.check()
     end = overload.segments[-1].end
     if overload.stretch != math.inf or not (end == math.log(settings.largest_overload)).all():

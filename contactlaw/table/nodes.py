@@ -175,10 +175,8 @@ def thinned(table: Table, error: float) -> Table:
     rows, fewest = table.settings.inelasticity_nodes - 1, int(RANGES["inelasticity_nodes"][0])
     points = random_points(table.grid, _COMPARED, np.random.default_rng(0))
     exact = _looked_up(table, *points).restitution
-    found = table
-    for fewer, coarser in itertools.product(
-        _ROW_FACTORS, _LAYER_FACTORS[: 3 if len(table.grid.axes) > 2 else 1]
-    ):
+    found, layers = table, _LAYER_FACTORS if len(table.grid.axes) > 2 else (1,)
+    for fewer, coarser in itertools.product(_ROW_FACTORS, layers):
         count = max(rows // fewer + 1, fewest)
         steps = _widest_steps(table, count, error, points, exact, coarser)
         if steps is not None:
