@@ -90,7 +90,7 @@ BUDGETS = {
     "contactlaw/physical": 3_320,  # with laws, impacts, bodies: 700 less in answers and export
     "contactlaw/reporting": 1_114,
     "contactlaw/stepping": 1_960,
-    "contactlaw/table": 3_000,  # one interpolant, of two or three axes
+    "contactlaw/table": 2_993,  # one interpolant, of two or three axes
     "contactlaw/walls": 1_962,
     "contactlaw templates": 1_051,  # sources of other languages
     "dem_demo": 6_350,

@@ -247,6 +247,10 @@ def test_tables_of_the_user(tmp_path, capsys):
     assert again.restitution(*given) == own.restitution(*given)
     with pytest.raises(ValueError, match="it belongs to law 'fem.*', the model needs one of"):
         cl.ImpactModel(PAIRS["plate"], table=own.table)
+    quicker = dataclasses.replace(COPPER, rate=(0.03, 1.0))
+    known = rf"data {own.table.law.key} and .* differ in their rates"
+    with pytest.raises(ValueError, match=known):
+        cl.ImpactModel(cl.Pair(quicker, "glass"), table=own.table)
     assert main(["table", "info", str(path)]) == 0
     assert "strength to 1.332" in capsys.readouterr().out
 
