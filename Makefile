@@ -7,7 +7,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no
 # Without byte code on disk each process would compile numba's sources again, for 2 s.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test test-long test-engines lint package validation bench pictures clean
+.PHONY: demo test test-long test-engines lint docs package validation bench pictures clean
 
 demo: .venv/demo.done  ## rain beads on thin plates; the page is rain/index.html
 	$(BIN)/dem-demo rain --out rain
@@ -33,6 +33,9 @@ lint: .venv/dev.done  ## check style and types
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+
+docs: .venv/docs.done  ## build the site of the documentation: build/docs/index.html
+	$(BIN)/mkdocs build --strict --quiet
 
 package: .venv/dev.done  ## build the wheel and use it in an environment of its own
 	rm -rf dist
