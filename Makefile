@@ -35,7 +35,7 @@ lint: .venv/dev.done  ## check style and types
 	$(BIN)/mypy
 
 docs: .venv/docs.done  ## build the site of the documentation: build/docs/index.html
-	$(BIN)/mkdocs build --strict --quiet
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
 
 package: .venv/dev.done  ## build the wheel and use it in an environment of its own
 	rm -rf dist

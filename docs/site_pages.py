@@ -11,6 +11,7 @@ import importlib
 import os
 import re
 from pathlib import Path
+from types import FunctionType
 
 from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
@@ -20,6 +21,7 @@ from contactlaw import cli
 ROOT = Path(__file__).resolve().parents[1]
 HOME = "README.md"  # the page of the repository that is the first one of the site
 LINK = re.compile(r"(\]\()([^)#\s]+)([^)]*\))")
+DESCRIBED = (FunctionType, property, classmethod, staticmethod)
 MODULES = [
     "contactlaw",
     "contactlaw.softsphere",
@@ -91,7 +93,9 @@ def on_page_content(html, page, **_):
     """Stop where the page of a module lacks one of its names."""
     name = page.file.src_uri.removeprefix("reference/").removesuffix(".md")
     if name in MODULES:
-        missing = [one for one in public(name) if f'id="{name}.{one}"' not in html]
+        names = public(name)
+        names += [method for one in names for method in methods(name, one)]
+        missing = [one for one in names if f'id="{name}.{one}"' not in html]
         if missing:
             raise PluginError(f"the reference of {name} lacks {', '.join(missing)}")
     return html
@@ -118,6 +122,16 @@ def public(name):
         return [one for one in own if not one.startswith("__")]
     text = Path(found.__file__).read_text()
     return re.findall(r"^(?:def |class )?([A-Za-z]\w*)(?:\(| = |:$)", text, re.MULTILINE)
+
+
+def methods(name, one):
+    """Names of what a public class has of its own and from classes of the package."""
+    found = getattr(importlib.import_module(name), one)
+    for part in getattr(found, "__mro__", ()):
+        if part.__module__.startswith("contactlaw"):
+            for method, value in vars(part).items():
+                if not method.startswith("_") and isinstance(value, DESCRIBED):
+                    yield f"{one}.{method}"
 
 
 def module(name):
