@@ -1,6 +1,6 @@
 """Make the notebook of the tutorial from its page: `python docs/notebook.py`.
 
-Blocks of Python and the commands become cells of code, everything else cells of text. No outputs are
+Blocks of Python and commands become cells of code, everything else cells of text. No outputs are
 stored, so that the notebook changes only where the page does.
 """
 

@@ -1,9 +1,9 @@
 """Pages of the site that no file of docs/ holds: those of the top folder, and the references.
 
-mkdocs calls the functions whose names begin with `on_` (`make docs`). A file outside docs/ to which a
-page links becomes a part of the site, and the link leads there. The reference of names has a page
-for each module from which users import; a public name without an entry stops the build. The reference
-of commands is what the parsers print for ``--help``.
+mkdocs calls the functions whose names begin with `on_` (`make docs`). A file outside docs/ to which
+a page links becomes a part of the site, and the link leads there. The reference of names has a page
+for each module from which users import; a public name without an entry stops the build. The
+reference of commands is what the parsers print for ``--help``.
 """
 
 import argparse
@@ -142,7 +142,7 @@ def module(name):
 
 def commands():
     """Write the page of the command line: what each parser prints for ``--help``."""
-    os.environ["COLUMNS"] = "100"  # by which argparse breaks lines
+    os.environ["COLUMNS"] = "74"  # by which argparse breaks lines: the width of a page
     parts = ["# Commands\n\nWhat `--help` prints, for each command.\n"]
     waiting = [cli.parser()]
     while waiting:
