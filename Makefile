@@ -45,7 +45,7 @@ matrix:  ## run a quick part of the tests on each of Python 3.11 to 3.13 that is
 
 # Tests that need few integrations: with kernels as Python, whose lines count then, these are slow.
 PLAIN := tests/physical/test_materials.py tests/physical/test_pair.py tests/physical/test_hardness.py \
-  tests/physical/test_scaling.py tests/physical/test_validity.py tests/fitting/test_measurements.py \
+  tests/physical/test_scaling.py tests/physical/test_validity.py \
   tests/cli/test_quantities.py tests/cli/test_wording.py tests/cli/test_lines.py \
   tests/cli/test_records.py contactlaw/equation contactlaw/table contactlaw/walls contactlaw/report \
   contactlaw/engines/pymunk
