@@ -47,7 +47,7 @@ matrix:  ## run a quick part of the tests on each of Python 3.11 to 3.13 that is
 PLAIN := tests/physical/test_materials.py tests/physical/test_pair.py tests/physical/test_hardness.py \
   tests/physical/test_scaling.py tests/physical/test_validity.py \
   tests/cli/test_quantities.py tests/cli/test_wording.py tests/cli/test_lines.py \
-  tests/cli/test_records.py contactlaw/equation contactlaw/table contactlaw/walls contactlaw/report \
+  tests/cli/test_records.py contactlaw/equation contactlaw/table contactlaw/walls contactlaw/reporting \
   contactlaw/engines/pymunk
 
 coverage: $(VENV)/coverage.done  ## print which lines of contactlaw a part of the tests reaches

@@ -34,8 +34,11 @@ if TYPE_CHECKING:
     from contactlaw.physical.pair import Pair
     from contactlaw.physical.rebound import Rebound
     from contactlaw.physical.validity import Validity, edge_distance, explain
+    from contactlaw.record.file import Bodies, Record, read_record
+    from contactlaw.reporting.files import report
 
 __all__ = [
+    "Bodies",
     "Fit",
     "ForceHistory",
     "ImpactModel",
@@ -44,6 +47,7 @@ __all__ = [
     "Measurements",
     "Pair",
     "Rebound",
+    "Record",
     "Sensitivity",
     "Uncertainty",
     "UnidentifiedError",
@@ -58,6 +62,8 @@ __all__ = [
     "materials",
     "measured_law",
     "read_materials",
+    "read_record",
+    "report",
     "restitution_sphere_sphere",
 ]
 
@@ -74,6 +80,8 @@ _MODULES = {
     "physical.pair": "Pair",
     "physical.rebound": "Rebound",
     "physical.validity": "Validity edge_distance explain",
+    "record.file": "Bodies Record read_record",
+    "reporting.files": "report",
     "answers.sensitivity": "Sensitivity",
     "answers.uncertainty": "Uncertainty",
     "answers.beads": "restitution_sphere_sphere",

@@ -24,13 +24,14 @@ LAYERS = [
     {"laws"},
     {"table"},
     {"physical"},  # SI units
+    {"record"},  # of impacts, and its file
     {"answers"},  # by a table or by the solver
     {"fitting"},
     {"model"},  # where the towers meet
     {"dashpot", "walls"},
     {"stepping"},  # the contacts of a time step; no engine
     {"softsphere"},
-    {"export", "report"},
+    {"export", "reporting"},
     {"engines"},
     {"cli"},
 ]
@@ -52,9 +53,9 @@ FILES = {
                 "doubts", "fit"],
     "emit": ["types", "languages", "program", "function"],
     "export": ["functions", "page_functions", "c_header", "liggghts_wall", "web_page"],
-    "report": ["limits", "gallery", "page", "surface", "run", "summary", "charts", "figures",
-               "files"],
-    "engines": ["record", "hdf5", "layout", "needs"],
+    "record": ["columns", "hdf5", "file"],
+    "reporting": ["limits", "gallery", "page", "surface", "meshes", "run", "summary", "charts",
+                  "figures", "files"],
     "engines/lammps": ["beads", "commands", "memory", "errors", "callback", "attachment"],
     "engines/pymunk": ["handlers", "models", "record", "registry", "seams", "edges",
                        "lookahead", "contacts", "impacts", "attachment"],
@@ -77,24 +78,24 @@ LAWS = sorted(path for path in (ROOT / "laws").glob("*.py"))
 BUDGETS = {
     # 32,500 was meant with the generator in it; the generator and what header and page offer as
     # kernels are 1,170 lines, for 2,060 of C and JavaScript that went
-    "contactlaw": 33_850,
+    "contactlaw": 33_382,
     "contactlaw/answers": 2_770,
-    "contactlaw/cli": 4_500,
+    "contactlaw/cli": 3_906,
     "contactlaw/emit": 700,
-    "contactlaw/engines": 4_300,
+    "contactlaw/engines": 3_624,
     "contactlaw/equation": 2_815,  # with the series of w_m, and masses that are no solid sphere's
     "contactlaw/export": 1_085,
     "contactlaw/fitting": 2_260,
     "contactlaw/laws": 2_085,  # laws know their strengths, and are made in two thirds of the time
     "contactlaw/physical": 3_320,  # with laws, impacts, bodies: 700 less in answers and export
-    "contactlaw/report": 1_150,
+    "contactlaw/reporting": 1_114,
     "contactlaw/stepping": 1_960,
     "contactlaw/table": 3_000,  # one interpolant, of two or three axes
-    "contactlaw/walls": 2_000,
+    "contactlaw/walls": 1_962,
     "contactlaw templates": 1_051,  # sources of other languages
     "dem_demo": 6_350,
     "validation": 14_850,  # with spheres that are not solid, and the turning-point form
-    "tests": 26_100,  # with rates at which something in the law changes
+    "tests": 24_113,  # a fact is held at one level, the one that is nearest to the user
 }
 TEMPLATES = {".in", ".js", ".html", ".cpp"}
 VALIDATION = ROOT.parent / "validation"
@@ -183,7 +184,7 @@ def test_an_engine_knows_no_other():
     for engine in engines:
         for path in (ROOT / "engines" / engine).glob("*.py"):
             used = {name[1] for name in own(path) if name[0] == "engines" and len(name) > 1}
-            assert used <= {engine, *FILES["engines"]}, path
+            assert used <= {engine, "needs", "record"}, path
 
 
 def test_a_subcommand_knows_no_other():

@@ -69,14 +69,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def parser() -> argparse.ArgumentParser:
-    """Make the parser of ``contactlaw``; parsed arguments have the subcommand's function as `run`.
-
-    Examples
-    --------
-    >>> run = parser().parse_args(["table", "info", "--law", "myc"]).run
-    >>> run.__module__, run.__name__
-    ('contactlaw.cli.table', '_info')
-    """
+    """Make the parser; parsed arguments have the function of the subcommand as `run`."""
     made = Parser(prog="contactlaw", description="Restitution of beads that hit thin plates.")
     made.add_argument("--version", action="version", version=f"%(prog)s {VERSION}",
                       help="print the version and exit")  # fmt: skip

@@ -106,6 +106,9 @@ def follow_impact(
     edges: Edges | None,
 ) -> Solution:  # fmt: skip
     """Integrate one impact, and note points of its path in row n."""
+    if y * force.lossless(law) > 0.05 and force.returned(law)[0] < 1.0:
+        # slower impacts lose the same share, but the law knows no loss of the shallowest contacts
+        y = 0.05 / force.lossless(law)
     scale, h = integrator.scale_of(y, rtol)
     contact = ScaledContact(law, PlateMobility(lam * scale.t, edge.near(edges, n, scale.t, rtol)))
     leg, state = motion.touch(contact, scale.u)
@@ -453,7 +456,9 @@ def extremes(law: Array, outcome: Outcome, out: Extremes) -> None:
             count += w > outcome.yield_ratio[n] * leaves
         for k in range(count):
             n = beyond[k]
-            one = law if own.size == 0 else force.at_strength(law, outcome.strength[n], own)
+            one = (
+                law if own.size == 0 else force.at_compression(law, outcome.strength[n], dm[k], own)
+            )
             left[k], plastic[k], other[k] = losses.at_the_contact(one, dm[k])
             if own.size > 0:
                 out.peak_force[n] = force.loading(one, math.sqrt(dm[k]))

@@ -378,7 +378,7 @@ def _end(
         since = min(max(gap / -u, 0.0), clock.dt)
     record = scene.impacts[n]
     record.time = clock.now - row.duration
-    record.bead, record.other = bead.number, -1
+    record.bead, record.other, record.material = bead.number, -1, bead.kind
     record.plate, record.triangle = contact.wall, contact.triangle
     record.x, record.y, record.z = contact.point
     record.approach_speed, record.restitution = row.approach_speed, leaves / row.approach_speed

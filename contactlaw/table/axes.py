@@ -57,7 +57,7 @@ class Axis:
         """Raise a ValueError if segments do not meet, or nodes do not rise."""
         pairs = itertools.pairwise(self.segments)
         if not self.segments or not all(np.array_equal(a.end, b.start) for a, b in pairs):
-            raise ValueError(f"its segments along {self.name} do not meet")
+            raise ValueError(f"its segments along {self.name} leave gaps, or overlap")
         for start, end, shares, _ in self.segments:
             rises = shares.size >= FEWEST and (np.diff(shares) > 0.0).all() and (start < end).all()
             if not (rises and shares[0] == 0.0 and shares[-1] == 1.0):

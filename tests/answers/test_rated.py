@@ -61,18 +61,6 @@ def impacts(name, count=80):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_an_impact_is_that_of_the_stronger_pair(name):
-    given = tuple(values[:6] for values in impacts(name))
-    found = model(name).solve(*given)
-    for n, factor in enumerate(factors(name, *given[:2])):
-        pair = rate.strengthened(PAIRS[name], factor)
-        alone = cl.ImpactModel(pair).solve(*(values[n] for values in given))
-        assert alone.restitution == pytest.approx(found.restitution[n], abs=5e-6)
-        assert alone.peak_force == pytest.approx(found.peak_force[n], rel=1e-5)
-        assert alone.flags == found.flags[n]
-
-
-@pytest.mark.parametrize("name", NAMES)
 def test_tables_are_certified(name):
     given = impacts(name)
     assert np.ptp(factors(name, *given[:2])) > 0.06

@@ -42,12 +42,12 @@ def test_cor_json_holds_every_field(model, capsys):
     assert printed["flags"] == []
 
 
-def test_cor_text_has_units(capsys):
-    assert main(IMPACT) == 0
-    out = capsys.readouterr().out
-    assert "restitution           0.871554 (" in out
-    assert "contact_time          4.04768e-06 s (" in out
-    assert "inside every limit" in out
+def test_a_mass_is_a_number_and_named_where_it_makes_a_plate_too_thin(capsys):
+    assert main([*IMPACT, "--mass", "4mg", "--json", "--no-band"]) == 0
+    assert json.loads(capsys.readouterr().out)["mass_kg"] == 4e-6
+    thin = [*COR, "--radius", "0.9mm", "--thickness", "0.1mm", "--speed", "1", "--no-band"]
+    assert main([*thin, "--mass", "6mg"]) == 1
+    assert ", mass 6 mg: outside the table, its inelasticity" in capsys.readouterr().err
 
 
 def test_cor_names_the_limits_exceeded(capsys):

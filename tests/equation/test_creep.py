@@ -7,8 +7,7 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from contactlaw import laws
-from contactlaw.equation import creep, force, legs, losses, motion, zener
-from contactlaw.equation.plate import PlateMobility
+from contactlaw.equation import force, zener
 from contactlaw.laws import fem
 
 SOFT = fem.law(486795.0, 0.0, 0.999419, 0.0786415, 0.28555)  # a sphere of no strength
@@ -112,26 +111,3 @@ def test_times_and_levels_within_the_creep(name):
     assert status == zener.OK
     falling = when[shares.size : -1]
     assert falling == pytest.approx(since_touch[: share.size], rel=1e-7)
-
-
-def test_the_series_errs_as_the_square_of_its_number():
-    """For exponent 2 the closed form is a sum of two decays, of which the slower one remains."""
-    law, errors = laws.law("myc").data, []
-    for delta in (8e-5, 4e-5, 2e-5):
-        leg = legs._on_unloading_curve(
-            legs._BELOW_CAP, force.UnloadingCurve(0.0, 1.0, 2.0, 0.0, 0.0), 0.0
-        )
-        contact = motion.ScaledContact(law, PlateMobility(delta**-0.5))
-        beta = contact.plate.mobility
-        fast = 0.5 * (beta + math.sqrt(beta**2 - 4.0))  # s^2 - beta s + 1 = 0
-        slow = 1.0 / fast  # f = slow u
-        state = motion.start(contact, leg, math.sqrt(slow), 1.0, 0.0, losses.NO_WORK, None)
-        there = creep.creep(contact, leg, state, 0.0, 5.0 * beta, 1e-18)
-        assert 4.9 * beta < there.t < 5.0 * beta
-        decayed = math.exp(-slow * there.t)
-        errors.append([there.u / decayed - 1.0, there.f / (slow * decayed) - 1.0])
-        work = slow**2 * (1.0 - decayed**2) / (2.0 * slow)  # integral of f^2 over time
-        assert there.work.wave == pytest.approx(work, rel=1e-7)
-    errors = np.abs(errors)
-    assert (errors[0] < 1e-7).all()
-    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(2.0, abs=0.05)

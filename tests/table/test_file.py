@@ -105,7 +105,7 @@ HUGE = {"shape": (10**13,), "chunks": (1024,), "dtype": "f8"}
         (lambda f: f.attrs.modify("inelasticity_nodes", 10), "axes are not those of its settings"),
         (put("law/outcome_kinks", 1.5, 0), "kinks"),
         (put("axes/inelasticity/0/shares", 0.4, 2), "axes along inelasticity do not rise"),
-        (put("axes/log_overload/1/start", 1.0, ...), "along log_overload do not meet"),
+        (put("axes/log_overload/1/start", 1.0, ...), "along log_overload leave gaps"),
         (lambda f: f["axes/log_overload"].attrs.modify("stretch", 9.0), "axes are not those"),
         (put("fields/wave_rate", -0.5), "wave_rate holds -0.5"),
         (put("shapes/states", -1.0, 0, 0, 0, 5), "times that do not grow"),

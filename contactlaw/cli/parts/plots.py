@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from contactlaw.cli.parts.quantities import LENGTH, formatted
+from contactlaw._readable import drawn
 from contactlaw.physical.validity import Validity, count_flags, limits_in_words
 
 if TYPE_CHECKING:
@@ -17,24 +17,12 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_HALF_SPACE = "half-space"
 SUFFIXES = ".png", ".svg", ".pdf"
 
 
 def plate_of(thickness: float) -> str:
-    """Name a plate by its thickness [m].
-
-    Examples
-    --------
-    >>> plate_of(1e-3), plate_of(math.inf)
-    ('plate 1 mm', 'half-space')
-    """
-    return _HALF_SPACE if thickness == math.inf else f"plate {length_of(thickness)}"
-
-
-def length_of(length: float) -> str:
-    """Write a length [m] in a suitable unit; an infinite one is that of a half-space."""
-    return _HALF_SPACE if length == math.inf else formatted(length, LENGTH).replace("um", "µm")
+    """Name a plate by its thickness [m]."""
+    return drawn(thickness) if thickness == math.inf else f"plate {drawn(thickness)}"
 
 
 def colour_of(n: int, count: int) -> Any:

@@ -9,10 +9,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from contactlaw.engines.needs import CorBySpeed, knows_friction
+from contactlaw.engines.needs import CorBySpeed, knows
 from contactlaw.engines.pymunk.friction import Slide, check_moment, slide_of
 from contactlaw.engines.pymunk.models import ModelsByBead
-from contactlaw.physical.arguments import broadcast, check
+from contactlaw.physical.arguments import scalars
 from contactlaw.physical.materials import sphere_mass
 
 if TYPE_CHECKING:
@@ -219,18 +219,9 @@ def body_of(
     return body
 
 
-def scalar(**argument: float) -> float:
-    """One number within the limits of the argument of that name."""
-    values, shape = broadcast(**argument)
-    check(**dict.fromkeys(argument, values))
-    if shape is not None:
-        raise ValueError(f"{next(iter(argument))}: expected one number, got shape {shape}")
-    return float(values[0])
-
-
 def radius_of(circle: pymunk.Circle) -> float:
     """Radius of a bead, in metres."""
-    radius = scalar(radius=circle.radius)
+    radius = float(scalars(radius=circle.radius)[0][0])
     if radius > LARGEST:
         raise ValueError(
             f"radius: {radius!r} m is above {LARGEST:g} m; are these pixels? Space, gravity, "
@@ -276,9 +267,9 @@ def friction_of(
     friction: float, models: ModelsByBead, shape: Any, beads: Iterable[BeadShape]
 ) -> float:
     """Coefficient of friction of a new plate, if its models and all beads are fit for it."""
-    friction = scalar(friction=friction)
+    friction = float(scalars(friction=friction)[0][0])
     for model in models.values():
-        if not knows_friction(model):
+        if not knows(model, "oblique"):
             raise TypeError(
                 f"friction: {model!r} knows none, it has no oblique(); leave friction=None, which "
                 "is pymunk's own, or give an ImpactModel"

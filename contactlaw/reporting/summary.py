@@ -6,10 +6,10 @@ import html
 
 import numpy as np
 
-from contactlaw._readable import relative
-from contactlaw.report import page
-from contactlaw.report.limits import exceeded, limits_lines
-from contactlaw.report.run import CAUSES, Run, WallRow, by_cause
+from contactlaw._readable import drawn, relative
+from contactlaw.reporting import page
+from contactlaw.reporting.limits import exceeded, limits_lines
+from contactlaw.reporting.run import CAUSES, Run, WallRow, by_cause
 
 Table = list[tuple[str, ...]]
 
@@ -71,27 +71,9 @@ def energies(run: Run) -> Table:
     whole = by_cause(run.rows).sum() or 1.0
     for name, rows in (*((wall.name, wall.rows) for wall in run.walls), ("all walls", run.rows)):
         parts = by_cause(rows)
-        shown = (joules(part) for part in (*parts, parts.sum()))
+        shown = (drawn(part, "J", 3) for part in (*parts, parts.sum()))
         found.append((name, f"{rows.size}", *shown, f"{parts.sum() / whole:z.1%}"))
     return found
-
-
-def joules(energy: float) -> str:
-    """Write an energy [J] with three digits.
-
-    Examples
-    --------
-    >>> joules(1.2345e-3), joules(2.0), joules(0.0)
-    ('1.23 mJ', '2 J', '0 J')
-    """
-    name, unit = unit_of(energy)
-    return f"{energy / unit:.3g} {name}"
-
-
-def unit_of(energy: float) -> tuple[str, float]:
-    """Choose the unit that suits an energy [J]; returns its name and size [J]."""
-    units = ("nJ", 1e-9), ("µJ", 1e-6), ("mJ", 1e-3)
-    return next((one for one in units if 0.0 < abs(energy) < 1e3 * one[1]), ("J", 1.0))
 
 
 def as_html(table: Table) -> str:

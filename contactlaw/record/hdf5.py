@@ -39,25 +39,12 @@ def opened(content: bytes) -> Iterator[h5py.File]:
 
 
 def group(parent: h5py.Group, name: str) -> h5py.Group:
-    """Return a group within another.
-
-    Raises
-    ------
-    ValueError
-        If there is none of that name.
-    """
+    """Return a group within another."""
     return _member(parent, name, h5py.Group, "a group")
 
 
 def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[Any]:
-    """Read a column of numbers, which has `size` rows if that is given.
-
-    Raises
-    ------
-    ValueError
-        If there is no such dataset, or it holds something else, more than `LARGEST` rows, another
-        number of rows, or what cannot be read.
-    """
+    """Read a column of numbers, of `size` rows if that is given and of `LARGEST` at most."""
     dataset = _member(parent, name, h5py.Dataset, "a dataset")
     where = f"dataset {dataset.name[1:]}"
     if dataset.shape is None or dataset.ndim != 1:
@@ -80,24 +67,7 @@ def numbers(parent: h5py.Group, name: str, size: int | None = None) -> NDArray[A
 
 
 def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) -> NDArray[np.intp]:
-    """Read a column of whole numbers from 0 to `count` - 1, or -1 for none.
-
-    Parameters
-    ----------
-    parent : Group
-        Group of the column.
-    name : str
-        Name of the column.
-    count : int
-        Number of things that are counted, such as beads.
-    size : int, optional
-        Rows of the column, if that is known.
-
-    Raises
-    ------
-    ValueError
-        As `numbers`; or if a value is no whole number, or not from -1 to `count` - 1.
-    """
+    """Read a column of whole numbers from 0 to `count` - 1, or -1 for none."""
     found = numbers(parent, name, size)
     # not (...) also for NaN
     wrong = np.flatnonzero(~((found >= -1) & (found < count) & (found == np.floor(found))))
@@ -110,13 +80,7 @@ def indices(parent: h5py.Group, name: str, count: int, size: int | None = None) 
 
 
 def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
-    """Read an attribute that is a string or a number.
-
-    Raises
-    ------
-    ValueError
-        If there is none of that name, or of another kind.
-    """
+    """Read an attribute that is a string or a number."""
     expected = "text" if kind is str else "a number"
     value = parent.attrs.get(name)
     if value is None:
@@ -131,13 +95,7 @@ def attribute(parent: h5py.Group, name: str, kind: type) -> Any:
 
 
 def number_or_list(parent: h5py.Group, name: str) -> float | list[float]:
-    """Read an attribute that is a number or a list of numbers.
-
-    Raises
-    ------
-    ValueError
-        If there is none of that name, or of another kind.
-    """
+    """Read an attribute that is a number or a list of numbers."""
     value = parent.attrs.get(name)
     if isinstance(value, np.ndarray) and value.dtype.kind in "iuf" and value.ndim == 1:
         return [float(number) for number in value]

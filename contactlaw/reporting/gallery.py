@@ -23,15 +23,7 @@ class Picture(NamedTuple):
 
 
 class Gallery:
-    """The figures in the folder of a package.
-
-    Parameters
-    ----------
-    package : str
-        Name of the package with the figures.
-    path : sequence of str
-        Folders of the package, its ``__path__``.
-    """
+    """The figures in the folder of a package, whose ``__path__`` is `path`."""
 
     def __init__(self, package: str, path: Sequence[str]) -> None:
         self._package, self._path = package, path
@@ -46,15 +38,7 @@ class Gallery:
         return importlib.import_module(f"{self._package}.{name}")
 
     def draw(self, name: str, run: Any) -> Picture:
-        """Draw a figure of a run.
-
-        Parameters
-        ----------
-        name : str
-            One of `names`.
-        run : object
-            The run, as the figures of this folder take it.
-        """
+        """Draw a figure by its name, of a run as the figures of this folder take it."""
         from contactlaw import style  # matplotlib is loaded when a figure is drawn
 
         drawn = []

@@ -11,9 +11,9 @@ import textwrap
 from matplotlib.figure import Figure
 
 from contactlaw import style
-from contactlaw.report.charts import PARTS, bar, wall_axis
-from contactlaw.report.run import Run, by_cause, shares
-from contactlaw.report.summary import joules, unit_of
+from contactlaw._readable import drawn, scale_of
+from contactlaw.reporting.charts import PARTS, bar, wall_axis
+from contactlaw.reporting.run import Run, by_cause, shares
 
 
 def draw(run: Run) -> Figure:
@@ -27,13 +27,13 @@ def draw(run: Run) -> Figure:
         "the impacts brought",
     )  # fmt: skip
     left, right = figure.subplots(*style.pick((1, 2), (2, 1)))
-    unit, scale = unit_of(max(float(by_cause(wall.rows).sum()) for wall in walls))
+    unit, scale = scale_of(max(float(by_cause(wall.rows).sum()) for wall in walls), "J")
     for n, wall in enumerate(walls):
         part = by_cause(wall.rows)
         for m, (_, colour) in enumerate(PARTS[1:]):
             left.bar(n, part[m] / scale, 0.6, part[:m].sum() / scale, color=colour,
                      edgecolor="white", linewidth=0.6)  # fmt: skip
-        left.annotate(joules(part.sum()), (n, part.sum() / scale), (0, 3), ha="center",
+        left.annotate(drawn(part.sum(), "J", 3), (n, part.sum() / scale), (0, 3), ha="center",
                       textcoords="offset points", fontsize=11 if len(walls) < 7 else 8)  # fmt: skip
         if wall.impacts.size:
             found = shares(wall.impacts, wall.impacts["mass"], by_cause(run.rows)[-1] > 0.0)
@@ -41,7 +41,10 @@ def draw(run: Run) -> Figure:
     names = [wall.name for wall in walls]
     if len(walls) < 7:  # columns are wide enough to have their names below them
         names = ["\n".join(textwrap.wrap(name, max(10, 52 // len(walls)))) for name in names]
-    for axes, what in ((left, f"energy taken [{unit}]"), (right, "share of impacts' energy [%]")):
+    for axes, what in (
+        (left, f"energy taken [{unit.replace('u', 'µ')}]"),
+        (right, "share of impacts' energy [%]"),
+    ):
         wall_axis(axes, names, "wall")
         if len(walls) > 6:
             axes.tick_params(axis="x", rotation=60)

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw._readable import drawn
 from contactlaw.answers.constant import Constant, constant
 from contactlaw.physical.kind import only_impacts
-from contactlaw.report.limits import label
-from contactlaw.report.surface import EnergyMap, Surface, energy_map
+from contactlaw.record.file import Record
+from contactlaw.reporting.surface import EnergyMap, energy_map
 from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
 from contactlaw.walls.motion import FARTHEST
 
@@ -37,22 +38,12 @@ OTHERS = "other walls"
 
 
 class WallRow(NamedTuple):
-    """What happened on one wall.
+    """What happened on one wall."""
 
-    Attributes
-    ----------
-    name
-        Number of the wall, its thickness, and its material where that is known.
-    rows, impacts
-        Contacts on it, and those of them that are impacts.
-    best
-        One COR for all of the impacts; None without any.
-    """
-
-    name: str
-    rows: Rows
-    impacts: Rows
-    best: Constant | None
+    name: str  # number of the wall, its thickness, and its material where that is known
+    rows: Rows  # contacts on it
+    impacts: Rows  # those of them that are impacts
+    best: Constant | None  # one COR for all of the impacts; None without any
 
 
 class Shares(NamedTuple):
@@ -85,41 +76,22 @@ def by_cause(rows: Rows) -> Floats:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """The impacts of a run.
+    """The impacts of a run, whose record has all columns of `contactlaw.engines.record.IMPACT`."""
 
-    Parameters
-    ----------
-    record : structured array
-        Impacts, with the columns of `contactlaw.engines.record.IMPACT`.
-    subject : str
-        What the run is, such as the materials and the engine.
-    materials : sequence of str
-        Material of each wall by its number in the record; "" or missing where it is unknown.
-    surface : Surface, optional
-        The walls, and where the rows of `record` hit them.
-
-    Raises
-    ------
-    ValueError
-        If the record lacks a column, or an impact on a wall has a number that cannot be.
-    """
-
-    record: Rows
-    subject: str
-    materials: tuple[str, ...] = ()
-    surface: Surface | None = None
+    record: Record
 
     def __post_init__(self) -> None:
         """Refuse a record from which no report can be made."""
-        missing = [name for name in _NEEDED if name not in (self.record.dtype.names or ())]
+        rows = self.record.rows
+        missing = [name for name in _NEEDED if name not in (rows.dtype.names or ())]
         if missing:
             raise ValueError(
                 f"record: has no column {', '.join(missing)}: a report needs all columns that the "
                 "engines record, with an ImpactModel and this version of contactlaw; simulate again"
             )
-        on_walls, impacts = self.record["plate"] >= 0, only_impacts(self.record["kind"])[0]
+        on_walls, impacts = rows["plate"] >= 0, self.record.impact
         for name, (least, most) in _LIMITS.items():
-            values = self.record[name]
+            values = rows[name]
             unknown = np.isnan(values) if name in _CAUSED else ~impacts
             wrong = on_walls & ~((least <= values) & (values <= most) | unknown)
             if wrong.any():
@@ -130,32 +102,42 @@ class Run:
                 )
 
     @cached_property
-    def rows(self) -> Rows:
+    def on_walls(self) -> Record:
         """Contacts on walls, also those that are no impacts."""
-        found: Rows = self.record[self.record["plate"] >= 0]
-        return found
+        return self.record.part(self.record.rows["plate"] >= 0)
 
-    @cached_property
+    @property
+    def rows(self) -> Rows:
+        """Rows of `on_walls`."""
+        return self.on_walls.rows
+
+    @property
     def left_out(self) -> str:
         """Which contacts are no impacts, and how many; empty if all are impacts."""
-        return only_impacts(self.rows["kind"])[1]
+        return self.on_walls.left_out
 
-    @cached_property
+    @property
     def impacts(self) -> Rows:
         """Impacts on walls; COR and speed of other contacts mean nothing."""
-        found: Rows = self.rows[only_impacts(self.rows["kind"])[0]]
-        return found
+        return self.on_walls.impacts
 
     @cached_property
-    def points(self) -> Floats:
-        """Contact points of the record, shape (n, 3) [m]."""
-        return np.stack([self.record[name] for name in "xyz"], axis=1)
+    def subject(self) -> str:
+        """What the run is: the materials and the engine, as far as they are known."""
+        used = [self.record.bodies[n] for n in np.unique(self.on_walls.which) if n >= 0]
+        spheres, plates = ({one.materials[n].name for one in used} for n in range(2))
+        pair = f"{', '.join(sorted(spheres))} on {', '.join(sorted(plates))}" if used else ""
+        engine = self.record.made.get("engine")
+        return ", ".join([pair] * bool(pair) + [f"in {engine}"] * bool(engine)) or "unknown beads"
 
     @cached_property
     def walls(self) -> list[WallRow]:
         """Walls by number and thickness; the least of very many are counted as one."""
         rows = self.rows
-        keys, which = np.unique(rows[["plate", "thickness"]], return_inverse=True)
+        found = np.empty(rows.size, [("plate", "i8"), ("thickness", "f8"), ("bodies", "i8")])
+        found["plate"], found["thickness"] = rows["plate"], rows["thickness"]
+        found["bodies"] = self.on_walls.which
+        keys, which = np.unique(found, return_inverse=True)
         names = [self._name(*key) for key in keys.tolist()]
         if len(names) > _MOST:
             order = np.argsort(-np.bincount(which, taken(rows)))
@@ -165,16 +147,21 @@ class Run:
             which = rank[which]
         return [_wall(name, rows[which == n]) for n, name in enumerate(names)]
 
-    def _name(self, plate: int, thickness: float) -> str:
-        material = self.materials[plate] if plate < len(self.materials) else ""
-        return f"{plate}: {label(thickness)}" + f" {material}" * bool(material)
+    def _name(self, plate: int, thickness: float, bodies: int) -> str:
+        name = f"{plate}: {drawn(thickness)}"
+        if bodies < 0:
+            return name
+        sphere, wall = self.record.bodies[bodies].materials
+        several = len({one.materials[0] for one in self.record.bodies}) > 1
+        return f"{name} {wall.name}" + f", {sphere.name}" * several
 
     @cached_property
     def map(self) -> EnergyMap | None:
         """Energy on the surface of the walls, if that is known."""
-        if self.surface is None or not (self.surface.triangle >= 0).any():
+        surface = self.record.surface
+        if surface is None or not (surface.triangle >= 0).any():
             return None
-        return energy_map(self.surface, taken(self.record))
+        return energy_map(surface, taken(self.record.rows))
 
 
 def taken(rows: Rows) -> Floats:

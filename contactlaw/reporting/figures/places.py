@@ -16,10 +16,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
-from contactlaw.report.charts import DENSITY, density_bar, density_scale, sheet
-from contactlaw.report.run import Run, taken
-from contactlaw.report.summary import joules
-from contactlaw.report.surface import EnergyMap
+from contactlaw._readable import drawn
+from contactlaw.reporting.charts import DENSITY, density_bar, density_scale, sheet
+from contactlaw.reporting.run import Run, taken
+from contactlaw.reporting.surface import EnergyMap
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ def _view(axes: Axes, found: EnergyMap, towards: Floats) -> None:
 
 def _points(run: Run, within: str) -> Figure:
     """Draw contact points as seen along the axis in which they spread the least."""
-    energy, places = taken(run.rows), 1e3 * run.points[run.record["plate"] >= 0]
+    energy, places = taken(run.rows), 1e3 * run.on_walls.points
     spread = np.ptp(places, axis=0)
     x, y = (n for n in range(3) if n != 2 - int(np.argmin(spread[::-1])))
     # points on one flat wall, or a single one, need some room beside them
@@ -93,7 +93,7 @@ def _points(run: Run, within: str) -> Figure:
     size = 200.0 * (energy[few] / most).clip(0.01, 4.0)
     axes.scatter(places[few, x], places[few, y], s=size, rasterized=True, **look)
     for part in (1.0, 0.1, 0.01):
-        axes.scatter([], [], s=200.0 * part, label=joules(part * most), **look)
+        axes.scatter([], [], s=200.0 * part, label=drawn(part * most, "J", 3), **look)
     middle = 0.5 * (places.min(axis=0) + places.max(axis=0))
     for n, size, limit in ((x, wide, axes.set_xlim), (y, high, axes.set_ylim)):
         limit(middle[n] - 0.55 * size, middle[n] + 0.55 * size)

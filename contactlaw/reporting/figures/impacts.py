@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from contactlaw import style
-from contactlaw.report.run import OTHERS, Run
+from contactlaw.reporting.run import OTHERS, Run
 
 _BINS = 12, 40  # fewest and most
 _COLOURS = style.BLUE, style.ORANGE, style.GREEN, style.PURPLE, style.SKY

@@ -1,8 +1,7 @@
-"""Words that the reports of all scenes share: names of plates, and limits of the model."""
+"""Words that the reports of all scenes share: sizes of plates, and limits of the model."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -10,17 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contactlaw import Validity, explain
+from contactlaw._readable import drawn
 
-
-def label(thickness: float) -> str:
-    """Name a plate by its thickness [m].
-
-    Examples
-    --------
-    >>> label(0.5e-3), label(float("inf"))
-    ('0.5 mm', 'half-space')
-    """
-    return "half-space" if thickness == math.inf else f"{thickness * 1e3:.4g} mm"
+label = drawn  # the name of a plate, also for the demo
 
 
 class Limit(NamedTuple):

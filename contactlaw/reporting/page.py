@@ -9,8 +9,8 @@ from importlib import resources
 from string import Template
 from types import ModuleType
 
-from contactlaw.report.gallery import Picture
-from contactlaw.report.limits import Limit
+from contactlaw.reporting.gallery import Picture
+from contactlaw.reporting.limits import Limit
 
 
 def template(package: str, name: str) -> Template:

@@ -5,17 +5,19 @@ from __future__ import annotations
 import datetime
 import html
 import os
+from collections.abc import Sequence
 from pathlib import Path
-
-import numpy as np
 
 from contactlaw import _atomic, style
 from contactlaw._version import VERSION
-from contactlaw.report import figures, page, summary
-from contactlaw.report.gallery import Picture
-from contactlaw.report.limits import exceeded
-from contactlaw.report.run import Run
-from contactlaw.report.surface import ply, vtk
+from contactlaw.record.file import Record
+from contactlaw.reporting import figures, page, summary
+from contactlaw.reporting.gallery import Picture
+from contactlaw.reporting.limits import exceeded
+from contactlaw.reporting.meshes import with_meshes
+from contactlaw.reporting.run import Run
+from contactlaw.reporting.surface import ply, vtk
+from contactlaw.walls.mesh import Mesh
 
 _MAPS = "energy.vtk", "energy.ply"
 _LEDE = (
@@ -24,31 +26,38 @@ _LEDE = (
 )
 
 
-def write(out: str | os.PathLike[str], run: Run) -> Path:
-    """Write index.html, its figures, summary.txt, record.npy and, of a mesh, the energy map.
+def report(
+    record: Record, out: str | os.PathLike[str] = "report", meshes: Sequence[Mesh] = ()
+) -> Path:
+    """Write a page about a run, with figures and, if the walls are known, an energy map.
 
     Parameters
     ----------
-    out : path-like
+    record : Record
+        The run, with all columns of `contactlaw.engines.record.IMPACT`.
+    out : path-like, optional
         Folder to write into; it is made if its parent exists. Files of an earlier report in it are
         replaced, other files are left alone.
-    run : Run
-        The run.
+    meshes : sequence of contactlaw.walls.Mesh, optional
+        Meshes of walls, in the order of their numbers, for a record that does not know them.
 
     Returns
     -------
     Path
-        The page.
+        The page, index.html, which needs no other file. Beside it are its figures, summary.txt,
+        record.h5, and the map as energy.vtk and energy.ply.
 
     Raises
     ------
     ValueError
-        Without any contact on a wall.
+        Without any contact on a wall; if the record lacks a column, has a number that cannot be, or
+        does not fit the meshes.
     ImportError
         Without matplotlib; the message says how to install it.
     OSError
         If a file cannot be written; nothing is left behind then.
     """
+    run = Run(with_meshes(record, meshes) if meshes else record)
     if not run.rows.size:
         raise ValueError("record: has no impact on a wall yet: simulate longer")
     with style.applied(), _atomic.folder(out) as folder:
@@ -56,9 +65,9 @@ def write(out: str | os.PathLike[str], run: Run) -> Path:
         for name, picture in pictures.items():
             (folder / f"{name}.png").write_bytes(picture.wide)
         (folder / "summary.txt").write_text(f"{summary.text(run)}\n", encoding="utf-8")
-        np.save(folder / "record.npy", run.record)
+        run.record.save(folder / "record.h5")
         if run.map is not None:
-            from contactlaw.report.figures.places import colours
+            from contactlaw.reporting.figures.places import colours
 
             shown = colours(run.map)
             for name, form in zip(_MAPS, (vtk, ply), strict=True):

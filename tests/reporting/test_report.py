@@ -12,10 +12,10 @@ from pymunk_room import make_bead, make_plate, make_space, steps
 import contactlaw as cl
 from contactlaw.cli import main
 from contactlaw.engines.pymunk import attach
-from contactlaw.report import summary, surface
-from contactlaw.report.figures import energy, impacts, places
-from contactlaw.report.figures.impacts import angle
-from contactlaw.report.run import CAUSES, Run
+from contactlaw.reporting import summary, surface
+from contactlaw.reporting.figures import energy, impacts, places
+from contactlaw.reporting.figures.impacts import angle
+from contactlaw.reporting.run import CAUSES, Run
 
 PLATES = {0.5e-3: "glass", 1e-3: "glass", 3e-3: "carbon-steel-1020"}
 WIDE = "[...document.querySelectorAll('*')].filter((e) => e.scrollWidth > innerWidth).length"
@@ -53,9 +53,10 @@ def folder(run, tmp_path_factory):
 
 def test_the_energies_of_walls_and_causes_are_those_of_the_record(run, folder):
     rows = run[1].collisions()
-    assert np.load(folder / "record.npy").tolist() == rows.tolist()
+    order = np.lexsort((rows["bead"], rows["time"]))
+    assert cl.read_record(folder / "record.h5").rows.tolist() == rows[order].tolist()
     rows = rows[rows["plate"] >= 0]
-    walls = Run(rows, "").walls
+    walls = Run(cl.Record(rows)).walls
     assert [wall.rows.size for wall in walls] == np.bincount(rows["plate"]).tolist()
     text = (folder / "summary.txt").read_text()
     shown = re.findall(r"^(\d|all).*?((?: +[\d.e-]+ [nµm]?J)+)", text, re.M)
@@ -70,7 +71,7 @@ def test_the_energies_of_walls_and_causes_are_those_of_the_record(run, folder):
 
 def test_the_constant_is_that_of_the_model(run):
     _, impacts, models = run
-    rows, walls = impacts.collisions(), Run(impacts.collisions(), "").walls
+    rows, walls = impacts.collisions(), Run(cl.Record(impacts.collisions())).walls
     for n, (thickness, material) in enumerate(PLATES.items()):
         own = rows[(rows["plate"] == n) & (rows["kind"] == 0)]
         radius = impacts.beads()["radius"][own["bead"]]
@@ -88,7 +89,7 @@ def test_a_rebound_of_next_to_nothing_has_no_long_number(run):
     rows = run[1].collisions()[:2]
     rows["restitution"] = 0.0, 0.3
     rows["plate"], rows["thickness"], rows["kind"] = 0, 0.5e-3, 0
-    assert summary.impacts(Run(rows, ""))[1][6] == ">1000%"
+    assert summary.impacts(Run(cl.Record(rows)))[1][6] == ">1000%"
 
 
 @pytest.mark.parametrize("beads", [1, 5])
@@ -99,7 +100,7 @@ def test_contacts_on_one_flat_plate_have_room(beads):
     for x in np.linspace(-0.05, 0.05, beads):
         impacts.add_bead(make_bead(space, (x, 0.01), (0.0, -1.0), 1e-3))
     steps(space, 100)
-    figure = places.draw(Run(impacts.collisions(), ""))
+    figure = places.draw(Run(cl.Record(impacts.collisions())))
     (axes,) = figure.axes
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     assert high - low > 0.1 * (right - left) > 0.0
@@ -131,7 +132,7 @@ def test_the_page_is_whole_in_one_small_file_and_fits_the_screen(folder, page, w
 
 
 def test_what_is_no_impact_is_left_out_and_said(folder, tmp_path, capsys):
-    rows = np.load(folder / "record.npy")
+    rows = cl.read_record(folder / "record.h5").rows
     rows = rows[rows["plate"] >= 0]
     rows["kind"][:2] = 3, 4
     np.save(tmp_path / "run.npy", rows)
@@ -156,7 +157,7 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
     with pytest.raises(ValueError, match="has no column mass, thickness: a report needs"):
         names = [name for name in impacts.collisions().dtype.names
                  if name not in ("mass", "thickness")]  # fmt: skip
-        Run(impacts.collisions()[names], "")
+        Run(cl.Record(impacts.collisions()[names]))
     rows = impacts.collisions()
     row = int(np.flatnonzero((rows["kind"] == 0) & (rows["plate"] >= 0))[0])
     for name, value in (("approach_speed", math.nan), ("mass", 0.0), ("thickness", math.nan),
@@ -164,13 +165,13 @@ def test_a_report_that_cannot_be_made_says_why_and_leaves_nothing(run, tmp_path,
         wrong = rows.copy()
         wrong[name][row] = value
         with pytest.raises(ValueError, match=f"{name} of row {row} is {value}: leave the row out"):
-            Run(wrong, "")
+            Run(cl.Record(wrong))
     with monkeypatch.context() as patch:
         patch.setitem(sys.modules, "matplotlib", None)
         with pytest.raises(ImportError, match="pip install 'contactlaw"):
             impacts.report(tmp_path / "out")
     with monkeypatch.context() as patch:
-        patch.setattr("contactlaw.report.summary.energies", lambda run: 1 / 0)
+        patch.setattr("contactlaw.reporting.summary.energies", lambda run: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             impacts.report(tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
@@ -195,7 +196,7 @@ def test_parts_of_triangles_cover_them_and_have_their_own_points():
 def test_many_walls_are_counted_and_their_names_have_room(run, walls):
     rows = np.tile(run[1].collisions()[:1], walls)
     rows["plate"], rows["thickness"] = np.arange(walls), 1e-3
-    many = Run(rows, "beads")
+    many = Run(cl.Record(rows))
     assert f"on {walls} walls" in summary.counts(many)
     figure = energy.draw(many)
     figure.draw_without_rendering()

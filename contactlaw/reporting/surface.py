@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from contactlaw.record.file import Surface
+
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
@@ -16,41 +18,15 @@ _FINEST, _COARSEST = 1.0 / 60.0, 1.0 / 12.0  # limits of this reach [largest ext
 _GRID, _CELLS = 0.125, 2e6  # cell of the grid for the average [reach], and most cells
 
 
-class Surface(NamedTuple):
-    """Walls as triangles in their places at the start, and where impacts hit them.
-
-    Attributes
-    ----------
-    corners
-        Corners of the triangles, shape (m, 3, 3) [m].
-    wall
-        Number of the wall of each triangle, shape (m,).
-    triangle
-        Number of the triangle for each row of a record, shape (n,); -1: on none of them.
-    point
-        The contact point on it, shape (n, 3) [m]; None if unknown, as on walls that move.
-    """
-
-    corners: Floats
-    wall: Integers
-    triangle: Integers
-    point: Floats | None
-
-
 class EnergyMap(NamedTuple):
     """Energy that parts of the walls take: corners (k, 3, 3) [m], and columns of k numbers.
 
-    Attributes
-    ----------
-    impacts, energy
-        Number of contacts on each triangle, and the energy [J] that these took.
-    density
-        Energy over area [J/m2], an average over the neighbourhood on the same wall.
+    The density is energy over area [J/m2], an average over the neighbourhood on the same wall.
     """
 
     corners: Floats
-    impacts: Integers
-    energy: Floats
+    impacts: Integers  # number of contacts on each triangle
+    energy: Floats  # that these took [J]
     density: Floats
 
 
@@ -86,14 +62,6 @@ def refined(
 
     Returns the corners, the triangle of each point, and the number of the triangle of which each
     is a part.
-
-    Examples
-    --------
-    >>> square = np.array([[[0, 0, 0], [2, 0, 0], [2, 1, 0]], [[0, 0, 0], [2, 1, 0], [0, 1, 0]]])
-    >>> point = np.array([[1.9, 0.1, 0.0]])
-    >>> corners, where, whole = refined(1.0 * square, np.array([0]), point, 1.2)
-    >>> whole.tolist(), corners[where[0]].tolist()
-    ([0, 1, 0, 1, 0, 1], [[2.0, 1.0, 0.0], [1.0, 0.5, 0.0], [2.0, 0.0, 0.0]])
     """
     whole = np.arange(len(corners))
     while True:
