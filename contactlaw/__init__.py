@@ -1,10 +1,10 @@
 """Thickness-dependent restitution of beads on plates for particle simulations.
 
-The coefficient of restitution of a sphere that hits a plate falls with plastic flow at the contact
-and with the bending wave that runs away in the plate. The modified Zener model (Peng, Jin, Liu,
-Wei, Int. J. Solids Struct. 222-223 (2021) 111036) has both; this package answers from a table of
-its solutions. All quantities are in SI units.
+A sphere loses speed to plastic flow at the contact and to the bending wave that runs away in the
+plate; the modified Zener model (Peng et al. 2021) has both. All quantities are in SI units.
 
+Examples
+--------
 >>> import contactlaw as cl
 >>> model = cl.ImpactModel(cl.Pair("gamma-alumina", "glass"))
 >>> model.restitution(speed=5.0, radius=0.9e-3, thickness=[0.5e-3, 1e-3, 3e-3]).round(3)

@@ -163,7 +163,7 @@ class ImpactModel(Compiled, Histories, Inverse, Oblique):
             What holds the plate at its edge; a hole has a free one.
         edge_distance : array_like, optional
             Distance of the impact from that edge [m]; ``inf`` is a plate without edges. Impacts
-            near edges are integrated, whatever table there is. See docs/edges.md.
+            near edges are integrated, whatever table there is. See docs/angles_and_edges.md.
         hole_radius : array_like, optional
             Radius of the hole whose rim the edge is [m]; ``inf`` is a straight edge.
         mass : array_like, optional
