@@ -22,6 +22,8 @@ PARTS = KEPT, *_ = (
     ("micro-slip and vibration", style.GREEN),
     ("friction along the plate", style.SKY),
 )
+_DARK = style.BLUE, style.MUTED, style.GREEN
+_WIDE = 6.0  # [%], the width of a number with room around it
 _ROOM = 4.5  # [%], the height of a number; smaller shares have theirs beside the bar
 _READABLE = {style.BLUE: style.BLUE, style.ORANGE: "#9A6700", style.GREEN: "#00694D",
              style.SKY: "#1F6E9C", style.PALE: style.INK, style.MUTED: style.INK}  # fmt: skip
@@ -41,7 +43,7 @@ def bar(
         middle = bottom + 0.5 * height
         text = f"{height:.0f}" if height >= 9.5 else f"{height:.1f}"
         if height >= _ROOM:
-            ink = "white" if colour in (style.BLUE, style.MUTED, style.GREEN) else style.INK
+            ink = "white" if colour in _DARK else style.INK
             axes.text(x, middle, text, ha="center", va="center", color=ink, fontsize=11)
         elif room:
             beside = max(middle, beside + _ROOM)
@@ -50,6 +52,21 @@ def bar(
                 fontsize=11, fontweight="bold",
             )  # fmt: skip
         bottom += height
+
+
+def across(axes: Axes, y: float, parts: list[tuple[tuple[str, str], float]]) -> None:
+    """Stack shares from left to right, with the numbers of those that have room for theirs."""
+    begins = 0.0
+    for (name, colour), share in parts:
+        length = 100.0 * share
+        if length < 0.05:
+            continue
+        axes.barh(y, length, 0.7, begins, color=colour, label=name, edgecolor="white")
+        if length >= _WIDE:
+            ink = "white" if colour in _DARK else style.INK
+            axes.text(begins + 0.5 * length, y, f"{length:.0f}", ha="center", va="center",
+                      color=ink, fontsize=11)  # fmt: skip
+        begins += length
 
 
 def wall_axis(axes: Axes, labels: Sequence[str], what: str = "plate thickness") -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from contactlaw._readable import drawn
 from contactlaw.answers.constant import Constant, constant
 from contactlaw.physical.kind import only_impacts
+from contactlaw.physical.materials import Material
 from contactlaw.record.file import Record
 from contactlaw.reporting.surface import EnergyMap, energy_map
 from contactlaw.table.lookup import R_MAX, R_MIN, V_MAX, V_MIN
@@ -124,9 +125,8 @@ class Run:
     @cached_property
     def subject(self) -> str:
         """What the run is: the materials and the engine, as far as they are known."""
-        used = [self.record.bodies[n] for n in np.unique(self.on_walls.which) if n >= 0]
-        spheres, plates = ({one.materials[n].name for one in used} for n in range(2))
-        pair = f"{', '.join(sorted(spheres))} on {', '.join(sorted(plates))}" if used else ""
+        spheres, plates = ({pair[n].name for pair in self._materials} for n in range(2))
+        pair = f"{', '.join(sorted(spheres))} on {', '.join(sorted(plates))}" if spheres else ""
         engine = self.record.made.get("engine")
         return ", ".join([pair] * bool(pair) + [f"in {engine}"] * bool(engine)) or "unknown beads"
 
@@ -148,12 +148,19 @@ class Run:
         return [_wall(name, rows[which == n]) for n, name in enumerate(names)]
 
     def _name(self, plate: int, thickness: float, bodies: int) -> str:
-        name = f"{plate}: {drawn(thickness)}"
+        """Name a wall; materials are told if there are several, else the run's subject has them."""
+        name = f"{plate}: {drawn(thickness, digits=4)}"
         if bodies < 0:
             return name
+        several = [len({pair[n] for pair in self._materials}) > 1 for n in range(2)]
         sphere, wall = self.record.bodies[bodies].materials
-        several = len({one.materials[0] for one in self.record.bodies}) > 1
-        return f"{name} {wall.name}" + f", {sphere.name}" * several
+        return name + f" {wall.name}" * several[1] + f", {sphere.name}" * several[0]
+
+    @cached_property
+    def _materials(self) -> list[tuple[Material, Material]]:
+        """Materials of beads and walls that meet."""
+        used = np.unique(self.on_walls.which)
+        return [self.record.bodies[n].materials for n in used[used >= 0].tolist()]
 
     @cached_property
     def map(self) -> EnergyMap | None:

@@ -6,53 +6,45 @@ bending wave carries energy away for good; on a thick one plastic flow at the co
 
 from __future__ import annotations
 
-import textwrap
-
 from matplotlib.figure import Figure
 
 from contactlaw import style
 from contactlaw._readable import drawn, scale_of
-from contactlaw.reporting.charts import PARTS, bar, wall_axis
+from contactlaw.reporting.charts import PARTS, across
 from contactlaw.reporting.run import Run, by_cause, shares
 
 
 def draw(run: Run) -> Figure:
-    """Draw two panels with a bar for each wall."""
+    """Draw two panels with a bar for each wall, the first one on top."""
     walls, causes = run.walls, by_cause(run.rows)
-    most = int(causes.argmax())
+    most, rubs = int(causes.argmax()), causes[-1] > 0.0
     share = 100.0 * causes[most] / (causes.sum() or 1.0)
+    height = 2.6 + 0.5 * max(len(walls), 3)
     figure = style.figure(
-        12.0, style.pick(6.0, 9.6), f"{share:.0f} % of what the walls take: {PARTS[most + 1][0]}",
-        f"{run.subject}; left: energy that all contacts took, right: shares of the energy that "
-        "the impacts brought",
+        12.0, style.pick(height, 2.0 * height - 1.0),
+        f"{share:.0f} % of what the walls take: {PARTS[most + 1][0]}",
+        f"{run.subject}; {style.pick('left', 'above')}: energy that all contacts took, "
+        f"{style.pick('right', 'below')}: shares of the energy that the impacts brought",
     )  # fmt: skip
-    left, right = figure.subplots(*style.pick((1, 2), (2, 1)))
+    left, right = figure.subplots(*style.pick((1, 2), (2, 1)), sharey=True)
     unit, scale = scale_of(max(float(by_cause(wall.rows).sum()) for wall in walls), "J")
     for n, wall in enumerate(walls):
         part = by_cause(wall.rows)
         for m, (_, colour) in enumerate(PARTS[1:]):
-            left.bar(n, part[m] / scale, 0.6, part[:m].sum() / scale, color=colour,
-                     edgecolor="white", linewidth=0.6)  # fmt: skip
-        left.annotate(drawn(part.sum(), "J", 3), (n, part.sum() / scale), (0, 3), ha="center",
-                      textcoords="offset points", fontsize=11 if len(walls) < 7 else 8)  # fmt: skip
+            left.barh(n, part[m] / scale, 0.7, part[:m].sum() / scale, color=colour,
+                      edgecolor="white", linewidth=0.6)  # fmt: skip
+        left.annotate(drawn(part.sum(), "J", 3), (part.sum() / scale, n), (4, 0), va="center",
+                      textcoords="offset points", fontsize=11)  # fmt: skip
         if wall.impacts.size:
-            found = shares(wall.impacts, wall.impacts["mass"], by_cause(run.rows)[-1] > 0.0)
-            bar(right, n, 0.6, list(zip(PARTS, found, strict=True)), len(walls) < 7)
-    names = [wall.name for wall in walls]
-    if len(walls) < 7:  # columns are wide enough to have their names below them
-        names = ["\n".join(textwrap.wrap(name, max(10, 52 // len(walls)))) for name in names]
-    for axes, what in (
-        (left, f"energy taken [{unit.replace('u', 'µ')}]"),
-        (right, "share of impacts' energy [%]"),
-    ):
-        wall_axis(axes, names, "wall")
-        if len(walls) > 6:
-            axes.tick_params(axis="x", rotation=60)
-        axes.set_ylabel(what)
-        if len(walls) < 3:  # or a single bar would be as wide as its panel
-            axes.set_xlim(0.5 * len(walls) - 2.0, 0.5 * len(walls) + 1.0)
-    left.margins(y=0.1)
-    right.set_ylim(0.0, 104.0)
+            found = shares(wall.impacts, wall.impacts["mass"], rubs)
+            across(right, n, list(zip(PARTS, found, strict=True)))
+    left.set_yticks(range(len(walls)), [wall.name for wall in walls])
+    left.set_ylim(max(len(walls), 3) - 0.5, -0.5)
+    left.set_xlabel(f"energy taken [{unit.replace('u', 'µ')}]")
+    left.set_xlim(0.0, 1.2 * left.dataLim.x1 or 1.0)  # room for the sums
+    right.set(xlabel="share of impacts' energy [%]", xlim=(0.0, 100.0))
+    for axes in (left, right):
+        axes.grid(visible=False, axis="y")
     handles = dict(zip(*reversed(right.get_legend_handles_labels()), strict=True))
     figure.legend(handles.values(), list(handles), loc="outside lower center",
                   ncols=style.pick(4 if len(handles) < 5 else 3, 2))  # fmt: skip

@@ -34,7 +34,7 @@ _POINTS = 20_000  # most contacts that are drawn
 def draw(run: Run) -> Figure:
     """Draw the walls in the colours of their energies, or the contact points alone."""
     time = float(np.ptp(run.rows["time"]))
-    within = f" in {1e3 * time:.3g} ms" if time > 0.0 else ""
+    within = f" in {drawn(time, 's', 3)}" if time > 0.0 else ""
     if run.map is None:
         return _points(run, within)
     found = run.map
