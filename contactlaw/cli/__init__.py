@@ -92,7 +92,7 @@ def parser(words: Sequence[str] | None = None) -> argparse.ArgumentParser:
 
 def _subcommands() -> dict[str, tuple[str, str]]:
     """Find module and purpose of each subcommand, from the docstring of its file."""
-    found = {}
+    found = dict[str, tuple[str, str]]()
     for path in sorted(Path(__file__).parent.glob("*")):
         file = path / "__init__.py" if path.is_dir() else path
         if file.suffix == ".py" and path.stem not in ("__init__", "parts") and file.exists():

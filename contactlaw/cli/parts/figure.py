@@ -16,7 +16,7 @@ from contactlaw import _atomic, style
 from contactlaw._readable import drawn, scale_of
 from contactlaw.cli.parts import plots
 from contactlaw.cli.parts.layout import AXES, Answers, Ask, Layout, is_logarithmic, layout
-from contactlaw.cli.parts.plots import Kind, colour_of, curve, dashes_of, kinds_of
+from contactlaw.cli.parts.plots import FlagLook, colour_of, curve, dashes_of, kinds_of
 from contactlaw.physical.validity import Validity
 
 if TYPE_CHECKING:
@@ -114,7 +114,9 @@ def _finite(values: Array) -> Array:
     return values[values < math.inf]
 
 
-def _draw(axes: Axes, x: Array, found: Answers, kinds: dict[Validity, Kind], colour: Any) -> None:
+def _draw(
+    axes: Axes, x: Array, found: Answers, kinds: dict[Validity, FlagLook], colour: Any
+) -> None:
     """Draw a curve with its band and first yield; what follows the finite x is a thin line."""
     parts: list[Any] = [part[: x.size] for part in found[:5]]
     value, flags, overload, low, high = parts
@@ -205,7 +207,7 @@ def _figure(width: float, height: float, plan: Layout, found: Answers, subject: 
     return figure
 
 
-def _keys(kinds: dict[Validity, Kind], width: float, hatched: bool) -> list[Any]:
+def _keys(kinds: dict[Validity, FlagLook], width: float, hatched: bool) -> list[Any]:
     """Show a sample of each kind of dashes or hatches with the limit that it stands for."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch

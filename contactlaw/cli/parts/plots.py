@@ -32,7 +32,7 @@ def colour_of(n: int, count: int) -> Any:
     return colormaps["viridis"](0.82 * n / max(count - 1, 1))
 
 
-class Kind(NamedTuple):
+class FlagLook(NamedTuple):
     """How a limit of accuracy is drawn where it is exceeded, and its words."""
 
     stroke: float  # length of the dashes, in widths of the line
@@ -44,7 +44,7 @@ _GAP, _STROKES = 1.4, (3.2, 1.0, 6.5, 2.0, 10.0, 4.5)
 _HATCHES = "///", "\\\\\\", "...", "|||", "---", "ooo"
 
 
-def kinds_of(flags: NDArray[np.int64]) -> dict[Validity, Kind]:
+def kinds_of(flags: NDArray[np.int64]) -> dict[Validity, FlagLook]:
     """Limits of accuracy that some impacts exceed, each drawn in its own way; frequent ones first.
 
     Examples
@@ -57,12 +57,12 @@ than the finite elements that the law is made of')]
     counts = count_flags(flags & Validity.ACCURACY)
     looks = itertools.cycle(zip(_STROKES, _HATCHES, strict=True))
     return {
-        flag: Kind(*look, *limits_in_words(flag))
+        flag: FlagLook(*look, *limits_in_words(flag))
         for flag, look in zip(sorted(counts, key=lambda flag: -counts[flag]), looks, strict=False)
     }
 
 
-def dashes_of(flags: int, kinds: dict[Validity, Kind]) -> Any:
+def dashes_of(flags: int, kinds: dict[Validity, FlagLook]) -> Any:
     """Line style of impacts with some flags: each kind has a stroke in it, so that all are seen.
 
     Examples
@@ -76,7 +76,7 @@ def dashes_of(flags: int, kinds: dict[Validity, Kind]) -> Any:
 
 
 def curve(
-    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], kinds: dict[Validity, Kind],
+    axes: Axes, x: Array, y: Array, flags: NDArray[np.int64], kinds: dict[Validity, FlagLook],
     **options: Any,
 ) -> None:  # fmt: skip
     """Draw a curve: dashed by kind where it exceeds limits of accuracy, otherwise solid."""

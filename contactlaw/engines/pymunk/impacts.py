@@ -27,8 +27,8 @@ from contactlaw.engines.pymunk.lookahead import LookAhead
 from contactlaw.engines.pymunk.models import Models
 from contactlaw.engines.pymunk.record import Register
 from contactlaw.engines.pymunk.registry import (
+    BeadKind,
     BeadShape,
-    Kind,
     Mount,
     PlateShape,
     body_of,
@@ -73,7 +73,7 @@ class PymunkImpacts:
         self._contacts = Contacts()
         self._bodies: dict[int, BeadShape] = {}  # by id of the body
         self._mounts: dict[int, Mount] = {}  # by id of a body with plates
-        self._kinds: Counter[Kind] = Counter()  # numbers of present beads by kind
+        self._kinds: Counter[BeadKind] = Counter()  # numbers of present beads by kind
         self._gone: list[Any] = []  # references to shapes and bodies that no longer exist
         self._register = Register(models)
         self._seams = Seams()
