@@ -32,7 +32,7 @@ from contactlaw.table.nodes import Table
 Array = NDArray[np.float64]
 
 _DIGEST = 32  # bytes of a checksum
-# [s]; the lock ends with its process. The slowest table known takes 12 s of CPU, which may be
+# [s]; the lock ends with its process. The slowest table known takes 15 s of CPU, which may be
 # minutes where many processes share a core: one that holds a lock for longer hangs.
 _PATIENCE = 600.0
 

@@ -38,9 +38,9 @@ _LAYER_FACTORS = 1, 2, 4  # likewise of cells in ln k
 # elastic impacts bends far less than that beyond yield, for which a single step has to be fine.
 _STEP_FACTORS = 1.25, 1.5, 2.0, 3.0, 4.0, 8.0
 # How many times fewer rows and wider steps most layers of strength have, with their limits, and how
-# far apart in ln k are those that have all nodes, our choices. The COR moves by 1e-7 to 3e-6.
+# far apart in ln k are those that have all nodes, our choices. The COR moves by 2e-6 at most.
 _FEWER, _FEWEST_ROWS = 2.2, 19
-_WIDER, _WIDEST = 3.0, 0.1
+_WIDER, _WIDEST = 2.0, 0.1
 _APART = 0.75
 
 
